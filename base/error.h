@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one exception type of the project. Libraries throw it; app/main prints it and picks the exit code.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace earthshine::base {
+
+// A place in a file the user wrote. line and column count from 1; 0 means "not known".
+struct Location {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+
+// "scene.toml:14:3", "scene.toml:14" or "scene.toml", as far as known.
+[[nodiscard]] std::string to_string(const Location& location);
+
+// Input: the call, the scene or a file it names is wrong (exit code 2).
+// Work: the call was right but the work failed, e.g. a full disk (exit code 1).
+enum class Blame { Input, Work };
+
+// Every message says where, what was found, what is allowed and what to do. allowed and remedy are
+// whole sentences without the final stop; either may be empty.
+class Error : public std::runtime_error {
+ public:
+  Error(Blame blame, std::string_view where, std::string_view found, std::string_view allowed = {},
+        std::string_view remedy = {});
+  Error(Blame blame, const Location& where, std::string_view found, std::string_view allowed = {},
+        std::string_view remedy = {});
+
+  [[nodiscard]] Blame blame() const { return blame_; }
+
+ private:
+  Blame blame_;
+};
+
+// The candidate nearest to `word` by edit distance, or "" when none is near enough to be meant.
+// Candidates: any range of strings.
+[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
+
+template <class Candidates>
+[[nodiscard]] std::string nearest_word(std::string_view word, const Candidates& candidates) {
+  std::size_t best = word.size() / 2 + 2;
+  std::string found;
+  for (const auto& candidate : candidates) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < best) {
+      best = distance;
+      found = std::string(candidate);
+    }
+  }
+  return found;
+}
+
+}  // namespace earthshine::base

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading and writing OpenEXR. The only user of the library.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/image.h"
+
+namespace earthshine::base {
+
+// Text and number attributes of the header, beside the standard ones.
+struct ExrHeader {
+  std::vector<std::pair<std::string, std::string>> text;
+  std::vector<std::pair<std::string, float>> numbers;
+};
+
+struct ExrFile {
+  Image image;
+  ExrHeader header;
+};
+
+// Writes 32-bit float channels, ZIP compressed, with Rec. 709 chromaticities and whiteLuminance = 1
+// (pixels are radiance in cd/m^2). Written aside and renamed: a failure leaves an older file whole.
+// Throws base::Error (Work) when the file cannot be written.
+void write_exr(const std::filesystem::path& path, const Image& image, const ExrHeader& header = {});
+
+// Reads every channel of a scan-line or tiled file as float (of a multi-part file the first part);
+// the data window becomes the image. A whiteLuminance attribute is applied to R, G, B and Y, so
+// that they are cd/m^2. Channel names are kept, except that a layer prefix common to all of R, G
+// and B (e.g. "Combined.R") is dropped when there is neither a plain R nor a plain Y. Throws
+// base::Error (Input) for a missing, broken, incomplete, deep or larger than 16384 x 16384 file,
+// and when R, G, B or Y has a pixel that is NaN or infinite (with the first pixel's position).
+[[nodiscard]] ExrFile read_exr(const std::filesystem::path& path);
+
+}  // namespace earthshine::base

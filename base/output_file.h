@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files are written aside and renamed, so that a reader never sees half a file and a failure keeps
+// the old one.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace earthshine::base {
+
+// A temporary name beside `target`; commit() renames it over the target, the destructor removes it
+// if commit() was not reached. Throws base::Error (Input) if the target's folder does not exist or
+// the target is a folder, and base::Error (Work) if renaming fails.
+class OutputFile {
+ public:
+  explicit OutputFile(const std::filesystem::path& target);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
+  void commit();
+
+ private:
+  std::filesystem::path target_, temporary_;
+  bool committed_ = false;
+};
+
+// Writes text to a file, aside and renamed. Throws as OutputFile does, and base::Error (Work) on a
+// full disk.
+void write_text(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace earthshine::base

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The project's only use of threads (oneTBB). Results never depend on the number of threads.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace earthshine::base {
+
+// Limits every parallel loop to `threads` for as long as it lives; 0 means all cores of the process.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int threads);
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  void* control_;
+};
+
+[[nodiscard]] int available_threads();
+
+// Calls body(begin, end) over [0, count) in chunks of at most `chunk` items. body may write only to the
+// slots it owns. The first exception is rethrown on the calling thread.
+void parallel_chunks(std::size_t count, std::size_t chunk,
+                     const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+// Sums sum_chunk(begin, end) over fixed chunks, adding in chunk order: the same bits on any number of
+// threads.
+template <class T, class SumChunk>
+[[nodiscard]] T ordered_sum(std::size_t count, std::size_t chunk, T zero, SumChunk sum_chunk) {
+  std::vector<T> parts((count + chunk - 1) / chunk, zero);
+  parallel_chunks(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      parts[k] = sum_chunk(k * chunk, std::min(count, (k + 1) * chunk));
+    }
+  });
+  T total = zero;
+  for (const T& part : parts) total += part;
+  return total;
+}
+
+}  // namespace earthshine::base

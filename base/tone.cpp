@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/tone.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/units.h"
+
+namespace earthshine::base {
+namespace {
+
+constexpr std::size_t chunk_px = 4096;
+constexpr double middle_grey = 0.18;
+
+void refuse_non_finite(const Image& image, const std::vector<float>& luminance) {
+  for (std::size_t i = 0; i < luminance.size(); ++i) {
+    if (std::isfinite(luminance[i])) continue;
+    const std::size_t width = static_cast<std::size_t>(image.width);
+    throw Error(Blame::Work, "tone mapping",
+                "pixel (" + std::to_string(i % width) + ", " + std::to_string(i / width) +
+                    ") is not a finite number");
+  }
+}
+
+}  // namespace
+
+std::uint8_t srgb_byte(double linear) {
+  const double v =
+      linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(v, 0.0, 1.0)));
+}
+
+ToneMapped tone_map(const Image& image) {
+  const std::vector<float> luminance = luminance_of(image);
+  refuse_non_finite(image, luminance);
+  ToneMapped result;
+  result.rgb.assign(luminance.size() * 3, 0);
+
+  std::vector<float> lit;
+  for (float y : luminance) {
+    if (y > 0.0F) lit.push_back(y);
+  }
+  if (lit.empty()) return result;
+  const std::size_t rank =
+      static_cast<std::size_t>(std::lround(0.995 * static_cast<double>(lit.size() - 1)));
+  const auto bright = lit.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::nth_element(lit.begin(), bright, lit.end());
+  const double percentile = *bright;
+
+  // The logarithm would let a few all but black pixels decide the exposure: below 1e-5 of the
+  // bright end (17 stops) counts as not lit.
+  struct LogSum {
+    double sum = 0.0, count = 0.0;
+    LogSum& operator+=(const LogSum& o) {
+      sum += o.sum;
+      count += o.count;
+      return *this;
+    }
+  };
+  const LogSum log_sum =
+      ordered_sum(luminance.size(), chunk_px, LogSum{}, [&](std::size_t begin, std::size_t end) {
+        LogSum part;
+        for (std::size_t i = begin; i < end; ++i) {
+          if (luminance[i] < 1e-5 * percentile) continue;
+          part.sum += std::log(static_cast<double>(luminance[i]));
+          part.count += 1.0;
+        }
+        return part;
+      });
+  const double exposure = middle_grey / std::exp(log_sum.sum / log_sum.count);
+  // A white below 1 would stretch a flat picture to full white; at 1 the operator is the identity.
+  const double white = std::max(1.0, exposure * percentile);
+  result.report = {exposure, white / exposure};
+
+  const Channel* channels[3] = {image.find("R"), image.find("G"), image.find("B")};
+  if (channels[0] == nullptr || channels[1] == nullptr || channels[2] == nullptr) {
+    std::fill(std::begin(channels), std::end(channels), image.find("Y"));
+  }
+  parallel_chunks(luminance.size(), chunk_px, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double signal = exposure * std::max(0.0, static_cast<double>(luminance[i]));
+      const double scale = exposure * (1.0 + signal / (white * white)) / (1.0 + signal);
+      Rgb colour{channels[0]->values[i], channels[1]->values[i], channels[2]->values[i]};
+      colour = glm::max(colour * scale, Rgb(0.0));
+      // Divided rather than clipped, so that a bright lamp keeps its hue.
+      colour /= std::max(1.0, max_component(colour));
+      for (int c = 0; c < 3; ++c)
+        result.rgb[3 * i + static_cast<std::size_t>(c)] = srgb_byte(colour[c]);
+    }
+  });
+  return result;
+}
+
+}  // namespace earthshine::base

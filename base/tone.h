@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// From radiance to a picture on a screen, for the clean view (the CCTV view has a chain of its
+// own).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/image.h"
+
+namespace earthshine::base {
+
+// sRGB transfer function of IEC 61966-2-1, rounded to 8 bits; linear is clamped to [0, 1].
+[[nodiscard]] std::uint8_t srgb_byte(double linear);
+
+struct ToneReport {
+  double exposure = 1.0;         // display signal per cd/m^2 before the shoulder
+  double white_cd_per_m2 = 0.0;  // luminance that reaches full white
+};
+
+struct ToneMapped {
+  std::vector<std::uint8_t> rgb;  // width * height * 3, sRGB encoded
+  ToneReport report;
+};
+
+// Global photographic operator (Reinhard et al. 2002, equation 4): the log-mean luminance of the
+// lit pixels becomes middle grey 0.18, the 99.5th percentile becomes white (or signal 1, whichever
+// is more, so that a flat picture stays grey). Lit: above 1e-5 of that percentile. Colours keep
+// their ratios; a black image stays black; negative values count as 0. Throws base::Error (Work) on
+// NaN or infinity. Deterministic; no local adaptation, so equal luminance is equal grey everywhere.
+[[nodiscard]] ToneMapped tone_map(const Image& image);
+
+}  // namespace earthshine::base

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+# One helper for the layers, one for the tests; flags live here and nowhere else.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+# Off by default: a newer compiler than the tested ones must not stop a user's build. ./dev turns it on in CI.
+option(EARTHSHINE_WERROR "Treat warnings as errors" OFF)
+set(EARTHSHINE_ARCH "x86-64-v3" CACHE STRING "Value of -march; empty for the compiler's default")
+
+add_library(earthshine_flags INTERFACE)
+# -ffp-contract=off: a fused multiply-add rounds once, so results would differ between machines.
+target_compile_options(earthshine_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -ffp-contract=off
+  # GCC 12 reports overlaps inside std::string that are not there (GCC bug 105651).
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+  $<$<BOOL:${EARTHSHINE_WERROR}>:-Werror>)
+if(EARTHSHINE_ARCH AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  target_compile_options(earthshine_flags INTERFACE -march=${EARTHSHINE_ARCH})
+endif()
+
+# add_layer(NAME USES <layers> LIBRARIES <public> PRIVATE_LIBRARIES <owned here> SOURCES <files>)
+function(add_layer name)
+  cmake_parse_arguments(LAYER "" "" "USES;LIBRARIES;PRIVATE_LIBRARIES;SOURCES" ${ARGN})
+  add_library(earthshine_${name} STATIC ${LAYER_SOURCES})
+  add_library(earthshine::${name} ALIAS earthshine_${name})
+  target_include_directories(earthshine_${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  list(TRANSFORM LAYER_USES PREPEND earthshine_)
+  target_link_libraries(earthshine_${name}
+    PUBLIC ${LAYER_USES} ${LAYER_LIBRARIES}
+    PRIVATE earthshine_flags ${LAYER_PRIVATE_LIBRARIES})
+endfunction()
+
+# add_layer_test(LAYER FILE...): one executable per layer, every TEST a CTest entry of its own.
+function(add_layer_test layer)
+  add_executable(${layer}_tests ${ARGN})
+  target_link_libraries(${layer}_tests PRIVATE earthshine_${layer} earthshine_flags GTest::gtest_main)
+  target_compile_definitions(${layer}_tests PRIVATE
+    EARTHSHINE_SOURCE_DIR="${PROJECT_SOURCE_DIR}" EARTHSHINE_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
+  gtest_discover_tests(${layer}_tests TEST_PREFIX ${layer}/ DISCOVERY_TIMEOUT 60)
+endfunction()

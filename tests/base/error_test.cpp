@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/error.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace earthshine::base {
+namespace {
+
+TEST(Error, LocationIsWrittenAsFarAsKnown) {
+  EXPECT_EQ(to_string(Location{"scene.toml", 14, 3}), "scene.toml:14:3");
+  EXPECT_EQ(to_string(Location{"scene.toml", 14, 0}), "scene.toml:14");
+  EXPECT_EQ(to_string(Location{"scene.toml", 0, 3}), "scene.toml");
+}
+
+TEST(Error, MessageSaysWhereWhatAllowedAndRemedy) {
+  const Error full(Blame::Input, Location{"a.toml", 2, 0}, "gain is 0", "it must be at least 1",
+                   "Leave it out");
+  EXPECT_STREQ(full.what(), "a.toml:2: gain is 0; it must be at least 1. Leave it out");
+  EXPECT_EQ(full.blame(), Blame::Input);
+  EXPECT_STREQ(Error(Blame::Work, "", "disk full").what(), "disk full");
+}
+
+TEST(Error, EditDistanceIsAMetricOnSmallWords) {
+  EXPECT_EQ(edit_distance("", ""), 0U);
+  EXPECT_EQ(edit_distance("gain", ""), 4U);
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);  // two substitutions, one insertion
+  EXPECT_EQ(edit_distance("sitting", "kitten"), 3U);
+}
+
+TEST(Error, NearestWordFindsTheMisspeltKeyAndNotAStranger) {
+  const std::vector<std::string> keys = {"gain_max", "gamma", "glare"};
+  EXPECT_EQ(nearest_word("gama", keys), "gamma");
+  EXPECT_EQ(nearest_word("max_gain_db_of_it", keys), "");
+}
+
+}  // namespace
+}  // namespace earthshine::base

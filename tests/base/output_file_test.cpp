@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/output_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "tests/base/temporary_folder.h"
+
+namespace earthshine::base {
+namespace {
+
+using test::error_of;
+using test::read_bytes;
+using test::TemporaryFolder;
+using test::write_bytes;
+
+TEST(OutputFile, TextArrivesWholeAndNothingElseIsLeft) {
+  const TemporaryFolder folder;
+  const std::string text("one\0two\n", 8);
+  write_text(folder / "a.txt", text);
+  EXPECT_EQ(read_bytes(folder / "a.txt"), text);
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(OutputFile, OldFileStaysUntilCommitAndForeverWithoutIt) {
+  const TemporaryFolder folder;
+  write_text(folder / "a.txt", "old");
+  {
+    OutputFile output(folder / "a.txt");
+    write_bytes(output.temporary(), "half of the n");
+    EXPECT_EQ(read_bytes(folder / "a.txt"), "old");
+  }
+  EXPECT_EQ(read_bytes(folder / "a.txt"), "old");
+  EXPECT_EQ(folder.file_count(), 1U);
+  write_text(folder / "a.txt", "new");
+  EXPECT_EQ(read_bytes(folder / "a.txt"), "new");
+}
+
+TEST(OutputFile, PermissionsOfTheOldFileAreKept) {
+  const TemporaryFolder folder;
+  write_text(folder / "a.txt", "old");
+  ASSERT_EQ(::chmod((folder / "a.txt").c_str(), 0600), 0);
+  write_text(folder / "a.txt", "new");
+  EXPECT_EQ(std::filesystem::status(folder / "a.txt").permissions(),
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+}
+
+TEST(OutputFile, LinkIsFollowedAndKept) {
+  const TemporaryFolder folder;
+  write_text(folder / "real.txt", "old");
+  std::filesystem::create_symlink("real.txt", folder / "link.txt");
+  write_text(folder / "link.txt", "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
+  EXPECT_EQ(read_bytes(folder / "real.txt"), "new");
+}
+
+TEST(OutputFile, MissingFolderAndFolderAsTargetAreTheCallersMistake) {
+  const TemporaryFolder folder;
+  const std::string missing = error_of(Blame::Input, [&] { write_text(folder / "no/a.txt", "x"); });
+  EXPECT_NE(missing.find("there is no folder"), std::string::npos) << missing;
+  const std::string is_folder = error_of(Blame::Input, [&] { write_text(folder.path(), "x"); });
+  EXPECT_NE(is_folder.find("is a folder"), std::string::npos) << is_folder;
+  error_of(Blame::Input, [] { write_text("", "x"); });
+  error_of(Blame::Input, [&] { write_text(folder.path().string() + "/", "x"); });
+}
+
+TEST(OutputFile, FullDiskIsReportedAsFailedWork) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full on this system";
+  const std::string message = error_of(Blame::Work, [] { write_text("/dev/full", "x"); });
+  EXPECT_NE(message.find("No space left"), std::string::npos) << message;
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST(OutputFile, ReadOnlyTargetIsReportedAsFailedWork) {
+  if (::geteuid() == 0) GTEST_SKIP() << "the superuser may write anywhere";
+  const TemporaryFolder folder;
+  write_text(folder / "a.txt", "old");
+  ASSERT_EQ(::chmod((folder / "a.txt").c_str(), 0400), 0);
+  error_of(Blame::Work, [&] { write_text(folder / "a.txt", "new"); });
+  EXPECT_EQ(read_bytes(folder / "a.txt"), "old");
+}
+
+TEST(OutputFile, VeryLongNamesAreWritten) {
+  const TemporaryFolder folder;
+  const std::string name = std::string(250, 'n') + ".txt";
+  write_text(folder / name, "x");
+  EXPECT_EQ(read_bytes(folder / name), "x");
+}
+
+}  // namespace
+}  // namespace earthshine::base

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/tone.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "tests/base/temporary_folder.h"
+
+namespace earthshine::base {
+namespace {
+
+Image grey_image(const std::vector<float>& luminance) {
+  Image image = make_rgb_image(static_cast<int>(luminance.size()), 1);
+  for (Channel& channel : image.channels) channel.values = luminance;
+  return image;
+}
+
+// A scene from 1 to 10^4 cd/m^2.
+std::vector<float> ramp() {
+  std::vector<float> values(1000);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = std::pow(10.0F, 4.0F * static_cast<float>(i) / 999.0F);
+  }
+  return values;
+}
+
+TEST(Tone, BlackStaysBlack) {
+  const ToneMapped black = tone_map(make_rgb_image(5, 4));
+  EXPECT_EQ(black.rgb, std::vector<std::uint8_t>(60, 0));
+}
+
+// A flat picture is its own log mean: signal 0.18, below white = 1, where the operator is the
+// identity; sRGB of 0.18 is 1.055 * 0.18^(1/2.4) - 0.055 = 0.4614, times 255 = 117.6.
+TEST(Tone, FlatPictureIsMiddleGreyAtAnyLuminance) {
+  for (const float luminance : {1e-6F, 1.0F, 4.2e4F}) {
+    EXPECT_EQ(tone_map(grey_image({luminance, luminance})).rgb, std::vector<std::uint8_t>(6, 118));
+  }
+}
+
+TEST(Tone, ScalingTheSceneChangesTheExposureAndNotThePicture) {
+  const std::vector<float> scene = ramp();
+  std::vector<float> brighter = scene;
+  for (float& value : brighter) value *= 64.0F;
+  const ToneMapped a = tone_map(grey_image(scene)), b = tone_map(grey_image(brighter));
+  EXPECT_EQ(a.rgb, b.rgb);
+  EXPECT_NEAR(a.report.exposure / b.report.exposure, 64.0, 1e-9);
+}
+
+TEST(Tone, PercentileBecomesWhiteAndBrighterIsNeverDarker) {
+  const std::vector<float> scene = ramp();
+  const ToneMapped mapped = tone_map(grey_image(scene));
+  // The 99.5th percentile of 1000 values is number 994 of 0 to 999 (0.995 * 999 = 994.005).
+  EXPECT_NEAR(mapped.report.white_cd_per_m2, static_cast<double>(scene[994]), 1e-6 * 1e4);
+  EXPECT_EQ(mapped.rgb[3 * 994], 255);
+  EXPECT_LT(mapped.rgb[3 * 900], 255);
+  for (std::size_t i = 1; i < scene.size(); ++i) {
+    ASSERT_GE(mapped.rgb[3 * i], mapped.rgb[3 * (i - 1)]);
+  }
+}
+
+TEST(Tone, BrightLampKeepsItsHue) {
+  Image image = make_rgb_image(1000, 1);
+  for (Channel& channel : image.channels) channel.values.assign(1000, 1.0F);
+  image.channels[0].values[0] = 4e4F;  // far above white, blue nothing, green half of red
+  image.channels[1].values[0] = 2e4F;
+  image.channels[2].values[0] = 0.0F;
+  const ToneMapped mapped = tone_map(image);
+  EXPECT_EQ(mapped.rgb[0], 255);
+  EXPECT_EQ(mapped.rgb[1], 188);  // sRGB of 0.5: 255 * (1.055 * 0.5^(1/2.4) - 0.055) = 187.5
+  EXPECT_EQ(mapped.rgb[2], 0);
+}
+
+TEST(Tone, AFewAllButBlackPixelsDoNotDecideTheExposure) {
+  std::vector<float> scene(1000, 10.0F);
+  const double plain = tone_map(grey_image(scene)).report.exposure;
+  for (std::size_t i = 0; i < 400; ++i) scene[i] = 1e-30F;
+  EXPECT_NEAR(tone_map(grey_image(scene)).report.exposure, plain, 1e-12);
+}
+
+TEST(Tone, NegativeIsBlackAndNonFiniteIsRefused) {
+  EXPECT_EQ(tone_map(grey_image({-5.0F, 1.0F})).rgb[0], 0);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::string message = test::error_of(Blame::Work, [&] {
+    return tone_map(grey_image({1.0F, 1.0F, nan}));
+  });
+  EXPECT_NE(message.find("(2, 0)"), std::string::npos) << message;
+}
+
+TEST(Tone, LuminanceChannelGivesTheSameGreyAsRgb) {
+  Image y{1000, 1, {}};
+  y.add("Y") = ramp();
+  EXPECT_EQ(tone_map(y).rgb, tone_map(grey_image(ramp())).rgb);
+}
+
+TEST(Tone, SameBytesForOneAndTwoThreads) {
+  Image image = make_rgb_image(300, 200);
+  for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      image.channels[c].values[i] = static_cast<float>((i * 7919 + c * 31) % 5003);
+    }
+  }
+  const ThreadLimit one(1);
+  const ToneMapped a = tone_map(image);
+  const ThreadLimit two(2);
+  EXPECT_EQ(a.rgb, tone_map(image).rgb);
+}
+
+}  // namespace
+}  // namespace earthshine::base
