@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/lamp_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/ray_query.h"
+
+namespace earthshine::scenes {
+namespace {
+
+using base::pi;
+
+double beam_cosine(const Lamp& lamp) { return std::cos(base::radians(lamp.beam_deg / 2)); }
+double field_cosine(const Lamp& lamp) { return std::cos(base::radians(lamp.field_deg / 2)); }
+
+Vec3 cosine_direction(const base::Frame3& frame, double x, double y) {
+  const double r = std::sqrt(x), phi = 2.0 * pi * y;
+  return frame.to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0, 1.0 - x))});
+}
+
+Vec3 surface_point(const Lamp& lamp, double u, double v) {
+  if (lamp.kind == LampKind::Rectangle) {
+    return lamp.position + (u - 0.5) * lamp.edge_u + (v - 0.5) * lamp.edge_v;
+  }
+  const base::Frame3 frame = base::frame_around(lamp.axis);
+  const double r = lamp.radius_m * std::sqrt(u), phi = 2.0 * pi * v;
+  return lamp.position + r * (std::cos(phi) * frame.tangent + std::sin(phi) * frame.bitangent);
+}
+
+double surface_area(const Lamp& lamp) {
+  if (lamp.kind == LampKind::Rectangle) return glm::length(glm::cross(lamp.edge_u, lamp.edge_v));
+  return pi * lamp.radius_m * lamp.radius_m;
+}
+
+// A piece of a Lambertian emitter of exitance M and area A seen from a point:
+// E_normal = (M / pi) cos(theta') A / r^2.
+LightSample toward_area(const Vec3& point, const Vec3& on_source, const Vec3& normal,
+                        bool two_sided, const Rgb& exitance, double area_m2) {
+  LightSample sample;
+  const Vec3 way = on_source - point;
+  const double distance2 = glm::dot(way, way);
+  if (distance2 <= 0.0) return sample;
+  sample.distance_m = std::sqrt(distance2);
+  sample.direction = way / sample.distance_m;
+  double cosine = -glm::dot(sample.direction, normal);
+  if (two_sided) cosine = std::abs(cosine);
+  if (cosine > 0.0) sample.normal_illuminance_lx = exitance * (cosine * area_m2 / (pi * distance2));
+  return sample;
+}
+
+}  // namespace
+
+double spot_profile(const Lamp& lamp, double cos_angle) {
+  const double inner = beam_cosine(lamp), outer = field_cosine(lamp);
+  if (cos_angle >= inner) return 1.0;
+  if (cos_angle <= outer) return 0.0;
+  const double x = (cos_angle - outer) / (inner - outer);
+  return x * x * (3.0 - 2.0 * x);
+}
+
+LightSample sample_lamp(const Lamp& lamp, const Vec3& point, double u, double v) {
+  if (lamp.kind == LampKind::Rectangle || lamp.kind == LampKind::Disk) {
+    return toward_area(point, surface_point(lamp, u, v), lamp.axis, false, lamp.exitance,
+                       surface_area(lamp));
+  }
+  LightSample sample;
+  const Vec3 way = lamp.position - point;
+  const double distance2 = glm::dot(way, way);
+  if (distance2 <= 0.0) return sample;
+  sample.distance_m = std::sqrt(distance2);
+  sample.direction = way / sample.distance_m;
+  const double profile = lamp.kind == LampKind::Spot
+                             ? spot_profile(lamp, -glm::dot(sample.direction, lamp.axis))
+                             : 1.0;
+  sample.normal_illuminance_lx = lamp.intensity_cd * (profile / distance2);
+  return sample;
+}
+
+Rgb lamp_flux_lm(const Lamp& lamp) {
+  switch (lamp.kind) {
+    case LampKind::Point:
+      return lamp.intensity_cd * (4.0 * pi);
+    case LampKind::Spot:
+      return lamp.intensity_cd *
+             (2.0 * pi * (1.0 - 0.5 * (beam_cosine(lamp) + field_cosine(lamp))));
+    case LampKind::Rectangle:
+    case LampKind::Disk:
+      break;
+  }
+  return lamp.exitance * surface_area(lamp);
+}
+
+EmittedRay emit_from_lamp(const Lamp& lamp, double u, double v, double x, double y) {
+  if (lamp.kind == LampKind::Rectangle || lamp.kind == LampKind::Disk) {
+    return {surface_point(lamp, u, v), cosine_direction(base::frame_around(lamp.axis), x, y), 1.0};
+  }
+  const double half_angle = lamp.kind == LampKind::Spot ? base::radians(lamp.field_deg / 2) : pi;
+  const Vec3 direction = sample_cone(lamp.axis, half_angle, x, y);
+  if (lamp.kind == LampKind::Point) return {lamp.position, direction, 1.0};
+  const double mean_profile = (1.0 - 0.5 * (beam_cosine(lamp) + field_cosine(lamp))) /
+                              std::max(1.0 - field_cosine(lamp), 1e-300);
+  return {lamp.position, direction,
+          spot_profile(lamp, glm::dot(direction, lamp.axis)) / std::max(mean_profile, 1e-300)};
+}
+
+std::optional<LampHit> hit_lamp(const Lamp& lamp, const Vec3& origin, const Vec3& direction) {
+  if (lamp.kind != LampKind::Rectangle && lamp.kind != LampKind::Disk) return std::nullopt;
+  const double cosine = -glm::dot(direction, lamp.axis);
+  if (cosine <= 0.0) return std::nullopt;
+  const double t = glm::dot(origin - lamp.position, lamp.axis) / cosine;
+  if (t <= 0.0) return std::nullopt;
+  const Vec3 from_centre = origin + t * direction - lamp.position;
+  if (lamp.kind == LampKind::Disk) {
+    if (glm::dot(from_centre, from_centre) > lamp.radius_m * lamp.radius_m) return std::nullopt;
+  } else {
+    // Coordinates along the two edges, which need not be perpendicular.
+    const Vec3 cross = glm::cross(lamp.edge_u, lamp.edge_v);
+    const double area2 = glm::dot(cross, cross);
+    const double a = glm::dot(glm::cross(from_centre, lamp.edge_v), cross) / area2;
+    const double b = glm::dot(glm::cross(lamp.edge_u, from_centre), cross) / area2;
+    if (std::abs(a) > 0.5 || std::abs(b) > 0.5) return std::nullopt;
+  }
+  return LampHit{t, lamp.exitance / pi};
+}
+
+void EmitterSet::add(const Scene& scene, std::uint32_t triangle) {
+  const Triangle& t = scene.triangles[triangle];
+  const Material& material = scene.materials[t.material];
+  const Vec3& corner = scene.vertices[t.vertex[0]];
+  const double area = triangle_area(scene, triangle);
+  triangles_.push_back({corner, scene.vertices[t.vertex[1]] - corner,
+                        scene.vertices[t.vertex[2]] - corner, triangle_normal(scene, triangle),
+                        area, material.emit, material.two_sided});
+  const Rgb flux = material.emit * (material.two_sided ? 2.0 * area : area);
+  flux_lm_ += flux;
+  cumulative_.push_back((cumulative_.empty() ? 0.0 : cumulative_.back()) + base::luminance(flux));
+}
+
+const EmitterSet::Emitter& EmitterSet::choose(double& u, double& probability) const {
+  const double wanted = u * cumulative_.back();
+  const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, wanted);
+  const auto index = static_cast<std::size_t>(found - cumulative_.begin());
+  const double low = index == 0 ? 0.0 : cumulative_[index - 1];
+  const double width = cumulative_[index] - low;
+  probability = width / cumulative_.back();
+  u = std::clamp((wanted - low) / width, 0.0, 1.0);
+  return triangles_[index];
+}
+
+LightSample EmitterSet::sample(const Vec3& point, double u, double v) const {
+  double probability = 1.0;
+  const Emitter& emitter = choose(u, probability);
+  const double root = std::sqrt(u);
+  const Vec3 on_source = emitter.corner + root * ((1.0 - v) * emitter.edge1 + v * emitter.edge2);
+  return toward_area(point, on_source, emitter.normal, emitter.two_sided, emitter.exitance,
+                     emitter.area_m2 / probability);
+}
+
+EmittedRay EmitterSet::emit(double u, double v, double x, double y) const {
+  double probability = 1.0;
+  const Emitter& emitter = choose(u, probability);
+  Vec3 normal = emitter.normal;
+  if (emitter.two_sided) {  // half of the rays leave from either side
+    if (x >= 0.5) normal = -normal;
+    x = x >= 0.5 ? 2.0 * x - 1.0 : 2.0 * x;
+  }
+  const double root = std::sqrt(u);
+  const Vec3 origin = emitter.corner + root * ((1.0 - v) * emitter.edge1 + v * emitter.edge2);
+  return {origin, cosine_direction(base::frame_around(normal), x, y), 1.0};
+}
+
+Vec3 sample_cone(const Vec3& axis, double half_angle_rad, double u, double v) {
+  // 1 - cos written as 2 sin^2 keeps its digits for the Sun's small disc.
+  const double half_sine = std::sin(half_angle_rad / 2);
+  const double one_minus_cos = u * 2.0 * half_sine * half_sine;
+  const double sine = std::sqrt(std::max(0.0, one_minus_cos * (2.0 - one_minus_cos)));
+  const double phi = 2.0 * pi * v;
+  return glm::normalize(base::frame_around(axis).to_world(
+      {sine * std::cos(phi), sine * std::sin(phi), 1.0 - one_minus_cos}));
+}
+
+double cone_solid_angle_sr(double half_angle_rad) {
+  const double s = std::sin(half_angle_rad / 2);
+  return 4.0 * pi * s * s;
+}
+
+}  // namespace earthshine::scenes

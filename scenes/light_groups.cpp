@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/light_groups.h"
+
+#include <algorithm>
+
+#include "scenes/sky.h"
+
+namespace earthshine::scenes {
+
+LightGroups find_light_groups(const Scene& scene) {
+  LightGroups groups;
+  const auto index_of = [&](const std::string& name) {
+    const auto found = std::find(groups.names.begin(), groups.names.end(), name);
+    if (found != groups.names.end()) {
+      return static_cast<std::size_t>(found - groups.names.begin());
+    }
+    groups.names.push_back(name);
+    return groups.names.size() - 1;
+  };
+  if (visible_sun_share(scene) > 0.0 && base::max_component(scene.sun->illuminance_lx) > 0.0) {
+    groups.sun = index_of("sun");
+  }
+  if (earth_is_lit(scene)) groups.earth = index_of("earth");
+
+  groups.lamp.assign(scene.lamps.size(), no_group);
+  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
+    const Lamp& lamp = scene.lamps[k];
+    if (base::max_component(lamp.intensity_cd) + base::max_component(lamp.exitance) > 0.0) {
+      groups.lamp[k] = index_of(lamp.group);
+    }
+  }
+  std::vector<bool> worn(scene.materials.size(), false);
+  for (const Triangle& triangle : scene.triangles) worn[triangle.material] = true;
+  groups.material.assign(scene.materials.size(), no_group);
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    if (worn[m] && scene.materials[m].emits()) {
+      groups.material[m] = index_of(scene.materials[m].light_group);
+    }
+  }
+  if (base::max_component(scene.ambient_radiance) > 0.0) groups.ambient = index_of("ambient");
+  return groups;
+}
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// A mesh as its file (or a shape) has it: polygons in the file's own coordinates, before any
+// transform.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace earthshine::scenes {
+
+inline constexpr std::uint32_t no_index = 0xFFFFFFFFU;
+inline constexpr std::size_t max_mesh_bytes = std::size_t{512} << 20;
+inline constexpr std::size_t max_polygon_corners = 1024;
+// Larger coordinates are slips; their squares would still be exact enough, their scene would not.
+inline constexpr double largest_coordinate = 1e15;
+
+struct MeshPolygon {
+  std::uint32_t first = 0;  // into Mesh::indices
+  std::uint32_t count = 0;
+  std::uint32_t part_set = 0;         // into Mesh::part_sets
+  std::uint32_t material = no_index;  // into Mesh::material_names
+  std::uint32_t line = 0;             // of the file; 0: not known
+};
+
+// A material library that an OBJ file names. It is read when a material is looked for in vain in
+// the scene.
+struct MaterialLibrary {
+  std::string named;
+  base::Location where;
+};
+
+struct Mesh {
+  std::filesystem::path path;  // empty for a shape
+  std::vector<Vec3> vertices;
+  std::vector<std::uint32_t> indices;  // counter-clockwise seen from the front
+  std::vector<MeshPolygon> polygons;
+  std::vector<std::string> part_names;                // groups, objects, nodes, meshes, solids
+  std::vector<std::vector<std::uint32_t>> part_sets;  // a polygon may belong to several
+  std::vector<std::string> material_names;
+  std::vector<Material> materials;              // those that the file itself or a library defines
+  std::vector<base::Location> material_places;  // of each of these
+  std::vector<MaterialLibrary> libraries;
+  std::vector<std::string> warnings;
+};
+
+// Appends a polygon; its corners are vertices of the mesh.
+template <class Indices>
+void add_polygon(Mesh& mesh, const Indices& corners, std::uint32_t part_set, std::uint32_t material,
+                 std::uint32_t line = 0) {
+  MeshPolygon polygon;
+  polygon.first = static_cast<std::uint32_t>(mesh.indices.size());
+  mesh.indices.insert(mesh.indices.end(), std::begin(corners), std::end(corners));
+  polygon.count = static_cast<std::uint32_t>(mesh.indices.size()) - polygon.first;
+  polygon.part_set = part_set;
+  polygon.material = material;
+  polygon.line = line;
+  mesh.polygons.push_back(polygon);
+}
+
+// Names to running numbers: the number of `name` in `names`, appended if it is new.
+// `known` is an index of names; both belong to the caller.
+template <class Map>
+[[nodiscard]] std::uint32_t number_of(const std::string& name, std::vector<std::string>& names,
+                                      Map& known) {
+  const auto [entry, fresh] = known.emplace(name, static_cast<std::uint32_t>(names.size()));
+  if (fresh) names.push_back(name);
+  return entry->second;
+}
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Text that users or files gave, made fit for a message on one line.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace earthshine::scenes {
+
+// Length in bytes of the UTF-8 character at the start of `text`; 0 if it is not one (overlong
+// forms, surrogates and values beyond U+10FFFF included).
+[[nodiscard]] std::size_t utf8_length(std::string_view text);
+
+// Control characters and bytes that are not UTF-8 become \xNN; cut after `longest` bytes.
+[[nodiscard]] std::string printable(std::string_view text, std::size_t longest);
+
+// The same in quotes, cut at 80 bytes.
+[[nodiscard]] std::string in_quotes(std::string_view text);
+
+// "a, b, c", at most 20 of them and then "and N more".
+[[nodiscard]] std::string listed(std::span<const std::string> words);
+
+// "Did you mean "x"?", or "" when nothing is near.
+[[nodiscard]] std::string did_you_mean(std::string_view word,
+                                       std::span<const std::string> candidates);
+
+}  // namespace earthshine::scenes

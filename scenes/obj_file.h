@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Wavefront OBJ and MTL. Own readers: the subset is small, every error gets its line and column,
+// and the usual library multiplies the area of concave polygons.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+#include "scenes/mesh.h"
+
+namespace earthshine::scenes {
+
+// Reads v, f, g, o, usemtl, mtllib; knows and passes over vt, vn, s, l, p and curves; keywords that
+// nobody knows give one warning each. Libraries are noted, not read; their paths must stay in the
+// folders.
+[[nodiscard]] Mesh parse_obj(std::string_view text, const std::filesystem::path& path,
+                             std::span<const std::filesystem::path> folders);
+
+// Kd -> diffuse, Ks -> specular, Ns -> shininess, Ke -> emit; all else is passed over.
+void parse_mtl(std::string_view text, const std::filesystem::path& path, Mesh& mesh);
+
+// Reads mesh.libraries into mesh.materials and empties the list.
+void read_material_libraries(Mesh& mesh, std::span<const std::filesystem::path> folders);
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/quality.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace earthshine::scenes {
+namespace {
+
+int power_of_two_at_least(double value, int low, int high) {
+  const double clamped = std::clamp(std::ceil(value), double(low), double(high));
+  return static_cast<int>(std::bit_ceil(static_cast<std::uint32_t>(clamped)));
+}
+
+}  // namespace
+
+QualityKnobs resolve_quality(const Scene& scene) {
+  constexpr double reference_error = 0.02;
+  const double ratio = reference_error / scene.quality.error.value_or(reference_error);
+  QualityKnobs knobs;
+  knobs.gather_rays =
+      scene.quality.gather_rays.value_or(power_of_two_at_least(256.0 * ratio * ratio, 16, 1 << 16));
+  knobs.form_factor_rays = scene.quality.form_factor_rays.value_or(
+      power_of_two_at_least(1024.0 * std::pow(ratio, 1.0 / 0.6), 64, 1 << 18));
+  if (scene.quality.patch_edge_m) {
+    knobs.patch_edge_m = *scene.quality.patch_edge_m;
+  } else if (!scene.vertices.empty()) {
+    Vec3 low = scene.vertices.front(), high = low;
+    for (const Vec3& p : scene.vertices) {
+      low = glm::min(low, p);
+      high = glm::max(high, p);
+    }
+    knobs.patch_edge_m = glm::length(high - low) / 80.0 / std::clamp(ratio, 0.25, 4.0);
+  }
+  knobs.solver_tolerance = scene.quality.solver_tolerance.value_or(1e-8);
+  return knobs;
+}
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/ray_query.h"
+
+// Embree 3 and 4 differ in the header's folder and in how a query is called; everything else here
+// is common.
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#define EARTHSHINE_EMBREE_MAJOR 4
+#else
+#include <embree3/rtcore.h>
+#define EARTHSHINE_EMBREE_MAJOR 3
+#endif
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string>
+
+namespace earthshine::scenes {
+namespace {
+
+constexpr unsigned all_rays = 0xFFFFFFFFU;
+
+#if EARTHSHINE_EMBREE_MAJOR == 4
+void intersect8(const int* valid, RTCScene scene, RTCRayHit8& rays) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  rtcIntersect8(valid, scene, &rays, &arguments);
+}
+void occluded8(const int* valid, RTCScene scene, RTCRay8& rays) {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  rtcOccluded8(valid, scene, &rays, &arguments);
+}
+void intersect1(RTCScene scene, RTCRayHit& ray) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  rtcIntersect1(scene, &ray, &arguments);
+}
+#else
+void intersect8(const int* valid, RTCScene scene, RTCRayHit8& rays) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect8(valid, scene, &context, &rays);
+}
+void occluded8(const int* valid, RTCScene scene, RTCRay8& rays) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded8(valid, scene, &context, &rays);
+}
+void intersect1(RTCScene scene, RTCRayHit& ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &ray);
+}
+#endif
+
+[[noreturn]] void fail(const std::string& what) {
+  throw base::Error(base::Blame::Work, "ray structure", what, "the scene must fit into memory",
+                    "Use a smaller scene or a machine with more memory");
+}
+
+// For each count of live lanes, the mask that Embree wants.
+constexpr auto lane_masks() {
+  std::array<std::array<int, 8>, 9> masks{};
+  for (std::size_t count = 0; count <= 8; ++count) {
+    for (std::size_t lane = 0; lane < 8; ++lane) masks[count][lane] = lane < count ? -1 : 0;
+  }
+  return masks;
+}
+alignas(32) constexpr std::array<std::array<int, 8>, 9> valid_lanes = lane_masks();
+
+}  // namespace
+
+struct RayQuery::Embree {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  Vec3 centre{0.0};
+  double offset_m = 0.0;
+
+  ~Embree() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+
+  void fill(const RayPacket& rays, RTCRay8& ray) const {
+    static_assert(sizeof(ray.org_x) == sizeof(rays.origin_x));
+    const auto cx = static_cast<float>(centre.x);
+    const auto cy = static_cast<float>(centre.y);
+    const auto cz = static_cast<float>(centre.z);
+    for (std::size_t k = 0; k < RayPacket::width; ++k) {
+      ray.org_x[k] = rays.origin_x[k] - cx;
+      ray.org_y[k] = rays.origin_y[k] - cy;
+      ray.org_z[k] = rays.origin_z[k] - cz;
+    }
+    std::memcpy(ray.dir_x, rays.direction_x, sizeof(ray.dir_x));
+    std::memcpy(ray.dir_y, rays.direction_y, sizeof(ray.dir_y));
+    std::memcpy(ray.dir_z, rays.direction_z, sizeof(ray.dir_z));
+    std::memcpy(ray.tfar, rays.t_max, sizeof(ray.tfar));
+    for (std::size_t k = 0; k < RayPacket::width; ++k) {
+      ray.tnear[k] = 0.0F;
+      ray.time[k] = 0.0F;
+      ray.mask[k] = all_rays;
+      ray.id[k] = 0;
+      ray.flags[k] = 0;
+    }
+  }
+};
+
+RayQuery::RayQuery(const Scene& source) : embree_(std::make_unique<Embree>()) {
+  embree_->device = rtcNewDevice(nullptr);
+  if (embree_->device == nullptr) fail("Embree could not start");
+  embree_->scene = rtcNewScene(embree_->device);
+  // Robust: without it two in ten million rays slip through shared edges of a closed room.
+  rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
+
+  if (!source.triangles.empty()) {
+    Vec3 low = source.vertices.front(), high = low;
+    for (const Vec3& p : source.vertices) {
+      low = glm::min(low, p);
+      high = glm::max(high, p);
+    }
+    // The centre is rounded to what single precision holds, so that subtracting it is exact for
+    // near points.
+    embree_->centre = Vec3(glm::vec3(0.5 * (low + high)));
+    embree_->offset_m = 4e-6 * std::max(glm::length(high - low), 1e-6);
+
+    RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                3 * sizeof(float), source.vertices.size()));
+    auto* indices = static_cast<unsigned*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                3 * sizeof(unsigned), source.triangles.size()));
+    if (vertices == nullptr || indices == nullptr) fail("no memory for the triangles");
+    for (std::size_t i = 0; i < source.vertices.size(); ++i) {
+      const Vec3 p = source.vertices[i] - embree_->centre;
+      for (int axis = 0; axis < 3; ++axis)
+        vertices[3 * i + static_cast<std::size_t>(axis)] = static_cast<float>(p[axis]);
+    }
+    for (std::size_t i = 0; i < source.triangles.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) indices[3 * i + k] = source.triangles[i].vertex[k];
+    }
+    rtcSetGeometryMask(geometry, all_rays);  // Embree 4 would default to 1
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(embree_->scene, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+  rtcCommitScene(embree_->scene);
+  if (const RTCError error = rtcGetDeviceError(embree_->device); error != RTC_ERROR_NONE) {
+    fail("Embree error " + std::to_string(static_cast<int>(error)));
+  }
+}
+
+RayQuery::~RayQuery() = default;
+RayQuery::RayQuery(RayQuery&&) noexcept = default;
+RayQuery& RayQuery::operator=(RayQuery&&) noexcept = default;
+
+double RayQuery::surface_offset_m() const { return embree_->offset_m; }
+
+void RayQuery::closest(const RayPacket& rays, std::size_t count, HitPacket& hits) const {
+  RTCRayHit8 query;
+  embree_->fill(rays, query.ray);
+  for (unsigned& id : query.hit.geomID) id = RTC_INVALID_GEOMETRY_ID;
+  for (unsigned& id : query.hit.instID[0]) id = RTC_INVALID_GEOMETRY_ID;
+  intersect8(valid_lanes[count].data(), embree_->scene, query);
+  for (std::size_t k = 0; k < RayPacket::width; ++k) {
+    const bool hit = query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
+    hits.triangle[k] = hit ? query.hit.primID[k] : no_triangle;
+    hits.u[k] = query.hit.u[k];
+    hits.v[k] = query.hit.v[k];
+    hits.t[k] = query.ray.tfar[k];
+    const float facing = query.hit.Ng_x[k] * query.ray.dir_x[k] +
+                         query.hit.Ng_y[k] * query.ray.dir_y[k] +
+                         query.hit.Ng_z[k] * query.ray.dir_z[k];
+    hits.front[k] = facing < 0.0F ? 1U : 0U;
+  }
+}
+
+Hit RayQuery::closest(const Vec3& origin, const Vec3& direction) const {
+  RTCRayHit query{};
+  const glm::vec3 o(origin - embree_->centre), d(direction);
+  query.ray.org_x = o.x;
+  query.ray.org_y = o.y;
+  query.ray.org_z = o.z;
+  query.ray.dir_x = d.x;
+  query.ray.dir_y = d.y;
+  query.ray.dir_z = d.z;
+  query.ray.tfar = std::numeric_limits<float>::infinity();
+  query.ray.mask = all_rays;
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  intersect1(embree_->scene, query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  const float facing = query.hit.Ng_x * d.x + query.hit.Ng_y * d.y + query.hit.Ng_z * d.z;
+  return {query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar, facing < 0.0F};
+}
+
+std::uint32_t RayQuery::occluded(const RayPacket& rays, std::size_t count) const {
+  RTCRay8 query;
+  embree_->fill(rays, query);
+  occluded8(valid_lanes[count].data(), embree_->scene, query);
+  std::uint32_t bits = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (query.tfar[k] < 0.0F) bits |= 1U << k;
+  }
+  return bits;
+}
+
+Vec3 triangle_normal(const Scene& scene, std::uint32_t triangle) {
+  const auto& v = scene.triangles[triangle].vertex;
+  const Vec3& a = scene.vertices[v[0]];
+  return glm::normalize(glm::cross(scene.vertices[v[1]] - a, scene.vertices[v[2]] - a));
+}
+
+double triangle_area(const Scene& scene, std::uint32_t triangle) {
+  const auto& v = scene.triangles[triangle].vertex;
+  const Vec3& a = scene.vertices[v[0]];
+  return 0.5 * glm::length(glm::cross(scene.vertices[v[1]] - a, scene.vertices[v[2]] - a));
+}
+
+}  // namespace earthshine::scenes

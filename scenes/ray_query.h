@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays against the scene's triangles. The only user of Embree (3.13 and 4.x).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+
+#include "scenes/scene.h"
+
+namespace earthshine::scenes {
+
+inline constexpr std::uint32_t no_triangle = 0xFFFFFFFFU;
+
+// Up to 8 rays side by side, in the layout that the vector units want. Positions in metres in the scene's
+// frame, directions of unit length, t in metres.
+struct alignas(32) RayPacket {
+  static constexpr std::size_t width = 8;
+  float origin_x[width], origin_y[width], origin_z[width];
+  float direction_x[width], direction_y[width], direction_z[width];
+  float t_max[width];
+
+  void set(std::size_t lane, const Vec3& origin, const Vec3& direction,
+           double t_max_m = std::numeric_limits<double>::infinity()) {
+    origin_x[lane] = static_cast<float>(origin.x);
+    origin_y[lane] = static_cast<float>(origin.y);
+    origin_z[lane] = static_cast<float>(origin.z);
+    direction_x[lane] = static_cast<float>(direction.x);
+    direction_y[lane] = static_cast<float>(direction.y);
+    direction_z[lane] = static_cast<float>(direction.z);
+    t_max[lane] = static_cast<float>(t_max_m);
+  }
+};
+
+// Hits of a packet. (u, v) are the weights of the triangle's second and third vertex.
+struct alignas(32) HitPacket {
+  std::uint32_t triangle[RayPacket::width];  // no_triangle: the ray escapes
+  float u[RayPacket::width], v[RayPacket::width], t[RayPacket::width];
+  std::uint32_t front[RayPacket::width];  // 1 if the ray came from the triangle's front
+};
+
+struct Hit {
+  std::uint32_t triangle = no_triangle;
+  double u = 0.0, v = 0.0, t = 0.0;
+  bool front = true;
+  [[nodiscard]] bool missed() const { return triangle == no_triangle; }
+};
+
+class RayQuery {
+ public:
+  // Builds the acceleration structure. The scene's triangles are copied, centred, in single precision.
+  // Throws base::Error (Work) if Embree reports an error.
+  explicit RayQuery(const Scene& scene);
+  ~RayQuery();
+  RayQuery(RayQuery&&) noexcept;
+  RayQuery& operator=(RayQuery&&) noexcept;
+
+  // Nearest hit of the first `count` rays (at most 8). Safe on many threads.
+  void closest(const RayPacket& rays, std::size_t count, HitPacket& hits) const;
+  [[nodiscard]] Hit closest(const Vec3& origin, const Vec3& direction) const;
+
+  // Bit k is set if ray k meets anything before t_max.
+  [[nodiscard]] std::uint32_t occluded(const RayPacket& rays, std::size_t count) const;
+
+  // How far to lift a ray's origin off its surface along the normal, m: a few units of single precision
+  // at the scene's extent, so that no ray hits the surface it leaves and none leaks through a neighbour.
+  [[nodiscard]] double surface_offset_m() const;
+
+ private:
+  struct Embree;
+  std::unique_ptr<Embree> embree_;
+};
+
+// Unit normal of a triangle's front.
+[[nodiscard]] Vec3 triangle_normal(const Scene& scene, std::uint32_t triangle);
+[[nodiscard]] double triangle_area(const Scene& scene, std::uint32_t triangle);
+
+}  // namespace earthshine::scenes

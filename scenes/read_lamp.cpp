@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "scenes/scene_parts.h"
+
+namespace earthshine::scenes {
+namespace {
+
+constexpr std::string_view all_keys[] = {
+    "name",      "group",  "type",   "position", "aim",    "intensity", "flux",    "beam_deg",
+    "field_deg", "center", "edge_u", "edge_v",   "normal", "radius",    "exitance"};
+constexpr std::string_view types[] = {"point", "spot", "rectangle", "disk"};
+constexpr std::string_view point_keys[] = {"name",     "group",     "type",
+                                           "position", "intensity", "flux"};
+constexpr std::string_view spot_keys[] = {"name",      "group", "type",     "position", "aim",
+                                          "intensity", "flux",  "beam_deg", "field_deg"};
+constexpr std::string_view rectangle_keys[] = {"name",   "group",  "type",     "center",
+                                               "edge_u", "edge_v", "exitance", "flux"};
+constexpr std::string_view disk_keys[] = {"name",   "group",  "type",     "center",
+                                          "normal", "radius", "exitance", "flux"};
+
+// The lamp's strength: given as such, or as flux that spreads over `flux_per_unit` of it.
+Rgb read_strength(const TableReader& table, std::string_view key, double flux_per_unit) {
+  const auto strength = table.colour(key);
+  const auto flux = table.colour("flux");
+  if (strength && flux) {
+    table.fail("flux", fmt::format("stands beside \"{}\"", key), "a light has one of the two");
+  }
+  if (!strength && !flux) {
+    table.missing(key, fmt::format("{} = ... ({}) or flux = ... (lm)", key,
+                                   key == "intensity" ? "cd" : "lm/m^2"));
+  }
+  return strength ? *strength : *flux / flux_per_unit;
+}
+
+void read_point(Lamp& lamp, const TableReader& table, double unit_m) {
+  table.allow_only(point_keys, "a light of type \"point\"");
+  lamp.kind = LampKind::Point;
+  lamp.position =
+      table.required(table.position("position", unit_m), "position", "position = [x, y, z]");
+  lamp.intensity_cd = read_strength(table, "intensity", 4.0 * base::pi);
+}
+
+void read_spot(Lamp& lamp, const TableReader& table, double unit_m) {
+  table.allow_only(spot_keys, "a light of type \"spot\"");
+  lamp.kind = LampKind::Spot;
+  lamp.position =
+      table.required(table.position("position", unit_m), "position", "position = [x, y, z]");
+  const Vec3 aim = table.required(table.position("aim", unit_m), "aim", "aim = [x, y, z]");
+  const double distance = glm::length(aim - lamp.position);
+  if (!(distance > 1e-9 * unit_m)) table.fail("aim", "is the light's own position");
+  lamp.axis = (aim - lamp.position) / distance;
+  lamp.field_deg = table.required(table.number("field_deg", {0.0, 180.0, true}), "field_deg",
+                                  "field_deg = ..., the full angle beyond which there is no light");
+  lamp.beam_deg = table.required(table.number("beam_deg", {0.0, 180.0}), "beam_deg",
+                                 "beam_deg = ..., the full angle of the cone of full intensity");
+  if (lamp.beam_deg > lamp.field_deg) {
+    table.fail("beam_deg", fmt::format("is {}", lamp.beam_deg),
+               fmt::format("allowed is at most field_deg, {}", lamp.field_deg));
+  }
+  // Full intensity within the beam, then a smooth step in cos(theta) to nothing at the field's
+  // edge: the step's mean is one half, so Phi = I 2 pi (1 - (cos beam/2 + cos field/2) / 2).
+  const double cos_beam = std::cos(base::radians(lamp.beam_deg / 2.0));
+  const double cos_field = std::cos(base::radians(lamp.field_deg / 2.0));
+  lamp.intensity_cd =
+      read_strength(table, "intensity", 2.0 * base::pi * (1.0 - 0.5 * (cos_beam + cos_field)));
+}
+
+void read_rectangle(Lamp& lamp, const TableReader& table, double unit_m) {
+  table.allow_only(rectangle_keys, "a light of type \"rectangle\"");
+  lamp.kind = LampKind::Rectangle;
+  lamp.position = table.required(table.position("center", unit_m), "center", "center = [x, y, z]");
+  lamp.edge_u = table.required(table.position("edge_u", unit_m), "edge_u", "edge_u = [x, y, z]");
+  lamp.edge_v = table.required(table.position("edge_v", unit_m), "edge_v", "edge_v = [x, y, z]");
+  const Vec3 normal = glm::cross(lamp.edge_u, lamp.edge_v);
+  const double area = glm::length(normal);
+  if (!(area > 1e-9 * glm::length(lamp.edge_u) * glm::length(lamp.edge_v)) || !(area > 0.0)) {
+    table.fail("edge_v", "spans no area with edge_u",
+               "the edges have lengths and are not parallel");
+  }
+  lamp.axis = normal / area;
+  lamp.exitance = read_strength(table, "exitance", area);
+}
+
+void read_disk(Lamp& lamp, const TableReader& table, double unit_m) {
+  table.allow_only(disk_keys, "a light of type \"disk\"");
+  lamp.kind = LampKind::Disk;
+  lamp.position = table.required(table.position("center", unit_m), "center", "center = [x, y, z]");
+  lamp.axis = table.required(table.direction("normal"), "normal", "normal = [x, y, z]");
+  lamp.radius_m =
+      table.required(table.length("radius", unit_m, above_zero), "radius", "radius = ...");
+  lamp.exitance = read_strength(table, "exitance", base::pi * lamp.radius_m * lamp.radius_m);
+}
+
+}  // namespace
+
+Lamp read_lamp(const TomlNode& node, double unit_m) {
+  TableReader table(node, "[[light]]", all_keys);
+  Lamp lamp;
+  lamp.name = table.read_name();
+  lamp.group = table.text("group").value_or(lamp.name);
+  const std::string type = table.required(table.choice("type", types), "type",
+                                          "type = \"point\", \"spot\", \"rectangle\" or \"disk\"");
+  if (type == "point") read_point(lamp, table, unit_m);
+  if (type == "spot") read_spot(lamp, table, unit_m);
+  if (type == "rectangle") read_rectangle(lamp, table, unit_m);
+  if (type == "disk") read_disk(lamp, table, unit_m);
+  for (const Rgb& strength : {lamp.intensity_cd, lamp.exitance}) {
+    if (!std::isfinite(base::max_component(strength))) {
+      table.fail("flux", "gives no finite strength",
+                 "the light's solid angle or area is too small");
+    }
+  }
+  return lamp;
+}
+
+}  // namespace earthshine::scenes

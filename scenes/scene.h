@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is there: a plain value that the stages read. Lengths in metres, photometric units, linear RGB.
+// scene_file.h makes one from a TOML file; every Scene that leaves it has passed all checks.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/error.h"
+#include "base/units.h"
+
+namespace earthshine::scenes {
+
+// Surface reflectance as the 1990 report has it: pi f = diffuse + specular cos^n(alpha), n = shininess.
+// diffuse + 2 specular / (n + 2) + mirror + transmit <= 1 in every channel.
+struct Material {
+  std::string name;
+  Rgb diffuse{0.0};
+  Rgb specular{0.0};
+  double shininess = 1.0;
+  Rgb mirror{0.0};
+  Rgb transmit{0.0};
+  double ior = 1.0;
+  Rgb emit{0.0};            // exitance, lm/m^2
+  std::string light_group;  // of what it emits; the material's name unless the scene says otherwise
+  bool two_sided = false;   // false: the back is black
+
+  [[nodiscard]] bool emits() const { return base::max_component(emit) > 0.0; }
+  [[nodiscard]] bool passes_light_on() const {  // mirror or glass: rays go on from it
+    return base::max_component(mirror) > 0.0 || base::max_component(transmit) > 0.0;
+  }
+};
+
+// Three vertices, counter-clockwise seen from the front. Two consecutive triangles of one polygon that form
+// a parallelogram are laid down as (0,1,2), (0,2,3) of its corners.
+struct Triangle {
+  std::uint32_t vertex[3];
+  std::uint32_t object;
+  std::uint32_t material;
+  std::uint32_t polygon;  // running number over the scene; the triangles of one file polygon share it
+};
+
+struct Object {
+  std::string name;
+  bool target = false;  // visibility studies measure it
+  std::uint32_t first_triangle = 0;
+  std::uint32_t triangle_count = 0;
+  std::uint32_t polygon_count = 0;
+  double area_m2 = 0.0;              // one side, of the polygons as the file has them
+  std::uint32_t degenerate_count = 0;  // polygons without area, left out
+  std::string source;                // "meshes/bay.obj#Liner" or "sphere"
+};
+
+enum class LampKind { Point, Spot, Rectangle, Disk };
+
+struct Lamp {
+  std::string name;
+  std::string group;
+  LampKind kind = LampKind::Point;
+  Vec3 position{0.0};     // m; the centre of a rectangle or disk
+  Vec3 axis{0.0, 0.0, 1.0};  // unit: toward the aim of a spot; the normal of a rectangle or disk
+  Rgb intensity_cd{0.0};  // point and spot: on the axis
+  double beam_deg = 0.0;  // spot: full angle of the cone of full intensity
+  double field_deg = 0.0; // spot: full angle beyond which there is none
+  Vec3 edge_u{0.0}, edge_v{0.0};  // rectangle: full edges, m; it shines along edge_u x edge_v
+  double radius_m = 0.0;          // disk
+  Rgb exitance{0.0};              // rectangle and disk, lm/m^2
+};
+
+struct Sun {
+  Vec3 direction{0.0, 0.0, 1.0};  // unit, toward the Sun
+  Rgb illuminance_lx{133100.0};   // at normal incidence, nothing in front of it
+  double angular_radius_deg = 0.2666;
+};
+
+enum class EarthModel { Lambert, Uniform };
+
+struct Earth {
+  Vec3 direction{0.0, 0.0, 1.0};  // unit, toward the centre
+  double half_angle_deg = 0.0;    // asin(R / (R + h))
+  double altitude_m = 0.0;        // 0 when only the half angle is known (uniform model)
+  EarthModel model = EarthModel::Lambert;
+  Rgb albedo{0.3};
+  Rgb radiance{0.0};  // uniform model, cd/m^2
+};
+
+struct Camera {
+  std::string name;
+  Vec3 position{0.0};
+  Vec3 look_at{0.0, 0.0, 1.0};
+  Vec3 up{0.0, 0.0, 1.0};
+  double fov_deg = 40.0;  // vertical, full
+  int columns = 512;
+  int rows = 512;
+  double focus_m = 0.0;     // } thin lens when both are positive
+  double aperture_m = 0.0;  // } diameter
+  std::string cctv;         // a [[cctv]] of the scene or one that ships; empty: none
+};
+
+// A [[cctv]] or [monitor] table as written; degrade/ knows its keys and checks them.
+struct Setting {
+  std::string key;
+  std::variant<bool, double, std::string, std::vector<double>> value;
+  base::Location where;
+};
+struct SettingTable {
+  std::string name;
+  base::Location where;
+  std::vector<Setting> settings;
+};
+
+// Accuracy knobs as the scene gives them. resolve_quality (quality.h) fills the gaps.
+struct Quality {
+  std::optional<double> error;  // wanted relative error
+  std::optional<double> patch_edge_m;
+  std::optional<int> form_factor_rays;  // per patch
+  std::optional<int> gather_rays;       // per pixel
+  std::optional<double> solver_tolerance;
+};
+
+struct Scene {
+  std::filesystem::path path;
+  std::string name;
+  std::vector<Vec3> vertices;
+  std::vector<Triangle> triangles;
+  std::vector<Material> materials;
+  std::vector<Object> objects;
+  std::vector<Lamp> lamps;
+  std::optional<Sun> sun;
+  std::optional<Earth> earth;
+  Rgb ambient_radiance{0.0};  // k_a I_a with k_a = diffuse; 0: off
+  std::vector<Camera> cameras;
+  std::vector<SettingTable> cctv;
+  std::optional<SettingTable> monitor;
+  Quality quality;
+  std::vector<std::string> warnings;  // one line each, e.g. counted degenerate triangles
+};
+
+}  // namespace earthshine::scenes

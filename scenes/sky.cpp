@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/sky.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace earthshine::scenes {
+namespace {
+
+// Sun's zenith cosine where a direction meets the sphere, or below -1 when it passes beside it.
+constexpr double beside_the_earth = -2.0;
+
+// The Earth's centre is at distance d along `earth.direction`; lengths in Earth radii.
+double distance_in_radii(const Earth& earth) {
+  return 1.0 / std::sin(base::radians(earth.half_angle_deg));
+}
+
+// cos(theta_s) of the point of the sphere seen in `direction`, or beside_the_earth.
+double sun_zenith_cosine(const Earth& earth, const Vec3& sun, const Vec3& direction) {
+  const double d = distance_in_radii(earth);
+  const double cos_off_centre = glm::dot(direction, earth.direction);
+  const double discriminant = 1.0 - d * d * (1.0 - cos_off_centre * cos_off_centre);
+  if (cos_off_centre <= 0.0 || discriminant < 0.0) return beside_the_earth;
+  const double t = d * cos_off_centre - std::sqrt(discriminant);
+  const Vec3 surface_normal = direction * t - earth.direction * d;  // unit by construction
+  return glm::dot(surface_normal, sun);
+}
+
+}  // namespace
+
+double earth_half_angle_rad(double altitude_m) {
+  return std::asin(base::earth_radius_m / (base::earth_radius_m + altitude_m));
+}
+
+Rgb earth_radiance(const Scene& scene, const Vec3& direction) {
+  const Earth& earth = *scene.earth;
+  if (glm::dot(direction, earth.direction) < std::cos(base::radians(earth.half_angle_deg))) {
+    return Rgb(0.0);
+  }
+  if (earth.model == EarthModel::Uniform) return earth.radiance;
+  const double cos_sun = sun_zenith_cosine(earth, scene.sun->direction, direction);
+  if (cos_sun <= 0.0) return Rgb(0.0);
+  return earth.albedo * scene.sun->illuminance_lx * (cos_sun / base::pi);
+}
+
+bool earth_is_lit(const Scene& scene) {
+  if (!scene.earth) return false;
+  const Earth& earth = *scene.earth;
+  if (earth.model == EarthModel::Uniform) return base::max_component(earth.radiance) > 0.0;
+  if (!scene.sun || base::max_component(scene.sun->illuminance_lx * earth.albedo) <= 0.0) {
+    return false;
+  }
+  // The visible cap reaches acos(R / (R + h)) = 90 deg - half angle around the sub-spacecraft
+  // point; some of it is lit if the Sun stands less than 90 deg further from that point.
+  const double sun_from_zenith =
+      std::acos(std::clamp(glm::dot(-earth.direction, scene.sun->direction), -1.0, 1.0));
+  const double cap = base::pi / 2 - base::radians(earth.half_angle_deg);
+  return sun_from_zenith < base::pi / 2 + cap;
+}
+
+double visible_sun_share(const Scene& scene) {
+  if (!scene.sun) return 0.0;
+  if (!scene.earth) return 1.0;
+  const double radius = base::radians(scene.sun->angular_radius_deg);
+  const double separation =
+      std::acos(std::clamp(glm::dot(scene.sun->direction, scene.earth->direction), -1.0, 1.0));
+  const double over_limb = separation - base::radians(scene.earth->half_angle_deg);
+  if (radius <= 0.0) return over_limb > 0.0 ? 1.0 : 0.0;
+  const double x = std::clamp(over_limb / radius, -1.0, 1.0);
+  // Share of a disc on one side of a chord at distance x radii from its centre.
+  return 0.5 + (x * std::sqrt(1.0 - x * x) + std::asin(x)) / base::pi;
+}
+
+Rgb sun_radiance(const Sun& sun) {
+  const double sine = std::sin(base::radians(sun.angular_radius_deg));
+  if (sine <= 0.0) return Rgb(0.0);
+  return sun.illuminance_lx / (base::pi * sine * sine);
+}
+
+Rgb sky_radiance(const Scene& scene, const Vec3& direction) {
+  if (scene.earth && glm::dot(direction, scene.earth->direction) >=
+                         std::cos(base::radians(scene.earth->half_angle_deg))) {
+    return earth_radiance(scene, direction);
+  }
+  if (scene.sun && glm::dot(direction, scene.sun->direction) >=
+                       std::cos(base::radians(scene.sun->angular_radius_deg))) {
+    return sun_radiance(*scene.sun);
+  }
+  return Rgb(0.0);
+}
+
+OrbitDirections orbit_directions(double beta_deg, double position_deg, std::string_view attitude) {
+  // Components along (velocity, normal, zenith), normal = zenith x velocity: a right-handed frame.
+  const double beta = base::radians(beta_deg);
+  const double position = base::radians(position_deg);
+  const Vec3 sun(-std::cos(beta) * std::sin(position), std::sin(beta),
+                 std::cos(beta) * std::cos(position));
+  const Vec3 velocity(1.0, 0.0, 0.0), normal(0.0, 1.0, 0.0), zenith(0.0, 0.0, 1.0);
+  const Vec3 earth = -zenith;
+  // The scene's axes in that frame: x aft, z out of the bay, y = z x x.
+  Vec3 aft, out_of_bay;
+  if (attitude == "bay-to-earth") {
+    aft = -velocity;
+    out_of_bay = -zenith;
+  } else if (attitude == "bay-to-space") {
+    aft = -velocity;
+    out_of_bay = zenith;
+  } else if (attitude == "tail-down") {
+    aft = -zenith;
+    out_of_bay = velocity;
+  } else if (attitude == "bay-to-sun") {
+    out_of_bay = sun;
+    Vec3 north = normal - glm::dot(normal, sun) * sun;
+    if (glm::dot(north, north) < 1e-12) north = zenith;  // Sun at the orbit's pole
+    aft = -glm::normalize(north);
+  } else {
+    throw base::Error(base::Blame::Input, "orbit",
+                      "unknown attitude \"" + std::string(attitude) + "\"",
+                      "allowed: bay-to-earth, bay-to-space, bay-to-sun, tail-down");
+  }
+  const Vec3 starboard = glm::cross(out_of_bay, aft);
+  const auto in_scene = [&](const Vec3& d) {
+    return glm::normalize(Vec3(glm::dot(d, aft), glm::dot(d, starboard), glm::dot(d, out_of_bay)));
+  };
+  return {in_scene(sun), in_scene(earth)};
+}
+
+}  // namespace earthshine::scenes

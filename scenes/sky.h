@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sun and Earth as the spacecraft sees them: radiance of a direction, eclipse, orbit to directions.
+#pragma once
+
+#include <string_view>
+
+#include "scenes/scene.h"
+
+namespace earthshine::scenes {
+
+// Half angle of the Earth's disc from altitude h: asin(R / (R + h)).
+[[nodiscard]] double earth_half_angle_rad(double altitude_m);
+
+// Radiance of the Earth in a unit direction, cd/m^2; 0 off its disc. Lambert: L = (a / pi) E_sun
+// max(0, cos theta_s), theta_s the Sun's zenith angle where the direction meets the sphere.
+[[nodiscard]] Rgb earth_radiance(const Scene& scene, const Vec3& direction);
+
+// Whether any part of the disc shines.
+[[nodiscard]] bool earth_is_lit(const Scene& scene);
+
+// Share of the Sun's disc that the Earth does not cover, 0 to 1: area of one circle outside the other on
+// the sphere of directions (the limb taken as straight across the Sun's disc, error below 1e-4 of the disc).
+[[nodiscard]] double visible_sun_share(const Scene& scene);
+
+// Radiance of the Sun's disc, cd/m^2: E / (pi sin^2 r); 0 for a point Sun.
+[[nodiscard]] Rgb sun_radiance(const Sun& sun);
+
+// Radiance of everything behind the scene in a direction: the Sun's disc (not where the Earth hides it) and
+// the Earth.
+[[nodiscard]] Rgb sky_radiance(const Scene& scene, const Vec3& direction);
+
+// Directions in the scene's frame (x aft, y starboard, z out of the bay) for a circular orbit.
+//   position 0 is orbit noon, 180 midnight, growing with the motion; beta is the Sun's height over the
+//   orbit plane. bay-to-earth: z to the Earth, nose forward; bay-to-space: z to the zenith, nose forward;
+//   tail-down: tail to the Earth, bay forward; bay-to-sun: z to the Sun, nose toward orbit north.
+struct OrbitDirections {
+  Vec3 sun, earth;
+};
+inline constexpr std::string_view orbit_attitudes[] = {"bay-to-earth", "bay-to-space", "bay-to-sun",
+                                                       "tail-down"};
+[[nodiscard]] OrbitDirections orbit_directions(double beta_deg, double position_deg,
+                                               std::string_view attitude);
+
+}  // namespace earthshine::scenes
