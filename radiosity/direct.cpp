@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/direct.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "radiosity/shadowed_samples.h"
+#include "radiosity/solution.h"
+#include "scenes/lamp_light.h"
+#include "scenes/sky.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+using scenes::LightSample;
+
+// What lands is known twice: from the patches' samples, and as the flux less what was found to
+// escape. The mean of the two, weighted by inverse variance, sets the scale: in a closed room
+// nothing escapes and the flux rules exactly; on a small plate under an open sky the samples do.
+double landing_scale(const Sampled& sampled, const Patches& patches, const SourceFlux& flux) {
+  double landed = 0.0, landed_variance = 0.0;
+  for (std::size_t i = 0; i < patches.count(); ++i) {
+    landed += patches.area_m2[i] * base::luminance(sampled.illuminance_lx[i]);
+    landed_variance += patches.area_m2[i] * patches.area_m2[i] * sampled.variance[i];
+  }
+  const double all = base::luminance(flux.emitted_lm);
+  const double expected = all * (1.0 - flux.escaped_share - flux.black_share);
+  if (landed <= 0.0 || expected <= 0.0) return 1.0;
+  const double expected_variance = std::pow(all * flux.share_std_error, 2);
+  const double both = landed_variance + expected_variance;
+  if (both <= 0.0) return flux.share_std_error > 0.0 ? 1.0 : expected / landed;
+  return (landed * expected_variance + expected * landed_variance) / (both * landed);
+}
+
+using Emit = std::function<scenes::EmittedRay(double u, double v, double x, double y)>;
+
+// Shoots rays from a source of known flux to find what escapes and what falls on black backs.
+void find_shares(const scenes::Scene& scene, const scenes::RayQuery& query, const Emit& emit,
+                 std::uint64_t key, int rays, std::uint64_t seed, SourceFlux& flux) {
+  struct Shares {
+    double escaped = 0.0, black = 0.0, all = 0.0;
+    Shares& operator+=(const Shares& o) {
+      escaped += o.escaped;
+      black += o.black;
+      all += o.all;
+      return *this;
+    }
+  };
+  const base::SobolOwen4 sobol(base::Key(seed, base::Stream::LampFlux, key));
+  const Shares shares = base::ordered_sum(
+      static_cast<std::size_t>(rays), 4096, Shares{}, [&](std::size_t begin, std::size_t end) {
+        Shares part;
+        for (std::size_t k = begin; k < end; ++k) {
+          const auto p = sobol.point(static_cast<std::uint32_t>(k));
+          const scenes::EmittedRay ray = emit(p[0], p[1], p[2], p[3]);
+          if (ray.weight <= 0.0) continue;
+          part.all += ray.weight;
+          const Vec3 origin = ray.origin + ray.direction * query.surface_offset_m();
+          const scenes::Hit hit = query.closest(origin, ray.direction);
+          if (hit.missed()) {
+            part.escaped += ray.weight;
+          } else if (!hit.front &&
+                     !scene.materials[scene.triangles[hit.triangle].material].two_sided) {
+            part.black += ray.weight;
+          }
+        }
+        return part;
+      });
+  if (shares.all <= 0.0) return;
+  flux.escaped_share = shares.escaped / shares.all;
+  flux.black_share = shares.black / shares.all;
+  const double p = flux.escaped_share + flux.black_share;
+  flux.share_std_error = std::sqrt(p * (1.0 - p) / rays);
+}
+
+class DirectStage {
+ public:
+  DirectStage(const scenes::Scene& scene, const scenes::RayQuery& query, const Patches& patches,
+              const DirectOptions& options, DirectLight& light)
+      : scene_(scene), query_(query), patches_(patches), options_(options), light_(light) {}
+
+  // A source whose flux is not known (the sky): taken as sampled.
+  void add(const Source& source) {
+    const Sampled sampled =
+        sample_patches(query_, patches_, source, options_.seed, light_.shadow_rays);
+    store(sampled.illuminance_lx, source.group, 1.0);
+  }
+
+  void add(const Source& source, SourceFlux flux, const Emit& emit) {
+    const Sampled sampled =
+        sample_patches(query_, patches_, source, options_.seed, light_.shadow_rays);
+    find_shares(scene_, query_, emit, source.key, options_.flux_rays, options_.seed, flux);
+    light_.shadow_rays += static_cast<std::uint64_t>(options_.flux_rays);
+    flux.scale = landing_scale(sampled, patches_, flux);
+    store(sampled.illuminance_lx, source.group, flux.scale);
+    light_.sources.push_back(std::move(flux));
+  }
+
+  void store(const std::vector<Rgb>& illuminance, std::size_t group, double scale) {
+    for (std::size_t i = 0; i < illuminance.size(); ++i) {
+      for (int c = 0; c < 3; ++c) {
+        light_.illuminance_lx[i * light_.columns + 3 * group + static_cast<std::size_t>(c)] +=
+            scale * illuminance[i][c];
+      }
+    }
+  }
+
+ private:
+  const scenes::Scene& scene_;
+  const scenes::RayQuery& query_;
+  const Patches& patches_;
+  const DirectOptions& options_;
+  DirectLight& light_;
+};
+
+Source sun_source(const scenes::Scene& scene, std::size_t group, int points) {
+  const scenes::Sun& sun = *scene.sun;
+  const Rgb illuminance = sun.illuminance_lx * scenes::visible_sun_share(scene);
+  const double radius = base::radians(sun.angular_radius_deg);
+  Source source;
+  source.key = 1;
+  source.group = group;
+  source.points = points;
+  source.sample = [&sun, illuminance, radius](const Vec3&, double u, double v) {
+    return LightSample{scenes::sample_cone(sun.direction, radius, u, v),
+                       std::numeric_limits<double>::infinity(), illuminance};
+  };
+  return source;
+}
+
+Source earth_source(const scenes::Scene& scene, std::size_t group, int points) {
+  const double half_angle = base::radians(scene.earth->half_angle_deg);
+  const double solid_angle = scenes::cone_solid_angle_sr(half_angle);
+  Source source;
+  source.key = 2;
+  source.group = group;
+  source.points = 4 * points;
+  source.sample = [&scene, half_angle, solid_angle](const Vec3&, double u, double v) {
+    const Vec3 direction = scenes::sample_cone(scene.earth->direction, half_angle, u, v);
+    return LightSample{direction, std::numeric_limits<double>::infinity(),
+                       scenes::earth_radiance(scene, direction) * solid_angle};
+  };
+  return source;
+}
+
+}  // namespace
+
+DirectLight direct_light(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                         const scenes::Effects& effects, const scenes::RayQuery& query,
+                         const Patches& patches, const FormFactors& factors,
+                         const DirectOptions& options) {
+  DirectLight light;
+  light.columns = 3 * groups.count();
+  light.illuminance_lx.assign(patches.count() * light.columns, 0.0);
+  DirectStage stage(scene, query, patches, options, light);
+
+  if (effects.sun) stage.add(sun_source(scene, groups.sun, options.points_per_patch));
+  if (effects.earth_by_gather) {
+    stage.store(factors.sky_illuminance, groups.earth, 1.0);
+  } else if (effects.earth) {
+    stage.add(earth_source(scene, groups.earth, options.points_per_patch));
+  }
+  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
+    if (groups.lamp[k] == scenes::no_group) continue;
+    const scenes::Lamp& lamp = scene.lamps[k];
+    const bool wide =
+        lamp.kind == scenes::LampKind::Rectangle || lamp.kind == scenes::LampKind::Disk;
+    Source source;
+    source.key = 16 + k;
+    source.group = groups.lamp[k];
+    source.points = options.points_per_patch * (wide ? 4 : 1);
+    source.sample = [&lamp](const Vec3& point, double u, double v) {
+      return scenes::sample_lamp(lamp, point, u, v);
+    };
+    source.distance_m = [&lamp](const Vec3& point) { return glm::length(point - lamp.position); };
+    const auto emit = [&lamp](double u, double v, double x, double y) {
+      return scenes::emit_from_lamp(lamp, u, v, x, y);
+    };
+    SourceFlux flux;
+    flux.name = lamp.name;
+    flux.group = source.group;
+    flux.emitted_lm = scenes::lamp_flux_lm(lamp);
+    stage.add(source, flux, emit);
+  }
+  const std::vector<bool> is_explicit = emitter_is_explicit(scene);
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    if (!is_explicit[m] || groups.material[m] == scenes::no_group) continue;
+    scenes::EmitterSet emitters;
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+      if (scene.triangles[t].material == m) emitters.add(scene, static_cast<std::uint32_t>(t));
+    }
+    Source source;
+    source.key = (std::uint64_t{1} << 32) + m;
+    source.group = groups.material[m];
+    source.points = 4 * options.points_per_patch;
+    source.sample = [&emitters](const Vec3& point, double u, double v) {
+      return emitters.sample(point, u, v);
+    };
+    const auto emit = [&emitters](double u, double v, double x, double y) {
+      return emitters.emit(u, v, x, y);
+    };
+    SourceFlux flux;
+    flux.name = scene.materials[m].name;
+    flux.group = source.group;
+    flux.emitted_lm = emitters.flux_lm();
+    stage.add(source, flux, emit);
+  }
+  return light;
+}
+
+}  // namespace earthshine::radiosity

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Direct illuminance E0 of every patch from every source that is not carried by form factors: Sun,
+// Earth, lamps and small emitting surfaces, by shadowed sampling, one column per (light group,
+// channel).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "radiosity/form_factors.h"
+#include "radiosity/patches.h"
+#include "scenes/effects.h"
+#include "scenes/light_groups.h"
+#include "scenes/ray_query.h"
+
+namespace earthshine::radiosity {
+
+// What a source of known flux emits against where it was found to go. The explicit first bounce is
+// scaled by `scale` so that landed + on black backs + escaped = emitted.
+struct SourceFlux {
+  std::string name;
+  std::size_t group = 0;
+  Rgb emitted_lm{0.0};
+  double escaped_share = 0.0;    // by rays shot from the source
+  double black_share = 0.0;      // on black backs
+  double share_std_error = 0.0;  // of escaped + black, binomial
+  double scale = 1.0;            // applied to the patches' sampled illuminance
+};
+
+struct DirectLight {
+  std::size_t columns = 0;             // 3 * groups
+  std::vector<double> illuminance_lx;  // patch * columns + 3 * group + channel
+  std::vector<SourceFlux> sources;
+  std::uint64_t shadow_rays = 0;
+};
+
+struct DirectOptions {
+  int points_per_patch = 16;  // receiver points for distant sources; 16 times more near a source
+  int flux_rays = 1 << 16;    // shot from each lamp to find what escapes
+  std::uint64_t seed = 1;
+};
+
+// factors.sky_illuminance is taken for the Earth where it is wide (Effects::earth_by_gather).
+[[nodiscard]] DirectLight direct_light(const scenes::Scene& scene,
+                                       const scenes::LightGroups& groups,
+                                       const scenes::Effects& effects,
+                                       const scenes::RayQuery& query, const Patches& patches,
+                                       const FormFactors& factors, const DirectOptions& options);
+
+}  // namespace earthshine::radiosity

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Form factors by rays: F_ij, the share of what leaves patch i that arrives at patch j.
+//
+// Each patch sends N rays, Owen-Sobol in position x cosine direction. Stored are hit counts n_ij
+// (sparse rows) and two scale vectors, F_ij = row_scale_i n_ij column_scale_j; misses and hits of
+// black backs have columns of their own, so that closure holds in arithmetic:
+//   sum_j a_j F_ij + F_i,sky + F_i,black = 1,    a_j = 1 - mirror_j - transmit_j
+// A ray that meets a mirror or glass counts there with its weight and goes on with weight * (mirror
+// + transmit); a_j = 1 everywhere else.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "radiosity/patches.h"
+#include "scenes/ray_query.h"
+
+namespace earthshine::radiosity {
+
+struct FormFactorOptions {
+  int rays_per_patch = 1024;  // rounded up to a power of two
+  std::uint64_t seed = 1;
+};
+
+struct FormFactors {
+  int rays_per_patch = 0;
+  std::uint64_t ray_count = 0;           // all rays, continuations included
+  std::vector<std::uint64_t> row_start;  // count + 1
+  std::vector<std::uint32_t> column;     // ascending within a row
+  std::vector<float> hits;               // integers unless a mirror or glass is met
+  std::vector<double> row_scale, column_scale;
+  std::vector<double> sky, black;    // F_i,sky and F_i,black: what patch i sees
+  std::vector<double> escape, lost;  // shares of what leaves j that reach the sky, black backs
+  std::vector<double> kept;          // a_j per patch
+  std::vector<Rgb>
+      sky_illuminance;  // per patch, lx: pi times the mean over all rays of the sky's radiance
+
+  [[nodiscard]] std::size_t count() const { return sky.size(); }
+};
+
+// Radiance of the sky in a direction; empty when the sky is dark or is sampled otherwise.
+using SkyRadiance = std::function<Rgb(const Vec3& direction)>;
+
+[[nodiscard]] FormFactors cast_form_factors(const scenes::Scene& scene,
+                                            const scenes::RayQuery& query, const Patches& patches,
+                                            const FormFactorOptions& options,
+                                            const SkyRadiance& sky = {});
+
+// Conservation: scales rows and columns (iterative proportional fitting) until, for every i and j,
+//   sum_j a_j F_ij + F_i,sky + F_i,black = 1                      what i sees
+//   sum_i A_i a_i F_ij + A_j (escape_j + lost_j) = A_j            where what leaves j goes
+// The sky and the black backs take part: escape_j is F_j,sky by reciprocity, but keeping one
+// estimate of it per row and one per column makes the two sets of sums agree in open scenes too,
+// whatever the rays' noise. Energy is then neither made nor lost. Patches that no ray reaches
+// borrow the transposed entries of their own row.
+struct BalanceReport {
+  int sweeps = 0;
+  double before = 0.0;  // sum_j |column defect| / sum_j A_j
+  double after = 0.0;
+  std::size_t borrowed = 0;  // patches that no ray had reached
+  bool balanced = false;     // after <= 1e-12
+};
+BalanceReport balance(FormFactors& factors, std::span<const double> area_m2);
+
+// y = F x for `columns` right-hand sides side by side (row-major, count x columns).
+void multiply(const FormFactors& factors, std::span<const double> x, std::span<double> y,
+              std::size_t columns);
+
+// Between objects of the scene (all their sides): means over the emitting object's area.
+struct ObjectFormFactors {
+  std::vector<std::vector<double>> F;  // F[i][j]
+  std::vector<std::vector<double>>
+      std_error;                       // of F[i][j]: binomial, an upper bound for Owen-Sobol points
+  std::vector<double> sky;             // F to the sky
+  std::vector<double> black;           // F to black backs
+  std::vector<double> area_m2;         // emitting area: both sides of sheets
+  double max_row_error = 0.0;          // max_i |sum_j a_j F_ij + sky + black - 1| over patches
+  double max_reciprocity_error = 0.0;  // max over object pairs |A_i F_ij - A_j F_ji| / max(A_i
+                                       // F_ij, A_j F_ji), where both exceed 4 standard errors
+};
+[[nodiscard]] ObjectFormFactors object_form_factors(const scenes::Scene& scene,
+                                                    const Patches& patches,
+                                                    const FormFactors& factors);
+
+}  // namespace earthshine::radiosity

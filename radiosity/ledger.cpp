@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/ledger.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace earthshine::radiosity {
+
+std::vector<GroupLedger> energy_ledger(const LedgerInput& in,
+                                       const std::vector<std::string>& group_names) {
+  std::vector<GroupLedger> ledger(group_names.size());
+  for (std::size_t g = 0; g < group_names.size(); ++g) {
+    GroupLedger& line = ledger[g];
+    line.name = group_names[g];
+    for (int c = 0; c < 3; ++c) {
+      double emitted = 0.0, landed = 0.0, absorbed = 0.0, escaped = 0.0;
+      for (std::size_t i = 0; i < in.area_m2.size(); ++i) {
+        const std::size_t k = i * in.columns + 3 * g + static_cast<std::size_t>(c);
+        const double area = in.area_m2[i];
+        emitted += area * in.emitted[k];
+        landed += area * in.direct[k];
+        absorbed += area * ((in.factors.kept[i] - in.reflectance[k]) * in.indirect[k] +
+                            (1.0 - in.reflectance[k]) * in.direct[k] +
+                            in.radiosity[k] * in.factors.lost[i]);
+        escaped += area * in.radiosity[k] * in.factors.escape[i];
+      }
+      line.emitted_lm[c] = emitted;
+      line.landed_lm[c] = landed;
+      line.absorbed_lm[c] = absorbed;
+      line.escaped_lm[c] = escaped;
+      const double in_all = emitted + landed;
+      if (in_all > 0.0) {
+        line.imbalance = std::max(line.imbalance, std::abs(in_all - absorbed - escaped) / in_all);
+      }
+    }
+  }
+  return ledger;
+}
+
+}  // namespace earthshine::radiosity

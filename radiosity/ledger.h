@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the energy went. With F balanced (form_factors.h) every line adds up to rounding and the
+// solver's residual:
+//   emitted = sum A M            patches that shine through F
+//   landed  = sum A E0           direct light, as computed
+//   absorbed = sum A ((a - rho) F B + (1 - rho) E0) + sum A B lost
+//   escaped  = sum A B escape
+// Direct light that meets a mirror or glass is counted as absorbed there: radiosity does not carry
+// caustics.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "radiosity/solution.h"
+
+namespace earthshine::radiosity {
+
+struct LedgerInput {
+  const FormFactors& factors;
+  std::span<const double> area_m2;
+  std::size_t columns = 0;
+  std::span<const double> reflectance;  // all below: count x columns
+  std::span<const double> emitted;      // M through F
+  std::span<const double> direct;       // E0
+  std::span<const double> indirect;     // F B
+  std::span<const double> radiosity;    // B
+};
+
+[[nodiscard]] std::vector<GroupLedger> energy_ledger(const LedgerInput& input,
+                                                     const std::vector<std::string>& group_names);
+
+}  // namespace earthshine::radiosity

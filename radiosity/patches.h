@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Patches: the cells that surfaces are cut into for the radiosity solve. The ray structure knows
+// triangles only; the patch of a hit follows from (triangle, u, v) by arithmetic, in O(1).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace earthshine::radiosity {
+
+inline constexpr std::uint32_t no_patch = 0xFFFFFFFFU;
+
+// A triangle or a parallelogram of the scene with a grid of cells over its parameters (s, t) in
+// [0,1]^2.
+//   parallelogram: p = corner + s a + t b
+//   triangle:      p = corner + s (a + t (b - a)): s runs from the apex (the corner opposite the
+//   shortest edge)
+//                  to that edge, t along it; cells are trapezoids, and long thin triangles get
+//                  square ones
+struct Facet {
+  Vec3 corner, a, b;
+  Vec3 normal;  // unit, of the front
+  double area_m2 = 0.0;
+  std::uint32_t s_count = 1, t_count = 1;
+  std::uint32_t first_front = no_patch;  // patches s_count * t_count, index s * t_count + t
+  std::uint32_t first_back = no_patch;   // sheets only
+  std::uint32_t triangle = 0;            // first triangle of the scene
+  std::uint32_t material = 0, object = 0;
+  std::uint8_t apex = 0;  // which vertex of the triangle is the corner
+  bool parallelogram = false;
+};
+
+struct Parameters {
+  double s, t;
+};
+
+class Patches {
+ public:
+  std::vector<Facet> facets;
+  std::vector<double> area_m2;             // per patch
+  std::vector<std::uint32_t> facet;        // per patch
+  std::vector<std::uint32_t> cell;         // per patch: index within its facet
+  std::vector<std::uint8_t> is_back;       // per patch: it is the back of a sheet
+  std::vector<std::uint32_t> of_triangle;  // per triangle: its facet
+  std::vector<std::uint8_t> second_half;   // per triangle: the second of a parallelogram
+
+  [[nodiscard]] std::size_t count() const { return area_m2.size(); }
+
+  // (s, t) on its facet of a hit with weights u, v of the triangle's second and third vertex.
+  [[nodiscard]] Parameters parameters(std::uint32_t triangle, double u, double v) const;
+  // no_patch for the back of a one-sided surface.
+  [[nodiscard]] std::uint32_t find(std::uint32_t triangle, double u, double v, bool front) const;
+
+  // A point of the patch, uniform in area for uniform (x, y) in [0,1]^2.
+  [[nodiscard]] Vec3 point(std::uint32_t patch, double x, double y) const;
+  [[nodiscard]] Vec3 normal(std::uint32_t patch) const;  // on the patch's own side
+  [[nodiscard]] std::uint32_t material(std::uint32_t patch) const {
+    return facets[facet[patch]].material;
+  }
+  [[nodiscard]] std::uint32_t object(std::uint32_t patch) const {
+    return facets[facet[patch]].object;
+  }
+};
+
+// Cuts every surface so that no cell is longer than edge_m along its facet's directions.
+// Throws base::Error (Input) when more than 2^26 patches would result.
+[[nodiscard]] Patches subdivide(const scenes::Scene& scene, double edge_m);
+
+}  // namespace earthshine::radiosity

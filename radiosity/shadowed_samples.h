@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Illuminance of every patch from one source, by shadow rays from points on the patch to points on
+// the source.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "radiosity/patches.h"
+#include "scenes/lamp_light.h"
+#include "scenes/ray_query.h"
+
+namespace earthshine::radiosity {
+
+// A source as the patches see it.
+struct Source {
+  std::uint64_t key = 0;  // of its random numbers
+  std::size_t group = 0;
+  int points = 16;  // receiver points per patch
+  std::function<scenes::LightSample(const Vec3& point, double u, double v)> sample;
+  std::function<double(const Vec3& point)> distance_m;  // empty for the sky
+};
+
+struct Sampled {
+  std::vector<Rgb> illuminance_lx;  // per patch
+  std::vector<double> variance;     // of its luminance-weighted value, as if the points were random
+};
+
+// Owen-Sobol in four dimensions (point of the patch, point of the source), keyed by patch and
+// source. Adds the rays cast to `rays`.
+[[nodiscard]] Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches,
+                                     const Source& source, std::uint64_t seed, std::uint64_t& rays);
+
+}  // namespace earthshine::radiosity

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/solution.h"
+
+#include <chrono>
+
+#include "radiosity/ledger.h"
+#include "radiosity/linear_solve.h"
+#include "scenes/sky.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+// The share of all surface area from which an emitter is carried by F.
+constexpr double wide_emitter_share = 0.05;
+
+class Stopwatch {
+ public:
+  explicit Stopwatch(SolveReport& report) : report_(report) {}
+  void lap(const char* stage) {
+    const auto now = Clock::now();
+    report_.seconds.emplace_back(stage, std::chrono::duration<double>(now - last_).count());
+    last_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  SolveReport& report_;
+  Clock::time_point last_ = Clock::now();
+};
+
+// Per patch and column: a material's value, in the columns of its group or of all groups.
+std::vector<double> reflectances(const scenes::Scene& scene, const Patches& patches,
+                                 std::size_t groups) {
+  std::vector<double> values(patches.count() * 3 * groups);
+  for (std::size_t i = 0; i < patches.count(); ++i) {
+    const Rgb& rho = scene.materials[patches.material(static_cast<std::uint32_t>(i))].diffuse;
+    for (std::size_t k = 0; k < 3 * groups; ++k) {
+      values[i * 3 * groups + k] = rho[static_cast<int>(k % 3)];
+    }
+  }
+  return values;
+}
+
+std::vector<double> exitances(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                              const Patches& patches, const std::vector<bool>& is_explicit) {
+  const std::size_t columns = 3 * groups.count();
+  std::vector<double> values(patches.count() * columns, 0.0);
+  for (std::size_t i = 0; i < patches.count(); ++i) {
+    const std::uint32_t m = patches.material(static_cast<std::uint32_t>(i));
+    if (is_explicit[m] || groups.material[m] == scenes::no_group) continue;
+    for (int c = 0; c < 3; ++c) {
+      values[i * columns + 3 * groups.material[m] + static_cast<std::size_t>(c)] =
+          scene.materials[m].emit[c];
+    }
+  }
+  return values;
+}
+
+std::vector<ObjectLight> object_means(const scenes::Scene& scene, const Patches& patches,
+                                      std::size_t columns, const std::vector<bool>& is_explicit,
+                                      const std::vector<double>& direct,
+                                      const std::vector<double>& indirect,
+                                      const std::vector<double>& radiosity) {
+  std::vector<ObjectLight> means(scene.objects.size());
+  for (std::size_t i = 0; i < patches.count(); ++i) {
+    const auto patch = static_cast<std::uint32_t>(i);
+    ObjectLight& mean = means[patches.object(patch)];
+    const double area = patches.area_m2[i];
+    mean.area_m2 += area;
+    for (std::size_t k = 0; k < columns; ++k) {
+      const auto c = static_cast<int>(k % 3);
+      mean.illuminance_lx[c] += area * (direct[i * columns + k] + indirect[i * columns + k]);
+      mean.radiosity_lm_m2[c] += area * radiosity[i * columns + k];
+    }
+    const std::uint32_t m = patches.material(patch);
+    if (is_explicit[m]) mean.radiosity_lm_m2 += area * scene.materials[m].emit;
+  }
+  for (std::size_t o = 0; o < means.size(); ++o) {
+    means[o].name = scene.objects[o].name;
+    if (means[o].area_m2 > 0.0) {
+      means[o].illuminance_lx /= means[o].area_m2;
+      means[o].radiosity_lm_m2 /= means[o].area_m2;
+    }
+  }
+  return means;
+}
+
+}  // namespace
+
+std::vector<bool> emitter_is_explicit(const scenes::Scene& scene) {
+  std::vector<double> area(scene.materials.size(), 0.0);
+  double total = 0.0;
+  for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+    const std::uint32_t m = scene.triangles[t].material;
+    const double sides = scene.materials[m].two_sided ? 2.0 : 1.0;
+    const double a = sides * scenes::triangle_area(scene, static_cast<std::uint32_t>(t));
+    area[m] += a;
+    total += a;
+  }
+  std::vector<bool> is_explicit(scene.materials.size(), false);
+  for (std::size_t m = 0; m < area.size(); ++m) {
+    is_explicit[m] = scene.materials[m].emits() && area[m] < wide_emitter_share * total;
+  }
+  return is_explicit;
+}
+
+Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
+               const scenes::Effects& effects, const scenes::RayQuery& query,
+               const SolveOptions& options) {
+  Solution solution;
+  SolveReport& report = solution.report;
+  Stopwatch watch(report);
+  solution.patches = subdivide(scene, options.patch_edge_m);
+  const Patches& patches = solution.patches;
+  report.patches = patches.count();
+  solution.columns = 3 * groups.count();
+  watch.lap("patches");
+  if (groups.count() == 0 || patches.count() == 0) return solution;
+
+  SkyRadiance sky;
+  if (effects.earth_by_gather) {
+    sky = [&scene](const Vec3& direction) { return scenes::earth_radiance(scene, direction); };
+  }
+  FormFactors factors =
+      cast_form_factors(scene, query, patches, {options.form_factor_rays, options.seed}, sky);
+  report.form_factor_rays = factors.ray_count;
+  report.nonzeros = factors.hits.size();
+  watch.lap("form factors");
+  report.balance = balance(factors, patches.area_m2);
+  watch.lap("balance");
+
+  DirectOptions direct_options;
+  direct_options.seed = options.seed;
+  DirectLight light = direct_light(scene, groups, effects, query, patches, factors, direct_options);
+  report.shadow_rays = light.shadow_rays;
+  report.sources = std::move(light.sources);
+  watch.lap("direct light");
+
+  const std::size_t columns = solution.columns;
+  const std::vector<bool> is_explicit = emitter_is_explicit(scene);
+  const std::vector<double> rho = reflectances(scene, patches, groups.count());
+  const std::vector<double> emitted = exitances(scene, groups, patches, is_explicit);
+  std::vector<double> source(rho.size());
+  for (std::size_t k = 0; k < source.size(); ++k) {
+    source[k] = emitted[k] + rho[k] * light.illuminance_lx[k];
+  }
+  // The energy of a group misses its balance by about the residual: a hundredth of the tolerance
+  // asked for B keeps the ledger two digits ahead of the solution.
+  const LinearSolve linear = solve_linear(factors, source, rho, columns, 0.01 * options.tolerance);
+  report.iterations = linear.iterations;
+  report.residual = linear.residual;
+  std::vector<double> indirect(source.size());
+  multiply(factors, linear.x, indirect, columns);
+  watch.lap("linear solve");
+
+  report.groups = energy_ledger(
+      {factors, patches.area_m2, columns, rho, emitted, light.illuminance_lx, indirect, linear.x},
+      groups.names);
+  report.objects =
+      object_means(scene, patches, columns, is_explicit, light.illuminance_lx, indirect, linear.x);
+  solution.radiosity.assign(linear.x.begin(), linear.x.end());
+  solution.soft_radiosity.resize(source.size());
+  for (std::size_t k = 0; k < source.size(); ++k) {
+    double soft = rho[k] * indirect[k];
+    const std::size_t column = k % columns;
+    if (effects.earth_by_gather && column / 3 == groups.earth) {
+      soft += rho[k] * factors.sky_illuminance[k / columns][static_cast<int>(column % 3)];
+    }
+    solution.soft_radiosity[k] = static_cast<float>(soft);
+  }
+  watch.lap("ledger");
+  return solution;
+}
+
+}  // namespace earthshine::radiosity

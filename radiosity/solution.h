@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// The radiosity of every patch per light group, and how it was found.
+//   B = M + rho (E0 + F B)      (docs/theory.md; symbols of the project's physics)
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "radiosity/direct.h"
+#include "radiosity/form_factors.h"
+#include "radiosity/patches.h"
+#include "scenes/effects.h"
+#include "scenes/light_groups.h"
+#include "scenes/ray_query.h"
+
+namespace earthshine::radiosity {
+
+struct SolveOptions {
+  double patch_edge_m = 0.25;
+  int form_factor_rays = 1024;  // per patch
+  double tolerance = 1e-8;      // relative residual of the solve, per right-hand side
+  std::uint64_t seed = 1;
+};
+
+// Where the energy of one light group went, lm per channel.
+//   emitted (by patches through F) + landed (directly, as computed) = absorbed + escaped
+struct GroupLedger {
+  std::string name;
+  Rgb emitted_lm{0.0};
+  Rgb landed_lm{0.0};
+  Rgb absorbed_lm{0.0};
+  Rgb escaped_lm{0.0};
+  double imbalance =
+      0.0;  // |emitted + landed - absorbed - escaped| / (emitted + landed), worst channel
+};
+
+struct ObjectLight {
+  std::string name;
+  double area_m2 = 0.0;     // both sides of sheets
+  Rgb illuminance_lx{0.0};  // area means, all groups together
+  Rgb radiosity_lm_m2{0.0};
+};
+
+struct SolveReport {
+  std::size_t patches = 0;
+  std::uint64_t form_factor_rays = 0;
+  std::uint64_t shadow_rays = 0;
+  std::size_t nonzeros = 0;
+  int iterations = 0;
+  double residual = 0.0;  // worst relative residual over the right-hand sides
+  BalanceReport balance;
+  std::vector<std::pair<std::string, double>> seconds;  // stage, wall seconds
+  std::vector<GroupLedger> groups;
+  std::vector<SourceFlux> sources;
+  std::vector<ObjectLight> objects;
+};
+
+struct Solution {
+  Patches patches;
+  std::size_t columns = 0;  // 3 * groups
+  // Per patch and column. `radiosity` leaves out the exitance of surfaces whose first bounce is
+  // explicit (emitter_is_explicit), so that gather rays that meet them do not count that light
+  // twice.
+  std::vector<float> radiosity;       // lm/m^2
+  std::vector<float> soft_radiosity;  // the part of it not due to explicit sources: rho (E - E0
+                                      // explicit) + M through F
+  SolveReport report;
+};
+
+// An emitting material is carried by F when its surfaces are a twentieth or more of all surface
+// area (a whole face, a furnace), else by explicit sampling. The only place where this is decided.
+[[nodiscard]] std::vector<bool> emitter_is_explicit(const scenes::Scene& scene);
+
+// With no light group there is nothing to solve: patches are cut, no rays are cast.
+[[nodiscard]] Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                             const scenes::Effects& effects, const scenes::RayQuery& query,
+                             const SolveOptions& options);
+
+}  // namespace earthshine::radiosity

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/scene_builder.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+// |sum_i A_i a_i F_ij - A_j (1 - escape_j - lost_j)|, the worst over j relative to A_j.
+double worst_column_defect(const FormFactors& f, const Patches& patches) {
+  std::vector<double> sum(f.count(), 0.0);
+  for (std::size_t i = 0; i < f.count(); ++i) {
+    for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
+      const std::uint32_t j = f.column[e];
+      sum[j] +=
+          patches.area_m2[i] * f.kept[i] * f.row_scale[i] * double(f.hits[e]) * f.column_scale[j];
+    }
+  }
+  double worst = 0.0;
+  for (std::size_t j = 0; j < f.count(); ++j) {
+    const double target = patches.area_m2[j] * (1.0 - f.escape[j] - f.lost[j]);
+    worst = std::max(worst, std::abs(sum[j] - target) / patches.area_m2[j]);
+  }
+  return worst;
+}
+
+double worst_row_defect(const FormFactors& f) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < f.count(); ++i) {
+    double sum = f.sky[i] + f.black[i];
+    for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
+      const std::uint32_t j = f.column[e];
+      sum += f.row_scale[i] * double(f.hits[e]) * f.column_scale[j] * f.kept[j];
+    }
+    worst = std::max(worst, std::abs(sum - 1.0));
+  }
+  return worst;
+}
+
+void expect_conservation(const scenes::Scene& scene, double edge_m, int rays) {
+  const scenes::RayQuery query(scene);
+  const Patches patches = subdivide(scene, edge_m);
+  FormFactors factors = cast_form_factors(scene, query, patches, {rays, 1});
+  EXPECT_GT(worst_column_defect(factors, patches), 1e-3);  // noise before
+  const BalanceReport report = balance(factors, patches.area_m2);
+  EXPECT_TRUE(report.balanced);
+  EXPECT_LE(report.after, 1e-12);
+  EXPECT_LE(worst_column_defect(factors, patches), 1e-10);
+  EXPECT_LE(worst_row_defect(factors), 1e-14);
+}
+
+TEST(Balance, ClosedRoomConservesEnergyAndStaysClosed) {
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  builder.room({m, m, m, m, m, m});
+  expect_conservation(builder.scene, 0.125, 256);
+}
+
+TEST(Balance, RoomWithAnOpenTopConservesEnergy) {
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  builder.room({m, m, m, m, m, m});
+  builder.scene.triangles.resize(10);  // no ceiling
+  builder.scene.objects.pop_back();
+  expect_conservation(builder.scene, 0.125, 256);
+}
+
+TEST(Balance, RoomWithAHalfMirrorConservesEnergy) {
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  scenes::Material half = tests::grey(0.2);
+  half.mirror = Rgb(0.6);
+  const std::uint32_t h = builder.material(half);
+  builder.room({m, m, m, m, m, h});
+  expect_conservation(builder.scene, 0.125, 256);
+}
+
+TEST(Balance, PatchesThatNoRayReachesBorrowTheTransposedEntries) {
+  // A plate a thousandth of the room's size: few of the walls' rays meet it, and its cells see
+  // everything.
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  builder.room({m, m, m, m, m, m});
+  builder.quad(m, {0.5, 0.5, 0.5}, {0.501, 0.5, 0.5}, {0.501, 0.501, 0.5}, {0.5, 0.501, 0.5});
+  const scenes::RayQuery query(builder.scene);
+  const Patches patches = subdivide(builder.scene, 0.25);
+  FormFactors factors = cast_form_factors(builder.scene, query, patches, {64, 1});
+  const BalanceReport report = balance(factors, patches.area_m2);
+  EXPECT_EQ(report.borrowed, 1U);
+  EXPECT_LE(worst_row_defect(factors), 1e-14);
+  EXPECT_LE(worst_column_defect(factors, patches), 1e-8);
+}
+
+TEST(Balance, FacingPlatesWhoseRaysDisagreeStillBalance) {
+  // Each plate's only neighbour is the other: without the sky's part in it no scaling could make
+  // both sums right.
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  builder.plate(m, 1.0, 0.0, true);
+  builder.plate(m, 2.0, 1.0, false);
+  expect_conservation(builder.scene, 4.0, 64);
+}
+
+TEST(Balance, SkySharesSeenAndReachedAgreeWithinTheRaysNoise) {
+  // escape_j = F_j,sky by reciprocity; 1024 rays per patch: 4 binomial standard errors of the
+  // difference of two.
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  builder.room({m, m, m, m, m, m});
+  builder.scene.triangles.resize(10);
+  builder.scene.objects.pop_back();
+  const scenes::RayQuery query(builder.scene);
+  const Patches patches = subdivide(builder.scene, 0.25);
+  FormFactors factors = cast_form_factors(builder.scene, query, patches, {1024, 1});
+  balance(factors, patches.area_m2);
+  for (std::size_t j = 0; j < factors.count(); ++j) {
+    EXPECT_NEAR(factors.escape[j], factors.sky[j], 4.0 * std::sqrt(2.0 * 0.25 / 1024.0));
+  }
+}
+
+TEST(Balance, ALonePlateUnderTheSkyHasNothingToBalance) {
+  tests::SceneBuilder builder;
+  builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
+  const scenes::RayQuery query(builder.scene);
+  const Patches patches = subdivide(builder.scene, 0.25);
+  FormFactors factors = cast_form_factors(builder.scene, query, patches, {64, 1});
+  EXPECT_TRUE(balance(factors, patches.area_m2).balanced);
+  for (const double sky : factors.sky) EXPECT_EQ(sky, 1.0);
+}
+
+}  // namespace
+}  // namespace earthshine::radiosity
