@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// The solution as rays read it: radiance B / pi at any surface point, per image layer, flat in
+// memory.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "radiosity/solution.h"
+
+namespace earthshine::raytrace {
+
+// layers: 1 (all light groups summed) or one per group. Between the centres of a facet's cells the
+// radiance is interpolated bilinearly, which makes the error of reading it fall with the square of
+// the patch edge.
+class RadianceTable {
+ public:
+  RadianceTable() = default;
+  // values: radiosity or soft_radiosity of the solution.
+  RadianceTable(const radiosity::Solution& solution, std::span<const float> values, bool per_light);
+
+  [[nodiscard]] bool empty() const { return radiance_.empty(); }
+
+  // Adds weight * radiance to out[0 .. layers). Nothing for the black back of a one-sided surface.
+  void add(const scenes::Hit& hit, const Rgb& weight, std::span<Rgb> out) const;
+
+ private:
+  const radiosity::Patches* patches_ = nullptr;
+  std::size_t layers_ = 0;
+  std::vector<glm::vec4> radiance_;  // patch * layers + layer; fourth component unused
+};
+
+}  // namespace earthshine::raytrace

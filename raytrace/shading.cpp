@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/shading.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/sky.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+using base::pi;
+using scenes::no_group;
+
+constexpr int deepest = 12;           // mirror and glass steps before the path is cut
+constexpr int roulette_depth = 3;     // from here on weak paths end by chance, without bias
+constexpr int lobe_rays = 4;          // per camera sample
+constexpr double sharp_lobe = 100.0;  // from this exponent on the surroundings are shaded, not read
+
+bool lit(const Rgb& c) { return base::max_component(c) > 0.0; }
+
+}  // namespace
+
+Vec3 hit_position(const scenes::Scene& scene, const scenes::Hit& hit) {
+  const auto& v = scene.triangles[hit.triangle].vertex;
+  return (1.0 - hit.u - hit.v) * scene.vertices[v[0]] + hit.u * scene.vertices[v[1]] +
+         hit.v * scene.vertices[v[2]];
+}
+
+PixelShader::PixelShader(const ShadingScene& shared)
+    : shared_(shared),
+      sums_(shared.layers),
+      scratch_(shared.layers),
+      gather_points_(base::Key(0, base::Stream::FinalGather, 0)),
+      rng_(base::Key(0, base::Stream::Roulette, 0)) {}
+
+void PixelShader::begin_pixel(std::uint64_t pixel, std::size_t samples) {
+  pixel_ = pixel;
+  std::fill(sums_.begin(), sums_.end(), Rgb(0.0));
+  sample_luminance_.assign(samples, 0.0);
+  gather_points_ = base::SobolOwen4(base::Key(shared_.seed, base::Stream::FinalGather, pixel));
+  light_points_.clear();
+  const base::Key light_key(shared_.seed, base::Stream::LightSample, pixel);
+  for (std::size_t k = 0; k < shared_.lights.count(); ++k) {
+    light_points_.emplace_back(light_key.with(k));
+  }
+}
+
+void PixelShader::add_sample(std::size_t sample, const Ray& ray, const scenes::Hit& hit) {
+  sample_ = sample;
+  rng_ = base::Rng(base::Key(shared_.seed, base::Stream::Roulette, pixel_).with(sample));
+  ++rays_.camera;
+  shade(ray, hit, Rgb(1.0), 0, Seen::ByCamera);
+}
+
+void PixelShader::end_pixel() {
+  flush_shadow();
+  flush_gather();
+}
+
+void PixelShader::add(std::size_t layer, std::size_t sample, const Rgb& radiance) {
+  sums_[layer] += radiance;
+  sample_luminance_[sample] += base::luminance(radiance);
+}
+
+void PixelShader::trace(const Ray& ray, const Rgb& weight, int depth, Seen seen) {
+  Rgb kept = weight;
+  if (depth >= deepest) return;
+  if (depth >= roulette_depth) {
+    const double survival = std::min(1.0, base::max_component(weight));
+    if (rng_.next() >= survival) return;
+    kept /= survival;
+  }
+  ++(seen == Seen::ByLobe ? rays_.lobe : rays_.mirror);
+  shade(ray, shared_.query.closest(ray.origin, ray.direction), kept, depth, seen);
+}
+
+void PixelShader::see_sky(const Vec3& direction, const Rgb& weight, Seen seen) {
+  const scenes::Scene& scene = shared_.scene;
+  const bool on_earth = scene.earth && glm::dot(direction, scene.earth->direction) >=
+                                           std::cos(base::radians(scene.earth->half_angle_deg));
+  if (on_earth) {
+    // A lobe ray reads the Earth only where shadow rays do not already carry its highlight.
+    const bool carried = seen == Seen::ByLobe && !shared_.effects.earth_by_gather;
+    if (shared_.groups.earth != no_group && !carried) {
+      add(shared_.layer[shared_.groups.earth], sample_,
+          weight * scenes::earth_radiance(scene, direction));
+    }
+  } else if (seen == Seen::ByCamera && shared_.groups.sun != no_group) {
+    add(shared_.layer[shared_.groups.sun], sample_,
+        weight * scenes::sky_radiance(scene, direction));
+  }
+}
+
+bool PixelShader::see_lamp(const Ray& ray, double nearer_than_m, const Rgb& weight) {
+  bool found = false;
+  scenes::LampHit nearest{nearer_than_m, Rgb(0.0)};
+  std::size_t which = 0;
+  for (const std::size_t k : shared_.area_lamps) {
+    const auto hit = scenes::hit_lamp(shared_.scene.lamps[k], ray.origin, ray.direction);
+    if (hit && hit->distance_m < nearest.distance_m) {
+      nearest = *hit;
+      which = k;
+      found = true;
+    }
+  }
+  if (found) add(shared_.layer[shared_.groups.lamp[which]], sample_, weight * nearest.radiance);
+  return found;
+}
+
+void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weight, int depth,
+                        Seen seen) {
+  const double distance = hit.missed() ? std::numeric_limits<double>::infinity() : hit.t;
+  if (seen == Seen::ByCamera && see_lamp(ray, distance, weight)) return;
+  if (hit.missed()) return see_sky(ray.direction, weight, seen);
+
+  const scenes::Scene& scene = shared_.scene;
+  const scenes::Triangle& triangle = scene.triangles[hit.triangle];
+  const scenes::Material& material = scene.materials[triangle.material];
+  const bool glass = lit(material.transmit);
+  if (!hit.front && !material.two_sided && !glass) return;  // the black back
+
+  const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
+  const Surface surface{material, hit_position(scene, hit), hit.front ? outward : -outward,
+                        -ray.direction};
+  const bool shines = hit.front || material.two_sided;
+  const bool shows_emission = seen == Seen::ByCamera || !shared_.sampled_emitter[triangle.material];
+  if (shines && shows_emission && shared_.groups.material[triangle.material] != no_group) {
+    add(shared_.layer[shared_.groups.material[triangle.material]], sample_,
+        weight * material.emit / pi);
+  }
+  if (shines) {
+    if (lit(material.diffuse) || lit(material.specular)) direct(surface, weight);
+    if (lit(material.diffuse)) {
+      if (shared_.groups.ambient != no_group) {
+        add(shared_.layer[shared_.groups.ambient], sample_,
+            weight * material.diffuse * scene.ambient_radiance);
+      }
+      if (depth > 0 && shared_.indirect == Indirect::Radiosity) {
+        if (!shared_.soft_radiance.empty()) {
+          std::fill(scratch_.begin(), scratch_.end(), Rgb(0.0));
+          shared_.soft_radiance.add(hit, weight, scratch_);
+          for (std::size_t k = 0; k < scratch_.size(); ++k) add(k, sample_, scratch_[k]);
+        }
+      } else if (shared_.gathers) {
+        gather(surface, weight * material.diffuse, depth);
+      }
+    }
+    if (lit(material.specular) && shared_.gathers) lobe(surface, weight, depth);
+  }
+  if (glass || lit(material.mirror)) {
+    mirror_and_glass(ray, surface, hit.front, weight, depth, seen);
+  }
+}
+
+void PixelShader::direct(const Surface& surface, const Rgb& weight) {
+  const double offset = shared_.query.surface_offset_m();
+  const Vec3 origin = surface.position + surface.normal * offset;
+  const Vec3 mirrored =
+      2.0 * glm::dot(surface.view, surface.normal) * surface.normal - surface.view;
+  for (std::size_t k = 0; k < shared_.lights.count(); ++k) {
+    const auto u = light_points_[k].point2(static_cast<std::uint32_t>(sample_));
+    const scenes::LightSample light = shared_.lights.sample(k, origin, u[0], u[1]);
+    const double cosine = glm::dot(light.direction, surface.normal);
+    if (cosine <= 0.0 || !lit(light.normal_illuminance_lx)) continue;
+    // L = (E cos / pi) (k_d + k_s cos^n alpha): the measured Phong form.
+    Rgb factor = surface.material.diffuse;
+    const double cos_alpha = glm::dot(light.direction, mirrored);
+    if (cos_alpha > 0.0 && lit(surface.material.specular)) {
+      factor += surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
+    }
+    const Rgb value = weight * factor * light.normal_illuminance_lx * (cosine / pi);
+    if (!lit(value)) continue;
+    const double reach = light.distance_m * (1.0 - 1e-5) - 2.0 * offset;
+    if (reach > 0.0) {
+      queue_shadow(origin, light.direction, reach, value, shared_.layer[shared_.lights.group(k)]);
+    }
+  }
+}
+
+void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
+  const double n = surface.material.shininess;
+  const Vec3 mirrored =
+      2.0 * glm::dot(surface.view, surface.normal) * surface.normal - surface.view;
+  const base::Frame3 frame = base::frame_around(mirrored);
+  const Vec3 origin = surface.position + surface.normal * shared_.query.surface_offset_m();
+  const int count = depth == 0 ? lobe_rays : 1;
+  for (int k = 0; k < count; ++k) {
+    // Density (n + 1) / (2 pi) cos^n alpha; L = integral L_in (k_s / pi) cos^n cos_theta.
+    const double cos_alpha = std::pow(1.0 - rng_.next(), 1.0 / (n + 1.0));
+    const double sine = std::sqrt(std::max(0.0, 1.0 - cos_alpha * cos_alpha));
+    const double phi = 2.0 * pi * rng_.next();
+    const Vec3 direction = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cos_alpha});
+    const double cosine = glm::dot(direction, surface.normal);
+    if (cosine <= 0.0) continue;
+    const Rgb value = weight * surface.material.specular * (2.0 * cosine / ((n + 1.0) * count));
+    if (n >= sharp_lobe) {
+      trace({origin, direction}, value, depth + 1, Seen::ByLobe);
+    } else {
+      queue_gather(origin, direction, value);
+    }
+  }
+}
+
+void PixelShader::mirror_and_glass(const Ray& ray, const Surface& surface, bool entering,
+                                   const Rgb& weight, int depth, Seen seen) {
+  const double offset = shared_.query.surface_offset_m();
+  const Vec3& n = surface.normal;
+  const Vec3 reflected = ray.direction - 2.0 * glm::dot(ray.direction, n) * n;
+  Rgb reflected_weight = weight * surface.material.mirror;
+  if (lit(surface.material.transmit)) {
+    const Rgb through = weight * surface.material.transmit;
+    // A sheet of glass has no inside: what passes goes straight on.
+    const double ratio = surface.material.two_sided ? 1.0
+                         : entering                 ? 1.0 / surface.material.ior
+                                                    : surface.material.ior;
+    const double cosine = -glm::dot(ray.direction, n);
+    const double sine2 = ratio * ratio * (1.0 - cosine * cosine);
+    if (sine2 >= 1.0) {
+      reflected_weight += through;  // total reflection
+    } else {
+      const Vec3 refracted =
+          glm::normalize(ratio * ray.direction + (ratio * cosine - std::sqrt(1.0 - sine2)) * n);
+      trace({surface.position - n * offset, refracted}, through, depth + 1, seen);
+    }
+  }
+  if (lit(reflected_weight)) {
+    trace({surface.position + n * offset, reflected}, reflected_weight, depth + 1, seen);
+  }
+}
+
+}  // namespace earthshine::raytrace

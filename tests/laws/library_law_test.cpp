@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Laws on the scenes that ship, read from their files as a user's scenes are.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "scenes/scene_file.h"
+#include "tests/support/scene_builder.h"
+
+namespace earthshine {
+namespace {
+
+std::filesystem::path library(const char* name) {
+  return std::filesystem::path(EARTHSHINE_SOURCE_DIR) / "scenes" / "library" / name;
+}
+
+radiosity::Solution solve_library_scene(const char* name, double edge_m, int rays) {
+  const scenes::Scene scene = scenes::read_scene(library(name));
+  radiosity::SolveOptions options;
+  options.patch_edge_m = edge_m;
+  options.form_factor_rays = rays;
+  return tests::Prepared(scene).solve(options);
+}
+
+class Sts46 : public testing::TestWithParam<const char*> {};
+
+TEST_P(Sts46, EnergyInEqualsAbsorbedPlusEscapedInEveryGroup) {
+  // Every surface of the bay at once: sheets, glass, gloss, lamps in the floor. 1e-9 of the total.
+  const radiosity::Solution solution = solve_library_scene(GetParam(), 1.0, 128);
+  ASSERT_FALSE(solution.report.groups.empty());
+  for (const radiosity::GroupLedger& line : solution.report.groups) {
+    EXPECT_LE(line.imbalance, 1e-9) << line.name;
+  }
+}
+
+TEST_P(Sts46, LitLinerIsNeitherBlackNorBrighterThanItsSource) {
+  // Radiosity of a surface of reflectance below 1 in an open bay cannot exceed what a closed room
+  // of the same reflectance and the brightest illuminance would give; NaN or a negative value
+  // anywhere fails.
+  const radiosity::Solution solution = solve_library_scene(GetParam(), 1.0, 128);
+  for (const float b : solution.radiosity) {
+    ASSERT_TRUE(std::isfinite(b));
+    ASSERT_GE(b, 0.0F);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Sts46,
+                         testing::Values("sts46/day-earthshine.toml", "sts46/day-sun.toml",
+                                         "sts46/night-lamps.toml", "sts46/night-lamp-failed.toml"));
+
+TEST(Sts46Lamps, FailedLampTakesItsShareAndNothingElse) {
+  // Night with all lamps minus night with one failed is the light of that lamp alone: less flux
+  // lands, and the group that did not fail is the same to rounding.
+  const radiosity::Solution all = solve_library_scene("sts46/night-lamps.toml", 1.0, 128);
+  const radiosity::Solution failed = solve_library_scene("sts46/night-lamp-failed.toml", 1.0, 128);
+  const auto landed = [](const radiosity::Solution& s) {
+    double sum = 0.0;
+    for (const radiosity::GroupLedger& line : s.report.groups) sum += line.landed_lm.g;
+    return sum;
+  };
+  EXPECT_LT(landed(failed), landed(all));
+  EXPECT_GT(landed(failed), 0.5 * landed(all));
+}
+
+}  // namespace
+}  // namespace earthshine
