@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one exception type of the project. Libraries throw it; app/main prints it and picks the exit code.
+// The one exception type of the project. Libraries throw it; app/main prints it and picks the exit
+// code.
 #pragma once
 
 #include <stdexcept>

@@ -20,7 +20,8 @@ int available_threads() { return tbb::info::default_concurrency(); }
 void parallel_chunks(std::size_t count, std::size_t chunk,
                      const std::function<void(std::size_t, std::size_t)>& body) {
   if (count == 0) return;
-  // simple_partitioner honours the chunk size exactly, so that chunk boundaries are the same every run.
+  // simple_partitioner honours the chunk size exactly, so that chunk boundaries are the same every
+  // run.
   const std::size_t chunks = (count + chunk - 1) / chunk;
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, chunks, 1),

@@ -9,7 +9,8 @@
 
 namespace earthshine::base {
 
-// Limits every parallel loop to `threads` for as long as it lives; 0 means all cores of the process.
+// Limits every parallel loop to `threads` for as long as it lives; 0 means all cores of the
+// process.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);
@@ -23,13 +24,13 @@ class ThreadLimit {
 
 [[nodiscard]] int available_threads();
 
-// Calls body(begin, end) over [0, count) in chunks of at most `chunk` items. body may write only to the
-// slots it owns. The first exception is rethrown on the calling thread.
+// Calls body(begin, end) over [0, count) in chunks of at most `chunk` items. body may write only to
+// the slots it owns. The first exception is rethrown on the calling thread.
 void parallel_chunks(std::size_t count, std::size_t chunk,
                      const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-// Sums sum_chunk(begin, end) over fixed chunks, adding in chunk order: the same bits on any number of
-// threads.
+// Sums sum_chunk(begin, end) over fixed chunks, adding in chunk order: the same bits on any number
+// of threads.
 template <class T, class SumChunk>
 [[nodiscard]] T ordered_sum(std::size_t count, std::size_t chunk, T zero, SumChunk sum_chunk) {
   std::vector<T> parts((count + chunk - 1) / chunk, zero);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keyed random numbers: every number is a pure function of (seed, stream, item, index, dimension), never
-// of thread, tile or call order, so results do not depend on how the work was split.
+// Keyed random numbers: every number is a pure function of (seed, stream, item, index, dimension),
+// never of thread, tile or call order, so results do not depend on how the work was split.
 #pragma once
 
 #include <array>

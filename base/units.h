@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colour, vectors and constants shared by every layer. Photometric units throughout (docs/theory.md):
-// linear RGB with Rec. 709 primaries, lengths in metres, angles in radians unless the name says _deg.
+// Colour, vectors and constants shared by every layer. Photometric units throughout
+// (docs/theory.md): linear RGB with Rec. 709 primaries, lengths in metres, angles in radians unless
+// the name says _deg.
 #pragma once
 
 #include <cmath>

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "scenes/specular.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -67,7 +68,7 @@ class Caster {
     const Vec3 lift = frame.normal * query_.surface_offset_m();
     RayPacket packet;
     HitPacket hits;
-    Vec3 directions[RayPacket::width];
+    Vec3 origins[RayPacket::width], directions[RayPacket::width];
     for (std::uint32_t first = 0; first < rays_; first += RayPacket::width) {
       const std::uint32_t count = std::min<std::uint32_t>(RayPacket::width, rays_ - first);
       for (std::uint32_t k = 0; k < count; ++k) {
@@ -75,15 +76,15 @@ class Caster {
         const float r = std::sqrt(p[0]), phi = 2.0F * static_cast<float>(base::pi) * p[1];
         directions[k] =
             frame.to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0F - p[0])});
-        packet.set(k, patches_.point(patch, inset(p[2]), inset(p[3])) + lift, directions[k]);
+        origins[k] = patches_.point(patch, inset(p[2]), inset(p[3])) + lift;
+        query_.set(packet, k, origins[k], directions[k]);
       }
       query_.closest(packet, count, hits);
       row.rays += count;
       for (std::uint32_t k = 0; k < count; ++k) {
         const scenes::Hit hit{hits.triangle[k], hits.u[k], hits.v[k], hits.t[k],
                               hits.front[k] != 0};
-        const Vec3 origin(packet.origin_x[k], packet.origin_y[k], packet.origin_z[k]);
-        follow(origin, directions[k], hit, row, counter);
+        follow(origins[k], directions[k], hit, row, counter);
       }
     }
     counter.take(row);
@@ -122,23 +123,12 @@ class Caster {
       }
       const Vec3 normal = scenes::triangle_normal(scene_, hit.triangle);
       const Vec3 at = origin + hit.t * direction;
-      direction = next_direction(material, normal, direction);
+      direction = scenes::specular_direction(material, normal, direction);
       const double side = glm::dot(direction, normal) > 0.0 ? 1.0 : -1.0;
       origin = at + normal * (side * query_.surface_offset_m());
       hit = query_.closest(origin, direction);
       ++row.rays;
     }
-  }
-
-  // The larger of the two shares is followed: a choice by chance would make the counts noisy, and
-  // materials that are half mirror and half clear glass do not occur.
-  static Vec3 next_direction(const scenes::Material& material, const Vec3& normal, const Vec3& d) {
-    const Vec3 reflected = d - 2.0 * glm::dot(d, normal) * normal;
-    if (base::luminance(material.mirror) >= base::luminance(material.transmit)) return reflected;
-    const bool entering = glm::dot(d, normal) < 0.0;
-    const double eta = entering ? 1.0 / material.ior : material.ior;
-    const Vec3 refracted = glm::refract(d, entering ? normal : -normal, eta);
-    return glm::dot(refracted, refracted) > 0.0 ? glm::normalize(refracted) : reflected;
   }
 
   const scenes::Scene& scene_;

@@ -6,7 +6,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <sstream>
 
 namespace earthshine::radiosity {
 class RadiosityOperator;
@@ -126,11 +126,11 @@ LinearSolve solve_linear(const FormFactors& factors, std::span<const double> sou
     if (result.residual <= tolerance) break;
   }
   if (!(result.residual <= std::max(tolerance, 1e-6))) {
-    throw base::Error(
-        base::Blame::Work, "radiosity",
-        "the solver stopped at a relative residual of " + std::to_string(result.residual),
-        "quality.solver_tolerance = " + std::to_string(tolerance),
-        "Raise quality.form_factor_rays or lower reflectances that are nearly 1");
+    std::ostringstream found;
+    found << "the solver stopped at a relative residual of " << result.residual;
+    throw base::Error(base::Blame::Work, "radiosity", found.str(),
+                      "1e-6 is the largest that is still a solution",
+                      "Lower reflectances that are nearly 1, or report the scene as a defect");
   }
   for (std::size_t k = 0; k < source.size(); ++k) {
     result.x[k] = x[static_cast<Eigen::Index>(k)] * norms[k % columns];

@@ -25,7 +25,7 @@ class Receiver {
     // Stops short of the source, which may be a surface of the scene itself.
     const double reach = sample.distance_m * (1.0 - 1e-5) - 2.0 * query_.surface_offset_m();
     if (reach <= 0.0) return;
-    packet_.set(count_, origin, sample.direction, reach);
+    query_.set(packet_, count_, origin, sample.direction, reach);
     contribution_[count_++] = sample.normal_illuminance_lx * cosine;
     if (count_ == RayPacket::width) flush();
   }
@@ -89,8 +89,8 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
       const int points = points_for(source, patches, patch);
       for (int k = 0; k < points; ++k) {
         const auto p = sobol.point(static_cast<std::uint32_t>(k));
-        const Vec3 at = patches.point(patch, p[0], p[1]) + lift;
-        receiver.add(at, source.sample(at, p[2], p[3]));
+        const Vec3 at = patches.point(patch, p[0], p[1]);
+        receiver.add(at + lift, source.sample(at, p[2], p[3]));
       }
       receiver.finish();
       const double n = points, y = base::luminance(receiver.sum());

@@ -6,10 +6,17 @@
 
 #include "raytrace/shading.h"
 #include "scenes/sky.h"
+#include "scenes/specular.h"
 
 namespace earthshine::raytrace {
 
 using base::pi;
+
+namespace {
+
+constexpr int most_specular_steps = 16;
+
+}  // namespace
 
 void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   const base::Frame3 frame = base::frame_around(surface.normal);
@@ -70,7 +77,7 @@ double PixelShader::gather_share(const scenes::Hit& hit, std::size_t lane) const
 
 void PixelShader::queue_shadow(const Vec3& origin, const Vec3& direction, double reach_m,
                                const Rgb& value, std::size_t layer) {
-  shadow_rays_.set(shadow_count_, origin, direction, reach_m);
+  shared_.query.set(shadow_rays_, shadow_count_, origin, direction, reach_m);
   shadow_value_[shadow_count_] = value;
   shadow_layer_[shadow_count_] = layer;
   shadow_sample_[shadow_count_] = sample_;
@@ -91,11 +98,35 @@ void PixelShader::queue_gather(const Vec3& origin, const Vec3& direction, const 
                                double cosine, std::uint32_t aimed_at) {
   gather_cosine_[gather_count_] = cosine;
   aimed_at_[gather_count_] = aimed_at;
-  gather_rays_.set(gather_count_, origin, direction);
+  shared_.query.set(gather_rays_, gather_count_, origin, direction);
   gather_direction_[gather_count_] = direction;
   gather_weight_[gather_count_] = weight;
   gather_sample_[gather_count_] = sample_;
   if (++gather_count_ == width) flush_gather();
+}
+
+void PixelShader::gather_sky(const Vec3& direction, const Rgb& weight) {
+  if (!shared_.effects.earth_by_gather) return;
+  scratch_[shared_.layer[shared_.groups.earth]] +=
+      weight * scenes::earth_radiance(shared_.scene, direction);
+}
+
+void PixelShader::follow_specular(scenes::Hit hit, Vec3 direction, Rgb weight) {
+  const scenes::Scene& scene = shared_.scene;
+  for (int step = 0; step < most_specular_steps; ++step) {
+    const scenes::Material& material = scene.materials[scene.triangles[hit.triangle].material];
+    const bool glass = base::max_component(material.transmit) > 0.0;
+    if (!material.passes_light_on() || !(hit.front || material.two_sided || glass)) return;
+    weight *= material.mirror + material.transmit;
+    const Vec3 normal = scenes::triangle_normal(scene, hit.triangle);
+    const Vec3 at = hit_position(scene, hit);
+    direction = scenes::specular_direction(material, normal, direction);
+    const double side = glm::dot(direction, normal) > 0.0 ? 1.0 : -1.0;
+    hit = shared_.query.closest(at + normal * (side * shared_.query.surface_offset_m()), direction);
+    ++rays_.mirror;
+    if (hit.missed()) return gather_sky(direction, weight);
+    if (!shared_.all_radiance.empty()) shared_.all_radiance.add(hit, weight, scratch_);
+  }
 }
 
 void PixelShader::flush_gather() {
@@ -104,15 +135,16 @@ void PixelShader::flush_gather() {
   shared_.query.closest(gather_rays_, gather_count_, hits);
   for (std::size_t k = 0; k < gather_count_; ++k) {
     std::fill(scratch_.begin(), scratch_.end(), Rgb(0.0));
-    if (hits.triangle[k] == scenes::no_triangle) {
-      if (!shared_.effects.earth_by_gather || aimed_at_[k] != radiosity::no_patch) continue;
-      scratch_[shared_.layer[shared_.groups.earth]] +=
-          gather_weight_[k] * scenes::earth_radiance(shared_.scene, gather_direction_[k]);
-    } else if (!shared_.all_radiance.empty()) {
-      const scenes::Hit hit{hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0};
-      const double share = gather_share(hit, k);
-      if (share <= 0.0) continue;
-      shared_.all_radiance.add(hit, gather_weight_[k] * share, scratch_);
+    const scenes::Hit hit{hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0};
+    if (hit.missed()) {
+      if (aimed_at_[k] == radiosity::no_patch) gather_sky(gather_direction_[k], gather_weight_[k]);
+    } else {
+      const Rgb weight = gather_weight_[k] * gather_share(hit, k);
+      if (!shared_.all_radiance.empty()) shared_.all_radiance.add(hit, weight, scratch_);
+      // Rays aimed at a patch are for what the patch itself sends.
+      if (shared_.follows_specular && aimed_at_[k] == radiosity::no_patch) {
+        follow_specular(hit, gather_direction_[k], gather_weight_[k]);
+      }
     }
     for (std::size_t layer = 0; layer < scratch_.size(); ++layer) {
       add(layer, gather_sample_[k], scratch_[layer]);

@@ -134,7 +134,7 @@ class Renderer {
       for (std::size_t k = 0; k < count; ++k) {
         const auto p = points.point(static_cast<std::uint32_t>(first + k));
         rays[k] = camera_.ray(x + double(p[0]), y + double(p[1]), p[2], p[3]);
-        packet.set(k, rays[k].origin, rays[k].direction);
+        shared_.query.set(packet, k, rays[k].origin, rays[k].direction);
       }
       shared_.query.closest(packet, count, hits);
       for (std::size_t k = 0; k < count; ++k) {
@@ -236,6 +236,7 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
                              scene.lamps[k].kind == scenes::LampKind::Disk;
     if (has_surface && groups.lamp[k] != scenes::no_group) shared.area_lamps.push_back(k);
   }
+  shared.follows_specular = effects.mirror || effects.refraction;
   shared.sampled_emitter.assign(scene.materials.size(), true);
   if (options.indirect == Indirect::Radiosity) {
     shared.sampled_emitter = radiosity::emitter_is_explicit(scene);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scenes/sky.h"
+#include "scenes/specular.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -121,7 +122,7 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
   if (!hit.front && !material.two_sided && !glass) return;  // the black back
 
   const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
-  const Surface surface{material, hit_position(scene, hit), hit.front ? outward : -outward,
+  const Surface surface{material, hit_position(scene, hit), outward, hit.front ? outward : -outward,
                         -ray.direction};
   const bool shines = hit.front || material.two_sided;
   const bool shows_emission = seen == Seen::ByCamera || !shared_.sampled_emitter[triangle.material];
@@ -149,7 +150,7 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
     if (lit(material.specular) && shared_.gathers) lobe(surface, weight, depth);
   }
   if (glass || lit(material.mirror)) {
-    mirror_and_glass(ray, surface, hit.front, weight, depth, seen);
+    mirror_and_glass(ray, surface, weight, depth, seen);
   }
 }
 
@@ -160,7 +161,7 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight) {
       2.0 * glm::dot(surface.view, surface.normal) * surface.normal - surface.view;
   for (std::size_t k = 0; k < shared_.lights.count(); ++k) {
     const auto u = light_points_[k].point2(static_cast<std::uint32_t>(sample_));
-    const scenes::LightSample light = shared_.lights.sample(k, origin, u[0], u[1]);
+    const scenes::LightSample light = shared_.lights.sample(k, surface.position, u[0], u[1]);
     const double cosine = glm::dot(light.direction, surface.normal);
     if (cosine <= 0.0 || !lit(light.normal_illuminance_lx)) continue;
     // L = (E cos / pi) (k_d + k_s cos^n alpha): the measured Phong form.
@@ -202,30 +203,23 @@ void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
   }
 }
 
-void PixelShader::mirror_and_glass(const Ray& ray, const Surface& surface, bool entering,
-                                   const Rgb& weight, int depth, Seen seen) {
-  const double offset = shared_.query.surface_offset_m();
-  const Vec3& n = surface.normal;
-  const Vec3 reflected = ray.direction - 2.0 * glm::dot(ray.direction, n) * n;
+void PixelShader::mirror_and_glass(const Ray& ray, const Surface& surface, const Rgb& weight,
+                                   int depth, Seen seen) {
+  const Vec3 lift = surface.normal * shared_.query.surface_offset_m();
   Rgb reflected_weight = weight * surface.material.mirror;
   if (lit(surface.material.transmit)) {
     const Rgb through = weight * surface.material.transmit;
-    // A sheet of glass has no inside: what passes goes straight on.
-    const double ratio = surface.material.two_sided ? 1.0
-                         : entering                 ? 1.0 / surface.material.ior
-                                                    : surface.material.ior;
-    const double cosine = -glm::dot(ray.direction, n);
-    const double sine2 = ratio * ratio * (1.0 - cosine * cosine);
-    if (sine2 >= 1.0) {
-      reflected_weight += through;  // total reflection
+    const scenes::Refraction refraction =
+        scenes::refract(surface.material, surface.outward, ray.direction);
+    if (refraction.total) {
+      reflected_weight += through;
     } else {
-      const Vec3 refracted =
-          glm::normalize(ratio * ray.direction + (ratio * cosine - std::sqrt(1.0 - sine2)) * n);
-      trace({surface.position - n * offset, refracted}, through, depth + 1, seen);
+      trace({surface.position - lift, refraction.direction}, through, depth + 1, seen);
     }
   }
   if (lit(reflected_weight)) {
-    trace({surface.position + n * offset, reflected}, reflected_weight, depth + 1, seen);
+    trace({surface.position + lift, glm::reflect(ray.direction, surface.normal)}, reflected_weight,
+          depth + 1, seen);
   }
 }
 

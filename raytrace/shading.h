@@ -28,8 +28,9 @@ struct ShadingScene {
   std::vector<std::size_t> layer = {};  // of a light group: its image layer
   std::size_t layers = 1;
   Indirect indirect = Indirect::Radiosity;
-  bool gathers = false;  // cosine rays carry light in this render
-  int gather_rays = 16;  // per camera sample
+  bool follows_specular = false;  // gather rays may meet mirrors or glass
+  bool gathers = false;           // cosine rays carry light in this render
+  int gather_rays = 16;           // per camera sample
   std::uint64_t seed = 1;
   std::vector<std::size_t> area_lamps = {};  // indices of lamps that a ray can meet
   std::vector<bool> sampled_emitter = {};    // per material: shadow rays carry its light
@@ -56,8 +57,10 @@ class PixelShader {
   enum class Seen { ByCamera, ByLobe };
   struct Surface {
     const scenes::Material& material;
-    Vec3 position, normal;  // normal on the side of the viewer
-    Vec3 view;              // unit, toward the viewer
+    Vec3 position;
+    Vec3 outward;  // unit normal of the front
+    Vec3 normal;   // the same on the side of the viewer
+    Vec3 view;     // unit, toward the viewer
   };
 
   void trace(const Ray& ray, const Rgb& weight, int depth, Seen seen);
@@ -67,8 +70,8 @@ class PixelShader {
   void direct(const Surface& surface, const Rgb& weight);
   void gather(const Surface& surface, const Rgb& weight, int depth);
   void lobe(const Surface& surface, const Rgb& weight, int depth);
-  void mirror_and_glass(const Ray& ray, const Surface& surface, bool entering, const Rgb& weight,
-                        int depth, Seen seen);
+  void mirror_and_glass(const Ray& ray, const Surface& surface, const Rgb& weight, int depth,
+                        Seen seen);
 
   void queue_shadow(const Vec3& origin, const Vec3& direction, double reach_m, const Rgb& value,
                     std::size_t layer);
@@ -78,6 +81,9 @@ class PixelShader {
                     double cosine = 0.0, std::uint32_t aimed_at = radiosity::no_patch);
   void aim_at_bright(const Surface& surface, const Vec3& origin, const Rgb& weight);
   [[nodiscard]] double gather_share(const scenes::Hit& hit, std::size_t lane) const;
+  // What a gather ray that met a mirror or glass brings from beyond it.
+  void gather_sky(const Vec3& direction, const Rgb& weight);
+  void follow_specular(scenes::Hit hit, Vec3 direction, Rgb weight);
   void flush_shadow();
   void flush_gather();
   void add(std::size_t layer, std::size_t sample, const Rgb& radiance);

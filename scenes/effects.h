@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which effects a scene calls for, decided here and nowhere else. An effect that does not run casts no rays.
+// Which effects a scene calls for, decided here and nowhere else. An effect that does not run casts
+// no rays.
 #pragma once
 
 #include <string>
@@ -15,7 +16,8 @@ struct Effects {
   bool sun = false;
   bool penumbra = false;
   bool earth = false;
-  bool earth_by_gather = false;  // the Earth is wide: escaping gather rays read it; else it is sampled
+  bool earth_by_gather =
+      false;  // the Earth is wide: escaping gather rays read it; else it is sampled
   bool lamps = false;
   bool emitters = false;
   bool phong = false;
@@ -34,6 +36,7 @@ struct EffectRow {
   bool runs = false;
   std::string reason;
 };
-[[nodiscard]] std::vector<EffectRow> describe_effects(const Scene& scene, const LightGroups& groups);
+[[nodiscard]] std::vector<EffectRow> describe_effects(const Scene& scene,
+                                                      const LightGroups& groups);
 
 }  // namespace earthshine::scenes

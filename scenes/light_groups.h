@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light groups: sets of sources that are switched and dimmed together. Matrices and image layers have a
-// column per (group, channel), in the order of this list.
+// Light groups: sets of sources that are switched and dimmed together. Matrices and image layers
+// have a column per (group, channel), in the order of this list.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ namespace earthshine::scenes {
 
 inline constexpr std::size_t no_group = static_cast<std::size_t>(-1);
 
-// Only groups that give light: the Sun and the Earth where they are up and lit, lamps and emitting surfaces
-// of non-zero power, and "ambient". index_of gives no_group for the others.
+// Only groups that give light: the Sun and the Earth where they are up and lit, lamps and emitting
+// surfaces of non-zero power, and "ambient". index_of gives no_group for the others.
 struct LightGroups {
   std::vector<std::string> names;
   std::size_t sun = no_group;

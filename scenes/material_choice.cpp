@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "scenes/message_text.h"
 #include "scenes/mesh_file.h"
+#include "scenes/message_text.h"
 
 namespace earthshine::scenes {
 namespace {

@@ -31,7 +31,7 @@ QualityKnobs resolve_quality(const Scene& scene) {
       low = glm::min(low, p);
       high = glm::max(high, p);
     }
-    knobs.patch_edge_m = glm::length(high - low) / 80.0 / std::clamp(ratio, 0.25, 4.0);
+    knobs.patch_edge_m = glm::length(high - low) / 48.0 / std::clamp(ratio, 0.25, 4.0);
   }
   knobs.solver_tolerance = scene.quality.solver_tolerance.value_or(1e-8);
   return knobs;

@@ -16,7 +16,7 @@ struct QualityKnobs {
 // A knob that the scene sets wins. Otherwise a wanted relative error e sets it by the measured laws
 //   gather noise   ~ gather_rays^-1/2     256 rays for 0.02
 //   radiosity      ~ form_factor_rays^-0.6  1024 rays for 0.02
-//   patch size     ~ patch_edge           (scene diagonal)/80 for 0.02
+//   patch size     ~ patch_edge           (scene diagonal)/48 for 0.02
 // rounded up to powers of two for rays; without a wanted error, e = 0.02.
 [[nodiscard]] QualityKnobs resolve_quality(const Scene& scene);
 

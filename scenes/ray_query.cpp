@@ -75,7 +75,6 @@ alignas(32) constexpr std::array<std::array<int, 8>, 9> valid_lanes = lane_masks
 struct RayQuery::Embree {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
-  Vec3 centre{0.0};
   double offset_m = 0.0;
 
   ~Embree() {
@@ -83,16 +82,11 @@ struct RayQuery::Embree {
     if (device != nullptr) rtcReleaseDevice(device);
   }
 
-  void fill(const RayPacket& rays, RTCRay8& ray) const {
+  static void fill(const RayPacket& rays, RTCRay8& ray) {
     static_assert(sizeof(ray.org_x) == sizeof(rays.origin_x));
-    const auto cx = static_cast<float>(centre.x);
-    const auto cy = static_cast<float>(centre.y);
-    const auto cz = static_cast<float>(centre.z);
-    for (std::size_t k = 0; k < RayPacket::width; ++k) {
-      ray.org_x[k] = rays.origin_x[k] - cx;
-      ray.org_y[k] = rays.origin_y[k] - cy;
-      ray.org_z[k] = rays.origin_z[k] - cz;
-    }
+    std::memcpy(ray.org_x, rays.origin_x, sizeof(ray.org_x));
+    std::memcpy(ray.org_y, rays.origin_y, sizeof(ray.org_y));
+    std::memcpy(ray.org_z, rays.origin_z, sizeof(ray.org_z));
     std::memcpy(ray.dir_x, rays.direction_x, sizeof(ray.dir_x));
     std::memcpy(ray.dir_y, rays.direction_y, sizeof(ray.dir_y));
     std::memcpy(ray.dir_z, rays.direction_z, sizeof(ray.dir_z));
@@ -122,7 +116,7 @@ RayQuery::RayQuery(const Scene& source) : embree_(std::make_unique<Embree>()) {
     }
     // The centre is rounded to what single precision holds, so that subtracting it is exact for
     // near points.
-    embree_->centre = Vec3(glm::vec3(0.5 * (low + high)));
+    centre_ = Vec3(glm::vec3(0.5 * (low + high)));
     embree_->offset_m = 4e-6 * std::max(glm::length(high - low), 1e-6);
 
     RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -134,7 +128,7 @@ RayQuery::RayQuery(const Scene& source) : embree_(std::make_unique<Embree>()) {
                                 3 * sizeof(unsigned), source.triangles.size()));
     if (vertices == nullptr || indices == nullptr) fail("no memory for the triangles");
     for (std::size_t i = 0; i < source.vertices.size(); ++i) {
-      const Vec3 p = source.vertices[i] - embree_->centre;
+      const Vec3 p = source.vertices[i] - centre_;
       for (int axis = 0; axis < 3; ++axis)
         vertices[3 * i + static_cast<std::size_t>(axis)] = static_cast<float>(p[axis]);
     }
@@ -160,7 +154,7 @@ double RayQuery::surface_offset_m() const { return embree_->offset_m; }
 
 void RayQuery::closest(const RayPacket& rays, std::size_t count, HitPacket& hits) const {
   RTCRayHit8 query;
-  embree_->fill(rays, query.ray);
+  Embree::fill(rays, query.ray);
   for (unsigned& id : query.hit.geomID) id = RTC_INVALID_GEOMETRY_ID;
   for (unsigned& id : query.hit.instID[0]) id = RTC_INVALID_GEOMETRY_ID;
   intersect8(valid_lanes[count].data(), embree_->scene, query);
@@ -179,7 +173,7 @@ void RayQuery::closest(const RayPacket& rays, std::size_t count, HitPacket& hits
 
 Hit RayQuery::closest(const Vec3& origin, const Vec3& direction) const {
   RTCRayHit query{};
-  const glm::vec3 o(origin - embree_->centre), d(direction);
+  const glm::vec3 o(origin - centre_), d(direction);
   query.ray.org_x = o.x;
   query.ray.org_y = o.y;
   query.ray.org_z = o.z;
@@ -198,7 +192,7 @@ Hit RayQuery::closest(const Vec3& origin, const Vec3& direction) const {
 
 std::uint32_t RayQuery::occluded(const RayPacket& rays, std::size_t count) const {
   RTCRay8 query;
-  embree_->fill(rays, query);
+  Embree::fill(rays, query);
   occluded8(valid_lanes[count].data(), embree_->scene, query);
   std::uint32_t bits = 0;
   for (std::size_t k = 0; k < count; ++k) {

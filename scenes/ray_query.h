@@ -13,24 +13,13 @@ namespace earthshine::scenes {
 
 inline constexpr std::uint32_t no_triangle = 0xFFFFFFFFU;
 
-// Up to 8 rays side by side, in the layout that the vector units want. Positions in metres in the scene's
-// frame, directions of unit length, t in metres.
+// Up to 8 rays side by side, in the layout that the vector units want: single precision about the
+// scene's centre. RayQuery::set fills a lane from the scene's own coordinates.
 struct alignas(32) RayPacket {
   static constexpr std::size_t width = 8;
   float origin_x[width], origin_y[width], origin_z[width];
   float direction_x[width], direction_y[width], direction_z[width];
   float t_max[width];
-
-  void set(std::size_t lane, const Vec3& origin, const Vec3& direction,
-           double t_max_m = std::numeric_limits<double>::infinity()) {
-    origin_x[lane] = static_cast<float>(origin.x);
-    origin_y[lane] = static_cast<float>(origin.y);
-    origin_z[lane] = static_cast<float>(origin.z);
-    direction_x[lane] = static_cast<float>(direction.x);
-    direction_y[lane] = static_cast<float>(direction.y);
-    direction_z[lane] = static_cast<float>(direction.z);
-    t_max[lane] = static_cast<float>(t_max_m);
-  }
 };
 
 // Hits of a packet. (u, v) are the weights of the triangle's second and third vertex.
@@ -49,12 +38,25 @@ struct Hit {
 
 class RayQuery {
  public:
-  // Builds the acceleration structure. The scene's triangles are copied, centred, in single precision.
-  // Throws base::Error (Work) if Embree reports an error.
+  // Builds the acceleration structure. The scene's triangles are copied, centred, in single
+  // precision. Throws base::Error (Work) if Embree reports an error.
   explicit RayQuery(const Scene& scene);
   ~RayQuery();
   RayQuery(RayQuery&&) noexcept;
   RayQuery& operator=(RayQuery&&) noexcept;
+
+  // origin in metres in the scene's frame, direction of unit length, t_max in metres. The centre is
+  // taken off in double precision: a scene far from its origin loses nothing.
+  void set(RayPacket& rays, std::size_t lane, const Vec3& origin, const Vec3& direction,
+           double t_max_m = std::numeric_limits<double>::infinity()) const {
+    rays.origin_x[lane] = static_cast<float>(origin.x - centre_.x);
+    rays.origin_y[lane] = static_cast<float>(origin.y - centre_.y);
+    rays.origin_z[lane] = static_cast<float>(origin.z - centre_.z);
+    rays.direction_x[lane] = static_cast<float>(direction.x);
+    rays.direction_y[lane] = static_cast<float>(direction.y);
+    rays.direction_z[lane] = static_cast<float>(direction.z);
+    rays.t_max[lane] = static_cast<float>(t_max_m);
+  }
 
   // Nearest hit of the first `count` rays (at most 8). Safe on many threads.
   void closest(const RayPacket& rays, std::size_t count, HitPacket& hits) const;
@@ -63,13 +65,15 @@ class RayQuery {
   // Bit k is set if ray k meets anything before t_max.
   [[nodiscard]] std::uint32_t occluded(const RayPacket& rays, std::size_t count) const;
 
-  // How far to lift a ray's origin off its surface along the normal, m: a few units of single precision
-  // at the scene's extent, so that no ray hits the surface it leaves and none leaks through a neighbour.
+  // How far to lift a ray's origin off its surface along the normal, m: a few units of single
+  // precision at the scene's extent, so that no ray hits the surface it leaves and none leaks
+  // through a neighbour.
   [[nodiscard]] double surface_offset_m() const;
 
  private:
   struct Embree;
   std::unique_ptr<Embree> embree_;
+  Vec3 centre_{0.0};
 };
 
 // Unit normal of a triangle's front.

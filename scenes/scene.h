@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is there: a plain value that the stages read. Lengths in metres, photometric units, linear RGB.
-// scene_file.h makes one from a TOML file; every Scene that leaves it has passed all checks.
+// What is there: a plain value that the stages read. Lengths in metres, photometric units, linear
+// RGB. scene_file.h makes one from a TOML file; every Scene that leaves it has passed all checks.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace earthshine::scenes {
 
-// Surface reflectance as the 1990 report has it: pi f = diffuse + specular cos^n(alpha), n = shininess.
-// diffuse + 2 specular / (n + 2) + mirror + transmit <= 1 in every channel.
+// Surface reflectance as the 1990 report has it: pi f = diffuse + specular cos^n(alpha), n =
+// shininess. diffuse + 2 specular / (n + 2) + mirror + transmit <= 1 in every channel.
 struct Material {
   std::string name;
   Rgb diffuse{0.0};
@@ -35,13 +35,14 @@ struct Material {
   }
 };
 
-// Three vertices, counter-clockwise seen from the front. Two consecutive triangles of one polygon that form
-// a parallelogram are laid down as (0,1,2), (0,2,3) of its corners.
+// Three vertices, counter-clockwise seen from the front. Two consecutive triangles of one polygon
+// that form a parallelogram are laid down as (0,1,2), (0,2,3) of its corners.
 struct Triangle {
   std::uint32_t vertex[3];
   std::uint32_t object;
   std::uint32_t material;
-  std::uint32_t polygon;  // running number over the scene; the triangles of one file polygon share it
+  std::uint32_t
+      polygon;  // running number over the scene; the triangles of one file polygon share it
 };
 
 struct Object {
@@ -50,9 +51,9 @@ struct Object {
   std::uint32_t first_triangle = 0;
   std::uint32_t triangle_count = 0;
   std::uint32_t polygon_count = 0;
-  double area_m2 = 0.0;              // one side, of the polygons as the file has them
+  double area_m2 = 0.0;                // one side, of the polygons as the file has them
   std::uint32_t degenerate_count = 0;  // polygons without area, left out
-  std::string source;                // "meshes/bay.obj#Liner" or "sphere"
+  std::string source;                  // "meshes/bay.obj#Liner" or "sphere"
 };
 
 enum class LampKind { Point, Spot, Rectangle, Disk };
@@ -61,11 +62,11 @@ struct Lamp {
   std::string name;
   std::string group;
   LampKind kind = LampKind::Point;
-  Vec3 position{0.0};     // m; the centre of a rectangle or disk
+  Vec3 position{0.0};        // m; the centre of a rectangle or disk
   Vec3 axis{0.0, 0.0, 1.0};  // unit: toward the aim of a spot; the normal of a rectangle or disk
-  Rgb intensity_cd{0.0};  // point and spot: on the axis
-  double beam_deg = 0.0;  // spot: full angle of the cone of full intensity
-  double field_deg = 0.0; // spot: full angle beyond which there is none
+  Rgb intensity_cd{0.0};     // point and spot: on the axis
+  double beam_deg = 0.0;     // spot: full angle of the cone of full intensity
+  double field_deg = 0.0;    // spot: full angle beyond which there is none
   Vec3 edge_u{0.0}, edge_v{0.0};  // rectangle: full edges, m; it shines along edge_u x edge_v
   double radius_m = 0.0;          // disk
   Rgb exitance{0.0};              // rectangle and disk, lm/m^2

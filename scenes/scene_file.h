@@ -10,12 +10,12 @@
 
 namespace earthshine::scenes {
 
-// Reads a scene and the meshes it names. Each override is "key=value" with a dotted path and a TOML value:
-// "quality.gather_rays=64", "sun.illuminance=0", "light.fwd-bulkhead.intensity=0" (the entry of that name),
-// "camera.A.fov_deg=30". Overrides are checked like the file's own keys; one that creates a table or entry
-// that the file does not have is allowed for the plain tables (sun, earth, orbit, ambient, quality, monitor)
-// and refused for named entries.
-// Throws base::Error (Input): where (file:line:column), what was found, what is allowed, what to do.
+// Reads a scene and the meshes it names. Each override is "key=value" with a dotted path and a TOML
+// value: "quality.gather_rays=64", "sun.illuminance=0", "light.fwd-bulkhead.intensity=0" (the entry
+// of that name), "camera.A.fov_deg=30". Overrides are checked like the file's own keys; one that
+// creates a table or entry that the file does not have is allowed for the plain tables (sun, earth,
+// orbit, ambient, quality, monitor) and refused for named entries. Throws base::Error (Input):
+// where (file:line:column), what was found, what is allowed, what to do.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path,
                                std::span<const std::string> overrides = {});
 

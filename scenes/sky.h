@@ -18,21 +18,23 @@ namespace earthshine::scenes {
 // Whether any part of the disc shines.
 [[nodiscard]] bool earth_is_lit(const Scene& scene);
 
-// Share of the Sun's disc that the Earth does not cover, 0 to 1: area of one circle outside the other on
-// the sphere of directions (the limb taken as straight across the Sun's disc, error below 1e-4 of the disc).
+// Share of the Sun's disc that the Earth does not cover, 0 to 1: area of one circle outside the
+// other on the sphere of directions (the limb taken as straight across the Sun's disc, error below
+// 1e-4 of the disc).
 [[nodiscard]] double visible_sun_share(const Scene& scene);
 
 // Radiance of the Sun's disc, cd/m^2: E / (pi sin^2 r); 0 for a point Sun.
 [[nodiscard]] Rgb sun_radiance(const Sun& sun);
 
-// Radiance of everything behind the scene in a direction: the Sun's disc (not where the Earth hides it) and
-// the Earth.
+// Radiance of everything behind the scene in a direction: the Sun's disc (not where the Earth hides
+// it) and the Earth.
 [[nodiscard]] Rgb sky_radiance(const Scene& scene, const Vec3& direction);
 
 // Directions in the scene's frame (x aft, y starboard, z out of the bay) for a circular orbit.
-//   position 0 is orbit noon, 180 midnight, growing with the motion; beta is the Sun's height over the
-//   orbit plane. bay-to-earth: z to the Earth, nose forward; bay-to-space: z to the zenith, nose forward;
-//   tail-down: tail to the Earth, bay forward; bay-to-sun: z to the Sun, nose toward orbit north.
+//   position 0 is orbit noon, 180 midnight, growing with the motion; beta is the Sun's height over
+//   the orbit plane. bay-to-earth: z to the Earth, nose forward; bay-to-space: z to the zenith,
+//   nose forward; tail-down: tail to the Earth, bay forward; bay-to-sun: z to the Sun, nose toward
+//   orbit north.
 struct OrbitDirections {
   Vec3 sun, earth;
 };

@@ -6,8 +6,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "scenes/message_text.h"
 #include "scenes/mesh.h"
+#include "scenes/message_text.h"
 
 namespace earthshine::scenes {
 namespace {

@@ -86,7 +86,6 @@ TEST(Render, PhongHighlightAtTheMirrorAngleAddsKs) {
   glossy.shininess = 50.0;
   builder.plate(builder.material(glossy), 1.0, 0.0, true);
   builder.scene.sun = sun_at(0.0);
-  // The camera would stand in the Sun's way only if it were an object.
   EXPECT_NEAR(mean(picture(builder.scene, above(2.0), pixels(4, 4))) * base::pi / 133100.0, 5.3,
               1e-3);
 }
@@ -117,7 +116,7 @@ TEST(Render, FurnaceLooksTheSameEverywhereInEveryPixel) {
   for (const float v : frame.image.find("R")->values) EXPECT_NEAR(v * base::pi, 1.0, 1e-5);
 }
 
-TEST(Render, FurnaceWithMirrorGlassAndGlossIsStillUniform) {
+TEST(Render, FurnaceWithMirrorAndGlassIsStillUniform) {
   // Every mechanism at once must return what it takes: a lobe of k_s = 0.2, n = 2 on k_d = 0.6
   // reflects less near grazing, so that only mirror and clear glass keep the furnace exact.
   tests::SceneBuilder builder;

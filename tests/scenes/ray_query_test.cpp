@@ -16,7 +16,7 @@ TEST(RayQuery, PacketAndSingleRayFindTheSamePointAndSide) {
   RayPacket rays;
   HitPacket hits;
   for (std::size_t k = 0; k < RayPacket::width; ++k) {
-    rays.set(k, {0.1 * double(k) - 0.3, 0.2, 0.0}, {0, 0, k % 2 == 0 ? 1.0 : -1.0});
+    query.set(rays, k, {0.1 * double(k) - 0.3, 0.2, 0.0}, {0, 0, k % 2 == 0 ? 1.0 : -1.0});
   }
   query.closest(rays, RayPacket::width, hits);
   for (std::size_t k = 0; k < RayPacket::width; ++k) {
@@ -35,7 +35,7 @@ TEST(RayQuery, LanesBeyondTheCountAreNotTraced) {
   builder.plate(builder.material(tests::grey(0.5)), 2.0, 1.0, false);
   const RayQuery query(builder.scene);
   RayPacket rays{};
-  for (std::size_t k = 0; k < RayPacket::width; ++k) rays.set(k, {0, 0, 0}, {0, 0, 1});
+  for (std::size_t k = 0; k < RayPacket::width; ++k) query.set(rays, k, {0, 0, 0}, {0, 0, 1});
   HitPacket hits;
   query.closest(rays, 3, hits);
   EXPECT_NE(hits.triangle[2], no_triangle);
@@ -48,8 +48,8 @@ TEST(RayQuery, ShadowRayStopsAtItsEnd) {
   builder.plate(builder.material(tests::grey(0.5)), 2.0, 1.0, false);
   const RayQuery query(builder.scene);
   RayPacket rays{};
-  rays.set(0, {0, 0, 0}, {0, 0, 1}, 0.999);
-  rays.set(1, {0, 0, 0}, {0, 0, 1}, 1.001);
+  query.set(rays, 0, {0, 0, 0}, {0, 0, 1}, 0.999);
+  query.set(rays, 1, {0, 0, 0}, {0, 0, 1}, 1.001);
   EXPECT_EQ(query.occluded(rays, 2), 0b10U);
 }
 

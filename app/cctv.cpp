@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/cctv.h"
+
+#include <fmt/format.h>
+
+#include "app/console.h"
+#include "base/error.h"
+#include "base/png_file.h"
+#include "degrade/camera_file.h"
+#include "degrade/presets.h"
+
+namespace earthshine::app {
+
+CctvSetup cctv_of_camera(const scenes::Scene& scene, const scenes::Camera& camera,
+                         const Common& common) {
+  CctvSetup setup;
+  setup.name = camera.cctv;
+  if (setup.name.empty()) {
+    setup.name = default_preset;
+    if (!common.quiet) {
+      note(fmt::format("note: camera \"{}\" names no CCTV camera, taking \"{}\"", camera.name,
+                       setup.name));
+    }
+  }
+  setup.chain.camera = degrade::resolve_camera(scene, setup.name);
+  setup.chain.monitor = degrade::resolve_monitor(scene);
+  setup.chain.options.seed = common.seed;
+  setup.chain.options.view = static_cast<std::uint64_t>(&camera - scene.cameras.data());
+  return setup;
+}
+
+CctvSetup cctv_of_preset(const std::string& name, const Common& common) {
+  const degrade::Preset* preset = degrade::find_preset(name);
+  if (preset == nullptr) {
+    std::vector<std::string> names;
+    for (const degrade::Preset& known : degrade::presets()) names.emplace_back(known.name);
+    throw base::Error(base::Blame::Input, "--preset", "there is no preset \"" + name + "\"",
+                      fmt::format("the presets are {}", fmt::join(names, ", ")));
+  }
+  CctvSetup setup{name, {preset->camera, {}, {}}};
+  setup.chain.options.seed = common.seed;
+  return setup;
+}
+
+degrade::Result run_chain(const CctvSetup& setup, const base::Image& radiance) {
+  return degrade::degrade(radiance, setup.chain.camera, setup.chain.monitor, setup.chain.options);
+}
+
+void write_cctv(const std::string& path, const CctvSetup& setup, const degrade::Result& result) {
+  base::write_png(path, result.columns, result.rows, result.channels, result.pixels,
+                  {{"Software", "earthshine " EARTHSHINE_VERSION},
+                   {"earthshine:cctv", setup.name},
+                   {"earthshine:seed", std::to_string(setup.chain.options.seed)},
+                   {"earthshine:frame", std::to_string(setup.chain.options.frame)}});
+}
+
+Json cctv_json(const CctvSetup& setup, const degrade::Result& result) {
+  const degrade::Report& report = result.report;
+  return {{"camera", setup.name},
+          {"columns", result.columns},
+          {"rows", result.rows},
+          {"sensor", {report.sensor.columns, report.sensor.rows}},
+          {"f_number", report.exposure.f_number},
+          {"gain", report.exposure.gain},
+          {"metered_cd_m2", report.exposure.metered},
+          {"underexposed", report.exposure.underexposed},
+          {"blown", report.exposure.blown},
+          {"noise", {{"a", report.noise.a}, {"b", report.noise.b}, {"c", report.noise.c}}},
+          {"saturated_share", report.levels.saturated_share},
+          {"crushed_share", report.levels.crushed_share},
+          {"negative_pixels", report.negative_pixels},
+          {"clipped_negative_light", report.clipped_negative_light},
+          {"stages", report.stages}};
+}
+
+std::string cctv_summary(const CctvSetup& setup, const degrade::Result& result) {
+  const degrade::Report& report = result.report;
+  std::string text =
+      fmt::format("{}: f/{:.3g}, gain {:.3g}, {:.1f} % at white, {:.1f} % lost in black",
+                  setup.name, report.exposure.f_number, report.exposure.gain,
+                  100.0 * report.levels.saturated_share, 100.0 * report.levels.crushed_share);
+  if (report.exposure.underexposed) text += "; too dark for it, wide open";
+  if (report.exposure.blown) text += "; too bright for it, closed";
+  if (report.negative_pixels > 0) {
+    text += fmt::format("; {} negative pixels taken as black", report.negative_pixels);
+  }
+  return text;
+}
+
+}  // namespace earthshine::app

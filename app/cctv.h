@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// The CCTV stage as the commands use it: which camera and monitor, the picture, what to tell about
+// it.
+#pragma once
+
+#include <string>
+
+#include "app/command.h"
+#include "base/image.h"
+#include "degrade/chain.h"
+#include "scenes/scene.h"
+
+namespace earthshine::app {
+
+inline constexpr std::string_view default_preset = "sit-monochrome";
+
+struct CctvSetup {
+  std::string name;  // of the [[cctv]] table or preset
+  degrade::Setup chain;
+};
+
+// What `camera` of the scene names, or the default preset, which is said on standard error unless
+// `quiet`. The scene's [monitor]; each camera of a scene has noise of its own.
+[[nodiscard]] CctvSetup cctv_of_camera(const scenes::Scene& scene, const scenes::Camera& camera,
+                                       const Common& common);
+// A camera that ships, with the default monitor. Throws base::Error (Input) for an unknown name.
+[[nodiscard]] CctvSetup cctv_of_preset(const std::string& name, const Common& common);
+
+[[nodiscard]] degrade::Result run_chain(const CctvSetup& setup, const base::Image& radiance);
+
+void write_cctv(const std::string& path, const CctvSetup& setup, const degrade::Result& result);
+
+[[nodiscard]] Json cctv_json(const CctvSetup& setup, const degrade::Result& result);
+// One line for people: f-number, gain, what clips.
+[[nodiscard]] std::string cctv_summary(const CctvSetup& setup, const degrade::Result& result);
+
+}  // namespace earthshine::app

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/command.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <charconv>
+#include <filesystem>
+#include <system_error>
+
+#include "app/console.h"
+#include "base/error.h"
+#include "base/output_file.h"
+#include "degrade/camera_file.h"
+#include "scenes/scene_file.h"
+
+namespace earthshine::app {
+
+using base::Blame;
+using base::Error;
+
+void add_scene_options(CLI::App& command, SceneInput& input) {
+  command.add_option("SCENE", input.path, "Scene file (TOML)")->required()->type_name("");
+  command
+      .add_option("--set", input.overrides,
+                  "Change a key of the scene: quality.gather_rays=64, camera.A.fov_deg=30 "
+                  "(may be repeated)")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
+  command
+      .add_option_function<std::string>(
+          "--error",
+          [&input](const std::string& text) {
+            double error = 0.0;
+            const char* end = text.data() + text.size();
+            const auto [stop, problem] = std::from_chars(text.data(), end, error);
+            if (problem != std::errc() || stop != end) {
+              throw CLI::ValidationError("--error", "\"" + text + "\" is not a number");
+            }
+            input.overrides.push_back(fmt::format("quality.error={}", error));
+          },
+          "Wanted relative error; the same as --set quality.error=E")
+      ->type_name("E");
+}
+
+void add_whole_number(CLI::App& command, const std::string& flags, std::uint64_t& value,
+                      std::uint64_t least, std::uint64_t most, const std::string& help) {
+  const auto read = [&value, least, most, flags](const std::string& text) {
+    std::uint64_t number = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, problem] = std::from_chars(text.data(), end, number);
+    if (problem != std::errc() || stop != end || number < least || number > most) {
+      throw CLI::ValidationError(
+          flags, fmt::format("\"{}\" is not a whole number from {} to {}", text, least, most));
+    }
+    value = number;
+  };
+  command.add_option_function<std::string>(flags, read, help)->type_name("N");
+}
+
+LoadedScene load(const SceneInput& input, bool quiet) {
+  LoadedScene loaded;
+  loaded.scene = scenes::read_scene(input.path, input.overrides);
+  degrade::check_settings(loaded.scene);
+  loaded.groups = scenes::find_light_groups(loaded.scene);
+  loaded.effects = scenes::find_effects(loaded.scene, loaded.groups);
+  for (const std::string& warning : loaded.scene.warnings) {
+    if (!quiet) note("warning: " + warning);
+  }
+  return loaded;
+}
+
+const scenes::Camera& choose_camera(const scenes::Scene& scene, const std::string& name) {
+  if (scene.cameras.empty()) {
+    throw Error(Blame::Input, scene.path.string(), "has no camera", {}, "Add a [[camera]]");
+  }
+  if (name.empty()) return scene.cameras.front();
+  std::vector<std::string> names;
+  for (const scenes::Camera& camera : scene.cameras) {
+    if (camera.name == name) return camera;
+    names.push_back(camera.name);
+  }
+  throw Error(Blame::Input, scene.path.string(), "has no camera \"" + name + "\"",
+              fmt::format("its cameras are {}", fmt::join(names, ", ")));
+}
+
+void check_outputs(const std::vector<std::string>& paths, const std::vector<std::string>& inputs) {
+  namespace fs = std::filesystem;
+  const auto same = [](const std::string& a, const std::string& b) {
+    std::error_code ignored;
+    if (fs::exists(a, ignored) && !fs::is_regular_file(a, ignored)) return false;  // e.g. /dev/null
+    return fs::weakly_canonical(fs::absolute(a, ignored), ignored) ==
+           fs::weakly_canonical(fs::absolute(b, ignored), ignored);
+  };
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (paths[i].empty()) continue;
+    const base::OutputFile checked(paths[i]);
+    for (const std::string& input : inputs) {
+      if (!input.empty() && same(paths[i], input)) {
+        throw Error(Blame::Input, paths[i], "is read and would be overwritten", {},
+                    "Name another file to write");
+      }
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!paths[j].empty() && same(paths[i], paths[j])) {
+        throw Error(Blame::Input, paths[i], "would be written twice", {}, "Give two names");
+      }
+    }
+  }
+}
+
+double StageTimes::total() const {
+  double sum = 0.0;
+  for (const Stage& stage : stages_) sum += stage.second;
+  return sum;
+}
+
+Json StageTimes::json() const {
+  Json json = Json::object();
+  for (const auto& [stage, seconds] : stages_) json[stage] = seconds;
+  return json;
+}
+
+double peak_memory_mib() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts KiB
+}
+
+std::string dump(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the commands share: options, reading the scene, checking what will be written, stage times.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/units.h"
+#include "radiosity/solution.h"
+#include "scenes/effects.h"
+#include "scenes/light_groups.h"
+#include "scenes/scene.h"
+
+namespace earthshine::app {
+
+using Json = nlohmann::ordered_json;
+
+// Options of every command.
+struct Common {
+  int threads = 0;  // 0: all
+  std::uint64_t seed = 1;
+  bool quiet = false;
+};
+
+// One file per command defines it: its options, and what it does once they are read.
+struct Command {
+  CLI::App* parser = nullptr;
+  std::function<void(const Common&)> run;
+};
+
+[[nodiscard]] Command add_render(CLI::App& program);
+[[nodiscard]] Command add_solve(CLI::App& program);
+[[nodiscard]] Command add_form_factors(CLI::App& program);
+[[nodiscard]] Command add_plan(CLI::App& program);
+[[nodiscard]] Command add_inspect(CLI::App& program);
+[[nodiscard]] Command add_degrade(CLI::App& program);
+[[nodiscard]] Command add_fit_phong(CLI::App& program);
+
+// SCENE, --set and --error.
+struct SceneInput {
+  std::string path;
+  std::vector<std::string> overrides;  // key=value
+};
+void add_scene_options(CLI::App& command, SceneInput& input);
+
+// A whole number within [least, most], read strictly: no sign for unsigned, no octal, no rounding.
+void add_whole_number(CLI::App& command, const std::string& flags, std::uint64_t& value,
+                      std::uint64_t least, std::uint64_t most, const std::string& help);
+
+// A scene with what follows from it alone. Warnings go to standard error unless `quiet`.
+struct LoadedScene {
+  scenes::Scene scene;
+  scenes::LightGroups groups;
+  scenes::Effects effects;
+};
+[[nodiscard]] LoadedScene load(const SceneInput& input, bool quiet);
+
+// The camera of that name, or the first one when the name is empty. Throws base::Error (Input).
+[[nodiscard]] const scenes::Camera& choose_camera(const scenes::Scene& scene,
+                                                  const std::string& name);
+
+// The scene's accuracy knobs as the solver wants them.
+[[nodiscard]] radiosity::SolveOptions solve_options(const scenes::Scene& scene,
+                                                    const Common& common);
+
+// Throws base::Error before any work is done if one of the files (empty names are left out) cannot
+// be written or two are the same.
+void check_outputs(const std::vector<std::string>& paths, const std::vector<std::string>& inputs);
+
+// Wall seconds per stage, in order.
+class StageTimes {
+ public:
+  using Stage = std::pair<std::string, double>;
+  template <class Work>
+  auto measure(const std::string& stage, Work work) {
+    struct Stop {
+      StageTimes& times;
+      const std::string& stage;
+      std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+      ~Stop() {
+        const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;
+        times.stages_.emplace_back(stage, gone.count());
+      }
+    } stop{*this, stage};
+    return work();
+  }
+  void add(const std::vector<Stage>& stages) {
+    stages_.insert(stages_.end(), stages.begin(), stages.end());
+  }
+  [[nodiscard]] const std::vector<Stage>& stages() const { return stages_; }
+  [[nodiscard]] double total() const;
+  [[nodiscard]] Json json() const;
+
+ private:
+  std::vector<Stage> stages_;
+};
+
+// Largest memory the process has used so far.
+[[nodiscard]] double peak_memory_mib();
+
+[[nodiscard]] inline Json to_json(const Rgb& value) {
+  return Json::array({value.r, value.g, value.b});
+}
+// Indented text with a final newline. Numbers that are not finite become null.
+[[nodiscard]] std::string dump(const Json& json);
+
+}  // namespace earthshine::app

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/console.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <system_error>
+#include <utility>
+
+#include "base/error.h"
+
+namespace earthshine::app {
+
+void print(std::string_view text) {
+  errno = 0;
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (written && std::fflush(stdout) == 0) return;
+  throw base::Error(base::Blame::Work, "standard output",
+                    "cannot be written: " + std::generic_category().message(errno));
+}
+
+void note(std::string_view line) { fmt::print(stderr, "{}\n", line); }
+
+std::string duration(double seconds) {
+  const long whole = std::lround(seconds);
+  if (whole >= 3600) return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+  if (whole >= 60) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{:.{}f} s", seconds, seconds < 0.1 ? 3 : 1);
+}
+
+std::string short_count(double count) {
+  if (count < 1e4) return fmt::format("{:.0f}", count);
+  if (count < 1e6) return fmt::format("{:.1f} k", count / 1e3);
+  if (count < 1e9) return fmt::format("{:.1f} M", count / 1e6);
+  return fmt::format("{:.1f} G", count / 1e9);
+}
+
+Progress::Progress(std::string label, bool quiet)
+    : label_(std::move(label)), shown_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() {
+  if (shown_) std::fputs("\r\033[2K", stderr);
+}
+
+void Progress::operator()(std::size_t done, std::size_t total) {
+  const Clock::time_point now = Clock::now();
+  if (!shown_ || total == 0 || now - last_ < std::chrono::milliseconds(100)) return;
+  last_ = now;
+  const double gone = std::chrono::duration<double>(now - start_).count();
+  const double share = static_cast<double>(done) / static_cast<double>(total);
+  std::string line =
+      fmt::format("\r\033[2K{} {:3.0f} %  {}", label_, 100.0 * share, duration(gone));
+  if (done > 0) line += ", " + duration(gone * (1.0 - share) / share) + " to go";
+  std::fputs(line.c_str(), stderr);
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program's two voices: results on standard output, everything else on standard error.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace earthshine::app {
+
+// Writes to standard output and flushes it. Throws base::Error (Work) on a full disk or a closed
+// pipe: a result that did not arrive is not done.
+void print(std::string_view text);
+
+// One line on standard error.
+void note(std::string_view line);
+
+// "1 h 02 min", "1 min 05 s", "12.3 s" or "0.004 s".
+[[nodiscard]] std::string duration(double seconds);
+
+// "812", "25.3 k", "1.2 M", "3.4 G".
+[[nodiscard]] std::string short_count(double count);
+
+// A line on standard error with percent, time gone and time to go, redrawn at most ten times a
+// second and wiped at the end. Silent unless standard error is a terminal.
+class Progress {
+ public:
+  Progress(std::string label, bool quiet);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void operator()(std::size_t done, std::size_t total);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string label_;
+  bool shown_;
+  Clock::time_point start_ = Clock::now(), last_{};
+};
+
+}  // namespace earthshine::app

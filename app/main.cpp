@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads the command line, runs one command, turns what went wrong into one line and an exit code:
+// 0 done, 1 the work failed, 2 the call or the scene is wrong.
+#include <fmt/format.h>
+
+#include <csignal>
+#include <exception>
+#include <new>
+#include <sstream>
+
+#include "app/command.h"
+#include "app/console.h"
+#include "base/error.h"
+#include "base/parallel.h"
+
+namespace earthshine::app {
+namespace {
+
+constexpr int work_failed = 1;
+constexpr int call_is_wrong = 2;
+constexpr std::uint64_t most_threads = 4096;
+
+void add_common_options(CLI::App& parser, Common& common, std::uint64_t& threads) {
+  add_whole_number(parser, "-j,--threads", threads, 0, most_threads, "Threads; 0 means all cores");
+  add_whole_number(parser, "--seed", common.seed, 0, ~std::uint64_t{0},
+                   "Seed of the random numbers (default 1)");
+  parser.add_flag("-q,--quiet", common.quiet, "No progress, no notes on standard error");
+}
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
+  const std::string nearest = base::nearest_word(word, known);
+  return nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?";
+}
+
+// A word nobody asked for is the likeliest reason of any other complaint, so it is named first.
+std::string unknown_word(const CLI::App& program) {
+  const std::vector<CLI::App*> chosen = program.get_subcommands();
+  const CLI::App& parser = chosen.empty() ? program : *chosen.front();
+  const std::vector<std::string> extras = parser.remaining(false);
+  if (extras.empty()) return {};
+  const std::string& word = extras.front();
+  if (word.size() > 1 && word.front() == '-') {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : parser.get_options()) {
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    }
+    const std::string plain = word.substr(0, word.find('='));
+    return fmt::format("unknown option \"{}\"{}", plain, did_you_mean(plain, known));
+  }
+  if (!chosen.empty()) return fmt::format("unexpected argument \"{}\"", word);
+  std::vector<std::string> known;
+  for (const CLI::App* command : program.get_subcommands({})) known.push_back(command->get_name());
+  const std::string nearest = did_you_mean(word, known);
+  return fmt::format("unknown command \"{}\"{} Commands: {}", word, nearest.empty() ? "." : nearest,
+                     fmt::join(known, ", "));
+}
+
+int usage_error(const CLI::App& program, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> chosen = program.get_subcommands();
+  const std::string command = chosen.empty() ? "" : chosen.front()->get_name();
+  std::string problem = unknown_word(program);
+  if (problem.empty()) problem = error.what();
+  note(fmt::format("earthshine: {}{}{}", command, command.empty() ? "" : ": ", problem));
+  note(fmt::format("\"earthshine {}{}--help\" shows how to call it.", command,
+                   command.empty() ? "" : " "));
+  return call_is_wrong;
+}
+
+int run(int argc, char** argv) {
+  CLI::App program(
+      "Earthshine: light in a spacecraft's payload bay. Radiosity, final gather and the CCTV "
+      "camera.",
+      "earthshine");
+  program.set_version_flag("--version", "earthshine " EARTHSHINE_VERSION);
+  program.require_subcommand(1);
+  program.get_formatter()->column_width(36);
+  program.get_formatter()->label("SUBCOMMAND", "COMMAND");
+  program.get_formatter()->label("Subcommands", "Commands");
+  Common common;
+  std::uint64_t threads = 0;
+  const std::vector<Command> commands = {
+      add_render(program),  add_solve(program),   add_form_factors(program), add_plan(program),
+      add_inspect(program), add_degrade(program), add_fit_phong(program)};
+  add_common_options(program, common, threads);
+  for (const Command& command : commands) add_common_options(*command.parser, common, threads);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0) return usage_error(program, error);
+    std::ostringstream text, ignored;
+    program.exit(error, text, ignored);  // --help, --version
+    print(text.str());
+    return 0;
+  }
+  common.threads = static_cast<int>(threads);
+  const base::ThreadLimit limit(common.threads);
+  for (const Command& command : commands) {
+    if (command.parser->parsed()) command.run(common);
+  }
+  return 0;
+}
+
+int complain(std::string_view what, int exit_code) {
+  note(fmt::format("earthshine: {}", what));
+  return exit_code;
+}
+
+}  // namespace
+}  // namespace earthshine::app
+
+int main(int argc, char** argv) {
+  using namespace earthshine;
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported where it is written to
+  try {
+    return app::run(argc, argv);
+  } catch (const base::Error& error) {
+    return app::complain(
+        error.what(), error.blame() == base::Blame::Input ? app::call_is_wrong : app::work_failed);
+  } catch (const std::bad_alloc&) {
+    return app::complain(
+        "out of memory; larger patches (quality.patch_edge) or a smaller picture need less",
+        app::work_failed);
+  } catch (const std::exception& error) {
+    return app::complain(error.what(), app::work_failed);
+  }
+}

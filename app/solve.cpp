@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// earthshine solve: radiosity alone, and where the light went.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "app/command.h"
+#include "app/console.h"
+#include "base/output_file.h"
+#include "radiosity/solution.h"
+#include "scenes/quality.h"
+#include "scenes/ray_query.h"
+
+namespace earthshine::app {
+namespace {
+
+struct SolveCall {
+  SceneInput scene;
+  std::string output;
+  bool json = false;
+};
+
+Json groups_of(const radiosity::SolveReport& report) {
+  Json groups = Json::array();
+  for (const radiosity::GroupLedger& group : report.groups) {
+    groups.push_back({{"name", group.name},
+                      {"emitted_lm", to_json(group.emitted_lm)},
+                      {"landed_lm", to_json(group.landed_lm)},
+                      {"absorbed_lm", to_json(group.absorbed_lm)},
+                      {"escaped_lm", to_json(group.escaped_lm)},
+                      {"imbalance", group.imbalance}});
+  }
+  return groups;
+}
+
+Json objects_of(const radiosity::SolveReport& report) {
+  Json objects = Json::array();
+  for (const radiosity::ObjectLight& object : report.objects) {
+    objects.push_back({{"name", object.name},
+                       {"area_m2", object.area_m2},
+                       {"illuminance_lx", to_json(object.illuminance_lx)},
+                       {"radiosity_lm_m2", to_json(object.radiosity_lm_m2)}});
+  }
+  return objects;
+}
+
+Json sources_of(const radiosity::SolveReport& report, const scenes::LightGroups& groups) {
+  Json sources = Json::array();
+  for (const radiosity::SourceFlux& source : report.sources) {
+    const bool named = source.group < groups.names.size();
+    sources.push_back({{"name", source.name},
+                       {"group", named ? Json(groups.names[source.group]) : Json()},
+                       {"emitted_lm", to_json(source.emitted_lm)},
+                       {"escaped_share", source.escaped_share},
+                       {"black_share", source.black_share},
+                       {"share_std_error", source.share_std_error},
+                       {"scale", source.scale}});
+  }
+  return sources;
+}
+
+Json json_of(const LoadedScene& loaded, const radiosity::SolveReport& report,
+             const StageTimes& times) {
+  Json json;
+  json["scene"] = loaded.scene.path.string();
+  json["patches"] = report.patches;
+  json["rays"] = report.form_factor_rays;
+  json["shadow_rays"] = report.shadow_rays;
+  json["nonzeros"] = report.nonzeros;
+  json["seconds"] = times.json();
+  json["iterations"] = report.iterations;
+  json["residual"] = report.residual;
+  json["balance"] = {{"sweeps", report.balance.sweeps},
+                     {"before", report.balance.before},
+                     {"after", report.balance.after},
+                     {"borrowed", report.balance.borrowed},
+                     {"balanced", report.balance.balanced}};
+  json["groups"] = groups_of(report);
+  json["sources"] = sources_of(report, loaded.groups);
+  json["objects"] = objects_of(report);
+  json["warnings"] = loaded.scene.warnings;
+  return json;
+}
+
+double luminous(const Json& rgb) {
+  return base::luminance({rgb[0].get<double>(), rgb[1].get<double>(), rgb[2].get<double>()});
+}
+
+// Luminous amounts (Y of the three channels); the channels are in the JSON.
+std::string text_of(const Json& json) {
+  std::string text = fmt::format(
+      "{} patches, {} form-factor rays, {} shadow rays\n{} iterations, residual {:.2g}; balance "
+      "{:.2g} after {} sweeps\n",
+      json["patches"].get<std::size_t>(), short_count(json["rays"].get<double>()),
+      short_count(json["shadow_rays"].get<double>()), json["iterations"].get<int>(),
+      json["residual"].get<double>(), json["balance"]["after"].get<double>(),
+      json["balance"]["sweeps"].get<int>());
+  text += fmt::format("\n{:<20} {:>12} {:>12} {:>12} {:>12} {:>10}\n", "light group", "emitted lm",
+                      "landed lm", "absorbed lm", "escaped lm", "imbalance");
+  for (const Json& g : json["groups"]) {
+    text += fmt::format("{:<20} {:>12.6g} {:>12.6g} {:>12.6g} {:>12.6g} {:>10.2g}\n",
+                        g["name"].get<std::string>(), luminous(g["emitted_lm"]),
+                        luminous(g["landed_lm"]), luminous(g["absorbed_lm"]),
+                        luminous(g["escaped_lm"]), g["imbalance"].get<double>());
+  }
+  if (json["groups"].empty()) text += "none: nothing gives light\n";
+  text += fmt::format("\n{:<24} {:>12} {:>14} {:>16}\n", "object", "area m2", "illuminance lx",
+                      "radiosity lm/m2");
+  for (const Json& o : json["objects"]) {
+    text += fmt::format("{:<24} {:>12.6g} {:>14.6g} {:>16.6g}\n", o["name"].get<std::string>(),
+                        o["area_m2"].get<double>(), luminous(o["illuminance_lx"]),
+                        luminous(o["radiosity_lm_m2"]));
+  }
+  text += "\n";
+  for (const auto& [stage, seconds] : json["seconds"].items()) {
+    text += fmt::format("{:<20} {:>10}\n", stage, duration(seconds.get<double>()));
+  }
+  return text;
+}
+
+void run(const SolveCall& call, const Common& common) {
+  check_outputs({call.output}, {call.scene.path});
+  StageTimes times;
+  const LoadedScene loaded = times.measure("read", [&] { return load(call.scene, common.quiet); });
+  const scenes::RayQuery query =
+      times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
+  const radiosity::Solution solution = radiosity::solve(loaded.scene, loaded.groups, loaded.effects,
+                                                        query, solve_options(loaded.scene, common));
+  times.add(solution.report.seconds);
+  const Json json = json_of(loaded, solution.report, times);
+  if (!call.output.empty()) base::write_text(call.output, dump(json));
+  if (call.json) print(dump(json));
+  if (!call.json && call.output.empty()) print(text_of(json));
+}
+
+}  // namespace
+
+radiosity::SolveOptions solve_options(const scenes::Scene& scene, const Common& common) {
+  const scenes::QualityKnobs knobs = scenes::resolve_quality(scene);
+  return {knobs.patch_edge_m, knobs.form_factor_rays, knobs.solver_tolerance, common.seed};
+}
+
+Command add_solve(CLI::App& program) {
+  CLI::App* parser = program.add_subcommand("solve", "Radiosity alone: where the light goes");
+  const auto call = std::make_shared<SolveCall>();
+  add_scene_options(*parser, call->scene);
+  parser->add_option("-o,--output", call->output, "Write the report as JSON to a file")
+      ->type_name("FILE");
+  parser->add_flag("--json", call->json, "JSON on standard output");
+  return {parser, [call](const Common& common) { run(*call, common); }};
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Point by point from light on the sensor to the signal on the line.
+#pragma once
+
+#include "degrade/camera.h"
+#include "degrade/iris.h"
+#include "degrade/picture.h"
+
+namespace earthshine::degrade {
+
+// E = pi tau L / (4 N^2), lx.
+[[nodiscard]] Picture through_lens(Picture radiance, const CctvCamera& camera, double f_number);
+// E <- (1 - g) E + g mean(E): stray light; the mean stays.
+[[nodiscard]] Picture add_glare(Picture illuminance, double share);
+// S = E / E_white.
+[[nodiscard]] Picture to_signal(Picture illuminance, double white_lux);
+[[nodiscard]] Picture limit_above(Picture signal, double most);
+[[nodiscard]] Picture limit_below_zero(Picture signal);
+[[nodiscard]] Picture amplify(Picture signal, double gain);
+// v = S^(1/gamma); a signal below black is black.
+[[nodiscard]] Picture encode_gamma(Picture signal, double gamma);
+// The nearest of 2^bits levels from 0 to 1.
+[[nodiscard]] Picture quantise(Picture line_signal, int bits);
+
+// Shares of resels at or above white (S >= 0.995) and within the noise of black (S <= gain
+// sqrt(a)).
+struct Levels {
+  double saturated_share = 0.0;
+  double crushed_share = 0.0;
+};
+[[nodiscard]] Levels measure_levels(const Picture& signal, double black_noise);
+
+}  // namespace earthshine::degrade

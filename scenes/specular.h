@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where light goes on from a mirror or glass.
+#pragma once
+
+#include "scenes/scene.h"
+
+namespace earthshine::scenes {
+
+// The way of a ray that arrives along the unit vector `direction` at a surface of unit normal
+// `normal` (the front's): reflected, or refracted by Snell's law, whichever share of the material
+// is larger; total reflection where Snell's law has no solution. Sheets of glass are thin and do
+// not bend light. One way only: following both by chance would make integer hit counts noisy, and
+// materials that are half mirror, half clear glass do not occur.
+[[nodiscard]] Vec3 specular_direction(const Material& material, const Vec3& normal,
+                                      const Vec3& direction);
+
+// Refracted direction, or the reflected one on total reflection (total is then true).
+struct Refraction {
+  Vec3 direction;
+  bool total = false;
+};
+[[nodiscard]] Refraction refract(const Material& material, const Vec3& normal,
+                                 const Vec3& direction);
+
+}  // namespace earthshine::scenes

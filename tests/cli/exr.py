@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reads what the program writes: scan-line OpenEXR, FLOAT channels, ZIP. Independent of the library."""
+import array
+import struct
+import sys
+import zlib
+
+LINES_PER_BLOCK = 16  # ZIP_COMPRESSION
+
+
+def _text(data, at):
+    end = data.index(b"\0", at)
+    return data[at:end].decode(), end + 1
+
+
+def _unpack(block, size):
+    """zlib, then the two byte predictors of OpenEXR's ZIP."""
+    if len(block) == size:  # stored
+        return block
+    raw = bytearray(zlib.decompress(block))
+    for i in range(1, len(raw)):
+        raw[i] = (raw[i - 1] + raw[i] - 128) & 0xFF
+    half = (size + 1) // 2
+    out = bytearray(size)
+    out[0::2] = raw[:half]
+    out[1::2] = raw[half:]
+    return bytes(out)
+
+
+def read(path):
+    """(header, width, height, channels): header maps names to str, float or raw bytes."""
+    with open(path, "rb") as file:
+        data = file.read()
+    magic, version = struct.unpack_from("<ii", data)
+    assert magic == 20000630 and version & 0xFF == 2, "not OpenEXR"
+    header, names, at = {}, [], 8
+    while data[at]:
+        name, at = _text(data, at)
+        kind, at = _text(data, at)
+        size, = struct.unpack_from("<i", data, at)
+        value = data[at + 4:at + 4 + size]
+        at += 4 + size
+        if kind == "string":
+            value = value.decode()
+        elif kind == "float":
+            value, = struct.unpack("<f", value)
+        elif kind == "chlist":
+            place = 0
+            while value[place]:
+                channel, place = _text(value, place)
+                assert struct.unpack_from("<i", value, place)[0] == 2, "not FLOAT"
+                names.append(channel)
+                place += 16
+        header[name] = value
+    assert header["compression"] == b"\x03", "not ZIP"
+    x0, y0, x1, y1 = struct.unpack("<iiii", header["dataWindow"])
+    width, height = x1 - x0 + 1, y1 - y0 + 1
+    blocks = (height + LINES_PER_BLOCK - 1) // LINES_PER_BLOCK
+    offsets = struct.unpack_from(f"<{blocks}Q", data, at + 1)
+    channels = {name: array.array("f") for name in names}
+    for offset in offsets:
+        y, size = struct.unpack_from("<ii", data, offset)
+        lines = min(LINES_PER_BLOCK, y1 + 1 - y)
+        raw = _unpack(data[offset + 8:offset + 8 + size], lines * len(names) * width * 4)
+        for line in range(lines):
+            for k, name in enumerate(names):
+                start = (line * len(names) + k) * width * 4
+                row = array.array("f", raw[start:start + width * 4])
+                if sys.byteorder == "big":
+                    row.byteswap()
+                channels[name].extend(row)
+    return header, width, height, channels

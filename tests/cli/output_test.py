@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is written, and what is left alone when something goes wrong."""
+import os
+import pty
+import struct
+import subprocess
+import unittest
+import zlib
+
+import program
+
+
+def png_size(data):
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    width, height, depth, colour = struct.unpack(">IIBB", data[16:26])
+    at, packed = 8, b""
+    while at < len(data):
+        size, kind = struct.unpack(">I4s", data[at:at + 8])
+        if kind == b"IDAT":
+            packed += data[at + 8:at + 8 + size]
+        at += 12 + size
+    channels = {0: 1, 2: 3}[colour]
+    assert depth == 8 and len(zlib.decompress(packed)) == height * (1 + width * channels)
+    return width, height
+
+
+class Output(program.Case):
+    def setUp(self):
+        super().setUp()
+        self.write("ball.toml", program.BALL)
+
+    def files(self):
+        return sorted(os.listdir(self.folder))
+
+    def test_three_pictures_of_one_run(self):
+        self.assertEqual(self.done("render", "ball.toml", "-o", "a.exr", "--png", "a.png", "--cctv", "c.png"), "")
+        self.assertEqual(png_size((self.folder / "a.png").read_bytes()), (32, 24))
+        width, height = png_size((self.folder / "c.png").read_bytes())
+        self.assertAlmostEqual(width / height, 4 / 3, delta=0.01)
+        self.assertEqual(self.files(), ["a.exr", "a.png", "ball.toml", "c.png"])  # nothing else stays
+
+    def test_folder_that_is_not_there_is_named_before_any_work(self):
+        for option in ("-o", "--png", "--cctv"):
+            outputs = {"-o": "a.exr"}
+            outputs[option] = "none/a.exr" if option == "-o" else "none/a.png"
+            call = [word for pair in outputs.items() for word in pair]
+            self.says(self.refused("render", "ball.toml", *call, "--set", "quality.gather_rays=65536"), "none")
+        self.refused("solve", "ball.toml", "-o", "none/a.json")
+        self.assertEqual(self.files(), ["ball.toml"])
+
+    def test_wrong_names(self):
+        self.says(self.refused("render", "ball.toml", "-o", "a.png"), ".exr")
+        self.says(self.refused("render", "ball.toml", "-o", "a.exr", "--png", "a.exr"), ".png")
+        self.says(self.refused("render", "ball.toml", "-o", "a.exr", "--png", "b.png", "--cctv", "./b.png"), "twice")
+        self.says(self.refused("solve", "ball.toml", "-o", "ball.toml"), "overwritten")
+        (self.folder / "folder.exr").mkdir()
+        self.says(self.refused("render", "ball.toml", "-o", "folder.exr"), "folder")
+
+    def test_old_picture_is_kept_when_the_run_fails(self):
+        self.write("a.exr", "old")
+        self.refused("render", "ball.toml", "-o", "a.exr", "--camera", "none")
+        self.refused("render", "ball.toml", "-o", "a.exr", "--set", "material.paint.specular=9")
+        self.assertEqual((self.folder / "a.exr").read_text(), "old")
+
+    def test_full_disk(self):
+        self.says(self.refused("render", "ball.toml", "-o", "/dev/full", code=1), "/dev/full")
+        with open("/dev/full", "w") as full:
+            for call in (["inspect", "ball.toml"], ["--help"], ["--version"], ["solve", "ball.toml", "--json"]):
+                run = self.run_program(*call, capture_output=False, stdout=full, stderr=subprocess.PIPE)
+                self.assertEqual(run.returncode, 1)
+                self.assertIn("standard output", run.stderr)
+
+    def test_closed_pipe(self):
+        read_end, write_end = os.pipe()
+        os.close(read_end)
+        run = self.run_program("inspect", "ball.toml", capture_output=False, stdout=write_end,
+                               stderr=subprocess.PIPE)
+        os.close(write_end)
+        self.assertEqual(run.returncode, 1)
+        self.assertIn("standard output", run.stderr)
+
+    def on_a_terminal(self, *options):
+        master, slave = pty.openpty()
+        run = self.run_program("render", "ball.toml", "-o", "a.exr", "--camera", "A", *options,
+                               capture_output=False, stdout=subprocess.DEVNULL, stderr=slave)
+        os.write(slave, b".")  # so that there is something to read
+        os.close(slave)
+        text = os.read(master, 1 << 16).decode()
+        os.close(master)
+        self.assertEqual(run.returncode, 0, text)
+        return text
+
+    def test_progress_bar_on_a_terminal_only(self):
+        text = self.on_a_terminal()
+        self.assertIn("render", text)
+        self.assertRegex(text, r"\r\x1b\[2Krender +\d+ %")
+        self.assertEqual(self.on_a_terminal("--quiet"), ".")
+        self.assertNotIn("\r", self.run_program("render", "ball.toml", "-o", "a.exr").stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs the built program in a folder of its own, and the small scenes that the cases share."""
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = os.environ["EARTHSHINE_PROGRAM"]
+TOP = pathlib.Path(__file__).resolve().parent.parent.parent
+
+# A closed room: every patch has radiosity M / (1 - rho). The walls emit, so there is no other source.
+CLOSED_BOX = """format = 1
+name = "closed box"
+unit = "m"
+
+[[material]]
+name = "wall"
+diffuse = 0.5
+emit = 10.0
+
+[[object]]
+name = "room"
+shape = "box"
+min = [0, 0, 0]
+max = [2, 2, 2]
+inward = true
+material = "wall"
+
+[[camera]]
+name = "inside"
+position = [0.4, 0.5, 0.6]
+look_at = [2, 2, 1.5]
+up = [0, 0, 1]
+fov_deg = 60
+resolution = [24, 16]
+
+[quality]
+patch_edge = 0.5
+form_factor_rays = 64
+gather_rays = 16
+"""
+
+# A ball on a floor under a lamp and the Sun, open above: two light groups, shadows, a highlight.
+BALL = """format = 1
+name = "ball on a floor"
+unit = "m"
+
+[[material]]
+name = "floor"
+diffuse = [0.6, 0.5, 0.4]
+
+[[material]]
+name = "paint"
+diffuse = [0.3, 0.4, 0.5]
+specular = 0.3
+shininess = 20
+
+[[object]]
+name = "floor"
+shape = "quad"
+corners = [[-2, -2, 0], [2, -2, 0], [2, 2, 0], [-2, 2, 0]]
+material = "floor"
+
+[[object]]
+name = "ball"
+shape = "sphere"
+center = [0, 0, 0.7]
+radius = 0.5
+segments = 12
+material = "paint"
+target = true
+
+[[light]]
+name = "lamp"
+type = "point"
+position = [1.5, 0, 2]
+intensity = [900, 800, 700]
+
+[sun]
+direction = [-0.3, 0.2, 1]
+illuminance = 1000
+
+[[camera]]
+name = "A"
+position = [3, -3, 2]
+look_at = [0, 0, 0.4]
+up = [0, 0, 1]
+fov_deg = 40
+resolution = [32, 24]
+
+[[camera]]
+name = "above"
+position = [0, 0, 6]
+look_at = [0, 0, 0]
+up = [0, 1, 0]
+fov_deg = 50
+resolution = [20, 20]
+
+[quality]
+patch_edge = 0.5
+form_factor_rays = 64
+gather_rays = 16
+"""
+
+
+class Case(unittest.TestCase):
+    """A test with a folder of its own; the program runs in it."""
+
+    def setUp(self):
+        self._folder = tempfile.TemporaryDirectory(prefix="earthshine cli ")  # with blanks
+        self.addCleanup(self._folder.cleanup)
+        self.folder = pathlib.Path(self._folder.name)
+
+    def write(self, name, text):
+        path = self.folder / name
+        if isinstance(text, bytes):
+            path.write_bytes(text)
+        else:
+            path.write_text(text, encoding="utf-8")
+        return name
+
+    def run_program(self, *arguments, timeout=120, **more):
+        return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, timeout=timeout,
+                              stdin=subprocess.DEVNULL,
+                              **({"capture_output": True, "text": True} | more))
+
+    def done(self, *arguments):
+        """Runs, demands exit 0, gives standard output."""
+        run = self.run_program(*arguments)
+        self.assertEqual(run.returncode, 0, f"{arguments}: {run.stderr}")
+        return run.stdout
+
+    def json(self, *arguments):
+        return json.loads(self.done(*arguments, "--json"),
+                          parse_constant=lambda word: self.fail(f"{word} in the JSON"))
+
+    def refused(self, *arguments, code=2):
+        """Runs, demands the exit code, one message with the program's name, nothing on stdout."""
+        run = self.run_program(*arguments)
+        self.assertEqual(run.returncode, code, f"{arguments}: {run.stdout}{run.stderr}")
+        self.assertEqual(run.stdout, "")
+        message = run.stderr.strip()
+        self.assertTrue(any(line.startswith("earthshine: ") for line in message.splitlines()), message)
+        return message
+
+    def says(self, message, *parts):
+        for part in parts:
+            self.assertIn(part, message)

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: Apache-2.0
+"""render: pixels, layers, header, and the same bytes from the same seed."""
+import math
+import unittest
+
+import exr
+import program
+
+
+class Render(program.Case):
+    def setUp(self):
+        super().setUp()
+        self.write("box.toml", program.CLOSED_BOX)
+        self.write("ball.toml", program.BALL)
+
+    def render(self, scene, *options, name="out.exr"):
+        self.assertEqual(self.done("render", scene, "-o", name, *options), "")
+        return exr.read(self.folder / name)
+
+    def bytes_of(self, scene, *options):
+        self.done("render", scene, "-o", "bytes.exr", *options)
+        return (self.folder / "bytes.exr").read_bytes()
+
+    def test_closed_box_is_the_same_radiance_everywhere(self):
+        # L = B / pi = 20 / pi in every direction.
+        _, width, height, channels = self.render("box.toml")
+        self.assertEqual((width, height), (24, 16))
+        for name in "RGB":
+            self.assertEqual(len(channels[name]), 24 * 16)
+            for value in channels[name]:
+                self.assertAlmostEqual(value, 20 / math.pi, places=4)
+
+    def test_size_and_camera(self):
+        header, width, height, channels = self.render("ball.toml", "--camera", "above", "--size", "10x6")
+        self.assertEqual((width, height), (10, 6))
+        self.assertEqual(header["earthshine:camera"], "above")
+        self.assertTrue(all(math.isfinite(v) and v >= 0 for name in "RGB" for v in channels[name]))
+        self.assertGreater(max(channels["R"]), 0)
+
+    def test_layers_of_the_lights_sum_to_the_picture(self):
+        _, _, _, channels = self.render("ball.toml", "--per-light")
+        self.assertEqual({name for name in channels if name.startswith("light_")},
+                         {f"light_{group}.{c}" for group in ("lamp", "sun") for c in "RGB"})
+        for c in "RGB":
+            for whole, lamp, sun in zip(channels[c], channels[f"light_lamp.{c}"], channels[f"light_sun.{c}"]):
+                self.assertLessEqual(abs(whole - lamp - sun), 1e-6 * max(whole, 1e-3))
+
+    def test_a_lamp_switched_off_leaves_the_other_layer(self):
+        both = self.render("ball.toml", "--per-light")[3]
+        sun = self.render("ball.toml", "--set", "light.lamp.intensity=0")[3]
+        for c in "RGB":
+            for a, b in zip(both[f"light_sun.{c}"], sun[c]):
+                self.assertLessEqual(abs(a - b), 1e-4 * max(a, b, 1e-3))
+
+    def test_further_layers(self):
+        _, _, _, channels = self.render("ball.toml", "--camera", "above", "--aov",
+                                        "albedo,normal,position,depth,range,object,material")
+        middle = 10 * 20 + 10  # close to the axis: the top of the ball, 4.8 m below the camera
+        self.assertAlmostEqual(channels["Z"][middle], 4.8, delta=0.1)
+        self.assertGreaterEqual(channels["range"][middle], channels["Z"][middle])
+        self.assertEqual(channels["object"][middle], 1)
+        self.assertEqual(channels["material"][middle], 1)
+        self.assertGreater(channels["N.Z"][middle], 0.8)
+        self.assertAlmostEqual(channels["albedo.G"][middle], 0.4, places=5)
+        self.assertAlmostEqual(channels["P.Z"][middle], 1.2, delta=0.1)
+
+    def test_same_bytes_on_any_number_of_threads(self):
+        one = self.bytes_of("ball.toml", "--per-light", "--aov", "depth", "-j", "1", "--seed", "9")
+        self.assertEqual(one, self.bytes_of("ball.toml", "--per-light", "--aov", "depth", "-j", "2", "--seed", "9"))
+        self.assertEqual(one, self.bytes_of("ball.toml", "--per-light", "--aov", "depth", "--seed", "9"))
+        self.assertNotEqual(one, self.bytes_of("ball.toml", "--per-light", "--aov", "depth", "--seed", "10"))
+
+    def test_same_bytes_with_and_without_the_other_pictures(self):
+        self.assertEqual(self.bytes_of("ball.toml"), self.bytes_of("ball.toml", "--png", "a.png", "--json"))
+
+    def test_header_says_where_the_picture_comes_from(self):
+        header = self.render("ball.toml", "--seed", "18446744073709551615", "--error", "0.1",
+                             "--set", "quality.gather_rays=4")[0]
+        self.assertEqual(header["earthshine:scene"], "ball.toml")
+        self.assertEqual(header["earthshine:seed"], "18446744073709551615")
+        self.assertEqual(header["earthshine:indirect"], "radiosity")
+        self.assertIn("quality.gather_rays=4", header["earthshine:set"])
+        self.assertIn("quality.error=0.1", header["earthshine:set"])
+        self.assertEqual(header["earthshine:gather_rays"], 4)
+        self.assertGreater(header["earthshine:patches"], 0)
+        self.assertLessEqual(header["earthshine:residual"], 1e-8)
+        self.assertRegex(header["earthshine:version"], r"^\d+\.\d+\.\d+$")
+        self.assertEqual(header["earthshine:camera.position_m"], "3 -3 2")
+        self.assertAlmostEqual(header["earthshine:camera.fov_deg"], 40, places=4)
+        self.assertEqual(header["whiteLuminance"], 1.0)
+        self.assertFalse([name for name in header if "seconds" in name or "thread" in name])
+
+    def test_timings_are_written_on_request(self):
+        header = self.render("ball.toml", "--timings")[0]
+        seconds = {name: value for name, value in header.items() if name.startswith("earthshine:seconds.")}
+        self.assertIn("earthshine:seconds.render", seconds)
+        self.assertIn("earthshine:seconds.read", seconds)
+        self.assertTrue(all(value >= 0 for value in seconds.values()))
+
+    def test_indirect_light_adds(self):
+        sums = {how: sum(self.render("ball.toml", "--indirect", how)[3]["G"])
+                for how in ("none", "distributed", "radiosity")}
+        self.assertGreater(sums["none"], 0)
+        self.assertGreater(sums["radiosity"], sums["none"])
+        # Neither lamp nor Sun is spread, so the distributed lights are the direct light.
+        self.assertAlmostEqual(sums["distributed"] / sums["none"], 1, delta=0.02)
+
+    def test_report(self):
+        report = self.json("render", "ball.toml", "-o", "a.exr")
+        self.assertEqual((report["columns"], report["rows"]), (32, 24))
+        self.assertGreater(report["rays"]["camera"], 0)
+        self.assertGreater(report["peak_memory_mib"], 1)
+        stages = self.run_program("render", "ball.toml", "-o", "a.exr").stderr
+        self.says(stages, "read", "render", "total", "peak memory", "rays/s")
+        self.assertEqual(self.run_program("render", "ball.toml", "-o", "a.exr", "-q", "--camera", "A").stderr, "")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""solve: the closed box, the energy of every light group, the keys that scripts rely on."""
+import json
+import unittest
+
+import program
+
+
+class Solve(program.Case):
+    def test_closed_box_reaches_emission_over_one_minus_reflectance(self):
+        # B = M + rho B in every patch, so B = M / (1 - rho) = 10 / 0.5, and E = B.
+        self.write("box.toml", program.CLOSED_BOX)
+        solved = self.json("solve", "box.toml")
+        room, = solved["objects"]
+        self.assertAlmostEqual(room["area_m2"], 24.0)
+        for channel in range(3):
+            self.assertAlmostEqual(room["radiosity_lm_m2"][channel], 20.0, places=5)
+            self.assertAlmostEqual(room["illuminance_lx"][channel], 20.0, places=5)
+
+    def test_closed_box_with_white_walls(self):
+        text = program.CLOSED_BOX.replace("diffuse = 0.5", "diffuse = [0.9, 0.999, 0.99999]")
+        self.write("box.toml", text)
+        room, = self.json("solve", "box.toml", "--set", "quality.solver_tolerance=1e-12")["objects"]
+        for radiosity, expected in zip(room["radiosity_lm_m2"], (1e2, 1e4, 1e6)):
+            self.assertLess(abs(radiosity / expected - 1), 1e-6)
+
+    def test_every_group_balances(self):
+        self.write("ball.toml", program.BALL)
+        groups = self.json("solve", "ball.toml")["groups"]
+        self.assertEqual(sorted(group["name"] for group in groups), ["lamp", "sun"])
+        for group in groups:
+            self.assertLessEqual(group["imbalance"], 1e-9)
+            for channel in range(3):
+                into = group["emitted_lm"][channel] + group["landed_lm"][channel]
+                out = group["absorbed_lm"][channel] + group["escaped_lm"][channel]
+                self.assertGreater(into, 0)
+                self.assertLessEqual(abs(into - out), 1e-9 * into)
+
+    def test_keys(self):
+        self.write("ball.toml", program.BALL)
+        solved = self.json("solve", "ball.toml")
+        self.assertLessEqual({"patches", "rays", "seconds", "iterations", "residual", "groups", "objects",
+                              "sources", "balance", "nonzeros", "shadow_rays", "warnings"}, solved.keys())
+        self.assertEqual(solved["rays"], 64 * solved["patches"])
+        self.assertLessEqual(solved["residual"], 1e-8)
+        self.assertTrue(all(seconds >= 0 for seconds in solved["seconds"].values()))
+        self.assertIn("lamp", [source["name"] for source in solved["sources"]])
+
+    def test_text_and_file(self):
+        self.write("ball.toml", program.BALL)
+        self.says(self.done("solve", "ball.toml"), "lamp", "sun", "ball", "patches", "imbalance")
+        self.assertEqual(self.done("solve", "ball.toml", "-o", "solved.json"), "")
+        written = json.loads((self.folder / "solved.json").read_text())
+        printed = self.json("solve", "ball.toml")
+        for report in (written, printed):
+            del report["seconds"]
+        self.assertEqual(written, printed)
+
+    def test_same_on_any_number_of_threads(self):
+        self.write("ball.toml", program.BALL)
+        reports = [self.json("solve", "ball.toml", "-j", threads, "--seed", 5) for threads in (1, 2, 3)]
+        for report in reports:
+            del report["seconds"]
+        self.assertEqual(reports[0], reports[1])
+        self.assertEqual(reports[0], reports[2])
+        self.assertNotEqual(reports[0]["objects"], self.json("solve", "ball.toml", "--seed", 6)["objects"])
+
+    def test_no_light(self):
+        self.write("box.toml", program.CLOSED_BOX.replace("emit = 10.0", "emit = 0.0"))
+        solved = self.json("solve", "box.toml")
+        self.assertEqual((solved["rays"], solved["groups"]), (0, []))
+        self.says(self.done("solve", "box.toml"), "nothing gives light")
+
+
+if __name__ == "__main__":
+    unittest.main()

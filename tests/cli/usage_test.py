@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How the program is called: help, version, wrong calls and their exit codes."""
+import unittest
+
+import program
+
+COMMANDS = ["render", "solve", "form-factors", "plan", "inspect", "degrade", "fit-phong"]
+
+
+class Help(program.Case):
+    def test_help_lists_every_command(self):
+        text = self.done("--help")
+        self.says(text, "--version", "--threads", "--seed", *COMMANDS)
+
+    def test_each_command_has_help(self):
+        for command in COMMANDS:
+            text = self.done(command, "--help")
+            self.says(text, "-j,--threads", "--seed", "-q,--quiet")
+        self.says(self.done("render", "-h"), "--camera", "--size", "--png", "--cctv", "--indirect",
+                  "--distributed-lights", "--error", "--set", "--aov", "--per-light", "--timings",
+                  "--json", "radiosity", "distributed")
+
+    def test_version(self):
+        self.assertRegex(self.done("--version"), r"^earthshine \d+\.\d+\.\d+\n$")
+
+
+class WrongCalls(program.Case):
+    def setUp(self):
+        super().setUp()
+        self.write("box.toml", program.CLOSED_BOX)
+
+    def test_no_command(self):
+        self.says(self.refused(), "--help")
+
+    def test_unknown_command_names_the_nearest(self):
+        self.says(self.refused("rendr", "box.toml"), 'unknown command "rendr"', 'did you mean "render"?')
+
+    def test_unknown_command_lists_all(self):
+        self.says(self.refused("study", "visibility", "box.toml"), 'unknown command "study"', *COMMANDS)
+
+    def test_unknown_option_names_the_nearest(self):
+        self.says(self.refused("render", "box.toml", "-o", "a.exr", "--camra", "A"),
+                  'unknown option "--camra"', 'did you mean "--camera"?')
+        self.says(self.refused("solve", "box.toml", "--seeds=3"), 'unknown option "--seeds"', '"--seed"')
+
+    def test_unknown_option_comes_before_missing_arguments(self):
+        self.says(self.refused("render", "--pgn", "a.png"), '"--pgn"', '"--png"')
+
+    def test_missing_arguments(self):
+        self.says(self.refused("solve"), "SCENE")
+        self.says(self.refused("render", "box.toml"), "--output")
+        self.says(self.refused("render", "box.toml", "-o"), "--output")
+
+    def test_too_many_arguments(self):
+        self.says(self.refused("inspect", "box.toml", "other.toml"), "other.toml")
+
+    def test_numbers_are_read_strictly(self):
+        for option, value in [("-j", "-1"), ("-j", "two"), ("--threads", "1.5"), ("--threads", "99999"),
+                              ("--seed", "-1"), ("--seed", "18446744073709551616"), ("--seed", "0x10"),
+                              ("--seed", "")]:
+            self.says(self.refused("inspect", "box.toml", option, value), "whole number")
+        for size in ("512", "0x8", "8x", "x8", "8x8x8", "8X8", "-8x8", "99999x8"):
+            self.says(self.refused("render", "box.toml", "-o", "a.exr", "--size", size), "--size")
+        self.refused("solve", "box.toml", "--error", "small")
+        self.refused("render", "box.toml", "-o", "a.exr", "--distributed-lights", "0")
+
+    def test_unknown_words_of_options(self):
+        self.says(self.refused("render", "box.toml", "-o", "a.exr", "--indirect", "radiosty"), "distributed")
+        self.says(self.refused("render", "box.toml", "-o", "a.exr", "--aov", "depth,colour"), '"colour"', "albedo")
+        self.says(self.refused("render", "box.toml", "-o", "a.exr", "--camera", "B"), '"B"', "inside")
+
+    def test_override_without_value_or_unknown(self):
+        for override in ("quality", "quality.gather_rays", "quality.gather=3", "=3", "quality.error=x"):
+            self.refused("inspect", "box.toml", "--set", override)
+
+    def test_options_may_stand_anywhere(self):
+        plain = self.done("solve", "box.toml", "--json", "--seed", "7", "-j", "1")
+        self.assertIn('"patches"', plain)
+        for order in (["-j1", "solve", "--json", "box.toml"], ["solve", "-q", "--json", "--seed=7", "box.toml"],
+                      ["solve", "--set", "quality.patch_edge=1", "box.toml", "--json"],
+                      ["--quiet", "--seed", "18446744073709551615", "solve", "box.toml", "--json"]):
+            self.assertIn('"patches"', self.done(*order))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Test pictures and their moments.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+
+#include "base/image.h"
+#include "degrade/picture.h"
+
+namespace earthshine::test {
+
+inline degrade::Picture flat(int columns, int rows, float value, std::size_t planes = 1) {
+  degrade::Picture picture{columns, rows, {}};
+  picture.planes.assign(planes, degrade::Plane(picture.pixel_count(), value));
+  return picture;
+}
+
+inline base::Image grey(int width, int height, float value) {
+  base::Image image{width, height, {}};
+  image.add("Y").assign(image.pixel_count(), value);
+  return image;
+}
+
+// f(x, y) with x and y from 0 to 1 across the picture.
+template <class F>
+base::Image painted(int width, int height, F f) {
+  base::Image image = grey(width, height, 0.0F);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                            static_cast<std::size_t>(x);
+      image.channels[0].values[i] = static_cast<float>(f((x + 0.5) / width, (y + 0.5) / height));
+    }
+  }
+  return image;
+}
+
+struct Moments {
+  double mean = 0.0, variance = 0.0, third = 0.0, fourth = 0.0;  // second to fourth central
+};
+inline Moments moments(const degrade::Plane& values) {
+  Moments m;
+  const double count = static_cast<double>(values.size());
+  for (float v : values) m.mean += static_cast<double>(v) / count;
+  for (float v : values) {
+    const double d = static_cast<double>(v) - m.mean;
+    m.variance += d * d / count;
+    m.third += d * d * d / count;
+    m.fourth += d * d * d * d / count;
+  }
+  return m;
+}
+
+// Correlation coefficient of two planes, b shifted by (dx, dy) against a.
+inline double correlation(const degrade::Plane& a, const degrade::Plane& b, int columns, int rows,
+                          int dx, int dy) {
+  const Moments ma = moments(a), mb = moments(b);
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      const int u = x + dx, v = y + dy;
+      if (u < 0 || u >= columns || v < 0 || v >= rows) continue;
+      const auto index = [&](int i, int j) {
+        return static_cast<std::size_t>(j) * static_cast<std::size_t>(columns) +
+               static_cast<std::size_t>(i);
+      };
+      sum += (static_cast<double>(a[index(x, y)]) - ma.mean) *
+             (static_cast<double>(b[index(u, v)]) - mb.mean);
+      ++count;
+    }
+  }
+  return sum / static_cast<double>(count) / std::sqrt(ma.variance * mb.variance);
+}
+
+}  // namespace earthshine::test

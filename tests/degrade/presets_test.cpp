@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "degrade/presets.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+#include <type_traits>
+
+#include "degrade/chain.h"
+#include "degrade/monitor.h"
+#include "tests/degrade/fields.h"
+
+namespace earthshine::degrade {
+namespace {
+
+TEST(Presets, NamesAreUniqueAndFound) {
+  std::set<std::string_view> names;
+  for (const Preset& preset : presets()) {
+    EXPECT_TRUE(names.insert(preset.name).second);
+    EXPECT_EQ(find_preset(preset.name), &preset);
+    EXPECT_FALSE(preset.about.empty());
+  }
+  EXPECT_EQ(find_preset("none-such"), nullptr);
+}
+
+struct WithinLimits {
+  std::string_view owner;
+  template <class T>
+  void operator()(const char* key, const T& value, Limits limits, const char*, const char*) const {
+    if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
+      EXPECT_GE(static_cast<double>(value), limits.least) << owner << " " << key;
+      EXPECT_LE(static_cast<double>(value), limits.most) << owner << " " << key;
+    }
+  }
+};
+
+TEST(Presets, EveryValueLiesInTheRangeThatTheReaderAllows) {
+  for (const Preset& preset : presets())
+    visit_camera_fields(preset.camera, WithinLimits{preset.name});
+  const Monitor monitor;
+  visit_monitor_fields(monitor, WithinLimits{"monitor"});
+}
+
+// 20 lg(1 / 0.10) = 20 dB.
+TEST(Presets, ReportOf1990IsTenPercentOfEachPoint) {
+  const NoiseFigures figures = noise_figures(find_preset("report-1990")->camera);
+  EXPECT_NEAR(figures.percent_of_signal, 10.0, 1e-9);
+  EXPECT_EQ(figures.law.a, 0.0);
+  EXPECT_EQ(figures.law.b, 0.0);
+}
+
+// 640 electrons: 10 lg 640 = 28.06 dB; with 2.3 e- of the amplifier and 1 % pattern 27.77 dB.
+TEST(Presets, TubeHas28DecibelsAtWhiteAndTheChip40) {
+  EXPECT_NEAR(noise_figures(find_preset("sit-monochrome")->camera).snr_db, 28.0, 0.4);
+  EXPECT_NEAR(noise_figures(find_preset("ccd-colour")->camera).snr_db, 40.0, 1.5);
+  EXPECT_NEAR(noise_figures(find_preset("ccd-colour")->camera).floor_db, 50.0, 0.6);
+}
+
+// Measured values of the bay: 31 cd/m^2 under the lamps takes f/31, a sunlit grey of 21 200 cd/m^2
+// f/815 for white.
+TEST(Presets, TubeStopsDownForTheBayAsComputed) {
+  CctvCamera camera = find_preset("sit-monochrome")->camera;
+  camera.iris_target = 1.0;
+  EXPECT_NEAR(expose(camera, 31.0).f_number, 31.0, 0.5);
+  EXPECT_NEAR(expose(camera, 133100.0 * 0.5 / 3.14159265).f_number, 815.0, 5.0);
+}
+
+TEST(Presets, TubeGrainGrowsRelativeToTheSignalInTheShadows) {
+  const NoiseLaw law = noise_law(find_preset("sit-monochrome")->camera);
+  double last = 0.0;
+  for (const double s : {1.0, 0.3, 0.1, 0.03, 0.01}) {
+    const double relative = std::sqrt(law.variance(s)) / s;
+    EXPECT_GT(relative, last);
+    last = relative;
+  }
+}
+
+struct InTheDocument {
+  const std::string& text;
+  template <class T>
+  void operator()(const char* key, const T&, Limits, const char*, const char* help) const {
+    EXPECT_NE(text.find("`" + std::string(key) + "`"), std::string::npos) << key;
+    EXPECT_NE(text.find(help), std::string::npos) << key << ": " << help;
+  }
+};
+
+TEST(Presets, DocumentListsEveryFieldStageAndPreset) {
+  std::ifstream file(EARTHSHINE_SOURCE_DIR "/docs/cctv.md");
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  ASSERT_FALSE(text.empty());
+  const CctvCamera camera;
+  const Monitor monitor;
+  visit_camera_fields(camera, InTheDocument{text});
+  visit_monitor_fields(monitor, InTheDocument{text});
+  for (const Preset& preset : presets()) {
+    EXPECT_NE(text.find("`" + std::string(preset.name) + "`"), std::string::npos) << preset.name;
+  }
+  for (const Stage& stage : stages()) {
+    EXPECT_NE(text.find(std::string(stage.name)), std::string::npos) << stage.name;
+  }
+}
+
+}  // namespace
+}  // namespace earthshine::degrade
