@@ -25,25 +25,13 @@ void refuse_non_finite(const Image& image, const std::vector<float>& luminance) 
   }
 }
 
-}  // namespace
-
-std::uint8_t srgb_byte(double linear) {
-  const double v =
-      linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(v, 0.0, 1.0)));
-}
-
-ToneMapped tone_map(const Image& image) {
-  const std::vector<float> luminance = luminance_of(image);
-  refuse_non_finite(image, luminance);
-  ToneMapped result;
-  result.rgb.assign(luminance.size() * 3, 0);
-
+// {1, 0} for a picture without light.
+ToneReport choose_exposure(const std::vector<float>& luminance) {
   std::vector<float> lit;
   for (float y : luminance) {
     if (y > 0.0F) lit.push_back(y);
   }
-  if (lit.empty()) return result;
+  if (lit.empty()) return {};
   const std::size_t rank =
       static_cast<std::size_t>(std::lround(0.995 * static_cast<double>(lit.size() - 1)));
   const auto bright = lit.begin() + static_cast<std::ptrdiff_t>(rank);
@@ -73,7 +61,16 @@ ToneMapped tone_map(const Image& image) {
   const double exposure = middle_grey / std::exp(log_sum.sum / log_sum.count);
   // A white below 1 would stretch a flat picture to full white; at 1 the operator is the identity.
   const double white = std::max(1.0, exposure * percentile);
-  result.report = {exposure, white / exposure};
+  return {exposure, white / exposure};
+}
+
+ToneMapped apply_exposure(const Image& image, const std::vector<float>& luminance,
+                          const ToneReport& report) {
+  ToneMapped result;
+  result.rgb.assign(luminance.size() * 3, 0);
+  result.report = report;
+  const double exposure = report.exposure;
+  const double white = std::max(1.0, exposure * report.white_cd_per_m2);
 
   const Channel* channels[3] = {image.find("R"), image.find("G"), image.find("B")};
   if (channels[0] == nullptr || channels[1] == nullptr || channels[2] == nullptr) {
@@ -92,6 +89,26 @@ ToneMapped tone_map(const Image& image) {
     }
   });
   return result;
+}
+
+}  // namespace
+
+std::uint8_t srgb_byte(double linear) {
+  const double v =
+      linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(v, 0.0, 1.0)));
+}
+
+ToneMapped tone_map(const Image& image) {
+  const std::vector<float> luminance = luminance_of(image);
+  refuse_non_finite(image, luminance);
+  return apply_exposure(image, luminance, choose_exposure(luminance));
+}
+
+ToneMapped tone_map_with(const Image& image, const ToneReport& exposure) {
+  const std::vector<float> luminance = luminance_of(image);
+  refuse_non_finite(image, luminance);
+  return apply_exposure(image, luminance, exposure);
 }
 
 }  // namespace earthshine::base

@@ -13,6 +13,7 @@ namespace earthshine::base {
 // sRGB transfer function of IEC 61966-2-1, rounded to 8 bits; linear is clamped to [0, 1].
 [[nodiscard]] std::uint8_t srgb_byte(double linear);
 
+// An exposure. Pictures that are to be compared by eye share one.
 struct ToneReport {
   double exposure = 1.0;         // display signal per cd/m^2 before the shoulder
   double white_cd_per_m2 = 0.0;  // luminance that reaches full white
@@ -29,5 +30,9 @@ struct ToneMapped {
 // their ratios; a black image stays black; negative values count as 0. Throws base::Error (Work) on
 // NaN or infinity. Deterministic; no local adaptation, so equal luminance is equal grey everywhere.
 [[nodiscard]] ToneMapped tone_map(const Image& image);
+
+// The same operator with an exposure given, such as another picture's report: equal luminance is
+// equal grey in both. A white below signal 1 counts as 1. Throws as above.
+[[nodiscard]] ToneMapped tone_map_with(const Image& image, const ToneReport& exposure);
 
 }  // namespace earthshine::base

@@ -95,6 +95,25 @@ TEST(Tone, LuminanceChannelGivesTheSameGreyAsRgb) {
   EXPECT_EQ(tone_map(y).rgb, tone_map(grey_image(ramp())).rgb);
 }
 
+TEST(Tone, AnotherPicturesExposureMakesEqualLuminanceEqualGrey) {
+  const std::vector<float> scene = ramp();
+  const ToneMapped first = tone_map(grey_image(scene));
+  EXPECT_EQ(tone_map_with(grey_image(scene), first.report).rgb, first.rgb);
+  // The upper half alone would be exposed for itself; with the exposure of the whole it is that half.
+  const std::vector<float> half(scene.begin() + 500, scene.end());
+  const ToneMapped shared = tone_map_with(grey_image(half), first.report);
+  EXPECT_NE(tone_map(grey_image(half)).rgb, shared.rgb);
+  EXPECT_TRUE(std::equal(shared.rgb.begin(), shared.rgb.end(), first.rgb.begin() + 3 * 500));
+  EXPECT_EQ(shared.report.exposure, first.report.exposure);
+}
+
+TEST(Tone, ExposureOfABlackPictureIsPlain) {
+  const ToneReport plain = tone_map(make_rgb_image(2, 1)).report;
+  EXPECT_EQ(plain.exposure, 1.0);
+  // Signal 1 is white: sRGB of 0.5 is 188.
+  EXPECT_EQ(tone_map_with(grey_image({0.5F, 1.0F}), plain).rgb[0], 188);
+}
+
 TEST(Tone, SameBytesForOneAndTwoThreads) {
   Image image = make_rgb_image(300, 200);
   for (std::size_t i = 0; i < image.pixel_count(); ++i) {

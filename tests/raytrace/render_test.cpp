@@ -172,17 +172,14 @@ TEST(Render, MirrorShowsTheLampSurfaceBehindTheCamera) {
   EXPECT_NEAR(mean(frame), 0.9 * 100.0 / base::pi, 1e-3);
 }
 
-TEST(Render, CameraSeesTheEarthsAndTheSunsOwnRadiance) {
-  const scenes::Scene empty = [] {
-    scenes::Scene scene;
-    scenes::Earth earth;
-    earth.direction = Vec3(0, 0, -1);
-    earth.half_angle_deg = 30.0;
-    earth.model = scenes::EarthModel::Uniform;
-    earth.radiance = Rgb(12000.0);
-    scene.earth = earth;
-    return scene;
-  }();
+TEST(Render, CameraSeesTheEarthsOwnRadiance) {
+  scenes::Scene empty;
+  scenes::Earth earth;
+  earth.direction = Vec3(0, 0, -1);
+  earth.half_angle_deg = 30.0;
+  earth.model = scenes::EarthModel::Uniform;
+  earth.radiance = Rgb(12000.0);
+  empty.earth = earth;
   EXPECT_NEAR(mean(picture(empty, above(2.0), pixels(2, 2))), 12000.0, 1e-2);
 }
 
