@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/parallel.h"
 #include "radiosity/form_factors.h"
 
 namespace earthshine::radiosity {
@@ -12,17 +13,27 @@ constexpr int most_sweeps = 500;
 constexpr double enough = 1e-13;
 constexpr double largest_scale = 1e6;
 
-// sum_i A_i a_i row_scale_i n_ij, for every j.
+// sum_i A_i a_i row_scale_i n_ij, for every j. Rows are split in a fixed number of bands with sums
+// of their own, added in order: the same bits on any number of threads.
 std::vector<double> column_sums(const FormFactors& f, std::span<const double> area_m2) {
-  std::vector<double> sums(f.count(), 0.0);
-  for (std::size_t i = 0; i < f.count(); ++i) {
-    const double weight = area_m2[i] * f.kept[i] * f.row_scale[i];
-    if (weight == 0.0) continue;
-    for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
-      sums[f.column[e]] += weight * double(f.hits[e]);
+  constexpr std::size_t bands = 8;
+  const std::size_t count = f.count();
+  std::vector<double> partial(bands * count, 0.0);
+  base::parallel_chunks(bands, 1, [&](std::size_t band, std::size_t) {
+    double* sums = &partial[band * count];
+    for (std::size_t i = band * count / bands; i < (band + 1) * count / bands; ++i) {
+      const double weight = area_m2[i] * f.kept[i] * f.row_scale[i];
+      if (weight == 0.0) continue;
+      for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
+        sums[f.column[e]] += weight * double(f.hits[e]);
+      }
     }
+  });
+  for (std::size_t band = 1; band < bands; ++band) {
+    for (std::size_t j = 0; j < count; ++j) partial[j] += partial[band * count + j];
   }
-  return sums;
+  partial.resize(count);
+  return partial;
 }
 
 // A patch that no ray reached has an empty column, which no scaling can fill. Reciprocity gives its
@@ -78,16 +89,18 @@ struct Scaling {
 };
 
 void rescale_rows(FormFactors& f, const std::vector<double>& raw_row_scale, Scaling& scaling) {
-  for (std::size_t i = 0; i < f.count(); ++i) {
-    double landed = 0.0;
-    for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
-      const std::uint32_t j = f.column[e];
-      landed += double(f.hits[e]) * f.kept[j] * f.column_scale[j];
+  base::parallel_chunks(f.count(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double landed = 0.0;
+      for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
+        const std::uint32_t j = f.column[e];
+        landed += double(f.hits[e]) * f.kept[j] * f.column_scale[j];
+      }
+      const double sum = landed * raw_row_scale[i] + scaling.seen[i];
+      scaling.row[i] = sum > 0.0 ? 1.0 / sum : 1.0;
+      f.row_scale[i] = raw_row_scale[i] * scaling.row[i];
     }
-    const double sum = landed * raw_row_scale[i] + scaling.seen[i];
-    scaling.row[i] = sum > 0.0 ? 1.0 / sum : 1.0;
-    f.row_scale[i] = raw_row_scale[i] * scaling.row[i];
-  }
+  });
 }
 
 }  // namespace

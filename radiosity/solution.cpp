@@ -113,9 +113,11 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   solution.patches = subdivide(scene, options.patch_edge_m);
   const Patches& patches = solution.patches;
   report.patches = patches.count();
-  solution.columns = 3 * groups.count();
   watch.lap("patches");
-  if (groups.count() == 0 || patches.count() == 0) return solution;
+  // The ambient term is no source: it lights what the camera sees and bounces nowhere.
+  const bool lit = effects.sun || effects.earth || effects.lamps || effects.emitters;
+  if (!lit || patches.count() == 0) return solution;
+  solution.columns = 3 * groups.count();
 
   SkyRadiance sky;
   if (effects.earth_by_gather) {

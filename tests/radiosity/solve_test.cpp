@@ -108,6 +108,7 @@ TEST(Solve, SceneWithoutLightCastsNoRays) {
   tests::SceneBuilder builder;
   const std::uint32_t wall = builder.material(tests::grey(0.6));
   builder.room({wall, wall, wall, wall, wall, wall});
+  builder.scene.ambient_radiance = Rgb(5.0);  // no source: it bounces nowhere
   const Solution solution = tests::Prepared(builder.scene).solve(coarse());
   EXPECT_EQ(solution.report.form_factor_rays, 0U);
   EXPECT_EQ(solution.columns, 0U);
