@@ -82,6 +82,21 @@ TEST(Patches, PointAndParametersAreInverseOnEveryTurnOfATriangle) {
   }
 }
 
+TEST(Patches, PointsAreUniformInArea) {
+  // Midpoints of 64 x 64 cells of (x, y): their mean is the patch's centroid but for O(1 / 64^2) of
+  // its size. The centroid of a triangle in one patch is the mean of its corners.
+  const scenes::Scene scene = assorted_scene();
+  const Patches patches = subdivide(scene, 100.0);
+  const std::uint32_t i = patches.find(4, 0.3, 0.3, true);
+  Vec3 mean(0.0);
+  for (int k = 0; k < 64 * 64; ++k) {
+    mean += patches.point(i, (k / 64 + 0.5) / 64, (k % 64 + 0.5) / 64) / 4096.0;
+  }
+  Vec3 centroid(0.0);
+  for (const std::uint32_t v : scene.triangles[4].vertex) centroid += scene.vertices[v] / 3.0;
+  EXPECT_NEAR(glm::length(mean - centroid), 0.0, 7.0 / 4096.0);
+}
+
 TEST(Patches, NoCellIsLongerThanTheEdge) {
   const Patches patches = subdivide(assorted_scene(), 0.13);
   for (const Facet& f : patches.facets) {
