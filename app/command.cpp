@@ -19,6 +19,12 @@ namespace earthshine::app {
 using base::Blame;
 using base::Error;
 
+namespace {
+
+constexpr int largest_edge_px = 16384;
+
+}  // namespace
+
 void add_scene_options(CLI::App& command, SceneInput& input) {
   command.add_option("SCENE", input.path, "Scene file (TOML)")->required()->type_name("");
   command
@@ -45,17 +51,53 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
       ->type_name("E");
 }
 
+void add_size_option(CLI::App& command, std::optional<Size>& size) {
+  const auto read = [&size](const std::string& text) {
+    Size found;
+    const char* end = text.data() + text.size();
+    const auto columns = std::from_chars(text.data(), end, found.columns);
+    const bool has_x = columns.ec == std::errc() && columns.ptr != end && *columns.ptr == 'x';
+    const auto rows = has_x ? std::from_chars(columns.ptr + 1, end, found.rows) : columns;
+    if (!has_x || rows.ec != std::errc() || rows.ptr != end || found.columns < 1 ||
+        found.rows < 1 || found.columns > largest_edge_px || found.rows > largest_edge_px) {
+      throw CLI::ValidationError(
+          "--size", fmt::format("\"{}\" is not COLUMNSxROWS, each from 1 to {}, such as 512x384",
+                                text, largest_edge_px));
+    }
+    size = found;
+  };
+  command
+      .add_option_function<std::string>("--size", read, "Columns and rows (default: the camera's)")
+      ->type_name("CxR");
+}
+
+std::vector<std::string> split_at_commas(const std::string& text) {
+  std::vector<std::string> words(1);
+  for (const char c : text) {
+    if (c == ',')
+      words.emplace_back();
+    else
+      words.back() += c;
+  }
+  return words;
+}
+
+std::uint64_t read_whole_number(const std::string& option, const std::string& text,
+                                std::uint64_t least, std::uint64_t most) {
+  std::uint64_t number = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, problem] = std::from_chars(text.data(), end, number);
+  if (problem != std::errc() || stop != end || number < least || number > most) {
+    throw CLI::ValidationError(
+        option, fmt::format("\"{}\" is not a whole number from {} to {}", text, least, most));
+  }
+  return number;
+}
+
 void add_whole_number(CLI::App& command, const std::string& flags, std::uint64_t& value,
                       std::uint64_t least, std::uint64_t most, const std::string& help) {
   const auto read = [&value, least, most, flags](const std::string& text) {
-    std::uint64_t number = 0;
-    const char* end = text.data() + text.size();
-    const auto [stop, problem] = std::from_chars(text.data(), end, number);
-    if (problem != std::errc() || stop != end || number < least || number > most) {
-      throw CLI::ValidationError(
-          flags, fmt::format("\"{}\" is not a whole number from {} to {}", text, least, most));
-    }
-    value = number;
+    value = read_whole_number(flags, text, least, most);
   };
   command.add_option_function<std::string>(flags, read, help)->type_name("N");
 }

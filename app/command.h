@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,6 +43,8 @@ struct Command {
 [[nodiscard]] Command add_inspect(CLI::App& program);
 [[nodiscard]] Command add_degrade(CLI::App& program);
 [[nodiscard]] Command add_fit_phong(CLI::App& program);
+// `study` itself, which runs nothing, and one command of it per study.
+[[nodiscard]] std::vector<Command> add_study(CLI::App& program);
 
 // SCENE, --set and --error.
 struct SceneInput {
@@ -50,7 +53,21 @@ struct SceneInput {
 };
 void add_scene_options(CLI::App& command, SceneInput& input);
 
+struct Size {
+  int columns = 0, rows = 0;
+};
+// --size CxR; stays empty where the camera's own size is meant.
+void add_size_option(CLI::App& command, std::optional<Size>& size);
+
+// The words between the commas, also empty ones.
+[[nodiscard]] std::vector<std::string> split_at_commas(const std::string& text);
+
 // A whole number within [least, most], read strictly: no sign for unsigned, no octal, no rounding.
+// Throws CLI::ValidationError with the option's name.
+[[nodiscard]] std::uint64_t read_whole_number(const std::string& option, const std::string& text,
+                                              std::uint64_t least, std::uint64_t most);
+
+// An option that takes such a number.
 void add_whole_number(CLI::App& command, const std::string& flags, std::uint64_t& value,
                       std::uint64_t least, std::uint64_t most, const std::string& help);
 

@@ -11,6 +11,7 @@
 #include "app/command.h"
 #include "app/console.h"
 #include "base/error.h"
+#include "base/output_file.h"
 #include "base/parallel.h"
 
 namespace earthshine::app {
@@ -32,10 +33,22 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
   return nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?";
 }
 
+// The command that the call reached: the study of a study, else the command, else the program.
+const CLI::App& chosen_parser(const CLI::App& program) {
+  const CLI::App* parser = &program;
+  while (!parser->get_subcommands().empty()) parser = parser->get_subcommands().front();
+  return *parser;
+}
+
+// The words that lead to it, each with a blank behind: "", "render ", "study compare ".
+std::string words_to(const CLI::App& parser) {
+  if (parser.get_parent() == nullptr) return "";
+  return words_to(*parser.get_parent()) + parser.get_name() + " ";
+}
+
 // A word nobody asked for is the likeliest reason of any other complaint, so it is named first.
 std::string unknown_word(const CLI::App& program) {
-  const std::vector<CLI::App*> chosen = program.get_subcommands();
-  const CLI::App& parser = chosen.empty() ? program : *chosen.front();
+  const CLI::App& parser = chosen_parser(program);
   const std::vector<std::string> extras = parser.remaining(false);
   if (extras.empty()) return {};
   const std::string& word = extras.front();
@@ -47,22 +60,23 @@ std::string unknown_word(const CLI::App& program) {
     const std::string plain = word.substr(0, word.find('='));
     return fmt::format("unknown option \"{}\"{}", plain, did_you_mean(plain, known));
   }
-  if (!chosen.empty()) return fmt::format("unexpected argument \"{}\"", word);
   std::vector<std::string> known;
-  for (const CLI::App* command : program.get_subcommands({})) known.push_back(command->get_name());
+  for (const CLI::App* command : parser.get_subcommands({})) known.push_back(command->get_name());
+  if (known.empty()) return fmt::format("unexpected argument \"{}\"", word);
   const std::string nearest = did_you_mean(word, known);
-  return fmt::format("unknown command \"{}\"{} Commands: {}", word, nearest.empty() ? "." : nearest,
+  const bool top = parser.get_parent() == nullptr;
+  return fmt::format("unknown {} \"{}\"{} {}: {}", top ? "command" : parser.get_name(), word,
+                     nearest.empty() ? "." : nearest, top ? "Commands" : "There are",
                      fmt::join(known, ", "));
 }
 
 int usage_error(const CLI::App& program, const CLI::ParseError& error) {
-  const std::vector<CLI::App*> chosen = program.get_subcommands();
-  const std::string command = chosen.empty() ? "" : chosen.front()->get_name();
+  const std::string words = words_to(chosen_parser(program));
   std::string problem = unknown_word(program);
   if (problem.empty()) problem = error.what();
-  note(fmt::format("earthshine: {}{}{}", command, command.empty() ? "" : ": ", problem));
-  note(fmt::format("\"earthshine {}{}--help\" shows how to call it.", command,
-                   command.empty() ? "" : " "));
+  const std::string where = words.empty() ? "" : words.substr(0, words.size() - 1) + ": ";
+  note(fmt::format("earthshine: {}{}", where, problem));
+  note(fmt::format("\"earthshine {}--help\" shows how to call it.", words));
   return call_is_wrong;
 }
 
@@ -78,9 +92,10 @@ int run(int argc, char** argv) {
   program.get_formatter()->label("Subcommands", "Commands");
   Common common;
   std::uint64_t threads = 0;
-  const std::vector<Command> commands = {
+  std::vector<Command> commands = {
       add_render(program),  add_solve(program),   add_form_factors(program), add_plan(program),
       add_inspect(program), add_degrade(program), add_fit_phong(program)};
+  for (Command& part : add_study(program)) commands.push_back(std::move(part));
   add_common_options(program, common, threads);
   for (const Command& command : commands) add_common_options(*command.parser, common, threads);
   try {
@@ -95,9 +110,16 @@ int run(int argc, char** argv) {
   common.threads = static_cast<int>(threads);
   const base::ThreadLimit limit(common.threads);
   for (const Command& command : commands) {
-    if (command.parser->parsed()) command.run(common);
+    if (command.parser->parsed() && command.run) command.run(common);
   }
   return 0;
+}
+
+// Interrupted or told to end: no half-written file stays behind, and the shell sees the signal.
+void end_by_signal(int signal) {
+  base::remove_unfinished_files();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
 }
 
 int complain(std::string_view what, int exit_code) {
@@ -111,6 +133,10 @@ int complain(std::string_view what, int exit_code) {
 int main(int argc, char** argv) {
   using namespace earthshine;
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported where it is written to
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    // Whoever started the program may have it ignore a signal, as nohup does.
+    if (std::signal(signal, app::end_by_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
   try {
     return app::run(argc, argv);
   } catch (const base::Error& error) {

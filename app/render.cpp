@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <map>
 #include <memory>
 #include <optional>
@@ -23,12 +22,6 @@
 namespace earthshine::app {
 namespace {
 
-constexpr int largest_edge_px = 16384;
-
-struct Size {
-  int columns = 0, rows = 0;
-};
-
 struct RenderCall {
   SceneInput scene;
   std::string output, png, cctv, camera;
@@ -38,32 +31,6 @@ struct RenderCall {
   std::vector<std::string> aovs;
   bool per_light = false, timings = false, json = false;
 };
-
-Size read_size(const std::string& text) {
-  Size size;
-  const char* end = text.data() + text.size();
-  const auto columns = std::from_chars(text.data(), end, size.columns);
-  const bool has_x = columns.ec == std::errc() && columns.ptr != end && *columns.ptr == 'x';
-  const auto rows = has_x ? std::from_chars(columns.ptr + 1, end, size.rows) : columns;
-  if (!has_x || rows.ec != std::errc() || rows.ptr != end || size.columns < 1 || size.rows < 1 ||
-      size.columns > largest_edge_px || size.rows > largest_edge_px) {
-    throw CLI::ValidationError(
-        "--size", fmt::format("\"{}\" is not COLUMNSxROWS, each from 1 to {}, such as 512x384",
-                              text, largest_edge_px));
-  }
-  return size;
-}
-
-std::vector<std::string> split_at_commas(const std::string& text) {
-  std::vector<std::string> words(1);
-  for (const char c : text) {
-    if (c == ',')
-      words.emplace_back();
-    else
-      words.back() += c;
-  }
-  return words;
-}
 
 void check_call(const RenderCall& call) {
   for (const std::string& name : call.aovs) {
@@ -211,20 +178,24 @@ Command add_render(CLI::App& program) {
   file_option("--cctv", call->cctv, "Also the picture on the camera's CCTV monitor (PNG)");
   parser->add_option("--camera", call->camera, "Camera of the scene (default: its first)")
       ->type_name("NAME");
-  parser
-      ->add_option_function<std::string>(
-          "--size", [call](const std::string& text) { call->size = read_size(text); },
-          "Columns and rows (default: the camera's)")
-      ->type_name("CxR");
+  add_size_option(*parser, call->size);
   using raytrace::Indirect;
   const std::map<std::string, Indirect> names = {{"radiosity", Indirect::Radiosity},
                                                  {"distributed", Indirect::Distributed},
                                                  {"none", Indirect::None}};
   parser
-      ->add_option("--indirect", call->indirect,
-                   "radiosity (default), distributed (many lights, no interreflection), none")
-      ->type_name("HOW")
-      ->transform(CLI::CheckedTransformer(names).description(""));
+      ->add_option_function<std::string>(
+          "--indirect",
+          [call, names](const std::string& text) {
+            const auto known = names.find(text);
+            if (known == names.end()) {
+              throw CLI::ValidationError(
+                  "--indirect", "\"" + text + "\" is not one of radiosity, distributed, none");
+            }
+            call->indirect = known->second;
+          },
+          "radiosity (default), distributed (many lights, no interreflection), none")
+      ->type_name("HOW");
   add_whole_number(*parser, "--distributed-lights", call->distributed_lights, 1, 1U << 20U,
                    "Lights of --indirect distributed (default 64)");
   parser

@@ -88,6 +88,44 @@ struct Scaling {
   std::vector<double> seen;  // raw F_i,sky + F_i,black
 };
 
+// Patches that exchange light, directly or by way of others, by the lowest patch of their group.
+// Scaling a group's rows up and its columns down by one factor changes nothing but its shares of
+// sky and black backs: a group that is nearly closed would creep toward the right factor by its
+// small open share per sweep.
+std::vector<std::uint32_t> exchange_groups(const FormFactors& f) {
+  std::vector<std::uint32_t> parent(f.count());
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (std::uint32_t i = 0; i < f.count(); ++i) {
+    for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
+      if (f.hits[e] <= 0.0F) continue;
+      const std::uint32_t a = root(i), b = root(f.column[e]);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  for (std::uint32_t i = 0; i < f.count(); ++i) parent[i] = root(i);
+  return parent;
+}
+
+// What leaves a group is the same by its rows and by its columns once both are right (sum the two
+// laws with weights A a); half the step in between is taken at once.
+void share_out(FormFactors& f, std::span<const double> area_m2, const Scaling& scaling,
+               const std::vector<std::uint32_t>& group) {
+  std::vector<double> by_rows(f.count(), 0.0), by_columns(f.count(), 0.0);
+  for (std::size_t i = 0; i < f.count(); ++i) {
+    const double open = area_m2[i] * f.kept[i] * scaling.seen[i];
+    by_rows[group[i]] += open * scaling.row[i];
+    by_columns[group[i]] += open * f.column_scale[i];
+  }
+  for (std::size_t i = 0; i < f.count(); ++i) {
+    const double rows = by_rows[group[i]], columns = by_columns[group[i]];
+    if (rows > 0.0 && columns > 0.0) f.column_scale[i] *= std::sqrt(rows / columns);
+  }
+}
+
 void rescale_rows(FormFactors& f, const std::vector<double>& raw_row_scale, Scaling& scaling) {
   base::parallel_chunks(f.count(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -127,6 +165,7 @@ BalanceReport balance(FormFactors& factors, std::span<const double> area_m2) {
   rescale_rows(factors, raw_row_scale, scaling);
   std::vector<double> sums = column_sums(factors, area_m2);
   report.after = defect(sums);
+  const std::vector<std::uint32_t> group = exchange_groups(factors);
   for (; report.sweeps < most_sweeps && report.after > enough; ++report.sweeps) {
     for (std::size_t j = 0; j < count; ++j) {
       const double sum = column_sum(sums, j);
@@ -134,6 +173,7 @@ BalanceReport balance(FormFactors& factors, std::span<const double> area_m2) {
       // infinity.
       if (sum > 0.0) factors.column_scale[j] = std::min(area_m2[j] / sum, largest_scale);
     }
+    share_out(factors, area_m2, scaling, group);
     rescale_rows(factors, raw_row_scale, scaling);
     sums = column_sums(factors, area_m2);
     const double previous = report.after;

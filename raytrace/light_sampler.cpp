@@ -20,16 +20,15 @@ double fraction(double x) { return x - std::floor(x); }
 LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups& groups,
                            const scenes::Effects& effects, Indirect indirect,
                            int distributed_lights)
-    : scene_(scene) {
-  const bool distributed = indirect == Indirect::Distributed;
-  const int copies = distributed ? distributed_lights : 1;
+    : scene_(scene), distributed_(indirect == Indirect::Distributed) {
+  const int copies = distributed_ ? distributed_lights : 1;
   if (effects.sun) {
     sun_illuminance_lx_ = scene.sun->illuminance_lx * scenes::visible_sun_share(scene);
     // The report's lights have no extent: its Sun casts hard shadows.
-    sun_radius_rad_ = distributed ? 0.0 : base::radians(scene.sun->angular_radius_deg);
+    sun_radius_rad_ = distributed_ ? 0.0 : base::radians(scene.sun->angular_radius_deg);
     add({Kind::Sun, groups.sun}, 1);
   }
-  if (effects.earth && (distributed || !effects.earth_by_gather)) {
+  if (effects.earth && (distributed_ || !effects.earth_by_gather)) {
     earth_half_angle_rad_ = base::radians(scene.earth->half_angle_deg);
     earth_solid_angle_sr_ = scenes::cone_solid_angle_sr(earth_half_angle_rad_);
     add({Kind::Earth, groups.earth}, copies);
@@ -55,11 +54,11 @@ LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups
 }
 
 void LightSampler::add(Light light, int copies) {
-  if (copies == 1) {
+  light.fixed = distributed_;
+  if (!distributed_) {
     lights_.push_back(light);
     return;
   }
-  light.fixed = true;
   light.share = 1.0 / copies;
   for (int k = 0; k < copies; ++k) {
     light.u = (k + 0.5) / copies;

@@ -36,6 +36,7 @@ class LightSampler {
   void add(Light light, int copies);
 
   const scenes::Scene& scene_;
+  bool distributed_;
   std::vector<Light> lights_;
   std::vector<scenes::EmitterSet> emitters_;
   Rgb sun_illuminance_lx_{0.0};

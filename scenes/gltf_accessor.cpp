@@ -23,7 +23,8 @@ struct Elements {
   [[nodiscard]] const unsigned char* operator[](std::size_t i) const { return first + stride * i; }
 };
 
-std::size_t unsigned_of(const std::filesystem::path& path, int value, std::string_view what) {
+std::size_t unsigned_of(const std::filesystem::path& path, std::int64_t value,
+                        std::string_view what) {
   if (value < 0) gltf_fail(path, fmt::format("{} is {}", what, value), "it is at least 0");
   return static_cast<std::size_t>(value);
 }

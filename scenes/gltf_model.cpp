@@ -106,6 +106,25 @@ bool write_no_file(std::string*, const std::string&, const std::vector<unsigned 
   return false;
 }
 
+// tinygltf 2.9 takes one function more than 2.7, and all of them or none: the size of a file, which
+// it compares with a limit before the reading. Ours is checked in read_file.
+template <class Callbacks>
+Callbacks file_callbacks(FileAccess& files) {
+  Callbacks callbacks{};
+  callbacks.FileExists = file_exists;
+  callbacks.ExpandFilePath = expand_path;
+  callbacks.ReadWholeFile = read_file;
+  callbacks.WriteWholeFile = write_no_file;
+  if constexpr (requires { callbacks.GetFileSizeInBytes; }) {
+    callbacks.GetFileSizeInBytes = [](std::size_t* size, std::string*, const std::string&, void*) {
+      *size = 0;
+      return true;
+    };
+  }
+  callbacks.user_data = &files;
+  return callbacks;
+}
+
 bool pass_over_image(tinygltf::Image*, const int, std::string*, std::string*, int, int,
                      const unsigned char*, int, void*) {
   return true;
@@ -169,9 +188,12 @@ GltfAccessor convert(const tinygltf::Accessor& source) {
   if (source.sparse.isSparse) {
     const auto& indices = source.sparse.indices;
     const auto& values = source.sparse.values;
-    accessor.sparse = GltfSparse{source.sparse.count, number_type(indices.componentType),
-                                 indices.bufferView,  indices.byteOffset,
-                                 values.bufferView,   values.byteOffset};
+    accessor.sparse = GltfSparse{source.sparse.count,
+                                 number_type(indices.componentType),
+                                 indices.bufferView,
+                                 values.bufferView,
+                                 static_cast<std::int64_t>(indices.byteOffset),
+                                 static_cast<std::int64_t>(values.byteOffset)};
   }
   return accessor;
 }
@@ -228,7 +250,7 @@ GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& p
   FileAccess files{path, folders, {}};
 
   tinygltf::TinyGLTF loader;
-  loader.SetFsCallbacks({file_exists, expand_path, read_file, write_no_file, &files});
+  loader.SetFsCallbacks(file_callbacks<tinygltf::FsCallbacks>(files));
   loader.SetImageLoader(pass_over_image, nullptr);
   tinygltf::Model model;
   std::string problem, warning;

@@ -26,8 +26,8 @@ enum class GltfNumber { Uint8, Uint16, Uint32, Float32, Other };
 struct GltfSparse {
   int count = 0;
   GltfNumber index_number = GltfNumber::Other;
-  int index_view = -1, index_offset = 0;
-  int value_view = -1, value_offset = 0;
+  int index_view = -1, value_view = -1;
+  std::int64_t index_offset = 0, value_offset = 0;  // bytes
 };
 
 struct GltfAccessor {

@@ -99,7 +99,8 @@ TEST(Tone, AnotherPicturesExposureMakesEqualLuminanceEqualGrey) {
   const std::vector<float> scene = ramp();
   const ToneMapped first = tone_map(grey_image(scene));
   EXPECT_EQ(tone_map_with(grey_image(scene), first.report).rgb, first.rgb);
-  // The upper half alone would be exposed for itself; with the exposure of the whole it is that half.
+  // The upper half alone would be exposed for itself; with the exposure of the whole it is that
+  // half.
   const std::vector<float> half(scene.begin() + 500, scene.end());
   const ToneMapped shared = tone_map_with(grey_image(half), first.report);
   EXPECT_NE(tone_map(grey_image(half)).rgb, shared.rgb);

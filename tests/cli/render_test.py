@@ -97,6 +97,12 @@ class Render(program.Case):
         self.assertIn("earthshine:seconds.read", seconds)
         self.assertTrue(all(value >= 0 for value in seconds.values()))
 
+    def test_indirect_is_one_of_three_words(self):
+        self.write("ball.toml", program.BALL)
+        for how in ("1", "Radiosity", ""):
+            self.says(self.refused("render", "ball.toml", "-o", "a.exr", "--indirect", how),
+                      "radiosity, distributed, none")
+
     def test_indirect_light_adds(self):
         sums = {how: sum(self.render("ball.toml", "--indirect", how)[3]["G"])
                 for how in ("none", "distributed", "radiosity")}

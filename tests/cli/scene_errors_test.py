@@ -89,6 +89,18 @@ class BrokenScenes(program.Case):
         self.broken(BOX + BOX[BOX.index("[[object]]"):BOX.index("[[camera]]")], "room")
         self.broken(BOX + BOX[BOX.index("[[material]]"):BOX.index("[[object]]")], "wall")
 
+    def test_light_beyond_the_numbers_of_a_picture(self):
+        self.replaced("emit = 10.0", "emit = 1e200", "emit", "1e+15")
+        self.write("scene.toml", program.BALL)
+        for setting in ("light.lamp.intensity=1e308", "sun.illuminance=1e40"):
+            self.says(self.refused("solve", "scene.toml", "--set", setting), "1e+15")
+
+    def test_names_that_no_picture_can_hold(self):
+        self.write("scene.toml", program.BALL)
+        for key in ("light.lamp.group", "light.lamp.name", "material.paint.light", "object.ball.name"):
+            self.says(self.refused("inspect", "scene.toml", "--set", f"{key}={'x' * 201}"), "201 bytes", "200")
+        self.done("render", "scene.toml", "-o", "a.exr", "--per-light", "--set", "light.lamp.group=" + "x" * 200)
+
     def test_overrides_are_checked_like_the_file(self):
         self.write("scene.toml", BOX)
         self.says(self.refused("inspect", "scene.toml", "--set", "quality.gather_ray=4"), "gather_ray")

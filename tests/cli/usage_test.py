@@ -4,7 +4,7 @@ import unittest
 
 import program
 
-COMMANDS = ["render", "solve", "form-factors", "plan", "inspect", "degrade", "fit-phong"]
+COMMANDS = ["render", "solve", "form-factors", "plan", "inspect", "degrade", "fit-phong", "study"]
 
 
 class Help(program.Case):
@@ -36,7 +36,7 @@ class WrongCalls(program.Case):
         self.says(self.refused("rendr", "box.toml"), 'unknown command "rendr"', 'did you mean "render"?')
 
     def test_unknown_command_lists_all(self):
-        self.says(self.refused("study", "visibility", "box.toml"), 'unknown command "study"', *COMMANDS)
+        self.says(self.refused("sketch", "box.toml"), 'unknown command "sketch"', *COMMANDS)
 
     def test_unknown_option_names_the_nearest(self):
         self.says(self.refused("render", "box.toml", "-o", "a.exr", "--camra", "A"),

@@ -82,7 +82,7 @@ TEST(SceneFile, ValuesOfWrongTypeOrRangeAreRefused) {
        Case{"ColourOfTwo", light + "intensity = [1, 2]\n", {"scene.toml:6:1", "an array of 2"}},
        Case{"Negative",
             light + "intensity = [1, -2, 1]\n",
-            {"scene.toml:6:1", "is -2", "at least 0"}},
+            {"scene.toml:6:1", "is -2", "from 0 to 1e+15"}},
        Case{"NaN", light + "intensity = nan\n", {"scene.toml:6:1", "is nan", "number"}},
        Case{"Infinite",
             "[sun]\ndirection = [0, 0, 1]\nilluminance = inf\n",

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// earthshine study: questions answered about a scene, each into a folder of files.
+#include "app/study.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "app/console.h"
+#include "base/error.h"
+
+namespace earthshine::app {
+
+using base::Blame;
+using base::Error;
+namespace fs = std::filesystem;
+
+void add_study_options(CLI::App& command, StudyCall& call) {
+  add_scene_options(command, call.scene);
+  command.add_option("-o,--output", call.folder, "Folder for the results; made if it is not there")
+      ->type_name("DIR")
+      ->required();
+  add_size_option(command, call.size);
+  command.add_flag("--json", call.json, "Results as JSON on standard output");
+}
+
+void prepare_folder(const std::string& folder, const std::vector<std::string>& files) {
+  std::error_code problem;
+  fs::create_directories(folder, problem);
+  if (!fs::is_directory(folder)) {
+    const std::string why = problem ? ": " + problem.message() : "";
+    throw Error(Blame::Input, folder, "cannot be made a folder" + why, {},
+                "Name another folder for -o");
+  }
+  std::vector<std::string> paths;
+  paths.reserve(files.size());
+  for (const std::string& file : files) paths.push_back((fs::path(folder) / file).string());
+  check_outputs(paths, {});
+}
+
+studies::StageListener progress_of_stages(const Common& common) {
+  return [quiet = common.quiet](const std::string& stage) -> raytrace::Progress {
+    const auto progress = std::make_shared<Progress>(stage, quiet);
+    return [progress](std::size_t done, std::size_t total) { (*progress)(done, total); };
+  };
+}
+
+std::string file_stem(const scenes::Scene& scene, const scenes::Camera& camera) {
+  const auto plain = [](const std::string& name) {
+    std::string stem = name;
+    for (char& c : stem) {
+      const bool kept = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                        (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '_';
+      if (!kept) c = '_';
+    }
+    return stem;
+  };
+  std::string stem = plain(camera.name);
+  for (const scenes::Camera& earlier : scene.cameras) {
+    if (&earlier == &camera) break;
+    if (plain(earlier.name) == stem) {
+      return fmt::format("{}-{}", stem, &camera - scene.cameras.data() + 1);
+    }
+  }
+  return stem;
+}
+
+std::string csv_of(const Json& rows) {
+  const auto field = [](const Json& value) -> std::string {
+    const bool no_number = value.is_number_float() && !std::isfinite(value.get<double>());
+    if (value.is_null() || no_number) return "";
+    if (!value.is_string()) return value.dump();
+    std::string text = value.get<std::string>();
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+    return quoted + "\"";
+  };
+  std::string text;
+  if (rows.empty()) return text;
+  for (const auto& [key, value] : rows.front().items()) text += (text.empty() ? "" : ",") + key;
+  text += "\n";
+  for (const Json& row : rows) {
+    std::string line;
+    bool first = true;
+    for (const auto& [key, value] : row.items()) {
+      line += (first ? "" : ",") + field(value);
+      first = false;
+    }
+    text += line + "\n";
+  }
+  return text;
+}
+
+std::vector<Command> add_study(CLI::App& program) {
+  CLI::App* study =
+      program.add_subcommand("study", "Questions answered about a scene: visibility, compare");
+  study->require_subcommand(1);
+  return {{study, {}}, add_study_visibility(*study), add_study_compare(*study)};
+}
+
+}  // namespace earthshine::app

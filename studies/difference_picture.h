@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far one picture's luminance is off another's, in bands of the ratio, with the scale drawn
+// beside it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/image.h"
+
+namespace earthshine::studies {
+
+struct DifferencePicture {
+  int columns = 0;                // the picture's and the scale's
+  int rows = 0;                   // the picture's, or the scale's if that is taller
+  std::vector<std::uint8_t> rgb;  // sRGB
+};
+
+// Bands of L / L_ref: white within a factor 1.1, then red for too bright and blue for too dark at
+// 1.1, 1.5, 2 and 4; black in both is white. The scale stands to the right, the brightest band on
+// top, each limit written at the line between its bands: "x1.5", "/1.5". Both pictures have the
+// same size.
+[[nodiscard]] DifferencePicture difference_picture(const base::Image& image,
+                                                   const base::Image& reference);
+
+}  // namespace earthshine::studies

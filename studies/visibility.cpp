@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/visibility.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace earthshine::studies {
+namespace {
+
+constexpr double white_signal = 0.995;  // of degrade::Levels
+
+double mean(const std::vector<float>& values) {
+  double sum = 0.0;
+  for (const float value : values) sum += double(value);
+  return sum / static_cast<double>(values.size());
+}
+
+double mean(const std::vector<float>& values, const std::vector<std::uint32_t>& pixels) {
+  double sum = 0.0;
+  for (const std::uint32_t pixel : pixels) sum += double(values[pixel]);
+  return sum / static_cast<double>(pixels.size());
+}
+
+}  // namespace
+
+std::optional<TargetLight> measure_light(const TargetView& view,
+                                         const std::vector<float>& luminance) {
+  if (!view.in_view()) return std::nullopt;
+  TargetLight light;
+  light.luminance = mean(luminance, view.measured);
+  if (view.surround.empty()) return light;
+  light.surround = mean(luminance, view.surround);
+  if (*light.surround > 0.0) {
+    light.contrast = (light.luminance - *light.surround) / *light.surround;
+  }
+  return light;
+}
+
+ShownRange shown_range(const degrade::CctvCamera& camera, const degrade::Report& report,
+                       double mean_luminance) {
+  // Signal per cd/m^2 before gain; glare takes a share off each point and gives its mean to all.
+  const double per_luminance =
+      degrade::lens_transfer(camera, report.exposure.f_number) / camera.white_lux;
+  const double veil = camera.glare * mean_luminance;
+  const auto luminance_of_signal = [&](double signal) {
+    return (signal / per_luminance - veil) / (1.0 - camera.glare);
+  };
+  double white = white_signal / report.exposure.gain;
+  if (camera.saturation > 0.0) white = std::min(white, camera.saturation);
+  return {luminance_of_signal(std::sqrt(report.noise.a)), luminance_of_signal(white)};
+}
+
+std::vector<TargetMetrics> target_metrics(const scenes::Scene& scene, const scenes::Camera& camera,
+                                          const base::Image& image,
+                                          const std::optional<ShownRange>& cctv) {
+  const ObjectMap map = object_map(image);
+  const std::vector<float> luminance = base::luminance_of(image);
+  std::vector<TargetMetrics> metrics;
+  for (TargetView& view : find_targets(scene, camera, map)) {
+    TargetMetrics target;
+    const auto seen = static_cast<double>(view.pixels);
+    if (view.pixels_alone > 0) {
+      target.visible_fraction = seen / static_cast<double>(view.pixels_alone);
+    }
+    target.light = measure_light(view, luminance);
+    if (cctv && view.in_view()) {
+      std::size_t saturated = 0, crushed = 0;
+      for (std::size_t i = 0; i < luminance.size(); ++i) {
+        if (map.object[i] != static_cast<std::int32_t>(view.object)) continue;
+        if (double(luminance[i]) >= cctv->white) ++saturated;
+        if (double(luminance[i]) <= cctv->black) ++crushed;
+      }
+      target.saturated_share = static_cast<double>(saturated) / seen;
+      target.crushed_share = static_cast<double>(crushed) / seen;
+    }
+    target.view = std::move(view);
+    metrics.push_back(std::move(target));
+  }
+  return metrics;
+}
+
+View look(const StudyScene& study, const radiosity::Solution& solution,
+          const scenes::Camera& camera, const ViewOptions& options,
+          const raytrace::Progress& progress) {
+  raytrace::RenderOptions render;
+  render.columns = options.columns;
+  render.rows = options.rows;
+  render.gather_rays = options.gather_rays;
+  render.seed = options.seed;
+  render.aovs = {"object"};
+  View view;
+  view.frame = raytrace::render(study.scene, study.groups, study.effects, study.query, solution,
+                                camera, render, progress);
+  const base::Image& image = view.frame.image;
+  if (options.cctv) {
+    view.cctv =
+        degrade::degrade(image, options.cctv->camera, options.cctv->monitor, options.cctv->options);
+    view.shown =
+        shown_range(options.cctv->camera, view.cctv->report, mean(base::luminance_of(image)));
+  }
+  view.targets = target_metrics(study.scene, camera, image, view.shown);
+  return view;
+}
+
+}  // namespace earthshine::studies

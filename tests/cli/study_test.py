@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: Apache-2.0
+"""study: the folder of results, its tables, and what is refused."""
+import csv
+import json
+import os
+import unittest
+
+import png
+import program
+
+
+class Study(program.Case):
+    def setUp(self):
+        super().setUp()
+        self.write("ball.toml", program.BALL)
+        self.write("monitored.toml", program.BALL.replace("resolution = [32, 24]",
+                                                          'resolution = [32, 24]\ncctv = "sit-monochrome"'))
+
+    def files(self, folder):
+        return sorted(os.listdir(self.folder / folder))
+
+    def table(self, folder, name):
+        with open(self.folder / folder / name, newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def result(self, folder, name):
+        return json.loads((self.folder / folder / name).read_text(encoding="utf-8"),
+                          parse_constant=lambda word: self.fail(f"{word} in the JSON"))
+
+    def png(self, folder, name):
+        return (self.folder / folder / name).read_bytes()
+
+    def png_size(self, folder, name):
+        return png.pixels(self.png(folder, name))[:2]
+
+
+class Compare(Study):
+    METHODS = ["reference", "radiosity", "distributed-4", "distributed-16", "direct"]
+
+    def test_folder_holds_tables_and_pictures(self):
+        text = self.done("study", "compare", "ball.toml", "-o", "new/folder", "--lights", "16,4")
+        self.assertEqual(self.files("new/folder"),
+                         sorted(["compare.csv", "compare-targets.csv", "compare.json"]
+                                + [f"{method}.png" for method in self.METHODS]
+                                + [f"difference-{method}.png" for method in self.METHODS[1:]]))
+        self.says(text, *self.METHODS, "factor 1.5", "ball: 16 distributed lights would")
+        for method in self.METHODS:
+            self.assertEqual(self.png_size("new/folder", f"{method}.png"), (32, 24))
+        width, height = self.png_size("new/folder", "difference-direct.png")
+        self.assertGreater(width, 32)  # the scale beside it
+        self.assertGreaterEqual(height, 24)
+
+    def test_tables_say_what_the_json_says(self):
+        printed = self.json("study", "compare", "ball.toml", "-o", "d", "--lights", "4,16", "--size", "24x18")
+        self.assertEqual(printed, self.result("d", "compare.json"))
+        self.assertEqual((printed["camera"], printed["columns"], printed["rows"]), ("A", 24, 18))
+        methods = self.table("d", "compare.csv")
+        self.assertEqual([row["method"] for row in methods], self.METHODS)
+        self.assertEqual([row["lights"] for row in methods], ["", "", "4", "16", ""])
+        for row, record in zip(methods, printed["methods"]):
+            self.assertEqual(float(row["relative_rmse"]), record["relative_rmse"])
+        self.assertEqual([float(methods[0][key]) for key in ("relative_rmse", "bias", "off_share")], [0, 0, 0])
+        targets = self.table("d", "compare-targets.csv")
+        self.assertEqual([(row["target"], row["method"]) for row in targets],
+                         [("ball", method) for method in self.METHODS])
+        self.assertEqual([verdict["target"] for verdict in printed["verdicts"]], ["ball"])
+
+    def test_the_rule_decides(self):
+        targets = self.json("study", "compare", "ball.toml", "-o", "d", "--lights", "4")["targets"]
+        for row in targets:
+            off = not 1 / 1.5 <= row["luminance_ratio"] <= 1.5
+            self.assertEqual(row["misleads"], off or abs(row["contrast_difference"]) > 0.1, row)
+
+    def test_same_bytes_on_any_number_of_threads(self):
+        def pictures(threads):
+            self.done("study", "compare", "ball.toml", "-o", threads, "--lights", "4", "-j", threads)
+            return [self.png(threads, name) for name in self.files(threads) if name.endswith(".png")]
+        self.assertEqual(pictures("1"), pictures("2"))
+
+    def test_pictures_share_one_exposure(self):
+        # The walls' radiance is M / pi, after one reflection 1.5 and after all 2 times that. Each picture
+        # for itself would be middle grey, 118; with the reference's exposure the direct light is a signal
+        # of 0.18 x 0.75, which sRGB encodes as 103; its noise takes a little off the mean.
+        self.write("box.toml", program.CLOSED_BOX)
+        self.done("study", "compare", "box.toml", "-o", "d", "--lights", "4")
+        for method, grey in (("reference", 118), ("direct", 103)):
+            values = png.pixels(self.png("d", f"{method}.png"))[3]
+            self.assertAlmostEqual(sum(values) / len(values), grey, delta=3, msg=method)
+
+    def test_scene_without_targets_is_compared_all_the_same(self):
+        self.write("box.toml", program.CLOSED_BOX)
+        text = self.done("study", "compare", "box.toml", "-o", "d", "--lights", "4")
+        self.says(text, "no object as a target")
+        self.assertEqual((self.folder / "d" / "compare-targets.csv").read_text(), "")
+
+
+class Visibility(Study):
+    def test_all_cameras_by_default(self):
+        text = self.done("study", "visibility", "monitored.toml", "-o", "v")
+        self.says(text, "camera", "visible", "contrast", "above")
+        self.assertEqual(self.files("v"), ["cctv-A.png", "view-A.png", "view-above.png", "visibility.csv",
+                                           "visibility.json"])
+        rows = self.table("v", "visibility.csv")
+        self.assertEqual([(row["camera"], row["target"]) for row in rows], [("A", "ball"), ("above", "ball")])
+        for row in rows:
+            self.assertEqual(float(row["visible_fraction"]), 1)
+            self.assertEqual(row["cut_by_frame"], "false")
+            self.assertGreater(int(row["pixels"]), 0)
+        # Camera A alone has a CCTV camera.
+        self.assertTrue(0 <= float(rows[0]["saturated_share"]) <= 1)
+        self.assertEqual((rows[1]["saturated_share"], rows[1]["crushed_share"]), ("", ""))
+
+    def test_chosen_cameras_and_json(self):
+        printed = self.json("study", "visibility", "monitored.toml", "-o", "v", "--camera", "above",
+                            "--camera", "A", "--camera", "above", "--size", "16x12")
+        self.assertEqual(printed, self.result("v", "visibility.json"))
+        self.assertEqual([camera["name"] for camera in printed["cameras"]], ["above", "A"])
+        self.assertIsNone(printed["cameras"][0]["cctv"])
+        shown = printed["cameras"][1]["cctv"]
+        self.assertLess(shown["shown_from_cd_m2"], shown["shown_to_cd_m2"])
+        self.assertEqual(self.png_size("v", "view-A.png"), (16, 12))
+
+    def test_camera_names_become_safe_file_names(self):
+        scene = program.BALL.replace('name = "A"', 'name = "../A b"').replace('name = "above"', 'name = ".._A/b"')
+        self.write("names.toml", scene)
+        self.done("study", "visibility", "names.toml", "-o", "v")
+        self.assertEqual(self.files("v"), ["view-.._A_b-2.png", "view-.._A_b.png", "visibility.csv",
+                                           "visibility.json"])
+
+    def test_text_in_the_table_is_quoted(self):
+        self.write("names.toml", program.BALL.replace('name = "ball"', "name = 'a \"b\", c'"))
+        self.done("study", "visibility", "names.toml", "-o", "v", "--camera", "A")
+        self.assertEqual(self.table("v", "visibility.csv")[0]["target"], 'a "b", c')
+
+
+class Refused(Study):
+    def test_studies_that_are_not_there_name_those_that_are(self):
+        for study in ("accuracy", "orbit"):
+            self.says(self.refused("study", study, "ball.toml", "-o", "d"), f'"{study}"', "visibility", "compare")
+        self.says(self.refused("study", "compre", "ball.toml", "-o", "d"), 'did you mean "compare"?')
+        self.says(self.refused("study"), "study --help")
+
+    def test_wrong_calls(self):
+        self.says(self.refused("study", "compare", "ball.toml"), "study compare", "--output")
+        for lights in ("", "1", "4,", "4,x", "-4", "4.5"):
+            self.says(self.refused("study", "compare", "ball.toml", "-o", "d", f"--lights={lights}"), "--lights")
+        self.says(self.refused("study", "visibility", "ball.toml", "-o", "d", "--camera", "none"), '"none"', "above")
+        self.says(self.refused("study", "visibility", "ball.toml", "-o", "d", "--lights", "4"), '"--lights"')
+        self.assertEqual(self.files("."), ["ball.toml", "monitored.toml"])  # nothing was begun
+
+    def test_folder_that_cannot_be(self):
+        self.says(self.refused("study", "compare", "ball.toml", "-o", "ball.toml"), "ball.toml", "folder")
+        (self.folder / "d" / "compare.csv").mkdir(parents=True)
+        self.says(self.refused("study", "compare", "ball.toml", "-o", "d"), "compare.csv", "folder")
+
+    def test_scene_without_cameras(self):
+        self.write("bare.toml", program.BALL.split("[[camera]]")[0])
+        for study in ("visibility", "compare"):
+            self.says(self.refused("study", study, "bare.toml", "-o", "d"), "camera")
+
+
+if __name__ == "__main__":
+    unittest.main()

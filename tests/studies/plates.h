@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plates seen from straight above: the scenes of which the studies' results are known.
+#pragma once
+
+#include <cmath>
+
+#include "raytrace/render.h"
+#include "tests/support/scene_builder.h"
+
+namespace earthshine::tests {
+
+// At `height_m` over the origin, looking down; its picture spans `size_m` at z = 0.
+inline scenes::Camera above(double height_m, double size_m) {
+  scenes::Camera camera;
+  camera.name = "above";
+  camera.position = Vec3(0, 0, height_m);
+  camera.look_at = Vec3(0.0);
+  camera.up = Vec3(0, 1, 0);
+  camera.fov_deg = base::degrees(2.0 * std::atan(size_m / 2 / height_m));
+  return camera;
+}
+
+// A point Sun at the zenith.
+inline scenes::Sun overhead_sun(double illuminance_lx) {
+  scenes::Sun sun;
+  sun.direction = Vec3(0, 0, 1);
+  sun.illuminance_lx = Rgb(illuminance_lx);
+  sun.angular_radius_deg = 0.0;
+  return sun;
+}
+
+// Ground 4 m wide at z = -0.01 and on it, at z = 0, a target plate 1 m wide: objects 0 and 1.
+inline SceneBuilder plate_on_ground(double ground_diffuse, double plate_diffuse) {
+  SceneBuilder builder;
+  builder.plate(builder.material(grey(ground_diffuse)), 4.0, -0.01, true);
+  builder.plate(builder.material(grey(plate_diffuse)), 1.0, 0.0, true);
+  builder.scene.objects[1].target = true;
+  return builder;
+}
+
+// Direct light alone, with the layer "object".
+inline raytrace::Frame direct_picture(const scenes::Scene& scene, const scenes::Camera& camera,
+                                      int size) {
+  const Prepared prepared(scene);
+  raytrace::RenderOptions options;
+  options.columns = options.rows = size;
+  options.gather_rays = 16;
+  options.indirect = raytrace::Indirect::None;
+  options.aovs = {"object"};
+  return raytrace::render(scene, prepared.groups, prepared.effects, prepared.query, {}, camera,
+                          options);
+}
+
+}  // namespace earthshine::tests
