@@ -163,8 +163,8 @@ std::string summary(const studies::Comparison& comparison) {
 
 void run(const CompareCall& call, const Common& common) {
   const LoadedScene loaded = load(call.scene, common.quiet);
-  const scenes::Camera& camera =
-      choose_camera(loaded.scene, call.cameras.empty() ? "" : call.cameras.front());
+  const std::string wanted = call.cameras.empty() ? "" : call.cameras.front();
+  const scenes::Camera& camera = choose_camera(loaded.scene, wanted);
   if (call.cameras.empty() && loaded.scene.cameras.size() > 1 && !common.quiet) {
     note("note: no --camera, taking the first, \"" + camera.name + "\"");
   }

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
@@ -24,6 +25,19 @@ fs::path temporary_beside(const fs::path& target) {
   // Long names are shortened: name and mark together must stay below the usual limit of 255 bytes.
   return target.parent_path() /
          ("." + target.filename().string().substr(0, 200) + "." + mark + ".part");
+}
+
+// The temporary files that stand, as names that live as long as their OutputFile. More at once than
+// the list is long are not cleared away when a signal ends the program.
+std::array<std::atomic<const char*>, 32> unfinished{};
+static_assert(std::atomic<const char*>::is_always_lock_free, "read in a signal handler");
+
+std::atomic<const char*>* list_unfinished(const char* name) {
+  for (std::atomic<const char*>& place : unfinished) {
+    const char* none = nullptr;
+    if (place.compare_exchange_strong(none, name)) return &place;
+  }
+  return nullptr;
 }
 
 std::string reason(int error_number) {
@@ -65,9 +79,11 @@ OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
                 "cannot be written: folder " + folder.string() + ": " + reason(errno));
   }
   temporary_ = plain ? temporary_beside(target_) : target_;
+  if (plain) unfinished_ = list_unfinished(temporary_.c_str());
 }
 
 OutputFile::~OutputFile() {
+  if (unfinished_ != nullptr) unfinished_->store(nullptr);
   if (committed_ || temporary_ == target_) return;
   std::error_code ignored;
   fs::remove(temporary_, ignored);
@@ -84,6 +100,12 @@ void OutputFile::commit() {
     }
   }
   committed_ = true;
+}
+
+void remove_unfinished_files() noexcept {
+  for (const std::atomic<const char*>& place : unfinished) {
+    if (const char* name = place.load()) ::unlink(name);
+  }
 }
 
 void write_text(const fs::path& path, std::string_view text) {

@@ -3,6 +3,7 @@
 // the old one.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <string_view>
 
@@ -23,8 +24,13 @@ class OutputFile {
 
  private:
   std::filesystem::path target_, temporary_;
+  std::atomic<const char*>* unfinished_ = nullptr;  // its place in the list of what stands
   bool committed_ = false;
 };
+
+// For a signal handler that ends the program: removes the temporary files that stand. Calls
+// nothing but unlink.
+void remove_unfinished_files() noexcept;
 
 // Writes text to a file, aside and renamed. Throws as OutputFile does, and base::Error (Work) on a
 // full disk.

@@ -4,7 +4,7 @@ set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
-# Off by default: a newer compiler than the tested ones must not stop a user's build. ./dev turns it on in CI.
+# Off by default: a newer compiler than the tested ones must not stop a user's build.
 option(EARTHSHINE_WERROR "Treat warnings as errors" OFF)
 set(EARTHSHINE_ARCH "x86-64-v3" CACHE STRING "Value of -march; empty for the compiler's default")
 

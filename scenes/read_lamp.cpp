@@ -101,7 +101,7 @@ Lamp read_lamp(const TomlNode& node, double unit_m) {
   TableReader table(node, "[[light]]", all_keys);
   Lamp lamp;
   lamp.name = table.read_name();
-  lamp.group = table.text("group").value_or(lamp.name);
+  lamp.group = table.name("group").value_or(lamp.name);
   const std::string type = table.required(table.choice("type", types), "type",
                                           "type = \"point\", \"spot\", \"rectangle\" or \"disk\"");
   if (type == "point") read_point(lamp, table, unit_m);

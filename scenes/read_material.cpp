@@ -51,7 +51,7 @@ Material read_material(const TomlNode& node) {
   material.transmit = table.colour("transmit", share).value_or(material.transmit);
   material.ior = table.number("ior", {1.0, largest_ior}).value_or(material.ior);
   material.emit = table.colour("emit").value_or(material.emit);
-  material.light_group = table.text("light").value_or(material.name);
+  material.light_group = table.name("light").value_or(material.name);
   material.two_sided = table.flag("two_sided").value_or(material.two_sided);
   check_energy(material, table.where(), table.label());
   return material;

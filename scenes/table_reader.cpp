@@ -38,10 +38,12 @@ std::string to_string(const Range& range) {
   const bool low = std::isfinite(range.low);
   const bool high = std::isfinite(range.high);
   if (low && high && !range.open_low && !range.open_high) {
-    return fmt::format("from {} to {}", range.low, range.high);
+    return fmt::format("from {:.10g} to {:.10g}", range.low, range.high);
   }
-  const std::string from = fmt::format("{} {}", range.open_low ? "above" : "at least", range.low);
-  const std::string to = fmt::format("{} {}", range.open_high ? "below" : "at most", range.high);
+  const std::string from =
+      fmt::format("{} {:.10g}", range.open_low ? "above" : "at least", range.low);
+  const std::string to =
+      fmt::format("{} {:.10g}", range.open_high ? "below" : "at most", range.high);
   if (low && high) return from + " and " + to;
   return low ? from : high ? to : "finite";
 }
@@ -79,7 +81,7 @@ const base::Location& TableReader::where(std::string_view key) const {
 }
 
 std::string TableReader::read_name() {
-  std::string name = required(text("name"), "name", "name = \"...\"");
+  std::string name = required(this->name("name"), "name", "name = \"...\"");
   label_ += " " + in_quotes(name);
   return name;
 }
@@ -158,6 +160,15 @@ std::optional<std::string> TableReader::text(std::string_view key) const {
          "allowed is a string in quotes, on one line, not empty");
   }
   return *value;
+}
+
+std::optional<std::string> TableReader::name(std::string_view key) const {
+  std::optional<std::string> value = text(key);
+  if (value && value->size() > longest_name) {
+    fail(key, fmt::format("has {} bytes", value->size()),
+         fmt::format("allowed are at most {}", longest_name));
+  }
+  return value;
 }
 
 std::optional<std::string> TableReader::choice(std::string_view key, KeyList choices) const {

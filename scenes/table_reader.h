@@ -32,9 +32,15 @@ inline constexpr Range any_number{};
 inline constexpr Range at_least_zero{0.0};
 inline constexpr Range above_zero{0.0, std::numeric_limits<double>::infinity(), true};
 inline constexpr Range share{0.0, 1.0};
+// Lumens, candelas, lux and cd/m^2. Far above any light there is (the Sun's disc: 2e9 cd/m^2), far
+// below where the squares and sums of a picture leave the numbers of a float.
+inline constexpr Range light_strength{0.0, 1e15};
 
 // Larger lengths than this, in metres or in the file's unit, are slips and not spacecraft.
 inline constexpr double largest_length = 1e9;
+
+// Bytes of a name: a light group becomes channels of an EXR file, whose names end at 255.
+inline constexpr std::size_t longest_name = 200;
 
 [[nodiscard]] std::string to_string(const Range& range);
 
@@ -61,9 +67,10 @@ class TableReader {
   [[nodiscard]] std::optional<double> number(std::string_view key, Range range = any_number) const;
   [[nodiscard]] std::optional<int> whole(std::string_view key, int low, int high) const;
   [[nodiscard]] std::optional<std::string> text(std::string_view key) const;  // not empty
+  [[nodiscard]] std::optional<std::string> name(std::string_view key) const;  // not too long either
   [[nodiscard]] std::optional<std::string> choice(std::string_view key, KeyList choices) const;
   // A number (grey) or [r, g, b].
-  [[nodiscard]] std::optional<Rgb> colour(std::string_view key, Range range = at_least_zero) const;
+  [[nodiscard]] std::optional<Rgb> colour(std::string_view key, Range range = light_strength) const;
   [[nodiscard]] std::optional<Vec3> vector(std::string_view key, Range range = any_number) const;
   // Of unit length; zero is refused.
   [[nodiscard]] std::optional<Vec3> direction(std::string_view key) const;

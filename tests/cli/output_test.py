@@ -2,8 +2,10 @@
 """What is written, and what is left alone when something goes wrong."""
 import os
 import pty
+import signal
 import struct
 import subprocess
+import time
 import unittest
 import zlib
 
@@ -61,6 +63,23 @@ class Output(program.Case):
         self.refused("render", "ball.toml", "-o", "a.exr", "--camera", "none")
         self.refused("render", "ball.toml", "-o", "a.exr", "--set", "material.paint.specular=9")
         self.assertEqual((self.folder / "a.exr").read_text(), "old")
+
+    def test_interrupted_while_writing(self):
+        """The old picture stays and nothing beside it, whenever the signal comes."""
+        call = [program.PROGRAM, "render", "ball.toml", "-o", "a.exr", "-q", "--size", "1536x1536", "--indirect",
+                "none", "--set", "quality.gather_rays=1", "--aov", "albedo,normal,position,depth,range"]
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            self.write("a.exr", "old")
+            with subprocess.Popen(call, cwd=self.folder, stderr=subprocess.DEVNULL, preexec_fn=lambda:
+                                  [signal.signal(n, signal.SIG_DFL) for n in (signal.SIGINT, signal.SIGHUP)]) as run:
+                while run.poll() is None and not any(name.endswith(".part") for name in self.files()):
+                    time.sleep(0.002)
+                run.send_signal(number)
+            self.assertEqual(self.files(), ["a.exr", "ball.toml"])
+            if run.returncode == 0:
+                continue  # it was done before the signal came
+            self.assertEqual(run.returncode, -number)
+            self.assertEqual((self.folder / "a.exr").read_text(), "old")
 
     def test_full_disk(self):
         self.says(self.refused("render", "ball.toml", "-o", "/dev/full", code=1), "/dev/full")
