@@ -175,4 +175,13 @@ std::string dump(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+void note_balance(const radiosity::BalanceReport& balance) {
+  if (balance.balanced || balance.sweeps == 0) return;
+  note(
+      fmt::format("warning: the form factors conserve energy to {:.1e} of the surface only, after "
+                  "{} sweeps; raise "
+                  "quality.form_factor_rays to come nearer",
+                  balance.after, balance.sweeps));
+}
+
 }  // namespace earthshine::app

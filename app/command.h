@@ -83,6 +83,9 @@ struct LoadedScene {
 [[nodiscard]] const scenes::Camera& choose_camera(const scenes::Scene& scene,
                                                   const std::string& name);
 
+// A line on stderr where the form factors could not be balanced, with how near they came.
+void note_balance(const radiosity::BalanceReport& balance);
+
 // The scene's accuracy knobs as the solver wants them.
 [[nodiscard]] radiosity::SolveOptions solve_options(const scenes::Scene& scene,
                                                     const Common& common);

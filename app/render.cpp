@@ -71,6 +71,7 @@ Rendered compute(const RenderCall& call, const Common& common, const LoadedScene
     r.solution = radiosity::solve(loaded.scene, loaded.groups, loaded.effects, query, r.solver);
     r.solved = true;
     times.add(r.solution.report.seconds);
+    note_balance(r.solution.report.balance);
   }
   r.options.columns = call.size ? call.size->columns : camera.columns;
   r.options.rows = call.size ? call.size->rows : camera.rows;

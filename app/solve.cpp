@@ -127,6 +127,7 @@ void run(const SolveCall& call, const Common& common) {
   const radiosity::Solution solution = radiosity::solve(loaded.scene, loaded.groups, loaded.effects,
                                                         query, solve_options(loaded.scene, common));
   times.add(solution.report.seconds);
+  note_balance(solution.report.balance);
   const Json json = json_of(loaded, solution.report, times);
   if (!call.output.empty()) base::write_text(call.output, dump(json));
   if (call.json) print(dump(json));

@@ -118,7 +118,7 @@ class DirectStage {
 
 Source sun_source(const scenes::Scene& scene, std::size_t group, int points) {
   const scenes::Sun& sun = *scene.sun;
-  const Rgb illuminance = sun.illuminance_lx * scenes::visible_sun_share(scene);
+  const Rgb illuminance = scenes::sun_sample_illuminance(scene);
   const double radius = base::radians(sun.angular_radius_deg);
   Source source;
   source.key = 1;

@@ -25,6 +25,7 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   const bool shares = depth == 0 && !shared_.bright.empty();
   // Cosine-distributed rays: L = (k_d / pi) integral L_in cos = k_d mean(L_in).
   const Rgb each = weight / static_cast<double>(count);
+  rays_.gather += static_cast<std::uint64_t>(count);
   for (int k = 0; k < count; ++k) {
     std::array<float, 2> u{};
     if (depth == 0) {
@@ -57,6 +58,7 @@ void PixelShader::aim_at_bright(const Surface& surface, const Vec3& origin, cons
   const double at_patch = -glm::dot(direction, shared_.bright.patches().normal(aim.patch));
   if (cosine <= 0.0 || at_patch <= 0.0) return;
   const double aimed = shared_.bright.density_per_sr(aim.patch, distance, at_patch);
+  ++rays_.gather;
   queue_gather(origin, direction,
                weight * (cosine / pi) / (shared_.gather_rays * cosine / pi + aimed), cosine,
                aim.patch);
@@ -150,7 +152,6 @@ void PixelShader::flush_gather() {
       add(layer, gather_sample_[k], scratch_[layer]);
     }
   }
-  rays_.gather += gather_count_;
   gather_count_ = 0;
 }
 

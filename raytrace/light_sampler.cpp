@@ -23,7 +23,9 @@ LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups
     : scene_(scene), distributed_(indirect == Indirect::Distributed) {
   const int copies = distributed_ ? distributed_lights : 1;
   if (effects.sun) {
-    sun_illuminance_lx_ = scene.sun->illuminance_lx * scenes::visible_sun_share(scene);
+    sun_illuminance_lx_ = distributed_
+                              ? scene.sun->illuminance_lx * scenes::visible_sun_share(scene)
+                              : scenes::sun_sample_illuminance(scene);
     // The report's lights have no extent: its Sun casts hard shadows.
     sun_radius_rad_ = distributed_ ? 0.0 : base::radians(scene.sun->angular_radius_deg);
     add({Kind::Sun, groups.sun}, 1);

@@ -198,6 +198,7 @@ void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
     if (n >= sharp_lobe) {
       trace({origin, direction}, value, depth + 1, Seen::ByLobe);
     } else {
+      ++rays_.lobe;
       queue_gather(origin, direction, value);
     }
   }

@@ -71,6 +71,11 @@ double visible_sun_share(const Scene& scene) {
   return 0.5 + (x * std::sqrt(1.0 - x * x) + std::asin(x)) / base::pi;
 }
 
+Rgb sun_sample_illuminance(const Scene& scene) {
+  const double mean_cosine = 0.5 * (1.0 + std::cos(base::radians(scene.sun->angular_radius_deg)));
+  return scene.sun->illuminance_lx * (visible_sun_share(scene) / mean_cosine);
+}
+
 Rgb sun_radiance(const Sun& sun) {
   const double sine = std::sin(base::radians(sun.angular_radius_deg));
   if (sine <= 0.0) return Rgb(0.0);

@@ -23,6 +23,10 @@ namespace earthshine::scenes {
 // 1e-4 of the disc).
 [[nodiscard]] double visible_sun_share(const Scene& scene);
 
+// What directions spread uniformly over the Sun's disc must each carry so that a plate that faces
+// it gets illuminance_lx times the share in view: the mean cosine over the disc is (1 + cos r) / 2.
+[[nodiscard]] Rgb sun_sample_illuminance(const Scene& scene);
+
 // Radiance of the Sun's disc, cd/m^2: E / (pi sin^2 r); 0 for a point Sun.
 [[nodiscard]] Rgb sun_radiance(const Sun& sun);
 

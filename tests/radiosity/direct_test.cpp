@@ -34,6 +34,16 @@ TEST(Direct, PointSunGivesItsIlluminanceTimesTheCosine) {
   EXPECT_NEAR(illuminance(builder.scene) / (133100.0 * 0.5), 1.0, 1e-12);
 }
 
+TEST(Direct, WideSunGivesAPlateThatFacesItItsIlluminance) {
+  // Whatever the disc's size: 16 Owen-Sobol points of a cosine that runs from 1 to cos 20 deg =
+  // 0.94 have a standard error below 0.02 / 16.
+  tests::SceneBuilder builder = small_plate();
+  scenes::Sun sun;
+  sun.angular_radius_deg = 20.0;
+  builder.scene.sun = sun;
+  EXPECT_NEAR(illuminance(builder.scene) / 133100.0, 1.0, 4 * 0.00125);
+}
+
 TEST(Direct, PointLampObeysTheInverseSquareAndCosineLaws) {
   // 1000 cd at 4 m, 60 deg off the plate's normal: E = 1000 / 16 * 0.5. Over the plate E varies by
   // 3e-5.
