@@ -96,7 +96,6 @@ TEST(Exr, DepthMayBeInfiniteColourMayNot) {
 }
 
 TEST(Exr, FullDiskIsReportedAsFailedWork) {
-  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full on this system";
   for (const int edge : {1, 400}) {  // the small one fails only when its buffer is flushed
     const std::string message =
         error_of(Blame::Work, [&] { write_exr("/dev/full", pattern(edge, edge)); });

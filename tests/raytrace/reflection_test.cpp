@@ -10,13 +10,13 @@
 namespace earthshine::raytrace {
 namespace {
 
-double mean_green(const scenes::Scene& scene, const scenes::Camera& camera, int gather_rays) {
+double mean_green(const scenes::Scene& scene, const scenes::Camera& camera, double patch_edge_m) {
   const tests::Prepared prepared(scene);
   radiosity::SolveOptions solve;
-  solve.patch_edge_m = 0.1;
+  solve.patch_edge_m = patch_edge_m;
   RenderOptions options;
   options.columns = options.rows = 8;
-  options.gather_rays = gather_rays;
+  options.gather_rays = 64;
   const Frame frame = render(scene, prepared.groups, prepared.effects, prepared.query,
                              prepared.solve(solve), camera, options);
   double sum = 0.0;
@@ -56,7 +56,7 @@ TEST(Reflection, SmallBrightPatchLightsAPlateByItsFormFactor) {
   const double form_factor = 4.0 * x * std::atan(x) / base::pi;
   // The aimed rays' integrand varies by under 1 % over the small plate; 64 pixels with 8 of them
   // each.
-  EXPECT_NEAR(mean_green(builder.scene, camera, 64) / (0.5 * b * form_factor / base::pi), 1.0,
+  EXPECT_NEAR(mean_green(builder.scene, camera, 0.1) / (0.5 * b * form_factor / base::pi), 1.0,
               4.0 * 0.01);
 }
 
@@ -77,20 +77,10 @@ void expect_glossy_albedo(double exponent, double specular) {
   camera.look_at = Vec3(0.0);
   camera.up = Vec3(0, 1, 0);
   camera.fov_deg = 0.1;
-  const tests::Prepared prepared(builder.scene);
-  radiosity::SolveOptions solve;
-  solve.patch_edge_m = 5.0;
-  RenderOptions options;
-  options.columns = options.rows = 8;
-  options.gather_rays = 64;
-  const Frame frame = render(builder.scene, prepared.groups, prepared.effects, prepared.query,
-                             prepared.solve(solve), camera, options);
-  double sum = 0.0;
-  for (const float v : frame.image.find("G")->values) sum += double(v);
   const double expected = 0.2 + 2.0 * specular / (exponent + 2.0);
   // 2048 lobe rays whose weights 2 k_s cos / (n + 1) have a spread of about their mean / (n + 2).
   const double std_error = 2.0 * specular / (exponent + 2.0) / (exponent + 2.0) / std::sqrt(2048.0);
-  EXPECT_NEAR(base::pi * sum / 64.0, expected, 4.0 * std_error + 1e-5);
+  EXPECT_NEAR(base::pi * mean_green(builder.scene, camera, 5.0), expected, 4.0 * std_error + 1e-5);
 }
 
 TEST(Reflection, BroadLobeReflectsItsAlbedoOfAUniformSurrounding) {
