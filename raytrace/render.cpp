@@ -26,7 +26,7 @@ struct Sampling {
 // Without gather rays the samples serve edges, lamps and lenses alone.
 Sampling share_out(int rays_per_pixel, bool gathers) {
   const auto rays = std::bit_ceil(static_cast<std::uint32_t>(std::max(1, rays_per_pixel)));
-  const int log2 = std::bit_width(rays) - 1;
+  const int log2 = static_cast<int>(std::bit_width(rays)) - 1;
   const int samples = 1 << std::min((log2 + 1) / 2, 6);
   return {samples, gathers ? static_cast<int>(rays) / samples : 0};
 }
