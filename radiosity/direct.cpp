@@ -31,7 +31,7 @@ double landing_scale(const Sampled& sampled, const Patches& patches, const Sourc
   if (landed <= 0.0 || expected <= 0.0) return 1.0;
   const double expected_variance = std::pow(all * flux.share_std_error, 2);
   const double both = landed_variance + expected_variance;
-  if (both <= 0.0) return flux.share_std_error > 0.0 ? 1.0 : expected / landed;
+  if (both <= 0.0) return expected / landed;  // both are exact: the flux is
   return (landed * expected_variance + expected * landed_variance) / (both * landed);
 }
 

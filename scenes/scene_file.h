@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// TOML scene file to Scene (docs/scene-format.md). The only user of toml++.
+// TOML scene file to Scene (docs/scene-format.md). toml_file.cpp is the only user of toml++.
 #pragma once
 
 #include <filesystem>
