@@ -73,11 +73,20 @@ Facet triangle_facet(const scenes::Scene& scene, std::size_t k, double edge_m) {
   return facet;
 }
 
-double cell_area(const Facet& facet, std::uint32_t cell) {
-  if (facet.parallelogram) return facet.area_m2 / (double(facet.s_count) * facet.t_count);
-  const double s0 = double(cell / facet.t_count), s1 = s0 + 1.0;
-  const double rows = double(facet.s_count) * facet.s_count;
-  return facet.area_m2 * (s1 * s1 - s0 * s0) / (rows * facet.t_count);
+double cell_area(const Facet& facet, const Rectangle& r) {
+  if (facet.parallelogram) return facet.area_m2 * (r.s1 - r.s0) * (r.t1 - r.t0);
+  return facet.area_m2 * (r.s1 * r.s1 - r.s0 * r.s0) * (r.t1 - r.t0);
+}
+
+Vec3 on_facet(const Facet& f, double s, double t) {
+  if (f.parallelogram) return f.corner + s * f.a + t * f.b;
+  return f.corner + s * (f.a + t * (f.b - f.a));
+}
+
+Rectangle rectangle_of(const Facet& facet, const Cell& cell) {
+  const double rows = std::ldexp(facet.s_count, static_cast<int>(cell.level));
+  const double columns = std::ldexp(facet.t_count, static_cast<int>(cell.level));
+  return {cell.s / rows, (cell.s + 1.0) / rows, cell.t / columns, (cell.t + 1.0) / columns};
 }
 
 }  // namespace
@@ -98,22 +107,48 @@ std::uint32_t Patches::find(std::uint32_t triangle, double u, double v, bool fro
   const Facet& f = facets[of_triangle[triangle]];
   const std::uint32_t first = front ? f.first_front : f.first_back;
   if (first == no_patch) return no_patch;
-  const Parameters p = parameters(triangle, u, v);
-  const auto clamp_cell = [](double x, std::uint32_t count) {
-    return static_cast<std::uint32_t>(std::clamp(x * count, 0.0, double(count - 1)));
-  };
-  return first + clamp_cell(p.s, f.s_count) * f.t_count + clamp_cell(p.t, f.t_count);
+  return first + leaf(f, parameters(triangle, u, v));
+}
+
+std::uint32_t Patches::leaf(const Facet& of, Parameters where) const {
+  double x = std::clamp(where.s, 0.0, 1.0) * of.s_count,
+         y = std::clamp(where.t, 0.0, 1.0) * of.t_count;
+  const auto row = std::min(static_cast<std::uint32_t>(x), of.s_count - 1);
+  const auto column = std::min(static_cast<std::uint32_t>(y), of.t_count - 1);
+  const std::uint32_t grid_cell = row * of.t_count + column;
+  if (of.tree == no_tree) return grid_cell;
+  std::uint32_t entry = tree[of.tree + grid_cell];
+  x -= row;
+  y -= column;
+  while ((entry & split_cell) != 0) {
+    const std::uint32_t ds = x >= 0.5 ? 1 : 0, dt = y >= 0.5 ? 1 : 0;
+    x = 2.0 * x - ds;
+    y = 2.0 * y - dt;
+    entry = tree[(entry & ~split_cell) + 2 * ds + dt];
+  }
+  return entry;
+}
+
+Rectangle Patches::rectangle(std::uint32_t patch) const {
+  return rectangle_of(facets[facet[patch]], cell[patch]);
+}
+
+std::array<Vec3, 4> Patches::corners(std::uint32_t patch) const {
+  const Facet& f = facets[facet[patch]];
+  const Rectangle r = rectangle(patch);
+  const Vec3 p00 = on_facet(f, r.s0, r.t0), p10 = on_facet(f, r.s1, r.t0);
+  const Vec3 p11 = on_facet(f, r.s1, r.t1), p01 = on_facet(f, r.s0, r.t1);
+  if (is_back[patch] != 0) return {p00, p01, p11, p10};
+  return {p00, p10, p11, p01};
 }
 
 Vec3 Patches::point(std::uint32_t patch, double x, double y) const {
   const Facet& f = facets[facet[patch]];
-  const double row = cell[patch] / f.t_count, column = cell[patch] % f.t_count;
-  const double t = (column + y) / f.t_count;
-  if (f.parallelogram) return f.corner + ((row + x) / f.s_count) * f.a + t * f.b;
+  const Rectangle r = rectangle(patch);
+  const double t = r.t0 + y * (r.t1 - r.t0);
+  if (f.parallelogram) return on_facet(f, r.s0 + x * (r.s1 - r.s0), t);
   // Area grows with s^2: uniform in the trapezoid between s0 and s1.
-  const double s0 = row / f.s_count, s1 = (row + 1.0) / f.s_count;
-  const double s = std::sqrt(s0 * s0 + x * (s1 * s1 - s0 * s0));
-  return f.corner + s * (f.a + t * (f.b - f.a));
+  return on_facet(f, std::sqrt(r.s0 * r.s0 + x * (r.s1 * r.s1 - r.s0 * r.s0)), t);
 }
 
 Vec3 Patches::normal(std::uint32_t patch) const {
@@ -141,6 +176,7 @@ Patches subdivide(const scenes::Scene& scene, double edge_m) {
                             " patches",
                         {}, "Raise quality.patch_edge");
     }
+    facet.leaves = static_cast<std::uint32_t>(cells);
     facet.first_front = static_cast<std::uint32_t>(total);
     total += cells;
     if (sheet) {
@@ -155,9 +191,10 @@ Patches subdivide(const scenes::Scene& scene, double edge_m) {
     }
     for (int side = 0; side < (sheet ? 2 : 1); ++side) {
       for (std::uint32_t c = 0; c < cells; ++c) {
-        patches.area_m2.push_back(cell_area(facet, c));
+        const Cell cell{c / facet.t_count, c % facet.t_count, 0};
+        patches.area_m2.push_back(cell_area(facet, rectangle_of(facet, cell)));
         patches.facet.push_back(index);
-        patches.cell.push_back(c);
+        patches.cell.push_back(cell);
         patches.is_back.push_back(static_cast<std::uint8_t>(side));
       }
     }

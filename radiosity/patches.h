@@ -3,6 +3,7 @@
 // triangles only; the patch of a hit follows from (triangle, u, v) by arithmetic, in O(1).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -11,9 +12,10 @@
 namespace earthshine::radiosity {
 
 inline constexpr std::uint32_t no_patch = 0xFFFFFFFFU;
+inline constexpr std::uint32_t no_tree = 0xFFFFFFFFU;
 
 // A triangle or a parallelogram of the scene with a grid of cells over its parameters (s, t) in
-// [0,1]^2.
+// [0,1]^2; any cell may be split in four, and so on (a quadtree in every cell of the grid).
 //   parallelogram: p = corner + s a + t b
 //   triangle:      p = corner + s (a + t (b - a)): s runs from the apex (the corner opposite the
 //   shortest edge)
@@ -24,9 +26,12 @@ struct Facet {
   Vec3 normal;  // unit, of the front
   double area_m2 = 0.0;
   std::uint32_t s_count = 1, t_count = 1;
-  std::uint32_t first_front = no_patch;  // patches s_count * t_count, index s * t_count + t
-  std::uint32_t first_back = no_patch;   // sheets only
-  std::uint32_t triangle = 0;            // first triangle of the scene
+  std::uint32_t first_front = no_patch;  // its leaves, one patch each; without a tree leaf
+                                         // s * t_count + t of the grid
+  std::uint32_t first_back = no_patch;   // sheets only: the same leaves, seen from behind
+  std::uint32_t leaves = 1;
+  std::uint32_t tree = no_tree;  // where its grid starts in Patches::tree, if any cell is split
+  std::uint32_t triangle = 0;    // first triangle of the scene
   std::uint32_t material = 0, object = 0;
   std::uint8_t apex = 0;  // which vertex of the triangle is the corner
   bool parallelogram = false;
@@ -36,15 +41,30 @@ struct Parameters {
   double s, t;
 };
 
+// A leaf: cell (s, t) of its facet's grid after `level` halvings, of (s_count << level) x (t_count
+// << level) cells.
+struct Cell {
+  std::uint32_t s = 0, t = 0;
+  std::uint32_t level = 0;
+};
+
+struct Rectangle {  // in parameters
+  double s0, s1, t0, t1;
+};
+
 class Patches {
  public:
   std::vector<Facet> facets;
   std::vector<double> area_m2;             // per patch
   std::vector<std::uint32_t> facet;        // per patch
-  std::vector<std::uint32_t> cell;         // per patch: index within its facet
+  std::vector<Cell> cell;                  // per patch
   std::vector<std::uint8_t> is_back;       // per patch: it is the back of a sheet
   std::vector<std::uint32_t> of_triangle;  // per triangle: its facet
   std::vector<std::uint8_t> second_half;   // per triangle: the second of a parallelogram
+  // Facets with split cells: s_count * t_count entries each, then blocks of four children (index
+  // 2 ds + dt). An entry is a leaf's number within its facet, or split_cell + where its block is.
+  std::vector<std::uint32_t> tree;
+  static constexpr std::uint32_t split_cell = 0x80000000U;
 
   [[nodiscard]] std::size_t count() const { return area_m2.size(); }
 
@@ -53,6 +73,13 @@ class Patches {
   // no_patch for the back of a one-sided surface.
   [[nodiscard]] std::uint32_t find(std::uint32_t triangle, double u, double v, bool front) const;
 
+  // The leaf at (s, t), counted from the facet's first patch.
+  [[nodiscard]] std::uint32_t leaf(const Facet& of, Parameters where) const;
+
+  [[nodiscard]] Rectangle rectangle(std::uint32_t patch) const;
+  // Counter-clockwise about the patch's own normal; where a triangle's apex is a corner it stands
+  // twice.
+  [[nodiscard]] std::array<Vec3, 4> corners(std::uint32_t patch) const;
   // A point of the patch, uniform in area for uniform (x, y) in [0,1]^2.
   [[nodiscard]] Vec3 point(std::uint32_t patch, double x, double y) const;
   [[nodiscard]] Vec3 normal(std::uint32_t patch) const;  // on the patch's own side
