@@ -7,6 +7,9 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "radiosity/hit_counter.h"
+#include "radiosity/hit_targets.h"
+#include "radiosity/patch_rays.h"
 #include "scenes/specular.h"
 
 namespace earthshine::radiosity {
@@ -17,92 +20,107 @@ using scenes::RayPacket;
 
 constexpr int most_specular_steps = 16;
 
+// What one row found beside its hits.
 struct Row {
-  std::vector<std::uint32_t> column;
-  std::vector<float> hits;
+  std::uint32_t entries = 0;
   double black = 0.0, sky = 0.0;  // in rays
   Rgb sky_illuminance{0.0};
   std::uint64_t rays = 0;
 };
 
-// Per thread: a dense counter that is cleared through the list of touched columns.
-struct Counter {
-  std::vector<float> count;
-  std::vector<std::uint32_t> touched;
-
-  explicit Counter(std::size_t patches) : count(patches, 0.0F) {}
-
-  void add(std::uint32_t patch, float weight) {
-    if (count[patch] == 0.0F) touched.push_back(patch);
-    count[patch] += weight;
-  }
-  void take(Row& row) {
-    std::sort(touched.begin(), touched.end());
-    row.column = touched;
-    row.hits.reserve(touched.size());
-    for (const std::uint32_t patch : touched) {
-      row.hits.push_back(count[patch]);
-      count[patch] = 0.0F;
-    }
-    touched.clear();
-  }
+// The rows of one chunk of patches, side by side.
+struct Band {
+  std::vector<Row> rows;
+  std::vector<std::uint32_t> column;
+  std::vector<float> hits;
 };
+
+std::vector<bool> materials_that_pass_on(const scenes::Scene& scene) {
+  std::vector<bool> passes_on;
+  for (const scenes::Material& m : scene.materials) {
+    passes_on.push_back(m.passes_light_on() || base::max_component(m.transmit) > 0.0);
+  }
+  return passes_on;
+}
 
 class Caster {
  public:
   Caster(const scenes::Scene& scene, const scenes::RayQuery& query, const Patches& patches,
-         const std::vector<double>& kept, const FormFactorOptions& options, int rays,
+         const std::vector<double>& kept, std::uint64_t seed, std::uint32_t rays,
          const SkyRadiance& sky)
       : scene_(scene),
         query_(query),
         patches_(patches),
         kept_(kept),
         sky_(sky),
-        seed_(options.seed),
-        rays_(static_cast<std::uint32_t>(rays)) {}
+        seed_(seed),
+        rays_(patches, query, rays),
+        targets_(patches, materials_that_pass_on(scene)) {}
 
-  Row cast(std::uint32_t patch, Counter& counter) const {
+  void cast(std::uint32_t patch, HitCounter& counter, Band& band) const {
     Row row;
-    const base::SobolOwen4 sobol(base::Key(seed_, base::Stream::FormFactor, patch));
-    const base::Frame3 frame = base::frame_around(patches_.normal(patch));
-    const Vec3 lift = frame.normal * query_.surface_offset_m();
-    RayPacket packet;
-    HitPacket hits;
-    Vec3 origins[RayPacket::width], directions[RayPacket::width];
-    for (std::uint32_t first = 0; first < rays_; first += RayPacket::width) {
-      const std::uint32_t count = std::min<std::uint32_t>(RayPacket::width, rays_ - first);
-      for (std::uint32_t k = 0; k < count; ++k) {
-        const auto p = sobol.point(first + k);
-        const float r = std::sqrt(p[0]), phi = 2.0F * static_cast<float>(base::pi) * p[1];
-        directions[k] =
-            frame.to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0F - p[0])});
-        origins[k] = patches_.point(patch, inset(p[2]), inset(p[3])) + lift;
-        query_.set(packet, k, origins[k], directions[k]);
+    const PatchRays::Sender sender =
+        rays_.sender(patch, base::Key(seed_, base::Stream::FormFactor, patch));
+    // A packet's hits are counted after the next packet was traced: by then what they need has come
+    // from memory.
+    RayPacket packets[2];
+    HitPacket hits[2];
+    const std::uint32_t count = rays_.count() / RayPacket::width;
+    for (std::uint32_t n = 0; n <= count; ++n) {
+      if (n < count) {
+        rays_.make(sender, n * RayPacket::width, packets[n % 2]);
+        query_.closest(packets[n % 2], RayPacket::width, hits[n % 2]);
+        for (const std::uint32_t triangle : hits[n % 2].triangle) targets_.prefetch(triangle);
       }
-      query_.closest(packet, count, hits);
-      row.rays += count;
-      for (std::uint32_t k = 0; k < count; ++k) {
-        const scenes::Hit hit{hits.triangle[k], hits.u[k], hits.v[k], hits.t[k],
-                              hits.front[k] != 0};
-        follow(origins[k], directions[k], hit, row, counter);
-      }
+      if (n > 0) count_hits(packets[(n - 1) % 2], hits[(n - 1) % 2], row, counter);
     }
-    counter.take(row);
-    row.sky_illuminance *= base::pi / rays_;
-    return row;
+    row.rays += rays_.count();
+    const std::size_t before = band.column.size();
+    counter.take(band.column, band.hits);
+    row.entries = static_cast<std::uint32_t>(band.column.size() - before);
+    row.sky_illuminance *= base::pi / rays_.count();
+    band.rows.push_back(row);
   }
 
  private:
-  // Keeps sample points off the patch's edges, where rounding could put them behind a neighbour.
-  static double inset(float x) { return 1e-4 + (1.0 - 2e-4) * x; }
+  void count_hits(const RayPacket& packet, const HitPacket& hits, Row& row,
+                  HitCounter& counter) const {
+    for (std::size_t k = 0; k < RayPacket::width; ++k) {
+      const std::uint32_t triangle = hits.triangle[k];
+      if (triangle == scenes::no_triangle) {
+        row.sky += 1.0;
+        if (sky_) row.sky_illuminance += sky_(direction(packet, k));
+        continue;
+      }
+      if (targets_.passes_on(triangle)) {
+        follow(packet, k, {triangle, hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0}, row,
+               counter);
+        continue;
+      }
+      const std::uint32_t to = targets_.find(triangle, hits.u[k], hits.v[k], hits.front[k] != 0);
+      if (to == no_patch) {
+        row.black += 1.0;
+      } else {
+        counter.add(to, 1.0F);
+      }
+    }
+  }
 
-  // Counts the hit and, where a mirror or glass is met, the hits behind it.
-  void follow(Vec3 origin, Vec3 direction, scenes::Hit hit, Row& row, Counter& counter) const {
+  static Vec3 direction(const RayPacket& packet, std::size_t k) {
+    return {packet.direction_x[k], packet.direction_y[k], packet.direction_z[k]};
+  }
+
+  // Counts a hit on a mirror or glass and the hits behind it.
+  void follow(const RayPacket& packet, std::size_t lane, scenes::Hit hit, Row& row,
+              HitCounter& counter) const {
+    Vec3 origin =
+        query_.centre() + Vec3(packet.origin_x[lane], packet.origin_y[lane], packet.origin_z[lane]);
+    Vec3 way = direction(packet, lane);
     float weight = 1.0F;
     for (int step = 0;; ++step) {
       if (hit.missed()) {
         row.sky += weight;
-        if (sky_) row.sky_illuminance += double(weight) * sky_(direction);
+        if (sky_) row.sky_illuminance += double(weight) * sky_(way);
         return;
       }
       const std::uint32_t to = patches_.find(hit.triangle, hit.u, hit.v, hit.front);
@@ -122,11 +140,11 @@ class Caster {
         return;
       }
       const Vec3 normal = scenes::triangle_normal(scene_, hit.triangle);
-      const Vec3 at = origin + hit.t * direction;
-      direction = scenes::specular_direction(material, normal, direction);
-      const double side = glm::dot(direction, normal) > 0.0 ? 1.0 : -1.0;
+      const Vec3 at = origin + hit.t * way;
+      way = scenes::specular_direction(material, normal, way);
+      const double side = glm::dot(way, normal) > 0.0 ? 1.0 : -1.0;
       origin = at + normal * (side * query_.surface_offset_m());
-      hit = query_.closest(origin, direction);
+      hit = query_.closest(origin, way);
       ++row.rays;
     }
   }
@@ -137,7 +155,8 @@ class Caster {
   const std::vector<double>& kept_;
   const SkyRadiance& sky_;
   std::uint64_t seed_;
-  std::uint32_t rays_;
+  PatchRays rays_;
+  HitTargets targets_;
 };
 
 // a = 1 - mirror - transmit, as luminance: one matrix serves the three channels.
@@ -152,26 +171,27 @@ std::vector<double> kept_shares(const scenes::Scene& scene, const Patches& patch
   return kept;
 }
 
-void assemble(std::vector<Row>& rows, FormFactors& factors) {
-  const std::size_t count = rows.size();
-  factors.row_start.assign(count + 1, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    factors.row_start[i + 1] = factors.row_start[i] + rows[i].column.size();
-    factors.ray_count += rows[i].rays;
+// Joins the bands and leaves them empty.
+void assemble(std::vector<Band>& bands, FormFactors& factors) {
+  std::size_t i = 0;
+  factors.row_start[0] = 0;
+  for (const Band& band : bands) {
+    for (const Row& row : band.rows) {
+      factors.row_start[i + 1] = factors.row_start[i] + row.entries;
+      factors.sky_illuminance[i] = row.sky_illuminance;
+      factors.ray_count += row.rays;
+      ++i;
+    }
   }
-  factors.column.resize(factors.row_start[count]);
-  factors.hits.resize(factors.row_start[count]);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto start = static_cast<std::ptrdiff_t>(factors.row_start[i]);
-    std::copy(rows[i].column.begin(), rows[i].column.end(), factors.column.begin() + start);
-    std::copy(rows[i].hits.begin(), rows[i].hits.end(), factors.hits.begin() + start);
-    factors.sky_illuminance[i] = rows[i].sky_illuminance;
-    rows[i] = Row{std::vector<std::uint32_t>(),
-                  std::vector<float>(),
-                  rows[i].black,
-                  rows[i].sky,
-                  Rgb(0.0),
-                  0};
+  factors.column.resize(factors.row_start[i]);
+  factors.hits.resize(factors.row_start[i]);
+  std::ptrdiff_t at = 0;
+  for (Band& band : bands) {
+    std::copy(band.column.begin(), band.column.end(), factors.column.begin() + at);
+    std::copy(band.hits.begin(), band.hits.end(), factors.hits.begin() + at);
+    at += static_cast<std::ptrdiff_t>(band.column.size());
+    band.column = {};
+    band.hits = {};
   }
 }
 
@@ -196,7 +216,8 @@ FormFactors cast_form_factors(const scenes::Scene& scene, const scenes::RayQuery
   const std::size_t count = patches.count();
   FormFactors factors;
   factors.rays_per_patch = static_cast<int>(
-      std::bit_ceil(static_cast<std::uint32_t>(std::max(1, options.rays_per_patch))));
+      std::bit_ceil(std::max(static_cast<std::uint32_t>(std::max(1, options.rays_per_patch)),
+                             static_cast<std::uint32_t>(RayPacket::width))));
   factors.kept = kept_shares(scene, patches);
   factors.sky.assign(count, 0.0);
   factors.black.assign(count, 0.0);
@@ -206,17 +227,26 @@ FormFactors cast_form_factors(const scenes::Scene& scene, const scenes::RayQuery
   factors.column_scale.assign(count, 1.0);
   factors.sky_illuminance.assign(count, Rgb(0.0));
 
-  std::vector<Row> rows(count);
-  const Caster caster(scene, query, patches, factors.kept, options, factors.rays_per_patch, sky);
-  base::parallel_chunks(count, 64, [&](std::size_t begin, std::size_t end) {
-    thread_local Counter counter(0);
-    if (counter.count.size() < count) counter = Counter(count);
-    for (std::size_t i = begin; i < end; ++i) {
-      rows[i] = caster.cast(static_cast<std::uint32_t>(i), counter);
+  factors.row_start.assign(count + 1, 0);
+
+  constexpr std::size_t band_rows = 64;
+  std::vector<Band> bands((count + band_rows - 1) / band_rows);
+  const Caster caster(scene, query, patches, factors.kept, options.seed,
+                      static_cast<std::uint32_t>(factors.rays_per_patch), sky);
+  base::parallel_chunks(bands.size(), 1, [&](std::size_t begin, std::size_t end) {
+    thread_local HitCounter counter(0);
+    if (counter.patches() < count) counter = HitCounter(count);
+    for (std::size_t band = begin; band < end; ++band) {
+      for (std::size_t i = band * band_rows; i < std::min(count, (band + 1) * band_rows); ++i) {
+        caster.cast(static_cast<std::uint32_t>(i), counter, bands[band]);
+      }
     }
   });
-  assemble(rows, factors);
-  for (std::size_t i = 0; i < count; ++i) close_row(factors, i, rows[i].sky, rows[i].black);
+  assemble(bands, factors);
+  std::size_t i = 0;
+  for (const Band& band : bands) {
+    for (const Row& row : band.rows) close_row(factors, i++, row.sky, row.black);
+  }
   return factors;
 }
 

@@ -20,7 +20,7 @@
 namespace earthshine::radiosity {
 
 struct FormFactorOptions {
-  int rays_per_patch = 1024;  // rounded up to a power of two
+  int rays_per_patch = 1024;  // rounded up to a power of two, 8 or more
   std::uint64_t seed = 1;
 };
 

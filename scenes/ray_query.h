@@ -70,6 +70,9 @@ class RayQuery {
   // through a neighbour.
   [[nodiscard]] double surface_offset_m() const;
 
+  // What packets' origins are relative to.
+  [[nodiscard]] const Vec3& centre() const { return centre_; }
+
  private:
   struct Embree;
   std::unique_ptr<Embree> embree_;

@@ -7,6 +7,8 @@
 #include <set>
 #include <vector>
 
+#include "base/sobol_set.h"
+
 namespace earthshine::base {
 namespace {
 
@@ -68,6 +70,30 @@ TEST(Random, FirstTwoSobolDimensionsFillEveryElementaryBoxOnce) {
     }
     EXPECT_EQ(boxes.size(), 1U << m) << "split " << split;
   }
+}
+
+TEST(Random, TheSobolSetIsANetInEachPairOfItsDimensionsThatSobolMakesOne) {
+  // Elementary boxes of the first two dimensions, as above, and each single dimension's strata.
+  constexpr int m = 8;
+  const SobolSet4 set(1U << m);
+  const SobolSet4::Scramble scramble(Key(5, Stream::Test, 9));
+  std::vector<std::set<int>> boxes(m + 1), strata(4);
+  SobolSet4::Points p;
+  for (std::uint32_t first = 0; first < set.count(); first += SobolSet4::width) {
+    set.points(first, scramble, p);
+    for (std::size_t k = 0; k < SobolSet4::width; ++k) {
+      for (int split = 0; split <= m; ++split) {
+        const int x = static_cast<int>(std::ldexp(p.x[0][k], split));
+        const int y = static_cast<int>(std::ldexp(p.x[1][k], m - split));
+        boxes[static_cast<std::size_t>(split)].insert((x << (m - split)) | y);
+      }
+      for (std::size_t d = 0; d < 4; ++d) {
+        strata[d].insert(static_cast<int>(std::ldexp(p.x[d][k], m)));
+      }
+    }
+  }
+  for (const auto& seen : boxes) EXPECT_EQ(seen.size(), 1U << m);
+  for (const auto& seen : strata) EXPECT_EQ(seen.size(), 1U << m);
 }
 
 TEST(Random, SobolValuesStayInsideTheOpenUnitIntervalAndStratifyEachAxis) {
