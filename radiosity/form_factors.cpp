@@ -250,21 +250,4 @@ FormFactors cast_form_factors(const scenes::Scene& scene, const scenes::RayQuery
   return factors;
 }
 
-void multiply(const FormFactors& factors, std::span<const double> x, std::span<double> y,
-              std::size_t columns) {
-  base::parallel_chunks(factors.count(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      double* out = &y[i * columns];
-      std::fill(out, out + columns, 0.0);
-      for (std::uint64_t e = factors.row_start[i]; e < factors.row_start[i + 1]; ++e) {
-        const std::uint32_t j = factors.column[e];
-        const double weight = double(factors.hits[e]) * factors.column_scale[j];
-        const double* in = &x[j * columns];
-        for (std::size_t c = 0; c < columns; ++c) out[c] += weight * in[c];
-      }
-      for (std::size_t c = 0; c < columns; ++c) out[c] *= factors.row_scale[i];
-    }
-  });
-}
-
 }  // namespace earthshine::radiosity

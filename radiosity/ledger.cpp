@@ -37,4 +37,20 @@ std::vector<GroupLedger> energy_ledger(const LedgerInput& in,
   return ledger;
 }
 
+void close_energy(const LedgerInput& in, std::span<double> radiosity, std::span<double> indirect) {
+  std::vector<double> source(in.columns, 0.0), left(in.columns, 0.0);
+  for (std::size_t k = 0; k < radiosity.size(); ++k) {
+    const double area = in.area_m2[k / in.columns];
+    const double s = in.emitted[k] + in.reflectance[k] * in.direct[k];
+    source[k % in.columns] += area * s;
+    left[k % in.columns] += area * (s - radiosity[k] + in.reflectance[k] * indirect[k]);
+  }
+  for (std::size_t k = 0; k < radiosity.size(); ++k) {
+    const double all = source[k % in.columns], missing = left[k % in.columns];
+    if (all <= 0.0 || std::abs(missing) > 0.01 * all) continue;
+    radiosity[k] *= all / (all - missing);
+    indirect[k] *= all / (all - missing);
+  }
+}
+
 }  // namespace earthshine::radiosity

@@ -30,4 +30,12 @@ struct LedgerInput {
 [[nodiscard]] std::vector<GroupLedger> energy_ledger(const LedgerInput& input,
                                                      const std::vector<std::string>& group_names);
 
+// Scales each column of B and of F B so that its energy adds up to rounding. Summed with the areas
+// as weights, (1 - rho F) B = S says emitted + landed = absorbed + escaped; what the solver left of
+// that sum, a share of about its residual, is made good by B as a whole; what unbalanced form
+// factors leave of it is not touched. `radiosity` and `indirect` are the vectors that `input`
+// views.
+void close_energy(const LedgerInput& input, std::span<double> radiosity,
+                  std::span<double> indirect);
+
 }  // namespace earthshine::radiosity

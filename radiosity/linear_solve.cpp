@@ -6,6 +6,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace earthshine::radiosity {
@@ -83,58 +84,130 @@ struct generic_product_impl<earthshine::radiosity::RadiosityOperator, Rhs, Spars
 namespace earthshine::radiosity {
 namespace {
 
-std::vector<double> column_norms(std::span<const double> values, std::size_t columns) {
+using Vector = Eigen::VectorXd;
+
+std::vector<double> column_norms(const Vector& values, std::size_t columns) {
   std::vector<double> norms(columns, 0.0);
-  for (std::size_t k = 0; k < values.size(); ++k) norms[k % columns] += values[k] * values[k];
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    norms[static_cast<std::size_t>(k) % columns] += values[k] * values[k];
+  }
   for (double& norm : norms) norm = std::sqrt(norm);
   return norms;
 }
 
+std::vector<double> column_maxima(const Vector& values, std::size_t columns) {
+  std::vector<double> maxima(columns, 0.0);
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    double& largest = maxima[static_cast<std::size_t>(k) % columns];
+    largest = std::max(largest, std::abs(values[k]));
+  }
+  return maxima;
+}
+
+// Multiplies column c by scale[c]; a scale of 0 leaves its column 0.
+void scale_columns(Vector& values, const std::vector<double>& scale) {
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    values[k] *= scale[static_cast<std::size_t>(k) % scale.size()];
+  }
+}
+
+std::vector<double> inverse(std::vector<double> values) {
+  for (double& value : values) value = value > 0.0 ? 1.0 / value : 0.0;
+  return values;
+}
+
+class Solver {
+ public:
+  Solver(const FormFactors& factors, std::span<const double> reflectance, std::size_t columns)
+      : system_(factors, reflectance, columns), columns_(columns) {
+    krylov_.compute(system_);
+    krylov_.setMaxIterations(300);
+  }
+
+  // The x of (1 - rho F) x = b to a joint relative residual, from x on.
+  void improve(const Vector& b, double wanted, Vector& x, int& iterations) {
+    krylov_.setTolerance(wanted);
+    const Vector found = krylov_.solveWithGuess(b, x);
+    iterations += static_cast<int>(krylov_.iterations());
+    if (found.allFinite() && rest(b, found).squaredNorm() <= rest(b, x).squaredNorm()) {
+      x = found;
+      return;
+    }
+    // BiCGSTAB can break down; bouncing the light once more a time never does.
+    for (int bounce = 0; bounce < 1000; ++bounce, ++iterations) {
+      const Vector left = rest(b, x);
+      if (left.norm() <= wanted * b.norm()) break;
+      x += left;
+    }
+  }
+
+  [[nodiscard]] Vector rest(const Vector& b, const Vector& x) const { return b - system_.apply(x); }
+
+  // Adds to x what its residual asks for. Returns by how much it changed x: worst over the columns
+  // of max |d| / max |x|.
+  double correct(const Vector& b, Vector& x, int& iterations) {
+    Vector left = rest(b, x);
+    const std::vector<double> size = column_norms(left, columns_);
+    if (*std::max_element(size.begin(), size.end()) <= 0.0) return 0.0;
+    scale_columns(left, inverse(size));
+    Vector d = left;
+    improve(left, 0.01, d, iterations);
+    scale_columns(d, size);
+    x += d;
+    const std::vector<double> change = column_maxima(d, columns_), all = column_maxima(x, columns_);
+    double worst = 0.0;
+    for (std::size_t c = 0; c < columns_; ++c) {
+      if (all[c] > 0.0) worst = std::max(worst, change[c] / all[c]);
+    }
+    return worst;
+  }
+
+ private:
+  RadiosityOperator system_;
+  std::size_t columns_;
+  Eigen::BiCGSTAB<RadiosityOperator, Eigen::IdentityPreconditioner> krylov_;
+};
+
+constexpr int most_corrections = 8;
+constexpr double still_a_solution = 1e-6;
+
 }  // namespace
 
 LinearSolve solve_linear(const FormFactors& factors, std::span<const double> source,
-                         std::span<const double> reflectance, std::size_t columns,
-                         double tolerance) {
+                         std::span<const double> reflectance, std::size_t columns, double tolerance,
+                         std::span<const double> guess) {
   LinearSolve result;
   result.x.assign(source.size(), 0.0);
-  const std::vector<double> norms = column_norms(source, columns);
-  if (*std::max_element(norms.begin(), norms.end()) <= 0.0) return result;
+  Vector b = Eigen::Map<const Vector>(source.data(), static_cast<Eigen::Index>(source.size()));
+  const std::vector<double> norms = column_norms(b, columns);
+  if (source.empty() || *std::max_element(norms.begin(), norms.end()) <= 0.0) return result;
+  scale_columns(b, inverse(norms));
 
-  const auto size = static_cast<Eigen::Index>(source.size());
-  Eigen::VectorXd b(size);
-  for (Eigen::Index k = 0; k < size; ++k) {
-    const auto index = static_cast<std::size_t>(k);
-    const double norm = norms[index % columns];
-    b[k] = norm > 0.0 ? source[index] / norm : 0.0;
+  Vector x = b;
+  if (guess.size() == source.size()) {
+    x = Eigen::Map<const Vector>(guess.data(), b.size());
+    scale_columns(x, inverse(norms));
   }
-  const RadiosityOperator system(factors, reflectance, columns);
-  Eigen::BiCGSTAB<RadiosityOperator, Eigen::IdentityPreconditioner> solver;
-  solver.compute(system);
-  solver.setMaxIterations(200);
-  // The joint residual bounds each column's share; tighter steps follow while a column is above
-  // tolerance.
-  Eigen::VectorXd x = b;
-  double wanted = tolerance / std::sqrt(static_cast<double>(columns));
-  for (int attempt = 0; attempt < 6; ++attempt, wanted *= 0.1) {
-    solver.setTolerance(wanted);
-    x = solver.solveWithGuess(b, x);
-    result.iterations += static_cast<int>(solver.iterations());
-    const Eigen::VectorXd rest = b - system.apply(x);
-    const std::vector<double> left =
-        column_norms({rest.data(), static_cast<std::size_t>(rest.size())}, columns);
-    result.residual = *std::max_element(left.begin(), left.end());
-    if (result.residual <= tolerance) break;
+  Solver solver(factors, reflectance, columns);
+  solver.improve(b, tolerance / std::sqrt(static_cast<double>(columns)), x, result.iterations);
+  result.error = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < most_corrections && result.error > tolerance; ++round) {
+    const double previous = result.error;
+    result.error = solver.correct(b, x, result.iterations);
+    if (!(result.error < 0.5 * previous)) break;  // rounding is reached
   }
-  if (!(result.residual <= std::max(tolerance, 1e-6))) {
+  const std::vector<double> left = column_norms(solver.rest(b, x), columns);
+  result.residual = *std::max_element(left.begin(), left.end());
+  if (!(result.error <= std::max(tolerance, still_a_solution))) {
     std::ostringstream found;
-    found << "the solver stopped at a relative residual of " << result.residual;
+    found << "the solver stopped where the radiosity still changes by " << result.error
+          << " of its largest value";
     throw base::Error(base::Blame::Work, "radiosity", found.str(),
                       "1e-6 is the largest that is still a solution",
                       "Lower reflectances that are nearly 1, or report the scene as a defect");
   }
-  for (std::size_t k = 0; k < source.size(); ++k) {
-    result.x[k] = x[static_cast<Eigen::Index>(k)] * norms[k % columns];
-  }
+  scale_columns(x, norms);
+  std::copy(x.begin(), x.end(), result.x.begin());
   return result;
 }
 

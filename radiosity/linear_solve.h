@@ -14,13 +14,20 @@ struct LinearSolve {
   std::vector<double> x;  // count x columns, row-major
   int iterations = 0;
   double residual = 0.0;  // worst ||S - (1 - rho F) x|| / ||S|| over the columns
+  // What is still missing from x, in its own units: worst over the columns of max |last correction|
+  // x (its own relative residual) / max |x|.
+  double error = 0.0;
 };
 
 // source and reflectance: count x columns, row-major. BiCGSTAB (Eigen) on all columns as one
-// system, each scaled to a source of norm 1; the operator is matrix-free. Columns without source
-// stay 0. Throws base::Error (Work) when the residual stays above max(tolerance, 1e-6).
+// system, each scaled to a source of norm 1; the operator is matrix-free. Then corrections d with
+// (1 - rho F) d = residual are solved for and added until `error`, the part of x that a further one
+// would change, is at most `tolerance`: where light is reflected a million times a small residual
+// is no small error. Columns without source stay 0. A guess (count x columns), such as the solution
+// of a similar scene, saves iterations and changes nothing else. Throws base::Error (Work) when
+// `error` stays above max(tolerance, 1e-6).
 [[nodiscard]] LinearSolve solve_linear(const FormFactors& factors, std::span<const double> source,
                                        std::span<const double> reflectance, std::size_t columns,
-                                       double tolerance);
+                                       double tolerance, std::span<const double> guess = {});
 
 }  // namespace earthshine::radiosity

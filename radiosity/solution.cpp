@@ -146,13 +146,15 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   for (std::size_t k = 0; k < source.size(); ++k) {
     source[k] = emitted[k] + rho[k] * light.illuminance_lx[k];
   }
-  // The energy of a group misses its balance by about the residual: a hundredth of the tolerance
-  // asked for B keeps the ledger two digits ahead of the solution.
-  const LinearSolve linear = solve_linear(factors, source, rho, columns, 0.01 * options.tolerance);
+  LinearSolve linear = solve_linear(factors, source, rho, columns, options.tolerance);
   report.iterations = linear.iterations;
   report.residual = linear.residual;
+  report.solver_error = linear.error;
   std::vector<double> indirect(source.size());
   multiply(factors, linear.x, indirect, columns);
+  close_energy(
+      {factors, patches.area_m2, columns, rho, emitted, light.illuminance_lx, indirect, linear.x},
+      linear.x, indirect);
   watch.lap("linear solve");
 
   report.groups = energy_ledger(

@@ -20,7 +20,7 @@ namespace earthshine::radiosity {
 struct SolveOptions {
   double patch_edge_m = 0.25;
   int form_factor_rays = 1024;  // per patch
-  double tolerance = 1e-8;      // relative residual of the solve, per right-hand side
+  double tolerance = 1e-8;      // of B, relative to each right-hand side's largest (linear_solve.h)
   std::uint64_t seed = 1;
 };
 
@@ -49,7 +49,8 @@ struct SolveReport {
   std::uint64_t shadow_rays = 0;
   std::size_t nonzeros = 0;
   int iterations = 0;
-  double residual = 0.0;  // worst relative residual over the right-hand sides
+  double residual = 0.0;      // worst relative residual over the right-hand sides
+  double solver_error = 0.0;  // LinearSolve::error
   BalanceReport balance;
   std::vector<std::pair<std::string, double>> seconds;  // stage, wall seconds
   std::vector<GroupLedger> groups;
