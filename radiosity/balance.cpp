@@ -9,31 +9,37 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr int most_sweeps = 500;
+constexpr int most_sweeps = 500;  // passes over the matrix there and back
+constexpr int plain_sweeps = 4;
 constexpr double enough = 1e-13;
 constexpr double largest_scale = 1e6;
 
-// sum_i A_i a_i row_scale_i n_ij, for every j. Rows are split in a fixed number of bands with sums
-// of their own, added in order: the same bits on any number of threads.
-std::vector<double> column_sums(const FormFactors& f, std::span<const double> area_m2) {
-  constexpr std::size_t bands = 8;
+// column_scale_j sum_i weight_i F_raw,ij with F_raw = row_scale n. Rows are split in a fixed number
+// of bands with sums of their own, added in order: the same bits on any number of threads.
+template <class Weight>
+std::vector<double> weighted_column_sums(const FormFactors& f, Weight weight) {
+  constexpr std::size_t bands = 16;
   const std::size_t count = f.count();
   std::vector<double> partial(bands * count, 0.0);
   base::parallel_chunks(bands, 1, [&](std::size_t band, std::size_t) {
     double* sums = &partial[band * count];
     for (std::size_t i = band * count / bands; i < (band + 1) * count / bands; ++i) {
-      const double weight = area_m2[i] * f.kept[i] * f.row_scale[i];
-      if (weight == 0.0) continue;
+      const double w = weight(i) * f.row_scale[i];
+      if (w == 0.0) continue;
       for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
-        sums[f.column[e]] += weight * double(f.hits[e]);
+        sums[f.column[e]] += w * double(f.hits[e]);
       }
     }
   });
-  for (std::size_t band = 1; band < bands; ++band) {
-    for (std::size_t j = 0; j < count; ++j) partial[j] += partial[band * count + j];
-  }
-  partial.resize(count);
-  return partial;
+  std::vector<double> total(count);
+  base::parallel_chunks(count, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t j = begin; j < end; ++j) {
+      double sum = 0.0;
+      for (std::size_t band = 0; band < bands; ++band) sum += partial[band * count + j];
+      total[j] = f.column_scale[j] * sum;
+    }
+  });
+  return total;
 }
 
 // A patch that no ray reached has an empty column, which no scaling can fill. Reciprocity gives its
@@ -81,114 +87,198 @@ std::size_t fill_empty_columns(FormFactors& f, std::span<const double> area_m2) 
   return patches;
 }
 
-// The scaling's state beside the factors' own vectors: row_scale starts at 1 / N, hence the two
-// relative scales.
-struct Scaling {
-  std::vector<double> row;   // relative to the raw rows
-  std::vector<double> seen;  // raw F_i,sky + F_i,black
-};
+// The scaling in progress. In logarithms of the scales the two laws are the gradient of a convex
+// function (Sinkhorn's problem with the sky and the black backs as one more row and column); rows
+// are kept exact, so that what is left to bring to zero is the columns' defect as a function of the
+// column scales.
+class Scaling {
+ public:
+  Scaling(FormFactors& factors, std::span<const double> area_m2)
+      : f_(factors),
+        area_m2_(area_m2),
+        raw_row_scale_(factors.row_scale),
+        row_(factors.count(), 1.0),
+        seen_(factors.count()),
+        total_m2_(std::accumulate(area_m2.begin(), area_m2.end(), 0.0)) {
+    for (std::size_t i = 0; i < seen_.size(); ++i) seen_[i] = f_.sky[i] + f_.black[i];
+    update_sums();
+  }
 
-// Patches that exchange light, directly or by way of others, by the lowest patch of their group.
-// Scaling a group's rows up and its columns down by one factor changes nothing but its shares of
-// sky and black backs: a group that is nearly closed would creep toward the right factor by its
-// small open share per sweep.
-std::vector<std::uint32_t> exchange_groups(const FormFactors& f) {
-  std::vector<std::uint32_t> parent(f.count());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  for (std::uint32_t i = 0; i < f.count(); ++i) {
-    for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
-      if (f.hits[e] <= 0.0F) continue;
-      const std::uint32_t a = root(i), b = root(f.column[e]);
-      parent[std::max(a, b)] = std::min(a, b);
+  // sum_j |what the columns hold - A_j| / sum_j A_j.
+  [[nodiscard]] double defect() const {
+    double sum = 0.0;
+    for (std::size_t j = 0; j < sums_.size(); ++j) sum += std::abs(sums_[j] - area_m2_[j]);
+    return total_m2_ > 0.0 ? sum / total_m2_ : 0.0;
+  }
+
+  // Iterative proportional fitting: every column to its target, then every row.
+  void sweep() {
+    for (std::size_t j = 0; j < sums_.size(); ++j) {
+      if (sums_[j] > 0.0) scale_column(j, area_m2_[j] / sums_[j]);
     }
+    close_rows();
   }
-  for (std::uint32_t i = 0; i < f.count(); ++i) parent[i] = root(i);
-  return parent;
-}
 
-// What leaves a group is the same by its rows and by its columns once both are right (sum the two
-// laws with weights A a); half the step in between is taken at once.
-void share_out(FormFactors& f, std::span<const double> area_m2, const Scaling& scaling,
-               const std::vector<std::uint32_t>& group) {
-  std::vector<double> by_rows(f.count(), 0.0), by_columns(f.count(), 0.0);
-  for (std::size_t i = 0; i < f.count(); ++i) {
-    const double open = area_m2[i] * f.kept[i] * scaling.seen[i];
-    by_rows[group[i]] += open * scaling.row[i];
-    by_columns[group[i]] += open * f.column_scale[i];
+  // Newton's step: what the sums would be to first order, rows following, is right for all columns
+  // at once. Sweeps creep where parts of a scene exchange little light; this does not. Keeps the
+  // step only if it helps. Returns the passes over the matrix.
+  int newton_step(int most_passes) {
+    const std::vector<double> old_column = f_.column_scale;
+    const double before = defect();
+    std::vector<double> step;
+    int passes = solve_for_step(step, most_passes);
+    const double largest = *std::max_element(
+        step.begin(), step.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    // Logarithms beyond this are outside of what first order says.
+    const double damping = std::min(1.0, 1.0 / std::max(1e-300, std::abs(largest)));
+    for (std::size_t j = 0; j < step.size(); ++j) scale_column(j, std::exp(damping * step[j]));
+    close_rows();
+    if (!(defect() < before)) {
+      f_.column_scale = old_column;
+      close_rows();
+      sweep();
+    }
+    return passes + 1;
   }
-  for (std::size_t i = 0; i < f.count(); ++i) {
-    const double rows = by_rows[group[i]], columns = by_columns[group[i]];
-    if (rows > 0.0 && columns > 0.0) f.column_scale[i] *= std::sqrt(rows / columns);
-  }
-}
 
-void rescale_rows(FormFactors& f, const std::vector<double>& raw_row_scale, Scaling& scaling) {
-  base::parallel_chunks(f.count(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      double landed = 0.0;
-      for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
-        const std::uint32_t j = f.column[e];
-        landed += double(f.hits[e]) * f.kept[j] * f.column_scale[j];
+  void close_rows() {
+    base::parallel_chunks(f_.count(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        double landed = 0.0;
+        for (std::uint64_t e = f_.row_start[i]; e < f_.row_start[i + 1]; ++e) {
+          const std::uint32_t j = f_.column[e];
+          landed += double(f_.hits[e]) * f_.kept[j] * f_.column_scale[j];
+        }
+        const double sum = landed * raw_row_scale_[i] + seen_[i];
+        row_[i] = sum > 0.0 ? 1.0 / sum : 1.0;
+        f_.row_scale[i] = raw_row_scale_[i] * row_[i];
       }
-      const double sum = landed * raw_row_scale[i] + scaling.seen[i];
-      scaling.row[i] = sum > 0.0 ? 1.0 / sum : 1.0;
-      f.row_scale[i] = raw_row_scale[i] * scaling.row[i];
+    });
+    update_sums();
+  }
+
+  // The shares of sky and black backs follow the scales.
+  void finish() {
+    for (std::size_t i = 0; i < row_.size(); ++i) {
+      f_.sky[i] *= row_[i];
+      f_.black[i] *= row_[i];
+      f_.sky_illuminance[i] *= row_[i];
+      f_.escape[i] *= f_.column_scale[i];
+      f_.lost[i] *= f_.column_scale[i];
     }
-  });
-}
+  }
+
+ private:
+  // The bound stops a column that too few rays reached to ever fill from running off to infinity.
+  void scale_column(std::size_t j, double factor) {
+    f_.column_scale[j] =
+        std::clamp(f_.column_scale[j] * factor, 1.0 / largest_scale, largest_scale);
+  }
+
+  void update_sums() {
+    sums_ = weighted_column_sums(f_, [&](std::size_t i) { return area_m2_[i] * f_.kept[i]; });
+    for (std::size_t j = 0; j < sums_.size(); ++j) {
+      sums_[j] += area_m2_[j] * f_.column_scale[j] * seen_[j];
+    }
+  }
+
+  // The change of a_j * sums when the column scales' logarithms change by `step`.
+  [[nodiscard]] std::vector<double> response(const std::vector<double>& step) const {
+    const std::size_t count = step.size();
+    std::vector<double> weighted(count), rows(count);
+    for (std::size_t j = 0; j < count; ++j) weighted[j] = f_.kept[j] * step[j];
+    multiply(f_, weighted, rows, 1);
+    std::vector<double> change =
+        weighted_column_sums(f_, [&](std::size_t i) { return area_m2_[i] * f_.kept[i] * rows[i]; });
+    for (std::size_t j = 0; j < count; ++j) {
+      change[j] = f_.kept[j] * (sums_[j] * step[j] - change[j]);
+    }
+    return change;
+  }
+
+  // Conjugate gradients with the diagonal as preconditioner; a tenth of the defect is left to the
+  // next step, which knows more.
+  int solve_for_step(std::vector<double>& step, int most_passes) const {
+    const std::size_t count = sums_.size();
+    step.assign(count, 0.0);
+    std::vector<double> left(count), way(count), diagonal(count);
+    const auto dot = [count](const std::vector<double>& a, const std::vector<double>& b) {
+      double sum = 0.0;
+      for (std::size_t j = 0; j < count; ++j) sum += a[j] * b[j];
+      return sum;
+    };
+    const auto conditioned = [&](const std::vector<double>& v) {
+      std::vector<double> w(count);
+      for (std::size_t j = 0; j < count; ++j) w[j] = diagonal[j] > 0.0 ? v[j] / diagonal[j] : 0.0;
+      return w;
+    };
+    for (std::size_t j = 0; j < count; ++j) {
+      diagonal[j] = f_.kept[j] * sums_[j];
+      left[j] = f_.kept[j] * (area_m2_[j] - sums_[j]);
+    }
+    std::vector<double> z = conditioned(left);
+    way = z;
+    double size = dot(left, z);
+    const double wanted = 0.01 * size;  // a tenth in the norm whose square this is
+    int passes = 0;
+    while (passes < most_passes && size > wanted) {
+      const std::vector<double> change = response(way);
+      ++passes;
+      const double curvature = dot(way, change);
+      if (!(curvature > 0.0)) break;
+      const double length = size / curvature;
+      for (std::size_t j = 0; j < count; ++j) {
+        step[j] += length * way[j];
+        left[j] -= length * change[j];
+      }
+      z = conditioned(left);
+      const double next = dot(left, z);
+      for (std::size_t j = 0; j < count; ++j) way[j] = z[j] + next / size * way[j];
+      size = next;
+    }
+    // A perfect mirror keeps nothing, so that no row feels its column's scale: it follows alone.
+    for (std::size_t j = 0; j < count; ++j) {
+      if (f_.kept[j] <= 0.0 && sums_[j] > 0.0) step[j] = std::log(area_m2_[j] / sums_[j]);
+    }
+    return passes;
+  }
+
+  FormFactors& f_;
+  std::span<const double> area_m2_;
+  std::vector<double> raw_row_scale_;
+  std::vector<double> row_;   // relative to the raw rows
+  std::vector<double> seen_;  // raw F_i,sky + F_i,black
+  std::vector<double> sums_;  // sum_i A_i a_i F_ij + A_j (escape_j + lost_j)
+  double total_m2_;
+};
 
 }  // namespace
 
 BalanceReport balance(FormFactors& factors, std::span<const double> area_m2) {
   BalanceReport report;
-  const std::size_t count = factors.count();
-  const double total = std::accumulate(area_m2.begin(), area_m2.end(), 0.0);
-  Scaling scaling{std::vector<double>(count, 1.0), std::vector<double>(count)};
-  for (std::size_t i = 0; i < count; ++i) scaling.seen[i] = factors.sky[i] + factors.black[i];
-  const auto column_sum = [&](const std::vector<double>& sums, std::size_t j) {
-    return sums[j] + area_m2[j] * scaling.seen[j];
-  };
-  const auto defect = [&](const std::vector<double>& sums) {
-    double sum = 0.0;
-    for (std::size_t j = 0; j < count; ++j) {
-      sum += std::abs(factors.column_scale[j] * column_sum(sums, j) - area_m2[j]);
-    }
-    return total > 0.0 ? sum / total : 0.0;
-  };
-  report.before = defect(column_sums(factors, area_m2));
+  if (factors.count() == 0) {
+    report.balanced = true;
+    return report;
+  }
+  report.before = Scaling(factors, area_m2).defect();
   report.borrowed = fill_empty_columns(factors, area_m2);
-  const std::vector<double> raw_row_scale = factors.row_scale;
-  rescale_rows(factors, raw_row_scale, scaling);
-  std::vector<double> sums = column_sums(factors, area_m2);
-  report.after = defect(sums);
-  const std::vector<std::uint32_t> group = exchange_groups(factors);
-  for (; report.sweeps < most_sweeps && report.after > enough; ++report.sweeps) {
-    for (std::size_t j = 0; j < count; ++j) {
-      const double sum = column_sum(sums, j);
-      // The bound stops a column that too few rays reached to ever fill from running off to
-      // infinity.
-      if (sum > 0.0) factors.column_scale[j] = std::min(area_m2[j] / sum, largest_scale);
-    }
-    share_out(factors, area_m2, scaling, group);
-    rescale_rows(factors, raw_row_scale, scaling);
-    sums = column_sums(factors, area_m2);
+  Scaling scaling(factors, area_m2);
+  scaling.close_rows();
+  report.after = scaling.defect();
+  while (report.sweeps < most_sweeps && report.after > enough) {
     const double previous = report.after;
-    report.after = defect(sums);
+    if (report.sweeps < plain_sweeps) {
+      scaling.sweep();
+      ++report.sweeps;
+    } else {
+      report.sweeps += scaling.newton_step(most_sweeps - report.sweeps);
+    }
+    report.after = scaling.defect();
     // Rounding is reached, or the pattern of hits allows no better.
-    if (report.after > 0.999 * previous && report.sweeps > 50) break;
+    if (report.after > 0.999 * previous && report.sweeps > plain_sweeps) break;
   }
   report.balanced = report.after <= 1e-12;
-  for (std::size_t i = 0; i < count; ++i) {
-    factors.sky[i] *= scaling.row[i];
-    factors.black[i] *= scaling.row[i];
-    factors.sky_illuminance[i] *= scaling.row[i];
-    factors.escape[i] *= factors.column_scale[i];
-    factors.lost[i] *= factors.column_scale[i];
-  }
+  scaling.finish();
   return report;
 }
 

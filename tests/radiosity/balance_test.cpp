@@ -121,6 +121,49 @@ TEST(Balance, ANearlyClosedRoomNeedsNoMoreSweepsThanAClosedOne) {
   EXPECT_LE(worst_column_defect(factors, patches), 1e-10);
 }
 
+TEST(Balance, TwoClosedRoomsJoinedByASmallHoleBalance) {
+  // Each room's light leaves by a hundredth of a per cent of its surface: the defect between the
+  // rooms shrinks by about that share per plain sweep (3e-6 after 500 of them), at once by Newton's
+  // step.
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.9));
+  scenes::Material sheet = tests::grey(0.9);
+  sheet.two_sided = true;
+  const std::uint32_t wall = builder.material(sheet);
+  builder.room({m, m, m, m, m, m});
+  for (Vec3& p : builder.scene.vertices) p.x *= 2.0;
+  // The wall between them leaves a corner of 2 x 2 cm free.
+  builder.quad(wall, {1, 0, 0}, {1, 0.98, 0}, {1, 0.98, 1}, {1, 0, 1});
+  builder.quad(wall, {1, 0.98, 0}, {1, 1, 0}, {1, 1, 0.98}, {1, 0.98, 0.98});
+  const scenes::RayQuery query(builder.scene);
+  const Patches patches = subdivide(builder.scene, 0.125);
+  FormFactors factors = cast_form_factors(builder.scene, query, patches, {1024, 1});
+  for (const double black : factors.black) ASSERT_EQ(black, 0.0);
+  const BalanceReport report = balance(factors, patches.area_m2);
+  EXPECT_TRUE(report.balanced);
+  EXPECT_LE(report.sweeps, 150) << report.after;
+  EXPECT_LE(worst_column_defect(factors, patches), 1e-10);
+}
+
+TEST(Balance, TooFewHitsForAnyScalingAreReportedWithHowNearItCame) {
+  // Eight rays for each of 2400 patches: many patches are met by one or two rays of neighbours that
+  // met nothing else in need, and no scaling of rows and columns fits both sums.
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  builder.room({m, m, m, m, m, m});
+  const scenes::RayQuery query(builder.scene);
+  const Patches patches = subdivide(builder.scene, 0.05);
+  FormFactors factors = cast_form_factors(builder.scene, query, patches, {8, 1});
+  const BalanceReport report = balance(factors, patches.area_m2);
+  EXPECT_FALSE(report.balanced);
+  EXPECT_LT(report.after, 0.1 * report.before);
+  EXPECT_LE(worst_row_defect(factors), 1e-13);
+  for (const double scale : factors.column_scale) {
+    EXPECT_TRUE(std::isfinite(scale));
+    EXPECT_GT(scale, 0.0);
+  }
+}
+
 TEST(Balance, SkySharesSeenAndReachedAgreeWithinTheRaysNoise) {
   // escape_j = F_j,sky by reciprocity; 1024 rays per patch: 4 binomial standard errors of the
   // difference of two.

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "radiosity/linear_solve.h"
+#include "radiosity/solution.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::radiosity {
@@ -135,30 +135,6 @@ TEST(Solve, CubeWithSixFacesMatchesTheExactSixSurfaceSystem) {
   EXPECT_NEAR(b(5), 1.1691096920717, 0.008);
   EXPECT_NEAR(b(1), 0.2460852638112, 0.008);
   EXPECT_NEAR(b(3), 0.022736812093798, 0.008);
-}
-
-TEST(Solve, JointSolveOfManyColumnsLeavesEveryColumnWithinTolerance) {
-  tests::SceneBuilder builder;
-  const std::uint32_t wall = builder.material(tests::grey(0.95));
-  builder.room({wall, wall, wall, wall, wall, wall});
-  const scenes::RayQuery query(builder.scene);
-  const Patches patches = subdivide(builder.scene, 0.25);
-  FormFactors factors = cast_form_factors(builder.scene, query, patches, {256, 1});
-  balance(factors, patches.area_m2);
-  const std::size_t n = patches.count(), columns = 3;
-  std::vector<double> source(n * columns, 0.0), rho(n * columns);
-  for (std::size_t i = 0; i < n; ++i) {
-    source[i * columns] = i == 0 ? 1e9 : 0.0;  // a bright spot,
-    source[i * columns + 1] = 1e-9;            // a faint haze, and nothing
-    for (std::size_t c = 0; c < columns; ++c) rho[i * columns + c] = 0.3 + 0.3 * double(c);
-  }
-  const LinearSolve result = solve_linear(factors, source, rho, columns, 1e-10);
-  EXPECT_LE(result.residual, 1e-10);
-  EXPECT_LT(result.iterations, 40);
-  for (std::size_t i = 0; i < n; ++i) {
-    EXPECT_NEAR(result.x[i * columns + 1] / (1e-9 / 0.4), 1.0, 1e-9);
-    EXPECT_EQ(result.x[i * columns + 2], 0.0);
-  }
 }
 
 }  // namespace
