@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "base/random.h"
@@ -46,21 +47,23 @@ std::vector<bool> materials_that_pass_on(const scenes::Scene& scene) {
 class Caster {
  public:
   Caster(const scenes::Scene& scene, const scenes::RayQuery& query, const Patches& patches,
-         const std::vector<double>& kept, std::uint64_t seed, std::uint32_t rays,
+         const std::vector<double>& kept, const FormFactorOptions& options, std::uint32_t rays,
          const SkyRadiance& sky)
       : scene_(scene),
         query_(query),
         patches_(patches),
         kept_(kept),
         sky_(sky),
-        seed_(seed),
+        seed_(options.seed),
+        replicate_(options.replicate),
         rays_(patches, query, rays),
         targets_(patches, materials_that_pass_on(scene)) {}
 
   void cast(std::uint32_t patch, HitCounter& counter, Band& band) const {
     Row row;
-    const PatchRays::Sender sender =
-        rays_.sender(patch, base::Key(seed_, base::Stream::FormFactor, patch));
+    base::Key key(seed_, base::Stream::FormFactor, patch);
+    if (replicate_ != 0) key = key.with(replicate_);
+    const PatchRays::Sender sender = rays_.sender(patch, key);
     // A packet's hits are counted after the next packet was traced: by then what they need has come
     // from memory.
     RayPacket packets[2];
@@ -155,6 +158,7 @@ class Caster {
   const std::vector<double>& kept_;
   const SkyRadiance& sky_;
   std::uint64_t seed_;
+  std::uint32_t replicate_;
   PatchRays rays_;
   HitTargets targets_;
 };
@@ -213,7 +217,15 @@ void close_row(FormFactors& factors, std::size_t i, double sky_rays, double blac
 FormFactors cast_form_factors(const scenes::Scene& scene, const scenes::RayQuery& query,
                               const Patches& patches, const FormFactorOptions& options,
                               const SkyRadiance& sky) {
-  const std::size_t count = patches.count();
+  std::vector<std::uint32_t> rows(patches.count());
+  std::iota(rows.begin(), rows.end(), 0U);
+  return cast_rows(scene, query, patches, rows, options, sky);
+}
+
+FormFactors cast_rows(const scenes::Scene& scene, const scenes::RayQuery& query,
+                      const Patches& patches, std::span<const std::uint32_t> rows,
+                      const FormFactorOptions& options, const SkyRadiance& sky) {
+  const std::size_t count = rows.size();
   FormFactors factors;
   factors.rays_per_patch = static_cast<int>(
       std::bit_ceil(std::max(static_cast<std::uint32_t>(std::max(1, options.rays_per_patch)),
@@ -224,21 +236,21 @@ FormFactors cast_form_factors(const scenes::Scene& scene, const scenes::RayQuery
   factors.escape.assign(count, 0.0);
   factors.lost.assign(count, 0.0);
   factors.row_scale.assign(count, 0.0);
-  factors.column_scale.assign(count, 1.0);
+  factors.column_scale.assign(patches.count(), 1.0);
   factors.sky_illuminance.assign(count, Rgb(0.0));
 
   factors.row_start.assign(count + 1, 0);
 
   constexpr std::size_t band_rows = 64;
   std::vector<Band> bands((count + band_rows - 1) / band_rows);
-  const Caster caster(scene, query, patches, factors.kept, options.seed,
+  const Caster caster(scene, query, patches, factors.kept, options,
                       static_cast<std::uint32_t>(factors.rays_per_patch), sky);
   base::parallel_chunks(bands.size(), 1, [&](std::size_t begin, std::size_t end) {
     thread_local HitCounter counter(0);
-    if (counter.patches() < count) counter = HitCounter(count);
+    if (counter.patches() < patches.count()) counter = HitCounter(patches.count());
     for (std::size_t band = begin; band < end; ++band) {
       for (std::size_t i = band * band_rows; i < std::min(count, (band + 1) * band_rows); ++i) {
-        caster.cast(static_cast<std::uint32_t>(i), counter, bands[band]);
+        caster.cast(rows[i], counter, bands[band]);
       }
     }
   });

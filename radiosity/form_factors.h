@@ -22,6 +22,7 @@ namespace earthshine::radiosity {
 struct FormFactorOptions {
   int rays_per_patch = 1024;  // rounded up to a power of two, 8 or more
   std::uint64_t seed = 1;
+  std::uint32_t replicate = 0;  // each number is an independent set of samples of the same seed
 };
 
 struct FormFactors {
@@ -48,6 +49,12 @@ using SkyRadiance = std::function<Rgb(const Vec3& direction)>;
                                             const FormFactorOptions& options,
                                             const SkyRadiance& sky = {});
 
+// The rows of some patches only, in the order given; all per-patch vectors but `kept` and
+// `column_scale` then have an entry per row.
+[[nodiscard]] FormFactors cast_rows(const scenes::Scene& scene, const scenes::RayQuery& query,
+                                    const Patches& patches, std::span<const std::uint32_t> rows,
+                                    const FormFactorOptions& options, const SkyRadiance& sky = {});
+
 // Conservation: scales rows and columns (iterative proportional fitting) until, for every i and j,
 //   sum_j a_j F_ij + F_i,sky + F_i,black = 1                      what i sees
 //   sum_i A_i a_i F_ij + A_j (escape_j + lost_j) = A_j            where what leaves j goes
@@ -67,21 +74,5 @@ BalanceReport balance(FormFactors& factors, std::span<const double> area_m2);
 // y = F x for `columns` right-hand sides side by side (row-major, count x columns).
 void multiply(const FormFactors& factors, std::span<const double> x, std::span<double> y,
               std::size_t columns);
-
-// Between objects of the scene (all their sides): means over the emitting object's area.
-struct ObjectFormFactors {
-  std::vector<std::vector<double>> F;  // F[i][j]
-  std::vector<std::vector<double>>
-      std_error;                       // of F[i][j]: binomial, an upper bound for Owen-Sobol points
-  std::vector<double> sky;             // F to the sky
-  std::vector<double> black;           // F to black backs
-  std::vector<double> area_m2;         // emitting area: both sides of sheets
-  double max_row_error = 0.0;          // max_i |sum_j a_j F_ij + sky + black - 1| over patches
-  double max_reciprocity_error = 0.0;  // max over object pairs |A_i F_ij - A_j F_ji| / max(A_i
-                                       // F_ij, A_j F_ji), where both exceed 4 standard errors
-};
-[[nodiscard]] ObjectFormFactors object_form_factors(const scenes::Scene& scene,
-                                                    const Patches& patches,
-                                                    const FormFactors& factors);
 
 }  // namespace earthshine::radiosity
