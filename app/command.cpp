@@ -184,4 +184,17 @@ void note_balance(const radiosity::BalanceReport& balance) {
                   balance.after, balance.sweeps));
 }
 
+void note_backs(const radiosity::SolveReport& report) {
+  constexpr double remarkable = 0.1;
+  const auto worst =
+      std::max_element(report.objects.begin(), report.objects.end(),
+                       [](const auto& a, const auto& b) { return a.back_share < b.back_share; });
+  if (worst == report.objects.end() || worst->back_share < remarkable) return;
+  note(
+      fmt::format("warning: {:.0f} % of the rays from \"{}\" ({:.0f} % of all) met the backs of "
+                  "one-sided surfaces, which are black; turn those faces over, or make their "
+                  "material two_sided",
+                  100.0 * worst->back_share, worst->name, 100.0 * report.back_share));
+}
+
 }  // namespace earthshine::app

@@ -86,6 +86,9 @@ struct LoadedScene {
 // A line on stderr where the form factors could not be balanced, with how near they came.
 void note_balance(const radiosity::BalanceReport& balance);
 
+// A line on stderr where much of what an object sees are the black backs of one-sided surfaces.
+void note_backs(const radiosity::SolveReport& report);
+
 // The scene's accuracy knobs as the solver wants them.
 [[nodiscard]] radiosity::SolveOptions solve_options(const scenes::Scene& scene,
                                                     const Common& common);

@@ -72,6 +72,7 @@ Rendered compute(const RenderCall& call, const Common& common, const LoadedScene
     r.solved = true;
     times.add(r.solution.report.seconds);
     note_balance(r.solution.report.balance);
+    if (!common.quiet) note_backs(r.solution.report);
   }
   r.options.columns = call.size ? call.size->columns : camera.columns;
   r.options.rows = call.size ? call.size->rows : camera.rows;

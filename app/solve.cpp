@@ -39,7 +39,8 @@ Json objects_of(const radiosity::SolveReport& report) {
     objects.push_back({{"name", object.name},
                        {"area_m2", object.area_m2},
                        {"illuminance_lx", to_json(object.illuminance_lx)},
-                       {"radiosity_lm_m2", to_json(object.radiosity_lm_m2)}});
+                       {"radiosity_lm_m2", to_json(object.radiosity_lm_m2)},
+                       {"back_share", object.back_share}});
   }
   return objects;
 }
@@ -70,6 +71,8 @@ Json json_of(const LoadedScene& loaded, const radiosity::SolveReport& report,
   json["seconds"] = times.json();
   json["iterations"] = report.iterations;
   json["residual"] = report.residual;
+  json["solver_error"] = report.solver_error;
+  json["back_share"] = report.back_share;
   json["balance"] = {{"sweeps", report.balance.sweeps},
                      {"before", report.balance.before},
                      {"after", report.balance.after},
@@ -93,8 +96,8 @@ std::string text_of(const Json& json) {
       "{:.2g} after {} sweeps\n",
       json["patches"].get<std::size_t>(), short_count(json["rays"].get<double>()),
       short_count(json["shadow_rays"].get<double>()), json["iterations"].get<int>(),
-      json["residual"].get<double>(), json["balance"]["after"].get<double>(),
-      json["balance"]["sweeps"].get<int>());
+      json["solver_error"].get<double>(), json["balance"]["before"].get<double>(),
+      json["balance"]["after"].get<double>(), json["balance"]["sweeps"].get<int>());
   text += fmt::format("\n{:<20} {:>12} {:>12} {:>12} {:>12} {:>10}\n", "light group", "emitted lm",
                       "landed lm", "absorbed lm", "escaped lm", "imbalance");
   for (const Json& g : json["groups"]) {
@@ -128,6 +131,7 @@ void run(const SolveCall& call, const Common& common) {
                                                         query, solve_options(loaded.scene, common));
   times.add(solution.report.seconds);
   note_balance(solution.report.balance);
+  if (!common.quiet) note_backs(solution.report);
   const Json json = json_of(loaded, solution.report, times);
   if (!call.output.empty()) base::write_text(call.output, dump(json));
   if (call.json) print(dump(json));

@@ -37,19 +37,24 @@ std::vector<GroupLedger> energy_ledger(const LedgerInput& in,
   return ledger;
 }
 
-void close_energy(const LedgerInput& in, std::span<double> radiosity, std::span<double> indirect) {
-  std::vector<double> source(in.columns, 0.0), left(in.columns, 0.0);
+void close_energy(const LedgerInput& in, bool balanced, std::span<double> radiosity,
+                  std::span<double> indirect) {
+  std::vector<double> source(in.columns, 0.0), ended(in.columns, 0.0);
   for (std::size_t k = 0; k < radiosity.size(); ++k) {
-    const double area = in.area_m2[k / in.columns];
+    const std::size_t i = k / in.columns;
     const double s = in.emitted[k] + in.reflectance[k] * in.direct[k];
-    source[k % in.columns] += area * s;
-    left[k % in.columns] += area * (s - radiosity[k] + in.reflectance[k] * indirect[k]);
+    // Balanced: where B ends, in absorption, the sky and black backs. Else by what the solver left.
+    const double end = balanced ? (in.factors.kept[i] - in.reflectance[k]) * in.indirect[k] +
+                                      in.radiosity[k] * (in.factors.lost[i] + in.factors.escape[i])
+                                : in.radiosity[k] - in.reflectance[k] * in.indirect[k];
+    source[k % in.columns] += in.area_m2[i] * s;
+    ended[k % in.columns] += in.area_m2[i] * end;
   }
   for (std::size_t k = 0; k < radiosity.size(); ++k) {
-    const double all = source[k % in.columns], missing = left[k % in.columns];
-    if (all <= 0.0 || std::abs(missing) > 0.01 * all) continue;
-    radiosity[k] *= all / (all - missing);
-    indirect[k] *= all / (all - missing);
+    const double all = source[k % in.columns], end = ended[k % in.columns];
+    if (all <= 0.0 || std::abs(all - end) > 0.01 * all) continue;
+    radiosity[k] *= all / end;
+    indirect[k] *= all / end;
   }
 }
 

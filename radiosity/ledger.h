@@ -32,10 +32,11 @@ struct LedgerInput {
 
 // Scales each column of B and of F B so that its energy adds up to rounding. Summed with the areas
 // as weights, (1 - rho F) B = S says emitted + landed = absorbed + escaped; what the solver left of
-// that sum, a share of about its residual, is made good by B as a whole; what unbalanced form
-// factors leave of it is not touched. `radiosity` and `indirect` are the vectors that `input`
-// views.
-void close_energy(const LedgerInput& input, std::span<double> radiosity,
+// that sum, a share of about its residual, is made good by B as a whole, and where the form factors
+// are balanced so is what their rounding left, which a million reflections make a million times
+// larger than rounding. What unbalanced form factors leave is not touched. `radiosity` and
+// `indirect` are the vectors that `input` views.
+void close_energy(const LedgerInput& input, bool balanced, std::span<double> radiosity,
                   std::span<double> indirect);
 
 }  // namespace earthshine::radiosity

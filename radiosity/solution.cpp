@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "radiosity/ledger.h"
+#include "radiosity/light_ends.h"
 #include "radiosity/linear_solve.h"
 #include "scenes/sky.h"
 
@@ -85,6 +86,24 @@ std::vector<ObjectLight> object_means(const scenes::Scene& scene, const Patches&
   return means;
 }
 
+// The share of each object's rays that met the black back of a one-sided surface, and of all rays.
+std::vector<double> back_shares(const scenes::Scene& scene, const Patches& patches,
+                                const FormFactors& factors, double& of_all) {
+  std::vector<double> share(scene.objects.size(), 0.0), area(scene.objects.size(), 0.0);
+  double met = 0.0, all = 0.0;
+  for (std::uint32_t i = 0; i < patches.count(); ++i) {
+    share[patches.object(i)] += patches.area_m2[i] * factors.black[i];
+    area[patches.object(i)] += patches.area_m2[i];
+    met += patches.area_m2[i] * factors.black[i];
+    all += patches.area_m2[i];
+  }
+  for (std::size_t o = 0; o < share.size(); ++o) {
+    if (area[o] > 0.0) share[o] /= area[o];
+  }
+  of_all = all > 0.0 ? met / all : 0.0;
+  return share;
+}
+
 }  // namespace
 
 std::vector<bool> emitter_is_explicit(const scenes::Scene& scene) {
@@ -127,6 +146,7 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
       cast_form_factors(scene, query, patches, {options.form_factor_rays, options.seed}, sky);
   report.form_factor_rays = factors.ray_count;
   report.nonzeros = factors.hits.size();
+  const std::vector<double> object_backs = back_shares(scene, patches, factors, report.back_share);
   watch.lap("form factors");
   report.balance = balance(factors, patches.area_m2);
   watch.lap("balance");
@@ -146,6 +166,7 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   for (std::size_t k = 0; k < source.size(); ++k) {
     source[k] = emitted[k] + rho[k] * light.illuminance_lx[k];
   }
+  check_light_ends(scene, patches, factors, source, rho, columns);
   LinearSolve linear = solve_linear(factors, source, rho, columns, options.tolerance);
   report.iterations = linear.iterations;
   report.residual = linear.residual;
@@ -154,7 +175,7 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   multiply(factors, linear.x, indirect, columns);
   close_energy(
       {factors, patches.area_m2, columns, rho, emitted, light.illuminance_lx, indirect, linear.x},
-      linear.x, indirect);
+      report.balance.balanced, linear.x, indirect);
   watch.lap("linear solve");
 
   report.groups = energy_ledger(
@@ -162,6 +183,9 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
       groups.names);
   report.objects =
       object_means(scene, patches, columns, is_explicit, light.illuminance_lx, indirect, linear.x);
+  for (std::size_t o = 0; o < object_backs.size(); ++o) {
+    report.objects[o].back_share = object_backs[o];
+  }
   solution.radiosity.assign(linear.x.begin(), linear.x.end());
   solution.soft_radiosity.resize(source.size());
   for (std::size_t k = 0; k < source.size(); ++k) {

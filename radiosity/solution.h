@@ -41,6 +41,7 @@ struct ObjectLight {
   double area_m2 = 0.0;     // both sides of sheets
   Rgb illuminance_lx{0.0};  // area means, all groups together
   Rgb radiosity_lm_m2{0.0};
+  double back_share = 0.0;  // of its rays, that met black backs: high where winding is wrong
 };
 
 struct SolveReport {
@@ -52,6 +53,7 @@ struct SolveReport {
   double residual = 0.0;      // worst relative residual over the right-hand sides
   double solver_error = 0.0;  // LinearSolve::error
   BalanceReport balance;
+  double back_share = 0.0;  // of all patches' rays by area, that met black backs
   std::vector<std::pair<std::string, double>> seconds;  // stage, wall seconds
   std::vector<GroupLedger> groups;
   std::vector<SourceFlux> sources;
