@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // earthshine form-factors: the matrix between objects, and to the sky.
-#include "radiosity/form_factors.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <numeric>
 
 #include "app/command.h"
 #include "app/console.h"
+#include "radiosity/object_form_factors.h"
 #include "radiosity/patches.h"
 #include "scenes/quality.h"
 #include "scenes/ray_query.h"
@@ -20,7 +20,7 @@ namespace {
 struct FactorsCall {
   SceneInput scene;
   bool raw = false;
-  bool json = false;
+  bool json = false, csv = false;
 };
 
 constexpr std::size_t widest_table = 10;  // objects; beyond it each row lists its largest entries
@@ -29,42 +29,72 @@ constexpr std::size_t largest_listed = 6;
 struct Found {
   std::vector<std::string> names;
   radiosity::ObjectFormFactors between;
+  radiosity::ObjectFactorReport report;
   std::size_t patches = 0;
-  int rays_per_patch = 0;
-  std::uint64_t rays = 0;
+  double seconds = 0.0;
 };
 
 Found find(const FactorsCall& call, const Common& common) {
   const LoadedScene loaded = load(call.scene, common.quiet);
   const scenes::Scene& scene = loaded.scene;
   const scenes::QualityKnobs knobs = scenes::resolve_quality(scene);
+  const auto start = std::chrono::steady_clock::now();
   const scenes::RayQuery query(scene);
   const radiosity::Patches patches = radiosity::subdivide(scene, knobs.patch_edge_m);
-  radiosity::FormFactors factors =
-      radiosity::cast_form_factors(scene, query, patches, {knobs.form_factor_rays, common.seed});
-  if (!call.raw) radiosity::balance(factors, patches.area_m2);
-  Found found{{},
-              radiosity::object_form_factors(scene, patches, factors),
-              patches.count(),
-              factors.rays_per_patch,
-              factors.ray_count};
+  Found found;
+  found.patches = patches.count();
+  found.between = radiosity::object_form_factors_by_rays(
+      scene, query, patches, {knobs.form_factor_rays, common.seed, call.raw}, found.report);
   for (const scenes::Object& object : scene.objects) found.names.push_back(object.name);
+  const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;
+  found.seconds = gone.count();
   return found;
 }
 
-Json json_of(const Found& found, bool raw) {
+Json json_of(const Found& found) {
   return {{"objects", found.names},
           {"area_m2", found.between.area_m2},
           {"F", found.between.F},
           {"sky", found.between.sky},
           {"black", found.between.black},
           {"std_error", found.between.std_error},
+          {"sky_std_error", found.between.sky_std_error},
+          {"black_std_error", found.between.black_std_error},
           {"max_row_error", found.between.max_row_error},
           {"max_reciprocity_error", found.between.max_reciprocity_error},
-          {"balanced", !raw},
+          {"before",
+           {{"max_row_error", found.report.row_error_before},
+            {"max_reciprocity_error", found.report.reciprocity_error_before}}},
+          {"balanced", found.report.reconciled},
+          {"method", "rays"},
           {"patches", found.patches},
-          {"rays_per_patch", found.rays_per_patch},
-          {"rays", found.rays}};
+          {"rays_per_patch", found.report.rays_per_patch},
+          {"replicates", found.report.replicates},
+          {"rays", found.report.rays},
+          {"seconds", found.seconds}};
+}
+
+// A pair a line, the way tables of view factors are exchanged; names as RFC 4180 wants them.
+std::string csv_of(const Found& found) {
+  const auto quoted = [](const std::string& name) {
+    if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
+    std::string text = "\"";
+    for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return text + "\"";
+  };
+  const radiosity::ObjectFormFactors& o = found.between;
+  std::string text = "from,to,from_area_m2,F,std_error\n";
+  for (std::size_t i = 0; i < found.names.size(); ++i) {
+    const auto line = [&](const std::string& to, double f, double error) {
+      text += fmt::format("{},{},{},{},{}\n", quoted(found.names[i]), to, o.area_m2[i], f, error);
+    };
+    for (std::size_t k = 0; k < found.names.size(); ++k) {
+      line(quoted(found.names[k]), o.F[i][k], o.std_error[i][k]);
+    }
+    line("(sky)", o.sky[i], o.sky_std_error[i]);
+    line("(black backs)", o.black[i], o.black_std_error[i]);
+  }
+  return text;
 }
 
 std::string matrix(const Found& found) {
@@ -101,17 +131,21 @@ std::string largest_entries(const Found& found) {
   return text;
 }
 
-std::string text_of(const Found& found, bool raw) {
+std::string text_of(const Found& found) {
   double worst_error = 0.0;
   for (const auto& row : found.between.std_error) {
     for (const double e : row) worst_error = std::max(worst_error, e);
   }
   std::string text = found.names.size() <= widest_table ? matrix(found) : largest_entries(found);
   text += fmt::format(
-      "\n{} patches, {} rays per patch{}\nlargest standard error {:.2g}, row error {:.2g}, "
-      "reciprocity error {:.2g}\n",
-      found.patches, found.rays_per_patch, raw ? ", as cast" : ", balanced", worst_error,
-      found.between.max_row_error, found.between.max_reciprocity_error);
+      "\nlargest standard error {:.2g}, row error {:.2g}, reciprocity error {:.2g}{}\n",
+      worst_error, found.between.max_row_error, found.between.max_reciprocity_error,
+      found.report.reconciled
+          ? fmt::format(", balanced (as cast: {:.2g})", found.report.reciprocity_error_before)
+          : std::string(", as cast"));
+  text +=
+      fmt::format("{} patches, {} rays each in {} replicates, {}\n", found.patches,
+                  found.report.rays_per_patch, found.report.replicates, duration(found.seconds));
   return text;
 }
 
@@ -122,11 +156,12 @@ Command add_form_factors(CLI::App& program) {
       program.add_subcommand("form-factors", "Form factors between objects, and to the sky");
   const auto call = std::make_shared<FactorsCall>();
   add_scene_options(*parser, call->scene);
-  parser->add_flag("--raw", call->raw, "As cast, before energy conservation is imposed");
-  parser->add_flag("--json", call->json, "JSON on standard output");
+  parser->add_flag("--raw", call->raw, "As cast, before both laws, closure and reciprocity, hold");
+  CLI::Option* json = parser->add_flag("--json", call->json, "JSON on standard output");
+  parser->add_flag("--csv", call->csv, "A line per pair on standard output")->excludes(json);
   return {parser, [call](const Common& common) {
             const Found found = find(*call, common);
-            print(call->json ? dump(json_of(found, call->raw)) : text_of(found, call->raw));
+            print(call->json ? dump(json_of(found)) : call->csv ? csv_of(found) : text_of(found));
           }};
 }
 

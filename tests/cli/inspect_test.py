@@ -112,6 +112,22 @@ class FormFactors(program.Case):
             self.assertLess(abs(found["F"][i][j] - exact), 4 * found["std_error"][i][j])
         self.assertFalse(found["balanced"])
         self.says(self.done("form-factors", "faces.toml"), "low", "high", "side", "sky", "balanced")
+        balanced = self.json("form-factors", "faces.toml")
+        self.assertTrue(balanced["balanced"])
+        self.assertLess(balanced["max_reciprocity_error"], 1e-12)
+        self.assertGreater(balanced["before"]["max_reciprocity_error"], 1e-6)
+
+    def test_csv_has_a_line_per_pair_with_names_quoted(self):
+        self.write("ball.toml", program.BALL.replace('name = "ball"', 'name = "ball, \\"big\\""'))
+        found = self.json("form-factors", "ball.toml")
+        rows = list(csv.DictReader(io.StringIO(self.done("form-factors", "ball.toml", "--csv"))))
+        self.assertEqual([(r["from"], r["to"]) for r in rows[:4]],
+                         [("floor", "floor"), ("floor", 'ball, "big"'), ("floor", "(sky)"),
+                          ("floor", "(black backs)")])
+        self.assertEqual(len(rows), 8)
+        self.assertAlmostEqual(float(rows[1]["F"]), found["F"][0][1])
+        self.assertAlmostEqual(float(rows[1]["std_error"]), found["std_error"][0][1])
+        self.refused("form-factors", "ball.toml", "--csv", "--json")
 
 
 if __name__ == "__main__":
