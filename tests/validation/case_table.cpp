@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support/case_library.h"
+#include "tests/validation/tables.h"
+
+namespace earthshine::validation {
+namespace {
+
+using tests::Case;
+using tests::CaseKind;
+using tests::CaseResult;
+
+std::string in_std_errors(const Case& of, const CaseResult& found) {
+  const double rounding = CaseResult::rounding * std::max(1.0, std::abs(of.record.value));
+  if (std::abs(found.error(of)) <= rounding) return "exact";
+  return fmt::format("{:+.2f}", found.error(of) / found.std_error);
+}
+
+}  // namespace
+
+void case_table(const Options& options, Verdict& verdict) {
+  const std::vector<tests::CaseRecord> records =
+      tests::read_case_library(EARTHSHINE_SOURCE_DIR "/tests/data/view-factors.json");
+  std::size_t run = 0, exact = 0, outside = 0, beyond_two = 0;
+  double square = 0.0;
+  std::string group, refused;
+  for (const tests::CaseRecord& record : records) {
+    if (record.name.rfind(options.only, 0) != 0) continue;
+    const tests::BuiltCase made = tests::build_case(record);
+    if (!made.built) {
+      refused += fmt::format("- `{}`: {}.\n", record.name, made.refusal);
+      continue;
+    }
+    if (record.group != group) {
+      group = record.group;
+      fmt::print("\n{}{}:\n\n", char(std::toupper(group[0])), group.substr(1));
+      fmt::print(
+          "| case | exact | computed | standard error | error in standard errors | scene |\n");
+      fmt::print("| --- | --- | --- | --- | --- | --- |\n");
+    }
+    const Case& c = *made.built;
+    const CaseResult found = tests::run_case(c, tests::object_factors_by_rays, options.seed);
+    const std::string z = in_std_errors(c, found);
+    fmt::print("| `{}` | {:.10g} | {:.10g} | {:.1e} | {} | {} |\n", record.name, record.value,
+               found.computed, found.std_error, z,
+               c.model_error > 0.0 ? fmt::format("{:.1g}", c.model_error) : "");
+    ++run;
+    verdict.check(found.agrees(c), fmt::format("{}: {:.3e} off, standard error {:.1e}", record.name,
+                                               found.error(c), found.std_error));
+    if (z == "exact") {
+      ++exact;
+      continue;
+    }
+    const double normalised = std::abs(found.error(c)) / found.std_error;
+    square += normalised * normalised;
+    if (normalised > 2.0) ++beyond_two;
+    if (!found.agrees(c)) ++outside;
+  }
+  const auto noisy = double(run - exact);
+  fmt::print(
+      "\n{} cases of {}: {} within rounding, {} with noise, of which {} beyond 2 and {} outside 4 "
+      "standard errors ({:.1f} beyond 2 are to be expected). Mean square of the normalised errors "
+      "{:.2f}, expected 1 within {:.2f}.\n",
+      run, records.size(), exact, run - exact, beyond_two, outside, 0.0455 * noisy, square / noisy,
+      4.0 * std::sqrt(2.0 / noisy));
+  if (!refused.empty()) fmt::print("\nNot computed:\n\n{}", refused);
+}
+
+}  // namespace earthshine::validation

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tables of the validation program. Each prints itself as Markdown on standard output and
+// returns what it found out against its gates.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace earthshine::validation {
+
+struct Options {
+  bool quick = false;  // fewer seeds and rays, under a minute
+  bool slow = false;   // the cost tables too
+  std::uint64_t seed = 1;
+  std::string only;  // cases whose name starts so, and no other table
+};
+
+struct Verdict {
+  std::size_t checks = 0;
+  std::vector<std::string> failures;  // one line each
+
+  void check(bool passed, const std::string& what) {
+    ++checks;
+    if (!passed) failures.push_back(what);
+  }
+};
+
+void case_table(const Options& options, Verdict& verdict);
+
+}  // namespace earthshine::validation
