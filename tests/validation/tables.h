@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tables of the validation program. Each prints itself as Markdown on standard output and
-// returns what it found out against its gates.
+// holds what it found against its gates.
 #pragma once
 
 #include <cstdint>
@@ -27,5 +27,13 @@ struct Verdict {
 };
 
 void case_table(const Options& options, Verdict& verdict);
+void cube_table(const Options& options, Verdict& verdict);
+void leak_table(const Options& options, Verdict& verdict);
+void honesty_table(const Options& options, Verdict& verdict);
+void extreme_table(const Options& options, Verdict& verdict);
+void furnace_table(const Options& options, Verdict& verdict);
+void balancing_table(const Options& options, Verdict& verdict);
+void energy_table(const Options& options, Verdict& verdict);
+void cost_table(const Options& options, Verdict& verdict);
 
 }  // namespace earthshine::validation

@@ -6,8 +6,32 @@
 
 #include "tests/validation/tables.h"
 
+namespace {
+
+using earthshine::validation::Options;
+using earthshine::validation::Verdict;
+
+struct Table {
+  const char* heading;
+  void (*print)(const Options&, Verdict&);
+  bool slow = false;
+};
+
+using namespace earthshine::validation;
+constexpr Table tables[] = {{"The library of closed forms", case_table},
+                            {"Near, far, tiny, sharp", extreme_table},
+                            {"Are the standard errors honest?", honesty_table},
+                            {"The closed cube", cube_table},
+                            {"Leaks", leak_table},
+                            {"Furnaces", furnace_table},
+                            {"Energy of the scenes that ship", energy_table},
+                            {"What balancing costs in open scenes", balancing_table},
+                            {"Cost", cost_table, true}};
+
+}  // namespace
+
 int main(int count, char** words) {
-  earthshine::validation::Options options;
+  Options options;
   for (int k = 1; k < count; ++k) {
     if (std::strcmp(words[k], "--quick") == 0) {
       options.quick = true;
@@ -16,13 +40,20 @@ int main(int count, char** words) {
     } else if (std::strcmp(words[k], "--only") == 0 && k + 1 < count) {
       options.only = words[++k];
     } else {
-      fmt::print(stderr, "usage: earthshine_validate [--quick | --slow] [--only CASE]\n");
+      fmt::print(stderr, "usage: earthshine_validate [--quick] [--slow] [--only CASE]\n");
       return 2;
     }
   }
-  earthshine::validation::Verdict verdict;
-  earthshine::validation::case_table(options, verdict);
+  Verdict verdict;
+  for (const Table& table : tables) {
+    if (table.slow && !options.slow) continue;
+    if (!options.only.empty() && table.print != case_table) continue;
+    fmt::print("\n### {}\n\n", table.heading);
+    table.print(options, verdict);
+    std::fflush(stdout);
+  }
   fmt::print("\n{} checks, {} failed.\n", verdict.checks, verdict.failures.size());
+  for (const std::string& line : verdict.failures) fmt::print("- failed: {}\n", line);
   for (const std::string& line : verdict.failures) fmt::print(stderr, "failed: {}\n", line);
   return verdict.failures.empty() ? 0 : 1;
 }
