@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """inspect, plan and form-factors on small scenes whose figures are known."""
+import csv
+import io
 import unittest
 
 import program
