@@ -161,6 +161,8 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   report.objects =
       object_means(scene, patches, columns, is_explicit, light.illuminance_lx, indirect, linear.x);
   solution.radiosity.assign(linear.x.begin(), linear.x.end());
+  solution.direct_lx.assign(light.illuminance_lx.begin(), light.illuminance_lx.end());
+  solution.indirect_lx.assign(indirect.begin(), indirect.end());
   solution.soft_radiosity.resize(source.size());
   for (std::size_t k = 0; k < source.size(); ++k) {
     double soft = rho[k] * indirect[k];
