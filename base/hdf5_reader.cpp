@@ -64,7 +64,7 @@ struct Hdf5Reader::File {
 Hdf5Reader::Hdf5Reader(std::string bytes, std::string name) : name_(std::move(name)) {
   const std::string_view all = bytes;
   if (!all.starts_with("Earthshine: HDF5") || all.size() <= hdf5_block_bytes) {
-    fail("it was not written by this program");
+    fail("it has no seal");
   }
   if (all.substr(0, hdf5_block_bytes) != hdf5_seal(all.substr(hdf5_block_bytes))) {
     fail("its seal is broken: it was cut off or changed after it was written");
@@ -82,8 +82,8 @@ Hdf5Reader::Hdf5Reader(std::string bytes, std::string name) : name_(std::move(na
 Hdf5Reader::~Hdf5Reader() = default;
 
 void Hdf5Reader::fail(const std::string& found) const {
-  throw Error(Blame::Input, name_, "is not a sound solution file: " + found, {},
-              "Make it anew with \"earthshine solve\"");
+  throw Error(Blame::Input, name_, "is not a sound file of this program: " + found, {},
+              "Write it again with the command that made it");
 }
 
 Hdf5Shape Hdf5Reader::shape(const std::string& name) const {
