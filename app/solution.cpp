@@ -44,11 +44,10 @@ void write_solution(const std::string& path, const radiosity::Solution& solution
 void write_mesh(const std::string& path, const radiosity::Solution& solution,
                 const LoadedScene& loaded) {
   const radiosity::SolutionMesh mesh = radiosity::solution_mesh(loaded.scene, solution);
-  const std::vector<scenes::GltfNote> notes = {
-      {"radiosity_lm_m2_per_unit", mesh.lm_m2_per_unit},
-      {"clipped_area_share", mesh.clipped_share},
-      {"scene", loaded.scene.path.string()},
-      {"program", "earthshine " EARTHSHINE_VERSION}};
+  const std::vector<scenes::GltfNote> notes = {{"radiosity_lm_m2_per_unit", mesh.lm_m2_per_unit},
+                                               {"clipped_area_share", mesh.clipped_share},
+                                               {"scene", loaded.scene.path.string()},
+                                               {"program", "earthshine " EARTHSHINE_VERSION}};
   base::write_text(path, scenes::make_glb(loaded.scene.name, mesh.parts, notes));
 }
 

@@ -124,8 +124,8 @@ bool is_json(const std::string& path) { return path.ends_with(".json"); }
 
 void check_call(const SolveCall& call) {
   if (call.output.ends_with(".glb")) {
-    throw base::Error(base::Blame::Input, "-o", fmt::format("\"{}\" is a GLB file", call.output), {},
-                      "Name it after --glb");
+    throw base::Error(base::Blame::Input, "-o", fmt::format("\"{}\" is a GLB file", call.output),
+                      {}, "Name it after --glb");
   }
   if (!call.mesh.empty() && !call.mesh.ends_with(".glb") && !call.mesh.starts_with("/dev/")) {
     throw base::Error(base::Blame::Input, "--glb",

@@ -16,7 +16,9 @@ constexpr std::size_t longest_text = std::size_t{1} << 16;
 // Deflate packs nothing to less than a 1032nd.
 constexpr std::size_t most_unpacked = 1100;
 
-std::string shape_text(const Hdf5Shape& shape) { return fmt::format("{}", fmt::join(shape, " x ")); }
+std::string shape_text(const Hdf5Shape& shape) {
+  return fmt::format("{}", fmt::join(shape, " x "));
+}
 
 bool is_text(hid_t type) {
   return H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 &&

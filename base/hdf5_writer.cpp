@@ -147,8 +147,8 @@ Hdf5Writer::Hdf5Writer() {
   const Hdf5Handle access = hdf5_memory_access();
   const Hdf5Handle creation = timeless(H5P_FILE_CREATE);
   // A name must be given; nothing of that name is made.
-  file_ = std::make_unique<File>(File{hdf5_made(Hdf5Handle(
-      H5Fcreate("memory", H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose))});
+  file_ = std::make_unique<File>(File{hdf5_made(
+      Hdf5Handle(H5Fcreate("memory", H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose))});
 }
 
 Hdf5Writer::~Hdf5Writer() = default;

@@ -82,8 +82,9 @@ struct Reading {
   throw Error(
       Blame::Input, file.name(), found,
       "a solution serves the geometry, materials, lights, sky and quality it was solved with",
-      fmt::format("Run \"earthshine solve {} -o {}\" again, with the same --set, --error and --seed",
-                  origin.scene.path.string(), file.name()));
+      fmt::format(
+          "Run \"earthshine solve {} -o {}\" again, with the same --set, --error and --seed",
+          origin.scene.path.string(), file.name()));
 }
 
 void refuse_other_program(const Hdf5Reader& file, const SolutionOrigin& origin) {
@@ -117,8 +118,8 @@ void refuse_stale(const Hdf5Reader& file, const SolutionOrigin& origin) {
     }
   }
   if (differ.empty()) return;
-  refuse(file,
-         fmt::format("is stale: since it was solved, {} changed", fmt::join(differ, ", ")), origin);
+  refuse(file, fmt::format("is stale: since it was solved, {} changed", fmt::join(differ, ", ")),
+         origin);
 }
 
 }  // namespace

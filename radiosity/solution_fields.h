@@ -30,8 +30,7 @@ void visit_layout(Store& store, Layout& layout) {
 
 template <class Store, class AnySolution>
 void visit_light(Store& store, AnySolution& solution) {
-  const auto light = [&](const char* name, auto& values, const char* unit,
-                         const char* meaning) {
+  const auto light = [&](const char* name, auto& values, const char* unit, const char* meaning) {
     store.column(name, values, {store.patches, store.groups, 3}, unit, meaning);
   };
   light("radiosity", solution.radiosity, "lm/m2",

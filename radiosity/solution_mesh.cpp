@@ -119,7 +119,8 @@ void add_vertex(scenes::GltfPart& part, const Vec3& place, const Rgb& colour) {
 
 SolutionMesh solution_mesh(const scenes::Scene& scene, const Solution& solution) {
   SolutionMesh mesh;
-  for (const scenes::Object& object : scene.objects) mesh.parts.push_back({object.name, {}, {}, {}});
+  for (const scenes::Object& object : scene.objects)
+    mesh.parts.push_back({object.name, {}, {}, {}});
   const Patches& patches = solution.patches;
   const std::vector<Rgb> radiosity = whole_radiosity(scene, solution);
   mesh.lm_m2_per_unit = exposure(radiosity, patches.area_m2);

@@ -11,8 +11,8 @@ namespace earthshine::radiosity {
 
 struct SolutionMesh {
   std::vector<scenes::GltfPart> parts;  // per object of the scene
-  double lm_m2_per_unit = 0.0;  // a colour of 1 is this radiosity; 0 when there is no light
-  double clipped_share = 0.0;   // of the area: brighter than 1 in some channel
+  double lm_m2_per_unit = 0.0;          // a colour of 1 is this radiosity; 0 when there is no light
+  double clipped_share = 0.0;           // of the area: brighter than 1 in some channel
 };
 
 // Colours are the radiosity of all light groups together, with the exitance of emitting surfaces,

@@ -56,9 +56,8 @@ void add_part(tinygltf::Model& model, const GltfPart& part) {
   primitive.attributes["POSITION"] = position;
   primitive.attributes["COLOR_0"] = add_accessor(
       model, part.colours, 3, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TARGET_ARRAY_BUFFER);
-  primitive.indices =
-      add_accessor(model, part.indices, 1, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-                   TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+  primitive.indices = add_accessor(model, part.indices, 1, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
+                                   TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
   tinygltf::Mesh mesh;
   mesh.name = part.name;
   mesh.primitives.push_back(primitive);
@@ -108,8 +107,9 @@ std::string make_glb(const std::string& name, std::span<const GltfPart> parts,
   }
   // The lengths in the file are 32 bits; the description in front of the numbers takes its share.
   if (bytes > (std::size_t{4} << 30) - (std::size_t{64} << 20)) {
-    throw base::Error(base::Blame::Work, "GLB", "the mesh is larger than 4 GiB, which GLB cannot hold",
-                      {}, "Raise quality.patch_edge");
+    throw base::Error(base::Blame::Work, "GLB",
+                      "the mesh is larger than 4 GiB, which GLB cannot hold", {},
+                      "Raise quality.patch_edge");
   }
   if (bytes > 0) model.buffers.emplace_back();
   for (const GltfPart& part : parts) {

@@ -16,8 +16,8 @@ namespace earthshine::scenes {
 // One node and its mesh. A part without triangles is left out.
 struct GltfPart {
   std::string name;
-  std::vector<float> positions;  // x, y, z per vertex, m
-  std::vector<float> colours;    // r, g, b per vertex, linear, 0 to 1
+  std::vector<float> positions;        // x, y, z per vertex, m
+  std::vector<float> colours;          // r, g, b per vertex, linear, 0 to 1
   std::vector<std::uint32_t> indices;  // three per triangle, counter-clockwise seen from the front
 };
 

@@ -23,7 +23,8 @@ std::string sample_file() {
   std::iota(ramp.begin(), ramp.end(), 0.5F);
   Hdf5Writer file;
   file.array<float>("ramp", ramp, {2000, 3}, {"lx", "a ramp"});
-  file.array<std::uint32_t>("deep/er/three", std::vector<std::uint32_t>{1, 2, 0xFFFFFFFFU}, {3}, {});
+  file.array<std::uint32_t>("deep/er/three", std::vector<std::uint32_t>{1, 2, 0xFFFFFFFFU}, {3},
+                            {});
   file.array<double>("empty", {}, {0, 3}, {});
   file.texts("names", {"Earth", "", "Sonne \u00fc"}, {});
   file.texts("no names", {}, {});
@@ -73,10 +74,14 @@ TEST(Hdf5File, WhatIsMissingOrOfAnotherShapeOrTypeIsNamed) {
   expect_in("\"ramp\" is 2000 x 3, expected 6000", array("ramp", {6000}));
   expect_in("another kind of number", array("deep/er/three", {3}));
   expect_in("no list of texts", test::error_of(Blame::Input, [&] { (void)file.texts("ramp"); }));
-  expect_in("no number \"text\"", test::error_of(Blame::Input, [&] { (void)file.number_attribute("text"); }));
-  expect_in("no number \"number\"", test::error_of(Blame::Input, [&] { (void)file.count_attribute("number"); }));
-  expect_in("no text \"number\"", test::error_of(Blame::Input, [&] { (void)file.text_attribute("number"); }));
-  expect_in("no text \"nix\"", test::error_of(Blame::Input, [&] { (void)file.text_attribute("nix"); }));
+  expect_in("no number \"text\"",
+            test::error_of(Blame::Input, [&] { (void)file.number_attribute("text"); }));
+  expect_in("no number \"number\"",
+            test::error_of(Blame::Input, [&] { (void)file.count_attribute("number"); }));
+  expect_in("no text \"number\"",
+            test::error_of(Blame::Input, [&] { (void)file.text_attribute("number"); }));
+  expect_in("no text \"nix\"",
+            test::error_of(Blame::Input, [&] { (void)file.text_attribute("nix"); }));
 }
 
 TEST(Hdf5File, AnyChangedByteBreaksTheSeal) {
@@ -86,8 +91,8 @@ TEST(Hdf5File, AnyChangedByteBreaksTheSeal) {
     changed[at] = static_cast<char>(changed[at] ^ 0x10);
     EXPECT_THROW(Hdf5Reader(changed, "a.h5"), Error) << at;
   }
-  for (const std::size_t length : {std::size_t{0}, std::size_t{20}, std::size_t{512}, file.size() / 2,
-                                   file.size() - 1}) {
+  for (const std::size_t length :
+       {std::size_t{0}, std::size_t{20}, std::size_t{512}, file.size() / 2, file.size() - 1}) {
     EXPECT_THROW(Hdf5Reader(file.substr(0, length), "a.h5"), Error) << length;
   }
   EXPECT_THROW(Hdf5Reader(file + '\0', "a.h5"), Error);
@@ -95,8 +100,9 @@ TEST(Hdf5File, AnyChangedByteBreaksTheSeal) {
 
 TEST(Hdf5File, ASealOverSomethingElseIsAnErrorToo) {
   const std::string block = sample_file().substr(0, 512);
-  for (const std::string& content : {std::string("x"), std::string(4096, '\0'),
-                                     sample_file().substr(512, 3000), std::string("\x89HDF\r\n\x1a\n")}) {
+  for (const std::string& content :
+       {std::string("x"), std::string(4096, '\0'), sample_file().substr(512, 3000),
+        std::string("\x89HDF\r\n\x1a\n")}) {
     EXPECT_THROW(Hdf5Reader(sealed(block + content), "a.h5"), Error);
   }
 }
@@ -146,8 +152,8 @@ TEST(Hdf5File, DataOutsideTheFileAreNotRead) {
   });
   const Hdf5Reader file(bytes, "a.h5");
   for (const char* name : {"set", "link"}) {
-    expect_in("there is no", test::error_of(Blame::Input,
-                                            [&] { (void)file.array<float>(name, {10}); }));
+    expect_in("there is no",
+              test::error_of(Blame::Input, [&] { (void)file.array<float>(name, {10}); }));
   }
 }
 

@@ -223,8 +223,8 @@ TEST(SolutionFile, AChangedFileUnderAMendedSealIsReadOrRefusedButNothingElse) {
     for (int flips = 0; flips < 3; ++flips) {
       // The library's own structures are small and scattered: half of the flips aim at the front.
       const double reach = round % 2 == 0 ? 1.0 : 0.2;
-      const auto at = 512 + static_cast<std::size_t>(
-                                rng.next() * reach * static_cast<double>(bytes.size() - 512));
+      const auto at = 512 + static_cast<std::size_t>(rng.next() * reach *
+                                                     static_cast<double>(bytes.size() - 512));
       bytes[at] = static_cast<char>(rng.next() * 256.0);
     }
     base::Digest digest;
