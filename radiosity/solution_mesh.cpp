@@ -11,7 +11,8 @@ namespace earthshine::radiosity {
 namespace {
 
 constexpr double middle_grey = 0.18;
-constexpr double least_lit = 1e-5;  // of the brightest patch
+constexpr double least_lit = 1e-5;        // of the brightest patch
+constexpr double clipped_at_most = 0.05;  // of the area
 constexpr double smooth_cosine = 0.766;
 constexpr double same_place = 1e7;  // steps over the scene's extent
 // Where more patches meet, such as at the pole of a finely cut sphere, comparing all pairs would
@@ -31,18 +32,35 @@ std::vector<Rgb> whole_radiosity(const scenes::Scene& scene, const Solution& sol
   return sums;
 }
 
+// The luminance that all but `share` of the area stay below.
+double upper_luminance(const std::vector<double>& luminance, const std::vector<double>& area_m2,
+                       double share) {
+  std::vector<std::size_t> order(luminance.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return luminance[a] > luminance[b]; });
+  double left = share * std::accumulate(area_m2.begin(), area_m2.end(), 0.0);
+  for (const std::size_t i : order) {
+    left -= area_m2[i];
+    if (left < 0.0) return luminance[i];
+  }
+  return 0.0;
+}
+
 // What becomes 1; 0 when nothing is lit.
 double exposure(const std::vector<Rgb>& radiosity, const std::vector<double>& area_m2) {
-  double brightest = 0.0;
-  for (const Rgb& b : radiosity) brightest = std::max(brightest, base::luminance(b));
+  std::vector<double> luminance;
+  for (const Rgb& b : radiosity) luminance.push_back(base::luminance(b));
+  const double brightest = *std::max_element(luminance.begin(), luminance.end());
   double log_sum = 0.0, area = 0.0;
-  for (std::size_t i = 0; i < radiosity.size(); ++i) {
-    const double y = base::luminance(radiosity[i]);
-    if (y <= 0.0 || y < least_lit * brightest) continue;
-    log_sum += area_m2[i] * std::log(y);
+  for (std::size_t i = 0; i < luminance.size(); ++i) {
+    if (luminance[i] <= 0.0 || luminance[i] < least_lit * brightest) continue;
+    log_sum += area_m2[i] * std::log(luminance[i]);
     area += area_m2[i];
   }
-  return area > 0.0 ? std::exp(log_sum / area) / middle_grey : 0.0;
+  if (area <= 0.0) return 0.0;
+  return std::max(std::exp(log_sum / area) / middle_grey,
+                  upper_luminance(luminance, area_m2, clipped_at_most));
 }
 
 // Corner k of patch i is number 4 i + k. Corners of one object and material at one place stand
@@ -123,6 +141,7 @@ SolutionMesh solution_mesh(const scenes::Scene& scene, const Solution& solution)
     mesh.parts.push_back({object.name, {}, {}, {}});
   const Patches& patches = solution.patches;
   const std::vector<Rgb> radiosity = whole_radiosity(scene, solution);
+  if (radiosity.empty()) return mesh;
   mesh.lm_m2_per_unit = exposure(radiosity, patches.area_m2);
   const double scale = mesh.lm_m2_per_unit > 0.0 ? 1.0 / mesh.lm_m2_per_unit : 0.0;
   const Corners corners(patches);
@@ -147,7 +166,7 @@ SolutionMesh solution_mesh(const scenes::Scene& scene, const Solution& solution)
     area += patches.area_m2[i];
     if (base::max_component(scale * radiosity[i]) > 1.0) clipped += patches.area_m2[i];
   }
-  if (area > 0.0) mesh.clipped_share = clipped / area;
+  mesh.clipped_share = clipped / area;
   return mesh;
 }
 

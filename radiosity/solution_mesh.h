@@ -16,10 +16,11 @@ struct SolutionMesh {
 };
 
 // Colours are the radiosity of all light groups together, with the exitance of emitting surfaces,
-// linear and clipped at 1. The area-weighted log-mean luminance of what is lit (above 1e-5 of the
-// brightest) becomes middle grey, 0.18. At a corner the patches of one object and material that
-// meet there at less than 40 degrees are averaged by area, so that curved and cut surfaces look
-// smooth and edges stay sharp. Both sides of a sheet are there, each facing its own way.
+// linear and clipped at 1. The unit makes the area-weighted log-mean luminance of what is lit
+// (above 1e-5 of the brightest) middle grey, 0.18, or is larger, so that at most a twentieth of the
+// area has a luminance above 1. At a corner the patches of one object and material that meet there
+// at less than 40 degrees are averaged by area: curved and cut surfaces look smooth, edges stay
+// sharp. Both sides of a sheet are there, each facing its own way.
 [[nodiscard]] SolutionMesh solution_mesh(const scenes::Scene& scene, const Solution& solution);
 
 }  // namespace earthshine::radiosity

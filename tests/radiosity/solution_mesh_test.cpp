@@ -53,18 +53,30 @@ TEST(SolutionMesh, ColoursTimesTheirUnitAreTheRadiosity) {
   }
 }
 
-TEST(SolutionMesh, BrighterThanTheUnitIsClippedAndCounted) {
-  // Three plates of 1 and one of 1000: the unit is 1000^(1/4) / 0.18 = 31.2.
+// Plates of radiosity 1, the last of 1000.
+SolutionMesh with_a_bright_one(int plates) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
-  for (int k = 0; k < 4; ++k) builder.plate(m, 1.0, k, true);
-  const SolutionMesh mesh =
-      solution_mesh(builder.scene, given(builder.scene, 1.0, [](const Patches& p, std::uint32_t i) {
-                      return Rgb(p.object(i) == 3 ? 1000.0 : 1.0);
-                    }));
-  EXPECT_NEAR(mesh.lm_m2_per_unit, std::pow(1000.0, 0.25) / 0.18, 1e-9);
-  EXPECT_NEAR(mesh.clipped_share, 0.25, 1e-12);
-  EXPECT_EQ(colour(mesh.parts[3], 0), Vec3(1.0));
+  for (int k = 0; k < plates; ++k) builder.plate(m, 1.0, k, true);
+  return solution_mesh(builder.scene,
+                       given(builder.scene, 1.0, [&](const Patches& p, std::uint32_t i) {
+                         return Rgb(static_cast<int>(p.object(i)) == plates - 1 ? 1000.0 : 1.0);
+                       }));
+}
+
+TEST(SolutionMesh, AFewBrightPatchesAreClippedAndCounted) {
+  // The mean of 31 logarithms, one of them of 1000: the unit is 1000^(1/31) / 0.18 = 6.9.
+  const SolutionMesh mesh = with_a_bright_one(31);
+  EXPECT_NEAR(mesh.lm_m2_per_unit, std::pow(1000.0, 1.0 / 31.0) / 0.18, 1e-9);
+  EXPECT_NEAR(mesh.clipped_share, 1.0 / 31.0, 1e-12);
+  EXPECT_EQ(colour(mesh.parts[30], 0), Vec3(1.0));
+}
+
+TEST(SolutionMesh, BrightPatchesOfMoreThanATwentiethAreShown) {
+  const SolutionMesh mesh = with_a_bright_one(4);
+  EXPECT_EQ(mesh.lm_m2_per_unit, 1000.0);
+  EXPECT_EQ(mesh.clipped_share, 0.0);
+  EXPECT_NEAR(colour(mesh.parts[0], 0).r, 0.001, 1e-9);
 }
 
 TEST(SolutionMesh, FacesLookTheWayTheirPatchesDo) {
