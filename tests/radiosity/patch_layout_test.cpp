@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <limits>
 
 #include "tests/support/scene_builder.h"
 
@@ -115,22 +116,33 @@ TEST(PatchLayout, WhateverIsNotOneLeafPerPatchIsRefused) {
   }
 }
 
-TEST(PatchLayout, ATreeOfManyLevelsEnds) {
-  // Every block's first child is the next block: a chain longer than any tree may be deep.
+// Every block's first child is the next block; areas are right.
+PatchLayout chain(std::uint32_t levels) {
   PatchLayout layout = split_layout();
   layout.tree = {split | 1};
-  std::uint32_t leaf = 0;
-  for (std::uint32_t level = 0; level < 100; ++level) {
+  std::vector<double> side;
+  double area = 1.0;
+  for (std::uint32_t level = 1; level <= levels; ++level) {
     const auto next = static_cast<std::uint32_t>(layout.tree.size() + 4);
-    layout.tree.insert(layout.tree.end(), {split | next, leaf, leaf + 1, leaf + 2});
-    leaf += 3;
+    const auto leaf = static_cast<std::uint32_t>(side.size());
+    const std::uint32_t first = level < levels ? split | next : leaf + 3;
+    layout.tree.insert(layout.tree.end(), {first, leaf, leaf + 1, leaf + 2});
+    area /= 4.0;
+    side.insert(side.end(), 3, area);
   }
-  layout.tree.insert(layout.tree.end(), {leaf, leaf + 1, leaf + 2, leaf + 3});
-  layout.leaves[0] = leaf + 4;
-  layout.area_m2.assign(2 * layout.leaves[0] + 2, 1.0);
-  layout.first_back[0] = layout.leaves[0];
+  side.push_back(area);
+  layout.leaves[0] = layout.first_back[0] = static_cast<std::uint32_t>(side.size());
   layout.first_front[1] = 2 * layout.leaves[0];
-  EXPECT_THROW((void)rebuild_patches(sheet_and_triangle(), layout), std::invalid_argument);
+  layout.area_m2 = side;
+  layout.area_m2.insert(layout.area_m2.end(), side.begin(), side.end());
+  layout.area_m2.insert(layout.area_m2.end(), {0.25, 0.75});
+  return layout;
+}
+
+TEST(PatchLayout, ATreeMayBeDeepButNotBottomless) {
+  const scenes::Scene scene = sheet_and_triangle();
+  EXPECT_EQ(rebuild_patches(scene, chain(20)).count(), 2U * (3 * 20 + 1) + 2);
+  EXPECT_THROW((void)rebuild_patches(scene, chain(100)), std::invalid_argument);
 }
 
 }  // namespace
