@@ -34,6 +34,7 @@ struct Writing {
             const char* unit, const char* meaning) {
     if constexpr (std::is_same_v<T, std::string>) {
       std::vector<std::string> texts;
+      texts.reserve(records.size());
       for (const Record& record : records) texts.push_back(record.*member);
       file.texts(name, texts, {unit, meaning});
     } else {
@@ -86,6 +87,7 @@ void write_geometry(Hdf5Writer& file, const Patches& patches) {
 template <class Named>
 std::vector<std::string> names_of(const std::vector<Named>& list) {
   std::vector<std::string> names;
+  names.reserve(list.size());
   for (const Named& entry : list) names.push_back(entry.name);
   return names;
 }

@@ -50,6 +50,7 @@ double upper_luminance(const std::vector<double>& luminance, const std::vector<d
 // What becomes 1; 0 when nothing is lit.
 double exposure(const std::vector<Rgb>& radiosity, const std::vector<double>& area_m2) {
   std::vector<double> luminance;
+  luminance.reserve(radiosity.size());
   for (const Rgb& b : radiosity) luminance.push_back(base::luminance(b));
   const double brightest = *std::max_element(luminance.begin(), luminance.end());
   double log_sum = 0.0, area = 0.0;

@@ -81,8 +81,9 @@ tinygltf::Material unlit_material() {
 
 tinygltf::Value extras(std::span<const GltfNote> notes) {
   tinygltf::Value::Object object;
-  for (const auto& [key, value] : notes) {
-    std::visit([&](const auto& v) { object[key] = tinygltf::Value(v); }, value);
+  for (const GltfNote& note : notes) {
+    std::visit([&](const auto& value) { object[note.first] = tinygltf::Value(value); },
+               note.second);
   }
   return tinygltf::Value(object);
 }
