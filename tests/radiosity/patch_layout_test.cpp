@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "base/random.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::radiosity {
@@ -114,6 +115,32 @@ TEST(PatchLayout, WhateverIsNotOneLeafPerPatchIsRefused) {
     changes[k](layout);
     EXPECT_THROW((void)rebuild_patches(scene, layout), std::invalid_argument) << "change " << k;
   }
+}
+
+TEST(PatchLayout, AnyNumbersAreEitherRefusedOrWholePatches) {
+  const scenes::Scene scene = sheet_and_triangle();
+  base::Rng rng(base::Key(1, base::Stream::Test, 0));
+  int refused = 0;
+  for (int round = 0; round < 20000; ++round) {
+    PatchLayout layout = split_layout();
+    std::vector<std::uint32_t>* columns[] = {
+        &layout.s_count, &layout.t_count,    &layout.first_front, &layout.first_back,
+        &layout.leaves,  &layout.tree_start, &layout.tree};
+    for (int change = 0; change < 2; ++change) {
+      std::vector<std::uint32_t>& column = *columns[static_cast<std::size_t>(rng.next() * 7.0)];
+      const double small = rng.next() < 0.8 ? 16.0 : 4294967296.0;
+      const std::uint32_t mark = rng.next() < 0.3 ? split : 0;
+      column[static_cast<std::size_t>(rng.next() * static_cast<double>(column.size()))] =
+          mark | static_cast<std::uint32_t>(rng.next() * small);
+    }
+    try {
+      const Patches patches = rebuild_patches(scene, layout);
+      for (const std::uint32_t facet : patches.facet) ASSERT_LT(facet, 2U);
+    } catch (const std::invalid_argument&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 15000);
 }
 
 // Every block's first child is the next block; areas are right.
