@@ -187,6 +187,8 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
     report.objects[o].back_share = object_backs[o];
   }
   solution.radiosity.assign(linear.x.begin(), linear.x.end());
+  solution.direct_lx.assign(light.illuminance_lx.begin(), light.illuminance_lx.end());
+  solution.indirect_lx.assign(indirect.begin(), indirect.end());
   solution.soft_radiosity.resize(source.size());
   for (std::size_t k = 0; k < source.size(); ++k) {
     double soft = rho[k] * indirect[k];

@@ -69,6 +69,7 @@ struct Solution {
   std::vector<float> radiosity;       // lm/m^2
   std::vector<float> soft_radiosity;  // the part of it not due to explicit sources: rho (E - E0
                                       // explicit) + M through F
+  std::vector<float> direct_lx, indirect_lx;  // E0 and F B
   SolveReport report;
 };
 
