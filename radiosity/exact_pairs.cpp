@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "radiosity/convex_bodies.h"
 #include "radiosity/facet_sides.h"
 #include "radiosity/hidden_factor.h"
 #include "radiosity/polygon_factor.h"
@@ -130,7 +131,11 @@ class Worker {
           clip(sides.blockers[f], {first.polygon[0], first.polygon.normal}, margin_m_);
       if (part.count < 3) continue;
       part = clip(part, {second.polygon[0], second.polygon.normal}, margin_m_);
-      if (part.count >= 3 && shaft.may_hide(part)) blockers_.push_back(part);
+      if (part.count < 3 || !shaft.may_hide(part)) continue;
+      const std::uint32_t body = sides.body[f];
+      const bool front_only = body != no_body && sides.outside(front_first_, body) &&
+                              sides.outside(front_second_, body);
+      blockers_.push_back({part, front_only});
     }
   }
 
@@ -142,10 +147,10 @@ class Worker {
     const Shaft shaft(patch, front_second_, margin_m_);
     const TargetFrame frame(second.polygon);
     const ConvexPolygon seen = frame.polygon(patch);
-    for (const ConvexPolygon& blocker : blockers_) {
-      if (!shaft.may_hide(blocker)) continue;
+    for (const Blocker& blocker : blockers_) {
+      if (!shaft.may_hide(blocker.shape)) continue;
       narrow_.push_back(&blocker);
-      covers_.push_back(shadow_cover(frame.polygon(blocker), seen));
+      covers_.push_back(shadow_cover(frame.polygon(blocker.shape), seen));
     }
   }
 
@@ -161,9 +166,9 @@ class Worker {
     for (std::size_t k = 0; k < narrow_.size(); ++k) {
       if (covers_[k].meets(to.cover)) between_.push_back(narrow_[k]);
     }
-    if (!between_.empty() && second_has_more_) {
+    if (!between_.empty()) {
       const Shaft shaft(a, *b, margin_m_);
-      std::erase_if(between_, [&](const ConvexPolygon* k) { return !shaft.may_hide(*k); });
+      std::erase_if(between_, [&](const Blocker* k) { return !shaft.may_hide(k->shape); });
     }
     double exchange = unoccluded(sides, from, a, to, *b);
     if (between_.empty()) {
@@ -194,9 +199,9 @@ class Worker {
   }
 
   ConvexPolygon front_first_, front_second_, clipped_first_, clipped_second_;
-  bool cut_first_ = false, cut_second_ = false, second_has_more_ = true;
-  std::vector<ConvexPolygon> blockers_;
-  std::vector<const ConvexPolygon*> narrow_, between_;
+  bool cut_first_ = false, cut_second_ = false;
+  std::vector<Blocker> blockers_;
+  std::vector<const Blocker*> narrow_, between_;
   std::vector<Rectangle> covers_;
   HiddenFactor hidden_;
   double margin_m_ = 0.0;

@@ -11,17 +11,18 @@ namespace {
 
 constexpr int most_points = 20000;
 constexpr int deepest = 20;  // halvings of one cell
-// Error of the 3-point rule over the bend of what it samples: across a kink, and where the
-// integrand is smooth (measured; the second grows as the two come close).
-constexpr double corner_share = 0.25;  // of a corner's change that counts as bend
-constexpr double kink_error = 0.015, smooth_error = 1e-3, near_smooth_error = 1e-2;
+// The 3-point rule's error across a kink, over what the four corners are off the parabola through
+// its points: at most about this (worked out for kinks along one side).
+constexpr double error_per_corner = 0.05;
+// Weights of the three Gauss points that carry a parabola to the border beside the first of them.
+constexpr double to_border[3] = {1.4788305577012361, -2.0 / 3.0, 0.18783610896543051};
 
 // Shadows move across the target by (distance to it) / (distance from the receiver) times the
 // point's own way: the receiver is the one whose points see them move less, for its size.
 bool second_receives(const Ball& first, const Ball& second,
-                     std::span<const ConvexPolygon* const> blockers) {
+                     std::span<const Blocker* const> blockers) {
   Vec3 middle(0.0);
-  for (const ConvexPolygon* blocker : blockers) middle += ball_around(*blocker).centre;
+  for (const Blocker* blocker : blockers) middle += ball_around(blocker->shape).centre;
   middle /= static_cast<double>(blockers.size());
   const double from_first = glm::length(middle - first.centre);
   const double from_second = glm::length(middle - second.centre);
@@ -30,7 +31,7 @@ bool second_receives(const Ball& first, const Ball& second,
 
 }  // namespace
 
-// The integrand at (x, y) of a quad; its cut's pattern is left in clip_.
+// The integrand at (x, y) of a quad.
 double HiddenFactor::at(const Quad& quad, double x, double y) {
   clip_.cut(quad.corner + x * quad.ab + y * quad.ad + (x * y) * quad.twist);
   result_.any_hidden = result_.any_hidden || !clip_.wholly_visible();
@@ -45,14 +46,10 @@ void HiddenFactor::sample(Cell& cell) {
   const Quad& quad = quads_[cell.quad];
   const double width = cell.x1 - cell.x0, height = cell.y1 - cell.y0;
   double g[3][3];
-  std::uint64_t pattern = 0;
-  bool one_pattern = true;
   double sum = 0.0, bend_x = 0.0, bend_y = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       g[i][j] = at(quad, cell.x0 + rule.node[i] * width, cell.y0 + rule.node[j] * height);
-      if (i == 0 && j == 0) pattern = clip_.pattern();
-      one_pattern = one_pattern && clip_.pattern() == pattern;
       sum += rule.weight[i] * rule.weight[j] * g[i][j];
     }
   }
@@ -60,29 +57,24 @@ void HiddenFactor::sample(Cell& cell) {
     bend_x += rule.weight[k] * std::abs(g[0][k] - 2.0 * g[1][k] + g[2][k]);
     bend_y += rule.weight[k] * std::abs(g[k][0] - 2.0 * g[k][1] + g[k][2]);
   }
-  if (one_pattern || bend_x + bend_y == 0.0) {
-    // A kink may still pass between the points and a corner, and what all points lose to different
-    // blockers may be seen from there.
-    one_pattern = true;
-    for (int corner = 0; corner < 4; ++corner) {
-      const double value =
-          at(quad, corner % 2 == 0 ? cell.x0 : cell.x1, corner / 2 == 0 ? cell.y0 : cell.y1);
-      if (clip_.pattern() == pattern) continue;
-      one_pattern = false;
-      const double bend = corner_share * std::abs(value - g[corner % 2 * 2][corner / 2 * 2]);
-      bend_x += bend;
-      bend_y += bend;
+  // Off the biquadratic through the nine points, at the corners.
+  double off[2][2];
+  double off_sum = 0.0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t j = 0; j < 2; ++j) {
+      double expected = 0.0;
+      for (std::size_t k = 0; k < 9; ++k) {
+        expected += to_border[i == 0 ? k / 3 : 2 - k / 3] * to_border[j == 0 ? k % 3 : 2 - k % 3] *
+                    g[k / 3][k % 3];
+      }
+      off[i][j] = at(quad, i == 0 ? cell.x0 : cell.x1, j == 0 ? cell.y0 : cell.y1) - expected;
+      off_sum += std::abs(off[i][j]);
     }
   }
-  const double size = width * height, bend = bend_x + bend_y;
-  double per_bend = kink_error;
-  if (one_pattern) {
-    // A smooth integrand's error falls with the third power of its bend.
-    const double relative = sum > 0.0 ? bend / sum : 1.0;
-    per_bend = std::min(near_ ? near_smooth_error : smooth_error, relative * relative);
-  }
-  cell.value_m2 = size * sum;
-  cell.error_m2 = cell.depth == deepest ? 0.0 : size * per_bend * bend;
+  bend_x += std::abs(off[0][0] - off[1][0]) + std::abs(off[0][1] - off[1][1]);
+  bend_y += std::abs(off[0][0] - off[0][1]) + std::abs(off[1][0] - off[1][1]);
+  cell.value_m2 = width * height * sum;
+  cell.error_m2 = cell.depth == deepest ? 0.0 : width * height * error_per_corner * off_sum;
   cell.halve_x = bend_x > bend_y || (bend_x == bend_y && width > height);
 }
 
@@ -99,9 +91,9 @@ void HiddenFactor::refine() {
     ++low.depth;
     Cell high = low;
     if (low.halve_x) {
-      low.x1 = high.x0 = 0.5 * (low.x0 + low.x1);
+      low.x1 = high.x0 = kinks_.split_x(low.x0, low.x1);
     } else {
-      low.y1 = high.y0 = 0.5 * (low.y0 + low.y1);
+      low.y1 = high.y0 = kinks_.split_y(low.y0, low.y1);
     }
     for (Cell* half : {&low, &high}) {
       sample(*half);
@@ -112,19 +104,37 @@ void HiddenFactor::refine() {
   }
 }
 
+// The sooner nothing is left the better, and few large cuts leave fewer parts than many small ones.
+void HiddenFactor::put_largest_shadow_first(const Vec3& from, double margin_m) {
+  shadows_.clear();
+  for (std::size_t k = 0; k < blockers_.size(); ++k) {
+    clip_.set(target_, {&blockers_[k], 1}, margin_m);
+    clip_.cut(from);
+    shadows_.emplace_back(clip_.visible_area_share(), k);
+  }
+  std::sort(shadows_.begin(), shadows_.end());
+  ordered_.clear();
+  for (const auto& [visible, k] : shadows_) ordered_.push_back(blockers_[k]);
+  blockers_.swap(ordered_);
+}
+
 void HiddenFactor::set_up(const ConvexPolygon& receiver, const ConvexPolygon& target,
-                          std::span<const ConvexPolygon* const> blockers, double margin_m) {
+                          std::span<const Blocker* const> blockers, double margin_m) {
   const Ball ball = ball_around(receiver);
   const TargetFrame frame(target);
   blockers_.clear();
-  for (const ConvexPolygon* blocker : blockers) blockers_.push_back(frame.polygon(*blocker));
-  clip_.set(frame.polygon(target), blockers_, margin_m);
+  for (const Blocker* blocker : blockers) {
+    blockers_.push_back({frame.polygon(blocker->shape), blocker->front_only});
+  }
+  target_ = frame.polygon(target);
+  put_largest_shadow_first(frame.point(ball.centre), margin_m);
+  clip_.set(target_, blockers_, margin_m);
   normal_ = frame.direction(receiver.normal);
-  near_ = distance_m(target, ball.centre) < 3.0 * ball.radius;
   // Near the target only what is hidden is integrated: the rest, with its steep rise towards a
   // shared edge, is known exactly.
   clip_.cut(frame.point(ball.centre));
-  add_hidden_ = near_ || clip_.visible_area_share() > 0.5;
+  const bool near = distance_m(target, ball.centre) < 3.0 * ball.radius;
+  add_hidden_ = near || clip_.visible_area_share() > 0.5;
 
   quads_.clear();
   cells_.clear();
@@ -139,7 +149,7 @@ void HiddenFactor::set_up(const ConvexPolygon& receiver, const ConvexPolygon& ta
 }
 
 HiddenExchange HiddenFactor::exchange(const ConvexPolygon& first, const ConvexPolygon& second,
-                                      std::span<const ConvexPolygon* const> blockers,
+                                      std::span<const Blocker* const> blockers,
                                       double unoccluded_m2, double tolerance_m2, double margin_m) {
   const bool swap = second_receives(ball_around(first), ball_around(second), blockers);
   const ConvexPolygon& receiver = swap ? second : first;
@@ -153,6 +163,11 @@ HiddenExchange HiddenFactor::exchange(const ConvexPolygon& first, const ConvexPo
   if (!result_.any_hidden) {
     result_.exchange_m2 = unoccluded_m2;
     return result_;
+  }
+  if (cells_.size() == 1) {
+    kinks_.find(quads_[0].corner, quads_[0].ab, quads_[0].ad, target_, blockers_);
+  } else {
+    kinks_.clear();
   }
   refine();
   double sum = 0.0;

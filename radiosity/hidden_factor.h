@@ -4,15 +4,18 @@
 // At a point of one, what it sees of the other is exact: shadows are cut off the target and
 // Lambert's formula is applied to what is left (or to what is hidden, taken off the factor without
 // blockers). Over the receiver the integrand is smooth but for kinks where a shadow's edge passes a
-// corner of the target: 3 x 3 Gauss points in cells, the cell of the largest estimated error halved
-// across its stronger bend until the estimates' sum is below the tolerance. Points whose cuts have
-// the same pattern have no kink between them.
+// corner of the target: 3 x 3 Gauss points in cells, the cell of the largest estimated error split
+// across its stronger bend until the estimates' sum is below the tolerance. Where kinks run along
+// the receiver's sides, as between right-angled bodies, cells are split at the kinks themselves
+// (shadow_kinks.h) and what is left is smooth.
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "radiosity/shadow_clip.h"
+#include "radiosity/shadow_kinks.h"
 
 namespace earthshine::radiosity {
 
@@ -29,7 +32,7 @@ class HiddenFactor {
   // The polygons must be in front of each other, the blockers in front of both (heights >= 0).
   // unoccluded_m2: the exchange without blockers. At most 20 000 points are used.
   [[nodiscard]] HiddenExchange exchange(const ConvexPolygon& first, const ConvexPolygon& second,
-                                        std::span<const ConvexPolygon* const> blockers,
+                                        std::span<const Blocker* const> blockers,
                                         double unoccluded_m2, double tolerance_m2, double margin_m);
 
  private:
@@ -45,17 +48,21 @@ class HiddenFactor {
   };
 
   void set_up(const ConvexPolygon& receiver, const ConvexPolygon& target,
-              std::span<const ConvexPolygon* const> blockers, double margin_m);
+              std::span<const Blocker* const> blockers, double margin_m);
+  void put_largest_shadow_first(const Vec3& from, double margin_m);
   [[nodiscard]] double at(const Quad& quad, double x, double y);
   void sample(Cell& cell);
   void refine();
 
   ShadowClip clip_;
-  std::vector<ConvexPolygon> blockers_;
+  ShadowKinks kinks_;
+  ConvexPolygon target_;  // in its own frame
+  std::vector<Blocker> blockers_, ordered_;
+  std::vector<std::pair<double, std::size_t>> shadows_;  // visible share, blocker
   std::vector<Quad> quads_;
   std::vector<Cell> cells_;  // a heap by error
   Vec3 normal_{0.0};
-  bool add_hidden_ = false, near_ = false;
+  bool add_hidden_ = false;
   double tolerance_m2_ = 0.0;
   HiddenExchange result_;
 };

@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "base/random.h"
 #include "radiosity/lambert.h"
 
 namespace earthshine::radiosity {
@@ -15,7 +14,7 @@ ConvexPolygon TargetFrame::polygon(const ConvexPolygon& p) const {
   return seen;
 }
 
-void ShadowClip::set(const ConvexPolygon& target, std::span<const ConvexPolygon> blockers,
+void ShadowClip::set(const ConvexPolygon& target, std::span<const Blocker> blockers,
                      double margin_m) {
   target_.clear();
   for (int k = 0; k < target.count; ++k) target_.push_back({target[k].x, target[k].y});
@@ -25,9 +24,10 @@ void ShadowClip::set(const ConvexPolygon& target, std::span<const ConvexPolygon>
 }
 
 // The planes through the point and the blocker's edges, where they meet the target's plane.
-bool ShadowClip::make_lines(const ConvexPolygon& blocker) {
+bool ShadowClip::make_lines(const Blocker& face) {
+  const ConvexPolygon& blocker = face.shape;
   const double side = glm::dot(blocker.normal, point_ - blocker[0]);
-  if (std::abs(side) <= margin_m_) return false;  // edge-on: no width
+  if (std::abs(side) <= margin_m_ || (face.front_only && side < 0.0)) return false;  // edge-on: no width
   const double turn = side > 0.0 ? -1.0 : 1.0;
   lines_.clear();
   Vec3 from = blocker[blocker.count - 1] - point_;
@@ -53,12 +53,10 @@ bool ShadowClip::clear_of_lines(const Piece& piece) const {
 
 // Splits the piece along the lines: what is outside one of them stays visible, what is inside all
 // of them is hidden.
-void ShadowClip::subtract(const Piece& piece, std::uint32_t blocker) {
+void ShadowClip::subtract(const Piece& piece) {
   Piece inside = piece;
-  pattern_ = base::mix64(pattern_ ^ blocker);
   for (const Line& line : lines_) {
     height_.resize(inside.count);
-    std::uint64_t signs = 0;
     bool any_in = false, any_out = false;
     for (std::uint32_t k = 0; k < inside.count; ++k) {
       double h = line.at(corners_[inside.start + k]);
@@ -66,9 +64,7 @@ void ShadowClip::subtract(const Piece& piece, std::uint32_t blocker) {
       height_[k] = h;
       any_in = any_in || h > 0.0;
       any_out = any_out || h < 0.0;
-      signs = signs * 4 + (h > 0.0 ? 2 : h < 0.0 ? 1 : 0);
     }
-    pattern_ = base::mix64(pattern_ ^ signs);
     if (!any_out) continue;
     if (!any_in) {
       visible_.push_back(inside);
@@ -98,9 +94,9 @@ void ShadowClip::cut(const Vec3& point) {
   corners_.assign(target_.begin(), target_.end());
   visible_.assign(1, {0, static_cast<std::uint32_t>(target_.size())});
   hidden_.clear();
-  pattern_ = 0;
-  for (std::uint32_t b = 0; b < blockers_.size() && !visible_.empty(); ++b) {
-    if (!make_lines(blockers_[b])) continue;
+  for (const Blocker& blocker : blockers_) {
+    if (visible_.empty()) break;
+    if (!make_lines(blocker)) continue;
     bool touched = false;
     for (const Piece& piece : visible_) touched = touched || !clear_of_lines(piece);
     if (!touched) continue;
@@ -110,7 +106,7 @@ void ShadowClip::cut(const Vec3& point) {
       if (clear_of_lines(piece)) {
         visible_.push_back(piece);
       } else {
-        subtract(piece, b);
+        subtract(piece);
       }
     }
   }

@@ -10,6 +10,13 @@
 
 namespace earthshine::radiosity {
 
+// A face of a closed convex body hides nothing from behind that the body's other faces do not hide,
+// as long as the view starts outside the body.
+struct Blocker {
+  ConvexPolygon shape;
+  bool front_only = false;
+};
+
 // The target's own frame: (u, v) in its plane from its first corner, h the height above it.
 class TargetFrame {
  public:
@@ -30,14 +37,12 @@ class TargetFrame {
 class ShadowClip {
  public:
   // Blockers must lie in front of the target (h >= 0) and of the planes of all points used.
-  void set(const ConvexPolygon& target, std::span<const ConvexPolygon> blockers, double margin_m);
+  void set(const ConvexPolygon& target, std::span<const Blocker> blockers, double margin_m);
 
-  // Cuts the target as seen from `point` (h > 0). Equal `pattern`s at two points mean that the same
-  // edges cut in the same order, and that the parts' outlines move smoothly from one to the other.
+  // Cuts the target as seen from `point` (h > 0).
   void cut(const Vec3& point);
   [[nodiscard]] bool wholly_visible() const { return hidden_.empty(); }
   [[nodiscard]] bool wholly_hidden() const { return visible_.empty(); }
-  [[nodiscard]] std::uint64_t pattern() const { return pattern_; }
 
   // Lambert factors at the last point, for the receiver's unit normal there.
   [[nodiscard]] double visible_share(const Vec3& normal) const { return share(visible_, normal); }
@@ -57,19 +62,18 @@ class ShadowClip {
     [[nodiscard]] double at(const Corner& p) const { return a * p.u + b * p.v + c; }
   };
 
-  [[nodiscard]] bool make_lines(const ConvexPolygon& blocker);
-  void subtract(const Piece& piece, std::uint32_t blocker);
+  [[nodiscard]] bool make_lines(const Blocker& blocker);
+  void subtract(const Piece& piece);
   [[nodiscard]] bool clear_of_lines(const Piece& piece) const;
   [[nodiscard]] double share(const std::vector<Piece>& pieces, const Vec3& normal) const;
 
-  std::span<const ConvexPolygon> blockers_;
+  std::span<const Blocker> blockers_;
   std::vector<Corner> target_, corners_;
   std::vector<Piece> visible_, remaining_, hidden_;
   std::vector<Line> lines_;
   std::vector<double> height_;
   Vec3 point_{0.0};
   double margin_m_ = 0.0, area_m2_ = 0.0;
-  std::uint64_t pattern_ = 0;
 };
 
 }  // namespace earthshine::radiosity

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where on a receiver the view of a target past blockers has kinks: a point crosses a plane through
+// two parallel edges, of which one passes behind the other there. Only planes that cut the
+// receiver parallel to one of its sides are found; between right-angled bodies these are all.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "radiosity/shadow_clip.h"
+
+namespace earthshine::radiosity {
+
+class ShadowKinks {
+ public:
+  // The receiver is corner + x ab + y ad, x and y in [0, 1]. All in one frame.
+  void find(const Vec3& corner, const Vec3& ab, const Vec3& ad, const ConvexPolygon& target,
+            std::span<const Blocker> blockers);
+  void clear();
+
+  // Where to split [low, high]: at the kink nearest to the middle, in the middle if there is none.
+  [[nodiscard]] double split_x(double low, double high) const { return split(at_x_, low, high); }
+  [[nodiscard]] double split_y(double low, double high) const { return split(at_y_, low, high); }
+
+ private:
+  struct Kinks {  // of a target's edge behind a blocker's, and of one blocker's behind another's
+    std::vector<double> target, blocker;
+  };
+  struct Point {  // an edge seen along its own direction; lever: across and towards
+    double across, towards;
+  };
+
+  void find(const Vec3& corner, const Vec3& side, const Vec3& along, const ConvexPolygon& target,
+            std::span<const Blocker> blockers, Kinks& kinks);
+  void collect(const ConvexPolygon& polygon, const Vec3& corner, const Vec3& side,
+               const Vec3& along, std::vector<Point>& points) const;
+  [[nodiscard]] static double split(const Kinks& kinks, double low, double high);
+
+  Kinks at_x_, at_y_;
+  std::vector<Point> of_target_, of_blockers_;
+};
+
+}  // namespace earthshine::radiosity
