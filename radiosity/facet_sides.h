@@ -56,9 +56,9 @@ struct FacetSides {
   PointColumns points;
   std::vector<ConvexPolygon> blockers;  // per facet
   std::vector<Box> blocker_box;
-  std::vector<std::uint32_t> body;                       // per facet (convex_bodies.h)
-  std::vector<std::vector<std::uint32_t>> body_facets;   // per body
-  double margin_m = 0.0;  // heights below it are rounding
+  std::vector<std::uint32_t> body;                      // per facet (convex_bodies.h)
+  std::vector<std::vector<std::uint32_t>> body_facets;  // per body
+  double margin_m = 0.0;                                // heights below it are rounding
 
   // No point of the polygon is inside the body.
   [[nodiscard]] bool outside(const ConvexPolygon& polygon, std::uint32_t of_body) const;

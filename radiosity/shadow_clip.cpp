@@ -27,21 +27,24 @@ void ShadowClip::set(const ConvexPolygon& target, std::span<const Blocker> block
 bool ShadowClip::make_lines(const Blocker& face) {
   const ConvexPolygon& blocker = face.shape;
   const double side = glm::dot(blocker.normal, point_ - blocker[0]);
-  if (std::abs(side) <= margin_m_ || (face.front_only && side < 0.0)) return false;  // edge-on: no width
+  // Edge-on it has no width; what hides from behind, the rest of its body hides.
+  if (std::abs(side) <= margin_m_ || (face.front_only && side < 0.0)) return false;
   const double turn = side > 0.0 ? -1.0 : 1.0;
-  lines_.clear();
+  line_count_ = static_cast<std::size_t>(blocker.count);
   Vec3 from = blocker[blocker.count - 1] - point_;
   for (int k = 0; k < blocker.count; ++k) {
     const Vec3 to = blocker[k] - point_;
     const Vec3 n = turn * glm::cross(from, to);
     from = to;
-    lines_.push_back({n.x, n.y, -glm::dot(n, point_), margin_m_ * (std::abs(n.x) + std::abs(n.y))});
+    lines_[static_cast<std::size_t>(k)] = {n.x, n.y, -glm::dot(n, point_),
+                                           margin_m_ * (std::abs(n.x) + std::abs(n.y))};
   }
   return true;
 }
 
 bool ShadowClip::clear_of_lines(const Piece& piece) const {
-  for (const Line& line : lines_) {
+  for (std::size_t l = 0; l < line_count_; ++l) {
+    const Line& line = lines_[l];
     bool outside = true;
     for (std::uint32_t k = 0; k < piece.count && outside; ++k) {
       outside = line.at(corners_[piece.start + k]) <= line.margin;
@@ -55,7 +58,8 @@ bool ShadowClip::clear_of_lines(const Piece& piece) const {
 // of them is hidden.
 void ShadowClip::subtract(const Piece& piece) {
   Piece inside = piece;
-  for (const Line& line : lines_) {
+  for (std::size_t l = 0; l < line_count_; ++l) {
+    const Line& line = lines_[l];
     height_.resize(inside.count);
     bool any_in = false, any_out = false;
     for (std::uint32_t k = 0; k < inside.count; ++k) {
@@ -70,21 +74,27 @@ void ShadowClip::subtract(const Piece& piece) {
       visible_.push_back(inside);
       return;
     }
-    const auto part = [&](double sign) {
-      const Piece made{static_cast<std::uint32_t>(corners_.size()), 0};
-      for (std::uint32_t k = 0; k < inside.count; ++k) {
-        const std::uint32_t next = k + 1 == inside.count ? 0 : k + 1;
-        const Corner p = corners_[inside.start + k], q = corners_[inside.start + next];
-        if (sign * height_[k] >= 0.0) corners_.push_back(p);
-        if (height_[k] * height_[next] < 0.0) {
-          const double t = height_[k] / (height_[k] - height_[next]);
-          corners_.push_back({p.u + t * (q.u - p.u), p.v + t * (q.v - p.v)});
-        }
+    // At most two corners more than before in both parts together, and two that both have.
+    const auto start = static_cast<std::uint32_t>(corners_.size());
+    corners_.resize(start + 2 * inside.count + 4);
+    const Corner* from = &corners_[inside.start];
+    Corner* in = &corners_[start];
+    Corner* out = in + inside.count + 2;
+    const Corner *in_start = in, *out_start = out;
+    for (std::uint32_t k = 0; k < inside.count; ++k) {
+      const std::uint32_t next = k + 1 == inside.count ? 0 : k + 1;
+      const double here = height_[k], there = height_[next];
+      if (here >= 0.0) *in++ = from[k];
+      if (here <= 0.0) *out++ = from[k];
+      if (here * there < 0.0) {
+        const double t = here / (here - there);
+        const Corner cross{from[k].u + t * (from[next].u - from[k].u),
+                           from[k].v + t * (from[next].v - from[k].v)};
+        *in++ = *out++ = cross;
       }
-      return Piece{made.start, static_cast<std::uint32_t>(corners_.size()) - made.start};
-    };
-    visible_.push_back(part(-1.0));
-    inside = part(1.0);
+    }
+    visible_.push_back({start + inside.count + 2, static_cast<std::uint32_t>(out - out_start)});
+    inside = {start, static_cast<std::uint32_t>(in - in_start)};
   }
   hidden_.push_back(inside);
 }
@@ -97,16 +107,16 @@ void ShadowClip::cut(const Vec3& point) {
   for (const Blocker& blocker : blockers_) {
     if (visible_.empty()) break;
     if (!make_lines(blocker)) continue;
-    bool touched = false;
-    for (const Piece& piece : visible_) touched = touched || !clear_of_lines(piece);
-    if (!touched) continue;
-    remaining_.swap(visible_);
-    visible_.clear();
-    for (const Piece& piece : remaining_) {
-      if (clear_of_lines(piece)) {
-        visible_.push_back(piece);
+    std::size_t first = 0;
+    while (first < visible_.size() && clear_of_lines(visible_[first])) ++first;
+    if (first == visible_.size()) continue;
+    remaining_.assign(visible_.begin() + static_cast<std::ptrdiff_t>(first), visible_.end());
+    visible_.resize(first);
+    for (std::size_t k = 0; k < remaining_.size(); ++k) {
+      if (k > 0 && clear_of_lines(remaining_[k])) {
+        visible_.push_back(remaining_[k]);
       } else {
-        subtract(piece);
+        subtract(remaining_[k]);
       }
     }
   }

@@ -2,6 +2,7 @@
 // What a point sees of a flat polygon past others: their shadows are cut off it exactly.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -70,7 +71,8 @@ class ShadowClip {
   std::span<const Blocker> blockers_;
   std::vector<Corner> target_, corners_;
   std::vector<Piece> visible_, remaining_, hidden_;
-  std::vector<Line> lines_;
+  std::array<Line, ConvexPolygon::most_corners> lines_{};
+  std::size_t line_count_ = 0;
   std::vector<double> height_;
   Vec3 point_{0.0};
   double margin_m_ = 0.0, area_m2_ = 0.0;
