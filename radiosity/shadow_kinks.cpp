@@ -37,23 +37,22 @@ void ShadowKinks::collect(const ConvexPolygon& polygon, const Vec3& corner, cons
 
 void ShadowKinks::find(const Vec3& corner, const Vec3& side, const Vec3& along,
                        const ConvexPolygon& target, std::span<const Blocker> blockers,
-                       Kinks& kinks) {
+                       std::vector<double>& kinks) {
   of_target_.clear();
   of_blockers_.clear();
   collect(target, corner, side, along, of_target_);
   for (const Blocker& blocker : blockers) collect(blocker.shape, corner, side, along, of_blockers_);
   // The line through two points meets the receiver, towards = 0, at x.
-  const auto add = [](const Point& p, const Point& q, std::vector<double>& at) {
+  const auto add = [&kinks](const Point& p, const Point& q) {
     const double rise = q.towards - p.towards;
     if (rise == 0.0) return;
     const double x = p.across - p.towards * (q.across - p.across) / rise;
-    if (x > same && x < 1.0 - same) at.push_back(x);
+    if (x > same && x < 1.0 - same) kinks.push_back(x);
   };
-  kinks.target.clear();
-  kinks.blocker.clear();
+  kinks.clear();
   for (std::size_t k = 0; k < of_blockers_.size(); ++k) {
-    for (const Point& point : of_target_) add(of_blockers_[k], point, kinks.target);
-    for (std::size_t j = 0; j < k; ++j) add(of_blockers_[k], of_blockers_[j], kinks.blocker);
+    for (const Point& point : of_target_) add(of_blockers_[k], point);
+    for (std::size_t j = 0; j < k; ++j) add(of_blockers_[k], of_blockers_[j]);
   }
 }
 
@@ -64,25 +63,20 @@ void ShadowKinks::find(const Vec3& corner, const Vec3& ab, const Vec3& ad,
 }
 
 void ShadowKinks::clear() {
-  for (Kinks* kinks : {&at_x_, &at_y_}) {
-    kinks->target.clear();
-    kinks->blocker.clear();
-  }
+  at_x_.clear();
+  at_y_.clear();
 }
 
-double ShadowKinks::split(const Kinks& kinks, double low, double high) {
+double ShadowKinks::split(const std::vector<double>& kinks, double low, double high) {
   const double middle = 0.5 * (low + high), width = high - low;
-  for (const auto* at : {&kinks.target, &kinks.blocker}) {
-    double nearest = 0.5 * width - 1e-6 * width, best = -1.0;
-    for (const double x : *at) {
-      if (std::abs(x - middle) < nearest) {
-        nearest = std::abs(x - middle);
-        best = x;
-      }
+  double nearest = (0.5 - 1e-6) * width, best = middle;
+  for (const double x : kinks) {
+    if (std::abs(x - middle) < nearest) {
+      nearest = std::abs(x - middle);
+      best = x;
     }
-    if (best >= 0.0) return best;
   }
-  return middle;
+  return best;
 }
 
 }  // namespace earthshine::radiosity

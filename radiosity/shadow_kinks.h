@@ -23,20 +23,17 @@ class ShadowKinks {
   [[nodiscard]] double split_y(double low, double high) const { return split(at_y_, low, high); }
 
  private:
-  struct Kinks {  // of a target's edge behind a blocker's, and of one blocker's behind another's
-    std::vector<double> target, blocker;
-  };
-  struct Point {  // an edge seen along its own direction; lever: across and towards
+  struct Point {  // an edge seen along its own direction
     double across, towards;
   };
 
   void find(const Vec3& corner, const Vec3& side, const Vec3& along, const ConvexPolygon& target,
-            std::span<const Blocker> blockers, Kinks& kinks);
+            std::span<const Blocker> blockers, std::vector<double>& kinks);
   void collect(const ConvexPolygon& polygon, const Vec3& corner, const Vec3& side,
                const Vec3& along, std::vector<Point>& points) const;
-  [[nodiscard]] static double split(const Kinks& kinks, double low, double high);
+  [[nodiscard]] static double split(const std::vector<double>& kinks, double low, double high);
 
-  Kinks at_x_, at_y_;
+  std::vector<double> at_x_, at_y_;
   std::vector<Point> of_target_, of_blockers_;
 };
 
