@@ -123,7 +123,7 @@ class Worker {
     const Box one = box_around(front_first_), two = box_around(front_second_);
     const Box both{glm::min(one.low, two.low), glm::max(one.high, two.high)};
     const Shaft shaft(front_first_, front_second_, margin_m_);
-    for (std::uint32_t f = 0; f < sides.blockers.size(); ++f) {
+    for (const std::uint32_t f : sides.hiding) {
       if (f == first.facet || f == second.facet || !both.meets(sides.blocker_box[f], margin_m_)) {
         continue;
       }

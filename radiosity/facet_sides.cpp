@@ -84,10 +84,27 @@ FacetSides::FacetSides(const Patches& patches) {
   }
   std::sort(sides.begin(), sides.end(),
             [](const Side& a, const Side& b) { return a.first_patch < b.first_patch; });
+  find_hiding();
   body = find_convex_bodies(blockers, margin_m);
   body_facets.resize(body.size());
   for (std::uint32_t f = 0; f < body.size(); ++f) {
     if (body[f] != no_body) body_facets[body[f]].push_back(f);
+  }
+}
+
+void FacetSides::find_hiding() {
+  for (std::uint32_t f = 0; f < blockers.size(); ++f) {
+    // A facet with the whole scene on one side is part of its hull: nothing passes behind it.
+    const Plane plane{blockers[f][0], blockers[f].normal};
+    bool above = false, below = false;
+    for (std::size_t g = 0; g < blockers.size() && !(above && below); ++g) {
+      for (int k = 0; k < blockers[g].count; ++k) {
+        const double height = plane.height(blockers[g][k]);
+        above = above || height > margin_m;
+        below = below || height < -margin_m;
+      }
+    }
+    if (above && below) hiding.push_back(f);
   }
 }
 

@@ -56,7 +56,8 @@ struct FacetSides {
   PointColumns points;
   std::vector<ConvexPolygon> blockers;  // per facet
   std::vector<Box> blocker_box;
-  std::vector<std::uint32_t> body;                      // per facet (convex_bodies.h)
+  std::vector<std::uint32_t> hiding;  // facets that can hide anything: not those around the scene
+  std::vector<std::uint32_t> body;    // per facet (convex_bodies.h)
   std::vector<std::vector<std::uint32_t>> body_facets;  // per body
   double margin_m = 0.0;                                // heights below it are rounding
 
@@ -67,6 +68,9 @@ struct FacetSides {
     const auto k = static_cast<std::size_t>(order - least_order);
     return points.view(shape.first_point[k], shape.first_point[k + 1] - shape.first_point[k]);
   }
+
+ private:
+  void find_hiding();
 };
 
 }  // namespace earthshine::radiosity
