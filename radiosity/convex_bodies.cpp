@@ -11,6 +11,7 @@ namespace {
 struct DirectedEdge {
   std::uint32_t from, to;  // merged corners
   std::uint32_t polygon;
+  int k;  // from its corner k to the next
 };
 
 // Numbers corners by place: those within margin_m of each other along the sorted x get one number.
@@ -49,36 +50,77 @@ std::uint32_t root(std::vector<std::uint32_t>& parent, std::uint32_t k) {
   return k;
 }
 
-}  // namespace
+// Directed edges sorted by their ends.
+class EdgeTable {
+ public:
+  EdgeTable(std::span<const ConvexPolygon> polygons, double margin_m) {
+    const auto number = number_corners(polygons, margin_m);
+    for (std::uint32_t p = 0; p < polygons.size(); ++p) {
+      const std::size_t count = number[p].size();
+      for (std::size_t k = 0; k < count; ++k) {
+        edges_.push_back({number[p][k], number[p][(k + 1) % count], p, static_cast<int>(k)});
+      }
+    }
+    std::sort(edges_.begin(), edges_.end(), [](const DirectedEdge& a, const DirectedEdge& b) {
+      return std::tie(a.from, a.to, a.polygon) < std::tie(b.from, b.to, b.polygon);
+    });
+  }
+  [[nodiscard]] const std::vector<DirectedEdge>& all() const { return edges_; }
+  // The edge from one corner to another if there is exactly one.
+  [[nodiscard]] const DirectedEdge* only(std::uint32_t from, std::uint32_t to) const {
+    const auto range = std::equal_range(edges_.begin(), edges_.end(), DirectedEdge{from, to, 0, 0},
+                                        [](const DirectedEdge& a, const DirectedEdge& b) {
+                                          return std::tie(a.from, a.to) < std::tie(b.from, b.to);
+                                        });
+    return range.second - range.first == 1 ? &*range.first : nullptr;
+  }
 
-std::vector<std::uint32_t> find_convex_bodies(std::span<const ConvexPolygon> polygons,
-                                              double margin_m) {
-  const auto number = number_corners(polygons, margin_m);
-  std::vector<DirectedEdge> edges;
-  for (std::uint32_t p = 0; p < polygons.size(); ++p) {
-    const std::size_t count = number[p].size();
-    for (std::size_t k = 0; k < count; ++k) {
-      edges.push_back({number[p][k], number[p][(k + 1) % count], p});
+ private:
+  std::vector<DirectedEdge> edges_;
+};
+
+// Every face has all the others' corners behind it.
+bool is_convex(std::span<const ConvexPolygon> polygons, std::span<const std::uint32_t> faces,
+               double margin_m) {
+  for (const std::uint32_t f : faces) {
+    const Plane plane{polygons[f][0], polygons[f].normal};
+    for (const std::uint32_t g : faces) {
+      for (int k = 0; k < polygons[g].count; ++k) {
+        if (plane.height(polygons[g][k]) > margin_m) return false;
+      }
     }
   }
-  const auto by_ends = [](const DirectedEdge& a, const DirectedEdge& b) {
-    return std::tie(a.from, a.to, a.polygon) < std::tie(b.from, b.to, b.polygon);
-  };
-  std::sort(edges.begin(), edges.end(), by_ends);
-  const auto range = [&](std::uint32_t from, std::uint32_t to) {
-    return std::equal_range(edges.begin(), edges.end(), DirectedEdge{from, to, 0},
-                            [](const DirectedEdge& a, const DirectedEdge& b) {
-                              return std::tie(a.from, a.to) < std::tie(b.from, b.to);
-                            });
-  };
+  return true;
+}
 
+}  // namespace
+
+bool ConvexBody::is_outside(const ConvexPolygon& polygon, double margin_m) const {
+  for (const Plane& face : faces) {
+    bool before = true;
+    for (int k = 0; k < polygon.count && before; ++k) {
+      before = face.height(polygon[k]) >= -margin_m;
+    }
+    if (before) return true;
+  }
+  return false;
+}
+
+bool ConvexBody::is_before(const Plane& plane, double margin_m) const {
+  return std::all_of(edges.begin(), edges.end(), [&](const Edge& edge) {
+    return plane.height(edge.from) >= -margin_m && plane.height(edge.to) >= -margin_m;
+  });
+}
+
+ConvexBodies find_convex_bodies(std::span<const ConvexPolygon> polygons, double margin_m) {
+  const EdgeTable table(polygons, margin_m);
   std::vector<std::uint32_t> parent(polygons.size());
   std::iota(parent.begin(), parent.end(), 0U);
   std::vector<bool> open(polygons.size(), false);
-  for (const DirectedEdge& edge : edges) {
-    const auto own = range(edge.from, edge.to), opposite = range(edge.to, edge.from);
-    if (own.second - own.first == 1 && opposite.second - opposite.first == 1) {
-      parent[root(parent, edge.polygon)] = root(parent, opposite.first->polygon);
+  for (const DirectedEdge& edge : table.all()) {
+    const DirectedEdge* opposite = table.only(edge.to, edge.from);
+    if (opposite != nullptr && table.only(edge.from, edge.to) != nullptr) {
+      parent[root(parent, edge.polygon)] = root(parent, opposite->polygon);
     } else {
       open[edge.polygon] = true;
     }
@@ -86,24 +128,28 @@ std::vector<std::uint32_t> find_convex_bodies(std::span<const ConvexPolygon> pol
   std::vector<std::vector<std::uint32_t>> faces(polygons.size());
   for (std::uint32_t p = 0; p < polygons.size(); ++p) faces[root(parent, p)].push_back(p);
 
-  std::vector<std::uint32_t> body(polygons.size(), no_body);
-  constexpr std::size_t most_faces = 256;  // beyond it the test of every corner costs too much
-  for (std::uint32_t b = 0; b < polygons.size(); ++b) {
-    bool closed = faces[b].size() >= 4 && faces[b].size() <= most_faces;
-    for (std::size_t f = 0; f < faces[b].size() && closed; ++f) {
-      const ConvexPolygon& face = polygons[faces[b][f]];
-      closed = !open[faces[b][f]];
-      for (std::size_t g = 0; g < faces[b].size() && closed; ++g) {
-        const ConvexPolygon& other = polygons[faces[b][g]];
-        for (int k = 0; k < other.count; ++k) {
-          closed = closed && glm::dot(face.normal, other[k] - face[0]) <= margin_m;
-        }
-      }
+  ConvexBodies found;
+  found.of_polygon.assign(polygons.size(), no_body);
+  std::vector<std::uint32_t> place(polygons.size(), 0);  // among its body's faces
+  for (const std::vector<std::uint32_t>& group : faces) {
+    const bool closed = std::none_of(group.begin(), group.end(), [&](auto f) { return open[f]; });
+    if (group.size() < 4 || !closed || !is_convex(polygons, group, margin_m)) continue;
+    ConvexBody body;
+    for (const std::uint32_t f : group) {
+      found.of_polygon[f] = static_cast<std::uint32_t>(found.bodies.size());
+      place[f] = static_cast<std::uint32_t>(body.faces.size());
+      body.faces.push_back({polygons[f][0], polygons[f].normal});
     }
-    if (!closed) continue;
-    for (const std::uint32_t p : faces[b]) body[p] = b;
+    found.bodies.push_back(body);
   }
-  return body;
+  for (const DirectedEdge& edge : table.all()) {
+    const std::uint32_t body = found.of_polygon[edge.polygon];
+    if (body == no_body || edge.from > edge.to) continue;
+    const ConvexPolygon& face = polygons[edge.polygon];
+    found.bodies[body].edges.push_back({face[edge.k], face.next(edge.k), place[edge.polygon],
+                                        place[table.only(edge.to, edge.from)->polygon]});
+  }
+  return found;
 }
 
 }  // namespace earthshine::radiosity

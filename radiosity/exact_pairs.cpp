@@ -123,6 +123,8 @@ class Worker {
     const Box one = box_around(front_first_), two = box_around(front_second_);
     const Box both{glm::min(one.low, two.low), glm::max(one.high, two.high)};
     const Shaft shaft(front_first_, front_second_, margin_m_);
+    std::uint32_t last_body = no_body;
+    Blocker last;
     for (const std::uint32_t f : sides.hiding) {
       if (f == first.facet || f == second.facet || !both.meets(sides.blocker_box[f], margin_m_)) {
         continue;
@@ -132,11 +134,29 @@ class Worker {
       if (part.count < 3) continue;
       part = clip(part, {second.polygon[0], second.polygon.normal}, margin_m_);
       if (part.count < 3 || !shaft.may_hide(part)) continue;
-      const std::uint32_t body = sides.body[f];
-      const bool front_only = body != no_body && sides.outside(front_first_, body) &&
-                              sides.outside(front_second_, body);
-      blockers_.push_back({part, front_only});
+      blockers_.push_back({part, false, nullptr});
+      const std::uint32_t body = sides.bodies.of_polygon[f];
+      if (body == no_body) continue;
+      if (body != last_body) {
+        last_body = body;
+        last = as_body(sides.bodies.bodies[body], first, second);
+      }
+      blockers_.back().front_only = last.front_only;
+      blockers_.back().body = last.body;
     }
+  }
+
+  // What a face may leave to its body in this pair.
+  [[nodiscard]] Blocker as_body(const ConvexBody& body, const Side& first,
+                                const Side& second) const {
+    Blocker blocker;
+    blocker.front_only =
+        body.is_outside(front_first_, margin_m_) && body.is_outside(front_second_, margin_m_);
+    if (blocker.front_only && body.is_before({first.polygon[0], first.polygon.normal}, margin_m_) &&
+        body.is_before({second.polygon[0], second.polygon.normal}, margin_m_)) {
+      blocker.body = &body;
+    }
+    return blocker;
   }
 
   // Those that can stand between one patch and the other side, and where their shadows fall on it.

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "radiosity/convex_bodies.h"
-
 namespace earthshine::radiosity {
 namespace {
 
@@ -85,11 +83,7 @@ FacetSides::FacetSides(const Patches& patches) {
   std::sort(sides.begin(), sides.end(),
             [](const Side& a, const Side& b) { return a.first_patch < b.first_patch; });
   find_hiding();
-  body = find_convex_bodies(blockers, margin_m);
-  body_facets.resize(body.size());
-  for (std::uint32_t f = 0; f < body.size(); ++f) {
-    if (body[f] != no_body) body_facets[body[f]].push_back(f);
-  }
+  bodies = find_convex_bodies(blockers, margin_m);
 }
 
 void FacetSides::find_hiding() {
@@ -106,18 +100,6 @@ void FacetSides::find_hiding() {
     }
     if (above && below) hiding.push_back(f);
   }
-}
-
-bool FacetSides::outside(const ConvexPolygon& polygon, std::uint32_t of_body) const {
-  for (const std::uint32_t f : body_facets[of_body]) {
-    const Plane face{blockers[f][0], blockers[f].normal};
-    bool before = true;
-    for (int k = 0; k < polygon.count && before; ++k) {
-      before = face.height(polygon[k]) >= -margin_m;
-    }
-    if (before) return true;
-  }
-  return false;
 }
 
 }  // namespace earthshine::radiosity

@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "radiosity/convex_bodies.h"
 #include "radiosity/convex_polygon.h"
 #include "radiosity/patches.h"
 #include "radiosity/quadrature.h"
@@ -57,12 +58,8 @@ struct FacetSides {
   std::vector<ConvexPolygon> blockers;  // per facet
   std::vector<Box> blocker_box;
   std::vector<std::uint32_t> hiding;  // facets that can hide anything: not those around the scene
-  std::vector<std::uint32_t> body;    // per facet (convex_bodies.h)
-  std::vector<std::vector<std::uint32_t>> body_facets;  // per body
-  double margin_m = 0.0;                                // heights below it are rounding
-
-  // No point of the polygon is inside the body.
-  [[nodiscard]] bool outside(const ConvexPolygon& polygon, std::uint32_t of_body) const;
+  ConvexBodies bodies;                // of the facets
+  double margin_m = 0.0;              // heights below it are rounding
 
   [[nodiscard]] PointView points_of(const PatchShape& shape, int order) const {
     const auto k = static_cast<std::size_t>(order - least_order);

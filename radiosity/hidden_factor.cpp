@@ -108,7 +108,7 @@ void HiddenFactor::refine() {
 void HiddenFactor::put_largest_shadow_first(const Vec3& from, double margin_m) {
   shadows_.clear();
   for (std::size_t k = 0; k < blockers_.size(); ++k) {
-    clip_.set(target_, {&blockers_[k], 1}, margin_m);
+    clip_.set(*frame_, target_, {&blockers_[k], 1}, margin_m);
     clip_.cut(from);
     shadows_.emplace_back(clip_.visible_area_share(), k);
   }
@@ -121,14 +121,18 @@ void HiddenFactor::put_largest_shadow_first(const Vec3& from, double margin_m) {
 void HiddenFactor::set_up(const ConvexPolygon& receiver, const ConvexPolygon& target,
                           std::span<const Blocker* const> blockers, double margin_m) {
   const Ball ball = ball_around(receiver);
-  const TargetFrame frame(target);
+  const TargetFrame& frame = frame_.emplace(target);
   blockers_.clear();
   for (const Blocker* blocker : blockers) {
-    blockers_.push_back({frame.polygon(blocker->shape), blocker->front_only});
+    const bool known = blocker->body != nullptr &&
+                       std::any_of(blockers_.begin(), blockers_.end(),
+                                   [&](const Blocker& b) { return b.body == blocker->body; });
+    if (known) continue;
+    blockers_.push_back({frame.polygon(blocker->shape), blocker->front_only, blocker->body});
   }
   target_ = frame.polygon(target);
   put_largest_shadow_first(frame.point(ball.centre), margin_m);
-  clip_.set(target_, blockers_, margin_m);
+  clip_.set(frame, target_, blockers_, margin_m);
   normal_ = frame.direction(receiver.normal);
   // Near the target only what is hidden is integrated: the rest, with its steep rise towards a
   // shared edge, is known exactly.
@@ -165,7 +169,7 @@ HiddenExchange HiddenFactor::exchange(const ConvexPolygon& first, const ConvexPo
     return result_;
   }
   if (cells_.size() == 1) {
-    kinks_.find(quads_[0].corner, quads_[0].ab, quads_[0].ad, target_, blockers_);
+    kinks_.find(quads_[0].corner, quads_[0].ab, quads_[0].ad, *frame_, target_, blockers_);
   } else {
     kinks_.clear();
   }

@@ -10,6 +10,7 @@
 // (shadow_kinks.h) and what is left is smooth.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -56,6 +57,7 @@ class HiddenFactor {
 
   ShadowClip clip_;
   ShadowKinks kinks_;
+  std::optional<TargetFrame> frame_;
   ConvexPolygon target_;  // in its own frame
   std::vector<Blocker> blockers_, ordered_;
   std::vector<std::pair<double, std::size_t>> shadows_;  // visible share, blocker

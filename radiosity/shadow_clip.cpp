@@ -14,8 +14,9 @@ ConvexPolygon TargetFrame::polygon(const ConvexPolygon& p) const {
   return seen;
 }
 
-void ShadowClip::set(const ConvexPolygon& target, std::span<const Blocker> blockers,
-                     double margin_m) {
+void ShadowClip::set(const TargetFrame& frame, const ConvexPolygon& target,
+                     std::span<const Blocker> blockers, double margin_m) {
+  frame_ = &frame;
   target_.clear();
   for (int k = 0; k < target.count; ++k) target_.push_back({target[k].x, target[k].y});
   blockers_ = blockers;
@@ -23,28 +24,46 @@ void ShadowClip::set(const ConvexPolygon& target, std::span<const Blocker> block
   area_m2_ = area_m2(target);
 }
 
-// The planes through the point and the blocker's edges, where they meet the target's plane.
-bool ShadowClip::make_lines(const Blocker& face) {
-  const ConvexPolygon& blocker = face.shape;
-  const double side = glm::dot(blocker.normal, point_ - blocker[0]);
+// The plane through the point and an edge of the outline, where it meets the target's plane.
+void ShadowClip::add_line(const Vec3& from, const Vec3& to, double turn) {
+  const Vec3 n = turn * glm::cross(from, to);
+  lines_.push_back({n.x, n.y, -glm::dot(n, point_), margin_m_ * (std::abs(n.x) + std::abs(n.y))});
+}
+
+bool ShadowClip::make_lines(const Blocker& blocker) {
+  lines_.clear();
+  if (blocker.body != nullptr) return make_outline(*blocker.body);
+  const ConvexPolygon& face = blocker.shape;
+  const double side = glm::dot(face.normal, point_ - face[0]);
   // Edge-on it has no width; what hides from behind, the rest of its body hides.
-  if (std::abs(side) <= margin_m_ || (face.front_only && side < 0.0)) return false;
-  const double turn = side > 0.0 ? -1.0 : 1.0;
-  line_count_ = static_cast<std::size_t>(blocker.count);
-  Vec3 from = blocker[blocker.count - 1] - point_;
-  for (int k = 0; k < blocker.count; ++k) {
-    const Vec3 to = blocker[k] - point_;
-    const Vec3 n = turn * glm::cross(from, to);
+  if (std::abs(side) <= margin_m_ || (blocker.front_only && side < 0.0)) return false;
+  Vec3 from = face[face.count - 1] - point_;
+  for (int k = 0; k < face.count; ++k) {
+    const Vec3 to = face[k] - point_;
+    add_line(from, to, side > 0.0 ? -1.0 : 1.0);
     from = to;
-    lines_[static_cast<std::size_t>(k)] = {n.x, n.y, -glm::dot(n, point_),
-                                           margin_m_ * (std::abs(n.x) + std::abs(n.y))};
   }
   return true;
 }
 
+// The edges between faces towards the point and faces away from it.
+bool ShadowClip::make_outline(const ConvexBody& body) {
+  const Vec3 from_here = frame_->to_scene(point_);
+  faces_point_.clear();
+  for (const Plane& face : body.faces) {
+    faces_point_.push_back(face.height(from_here) > margin_m_ ? 1 : 0);
+  }
+  for (const ConvexBody::Edge& edge : body.edges) {
+    const bool left = faces_point_[edge.left] != 0, right = faces_point_[edge.right] != 0;
+    if (left == right) continue;
+    add_line(frame_->direction(edge.from - from_here), frame_->direction(edge.to - from_here),
+             left ? -1.0 : 1.0);
+  }
+  return !lines_.empty();
+}
+
 bool ShadowClip::clear_of_lines(const Piece& piece) const {
-  for (std::size_t l = 0; l < line_count_; ++l) {
-    const Line& line = lines_[l];
+  for (const Line& line : lines_) {
     bool outside = true;
     for (std::uint32_t k = 0; k < piece.count && outside; ++k) {
       outside = line.at(corners_[piece.start + k]) <= line.margin;
@@ -58,8 +77,7 @@ bool ShadowClip::clear_of_lines(const Piece& piece) const {
 // of them is hidden.
 void ShadowClip::subtract(const Piece& piece) {
   Piece inside = piece;
-  for (std::size_t l = 0; l < line_count_; ++l) {
-    const Line& line = lines_[l];
+  for (const Line& line : lines_) {
     height_.resize(inside.count);
     bool any_in = false, any_out = false;
     for (std::uint32_t k = 0; k < inside.count; ++k) {

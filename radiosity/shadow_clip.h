@@ -2,12 +2,11 @@
 // What a point sees of a flat polygon past others: their shadows are cut off it exactly.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "radiosity/convex_polygon.h"
+#include "radiosity/convex_bodies.h"
 
 namespace earthshine::radiosity {
 
@@ -16,6 +15,9 @@ namespace earthshine::radiosity {
 struct Blocker {
   ConvexPolygon shape;
   bool front_only = false;
+  // The body, if all of it is in front of both polygons: its outline stands for all its faces. In
+  // the scene's coordinates.
+  const ConvexBody* body = nullptr;
 };
 
 // The target's own frame: (u, v) in its plane from its first corner, h the height above it.
@@ -28,6 +30,7 @@ class TargetFrame {
   }
   [[nodiscard]] Vec3 point(const Vec3& p) const { return direction(p - origin_); }
   [[nodiscard]] ConvexPolygon polygon(const ConvexPolygon& p) const;
+  [[nodiscard]] Vec3 to_scene(const Vec3& p) const { return origin_ + axes_.to_world(p); }
 
  private:
   Vec3 origin_;
@@ -38,7 +41,8 @@ class TargetFrame {
 class ShadowClip {
  public:
   // Blockers must lie in front of the target (h >= 0) and of the planes of all points used.
-  void set(const ConvexPolygon& target, std::span<const Blocker> blockers, double margin_m);
+  void set(const TargetFrame& frame, const ConvexPolygon& target, std::span<const Blocker> blockers,
+           double margin_m);
 
   // Cuts the target as seen from `point` (h > 0).
   void cut(const Vec3& point);
@@ -64,15 +68,18 @@ class ShadowClip {
   };
 
   [[nodiscard]] bool make_lines(const Blocker& blocker);
+  [[nodiscard]] bool make_outline(const ConvexBody& body);
+  void add_line(const Vec3& from, const Vec3& to, double turn);
   void subtract(const Piece& piece);
   [[nodiscard]] bool clear_of_lines(const Piece& piece) const;
   [[nodiscard]] double share(const std::vector<Piece>& pieces, const Vec3& normal) const;
 
+  const TargetFrame* frame_ = nullptr;
   std::span<const Blocker> blockers_;
   std::vector<Corner> target_, corners_;
   std::vector<Piece> visible_, remaining_, hidden_;
-  std::array<Line, ConvexPolygon::most_corners> lines_{};
-  std::size_t line_count_ = 0;
+  std::vector<Line> lines_;
+  std::vector<char> faces_point_;
   std::vector<double> height_;
   Vec3 point_{0.0};
   double margin_m_ = 0.0, area_m2_ = 0.0;

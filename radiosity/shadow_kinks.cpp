@@ -8,40 +8,58 @@ namespace {
 
 // Sine below which edges count as parallel, and the share of a side within which points are one.
 constexpr double parallel = 1e-7, same = 1e-9;
+// Round bodies have no edges that matter one by one.
+constexpr std::size_t most_edges = 48;
 
 }  // namespace
 
-// Edges along `along`, as points of the plane across it: `across` in units of the receiver's side,
-// `towards` the height above the receiver in metres.
-void ShadowKinks::collect(const ConvexPolygon& polygon, const Vec3& corner, const Vec3& side,
-                          const Vec3& along, std::vector<Point>& points) const {
-  const Vec3 normal = glm::normalize(glm::cross(side, along));
-  // Of the plane spanned by side and normal, seen along `along`.
-  const Vec3 across = glm::cross(along, normal);
-  const double unit = glm::dot(across, side);
-  for (int k = 0; k < polygon.count; ++k) {
-    const Vec3 edge = polygon.next(k) - polygon[k];
-    if (glm::length(glm::cross(edge, along)) > parallel * glm::length(edge) * glm::length(along)) {
-      continue;
+// An edge along `along`, as a point of the plane across it: `across` in units of the receiver's
+// side, `towards` the height above the receiver in metres.
+void ShadowKinks::collect(const Vec3& from, const Vec3& to, const Lookout& lookout,
+                          std::vector<Point>& points) {
+  const Vec3 edge = to - from;
+  const double off = glm::length(glm::cross(edge, lookout.along));
+  if (off > parallel * glm::length(edge) * lookout.along_m) return;
+  const Vec3 at = from - lookout.corner;
+  const Point made{glm::dot(at, lookout.across), glm::dot(at, lookout.normal)};
+  for (const Point& point : points) {
+    if (std::abs(point.across - made.across) < same &&
+        std::abs(point.towards - made.towards) < same * lookout.side_m) {
+      return;
     }
-    const Vec3 from = polygon[k] - corner;
-    const Point made{glm::dot(from, across) / unit, glm::dot(from, normal)};
-    bool known = false;
-    for (const Point& point : points) {
-      known = known || (std::abs(point.across - made.across) < same &&
-                        std::abs(point.towards - made.towards) < same * glm::length(side));
-    }
-    if (!known) points.push_back(made);
   }
+  points.push_back(made);
 }
 
 void ShadowKinks::find(const Vec3& corner, const Vec3& side, const Vec3& along,
-                       const ConvexPolygon& target, std::span<const Blocker> blockers,
-                       std::vector<double>& kinks) {
+                       const TargetFrame& frame, const ConvexPolygon& target,
+                       std::span<const Blocker> blockers, std::vector<double>& kinks) {
+  Lookout lookout{corner,
+                  along,
+                  glm::normalize(glm::cross(side, along)),
+                  Vec3(0.0),
+                  glm::length(side),
+                  glm::length(along)};
+  // In the plane spanned by side and normal, seen along `along`.
+  const Vec3 across = glm::cross(along, lookout.normal);
+  lookout.across = across / glm::dot(across, side);
   of_target_.clear();
   of_blockers_.clear();
-  collect(target, corner, side, along, of_target_);
-  for (const Blocker& blocker : blockers) collect(blocker.shape, corner, side, along, of_blockers_);
+  for (int k = 0; k < target.count; ++k) {
+    collect(target[k], target.next(k), lookout, of_target_);
+  }
+  for (const Blocker& blocker : blockers) {
+    if (blocker.body != nullptr) {
+      if (blocker.body->edges.size() > most_edges) continue;
+      for (const ConvexBody::Edge& edge : blocker.body->edges) {
+        collect(frame.point(edge.from), frame.point(edge.to), lookout, of_blockers_);
+      }
+    } else {
+      for (int k = 0; k < blocker.shape.count; ++k) {
+        collect(blocker.shape[k], blocker.shape.next(k), lookout, of_blockers_);
+      }
+    }
+  }
   // The line through two points meets the receiver, towards = 0, at x.
   const auto add = [&kinks](const Point& p, const Point& q) {
     const double rise = q.towards - p.towards;
@@ -56,10 +74,10 @@ void ShadowKinks::find(const Vec3& corner, const Vec3& side, const Vec3& along,
   }
 }
 
-void ShadowKinks::find(const Vec3& corner, const Vec3& ab, const Vec3& ad,
+void ShadowKinks::find(const Vec3& corner, const Vec3& ab, const Vec3& ad, const TargetFrame& frame,
                        const ConvexPolygon& target, std::span<const Blocker> blockers) {
-  find(corner, ab, ad, target, blockers, at_x_);
-  find(corner, ad, ab, target, blockers, at_y_);
+  find(corner, ab, ad, frame, target, blockers, at_x_);
+  find(corner, ad, ab, frame, target, blockers, at_y_);
 }
 
 void ShadowKinks::clear() {

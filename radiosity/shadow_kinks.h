@@ -13,9 +13,9 @@ namespace earthshine::radiosity {
 
 class ShadowKinks {
  public:
-  // The receiver is corner + x ab + y ad, x and y in [0, 1]. All in one frame.
-  void find(const Vec3& corner, const Vec3& ab, const Vec3& ad, const ConvexPolygon& target,
-            std::span<const Blocker> blockers);
+  // The receiver is corner + x ab + y ad, x and y in [0, 1]. All in the target's frame.
+  void find(const Vec3& corner, const Vec3& ab, const Vec3& ad, const TargetFrame& frame,
+            const ConvexPolygon& target, std::span<const Blocker> blockers);
   void clear();
 
   // Where to split [low, high]: at the kink nearest to the middle, in the middle if there is none.
@@ -27,10 +27,16 @@ class ShadowKinks {
     double across, towards;
   };
 
-  void find(const Vec3& corner, const Vec3& side, const Vec3& along, const ConvexPolygon& target,
-            std::span<const Blocker> blockers, std::vector<double>& kinks);
-  void collect(const ConvexPolygon& polygon, const Vec3& corner, const Vec3& side,
-               const Vec3& along, std::vector<Point>& points) const;
+  struct Lookout {
+    Vec3 corner, along, normal, across;
+    double side_m, along_m;
+  };
+
+  void find(const Vec3& corner, const Vec3& side, const Vec3& along, const TargetFrame& frame,
+            const ConvexPolygon& target, std::span<const Blocker> blockers,
+            std::vector<double>& kinks);
+  static void collect(const Vec3& from, const Vec3& to, const Lookout& lookout,
+                      std::vector<Point>& points);
   [[nodiscard]] static double split(const std::vector<double>& kinks, double low, double high);
 
   std::vector<double> at_x_, at_y_;
