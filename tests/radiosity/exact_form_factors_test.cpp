@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "base/parallel.h"
+#include "scenes/scene_file.h"
 #include "tests/support/boxes.h"
 
 namespace earthshine::radiosity {
@@ -155,6 +157,15 @@ TEST(ExactFormFactors, ARoomFullOfBoxesCloses) {
   EXPECT_EQ(counts.facing_away + counts.unoccluded + counts.partly_hidden + counts.wholly_hidden,
             made.exact.report.pairs);
   EXPECT_GT(counts.wholly_hidden, 0U);
+}
+
+TEST(ExactFormFactors, ARoundBodyOfManyFacesHidesAsOneOutline) {
+  // The furnace of the library: a sphere of some 500 triangles and a block in a closed room.
+  const scenes::Scene scene = scenes::read_scene(std::filesystem::path(EARTHSHINE_SOURCE_DIR) /
+                                                 "scenes/library/furnace/scene.toml");
+  const Made made = make(scene, whole);
+  EXPECT_EQ(made.exact.report.closed_rows, made.patches.count());
+  EXPECT_LT(made.exact.report.max_closed_defect, 3e-5);
 }
 
 TEST(ExactFormFactors, ExchangesAreReciprocalToSinglePrecision) {
