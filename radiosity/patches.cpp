@@ -10,6 +10,7 @@ namespace earthshine::radiosity {
 namespace {
 
 constexpr std::uint64_t most_patches = std::uint64_t{1} << 26;
+constexpr double most_first_cuts = 16.0;
 
 std::uint32_t divisions(double length_m, double edge_m) {
   // A length that is a whole number of edges up to rounding is not cut once more.
@@ -73,9 +74,16 @@ Facet triangle_facet(const scenes::Scene& scene, std::size_t k, double edge_m) {
   return facet;
 }
 
-double cell_area(const Facet& facet, const Rectangle& r) {
-  if (facet.parallelogram) return facet.area_m2 * (r.s1 - r.s0) * (r.t1 - r.t0);
-  return facet.area_m2 * (r.s1 * r.s1 - r.s0 * r.s0) * (r.t1 - r.t0);
+// How often the longer side of a grid's cell is to be halved alone: to the nearest square.
+void set_first_cuts(Facet& facet) {
+  const Vec3 across = facet.parallelogram ? facet.b : facet.b - facet.a;
+  const double s_m =
+      std::max(glm::length(facet.a), facet.parallelogram ? 0.0 : glm::length(facet.b)) /
+      facet.s_count;
+  const double t_m = glm::length(across) / facet.t_count;
+  const double halvings = std::round(std::log2(s_m / t_m));
+  const auto cuts = static_cast<std::uint32_t>(std::min(std::abs(halvings), most_first_cuts));
+  (halvings > 0.0 ? facet.s_first : facet.t_first) = cuts;
 }
 
 Vec3 on_facet(const Facet& f, double s, double t) {
@@ -83,13 +91,18 @@ Vec3 on_facet(const Facet& f, double s, double t) {
   return f.corner + s * (f.a + t * (f.b - f.a));
 }
 
+}  // namespace
+
 Rectangle rectangle_of(const Facet& facet, const Cell& cell) {
-  const double rows = std::ldexp(facet.s_count, static_cast<int>(cell.level));
-  const double columns = std::ldexp(facet.t_count, static_cast<int>(cell.level));
+  const double rows = std::ldexp(facet.s_count, static_cast<int>(s_halvings(facet, cell.level)));
+  const double columns = std::ldexp(facet.t_count, static_cast<int>(t_halvings(facet, cell.level)));
   return {cell.s / rows, (cell.s + 1.0) / rows, cell.t / columns, (cell.t + 1.0) / columns};
 }
 
-}  // namespace
+double area_of(const Facet& facet, const Rectangle& r) {
+  if (facet.parallelogram) return facet.area_m2 * (r.s1 - r.s0) * (r.t1 - r.t0);
+  return facet.area_m2 * (r.s1 * r.s1 - r.s0 * r.s0) * (r.t1 - r.t0);
+}
 
 Parameters Patches::parameters(std::uint32_t triangle, double u, double v) const {
   const Facet& f = facets[of_triangle[triangle]];
@@ -120,11 +133,18 @@ std::uint32_t Patches::leaf(const Facet& of, Parameters where) const {
   std::uint32_t entry = tree[of.tree + grid_cell];
   x -= row;
   y -= column;
-  while ((entry & split_cell) != 0) {
-    const std::uint32_t ds = x >= 0.5 ? 1 : 0, dt = y >= 0.5 ? 1 : 0;
-    x = 2.0 * x - ds;
-    y = 2.0 * y - dt;
-    entry = tree[(entry & ~split_cell) + 2 * ds + dt];
+  for (std::uint32_t level = 0; (entry & split_cell) != 0; ++level) {
+    std::uint32_t child = 0;
+    if (level >= of.t_first) {
+      child = x >= 0.5 ? 1 : 0;
+      x = 2.0 * x - child;
+    }
+    if (level >= of.s_first) {
+      const std::uint32_t dt = y >= 0.5 ? 1 : 0;
+      y = 2.0 * y - dt;
+      child = 2 * child + dt;
+    }
+    entry = tree[(entry & ~split_cell) + child];
   }
   return entry;
 }
@@ -164,6 +184,7 @@ Patches subdivide(const scenes::Scene& scene, double edge_m) {
   for (std::size_t k = 0; k < scene.triangles.size(); ++k) {
     const bool pair = forms_parallelogram(scene, k);
     Facet facet = pair ? parallelogram_facet(scene, k, edge_m) : triangle_facet(scene, k, edge_m);
+    set_first_cuts(facet);
     facet.triangle = static_cast<std::uint32_t>(k);
     facet.material = scene.triangles[k].material;
     facet.object = scene.triangles[k].object;
@@ -192,7 +213,7 @@ Patches subdivide(const scenes::Scene& scene, double edge_m) {
     for (int side = 0; side < (sheet ? 2 : 1); ++side) {
       for (std::uint32_t c = 0; c < cells; ++c) {
         const Cell cell{c / facet.t_count, c % facet.t_count, 0};
-        patches.area_m2.push_back(cell_area(facet, rectangle_of(facet, cell)));
+        patches.area_m2.push_back(area_of(facet, rectangle_of(facet, cell)));
         patches.facet.push_back(index);
         patches.cell.push_back(cell);
         patches.is_back.push_back(static_cast<std::uint8_t>(side));

@@ -3,6 +3,7 @@
 // triangles only; the patch of a hit follows from (triangle, u, v) by arithmetic, in O(1).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -26,9 +27,10 @@ struct Facet {
   Vec3 normal;  // unit, of the front
   double area_m2 = 0.0;
   std::uint32_t s_count = 1, t_count = 1;
-  std::uint32_t first_front = no_patch;  // its leaves, one patch each; without a tree leaf
-                                         // s * t_count + t of the grid
-  std::uint32_t first_back = no_patch;   // sheets only: the same leaves, seen from behind
+  std::uint32_t s_first = 0, t_first = 0;  // cuts of a cell along s alone, along t alone; one is 0
+  std::uint32_t first_front = no_patch;    // its leaves, one patch each; without a tree leaf
+                                           // s * t_count + t of the grid
+  std::uint32_t first_back = no_patch;     // sheets only: the same leaves, seen from behind
   std::uint32_t leaves = 1;
   std::uint32_t tree = no_tree;  // where its grid starts in Patches::tree, if any cell is split
   std::uint32_t triangle = 0;    // first triangle of the scene
@@ -41,12 +43,19 @@ struct Parameters {
   double s, t;
 };
 
-// A leaf: cell (s, t) of its facet's grid after `level` halvings, of (s_count << level) x (t_count
-// << level) cells.
+// A leaf: cell (s, t) of its facet's grid after `level` cuts, of (s_count << s_halvings) x (t_count
+// << t_halvings) cells.
 struct Cell {
   std::uint32_t s = 0, t = 0;
   std::uint32_t level = 0;
 };
+
+[[nodiscard]] inline std::uint32_t s_halvings(const Facet& facet, std::uint32_t level) {
+  return level - std::min(level, facet.t_first);
+}
+[[nodiscard]] inline std::uint32_t t_halvings(const Facet& facet, std::uint32_t level) {
+  return level - std::min(level, facet.s_first);
+}
 
 struct Rectangle {  // in parameters
   double s0, s1, t0, t1;
@@ -62,7 +71,8 @@ class Patches {
   std::vector<std::uint32_t> of_triangle;  // per triangle: its facet
   std::vector<std::uint8_t> second_half;   // per triangle: the second of a parallelogram
   // Facets with split cells: s_count * t_count entries each, then blocks of four children (index
-  // 2 ds + dt). An entry is a leaf's number within its facet, or split_cell + where its block is.
+  // 2 ds + dt), or of two where a cell is halved along one side (index ds or dt). An entry is a
+  // leaf's number within its facet, or split_cell + where its block is.
   std::vector<std::uint32_t> tree;
   static constexpr std::uint32_t split_cell = 0x80000000U;
 
@@ -94,5 +104,9 @@ class Patches {
 // Cuts every surface so that no cell is longer than edge_m along its facet's directions.
 // Throws base::Error (Input) when more than 2^26 patches would result.
 [[nodiscard]] Patches subdivide(const scenes::Scene& scene, double edge_m);
+
+// Area and place in parameters of a cell of a facet.
+[[nodiscard]] Rectangle rectangle_of(const Facet& facet, const Cell& cell);
+[[nodiscard]] double area_of(const Facet& facet, const Rectangle& rectangle);
 
 }  // namespace earthshine::radiosity
