@@ -123,16 +123,16 @@ std::uint32_t Patches::find(std::uint32_t triangle, double u, double v, bool fro
   return first + leaf(f, parameters(triangle, u, v));
 }
 
-std::uint32_t Patches::leaf(const Facet& of, Parameters where) const {
+Patches::Place Patches::place(const Facet& of, Parameters where) const {
   double x = std::clamp(where.s, 0.0, 1.0) * of.s_count,
          y = std::clamp(where.t, 0.0, 1.0) * of.t_count;
   const auto row = std::min(static_cast<std::uint32_t>(x), of.s_count - 1);
   const auto column = std::min(static_cast<std::uint32_t>(y), of.t_count - 1);
   const std::uint32_t grid_cell = row * of.t_count + column;
-  if (of.tree == no_tree) return grid_cell;
-  std::uint32_t entry = tree[of.tree + grid_cell];
   x -= row;
   y -= column;
+  if (of.tree == no_tree) return {grid_cell, x, y};
+  std::uint32_t entry = tree[of.tree + grid_cell];
   for (std::uint32_t level = 0; (entry & split_cell) != 0; ++level) {
     std::uint32_t child = 0;
     if (level >= of.t_first) {
@@ -146,7 +146,7 @@ std::uint32_t Patches::leaf(const Facet& of, Parameters where) const {
     }
     entry = tree[(entry & ~split_cell) + child];
   }
-  return entry;
+  return {entry, x, y};
 }
 
 Rectangle Patches::rectangle(std::uint32_t patch) const {

@@ -83,8 +83,16 @@ class Patches {
   // no_patch for the back of a one-sided surface.
   [[nodiscard]] std::uint32_t find(std::uint32_t triangle, double u, double v, bool front) const;
 
-  // The leaf at (s, t), counted from the facet's first patch.
-  [[nodiscard]] std::uint32_t leaf(const Facet& of, Parameters where) const;
+  // The leaf at (s, t), counted from the facet's first patch, and where in it that is: x along s, y
+  // along t, from 0 to 1.
+  struct Place {
+    std::uint32_t leaf;
+    double x, y;
+  };
+  [[nodiscard]] Place place(const Facet& of, Parameters where) const;
+  [[nodiscard]] std::uint32_t leaf(const Facet& of, Parameters where) const {
+    return place(of, where).leaf;
+  }
 
   [[nodiscard]] Rectangle rectangle(std::uint32_t patch) const;
   // Counter-clockwise about the patch's own normal; where a triangle's apex is a corner it stands
