@@ -21,7 +21,8 @@ enum class Stream : std::uint32_t {
   Roulette,
   ShotNoise,
   ReadNoise,
-  Test
+  Test,
+  Refinement
 };
 
 // A 64-bit mix of the key's parts (SplitMix64 finaliser, Steele et al. 2014).

@@ -17,11 +17,23 @@
 
 namespace earthshine::radiosity {
 
+// Adaptive cutting (refine.h). It stops at the first of the two that is reached.
+struct RefineOptions {
+  std::size_t max_patches = 0;  // 0: no refinement, patch_edge_m everywhere
+  double error = 0.0;           // estimated relative error of the radiosity, root mean square
+};
+
 struct SolveOptions {
-  double patch_edge_m = 0.25;
+  double patch_edge_m = 0.25;   // no patch is longer
   int form_factor_rays = 1024;  // per patch
   double tolerance = 1e-8;      // relative residual of the solve, per right-hand side
   std::uint64_t seed = 1;
+  RefineOptions refine = {};
+};
+
+struct RefineRound {
+  std::size_t patches = 0;
+  double error = 0.0;  // estimated for these patches, as RefineOptions::error
 };
 
 // Where the energy of one light group went, lm per channel.
@@ -45,6 +57,8 @@ struct ObjectLight {
 
 struct SolveReport {
   std::size_t patches = 0;
+  std::vector<RefineRound> rounds;  // of refinement, the last one for the patches solved
+  std::uint64_t refinement_rays = 0;
   std::uint64_t form_factor_rays = 0;
   std::uint64_t shadow_rays = 0;
   std::size_t nonzeros = 0;
@@ -77,5 +91,13 @@ struct Solution {
 [[nodiscard]] Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
                              const scenes::Effects& effects, const scenes::RayQuery& query,
                              const SolveOptions& options);
+// On patches that are cut already; options.patch_edge_m and options.refine are not looked at.
+[[nodiscard]] Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                             const scenes::Effects& effects, const scenes::RayQuery& query,
+                             const SolveOptions& options, Patches patches);
+
+// Whether there is any light to solve for. The ambient term is no source: it lights what the camera
+// sees and bounces nowhere.
+[[nodiscard]] bool is_lit(const scenes::Effects& effects);
 
 }  // namespace earthshine::radiosity
