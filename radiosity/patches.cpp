@@ -10,7 +10,6 @@ namespace earthshine::radiosity {
 namespace {
 
 constexpr std::uint64_t most_patches = std::uint64_t{1} << 26;
-constexpr double most_first_cuts = 16.0;
 
 std::uint32_t divisions(double length_m, double edge_m) {
   // A length that is a whole number of edges up to rounding is not cut once more.
@@ -74,18 +73,6 @@ Facet triangle_facet(const scenes::Scene& scene, std::size_t k, double edge_m) {
   return facet;
 }
 
-// How often the longer side of a grid's cell is to be halved alone: to the nearest square.
-void set_first_cuts(Facet& facet) {
-  const Vec3 across = facet.parallelogram ? facet.b : facet.b - facet.a;
-  const double s_m =
-      std::max(glm::length(facet.a), facet.parallelogram ? 0.0 : glm::length(facet.b)) /
-      facet.s_count;
-  const double t_m = glm::length(across) / facet.t_count;
-  const double halvings = std::round(std::log2(s_m / t_m));
-  const auto cuts = static_cast<std::uint32_t>(std::min(std::abs(halvings), most_first_cuts));
-  (halvings > 0.0 ? facet.s_first : facet.t_first) = cuts;
-}
-
 Vec3 on_facet(const Facet& f, double s, double t) {
   if (f.parallelogram) return f.corner + s * f.a + t * f.b;
   return f.corner + s * (f.a + t * (f.b - f.a));
@@ -94,8 +81,8 @@ Vec3 on_facet(const Facet& f, double s, double t) {
 }  // namespace
 
 Rectangle rectangle_of(const Facet& facet, const Cell& cell) {
-  const double rows = std::ldexp(facet.s_count, static_cast<int>(s_halvings(facet, cell.level)));
-  const double columns = std::ldexp(facet.t_count, static_cast<int>(t_halvings(facet, cell.level)));
+  const double rows = std::ldexp(facet.s_count, cell.s_cuts);
+  const double columns = std::ldexp(facet.t_count, cell.t_cuts);
   return {cell.s / rows, (cell.s + 1.0) / rows, cell.t / columns, (cell.t + 1.0) / columns};
 }
 
@@ -133,18 +120,11 @@ Patches::Place Patches::place(const Facet& of, Parameters where) const {
   y -= column;
   if (of.tree == no_tree) return {grid_cell, x, y};
   std::uint32_t entry = tree[of.tree + grid_cell];
-  for (std::uint32_t level = 0; (entry & split_cell) != 0; ++level) {
-    std::uint32_t child = 0;
-    if (level >= of.t_first) {
-      child = x >= 0.5 ? 1 : 0;
-      x = 2.0 * x - child;
-    }
-    if (level >= of.s_first) {
-      const std::uint32_t dt = y >= 0.5 ? 1 : 0;
-      y = 2.0 * y - dt;
-      child = 2 * child + dt;
-    }
-    entry = tree[(entry & ~split_cell) + child];
+  while ((entry & split_cell) != 0) {
+    double& along = (entry & halves_t) != 0 ? y : x;
+    const std::uint32_t half = along >= 0.5 ? 1 : 0;
+    along = 2.0 * along - half;
+    entry = tree[(entry & ~(split_cell | halves_t)) + half];
   }
   return {entry, x, y};
 }
@@ -184,7 +164,6 @@ Patches subdivide(const scenes::Scene& scene, double edge_m) {
   for (std::size_t k = 0; k < scene.triangles.size(); ++k) {
     const bool pair = forms_parallelogram(scene, k);
     Facet facet = pair ? parallelogram_facet(scene, k, edge_m) : triangle_facet(scene, k, edge_m);
-    set_first_cuts(facet);
     facet.triangle = static_cast<std::uint32_t>(k);
     facet.material = scene.triangles[k].material;
     facet.object = scene.triangles[k].object;
@@ -212,7 +191,7 @@ Patches subdivide(const scenes::Scene& scene, double edge_m) {
     }
     for (int side = 0; side < (sheet ? 2 : 1); ++side) {
       for (std::uint32_t c = 0; c < cells; ++c) {
-        const Cell cell{c / facet.t_count, c % facet.t_count, 0};
+        const Cell cell{c / facet.t_count, c % facet.t_count};
         patches.area_m2.push_back(area_of(facet, rectangle_of(facet, cell)));
         patches.facet.push_back(index);
         patches.cell.push_back(cell);

@@ -16,7 +16,8 @@ inline constexpr std::uint32_t no_patch = 0xFFFFFFFFU;
 inline constexpr std::uint32_t no_tree = 0xFFFFFFFFU;
 
 // A triangle or a parallelogram of the scene with a grid of cells over its parameters (s, t) in
-// [0,1]^2; any cell may be split in four, and so on (a quadtree in every cell of the grid).
+// [0,1]^2; any cell may be halved along s or along t, its halves again, and so on (a binary tree in
+// every cell of the grid).
 //   parallelogram: p = corner + s a + t b
 //   triangle:      p = corner + s (a + t (b - a)): s runs from the apex (the corner opposite the
 //   shortest edge)
@@ -27,10 +28,9 @@ struct Facet {
   Vec3 normal;  // unit, of the front
   double area_m2 = 0.0;
   std::uint32_t s_count = 1, t_count = 1;
-  std::uint32_t s_first = 0, t_first = 0;  // cuts of a cell along s alone, along t alone; one is 0
-  std::uint32_t first_front = no_patch;    // its leaves, one patch each; without a tree leaf
-                                           // s * t_count + t of the grid
-  std::uint32_t first_back = no_patch;     // sheets only: the same leaves, seen from behind
+  std::uint32_t first_front = no_patch;  // its leaves, one patch each; without a tree leaf
+                                         // s * t_count + t of the grid
+  std::uint32_t first_back = no_patch;   // sheets only: the same leaves, seen from behind
   std::uint32_t leaves = 1;
   std::uint32_t tree = no_tree;  // where its grid starts in Patches::tree, if any cell is split
   std::uint32_t triangle = 0;    // first triangle of the scene
@@ -43,19 +43,12 @@ struct Parameters {
   double s, t;
 };
 
-// A leaf: cell (s, t) of its facet's grid after `level` cuts, of (s_count << s_halvings) x (t_count
-// << t_halvings) cells.
+// A leaf: cell (s, t) of the (s_count << s_cuts) x (t_count << t_cuts) cells that its facet would
+// have if all of its grid had been halved as often.
 struct Cell {
   std::uint32_t s = 0, t = 0;
-  std::uint32_t level = 0;
+  std::uint8_t s_cuts = 0, t_cuts = 0;
 };
-
-[[nodiscard]] inline std::uint32_t s_halvings(const Facet& facet, std::uint32_t level) {
-  return level - std::min(level, facet.t_first);
-}
-[[nodiscard]] inline std::uint32_t t_halvings(const Facet& facet, std::uint32_t level) {
-  return level - std::min(level, facet.s_first);
-}
 
 struct Rectangle {  // in parameters
   double s0, s1, t0, t1;
@@ -70,11 +63,12 @@ class Patches {
   std::vector<std::uint8_t> is_back;       // per patch: it is the back of a sheet
   std::vector<std::uint32_t> of_triangle;  // per triangle: its facet
   std::vector<std::uint8_t> second_half;   // per triangle: the second of a parallelogram
-  // Facets with split cells: s_count * t_count entries each, then blocks of four children (index
-  // 2 ds + dt), or of two where a cell is halved along one side (index ds or dt). An entry is a
-  // leaf's number within its facet, or split_cell + where its block is.
+  // Facets with split cells: s_count * t_count entries each, then pairs of halves. An entry is a
+  // leaf's number within its facet, or split_cell + where its pair is, with halves_t if the halves
+  // lie side by side along t and not along s.
   std::vector<std::uint32_t> tree;
   static constexpr std::uint32_t split_cell = 0x80000000U;
+  static constexpr std::uint32_t halves_t = 0x40000000U;
 
   [[nodiscard]] std::size_t count() const { return area_m2.size(); }
 

@@ -12,7 +12,9 @@ namespace earthshine::radiosity {
 namespace {
 
 constexpr int most_rounds = 24;
-constexpr double share_per_round = 0.5;  // of the squared error, held by the patches that are cut
+constexpr double share_per_round = 0.5;   // of the squared error, held by the patches that are cut
+constexpr double thinnest = 4.0;          // a cell longer than this times its width is halved
+constexpr double undirected_share = 0.1;  // of the error, counted toward the longer side
 constexpr double growth_between_solves = 2.0;
 constexpr int fewest_rays = 64;
 
@@ -23,62 +25,85 @@ std::uint32_t other_side(const Patches& patches, std::uint32_t patch) {
                                      : patch - facet.first_front + facet.first_back;
 }
 
-// Cells (front sides) by error per patch that a cut adds, worst first.
-std::vector<std::uint32_t> worst_first(const Patches& patches, const std::vector<float>& shares,
-                                       std::vector<double>& error) {
-  std::vector<std::uint32_t> order;
-  error.assign(patches.count(), 0.0);
-  std::vector<double> urgency(patches.count(), 0.0);
-  for (std::uint32_t i = 0; i < patches.count(); ++i) {
-    if (patches.is_back[i] != 0) continue;
-    const std::uint32_t back = other_side(patches, i);
-    error[i] = double(shares[i]) + (back != no_patch ? double(shares[back]) : 0.0);
-    const std::uint32_t added = added_by_split(patches, i);
-    if (error[i] <= 0.0 || added == 0) continue;
-    urgency[i] = error[i] / added;
-    order.push_back(i);
-  }
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return urgency[a] != urgency[b] ? urgency[a] > urgency[b] : a < b;
-  });
-  return order;
+struct Choice {
+  std::uint32_t patch;  // the front side
+  Cut cut;
+  double error;    // of both sides
+  double urgency;  // error per patch that the cut adds
+};
+
+// Along which side a cell is halved: where more of the error goes away, unless that would make it
+// long and thin. Where the samples show no direction (a spot, a thin shadow), the longer side.
+Cut best_cut(const Patches& patches, std::uint32_t patch, const Unevenness& uneven) {
+  const bool s_can = can_cut(patches, patch, Cut::S), t_can = can_cut(patches, patch, Cut::T);
+  if (!s_can || !t_can) return s_can ? Cut::S : t_can ? Cut::T : Cut::None;
+  const CellSize size = cell_size(patches, patch);
+  if (size.s_m > thinnest * size.t_m) return Cut::S;
+  if (size.t_m > thinnest * size.s_m) return Cut::T;
+  const double s2 = size.s_m * size.s_m, t2 = size.t_m * size.t_m;
+  const double by_shape = undirected_share * uneven.error * (s2 - t2) / (s2 + t2);
+  return uneven.along_s - uneven.along_t + by_shape >= 0.0 ? Cut::S : Cut::T;
 }
 
-std::vector<std::uint8_t> marked(const Patches& patches, const std::vector<std::uint32_t>& order,
-                                 std::size_t count) {
-  std::vector<std::uint8_t> wanted(patches.count(), 0);
-  for (std::size_t k = 0; k < count; ++k) wanted[order[k]] = 1;
+std::vector<Choice> worst_first(const Patches& patches, const std::vector<Unevenness>& uneven) {
+  std::vector<Choice> choices;
+  for (std::uint32_t i = 0; i < patches.count(); ++i) {
+    if (patches.is_back[i] != 0) continue;
+    Unevenness sum = uneven[i];
+    const std::uint32_t back = other_side(patches, i);
+    if (back != no_patch) {
+      sum.error += uneven[back].error;
+      sum.along_s += uneven[back].along_s;
+      sum.along_t += uneven[back].along_t;
+    }
+    if (sum.error <= 0.0) continue;
+    const Cut cut = best_cut(patches, i, sum);
+    if (cut == Cut::None) continue;
+    choices.push_back({i, cut, sum.error, sum.error / (back != no_patch ? 2.0 : 1.0)});
+  }
+  std::sort(choices.begin(), choices.end(), [](const Choice& a, const Choice& b) {
+    return a.urgency != b.urgency ? a.urgency > b.urgency : a.patch < b.patch;
+  });
+  return choices;
+}
+
+std::vector<Cut> marked(const Patches& patches, const std::vector<Choice>& choices,
+                        std::size_t count) {
+  std::vector<Cut> wanted(patches.count(), Cut::None);
+  for (std::size_t k = 0; k < count; ++k) wanted[choices[k].patch] = choices[k].cut;
   grade(patches, wanted);
   return wanted;
 }
 
-std::size_t count_after(const Patches& patches, const std::vector<std::uint8_t>& wanted) {
+std::size_t count_after(const Patches& patches, const std::vector<Cut>& wanted) {
   std::size_t count = patches.count();
   for (std::uint32_t i = 0; i < patches.count(); ++i) {
-    if (wanted[i] != 0) count += added_by_split(patches, i);
+    if (wanted[i] != Cut::None) count += other_side(patches, i) != no_patch ? 2 : 1;
   }
   return count;
 }
 
 // The patches to cut in this round: the worst that hold a share of the squared error, fewer where
 // the budget ends before.
-std::vector<std::uint8_t> choose(const Patches& patches, const std::vector<float>& shares,
-                                 double total, std::size_t max_patches) {
-  std::vector<double> error;
-  const std::vector<std::uint32_t> order = worst_first(patches, shares, error);
+std::vector<Cut> choose(const Patches& patches, const std::vector<Unevenness>& uneven, double total,
+                        std::size_t max_patches) {
+  const std::vector<Choice> choices = worst_first(patches, uneven);
   std::size_t count = 0;
-  for (double sum = 0.0; count < order.size() && sum < share_per_round * total; ++count) {
-    sum += error[order[count]];
+  for (double sum = 0.0; count < choices.size() && sum < share_per_round * total; ++count) {
+    sum += choices[count].error;
   }
-  std::vector<std::uint8_t> wanted = marked(patches, order, count);
-  std::size_t fits = 0, too_many = count + 1;
-  if (count_after(patches, wanted) <= max_patches) return wanted;
-  while (too_many - fits > 1) {
-    const std::size_t middle = fits + (too_many - fits) / 2;
-    (count_after(patches, marked(patches, order, middle)) <= max_patches ? fits : too_many) =
-        middle;
+  const auto fits = [&](std::size_t k) {
+    return count_after(patches, marked(patches, choices, k)) <= max_patches;
+  };
+  if (!fits(count)) {
+    std::size_t few = 0;
+    while (count - few > 1) {
+      const std::size_t middle = few + (count - few) / 2;
+      (fits(middle) ? few : count) = middle;
+    }
+    count = few;
   }
-  return marked(patches, order, fits);
+  return marked(patches, choices, count);
 }
 
 }  // namespace
@@ -97,7 +122,7 @@ Refined refine(const scenes::Scene& scene, const scenes::LightGroups& groups,
   Variation variation(scene, groups, effects, query, options.seed);
   Solution solution;
   RelativeLight light;
-  std::vector<float> shares;           // of every patch
+  std::vector<Unevenness> uneven;      // of every patch
   std::vector<std::uint32_t> unknown;  // patches whose share is not known yet
   for (int round = 0;; ++round) {
     Patches& patches = refined.patches;
@@ -106,27 +131,26 @@ Refined refine(const scenes::Scene& scene, const scenes::LightGroups& groups,
       solution = solve(scene, groups, effects, query, coarse, patches);
       refined.rays += solution.report.form_factor_rays + solution.report.shadow_rays;
       light = relative_light(solution);
-      shares.assign(patches.count(), 0.0F);
+      uneven.assign(patches.count(), {});
       unknown.resize(patches.count());
       std::iota(unknown.begin(), unknown.end(), 0U);
     }
-    const std::vector<float> found = variation.error_shares(patches, unknown, light);
-    for (std::size_t k = 0; k < unknown.size(); ++k) shares[unknown[k]] = found[k];
+    const std::vector<Unevenness> found = variation.find(patches, unknown, light);
+    for (std::size_t k = 0; k < unknown.size(); ++k) uneven[unknown[k]] = found[k];
     double total = 0.0;
-    for (const float share : shares) total += double(share);
+    for (const Unevenness& u : uneven) total += u.error;
     refined.rounds.push_back({patches.count(), std::sqrt(total)});
     if (round == most_rounds || total <= options.refine.error * options.refine.error) break;
-    const std::vector<std::uint8_t> wanted =
-        choose(patches, shares, total, options.refine.max_patches);
+    const std::vector<Cut> wanted = choose(patches, uneven, total, options.refine.max_patches);
     Split cut = split(patches, wanted);
     if (cut.patches.count() == patches.count()) break;
-    std::vector<float> inherited(cut.patches.count());
+    std::vector<Unevenness> inherited(cut.patches.count());
     unknown.clear();
     for (std::uint32_t i = 0; i < cut.patches.count(); ++i) {
-      inherited[i] = shares[cut.parent[i]];
-      if (cut.patches.cell[i].level != patches.cell[cut.parent[i]].level) unknown.push_back(i);
+      inherited[i] = uneven[cut.parent[i]];
+      if (cut.patches.area_m2[i] < patches.area_m2[cut.parent[i]]) unknown.push_back(i);
     }
-    shares = std::move(inherited);
+    uneven = std::move(inherited);
     patches = std::move(cut.patches);
   }
   refined.rays += variation.rays();

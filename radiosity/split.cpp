@@ -6,25 +6,28 @@
 namespace earthshine::radiosity {
 namespace {
 
-struct Halves {
-  std::uint32_t s = 1, t = 1;  // parts along s and t that the next cut makes
-  [[nodiscard]] std::uint32_t children() const { return s * t; }
-};
-
 constexpr std::uint64_t most_cells = std::uint64_t{1} << 20;  // along one side of a facet
 
-// The next cut of a cell of this level; one part when its cells would be too many.
-Halves next_cut(const Facet& facet, std::uint32_t level) {
-  const std::uint64_t rows = std::uint64_t{facet.s_count} << s_halvings(facet, level + 1);
-  const std::uint64_t columns = std::uint64_t{facet.t_count} << t_halvings(facet, level + 1);
-  if (rows > most_cells || columns > most_cells) return {};
-  return {level >= facet.t_first ? 2U : 1U, level >= facet.s_first ? 2U : 1U};
+bool can_cut_cell(const Facet& facet, const Cell& cell, Cut cut) {
+  if (cut == Cut::S) return (std::uint64_t{facet.s_count} << (cell.s_cuts + 1)) <= most_cells;
+  return cut == Cut::T && (std::uint64_t{facet.t_count} << (cell.t_cuts + 1)) <= most_cells;
+}
+
+Cell half_of(Cell cell, Cut cut, std::uint32_t half) {
+  if (cut == Cut::S) {
+    cell.s = 2 * cell.s + half;
+    ++cell.s_cuts;
+  } else {
+    cell.t = 2 * cell.t + half;
+    ++cell.t_cuts;
+  }
+  return cell;
 }
 
 // The new cells of one facet after the other.
 class Cutter {
  public:
-  Cutter(const Patches& old, const std::vector<std::uint8_t>& wanted) : old_(old), wanted_(wanted) {
+  Cutter(const Patches& old, const std::vector<Cut>& wanted) : old_(old), wanted_(wanted) {
     result_.patches.of_triangle = old.of_triangle;
     result_.patches.second_half = old.second_half;
     result_.patches.facets.reserve(old.facets.size());
@@ -36,14 +39,13 @@ class Cutter {
     facet_ = &facet;
     const std::uint32_t grid = facet.s_count * facet.t_count;
     Facet made = facet;
-    made.tree = no_tree;
-    const bool splits = facet.tree != no_tree || any_wanted(facet);
+    const bool splits = facet.tree != no_tree || any_wanted();
     if (splits) {
       made.tree = static_cast<std::uint32_t>(patches.tree.size());
       patches.tree.resize(patches.tree.size() + grid);
     }
     for (std::uint32_t c = 0; c < grid; ++c) {
-      const Cell cell{c / facet.t_count, c % facet.t_count, 0};
+      const Cell cell{c / facet.t_count, c % facet.t_count};
       const std::uint32_t entry = facet.tree == no_tree ? c : old_.tree[facet.tree + c];
       if (splits) {
         place(entry, cell, made.tree + c);
@@ -65,40 +67,47 @@ class Cutter {
     std::uint32_t parent;  // leaf of the old facet
   };
 
-  [[nodiscard]] bool is_wanted(std::uint32_t leaf) const {
-    return wanted_[facet_->first_front + leaf] != 0 ||
-           (facet_->first_back != no_patch && wanted_[facet_->first_back + leaf] != 0);
+  [[nodiscard]] Cut cut_of(std::uint32_t leaf) const {
+    Cut cut = wanted_[facet_->first_front + leaf];
+    if (cut == Cut::None && facet_->first_back != no_patch) {
+      cut = wanted_[facet_->first_back + leaf];
+    }
+    return can_cut_cell(*facet_, old_.cell[facet_->first_front + leaf], cut) ? cut : Cut::None;
   }
-  [[nodiscard]] bool any_wanted(const Facet& facet) const {
-    for (std::uint32_t leaf = 0; leaf < facet.leaves; ++leaf) {
-      if (is_wanted(leaf)) return true;
+  [[nodiscard]] bool any_wanted() const {
+    for (std::uint32_t leaf = 0; leaf < facet_->leaves; ++leaf) {
+      if (cut_of(leaf) != Cut::None) return true;
     }
     return false;
   }
 
-  // The old entry's cell goes to `slot` of the new tree, cut once more if it is a leaf that is
-  // wanted.
+  // The old entry's cell goes to `slot` of the new tree, halved if it is a leaf that is wanted.
   void place(std::uint32_t entry, const Cell& cell, std::uint32_t slot) {
     std::vector<std::uint32_t>& tree = result_.patches.tree;
     const bool was_split = (entry & Patches::split_cell) != 0;
-    const Halves cut = next_cut(*facet_, cell.level);
-    if (!was_split && (cut.children() == 1 || !is_wanted(entry))) {
-      tree[slot] = static_cast<std::uint32_t>(leaves_.size());
-      leaves_.push_back({cell, entry});
+    Cut cut = (entry & Patches::halves_t) != 0 ? Cut::T : Cut::S;
+    if (!was_split) cut = cut_of(entry);
+    if (cut == Cut::None) {
+      tree[slot] = add_leaf(cell, entry);
       return;
     }
-    const auto block = static_cast<std::uint32_t>(tree.size());
-    tree.resize(tree.size() + cut.children());
-    tree[slot] = Patches::split_cell + block;
-    for (std::uint32_t k = 0; k < cut.children(); ++k) {
-      const Cell child{cell.s * cut.s + k / cut.t, cell.t * cut.t + k % cut.t, cell.level + 1};
+    const auto pair = static_cast<std::uint32_t>(tree.size());
+    tree.resize(tree.size() + 2);
+    tree[slot] = (Patches::split_cell | (cut == Cut::T ? Patches::halves_t : 0U)) + pair;
+    const std::uint32_t old_pair = entry & ~(Patches::split_cell | Patches::halves_t);
+    for (std::uint32_t half = 0; half < 2; ++half) {
+      const Cell child = half_of(cell, cut, half);
       if (was_split) {
-        place(old_.tree[(entry & ~Patches::split_cell) + k], child, block + k);
+        place(old_.tree[old_pair + half], child, pair + half);
       } else {
-        tree[block + k] = static_cast<std::uint32_t>(leaves_.size());
-        leaves_.push_back({child, entry});
+        tree[pair + half] = add_leaf(child, entry);
       }
     }
+  }
+
+  std::uint32_t add_leaf(const Cell& cell, std::uint32_t parent) {
+    leaves_.push_back({cell, parent});
+    return static_cast<std::uint32_t>(leaves_.size() - 1);
   }
 
   std::uint32_t add_side(const Facet& made, std::uint32_t old_first, std::uint8_t side) {
@@ -116,7 +125,7 @@ class Cutter {
   }
 
   const Patches& old_;
-  const std::vector<std::uint8_t>& wanted_;
+  const std::vector<Cut>& wanted_;
   const Facet* facet_ = nullptr;
   std::vector<Leaf> leaves_;
   Split result_;
@@ -124,16 +133,16 @@ class Cutter {
 
 }  // namespace
 
-Split split(const Patches& patches, const std::vector<std::uint8_t>& wanted) {
+Split split(const Patches& patches, const std::vector<Cut>& wanted) {
   Cutter cutter(patches, wanted);
   for (const Facet& facet : patches.facets) cutter.add(facet);
   return cutter.take();
 }
 
-void grade(const Patches& patches, std::vector<std::uint8_t>& wanted) {
+void grade(const Patches& patches, std::vector<Cut>& wanted) {
   std::vector<std::uint32_t> queue;
   for (std::uint32_t i = 0; i < patches.count(); ++i) {
-    if (wanted[i] != 0) queue.push_back(i);
+    if (wanted[i] != Cut::None) queue.push_back(i);
   }
   while (!queue.empty()) {
     const std::uint32_t patch = queue.back();
@@ -141,25 +150,43 @@ void grade(const Patches& patches, std::vector<std::uint8_t>& wanted) {
     const Facet& facet = patches.facets[patches.facet[patch]];
     if (facet.tree == no_tree) continue;  // no cell has been cut more often than another
     const Rectangle r = patches.rectangle(patch);
-    const double s = 0.5 * (r.s0 + r.s1), t = 0.5 * (r.t0 + r.t1);
-    const double ds = r.s1 - r.s0, dt = r.t1 - r.t0;
+    const double ds = 0.25 * (r.s1 - r.s0), dt = 0.25 * (r.t1 - r.t0);
     const std::uint32_t first = patches.is_back[patch] != 0 ? facet.first_back : facet.first_front;
-    // A larger cell beside this one covers the point opposite its side's middle.
-    const std::array<Parameters, 4> beside{{{s - ds, t}, {s + ds, t}, {s, t - dt}, {s, t + dt}}};
+    const auto cuts = [&](std::uint32_t i) {
+      return wanted[patch] == Cut::S ? patches.cell[i].s_cuts : patches.cell[i].t_cuts;
+    };
+    // Two on each side: a neighbour is at least half as wide.
+    const std::array<Parameters, 8> beside{{{r.s0 - ds, r.t0 + dt},
+                                            {r.s0 - ds, r.t1 - dt},
+                                            {r.s1 + ds, r.t0 + dt},
+                                            {r.s1 + ds, r.t1 - dt},
+                                            {r.s0 + ds, r.t0 - dt},
+                                            {r.s1 - ds, r.t0 - dt},
+                                            {r.s0 + ds, r.t1 + dt},
+                                            {r.s1 - ds, r.t1 + dt}}};
     for (const Parameters& p : beside) {
       if (p.s < 0.0 || p.s > 1.0 || p.t < 0.0 || p.t > 1.0) continue;
       const std::uint32_t other = first + patches.leaf(facet, p);
-      if (wanted[other] != 0 || patches.cell[other].level >= patches.cell[patch].level) continue;
-      wanted[other] = 1;
+      if (wanted[other] != Cut::None || cuts(other) >= cuts(patch)) continue;
+      wanted[other] = wanted[patch];
       queue.push_back(other);
     }
   }
 }
 
-std::uint32_t added_by_split(const Patches& patches, std::uint32_t patch) {
-  const Facet& facet = patches.facets[patches.facet[patch]];
-  const std::uint32_t more = next_cut(facet, patches.cell[patch].level).children() - 1;
-  return facet.first_back != no_patch ? 2 * more : more;
+bool can_cut(const Patches& patches, std::uint32_t patch, Cut cut) {
+  return can_cut_cell(patches.facets[patches.facet[patch]], patches.cell[patch], cut);
+}
+
+CellSize cell_size(const Patches& patches, std::uint32_t patch) {
+  const std::array<Vec3, 4> c = patches.corners(patch);
+  const auto longest = [&](int a, int b, int d, int e) {
+    return std::max(glm::length(c[static_cast<std::size_t>(a)] - c[static_cast<std::size_t>(b)]),
+                    glm::length(c[static_cast<std::size_t>(d)] - c[static_cast<std::size_t>(e)]));
+  };
+  // corners() runs from s0 t0 along s first, on a back along t first.
+  const double first = longest(0, 1, 3, 2), second = longest(1, 2, 0, 3);
+  return patches.is_back[patch] != 0 ? CellSize{second, first} : CellSize{first, second};
 }
 
 }  // namespace earthshine::radiosity

@@ -23,28 +23,42 @@ constexpr std::size_t wide_source_points = 4;  // per point and set; 1 for the S
 class Looks {
  public:
   Looks(std::size_t points, std::size_t groups)
-      : points_(points), groups_(groups), sum_(points * 2 * groups, 0.0) {}
+      : groups_(groups), where_(points), sum_(points * 2 * groups, 0.0) {}
+
+  // The point's place in the patch: x along s, y along t, from 0 to 1.
+  void place(std::size_t point, double x, double y) { where_[point] = {x, y}; }
   double& at(std::size_t point, std::size_t set, std::size_t group) {
     return sum_[(point * 2 + set) * groups_ + group];
   }
-  // Variance between the points; 0 where it is not above its own noise.
-  double variance(std::size_t group) {
-    std::array<double, 2> mean{};
-    const auto n = static_cast<double>(points_);
-    for (std::size_t k = 0; k < points_; ++k) {
-      for (std::size_t set = 0; set < 2; ++set) mean[set] += at(k, set, group) / n;
+
+  // Adds a group's variance between the points, and between the halves; nothing where the variance
+  // is not above its own noise.
+  void add_to(Unevenness& sum, std::size_t group) {
+    const auto n = static_cast<double>(where_.size());
+    std::array<double, 2> mean{}, s_step{}, t_step{};  // half the difference between halves
+    for (std::size_t k = 0; k < where_.size(); ++k) {
+      for (std::size_t set = 0; set < 2; ++set) {
+        const double value = at(k, set, group) / n;
+        mean[set] += value;
+        s_step[set] += where_[k][0] < 0.5 ? -value : value;
+        t_step[set] += where_[k][1] < 0.5 ? -value : value;
+      }
     }
     double both = 0.0, apart = 0.0;
-    for (std::size_t k = 0; k < points_; ++k) {
+    for (std::size_t k = 0; k < where_.size(); ++k) {
       const double a = at(k, 0, group) - mean[0], b = at(k, 1, group) - mean[1];
       both += a * b;
       apart += 0.25 * (a - b) * (a - b);
     }
-    return both > apart ? both / (n - 1.0) : 0.0;
+    if (both <= apart) return;
+    sum.error += both / (n - 1.0);
+    sum.along_s += std::max(0.0, s_step[0] * s_step[1]);
+    sum.along_t += std::max(0.0, t_step[0] * t_step[1]);
   }
 
  private:
-  std::size_t points_, groups_;
+  std::size_t groups_;
+  std::vector<std::array<double, 2>> where_;
   std::vector<double> sum_;
 };
 
@@ -87,7 +101,8 @@ class ShadowQueue {
 std::uint64_t identity(const Patches& patches, std::uint32_t patch) {
   const Cell& cell = patches.cell[patch];
   const std::uint64_t place = (std::uint64_t{cell.s} << 32) | cell.t;
-  const std::uint64_t facet = (std::uint64_t{patches.facet[patch]} << 8) | cell.level;
+  const std::uint64_t facet =
+      (std::uint64_t{patches.facet[patch]} << 16) | (std::uint64_t{cell.s_cuts} << 8) | cell.t_cuts;
   return base::mix64(base::mix64(facet) ^ place) ^ patches.is_back[patch];
 }
 
@@ -127,10 +142,10 @@ Variation::Variation(const scenes::Scene& scene, const scenes::LightGroups& grou
       earth_group_(groups.earth),
       seed_(seed) {}
 
-std::vector<float> Variation::error_shares(const Patches& patches,
-                                           std::span<const std::uint32_t> which,
-                                           const RelativeLight& light) {
-  std::vector<float> shares(which.size(), 0.0F);
+std::vector<Unevenness> Variation::find(const Patches& patches,
+                                        std::span<const std::uint32_t> which,
+                                        const RelativeLight& light) {
+  std::vector<Unevenness> found(which.size());
   std::atomic<std::uint64_t> all_rays{0};
   const auto direct = [&](std::uint32_t patch, const Rgb& rho, Looks& looks) {
     const base::Key key(seed_, base::Stream::Refinement, identity(patches, patch));
@@ -140,6 +155,7 @@ std::vector<float> Variation::error_shares(const Patches& patches,
     for (std::size_t point = 0; point < direct_points; ++point) {
       const auto p = where.point2(static_cast<std::uint32_t>(point));
       const Vec3 at = patches.point(patch, p[0], p[1]);
+      looks.place(point, p[0], p[1]);
       for (std::size_t k = 0; k < sources_.size(); ++k) {
         const Source& source = sources_[k].source;
         const std::size_t samples = source.points > 16 ? wide_source_points : 1;
@@ -180,6 +196,7 @@ std::vector<float> Variation::error_shares(const Patches& patches,
         for (std::size_t point = 0; point < indirect_points; ++point) {
           const double x = point < 2 ? 0.25 : 0.75, y = point % 2 == 0 ? 0.25 : 0.75;
           const Vec3 origin = patches.point(patch, x, y) + lift;
+          looks.place(point, x, y);
           for (std::size_t k = 0; k < RayPacket::width; ++k) {
             query_.set(packet, k, origin, directions[k]);
           }
@@ -212,15 +229,19 @@ std::vector<float> Variation::error_shares(const Patches& patches,
       Looks sharp(direct_points, groups_), soft(indirect_points, groups_);
       rays += direct(which[k], rho, sharp);
       rays += indirect(which[k], base::luminance(rho), soft);
-      double sum = 0.0;
-      for (std::size_t g = 0; g < groups_; ++g) sum += sharp.variance(g) + soft.variance(g);
-      shares[k] = static_cast<float>(sum * patches.area_m2[which[k]] /
-                                     (light.area_m2 * static_cast<double>(groups_)));
+      const double weight =
+          patches.area_m2[which[k]] / (light.area_m2 * static_cast<double>(groups_));
+      Unevenness& sum = found[k];
+      for (std::size_t g = 0; g < groups_; ++g) {
+        sharp.add_to(sum, g);
+        soft.add_to(sum, g);
+      }
+      sum = {weight * sum.error, weight * sum.along_s, weight * sum.along_t};
     }
     all_rays += rays;
   });
   rays_ += all_rays;
-  return shares;
+  return found;
 }
 
 }  // namespace earthshine::radiosity

@@ -29,17 +29,24 @@ struct RelativeLight {
 };
 [[nodiscard]] RelativeLight relative_light(const Solution& solution);
 
+// A patch's part in the squared relative error of the radiosity, and how much of it goes away when
+// the patch is halved along s or along t.
+struct Unevenness {
+  double error = 0.0;
+  double along_s = 0.0, along_t = 0.0;
+};
+
 class Variation {
  public:
   // Everything must outlive it.
   Variation(const scenes::Scene& scene, const scenes::LightGroups& groups,
             const scenes::Effects& effects, const scenes::RayQuery& query, std::uint64_t seed);
 
-  // Per entry of `which`, patches of `patches`: the patch's share of the squared relative error of
-  // the radiosity, (area / all area) * variance, mean over the light groups.
-  [[nodiscard]] std::vector<float> error_shares(const Patches& patches,
-                                                std::span<const std::uint32_t> which,
-                                                const RelativeLight& light);
+  // Per entry of `which`, patches of `patches`: (area / all area) * variance, mean over the light
+  // groups.
+  [[nodiscard]] std::vector<Unevenness> find(const Patches& patches,
+                                             std::span<const std::uint32_t> which,
+                                             const RelativeLight& light);
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
  private:

@@ -34,15 +34,11 @@ scenes::Scene assorted_scene() {
   return builder.scene;
 }
 
-std::vector<std::uint8_t> all_of(const Patches& patches) {
-  return std::vector<std::uint8_t>(patches.count(), 1);
-}
-
 TEST(Split, APointOfAPatchIsFoundInThatPatchOnRandomTrees) {
   const scenes::Scene scene = assorted_scene();
   base::Rng rng(base::Key(3, base::Stream::Test, 1));
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const Patches patches = tests::random_cuts(subdivide(scene, 0.7), 5, 0.3, seed);
+    const Patches patches = tests::random_cuts(subdivide(scene, 0.7), 10, 0.3, seed);
     ASSERT_GT(patches.count(), 100U);
     for (std::uint32_t i = 0; i < patches.count(); ++i) {
       const Facet& facet = patches.facets[patches.facet[i]];
@@ -58,8 +54,8 @@ TEST(Split, APointOfAPatchIsFoundInThatPatchOnRandomTrees) {
 TEST(Split, AreasOfLeavesAddUpToTheirParentAndToTheFacet) {
   const scenes::Scene scene = assorted_scene();
   const Patches before = tests::random_cuts(subdivide(scene, 0.7), 4, 0.3, 7);
-  std::vector<std::uint8_t> wanted(before.count(), 0);
-  for (std::size_t i = 0; i < wanted.size(); i += 3) wanted[i] = 1;
+  std::vector<Cut> wanted(before.count(), Cut::None);
+  for (std::size_t i = 0; i < wanted.size(); i += 3) wanted[i] = i % 2 == 0 ? Cut::S : Cut::T;
   const Split cut = split(before, wanted);
   std::vector<double> of_parent(before.count(), 0.0), of_facet(before.facets.size(), 0.0);
   for (std::size_t i = 0; i < cut.patches.count(); ++i) {
@@ -76,7 +72,7 @@ TEST(Split, AreasOfLeavesAddUpToTheirParentAndToTheFacet) {
 
 TEST(Split, TheParentOfAPatchHoldsItsPoints) {
   const Patches before = tests::random_cuts(subdivide(assorted_scene(), 0.7), 3, 0.4, 2);
-  const Split cut = split(before, all_of(before));
+  const Split cut = split(before, std::vector(before.count(), Cut::T));
   for (std::uint32_t i = 0; i < cut.patches.count(); ++i) {
     const Rectangle child = cut.patches.rectangle(i), r = before.rectangle(cut.parent[i]);
     EXPECT_EQ(cut.patches.facet[i], before.facet[cut.parent[i]]);
@@ -85,12 +81,12 @@ TEST(Split, TheParentOfAPatchHoldsItsPoints) {
   }
 }
 
-TEST(Split, CuttingEveryCellOnceIsTheGridOfHalfTheEdge) {
+TEST(Split, HalvingEveryCellBothWaysIsTheGridOfHalfTheEdge) {
   // A square of 1 m at 0.25 m: 4 x 4 cells; at 0.125 m: 8 x 8. The areas are the same multiset.
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
   const Patches coarse = subdivide(builder.scene, 0.25), fine = subdivide(builder.scene, 0.125);
-  const Patches cut = split(coarse, all_of(coarse)).patches;
+  const Patches cut = tests::all_in_four(coarse);
   ASSERT_EQ(cut.count(), fine.count());
   base::Rng rng(base::Key(3, base::Stream::Test, 2));
   for (int k = 0; k < 1000; ++k) {
@@ -107,9 +103,11 @@ TEST(Split, CuttingEveryCellOnceIsTheGridOfHalfTheEdge) {
 
 TEST(Split, BothSidesOfASheetShareTheTree) {
   Patches patches = subdivide(assorted_scene(), 0.7);
-  for (int round = 0; round < 3; ++round) {  // wanted on the back only
-    std::vector<std::uint8_t> wanted(patches.count(), 0);
-    for (std::uint32_t i = 0; i < patches.count(); i += 2) wanted[i] = patches.is_back[i];
+  for (int round = 0; round < 5; ++round) {  // wanted on the back only
+    std::vector<Cut> wanted(patches.count(), Cut::None);
+    for (std::uint32_t i = 0; i < patches.count(); i += 2) {
+      if (patches.is_back[i] != 0) wanted[i] = round % 2 == 0 ? Cut::S : Cut::T;
+    }
     patches = split(patches, wanted).patches;
   }
   std::size_t sheets = 0;
@@ -122,41 +120,11 @@ TEST(Split, BothSidesOfASheetShareTheTree) {
                  &back = patches.cell[facet.first_back + leaf];
       EXPECT_EQ(front.s, back.s);
       EXPECT_EQ(front.t, back.t);
-      EXPECT_EQ(front.level, back.level);
+      EXPECT_EQ(front.s_cuts, back.s_cuts);
+      EXPECT_EQ(front.t_cuts, back.t_cuts);
     }
   }
   EXPECT_EQ(sheets, 2U);
-}
-
-TEST(Split, ASliverIsCutAlongItsLengthUntilItsCellsAreSquare) {
-  // 9 m x 0.03 m: log2(300) = 8.2 halvings along the length; the ninth cut is in four.
-  tests::SceneBuilder builder;
-  add_triangle(builder, builder.material(tests::grey(0.5)), {0, 9, 0}, {9, 9, 0}, {9, 9.03, 0});
-  Patches patches = subdivide(builder.scene, 100.0);
-  ASSERT_EQ(patches.count(), 1U);
-  for (std::size_t cuts = 1; cuts <= 8; ++cuts) {
-    patches = split(patches, all_of(patches)).patches;
-    EXPECT_EQ(patches.count(), std::size_t{1} << cuts);
-    for (const Cell& cell : patches.cell) EXPECT_EQ(cell.t, 0U);
-  }
-  EXPECT_EQ(split(patches, all_of(patches)).patches.count(), 4U * 256U);
-}
-
-TEST(Split, CellsOfAHugeTriangleStayNearlySquare) {
-  // Sides of 1 km cut to 1 km / 2^7: but for the narrow rows at the apex no cell is more than
-  // twice as long as wide (the equal sides are cut at equal steps, widths fall to a half at s =
-  // 1/2).
-  tests::SceneBuilder builder;
-  const std::uint32_t plain = builder.material(tests::grey(0.5));
-  add_triangle(builder, plain, {0, 0, 0}, {1000, 0, 0}, {500, 866, 0});
-  const Patches patches = tests::random_cuts(subdivide(builder.scene, 1000.0), 7, 1.0, 1);
-  EXPECT_EQ(patches.count(), std::size_t{1} << 14);
-  for (std::uint32_t i = 0; i < patches.count(); ++i) {
-    if (patches.rectangle(i).s0 < 0.5) continue;
-    const auto c = patches.corners(i);
-    const double along = glm::length(c[1] - c[0]), across = glm::length(c[2] - c[1]);
-    EXPECT_LE(std::max(along / across, across / along), 2.1);
-  }
 }
 
 TEST(Split, ACellThatSinglePrecisionCannotTellFromItsNeighbourStaysWhole) {
@@ -164,20 +132,35 @@ TEST(Split, ACellThatSinglePrecisionCannotTellFromItsNeighbourStaysWhole) {
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
   Patches patches = subdivide(builder.scene, 1.0);
   for (int round = 0; round < 20; ++round) {
-    ASSERT_EQ(added_by_split(patches, 0), 3U);
-    std::vector<std::uint8_t> wanted(patches.count(), 0);
-    wanted[0] = 1;
+    ASSERT_TRUE(can_cut(patches, 0, Cut::T));
+    std::vector<Cut> wanted(patches.count(), Cut::None);
+    wanted[0] = Cut::T;
     patches = split(patches, wanted).patches;
   }
-  EXPECT_EQ(added_by_split(patches, 0), 0U);
+  EXPECT_FALSE(can_cut(patches, 0, Cut::T));
+  EXPECT_TRUE(can_cut(patches, 0, Cut::S));
   const std::size_t count = patches.count();
-  std::vector<std::uint8_t> wanted(count, 0);
-  wanted[0] = 1;
+  std::vector<Cut> wanted(count, Cut::None);
+  wanted[0] = Cut::T;
   EXPECT_EQ(split(patches, wanted).patches.count(), count);
 }
 
-TEST(Split, GradedNeighboursDifferByOneCutAtMost) {
-  const Patches patches = tests::random_cuts(subdivide(assorted_scene(), 0.7), 6, 0.1, 4, true);
+TEST(Split, CellSizesAreThoseOfBothSidesOfASheet) {
+  // 7 m x 0.4 m, cut in cells of at most 0.7 m: 10 x 1 cells of 0.7 m x 0.4 m.
+  tests::SceneBuilder builder;
+  scenes::Material sheet = tests::grey(0.5);
+  sheet.two_sided = true;
+  builder.quad(builder.material(sheet), {0, 0, 0}, {7, 0, 0}, {7, 0.4, 0}, {0, 0.4, 0});
+  const Patches patches = subdivide(builder.scene, 0.7);
+  ASSERT_EQ(patches.count(), 20U);
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    EXPECT_NEAR(cell_size(patches, i).s_m, 0.7, 1e-12);
+    EXPECT_NEAR(cell_size(patches, i).t_m, 0.4, 1e-12);
+  }
+}
+
+TEST(Split, GradedNeighboursAreAtMostTwiceAsLong) {
+  const Patches patches = tests::random_cuts(subdivide(assorted_scene(), 0.7), 10, 0.1, 4, true);
   std::size_t hanging = 0;
   base::Rng rng(base::Key(3, base::Stream::Test, 5));
   for (std::uint32_t i = 0; i < patches.count(); ++i) {
@@ -188,10 +171,10 @@ TEST(Split, GradedNeighboursDifferByOneCutAtMost) {
     for (const Parameters& p : {Parameters{r.s1 + step, r.t0 + x * (r.t1 - r.t0)},
                                 Parameters{r.s0 + x * (r.s1 - r.s0), r.t1 + step}}) {
       if (p.s > 1.0 || p.t > 1.0) continue;
-      const std::uint32_t a = patches.cell[i].level;
-      const std::uint32_t b = patches.cell[first + patches.leaf(facet, p)].level;
-      EXPECT_LE(std::max(a, b) - std::min(a, b), 1U);
-      hanging += a != b ? 1 : 0;
+      const Cell &a = patches.cell[i], &b = patches.cell[first + patches.leaf(facet, p)];
+      EXPECT_LE(std::abs(a.s_cuts - b.s_cuts), 1);
+      EXPECT_LE(std::abs(a.t_cuts - b.t_cuts), 1);
+      hanging += a.s_cuts != b.s_cuts || a.t_cuts != b.t_cuts ? 1 : 0;
     }
   }
   EXPECT_GT(hanging, 20U);

@@ -60,7 +60,7 @@ TEST(RadianceTable, ALinearFieldIsReadExactlyAcrossCellsOfAnySize) {
   // Away from the plate's edge, where cells have neighbours on both sides.
   for (const bool graded : {true, false}) {
     const radiosity::Patches patches =
-        tests::random_cuts(radiosity::subdivide(plate(), 1.0 / 16), graded ? 4 : 1, 0.3, 1, graded);
+        tests::random_cuts(radiosity::subdivide(plate(), 1.0 / 16), graded ? 6 : 1, 0.3, 1, graded);
     const radiosity::Solution solution = filled(patches, linear);
     const RadianceTable table(solution, solution.radiosity, false);
     base::Rng rng(base::Key(1, base::Stream::Test, 0));
@@ -76,7 +76,7 @@ TEST(RadianceTable, TheRadianceHasNoStepsBetweenCellsOfDifferentSizes) {
   // changes by no more than the slope (values of 0 to 1 over a quarter of a cell) over 2e-9.
   base::Rng values(base::Key(1, base::Stream::Test, 9));
   const radiosity::Patches patches =
-      tests::random_cuts(radiosity::subdivide(plate(), 0.5), 7, 0.25, 3);
+      tests::random_cuts(radiosity::subdivide(plate(), 0.5), 12, 0.25, 3);
   const radiosity::Solution solution =
       filled(patches, [&](double, double) { return values.next(); });
   const RadianceTable table(solution, solution.radiosity, false);
@@ -97,7 +97,8 @@ TEST(RadianceTable, TheRadianceHasNoStepsBetweenCellsOfDifferentSizes) {
 
 TEST(RadianceTable, AnEvenTreeReadsLikeTheGridOfItsCells) {
   const Field wavy = [](double s, double t) { return 2.0 + std::sin(9.0 * s) * std::cos(7.0 * t); };
-  const radiosity::Patches cut = tests::random_cuts(radiosity::subdivide(plate(), 0.2), 2, 1.0, 1);
+  const radiosity::Patches cut =
+      tests::all_in_four(tests::all_in_four(radiosity::subdivide(plate(), 0.2)));
   const radiosity::Patches grid = radiosity::subdivide(plate(), 0.05);
   ASSERT_EQ(cut.count(), grid.count());
   ASSERT_NE(cut.facets[0].tree, radiosity::no_tree);
@@ -115,8 +116,9 @@ TEST(RadianceTable, TheErrorOnUnevenCellsFallsWithTheSquareOfTheEdge) {
   // the strips between cells of different sizes, whose share of the area halves as well.
   const Field bump = [](double s, double t) { return 1.0 + s * s * t - 0.5 * t * t; };
   const auto error = [&](int more) {
-    const radiosity::Patches patches = tests::random_cuts(
-        tests::random_cuts(radiosity::subdivide(plate(), 0.125), 2, 0.3, 5, true), more, 1.0, 1);
+    radiosity::Patches patches =
+        tests::random_cuts(radiosity::subdivide(plate(), 0.125), 3, 0.3, 5, true);
+    for (int k = 0; k < more; ++k) patches = tests::all_in_four(std::move(patches));
     const radiosity::Solution solution = filled(patches, bump);
     const RadianceTable table(solution, solution.radiosity, false);
     base::Rng rng(base::Key(1, base::Stream::Test, 3));
@@ -134,7 +136,7 @@ TEST(RadianceTable, TheErrorOnUnevenCellsFallsWithTheSquareOfTheEdge) {
 
 TEST(RadianceTable, EachSideOfAnUnevenSheetHasItsOwnLight) {
   const radiosity::Patches patches =
-      tests::random_cuts(radiosity::subdivide(plate(true), 0.25), 3, 0.3, 1);
+      tests::random_cuts(radiosity::subdivide(plate(true), 0.25), 5, 0.3, 1);
   const radiosity::Solution solution = filled(
       patches, [](double, double) { return 3.0; }, [](double, double) { return 5.0; });
   const RadianceTable table(solution, solution.radiosity, false);
