@@ -15,7 +15,7 @@ constexpr int most_rounds = 24;
 constexpr double share_per_round = 0.5;   // of the squared error, held by the patches that are cut
 constexpr double thinnest = 4.0;          // a cell longer than this times its width is halved
 constexpr double undirected_share = 0.1;  // of the error, counted toward the longer side
-constexpr double growth_between_solves = 2.0;
+constexpr double growth_between_solves = 4.0;
 constexpr int fewest_rays = 64;
 
 std::uint32_t other_side(const Patches& patches, std::uint32_t patch) {
@@ -106,55 +106,127 @@ std::vector<Cut> choose(const Patches& patches, const std::vector<Unevenness>& u
   return marked(patches, choices, count);
 }
 
+// What the rounds of one refinement share.
+class Refinement {
+ public:
+  Refinement(const scenes::Scene& scene, const scenes::LightGroups& groups,
+             const scenes::Effects& effects, const scenes::RayQuery& query,
+             const SolveOptions& options)
+      : scene_(scene),
+        groups_(groups),
+        effects_(effects),
+        query_(query),
+        options_(options),
+        max_patches_(most_refined_patches(scene, options)),
+        variation_(scene, groups, effects, query, 0.25 * options.patch_edge_m, options.seed) {
+    cheap_ = options;
+    cheap_.form_factor_rays = std::max(fewest_rays, options.form_factor_rays / 8);
+    cheap_.tolerance = std::max(options.tolerance, 1e-4);
+  }
+
+  Refined run() {
+    start();
+    for (int round = 0;; ++round) {
+      find_errors();
+      double total = 0.0;
+      for (const Unevenness& u : uneven_) total += u.error;
+      refined_.rounds.push_back({refined_.patches.count(), std::sqrt(total)});
+      if (round == most_rounds || total <= options_.refine.error * options_.refine.error) break;
+      if (!cut(choose(refined_.patches, uneven_, total, max_patches_))) break;
+      if (static_cast<double>(refined_.patches.count()) >=
+          growth_between_solves * static_cast<double>(solution_.patches.count())) {
+        solve_for(refined_.patches);
+      }
+    }
+    refined_.rays += variation_.rays();
+    return std::move(refined_);
+  }
+
+ private:
+  void solve_for(const Patches& patches) {
+    solution_ = solve(scene_, groups_, effects_, query_, cheap_, patches);
+    refined_.rays += solution_.report.form_factor_rays + solution_.report.shadow_rays;
+    light_ = relative_light(solution_);
+    uneven_.assign(patches.count(), {});
+    unknown_.resize(patches.count());
+    std::iota(unknown_.begin(), unknown_.end(), 0U);
+  }
+
+  // The coarse cut, finer where it must be: while a light group falls on none of its sample points,
+  // as the Sun may in a room with a small window.
+  void start() {
+    double edge_m = options_.refine.start_edge_m;
+    refined_.patches = subdivide(scene_, edge_m);
+    solve_for(refined_.patches);
+    while (edge_m > options_.patch_edge_m && any_dark()) {
+      edge_m = std::max(0.5 * edge_m, options_.patch_edge_m);
+      Patches finer = subdivide(scene_, edge_m);
+      if (finer.count() > max_patches_) return;
+      refined_.patches = std::move(finer);
+      solve_for(refined_.patches);
+    }
+  }
+  [[nodiscard]] bool any_dark() const {
+    for (std::size_t g = 0; g < light_.groups; ++g) {
+      if (g != groups_.ambient && light_.scale[g] <= 0.0) return true;
+    }
+    return false;
+  }
+
+  void find_errors() {
+    const std::vector<Unevenness> found = variation_.find(refined_.patches, unknown_, light_);
+    for (std::size_t k = 0; k < unknown_.size(); ++k) uneven_[unknown_[k]] = found[k];
+  }
+
+  // False when nothing was left to cut.
+  bool cut(const std::vector<Cut>& wanted) {
+    const Patches& before = refined_.patches;
+    Split made = split(before, wanted);
+    if (made.patches.count() == before.count()) return false;
+    std::vector<Unevenness> inherited(made.patches.count());
+    unknown_.clear();
+    for (std::uint32_t i = 0; i < made.patches.count(); ++i) {
+      inherited[i] = uneven_[made.parent[i]];
+      if (made.patches.area_m2[i] < before.area_m2[made.parent[i]]) unknown_.push_back(i);
+    }
+    uneven_ = std::move(inherited);
+    refined_.patches = std::move(made.patches);
+    return true;
+  }
+
+  const scenes::Scene& scene_;
+  const scenes::LightGroups& groups_;
+  const scenes::Effects& effects_;
+  const scenes::RayQuery& query_;
+  const SolveOptions& options_;
+  SolveOptions cheap_;
+  std::size_t max_patches_;
+  Variation variation_;
+  Solution solution_;  // on the patches of an earlier round
+  RelativeLight light_;
+  std::vector<Unevenness> uneven_;      // per patch
+  std::vector<std::uint32_t> unknown_;  // patches not looked at yet
+  Refined refined_;
+};
+
 }  // namespace
+
+std::size_t most_refined_patches(const scenes::Scene& scene, const SolveOptions& options) {
+  const RefineOptions& refine = options.refine;
+  const std::size_t budget =
+      refine.max_patches > 0 ? refine.max_patches : subdivide(scene, options.patch_edge_m).count();
+  return std::max(budget, subdivide(scene, refine.start_edge_m).count());
+}
 
 Refined refine(const scenes::Scene& scene, const scenes::LightGroups& groups,
                const scenes::Effects& effects, const scenes::RayQuery& query,
                const SolveOptions& options) {
-  Refined refined;
-  refined.patches = subdivide(scene, options.patch_edge_m);
-  if (options.refine.max_patches == 0 || !is_lit(effects) || refined.patches.count() == 0) {
-    return refined;
+  if (options.refine.on && is_lit(effects) && !scene.triangles.empty()) {
+    return Refinement(scene, groups, effects, query, options).run();
   }
-  SolveOptions coarse = options;
-  coarse.form_factor_rays = std::max(fewest_rays, options.form_factor_rays / 8);
-  coarse.tolerance = std::max(options.tolerance, 1e-4);
-  Variation variation(scene, groups, effects, query, options.seed);
-  Solution solution;
-  RelativeLight light;
-  std::vector<Unevenness> uneven;      // of every patch
-  std::vector<std::uint32_t> unknown;  // patches whose share is not known yet
-  for (int round = 0;; ++round) {
-    Patches& patches = refined.patches;
-    if (static_cast<double>(patches.count()) >=
-        growth_between_solves * static_cast<double>(solution.patches.count())) {
-      solution = solve(scene, groups, effects, query, coarse, patches);
-      refined.rays += solution.report.form_factor_rays + solution.report.shadow_rays;
-      light = relative_light(solution);
-      uneven.assign(patches.count(), {});
-      unknown.resize(patches.count());
-      std::iota(unknown.begin(), unknown.end(), 0U);
-    }
-    const std::vector<Unevenness> found = variation.find(patches, unknown, light);
-    for (std::size_t k = 0; k < unknown.size(); ++k) uneven[unknown[k]] = found[k];
-    double total = 0.0;
-    for (const Unevenness& u : uneven) total += u.error;
-    refined.rounds.push_back({patches.count(), std::sqrt(total)});
-    if (round == most_rounds || total <= options.refine.error * options.refine.error) break;
-    const std::vector<Cut> wanted = choose(patches, uneven, total, options.refine.max_patches);
-    Split cut = split(patches, wanted);
-    if (cut.patches.count() == patches.count()) break;
-    std::vector<Unevenness> inherited(cut.patches.count());
-    unknown.clear();
-    for (std::uint32_t i = 0; i < cut.patches.count(); ++i) {
-      inherited[i] = uneven[cut.parent[i]];
-      if (cut.patches.area_m2[i] < patches.area_m2[cut.parent[i]]) unknown.push_back(i);
-    }
-    uneven = std::move(inherited);
-    patches = std::move(cut.patches);
-  }
-  refined.rays += variation.rays();
-  return refined;
+  Refined even;
+  even.patches = subdivide(scene, options.patch_edge_m);
+  return even;
 }
 
 }  // namespace earthshine::radiosity

@@ -17,14 +17,16 @@
 
 namespace earthshine::radiosity {
 
-// Adaptive cutting (refine.h). It stops at the first of the two that is reached.
+// Adaptive cutting (refine.h). It ends at whichever of the two is reached first.
 struct RefineOptions {
-  std::size_t max_patches = 0;  // 0: no refinement, patch_edge_m everywhere
+  bool on = false;              // off: patch_edge_m everywhere
+  double start_edge_m = 0.25;   // no patch is longer
+  std::size_t max_patches = 0;  // 0: as many as patch_edge_m everywhere would make
   double error = 0.0;           // estimated relative error of the radiosity, root mean square
 };
 
 struct SolveOptions {
-  double patch_edge_m = 0.25;   // no patch is longer
+  double patch_edge_m = 0.25;
   int form_factor_rays = 1024;  // per patch
   double tolerance = 1e-8;      // relative residual of the solve, per right-hand side
   std::uint64_t seed = 1;

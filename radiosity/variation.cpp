@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -14,9 +15,9 @@ namespace {
 
 using scenes::RayPacket;
 
-constexpr std::size_t direct_points = 16;      // per patch, stratified
-constexpr std::size_t indirect_points = 4;     // one in each quarter
-constexpr std::size_t gather_directions = 32;  // per point and set
+constexpr double fewest_points = 16.0, most_points = 4096.0;  // per patch, of direct light
+constexpr std::size_t indirect_points = 4;                    // one in each quarter
+constexpr std::size_t gather_directions = 32;                 // per point and set
 constexpr std::size_t wide_source_points = 4;  // per point and set; 1 for the Sun and small lamps
 
 // Sums per point, set and group.
@@ -30,6 +31,8 @@ class Looks {
   double& at(std::size_t point, std::size_t set, std::size_t group) {
     return sum_[(point * 2 + set) * groups_ + group];
   }
+
+  [[nodiscard]] std::size_t points() const { return where_.size(); }
 
   // Adds a group's variance between the points, and between the halves; nothing where the variance
   // is not above its own noise.
@@ -133,13 +136,14 @@ RelativeLight relative_light(const Solution& solution) {
 
 Variation::Variation(const scenes::Scene& scene, const scenes::LightGroups& groups,
                      const scenes::Effects& effects, const scenes::RayQuery& query,
-                     std::uint64_t seed)
+                     double spacing_m, std::uint64_t seed)
     : scene_(scene),
       effects_(effects),
       query_(query),
       sources_(find_sources(scene, groups, effects, 16)),
       groups_(groups.count()),
       earth_group_(groups.earth),
+      spacing_m_(spacing_m),
       seed_(seed) {}
 
 std::vector<Unevenness> Variation::find(const Patches& patches,
@@ -147,12 +151,19 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
                                         const RelativeLight& light) {
   std::vector<Unevenness> found(which.size());
   std::atomic<std::uint64_t> all_rays{0};
+  const auto lit_groups = static_cast<double>(
+      std::max<std::ptrdiff_t>(1, std::count_if(light.scale.begin(), light.scale.end(),
+                                                [](double scale) { return scale > 0.0; })));
+  const auto points_on = [&](double area_m2) {
+    const double wanted = fewest_points + area_m2 / (spacing_m_ * spacing_m_);
+    return std::bit_floor(static_cast<std::size_t>(std::min(wanted, most_points)));
+  };
   const auto direct = [&](std::uint32_t patch, const Rgb& rho, Looks& looks) {
     const base::Key key(seed_, base::Stream::Refinement, identity(patches, patch));
     const base::SobolOwen4 where(key);
     const Vec3 normal = patches.normal(patch), lift = normal * query_.surface_offset_m();
     ShadowQueue queue(query_, looks);
-    for (std::size_t point = 0; point < direct_points; ++point) {
+    for (std::size_t point = 0; point < looks.points(); ++point) {
       const auto p = where.point2(static_cast<std::uint32_t>(point));
       const Vec3 at = patches.point(patch, p[0], p[1]);
       looks.place(point, p[0], p[1]);
@@ -226,11 +237,10 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
     for (std::size_t k = begin; k < end; ++k) {
       const Rgb& rho = scene_.materials[patches.material(which[k])].diffuse;
       if (base::max_component(rho) <= 0.0) continue;
-      Looks sharp(direct_points, groups_), soft(indirect_points, groups_);
+      Looks sharp(points_on(patches.area_m2[which[k]]), groups_), soft(indirect_points, groups_);
       rays += direct(which[k], rho, sharp);
       rays += indirect(which[k], base::luminance(rho), soft);
-      const double weight =
-          patches.area_m2[which[k]] / (light.area_m2 * static_cast<double>(groups_));
+      const double weight = patches.area_m2[which[k]] / (light.area_m2 * lit_groups);
       Unevenness& sum = found[k];
       for (std::size_t g = 0; g < groups_; ++g) {
         sharp.add_to(sum, g);

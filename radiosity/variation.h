@@ -38,12 +38,14 @@ struct Unevenness {
 
 class Variation {
  public:
-  // Everything must outlive it.
+  // Everything must outlive it. Of direct light, a patch gets 16 look-ups and one more for every
+  // square of spacing_m, so that a spot of light on a large patch is found.
   Variation(const scenes::Scene& scene, const scenes::LightGroups& groups,
-            const scenes::Effects& effects, const scenes::RayQuery& query, std::uint64_t seed);
+            const scenes::Effects& effects, const scenes::RayQuery& query, double spacing_m,
+            std::uint64_t seed);
 
   // Per entry of `which`, patches of `patches`: (area / all area) * variance, mean over the light
-  // groups.
+  // groups that are not dark.
   [[nodiscard]] std::vector<Unevenness> find(const Patches& patches,
                                              std::span<const std::uint32_t> which,
                                              const RelativeLight& light);
@@ -55,6 +57,7 @@ class Variation {
   const scenes::RayQuery& query_;
   std::vector<LightSource> sources_;
   std::size_t groups_, earth_group_;
+  double spacing_m_;
   std::uint64_t seed_;
   std::uint64_t rays_ = 0;
 };

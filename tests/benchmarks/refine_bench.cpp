@@ -172,7 +172,8 @@ void compare(const Call& call) {
     options.patch_edge_m = edge_m;
     even.push_back(measure(judge, prepared, fmt::format("even {} m", edge_m), options));
   }
-  options.patch_edge_m = call.start_edge_m;
+  options.refine.on = true;
+  options.refine.start_edge_m = call.start_edge_m;
   for (const double budget : call.budgets) {
     options.refine.max_patches = static_cast<std::size_t>(budget);
     adaptive.push_back(measure(judge, prepared, fmt::format("adaptive {}", budget), options));
