@@ -15,7 +15,7 @@ constexpr int most_rounds = 24;
 constexpr double share_per_round = 0.5;   // of the squared error, held by the patches that are cut
 constexpr double thinnest = 4.0;          // a cell longer than this times its width is halved
 constexpr double undirected_share = 0.1;  // of the error, counted toward the longer side
-constexpr double growth_between_solves = 4.0;
+constexpr std::size_t growth_between_solves = 4;
 constexpr int fewest_rays = 64;
 
 std::uint32_t other_side(const Patches& patches, std::uint32_t patch) {
@@ -118,7 +118,9 @@ class Refinement {
         query_(query),
         options_(options),
         max_patches_(most_refined_patches(scene, options)),
-        variation_(scene, groups, effects, query, 0.25 * options.patch_edge_m, options.seed) {
+        variation_(scene, groups, effects, query,
+                   {0.25 * options.patch_edge_m,
+                    8 * std::clamp(options.form_factor_rays / 256, 1, 4), options.seed}) {
     cheap_ = options;
     cheap_.form_factor_rays = std::max(fewest_rays, options.form_factor_rays / 8);
     cheap_.tolerance = std::max(options.tolerance, 1e-4);
@@ -133,8 +135,9 @@ class Refinement {
       refined_.rounds.push_back({refined_.patches.count(), std::sqrt(total)});
       if (round == most_rounds || total <= options_.refine.error * options_.refine.error) break;
       if (!cut(choose(refined_.patches, uneven_, total, max_patches_))) break;
-      if (static_cast<double>(refined_.patches.count()) >=
-          growth_between_solves * static_cast<double>(solution_.patches.count())) {
+      // Worth its rays only while most of the cuts are still to come.
+      const std::size_t count = refined_.patches.count();
+      if (count >= growth_between_solves * solution_.patches.count() && 2 * count <= max_patches_) {
         solve_for(refined_.patches);
       }
     }

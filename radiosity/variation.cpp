@@ -17,7 +17,6 @@ using scenes::RayPacket;
 
 constexpr double fewest_points = 16.0, most_points = 4096.0;  // per patch, of direct light
 constexpr std::size_t indirect_points = 4;                    // one in each quarter
-constexpr std::size_t gather_directions = 32;                 // per point and set
 constexpr std::size_t wide_source_points = 4;  // per point and set; 1 for the Sun and small lamps
 
 // Sums per point, set and group.
@@ -136,30 +135,30 @@ RelativeLight relative_light(const Solution& solution) {
 
 Variation::Variation(const scenes::Scene& scene, const scenes::LightGroups& groups,
                      const scenes::Effects& effects, const scenes::RayQuery& query,
-                     double spacing_m, std::uint64_t seed)
+                     const VariationOptions& options)
     : scene_(scene),
       effects_(effects),
       query_(query),
       sources_(find_sources(scene, groups, effects, 16)),
       groups_(groups.count()),
       earth_group_(groups.earth),
-      spacing_m_(spacing_m),
-      seed_(seed) {}
+      options_(options) {}
 
 std::vector<Unevenness> Variation::find(const Patches& patches,
                                         std::span<const std::uint32_t> which,
                                         const RelativeLight& light) {
   std::vector<Unevenness> found(which.size());
   std::atomic<std::uint64_t> all_rays{0};
+  const auto gather_directions = static_cast<std::size_t>(options_.gather_directions);
   const auto lit_groups = static_cast<double>(
       std::max<std::ptrdiff_t>(1, std::count_if(light.scale.begin(), light.scale.end(),
                                                 [](double scale) { return scale > 0.0; })));
   const auto points_on = [&](double area_m2) {
-    const double wanted = fewest_points + area_m2 / (spacing_m_ * spacing_m_);
+    const double wanted = fewest_points + area_m2 / (options_.spacing_m * options_.spacing_m);
     return std::bit_floor(static_cast<std::size_t>(std::min(wanted, most_points)));
   };
   const auto direct = [&](std::uint32_t patch, const Rgb& rho, Looks& looks) {
-    const base::Key key(seed_, base::Stream::Refinement, identity(patches, patch));
+    const base::Key key(options_.seed, base::Stream::Refinement, identity(patches, patch));
     const base::SobolOwen4 where(key);
     const Vec3 normal = patches.normal(patch), lift = normal * query_.surface_offset_m();
     ShadowQueue queue(query_, looks);
@@ -188,7 +187,7 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
     return queue.rays();
   };
   const auto indirect = [&](std::uint32_t patch, double rho, Looks& looks) {
-    const base::Key key(seed_, base::Stream::Refinement, identity(patches, patch));
+    const base::Key key(options_.seed, base::Stream::Refinement, identity(patches, patch));
     const base::Frame3 frame = base::frame_around(patches.normal(patch));
     const Vec3 lift = frame.normal * query_.surface_offset_m();
     RayPacket packet;

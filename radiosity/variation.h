@@ -36,13 +36,20 @@ struct Unevenness {
   double along_s = 0.0, along_t = 0.0;
 };
 
+struct VariationOptions {
+  // Of direct light, a patch gets 16 look-ups and one more for every square of this edge, so that a
+  // spot of light on a large patch is found.
+  double spacing_m = 0.1;
+  int gather_directions = 32;  // per point and set, a multiple of 8
+  std::uint64_t seed = 1;
+};
+
 class Variation {
  public:
-  // Everything must outlive it. Of direct light, a patch gets 16 look-ups and one more for every
-  // square of spacing_m, so that a spot of light on a large patch is found.
+  // The scene, the effects and the query must outlive it.
   Variation(const scenes::Scene& scene, const scenes::LightGroups& groups,
-            const scenes::Effects& effects, const scenes::RayQuery& query, double spacing_m,
-            std::uint64_t seed);
+            const scenes::Effects& effects, const scenes::RayQuery& query,
+            const VariationOptions& options);
 
   // Per entry of `which`, patches of `patches`: (area / all area) * variance, mean over the light
   // groups that are not dark.
@@ -57,8 +64,7 @@ class Variation {
   const scenes::RayQuery& query_;
   std::vector<LightSource> sources_;
   std::size_t groups_, earth_group_;
-  double spacing_m_;
-  std::uint64_t seed_;
+  VariationOptions options_;
   std::uint64_t rays_ = 0;
 };
 
