@@ -5,8 +5,8 @@
 // part by gather rays that read a radiosity found before. Each look-up is done twice, with two sets
 // of source points and directions; all points of the patch share the sets (common random numbers).
 // The variance between points is the mean product of the two sets' deviations: noise that the sets
-// do not share averages out to nothing instead of adding up, and what is left below the noise still
-// found is taken as zero.
+// do not share averages out to nothing instead of adding up, and a variance below the noise that it
+// shows itself is taken as zero.
 #pragma once
 
 #include <cstdint>
