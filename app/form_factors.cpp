@@ -193,16 +193,16 @@ std::string largest_entries(const Found& found) {
 
 std::string text_of(const Found& found) {
   std::string text = found.names.size() <= widest_table ? matrix(found) : largest_entries(found);
-  if (found.is_exact) {
-    return text + fmt::format(
-                      "\nexact: {} facets, {} pairs, error {:.1g}, row sums to {:.1g} before "
-                      "they were closed; {}\n",
-                      found.patches, found.exact.pairs, found.exact.estimated_error,
-                      found.exact.max_closed_defect, duration(found.seconds));
-  }
   double worst_error = 0.0;
   for (const auto& row : found.between.std_error) {
     for (const double e : row) worst_error = std::max(worst_error, e);
+  }
+  if (found.is_exact) {
+    return text + fmt::format(
+                      "\nexact: {} facets, {} pairs, largest error {:.1g}, row sums right to "
+                      "{:.1g} before they were closed; {}\n",
+                      found.patches, found.exact.pairs, worst_error, found.exact.max_closed_defect,
+                      duration(found.seconds));
   }
   text += fmt::format(
       "\nlargest standard error {:.2g}, row error {:.2g}, reciprocity error {:.2g}{}\n",

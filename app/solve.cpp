@@ -62,11 +62,20 @@ Json sources_of(const radiosity::SolveReport& report, const scenes::LightGroups&
   return sources;
 }
 
+Json refinement_of(const radiosity::SolveReport& report) {
+  Json rounds = Json::array();
+  for (const radiosity::RefineRound& round : report.rounds) {
+    rounds.push_back({{"patches", round.patches}, {"error", round.error}});
+  }
+  return {{"rounds", rounds}, {"rays", report.refinement_rays}};
+}
+
 Json json_of(const LoadedScene& loaded, const radiosity::SolveReport& report,
              const StageTimes& times) {
   Json json;
   json["scene"] = loaded.scene.path.string();
   json["patches"] = report.patches;
+  json["refinement"] = refinement_of(report);
   json["rays"] = report.form_factor_rays;
   json["shadow_rays"] = report.shadow_rays;
   json["nonzeros"] = report.nonzeros;
@@ -100,6 +109,13 @@ std::string text_of(const Json& json) {
       short_count(json["shadow_rays"].get<double>()), json["iterations"].get<int>(),
       json["solver_error"].get<double>(), json["balance"]["before"].get<double>(),
       json["balance"]["after"].get<double>(), json["balance"]["sweeps"].get<int>());
+  const Json& rounds = json["refinement"]["rounds"];
+  if (!rounds.empty()) {
+    text += fmt::format("refined in {} rounds from {} patches, {} rays; estimated error {:.2g}\n",
+                        rounds.size() - 1, rounds.front()["patches"].get<std::size_t>(),
+                        short_count(json["refinement"]["rays"].get<double>()),
+                        rounds.back()["error"].get<double>());
+  }
   text += fmt::format("\n{:<20} {:>12} {:>12} {:>12} {:>12} {:>10}\n", "light group", "emitted lm",
                       "landed lm", "absorbed lm", "escaped lm", "imbalance");
   for (const Json& g : json["groups"]) {
@@ -164,7 +180,12 @@ void run(const SolveCall& call, const Common& common) {
 
 radiosity::SolveOptions solve_options(const scenes::Scene& scene, const Common& common) {
   const scenes::QualityKnobs knobs = scenes::resolve_quality(scene);
-  return {knobs.patch_edge_m, knobs.form_factor_rays, knobs.solver_tolerance, common.seed};
+  return {knobs.patch_edge_m,
+          knobs.form_factor_rays,
+          knobs.solver_tolerance,
+          common.seed,
+          {knobs.refine, knobs.start_edge_m, static_cast<std::size_t>(knobs.max_patches),
+           knobs.refine_error}};
 }
 
 Command add_solve(CLI::App& program) {

@@ -23,7 +23,8 @@ enum class Stream : std::uint32_t {
   ReadNoise,
   Test,
   HalfSample,
-  ExactOpening
+  ExactOpening,
+  Refinement
 };
 
 // A 64-bit mix of the key's parts (SplitMix64 finaliser, Steele et al. 2014).

@@ -9,7 +9,7 @@ namespace earthshine::radiosity {
 namespace {
 
 constexpr std::uint64_t most_cells = std::uint64_t{1} << 26;
-constexpr std::uint32_t deepest_level = 24;
+constexpr std::uint32_t deepest_level = 31;
 constexpr std::uint32_t last_row = 0x7FFFFFFFU;  // that can be halved in 32 bits
 // Many areas are summed one after the other.
 constexpr double area_rounding = 1e-7;
@@ -19,7 +19,7 @@ void demand(bool holds, const char* otherwise) {
 }
 
 // The leaves of a facet in the order of their numbers. `used` marks the entries of the tree that
-// some facet has led through, so that no two share a block and none runs in a circle.
+// some facet has led through, so that no two share a pair and none runs in a circle.
 class Leaves {
  public:
   Leaves(const Facet& facet, const std::vector<std::uint32_t>& tree, std::vector<bool>& used)
@@ -29,10 +29,10 @@ class Leaves {
       for (std::uint32_t t = 0; t < facet.t_count; ++t) {
         const std::uint32_t in_grid = s * facet.t_count + t;
         if (facet.tree == no_tree) {
-          take(in_grid, {s, t, 0});
+          take(in_grid, {s, t, 0, 0});
         } else {
           demand(facet.tree + grid <= tree.size(), "a facet's tree leads out of the table");
-          walk(std::uint64_t{facet.tree} + in_grid, {s, t, 0});
+          walk(std::uint64_t{facet.tree} + in_grid, {s, t, 0, 0});
         }
       }
     }
@@ -53,12 +53,22 @@ class Leaves {
     used_[at] = true;
     const std::uint32_t entry = tree_[at];
     if ((entry & Patches::split_cell) == 0) return take(entry, cell);
-    const std::uint64_t block = entry & ~Patches::split_cell;
-    demand(block + 4 <= tree_.size(), "the tree leads out of the table");
-    demand(cell.level < deepest_level && cell.s <= last_row && cell.t <= last_row,
+    const bool along_t = (entry & Patches::halves_t) != 0;
+    const std::uint64_t pair = entry & ~(Patches::split_cell | Patches::halves_t);
+    demand(pair + 2 <= tree_.size(), "the tree leads out of the table");
+    demand((along_t ? cell.t_cuts : cell.s_cuts) < deepest_level && cell.s <= last_row &&
+               cell.t <= last_row,
            "the tree is too deep");
-    for (std::uint32_t k = 0; k < 4; ++k) {
-      walk(block + k, {2 * cell.s + k / 2, 2 * cell.t + k % 2, cell.level + 1});
+    for (std::uint32_t k = 0; k < 2; ++k) {
+      Cell half = cell;
+      if (along_t) {
+        half.t = 2 * cell.t + k;
+        ++half.t_cuts;
+      } else {
+        half.s = 2 * cell.s + k;
+        ++half.s_cuts;
+      }
+      walk(pair + k, half);
     }
   }
 

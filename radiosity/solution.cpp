@@ -6,6 +6,7 @@
 #include "radiosity/ledger.h"
 #include "radiosity/light_ends.h"
 #include "radiosity/linear_solve.h"
+#include "radiosity/refine.h"
 #include "scenes/sky.h"
 
 namespace earthshine::radiosity {
@@ -123,19 +124,35 @@ std::vector<bool> emitter_is_explicit(const scenes::Scene& scene) {
   return is_explicit;
 }
 
+bool is_lit(const scenes::Effects& effects) {
+  return effects.sun || effects.earth || effects.lamps || effects.emitters;
+}
+
 Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
                const scenes::Effects& effects, const scenes::RayQuery& query,
                const SolveOptions& options) {
+  SolveReport cutting;
+  Stopwatch watch(cutting);
+  Refined refined = refine(scene, groups, effects, query, options);
+  watch.lap("patches");
+  Solution solution = solve(scene, groups, effects, query, options, std::move(refined.patches));
+  SolveReport& report = solution.report;
+  report.seconds.insert(report.seconds.begin(), cutting.seconds.front());
+  report.rounds = std::move(refined.rounds);
+  report.refinement_rays = refined.rays;
+  return solution;
+}
+
+Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
+               const scenes::Effects& effects, const scenes::RayQuery& query,
+               const SolveOptions& options, Patches cut) {
   Solution solution;
   SolveReport& report = solution.report;
   Stopwatch watch(report);
-  solution.patches = subdivide(scene, options.patch_edge_m);
+  solution.patches = std::move(cut);
   const Patches& patches = solution.patches;
   report.patches = patches.count();
-  watch.lap("patches");
-  // The ambient term is no source: it lights what the camera sees and bounces nowhere.
-  const bool lit = effects.sun || effects.earth || effects.lamps || effects.emitters;
-  if (!lit || patches.count() == 0) return solution;
+  if (!is_lit(effects) || patches.count() == 0) return solution;
   solution.columns = 3 * groups.count();
 
   SkyRadiance sky;

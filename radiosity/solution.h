@@ -17,11 +17,25 @@
 
 namespace earthshine::radiosity {
 
+// Adaptive cutting (refine.h). It ends at whichever of the two is reached first.
+struct RefineOptions {
+  bool on = false;              // off: patch_edge_m everywhere
+  double start_edge_m = 0.25;   // no patch is longer
+  std::size_t max_patches = 0;  // 0: as many as patch_edge_m everywhere would make
+  double error = 0.0;           // estimated relative error of the radiosity, root mean square
+};
+
 struct SolveOptions {
   double patch_edge_m = 0.25;
   int form_factor_rays = 1024;  // per patch
   double tolerance = 1e-8;      // of B, relative to each right-hand side's largest (linear_solve.h)
   std::uint64_t seed = 1;
+  RefineOptions refine = {};
+};
+
+struct RefineRound {
+  std::size_t patches = 0;
+  double error = 0.0;  // estimated for these patches, as RefineOptions::error
 };
 
 // Where the energy of one light group went, lm per channel.
@@ -46,6 +60,8 @@ struct ObjectLight {
 
 struct SolveReport {
   std::size_t patches = 0;
+  std::vector<RefineRound> rounds;  // of refinement, the last one for the patches solved
+  std::uint64_t refinement_rays = 0;
   std::uint64_t form_factor_rays = 0;
   std::uint64_t shadow_rays = 0;
   std::size_t nonzeros = 0;
@@ -81,5 +97,13 @@ struct Solution {
 [[nodiscard]] Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
                              const scenes::Effects& effects, const scenes::RayQuery& query,
                              const SolveOptions& options);
+// On patches that are cut already; options.patch_edge_m and options.refine are not looked at.
+[[nodiscard]] Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                             const scenes::Effects& effects, const scenes::RayQuery& query,
+                             const SolveOptions& options, Patches patches);
+
+// Whether there is any light to solve for. The ambient term is no source: it lights what the camera
+// sees and bounces nowhere.
+[[nodiscard]] bool is_lit(const scenes::Effects& effects);
 
 }  // namespace earthshine::radiosity

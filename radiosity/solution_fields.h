@@ -45,6 +45,9 @@ void visit_light(Store& store, AnySolution& solution) {
 
 template <class Store, class Report>
 void visit_report(Store& store, Report& report) {
+  store.value("refinement_rays", report.refinement_rays);
+  store.rows("refinement/patches", report.rounds, &RefineRound::patches, "", "after each round");
+  store.rows("refinement/error", report.rounds, &RefineRound::error, "", "estimated, relative");
   store.value("form_factor_rays_cast", report.form_factor_rays);
   store.value("shadow_rays", report.shadow_rays);
   store.value("nonzeros", report.nonzeros);

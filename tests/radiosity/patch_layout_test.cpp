@@ -12,7 +12,8 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr std::uint32_t split = Patches::split_cell;
+constexpr std::uint32_t split = Patches::split_cell;  // in halves along s,
+constexpr std::uint32_t split_t = Patches::split_cell | Patches::halves_t;
 
 // A square sheet and a triangle.
 scenes::Scene sheet_and_triangle() {
@@ -26,8 +27,8 @@ scenes::Scene sheet_and_triangle() {
   return builder.scene;
 }
 
-// The sheet is one cell, split in four, its last quarter split again: 7 leaves a side. The triangle
-// (area 1) is a row of two cells, cut at half its length: 1/4 and 3/4 of the area.
+// The sheet is one cell, halved along s and then t, its last quarter likewise: 7 leaves a side. The
+// triangle (area 1) is a row of two cells, cut at half its length: 1/4 and 3/4 of the area.
 PatchLayout split_layout() {
   PatchLayout layout;
   layout.s_count = {1, 2};
@@ -36,7 +37,8 @@ PatchLayout split_layout() {
   layout.first_back = {7, no_patch};
   layout.leaves = {7, 2};
   layout.tree_start = {0, no_tree};
-  layout.tree = {split | 1, 0, 1, 2, split | 5, 3, 4, 5, 6};
+  layout.tree = {split | 1,   split_t | 3,  split_t | 5, 0, 1, 2, split | 7,
+                 split_t | 9, split_t | 11, 3,           4, 5, 6};
   for (int side = 0; side < 2; ++side) {
     layout.area_m2.insert(layout.area_m2.end(), 3, 0.25);
     layout.area_m2.insert(layout.area_m2.end(), 4, 0.0625);
@@ -59,7 +61,8 @@ TEST(PatchLayout, SplitCellsComeBackAsTheirTreeSays) {
     const std::uint32_t first = patches.is_back[i] != 0 ? facet.first_back : facet.first_front;
     EXPECT_EQ(first + patches.leaf(facet, {0.5 * (r.s0 + r.s1), 0.5 * (r.t0 + r.t1)}), i);
   }
-  EXPECT_EQ(patches.cell[6].level, 2U);
+  EXPECT_EQ(patches.cell[6].s_cuts, 2U);
+  EXPECT_EQ(patches.cell[6].t_cuts, 2U);
   const PatchLayout again = layout_of(patches);
   EXPECT_EQ(again.tree, split_layout().tree);
   EXPECT_EQ(again.leaves, split_layout().leaves);
@@ -93,14 +96,14 @@ TEST(PatchLayout, WhateverIsNotOneLeafPerPatchIsRefused) {
       [](PatchLayout& l) { l.first_back[0] = 0; },
       [](PatchLayout& l) { l.first_back[1] = 14; },
       [](PatchLayout& l) { l.tree_start[0] = no_tree; },
-      [](PatchLayout& l) { l.tree_start[0] = 9; },
+      [](PatchLayout& l) { l.tree_start[0] = 13; },
       [](PatchLayout& l) { l.tree_start[1] = 1; },
-      [](PatchLayout& l) { l.tree[0] = split | 0; },  // a block that holds itself
-      [](PatchLayout& l) { l.tree[4] = split | 1; },
-      [](PatchLayout& l) { l.tree[4] = split | 6; },
-      [](PatchLayout& l) { l.tree[4] = 3; },
-      [](PatchLayout& l) { l.tree[5] = 4; },
-      [](PatchLayout& l) { l.tree[5] = 7; },
+      [](PatchLayout& l) { l.tree[0] = split | 0; },  // a pair that holds itself
+      [](PatchLayout& l) { l.tree[6] = split | 1; },
+      [](PatchLayout& l) { l.tree[6] = split | 12; },
+      [](PatchLayout& l) { l.tree[6] = 3; },
+      [](PatchLayout& l) { l.tree[9] = 4; },
+      [](PatchLayout& l) { l.tree[9] = 7; },
       [](PatchLayout& l) { l.tree.clear(); },
       [](PatchLayout& l) { l.area_m2.push_back(0.1); },
       [](PatchLayout& l) { l.area_m2.pop_back(); },
@@ -143,19 +146,19 @@ TEST(PatchLayout, AnyNumbersAreEitherRefusedOrWholePatches) {
   EXPECT_GT(refused, 15000);
 }
 
-// Every block's first child is the next block; areas are right.
+// Every pair's first half is the next pair; areas are right.
 PatchLayout chain(std::uint32_t levels) {
   PatchLayout layout = split_layout();
   layout.tree = {split | 1};
   std::vector<double> side;
   double area = 1.0;
   for (std::uint32_t level = 1; level <= levels; ++level) {
-    const auto next = static_cast<std::uint32_t>(layout.tree.size() + 4);
+    const auto next = static_cast<std::uint32_t>(layout.tree.size() + 2);
     const auto leaf = static_cast<std::uint32_t>(side.size());
-    const std::uint32_t first = level < levels ? split | next : leaf + 3;
-    layout.tree.insert(layout.tree.end(), {first, leaf, leaf + 1, leaf + 2});
-    area /= 4.0;
-    side.insert(side.end(), 3, area);
+    const std::uint32_t first = level < levels ? split | next : leaf + 1;
+    layout.tree.insert(layout.tree.end(), {first, leaf});
+    area /= 2.0;
+    side.push_back(area);
   }
   side.push_back(area);
   layout.leaves[0] = layout.first_back[0] = static_cast<std::uint32_t>(side.size());
@@ -168,7 +171,7 @@ PatchLayout chain(std::uint32_t levels) {
 
 TEST(PatchLayout, ATreeMayBeDeepButNotBottomless) {
   const scenes::Scene scene = sheet_and_triangle();
-  EXPECT_EQ(rebuild_patches(scene, chain(20)).count(), 2U * (3 * 20 + 1) + 2);
+  EXPECT_EQ(rebuild_patches(scene, chain(20)).count(), 2U * (20 + 1) + 2);
   EXPECT_THROW((void)rebuild_patches(scene, chain(100)), std::invalid_argument);
 }
 
