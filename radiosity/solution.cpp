@@ -2,6 +2,7 @@
 #include "radiosity/solution.h"
 
 #include <chrono>
+#include <numeric>
 
 #include "radiosity/ledger.h"
 #include "radiosity/light_ends.h"
@@ -87,22 +88,27 @@ std::vector<ObjectLight> object_means(const scenes::Scene& scene, const Patches&
   return means;
 }
 
-// The share of each object's rays that met the black back of a one-sided surface, and of all rays.
+// Of the rays of exposed patches that met each object, the share that met its black back.
 std::vector<double> back_shares(const scenes::Scene& scene, const Patches& patches,
-                                const FormFactors& factors, double& of_all) {
-  std::vector<double> share(scene.objects.size(), 0.0), area(scene.objects.size(), 0.0);
-  double met = 0.0, all = 0.0;
-  for (std::uint32_t i = 0; i < patches.count(); ++i) {
-    share[patches.object(i)] += patches.area_m2[i] * factors.black[i];
-    area[patches.object(i)] += patches.area_m2[i];
-    met += patches.area_m2[i] * factors.black[i];
-    all += patches.area_m2[i];
+                                const FormFactors& factors) {
+  std::vector<double> met = factors.back_hits;
+  for (std::size_t i = 0; i < factors.count(); ++i) {
+    if (!is_exposed(factors.black[i])) continue;
+    for (std::uint64_t e = factors.row_start[i]; e < factors.row_start[i + 1]; ++e) {
+      met[patches.object(factors.column[e])] += double(factors.hits[e]);
+    }
   }
+  std::vector<double> share(scene.objects.size(), 0.0);
   for (std::size_t o = 0; o < share.size(); ++o) {
-    if (area[o] > 0.0) share[o] /= area[o];
+    if (met[o] > 0.0) share[o] = factors.back_hits[o] / met[o];
   }
-  of_all = all > 0.0 ? met / all : 0.0;
   return share;
+}
+
+double back_share(const FormFactors& factors) {
+  return factors.count() > 0 ? std::accumulate(factors.black.begin(), factors.black.end(), 0.0) /
+                                   double(factors.count())
+                             : 0.0;
 }
 
 }  // namespace
@@ -163,7 +169,8 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
       cast_form_factors(scene, query, patches, {options.form_factor_rays, options.seed}, sky);
   report.form_factor_rays = factors.ray_count;
   report.nonzeros = factors.hits.size();
-  const std::vector<double> object_backs = back_shares(scene, patches, factors, report.back_share);
+  const std::vector<double> object_backs = back_shares(scene, patches, factors);
+  report.back_share = back_share(factors);
   watch.lap("form factors");
   report.balance = balance(factors, patches.area_m2);
   watch.lap("balance");

@@ -55,7 +55,8 @@ struct ObjectLight {
   double area_m2 = 0.0;     // both sides of sheets
   Rgb illuminance_lx{0.0};  // area means, all groups together
   Rgb radiosity_lm_m2{0.0};
-  double back_share = 0.0;  // of its rays, that met black backs: high where winding is wrong
+  double back_share = 0.0;  // of the rays that met it from exposed patches, those that met its
+                            // black back: near 1 where its winding is wrong
 };
 
 struct SolveReport {
@@ -69,7 +70,7 @@ struct SolveReport {
   double residual = 0.0;      // worst relative residual over the right-hand sides
   double solver_error = 0.0;  // LinearSolve::error
   BalanceReport balance;
-  double back_share = 0.0;  // of all patches' rays by area, that met black backs
+  double back_share = 0.0;                              // of all rays, those that met black backs
   std::vector<std::pair<std::string, double>> seconds;  // stage, wall seconds
   std::vector<GroupLedger> groups;
   std::vector<SourceFlux> sources;

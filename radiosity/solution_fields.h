@@ -86,7 +86,7 @@ void visit_report(Store& store, Report& report) {
   store.rows("objects/radiosity", objects, &ObjectLight::radiosity_lm_m2, "lm/m2",
              "mean over the area, all light groups");
   store.rows("objects/back_share", objects, &ObjectLight::back_share, "",
-             "of its rays, that met black backs");
+             "of the rays that met it, those that met its back");
 }
 
 }  // namespace earthshine::radiosity
