@@ -185,16 +185,13 @@ void note_balance(const radiosity::BalanceReport& balance) {
 }
 
 void note_backs(const radiosity::SolveReport& report) {
-  constexpr double remarkable = 0.1;
-  const auto worst =
-      std::max_element(report.objects.begin(), report.objects.end(),
-                       [](const auto& a, const auto& b) { return a.back_share < b.back_share; });
-  if (worst == report.objects.end() || worst->back_share < remarkable) return;
-  note(
-      fmt::format("warning: {:.0f} % of the rays from \"{}\" ({:.0f} % of all) met the backs of "
-                  "one-sided surfaces, which are black; turn those faces over, or make their "
-                  "material two_sided",
-                  100.0 * worst->back_share, worst->name, 100.0 * report.back_share));
+  for (const radiosity::ObjectLight& object : report.objects) {
+    if (object.back_share < 0.5) continue;
+    note(fmt::format(
+        "warning: {:.0f} % of the rays that met \"{}\" met its back, which is black; turn "
+        "its faces over, or make its material two_sided",
+        100.0 * object.back_share, object.name));
+  }
 }
 
 }  // namespace earthshine::app

@@ -86,7 +86,7 @@ struct LoadedScene {
 // A line on stderr where the form factors could not be balanced, with how near they came.
 void note_balance(const radiosity::BalanceReport& balance);
 
-// A line on stderr where much of what an object sees are the black backs of one-sided surfaces.
+// A line on stderr for each object that is seen from behind more than from the front.
 void note_backs(const radiosity::SolveReport& report);
 
 // The scene's accuracy knobs as the solver wants them.

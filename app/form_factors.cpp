@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <numeric>
 
 #include "app/command.h"
 #include "app/console.h"
+#include "base/error.h"
+#include "radiosity/exact_form_factors.h"
 #include "radiosity/object_form_factors.h"
 #include "radiosity/patches.h"
 #include "scenes/quality.h"
@@ -17,8 +21,22 @@
 namespace earthshine::app {
 namespace {
 
+enum class Method { Auto, Rays, Exact };
+
+// Up to here `auto` takes the exact method: its time grows with the square of their number.
+constexpr std::size_t most_facets_for_auto = 1000;
+
+Method read_method(const std::string& word) {
+  if (word == "auto") return Method::Auto;
+  if (word == "rays") return Method::Rays;
+  if (word == "exact") return Method::Exact;
+  throw base::Error(base::Blame::Input, "--method", "there is no method \"" + word + "\"",
+                    "the methods are auto, rays and exact");
+}
+
 struct FactorsCall {
   SceneInput scene;
+  Method method = Method::Auto;
   bool raw = false;
   bool json = false, csv = false;
 };
@@ -29,10 +47,37 @@ constexpr std::size_t largest_listed = 6;
 struct Found {
   std::vector<std::string> names;
   radiosity::ObjectFormFactors between;
-  radiosity::ObjectFactorReport report;
+  radiosity::ObjectFactorReport rays;  // by rays only
+  radiosity::ExactReport exact;        // by the exact method only
+  bool is_exact = false;
   std::size_t patches = 0;
   double seconds = 0.0;
 };
+
+bool any_passes_light_on(const scenes::Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const scenes::Material& m) { return m.passes_light_on(); });
+}
+
+// Between objects the exact method needs no patches: whole facets are integrated over.
+void find_exactly(const scenes::Scene& scene, const scenes::RayQuery& query,
+                  const radiosity::Patches& facets, const Common& common, Found& found) {
+  const radiosity::ExactFormFactors exact =
+      radiosity::exact_form_factors(scene, query, facets, {.seed = common.seed});
+  found.between = radiosity::object_form_factors(scene, facets, exact.factors);
+  found.exact = exact.report;
+  // The area rules of pairs in plain sight are good to this share of F.
+  constexpr double area_rule_error = 2e-5;
+  const auto error_of = [&](double f) {
+    return std::hypot(exact.report.estimated_error, area_rule_error * f);
+  };
+  radiosity::ObjectFormFactors& o = found.between;
+  for (std::size_t i = 0; i < o.F.size(); ++i) {
+    std::transform(o.F[i].begin(), o.F[i].end(), o.std_error[i].begin(), error_of);
+  }
+  std::transform(o.sky.begin(), o.sky.end(), o.sky_std_error.begin(), error_of);
+  std::transform(o.black.begin(), o.black.end(), o.black_std_error.begin(), error_of);
+}
 
 Found find(const FactorsCall& call, const Common& common) {
   const LoadedScene loaded = load(call.scene, common.quiet);
@@ -40,11 +85,21 @@ Found find(const FactorsCall& call, const Common& common) {
   const scenes::QualityKnobs knobs = scenes::resolve_quality(scene);
   const auto start = std::chrono::steady_clock::now();
   const scenes::RayQuery query(scene);
-  const radiosity::Patches patches = radiosity::subdivide(scene, knobs.patch_edge_m);
+  const radiosity::Patches facets =
+      radiosity::subdivide(scene, std::numeric_limits<double>::infinity());
   Found found;
-  found.patches = patches.count();
-  found.between = radiosity::object_form_factors_by_rays(
-      scene, query, patches, {knobs.form_factor_rays, common.seed, call.raw}, found.report);
+  found.is_exact = call.method == Method::Exact ||
+                   (call.method == Method::Auto && !call.raw && !any_passes_light_on(scene) &&
+                    facets.count() <= most_facets_for_auto);
+  if (found.is_exact) {
+    found.patches = facets.count();
+    find_exactly(scene, query, facets, common, found);
+  } else {
+    const radiosity::Patches patches = radiosity::subdivide(scene, knobs.patch_edge_m);
+    found.patches = patches.count();
+    found.between = radiosity::object_form_factors_by_rays(
+        scene, query, patches, {knobs.form_factor_rays, common.seed, call.raw}, found.rays);
+  }
   for (const scenes::Object& object : scene.objects) found.names.push_back(object.name);
   const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;
   found.seconds = gone.count();
@@ -52,26 +107,31 @@ Found find(const FactorsCall& call, const Common& common) {
 }
 
 Json json_of(const Found& found) {
-  return {{"objects", found.names},
-          {"area_m2", found.between.area_m2},
-          {"F", found.between.F},
-          {"sky", found.between.sky},
-          {"black", found.between.black},
-          {"std_error", found.between.std_error},
-          {"sky_std_error", found.between.sky_std_error},
-          {"black_std_error", found.between.black_std_error},
-          {"max_row_error", found.between.max_row_error},
-          {"max_reciprocity_error", found.between.max_reciprocity_error},
-          {"before",
-           {{"max_row_error", found.report.row_error_before},
-            {"max_reciprocity_error", found.report.reciprocity_error_before}}},
-          {"balanced", found.report.reconciled},
-          {"method", "rays"},
-          {"patches", found.patches},
-          {"rays_per_patch", found.report.rays_per_patch},
-          {"replicates", found.report.replicates},
-          {"rays", found.report.rays},
-          {"seconds", found.seconds}};
+  Json json = {{"objects", found.names},
+               {"area_m2", found.between.area_m2},
+               {"F", found.between.F},
+               {"sky", found.between.sky},
+               {"black", found.between.black},
+               {"std_error", found.between.std_error},
+               {"sky_std_error", found.between.sky_std_error},
+               {"black_std_error", found.between.black_std_error},
+               {"max_row_error", found.between.max_row_error},
+               {"max_reciprocity_error", found.between.max_reciprocity_error},
+               {"balanced", found.is_exact || found.rays.reconciled},
+               {"method", found.is_exact ? "exact" : "rays"},
+               {"patches", found.patches},
+               {"seconds", found.seconds}};
+  if (found.is_exact) {
+    json["before"] = {{"max_row_error", found.exact.max_closed_defect}};
+    json["pairs"] = found.exact.pairs;
+  } else {
+    json["before"] = {{"max_row_error", found.rays.row_error_before},
+                      {"max_reciprocity_error", found.rays.reciprocity_error_before}};
+    json["rays_per_patch"] = found.rays.rays_per_patch;
+    json["replicates"] = found.rays.replicates;
+    json["rays"] = found.rays.rays;
+  }
+  return json;
 }
 
 // A pair a line, the way tables of view factors are exchanged; names as RFC 4180 wants them.
@@ -132,21 +192,27 @@ std::string largest_entries(const Found& found) {
 }
 
 std::string text_of(const Found& found) {
+  std::string text = found.names.size() <= widest_table ? matrix(found) : largest_entries(found);
   double worst_error = 0.0;
   for (const auto& row : found.between.std_error) {
     for (const double e : row) worst_error = std::max(worst_error, e);
   }
-  std::string text = found.names.size() <= widest_table ? matrix(found) : largest_entries(found);
+  if (found.is_exact) {
+    return text + fmt::format(
+                      "\nexact: {} facets, {} pairs, largest error {:.1g}, row sums right to "
+                      "{:.1g} before they were closed; {}\n",
+                      found.patches, found.exact.pairs, worst_error, found.exact.max_closed_defect,
+                      duration(found.seconds));
+  }
   text += fmt::format(
       "\nlargest standard error {:.2g}, row error {:.2g}, reciprocity error {:.2g}{}\n",
       worst_error, found.between.max_row_error, found.between.max_reciprocity_error,
-      found.report.reconciled
-          ? fmt::format(", balanced (as cast: {:.2g})", found.report.reciprocity_error_before)
+      found.rays.reconciled
+          ? fmt::format(", balanced (as cast: {:.2g})", found.rays.reciprocity_error_before)
           : std::string(", as cast"));
-  text +=
-      fmt::format("{} patches, {} rays each in {} replicates, {}\n", found.patches,
-                  found.report.rays_per_patch, found.report.replicates, duration(found.seconds));
-  return text;
+  return text + fmt::format("{} patches, {} rays each in {} replicates, {}\n", found.patches,
+                            found.rays.rays_per_patch, found.rays.replicates,
+                            duration(found.seconds));
 }
 
 }  // namespace
@@ -156,7 +222,13 @@ Command add_form_factors(CLI::App& program) {
       program.add_subcommand("form-factors", "Form factors between objects, and to the sky");
   const auto call = std::make_shared<FactorsCall>();
   add_scene_options(*parser, call->scene);
-  parser->add_flag("--raw", call->raw, "As cast, before both laws, closure and reciprocity, hold");
+  parser
+      ->add_option_function<std::string>(
+          "--method", [call](const std::string& word) { call->method = read_method(word); },
+          "rays; exact: analytic, without mirrors or glass; auto: exact where that is quick")
+      ->type_name("auto|rays|exact");
+  parser->add_flag("--raw", call->raw,
+                   "Rays as cast, before both laws, closure and reciprocity, hold");
   CLI::Option* json = parser->add_flag("--json", call->json, "JSON on standard output");
   parser->add_flag("--csv", call->csv, "A line per pair on standard output")->excludes(json);
   return {parser, [call](const Common& common) {

@@ -9,7 +9,7 @@
 #include "app/console.h"
 #include "degrade/camera_file.h"
 #include "degrade/chain.h"
-#include "radiosity/patches.h"
+#include "radiosity/refine.h"
 #include "scenes/quality.h"
 
 namespace earthshine::app {
@@ -54,8 +54,11 @@ Json images_of(const scenes::Scene& scene, std::uint64_t gather_rays) {
 Json report_of(const LoadedScene& loaded) {
   const scenes::QualityKnobs knobs = scenes::resolve_quality(loaded.scene);
   const auto rays_per_patch = std::bit_ceil(static_cast<std::uint64_t>(knobs.form_factor_rays));
-  const std::size_t patches = radiosity::subdivide(loaded.scene, knobs.patch_edge_m).count();
   const bool lit = loaded.groups.count() > 0;
+  const bool refines = knobs.refine && radiosity::is_lit(loaded.effects);
+  const std::size_t patches =
+      refines ? radiosity::most_refined_patches(loaded.scene, solve_options(loaded.scene, {}))
+              : radiosity::subdivide(loaded.scene, knobs.patch_edge_m).count();
   const bool solves = lit && loaded.effects.interreflection;
   Json report;
   report["scene"] = loaded.scene.path.string();
@@ -63,10 +66,12 @@ Json report_of(const LoadedScene& loaded) {
   report["effects"] = effects_of(loaded);
   report["light_groups"] = loaded.groups.names;
   report["quality"] = {{"patch_edge_m", knobs.patch_edge_m},
+                       {"refine", knobs.refine},
                        {"form_factor_rays", rays_per_patch},
                        {"gather_rays", knobs.gather_rays},
                        {"solver_tolerance", knobs.solver_tolerance}};
   report["patches"] = patches;
+  report["patches_at_most"] = refines;
   report["rays"] = solves ? patches * rays_per_patch : 0;
   report["right_hand_sides"] = 3 * loaded.groups.count();
   report["images"] =
@@ -82,10 +87,13 @@ std::string text_of(const Json& report) {
                         row["effect"].get<std::string>(), row["why"].get<std::string>());
   }
   const Json& quality = report["quality"];
-  text += fmt::format("\n{} patches with edges up to {:g} m; {} form-factor rays ({} per patch)\n",
-                      report["patches"].get<std::size_t>(), quality["patch_edge_m"].get<double>(),
-                      short_count(report["rays"].get<double>()),
-                      quality["form_factor_rays"].get<int>());
+  const bool refines = report["patches_at_most"].get<bool>();
+  text += fmt::format(
+      "\n{}{} patches {}; {} form-factor rays ({} per patch)\n", refines ? "at most " : "",
+      report["patches"].get<std::size_t>(),
+      refines ? std::string("where light varies")
+              : fmt::format("with edges up to {:g} m", quality["patch_edge_m"].get<double>()),
+      short_count(report["rays"].get<double>()), quality["form_factor_rays"].get<int>());
   text += fmt::format("{} right-hand sides, solved to {:g}\n",
                       report["right_hand_sides"].get<std::size_t>(),
                       quality["solver_tolerance"].get<double>());

@@ -73,6 +73,7 @@ base::ExrHeader provenance_header(const Provenance& p) {
   header.number("camera_samples", p.render.camera_samples);
   header.number("relative_noise", p.render.relative_noise);
   if (p.solution != nullptr) {
+    header.text("refined", p.solver.refine.on ? "yes" : "no");
     header.number("patch_edge_m", p.solver.patch_edge_m);
     header.number("form_factor_rays", p.solver.form_factor_rays);
     header.number("solver_tolerance", p.solver.tolerance);

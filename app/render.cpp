@@ -12,6 +12,7 @@
 #include "app/command.h"
 #include "app/console.h"
 #include "app/provenance.h"
+#include "app/solution.h"
 #include "base/error.h"
 #include "base/exr_file.h"
 #include "base/png_file.h"
@@ -24,7 +25,7 @@ namespace {
 
 struct RenderCall {
   SceneInput scene;
-  std::string output, png, cctv, camera;
+  std::string output, png, cctv, camera, solution;
   std::optional<Size> size;
   raytrace::Indirect indirect = raytrace::Indirect::Radiosity;
   std::uint64_t distributed_lights = 64;
@@ -49,7 +50,12 @@ void check_call(const RenderCall& call) {
   check_ending(call.output, "-o", ".exr");
   check_ending(call.png, "--png", ".png");
   check_ending(call.cctv, "--cctv", ".png");
-  check_outputs({call.output, call.png, call.cctv}, {call.scene.path});
+  check_outputs({call.output, call.png, call.cctv}, {call.scene.path, call.solution});
+  if (!call.solution.empty() && call.indirect != raytrace::Indirect::Radiosity) {
+    throw base::Error(base::Blame::Input, "--solution",
+                      fmt::format("--indirect {} reads no solution", indirect_name(call.indirect)),
+                      {}, "Leave one of the two out");
+  }
 }
 
 struct Rendered {
@@ -68,10 +74,8 @@ Rendered compute(const RenderCall& call, const Common& common, const LoadedScene
   r.solver = solve_options(loaded.scene, common);
   if (call.indirect == raytrace::Indirect::Radiosity) {
     if (loaded.groups.count() == 0) note("note: nothing gives light, the picture is black");
-    r.solution = radiosity::solve(loaded.scene, loaded.groups, loaded.effects, query, r.solver);
+    r.solution = solve_or_read(loaded, query, r.solver, call.solution, times);
     r.solved = true;
-    times.add(r.solution.report.seconds);
-    note_balance(r.solution.report.balance);
     if (!common.quiet) note_backs(r.solution.report);
   }
   r.options.columns = call.size ? call.size->columns : camera.columns;
@@ -181,6 +185,7 @@ Command add_render(CLI::App& program) {
   parser->add_option("--camera", call->camera, "Camera of the scene (default: its first)")
       ->type_name("NAME");
   add_size_option(*parser, call->size);
+  add_solution_option(*parser, call->solution);
   using raytrace::Indirect;
   const std::map<std::string, Indirect> names = {{"radiosity", Indirect::Radiosity},
                                                  {"distributed", Indirect::Distributed},

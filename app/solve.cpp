@@ -6,6 +6,8 @@
 
 #include "app/command.h"
 #include "app/console.h"
+#include "app/solution.h"
+#include "base/error.h"
 #include "base/output_file.h"
 #include "radiosity/solution.h"
 #include "scenes/quality.h"
@@ -16,7 +18,7 @@ namespace {
 
 struct SolveCall {
   SceneInput scene;
-  std::string output;
+  std::string output, mesh, solution;
   bool json = false;
 };
 
@@ -60,11 +62,20 @@ Json sources_of(const radiosity::SolveReport& report, const scenes::LightGroups&
   return sources;
 }
 
+Json refinement_of(const radiosity::SolveReport& report) {
+  Json rounds = Json::array();
+  for (const radiosity::RefineRound& round : report.rounds) {
+    rounds.push_back({{"patches", round.patches}, {"error", round.error}});
+  }
+  return {{"rounds", rounds}, {"rays", report.refinement_rays}};
+}
+
 Json json_of(const LoadedScene& loaded, const radiosity::SolveReport& report,
              const StageTimes& times) {
   Json json;
   json["scene"] = loaded.scene.path.string();
   json["patches"] = report.patches;
+  json["refinement"] = refinement_of(report);
   json["rays"] = report.form_factor_rays;
   json["shadow_rays"] = report.shadow_rays;
   json["nonzeros"] = report.nonzeros;
@@ -98,6 +109,13 @@ std::string text_of(const Json& json) {
       short_count(json["shadow_rays"].get<double>()), json["iterations"].get<int>(),
       json["solver_error"].get<double>(), json["balance"]["before"].get<double>(),
       json["balance"]["after"].get<double>(), json["balance"]["sweeps"].get<int>());
+  const Json& rounds = json["refinement"]["rounds"];
+  if (!rounds.empty()) {
+    text += fmt::format("refined in {} rounds from {} patches, {} rays; estimated error {:.2g}\n",
+                        rounds.size() - 1, rounds.front()["patches"].get<std::size_t>(),
+                        short_count(json["refinement"]["rays"].get<double>()),
+                        rounds.back()["error"].get<double>());
+  }
   text += fmt::format("\n{:<20} {:>12} {:>12} {:>12} {:>12} {:>10}\n", "light group", "emitted lm",
                       "landed lm", "absorbed lm", "escaped lm", "imbalance");
   for (const Json& g : json["groups"]) {
@@ -121,36 +139,67 @@ std::string text_of(const Json& json) {
   return text;
 }
 
+bool is_json(const std::string& path) { return path.ends_with(".json"); }
+
+void check_call(const SolveCall& call) {
+  if (call.output.ends_with(".glb")) {
+    throw base::Error(base::Blame::Input, "-o", fmt::format("\"{}\" is a GLB file", call.output),
+                      {}, "Name it after --glb");
+  }
+  if (!call.mesh.empty() && !call.mesh.ends_with(".glb") && !call.mesh.starts_with("/dev/")) {
+    throw base::Error(base::Blame::Input, "--glb",
+                      fmt::format("\"{}\" is not a .glb file", call.mesh), {},
+                      "Name a file that ends in .glb");
+  }
+  check_outputs({call.output, call.mesh}, {call.scene.path, call.solution});
+}
+
 void run(const SolveCall& call, const Common& common) {
-  check_outputs({call.output}, {call.scene.path});
+  check_call(call);
   StageTimes times;
   const LoadedScene loaded = times.measure("read", [&] { return load(call.scene, common.quiet); });
   const scenes::RayQuery query =
       times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
-  const radiosity::Solution solution = radiosity::solve(loaded.scene, loaded.groups, loaded.effects,
-                                                        query, solve_options(loaded.scene, common));
-  times.add(solution.report.seconds);
-  note_balance(solution.report.balance);
+  const radiosity::SolveOptions options = solve_options(loaded.scene, common);
+  const radiosity::Solution solution = solve_or_read(loaded, query, options, call.solution, times);
   if (!common.quiet) note_backs(solution.report);
+  const bool writes_report = is_json(call.output);
+  if (!call.output.empty() && !writes_report) {
+    times.measure("write", [&] { write_solution(call.output, solution, loaded, options); });
+  }
+  if (!call.mesh.empty()) {
+    times.measure("write GLB", [&] { write_mesh(call.mesh, solution, loaded); });
+  }
   const Json json = json_of(loaded, solution.report, times);
-  if (!call.output.empty()) base::write_text(call.output, dump(json));
+  if (writes_report) base::write_text(call.output, dump(json));
   if (call.json) print(dump(json));
-  if (!call.json && call.output.empty()) print(text_of(json));
+  if (!call.json && !writes_report) print(text_of(json));
 }
 
 }  // namespace
 
 radiosity::SolveOptions solve_options(const scenes::Scene& scene, const Common& common) {
   const scenes::QualityKnobs knobs = scenes::resolve_quality(scene);
-  return {knobs.patch_edge_m, knobs.form_factor_rays, knobs.solver_tolerance, common.seed};
+  return {knobs.patch_edge_m,
+          knobs.form_factor_rays,
+          knobs.solver_tolerance,
+          common.seed,
+          {knobs.refine, knobs.start_edge_m, static_cast<std::size_t>(knobs.max_patches),
+           knobs.refine_error}};
 }
 
 Command add_solve(CLI::App& program) {
   CLI::App* parser = program.add_subcommand("solve", "Radiosity alone: where the light goes");
   const auto call = std::make_shared<SolveCall>();
   add_scene_options(*parser, call->scene);
-  parser->add_option("-o,--output", call->output, "Write the report as JSON to a file")
+  parser
+      ->add_option("-o,--output", call->output,
+                   "The solution as HDF5, for render --solution and numpy; the report alone, as "
+                   "JSON, if the name ends in .json")
       ->type_name("FILE");
+  parser->add_option("--glb", call->mesh, "Also the solution as vertex colours for 3D viewers")
+      ->type_name("FILE.glb");
+  add_solution_option(*parser, call->solution);
   parser->add_flag("--json", call->json, "JSON on standard output");
   return {parser, [call](const Common& common) { run(*call, common); }};
 }

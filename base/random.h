@@ -22,7 +22,9 @@ enum class Stream : std::uint32_t {
   ShotNoise,
   ReadNoise,
   Test,
-  HalfSample
+  HalfSample,
+  ExactOpening,
+  Refinement
 };
 
 // A 64-bit mix of the key's parts (SplitMix64 finaliser, Steele et al. 2014).

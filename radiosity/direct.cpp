@@ -3,19 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "base/parallel.h"
 #include "base/random.h"
 #include "radiosity/shadowed_samples.h"
-#include "radiosity/solution.h"
+#include "radiosity/sources.h"
 #include "scenes/lamp_light.h"
-#include "scenes/sky.h"
 
 namespace earthshine::radiosity {
 namespace {
-
-using scenes::LightSample;
 
 // What lands is known twice: from the patches' samples, and as the flux less what was found to
 // escape. The mean of the two, weighted by inverse variance, sets the scale: in a closed room
@@ -34,8 +30,6 @@ double landing_scale(const Sampled& sampled, const Patches& patches, const Sourc
   if (both <= 0.0) return expected / landed;  // both are exact: the flux is
   return (landed * expected_variance + expected * landed_variance) / (both * landed);
 }
-
-using Emit = std::function<scenes::EmittedRay(double u, double v, double x, double y)>;
 
 // Shoots rays from a source of known flux to find what escapes and what falls on black backs.
 void find_shares(const scenes::Scene& scene, const scenes::RayQuery& query, const Emit& emit,
@@ -116,36 +110,6 @@ class DirectStage {
   DirectLight& light_;
 };
 
-Source sun_source(const scenes::Scene& scene, std::size_t group, int points) {
-  const scenes::Sun& sun = *scene.sun;
-  const Rgb illuminance = scenes::sun_sample_illuminance(scene);
-  const double radius = base::radians(sun.angular_radius_deg);
-  Source source;
-  source.key = 1;
-  source.group = group;
-  source.points = points;
-  source.sample = [&sun, illuminance, radius](const Vec3&, double u, double v) {
-    return LightSample{scenes::sample_cone(sun.direction, radius, u, v),
-                       std::numeric_limits<double>::infinity(), illuminance};
-  };
-  return source;
-}
-
-Source earth_source(const scenes::Scene& scene, std::size_t group, int points) {
-  const double half_angle = base::radians(scene.earth->half_angle_deg);
-  const double solid_angle = scenes::cone_solid_angle_sr(half_angle);
-  Source source;
-  source.key = 2;
-  source.group = group;
-  source.points = 4 * points;
-  source.sample = [&scene, half_angle, solid_angle](const Vec3&, double u, double v) {
-    const Vec3 direction = scenes::sample_cone(scene.earth->direction, half_angle, u, v);
-    return LightSample{direction, std::numeric_limits<double>::infinity(),
-                       scenes::earth_radiance(scene, direction) * solid_angle};
-  };
-  return source;
-}
-
 }  // namespace
 
 DirectLight direct_light(const scenes::Scene& scene, const scenes::LightGroups& groups,
@@ -156,57 +120,17 @@ DirectLight direct_light(const scenes::Scene& scene, const scenes::LightGroups& 
   light.columns = 3 * groups.count();
   light.illuminance_lx.assign(patches.count() * light.columns, 0.0);
   DirectStage stage(scene, query, patches, options, light);
-
-  if (effects.sun) stage.add(sun_source(scene, groups.sun, options.points_per_patch));
-  if (effects.earth_by_gather) {
-    stage.store(factors.sky_illuminance, groups.earth, 1.0);
-  } else if (effects.earth) {
-    stage.add(earth_source(scene, groups.earth, options.points_per_patch));
-  }
-  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
-    if (groups.lamp[k] == scenes::no_group) continue;
-    const scenes::Lamp& lamp = scene.lamps[k];
-    const bool wide =
-        lamp.kind == scenes::LampKind::Rectangle || lamp.kind == scenes::LampKind::Disk;
-    Source source;
-    source.key = 16 + k;
-    source.group = groups.lamp[k];
-    source.points = options.points_per_patch * (wide ? 4 : 1);
-    source.sample = [&lamp](const Vec3& point, double u, double v) {
-      return scenes::sample_lamp(lamp, point, u, v);
-    };
-    source.distance_m = [&lamp](const Vec3& point) { return glm::length(point - lamp.position); };
-    const auto emit = [&lamp](double u, double v, double x, double y) {
-      return scenes::emit_from_lamp(lamp, u, v, x, y);
-    };
-    SourceFlux flux;
-    flux.name = lamp.name;
-    flux.group = source.group;
-    flux.emitted_lm = scenes::lamp_flux_lm(lamp);
-    stage.add(source, flux, emit);
-  }
-  const std::vector<bool> is_explicit = emitter_is_explicit(scene);
-  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-    if (!is_explicit[m] || groups.material[m] == scenes::no_group) continue;
-    scenes::EmitterSet emitters;
-    for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
-      if (scene.triangles[t].material == m) emitters.add(scene, static_cast<std::uint32_t>(t));
+  if (effects.earth_by_gather) stage.store(factors.sky_illuminance, groups.earth, 1.0);
+  for (LightSource& light_source : find_sources(scene, groups, effects, options.points_per_patch)) {
+    if (!light_source.emit) {
+      stage.add(light_source.source);
+      continue;
     }
-    Source source;
-    source.key = (std::uint64_t{1} << 32) + m;
-    source.group = groups.material[m];
-    source.points = 4 * options.points_per_patch;
-    source.sample = [&emitters](const Vec3& point, double u, double v) {
-      return emitters.sample(point, u, v);
-    };
-    const auto emit = [&emitters](double u, double v, double x, double y) {
-      return emitters.emit(u, v, x, y);
-    };
     SourceFlux flux;
-    flux.name = scene.materials[m].name;
-    flux.group = source.group;
-    flux.emitted_lm = emitters.flux_lm();
-    stage.add(source, flux, emit);
+    flux.name = std::move(light_source.name);
+    flux.group = light_source.source.group;
+    flux.emitted_lm = light_source.flux_lm;
+    stage.add(light_source.source, std::move(flux), light_source.emit);
   }
   return light;
 }

@@ -32,6 +32,8 @@ struct Row {
 // The rows of one chunk of patches, side by side.
 struct Band {
   std::vector<Row> rows;
+  std::vector<double> back_hits;         // per object
+  std::vector<std::uint32_t> backs_met;  // of the row in progress: the objects
   std::vector<std::uint32_t> column;
   std::vector<float> hits;
 };
@@ -75,9 +77,13 @@ class Caster {
         query_.closest(packets[n % 2], RayPacket::width, hits[n % 2]);
         for (const std::uint32_t triangle : hits[n % 2].triangle) targets_.prefetch(triangle);
       }
-      if (n > 0) count_hits(packets[(n - 1) % 2], hits[(n - 1) % 2], row, counter);
+      if (n > 0) count_hits(packets[(n - 1) % 2], hits[(n - 1) % 2], row, counter, band);
     }
     row.rays += rays_.count();
+    if (is_exposed(row.black / rays_.count())) {
+      for (const std::uint32_t object : band.backs_met) band.back_hits[object] += 1.0;
+    }
+    band.backs_met.clear();
     const std::size_t before = band.column.size();
     counter.take(band.column, band.hits);
     row.entries = static_cast<std::uint32_t>(band.column.size() - before);
@@ -86,8 +92,8 @@ class Caster {
   }
 
  private:
-  void count_hits(const RayPacket& packet, const HitPacket& hits, Row& row,
-                  HitCounter& counter) const {
+  void count_hits(const RayPacket& packet, const HitPacket& hits, Row& row, HitCounter& counter,
+                  Band& band) const {
     for (std::size_t k = 0; k < RayPacket::width; ++k) {
       const std::uint32_t triangle = hits.triangle[k];
       if (triangle == scenes::no_triangle) {
@@ -103,6 +109,7 @@ class Caster {
       const std::uint32_t to = targets_.find(triangle, hits.u[k], hits.v[k], hits.front[k] != 0);
       if (to == no_patch) {
         row.black += 1.0;
+        band.backs_met.push_back(scene_.triangles[triangle].object);
       } else {
         counter.add(to, 1.0F);
       }
@@ -186,6 +193,9 @@ void assemble(std::vector<Band>& bands, FormFactors& factors) {
       factors.ray_count += row.rays;
       ++i;
     }
+    for (std::size_t o = 0; o < band.back_hits.size(); ++o) {
+      factors.back_hits[o] += band.back_hits[o];
+    }
   }
   factors.column.resize(factors.row_start[i]);
   factors.hits.resize(factors.row_start[i]);
@@ -240,6 +250,7 @@ FormFactors cast_rows(const scenes::Scene& scene, const scenes::RayQuery& query,
   factors.sky_illuminance.assign(count, Rgb(0.0));
 
   factors.row_start.assign(count + 1, 0);
+  factors.back_hits.assign(scene.objects.size(), 0.0);
 
   constexpr std::size_t band_rows = 64;
   std::vector<Band> bands((count + band_rows - 1) / band_rows);
@@ -249,6 +260,7 @@ FormFactors cast_rows(const scenes::Scene& scene, const scenes::RayQuery& query,
     thread_local HitCounter counter(0);
     if (counter.patches() < patches.count()) counter = HitCounter(patches.count());
     for (std::size_t band = begin; band < end; ++band) {
+      bands[band].back_hits.assign(scene.objects.size(), 0.0);
       for (std::size_t i = band * band_rows; i < std::min(count, (band + 1) * band_rows); ++i) {
         caster.cast(rows[i], counter, bands[band]);
       }

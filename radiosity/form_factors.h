@@ -35,11 +35,17 @@ struct FormFactors {
   std::vector<double> sky, black;    // F_i,sky and F_i,black: what patch i sees
   std::vector<double> escape, lost;  // shares of what leaves j that reach the sky, black backs
   std::vector<double> kept;          // a_j per patch
+  std::vector<double>
+      back_hits;  // per object of the scene: rays of exposed patches that met its back
   std::vector<Rgb>
       sky_illuminance;  // per patch, lx: pi times the mean over all rays of the sky's radiance
 
   [[nodiscard]] std::size_t count() const { return sky.size(); }
 };
+
+// A patch that sees mostly black backs is buried in a body: what it sees says nothing about
+// winding.
+[[nodiscard]] constexpr bool is_exposed(double black_share) { return black_share <= 0.5; }
 
 // Radiance of the sky in a direction; empty when the sky is dark or is sampled otherwise.
 using SkyRadiance = std::function<Rgb(const Vec3& direction)>;

@@ -73,23 +73,23 @@ Facet triangle_facet(const scenes::Scene& scene, std::size_t k, double edge_m) {
   return facet;
 }
 
-double cell_area(const Facet& facet, const Rectangle& r) {
-  if (facet.parallelogram) return facet.area_m2 * (r.s1 - r.s0) * (r.t1 - r.t0);
-  return facet.area_m2 * (r.s1 * r.s1 - r.s0 * r.s0) * (r.t1 - r.t0);
-}
-
 Vec3 on_facet(const Facet& f, double s, double t) {
   if (f.parallelogram) return f.corner + s * f.a + t * f.b;
   return f.corner + s * (f.a + t * (f.b - f.a));
 }
 
+}  // namespace
+
 Rectangle rectangle_of(const Facet& facet, const Cell& cell) {
-  const double rows = std::ldexp(facet.s_count, static_cast<int>(cell.level));
-  const double columns = std::ldexp(facet.t_count, static_cast<int>(cell.level));
+  const double rows = std::ldexp(facet.s_count, cell.s_cuts);
+  const double columns = std::ldexp(facet.t_count, cell.t_cuts);
   return {cell.s / rows, (cell.s + 1.0) / rows, cell.t / columns, (cell.t + 1.0) / columns};
 }
 
-}  // namespace
+double area_of(const Facet& facet, const Rectangle& r) {
+  if (facet.parallelogram) return facet.area_m2 * (r.s1 - r.s0) * (r.t1 - r.t0);
+  return facet.area_m2 * (r.s1 * r.s1 - r.s0 * r.s0) * (r.t1 - r.t0);
+}
 
 Parameters Patches::parameters(std::uint32_t triangle, double u, double v) const {
   const Facet& f = facets[of_triangle[triangle]];
@@ -110,23 +110,23 @@ std::uint32_t Patches::find(std::uint32_t triangle, double u, double v, bool fro
   return first + leaf(f, parameters(triangle, u, v));
 }
 
-std::uint32_t Patches::leaf(const Facet& of, Parameters where) const {
+Patches::Place Patches::place(const Facet& of, Parameters where) const {
   double x = std::clamp(where.s, 0.0, 1.0) * of.s_count,
          y = std::clamp(where.t, 0.0, 1.0) * of.t_count;
   const auto row = std::min(static_cast<std::uint32_t>(x), of.s_count - 1);
   const auto column = std::min(static_cast<std::uint32_t>(y), of.t_count - 1);
   const std::uint32_t grid_cell = row * of.t_count + column;
-  if (of.tree == no_tree) return grid_cell;
-  std::uint32_t entry = tree[of.tree + grid_cell];
   x -= row;
   y -= column;
+  if (of.tree == no_tree) return {grid_cell, x, y};
+  std::uint32_t entry = tree[of.tree + grid_cell];
   while ((entry & split_cell) != 0) {
-    const std::uint32_t ds = x >= 0.5 ? 1 : 0, dt = y >= 0.5 ? 1 : 0;
-    x = 2.0 * x - ds;
-    y = 2.0 * y - dt;
-    entry = tree[(entry & ~split_cell) + 2 * ds + dt];
+    double& along = (entry & halves_t) != 0 ? y : x;
+    const std::uint32_t half = along >= 0.5 ? 1 : 0;
+    along = 2.0 * along - half;
+    entry = tree[(entry & ~(split_cell | halves_t)) + half];
   }
-  return entry;
+  return {entry, x, y};
 }
 
 Rectangle Patches::rectangle(std::uint32_t patch) const {
@@ -191,8 +191,8 @@ Patches subdivide(const scenes::Scene& scene, double edge_m) {
     }
     for (int side = 0; side < (sheet ? 2 : 1); ++side) {
       for (std::uint32_t c = 0; c < cells; ++c) {
-        const Cell cell{c / facet.t_count, c % facet.t_count, 0};
-        patches.area_m2.push_back(cell_area(facet, rectangle_of(facet, cell)));
+        const Cell cell{c / facet.t_count, c % facet.t_count};
+        patches.area_m2.push_back(area_of(facet, rectangle_of(facet, cell)));
         patches.facet.push_back(index);
         patches.cell.push_back(cell);
         patches.is_back.push_back(static_cast<std::uint8_t>(side));

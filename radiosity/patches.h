@@ -3,6 +3,7 @@
 // triangles only; the patch of a hit follows from (triangle, u, v) by arithmetic, in O(1).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -15,7 +16,8 @@ inline constexpr std::uint32_t no_patch = 0xFFFFFFFFU;
 inline constexpr std::uint32_t no_tree = 0xFFFFFFFFU;
 
 // A triangle or a parallelogram of the scene with a grid of cells over its parameters (s, t) in
-// [0,1]^2; any cell may be split in four, and so on (a quadtree in every cell of the grid).
+// [0,1]^2; any cell may be halved along s or along t, its halves again, and so on (a binary tree in
+// every cell of the grid).
 //   parallelogram: p = corner + s a + t b
 //   triangle:      p = corner + s (a + t (b - a)): s runs from the apex (the corner opposite the
 //   shortest edge)
@@ -41,11 +43,11 @@ struct Parameters {
   double s, t;
 };
 
-// A leaf: cell (s, t) of its facet's grid after `level` halvings, of (s_count << level) x (t_count
-// << level) cells.
+// A leaf: cell (s, t) of the (s_count << s_cuts) x (t_count << t_cuts) cells that its facet would
+// have if all of its grid had been halved as often.
 struct Cell {
   std::uint32_t s = 0, t = 0;
-  std::uint32_t level = 0;
+  std::uint8_t s_cuts = 0, t_cuts = 0;
 };
 
 struct Rectangle {  // in parameters
@@ -61,10 +63,12 @@ class Patches {
   std::vector<std::uint8_t> is_back;       // per patch: it is the back of a sheet
   std::vector<std::uint32_t> of_triangle;  // per triangle: its facet
   std::vector<std::uint8_t> second_half;   // per triangle: the second of a parallelogram
-  // Facets with split cells: s_count * t_count entries each, then blocks of four children (index
-  // 2 ds + dt). An entry is a leaf's number within its facet, or split_cell + where its block is.
+  // Facets with split cells: s_count * t_count entries each, then pairs of halves. An entry is a
+  // leaf's number within its facet, or split_cell + where its pair is, with halves_t if the halves
+  // lie side by side along t and not along s.
   std::vector<std::uint32_t> tree;
   static constexpr std::uint32_t split_cell = 0x80000000U;
+  static constexpr std::uint32_t halves_t = 0x40000000U;
 
   [[nodiscard]] std::size_t count() const { return area_m2.size(); }
 
@@ -73,8 +77,16 @@ class Patches {
   // no_patch for the back of a one-sided surface.
   [[nodiscard]] std::uint32_t find(std::uint32_t triangle, double u, double v, bool front) const;
 
-  // The leaf at (s, t), counted from the facet's first patch.
-  [[nodiscard]] std::uint32_t leaf(const Facet& of, Parameters where) const;
+  // The leaf at (s, t), counted from the facet's first patch, and where in it that is: x along s, y
+  // along t, from 0 to 1.
+  struct Place {
+    std::uint32_t leaf;
+    double x, y;
+  };
+  [[nodiscard]] Place place(const Facet& of, Parameters where) const;
+  [[nodiscard]] std::uint32_t leaf(const Facet& of, Parameters where) const {
+    return place(of, where).leaf;
+  }
 
   [[nodiscard]] Rectangle rectangle(std::uint32_t patch) const;
   // Counter-clockwise about the patch's own normal; where a triangle's apex is a corner it stands
@@ -94,5 +106,9 @@ class Patches {
 // Cuts every surface so that no cell is longer than edge_m along its facet's directions.
 // Throws base::Error (Input) when more than 2^26 patches would result.
 [[nodiscard]] Patches subdivide(const scenes::Scene& scene, double edge_m);
+
+// Area and place in parameters of a cell of a facet.
+[[nodiscard]] Rectangle rectangle_of(const Facet& facet, const Cell& cell);
+[[nodiscard]] double area_of(const Facet& facet, const Rectangle& rectangle);
 
 }  // namespace earthshine::radiosity

@@ -2,10 +2,12 @@
 #include "radiosity/solution.h"
 
 #include <chrono>
+#include <numeric>
 
 #include "radiosity/ledger.h"
 #include "radiosity/light_ends.h"
 #include "radiosity/linear_solve.h"
+#include "radiosity/refine.h"
 #include "scenes/sky.h"
 
 namespace earthshine::radiosity {
@@ -86,22 +88,27 @@ std::vector<ObjectLight> object_means(const scenes::Scene& scene, const Patches&
   return means;
 }
 
-// The share of each object's rays that met the black back of a one-sided surface, and of all rays.
+// Of the rays of exposed patches that met each object, the share that met its black back.
 std::vector<double> back_shares(const scenes::Scene& scene, const Patches& patches,
-                                const FormFactors& factors, double& of_all) {
-  std::vector<double> share(scene.objects.size(), 0.0), area(scene.objects.size(), 0.0);
-  double met = 0.0, all = 0.0;
-  for (std::uint32_t i = 0; i < patches.count(); ++i) {
-    share[patches.object(i)] += patches.area_m2[i] * factors.black[i];
-    area[patches.object(i)] += patches.area_m2[i];
-    met += patches.area_m2[i] * factors.black[i];
-    all += patches.area_m2[i];
+                                const FormFactors& factors) {
+  std::vector<double> met = factors.back_hits;
+  for (std::size_t i = 0; i < factors.count(); ++i) {
+    if (!is_exposed(factors.black[i])) continue;
+    for (std::uint64_t e = factors.row_start[i]; e < factors.row_start[i + 1]; ++e) {
+      met[patches.object(factors.column[e])] += double(factors.hits[e]);
+    }
   }
+  std::vector<double> share(scene.objects.size(), 0.0);
   for (std::size_t o = 0; o < share.size(); ++o) {
-    if (area[o] > 0.0) share[o] /= area[o];
+    if (met[o] > 0.0) share[o] = factors.back_hits[o] / met[o];
   }
-  of_all = all > 0.0 ? met / all : 0.0;
   return share;
+}
+
+double back_share(const FormFactors& factors) {
+  return factors.count() > 0 ? std::accumulate(factors.black.begin(), factors.black.end(), 0.0) /
+                                   double(factors.count())
+                             : 0.0;
 }
 
 }  // namespace
@@ -123,19 +130,35 @@ std::vector<bool> emitter_is_explicit(const scenes::Scene& scene) {
   return is_explicit;
 }
 
+bool is_lit(const scenes::Effects& effects) {
+  return effects.sun || effects.earth || effects.lamps || effects.emitters;
+}
+
 Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
                const scenes::Effects& effects, const scenes::RayQuery& query,
                const SolveOptions& options) {
+  SolveReport cutting;
+  Stopwatch watch(cutting);
+  Refined refined = refine(scene, groups, effects, query, options);
+  watch.lap("patches");
+  Solution solution = solve(scene, groups, effects, query, options, std::move(refined.patches));
+  SolveReport& report = solution.report;
+  report.seconds.insert(report.seconds.begin(), cutting.seconds.front());
+  report.rounds = std::move(refined.rounds);
+  report.refinement_rays = refined.rays;
+  return solution;
+}
+
+Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
+               const scenes::Effects& effects, const scenes::RayQuery& query,
+               const SolveOptions& options, Patches cut) {
   Solution solution;
   SolveReport& report = solution.report;
   Stopwatch watch(report);
-  solution.patches = subdivide(scene, options.patch_edge_m);
+  solution.patches = std::move(cut);
   const Patches& patches = solution.patches;
   report.patches = patches.count();
-  watch.lap("patches");
-  // The ambient term is no source: it lights what the camera sees and bounces nowhere.
-  const bool lit = effects.sun || effects.earth || effects.lamps || effects.emitters;
-  if (!lit || patches.count() == 0) return solution;
+  if (!is_lit(effects) || patches.count() == 0) return solution;
   solution.columns = 3 * groups.count();
 
   SkyRadiance sky;
@@ -146,7 +169,8 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
       cast_form_factors(scene, query, patches, {options.form_factor_rays, options.seed}, sky);
   report.form_factor_rays = factors.ray_count;
   report.nonzeros = factors.hits.size();
-  const std::vector<double> object_backs = back_shares(scene, patches, factors, report.back_share);
+  const std::vector<double> object_backs = back_shares(scene, patches, factors);
+  report.back_share = back_share(factors);
   watch.lap("form factors");
   report.balance = balance(factors, patches.area_m2);
   watch.lap("balance");
@@ -187,6 +211,8 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
     report.objects[o].back_share = object_backs[o];
   }
   solution.radiosity.assign(linear.x.begin(), linear.x.end());
+  solution.direct_lx.assign(light.illuminance_lx.begin(), light.illuminance_lx.end());
+  solution.indirect_lx.assign(indirect.begin(), indirect.end());
   solution.soft_radiosity.resize(source.size());
   for (std::size_t k = 0; k < source.size(); ++k) {
     double soft = rho[k] * indirect[k];

@@ -17,11 +17,25 @@
 
 namespace earthshine::radiosity {
 
+// Adaptive cutting (refine.h). It ends at whichever of the two is reached first.
+struct RefineOptions {
+  bool on = false;              // off: patch_edge_m everywhere
+  double start_edge_m = 0.25;   // no patch is longer
+  std::size_t max_patches = 0;  // 0: as many as patch_edge_m everywhere would make
+  double error = 0.0;           // estimated relative error of the radiosity, root mean square
+};
+
 struct SolveOptions {
   double patch_edge_m = 0.25;
   int form_factor_rays = 1024;  // per patch
   double tolerance = 1e-8;      // of B, relative to each right-hand side's largest (linear_solve.h)
   std::uint64_t seed = 1;
+  RefineOptions refine = {};
+};
+
+struct RefineRound {
+  std::size_t patches = 0;
+  double error = 0.0;  // estimated for these patches, as RefineOptions::error
 };
 
 // Where the energy of one light group went, lm per channel.
@@ -41,11 +55,14 @@ struct ObjectLight {
   double area_m2 = 0.0;     // both sides of sheets
   Rgb illuminance_lx{0.0};  // area means, all groups together
   Rgb radiosity_lm_m2{0.0};
-  double back_share = 0.0;  // of its rays, that met black backs: high where winding is wrong
+  double back_share = 0.0;  // of the rays that met it from exposed patches, those that met its
+                            // black back: near 1 where its winding is wrong
 };
 
 struct SolveReport {
   std::size_t patches = 0;
+  std::vector<RefineRound> rounds;  // of refinement, the last one for the patches solved
+  std::uint64_t refinement_rays = 0;
   std::uint64_t form_factor_rays = 0;
   std::uint64_t shadow_rays = 0;
   std::size_t nonzeros = 0;
@@ -53,7 +70,7 @@ struct SolveReport {
   double residual = 0.0;      // worst relative residual over the right-hand sides
   double solver_error = 0.0;  // LinearSolve::error
   BalanceReport balance;
-  double back_share = 0.0;  // of all patches' rays by area, that met black backs
+  double back_share = 0.0;                              // of all rays, those that met black backs
   std::vector<std::pair<std::string, double>> seconds;  // stage, wall seconds
   std::vector<GroupLedger> groups;
   std::vector<SourceFlux> sources;
@@ -69,6 +86,7 @@ struct Solution {
   std::vector<float> radiosity;       // lm/m^2
   std::vector<float> soft_radiosity;  // the part of it not due to explicit sources: rho (E - E0
                                       // explicit) + M through F
+  std::vector<float> direct_lx, indirect_lx;  // E0 and F B
   SolveReport report;
 };
 
@@ -80,5 +98,13 @@ struct Solution {
 [[nodiscard]] Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
                              const scenes::Effects& effects, const scenes::RayQuery& query,
                              const SolveOptions& options);
+// On patches that are cut already; options.patch_edge_m and options.refine are not looked at.
+[[nodiscard]] Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                             const scenes::Effects& effects, const scenes::RayQuery& query,
+                             const SolveOptions& options, Patches patches);
+
+// Whether there is any light to solve for. The ambient term is no source: it lights what the camera
+// sees and bounces nowhere.
+[[nodiscard]] bool is_lit(const scenes::Effects& effects);
 
 }  // namespace earthshine::radiosity

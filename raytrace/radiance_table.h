@@ -3,6 +3,7 @@
 // memory.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,7 +14,7 @@ namespace earthshine::raytrace {
 
 // layers: 1 (all light groups summed) or one per group. Between the centres of a facet's cells the
 // radiance is interpolated bilinearly, which makes the error of reading it fall with the square of
-// the patch edge.
+// the patch edge; where cells of different sizes meet, between the knots of knots.h.
 class RadianceTable {
  public:
   RadianceTable() = default;
@@ -26,9 +27,16 @@ class RadianceTable {
   void add(const scenes::Hit& hit, const Rgb& weight, std::span<Rgb> out) const;
 
  private:
+  void fill_knots();
+  void add_uneven(const radiosity::Facet& facet, bool front, const radiosity::Parameters& where,
+                  const Rgb& weight, std::span<Rgb> out) const;
+
   const radiosity::Patches* patches_ = nullptr;
   std::size_t layers_ = 0;
   std::vector<glm::vec4> radiance_;  // patch * layers + layer; fourth component unused
+  // Facets with a tree: (leaf * knots_per_cell + knot) * layers + layer from where the side starts.
+  std::vector<glm::vec4> knots_;
+  std::vector<std::array<std::size_t, 2>> side_knots_;  // per facet: back, front
 };
 
 }  // namespace earthshine::raytrace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A glTF file's geometry as plain values, not checked yet: numbers may point anywhere.
-// gltf_model.cpp, which makes it, is the only user of tinygltf.
+// gltf_model.cpp, which makes it, is the only reader through tinygltf.
 #pragma once
 
 #include <cstdint>

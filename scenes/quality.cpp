@@ -13,6 +13,15 @@ int power_of_two_at_least(double value, int low, int high) {
   return static_cast<int>(std::bit_ceil(static_cast<std::uint32_t>(clamped)));
 }
 
+double diagonal(const Scene& scene) {
+  Vec3 low = scene.vertices.front(), high = low;
+  for (const Vec3& p : scene.vertices) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  return glm::length(high - low);
+}
+
 }  // namespace
 
 QualityKnobs resolve_quality(const Scene& scene) {
@@ -23,16 +32,16 @@ QualityKnobs resolve_quality(const Scene& scene) {
       scene.quality.gather_rays.value_or(power_of_two_at_least(256.0 * ratio * ratio, 16, 1 << 16));
   knobs.form_factor_rays = scene.quality.form_factor_rays.value_or(
       power_of_two_at_least(1024.0 * std::pow(ratio, 1.0 / 0.6), 64, 1 << 18));
-  if (scene.quality.patch_edge_m) {
-    knobs.patch_edge_m = *scene.quality.patch_edge_m;
-  } else if (!scene.vertices.empty()) {
-    Vec3 low = scene.vertices.front(), high = low;
-    for (const Vec3& p : scene.vertices) {
-      low = glm::min(low, p);
-      high = glm::max(high, p);
-    }
-    knobs.patch_edge_m = glm::length(high - low) / 48.0 / std::clamp(ratio, 0.25, 4.0);
+  const Quality& given = scene.quality;
+  if (!scene.vertices.empty()) {
+    const double diagonal_m = diagonal(scene);
+    knobs.patch_edge_m = diagonal_m / 48.0 / std::clamp(ratio, 0.25, 4.0);
+    knobs.start_edge_m = diagonal_m / 8.0;
   }
+  if (given.patch_edge_m) knobs.patch_edge_m = knobs.start_edge_m = *given.patch_edge_m;
+  knobs.refine = given.refine.value_or(given.max_patches || !given.patch_edge_m);
+  knobs.max_patches = given.max_patches.value_or(0);
+  if (given.error || !given.max_patches) knobs.refine_error = 1.5 * reference_error / ratio;
   knobs.solver_tolerance = scene.quality.solver_tolerance.value_or(1e-8);
   return knobs;
 }

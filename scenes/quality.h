@@ -7,7 +7,11 @@
 namespace earthshine::scenes {
 
 struct QualityKnobs {
-  double patch_edge_m = 0.25;
+  double patch_edge_m = 0.25;  // of patches that are all alike
+  bool refine = false;         // adaptive patches instead, from cells of start_edge_m at most
+  double start_edge_m = 0.25;
+  int max_patches = 0;             // 0: as many as an even cut at patch_edge_m would have
+  double refine_error = 0.0;       // root mean square, relative, at which refinement ends
   int form_factor_rays = 1024;     // per patch, a power of two
   int gather_rays = 256;           // per pixel
   double solver_tolerance = 1e-8;  // relative residual
@@ -18,6 +22,12 @@ struct QualityKnobs {
 //   radiosity      ~ form_factor_rays^-0.6  1024 rays for 0.02
 //   patch size     ~ patch_edge           (scene diagonal)/48 for 0.02
 // rounded up to powers of two for rays; without a wanted error, e = 0.02.
+//
+// Patches are refined unless the scene sets patch_edge alone or refine = false. What is then left
+// unset follows from e as well: an estimated error of the radiosity of 1.5 e ends the refinement (a
+// picture averages over many patches), and so does the number of patches that an even cut would
+// have; max_patches without error is spent to the last patch. Where patch_edge is set too, no patch
+// is longer.
 [[nodiscard]] QualityKnobs resolve_quality(const Scene& scene);
 
 }  // namespace earthshine::scenes

@@ -10,8 +10,9 @@ namespace {
 
 constexpr std::string_view camera_keys[] = {"name",       "position", "look_at",  "up",  "fov_deg",
                                             "resolution", "focus",    "aperture", "cctv"};
-constexpr std::string_view quality_keys[] = {"error", "patch_edge", "form_factor_rays",
-                                             "gather_rays", "solver_tolerance"};
+constexpr std::string_view quality_keys[] = {"error",           "patch_edge",       "max_patches",
+                                             "refine",          "form_factor_rays", "gather_rays",
+                                             "solver_tolerance"};
 constexpr int most_pixels = 16384;           // per side
 constexpr std::size_t most_settings = 1000;  // of a CCTV camera or the monitor; a dozen exist
 
@@ -133,6 +134,13 @@ Quality read_quality(const TomlNode& node) {
   Quality quality;
   quality.error = table.number("error", {0.0, 1.0, true});
   quality.patch_edge_m = table.length("patch_edge", 1.0, above_zero);  // metres in any unit
+  quality.max_patches = table.whole("max_patches", 1, 1 << 26);
+  quality.refine = table.flag("refine");
+  if (quality.max_patches && !quality.refine.value_or(true)) {
+    table.fail("max_patches", "is the budget of refinement, which refine = false turns off",
+               "patch_edge sets the size of patches that are all alike",
+               "Leave out max_patches or refine");
+  }
   quality.form_factor_rays = table.whole("form_factor_rays", 1, 1 << 24);
   quality.gather_rays = table.whole("gather_rays", 1, 1 << 20);
   quality.solver_tolerance = table.number("solver_tolerance", {0.0, 0.1, true});

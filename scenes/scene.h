@@ -118,6 +118,8 @@ struct SettingTable {
 struct Quality {
   std::optional<double> error;  // wanted relative error
   std::optional<double> patch_edge_m;
+  std::optional<int> max_patches;
+  std::optional<bool> refine;           // patches where they matter; unset: see resolve_quality
   std::optional<int> form_factor_rays;  // per patch
   std::optional<int> gather_rays;       // per pixel
   std::optional<double> solver_tolerance;

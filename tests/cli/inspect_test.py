@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """inspect, plan and form-factors on small scenes whose figures are known."""
+import csv
+import io
 import unittest
 
 import program
@@ -111,11 +113,23 @@ class FormFactors(program.Case):
         for i, j, exact in [(0, 1, 0.199825), (0, 2, 0.200044), (2, 0, 0.200044)]:
             self.assertLess(abs(found["F"][i][j] - exact), 4 * found["std_error"][i][j])
         self.assertFalse(found["balanced"])
-        self.says(self.done("form-factors", "faces.toml"), "low", "high", "side", "sky", "balanced")
-        balanced = self.json("form-factors", "faces.toml")
+        self.says(self.done("form-factors", "faces.toml", "--method", "rays"), "low", "high", "side",
+                  "sky", "balanced")
+        balanced = self.json("form-factors", "faces.toml", "--method", "rays")
         self.assertTrue(balanced["balanced"])
         self.assertLess(balanced["max_reciprocity_error"], 1e-12)
         self.assertGreater(balanced["before"]["max_reciprocity_error"], 1e-6)
+
+        exact = self.json("form-factors", "faces.toml")
+        self.assertEqual(exact["method"], "exact")
+        for i, j, value in [(0, 1, 0.19982489569838), (0, 2, 0.2000437760754), (2, 0, 0.2000437760754)]:
+            self.assertAlmostEqual(exact["F"][i][j], value, delta=1e-7)
+        self.assertIn("exact", self.refused("form-factors", "faces.toml", "--method", "guess"))
+
+    def test_exact_refuses_mirrors_and_auto_takes_rays_for_them(self):
+        self.write("ball.toml", program.BALL.replace("shininess = 20", "mirror = 0.2"))
+        self.says(self.refused("form-factors", "ball.toml", "--method", "exact"), "mirror", "rays")
+        self.assertEqual(self.json("form-factors", "ball.toml")["method"], "rays")
 
     def test_csv_has_a_line_per_pair_with_names_quoted(self):
         self.write("ball.toml", program.BALL.replace('name = "ball"', 'name = "ball, \\"big\\""'))

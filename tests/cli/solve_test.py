@@ -40,7 +40,7 @@ class Solve(program.Case):
         self.write("ball.toml", program.BALL)
         solved = self.json("solve", "ball.toml")
         self.assertLessEqual({"patches", "rays", "seconds", "iterations", "residual", "groups", "objects",
-                              "sources", "balance", "nonzeros", "shadow_rays", "warnings"}, solved.keys())
+                              "sources", "balance", "nonzeros", "shadow_rays", "warnings", "refinement"}, solved.keys())
         self.assertEqual(solved["rays"], 64 * solved["patches"])
         self.assertLessEqual(solved["residual"], 1e-8)
         self.assertTrue(all(seconds >= 0 for seconds in solved["seconds"].values()))
@@ -64,6 +64,24 @@ class Solve(program.Case):
         self.assertEqual(reports[0], reports[1])
         self.assertEqual(reports[0], reports[2])
         self.assertNotEqual(reports[0]["objects"], self.json("solve", "ball.toml", "--seed", 6)["objects"])
+
+    def test_refinement(self):
+        self.write("ball.toml", program.BALL)
+        even = self.json("solve", "ball.toml")
+        self.assertEqual(even["refinement"], {"rounds": [], "rays": 0})  # patch_edge alone: all alike
+        budget = even["patches"] + 150
+        call = ("ball.toml", "--set", f"quality.max_patches={budget}")
+        refined = self.json("solve", *call)
+        rounds = refined["refinement"]["rounds"]
+        self.assertGreater(len(rounds), 1)
+        self.assertEqual(rounds[-1]["patches"], refined["patches"])
+        self.assertTrue(even["patches"] < refined["patches"] <= budget)
+        self.assertLess(rounds[-1]["error"], rounds[0]["error"])
+        self.assertGreater(refined["refinement"]["rays"], 0)
+        self.says(self.done("solve", *call), "refined in", "estimated error")
+        plan = self.json("plan", *call)
+        self.assertEqual((plan["patches"], plan["patches_at_most"]), (budget, True))
+        self.says(self.done("plan", *call), f"at most {budget} patches")
 
     def test_no_light(self):
         self.write("box.toml", program.CLOSED_BOX.replace("emit = 10.0", "emit = 0.0"))

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/sources.h"
+
+#include <limits>
+#include <memory>
+
+#include "radiosity/solution.h"
+#include "scenes/sky.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+using scenes::LightSample;
+
+LightSource sun_source(const scenes::Scene& scene, std::size_t group, int points) {
+  const scenes::Sun& sun = *scene.sun;
+  const Rgb illuminance = scenes::sun_sample_illuminance(scene);
+  const double radius = base::radians(sun.angular_radius_deg);
+  Source source;
+  source.key = 1;
+  source.group = group;
+  source.points = points;
+  source.sample = [&sun, illuminance, radius](const Vec3&, double u, double v) {
+    return LightSample{scenes::sample_cone(sun.direction, radius, u, v),
+                       std::numeric_limits<double>::infinity(), illuminance};
+  };
+  return {{}, std::move(source), Rgb(0.0), {}};
+}
+
+LightSource earth_source(const scenes::Scene& scene, std::size_t group, int points) {
+  const double half_angle = base::radians(scene.earth->half_angle_deg);
+  const double solid_angle = scenes::cone_solid_angle_sr(half_angle);
+  Source source;
+  source.key = 2;
+  source.group = group;
+  source.points = 4 * points;
+  source.sample = [&scene, half_angle, solid_angle](const Vec3&, double u, double v) {
+    const Vec3 direction = scenes::sample_cone(scene.earth->direction, half_angle, u, v);
+    return LightSample{direction, std::numeric_limits<double>::infinity(),
+                       scenes::earth_radiance(scene, direction) * solid_angle};
+  };
+  return {{}, std::move(source), Rgb(0.0), {}};
+}
+
+LightSource lamp_source(const scenes::Lamp& lamp, std::uint64_t key, std::size_t group,
+                        int points) {
+  const bool wide = lamp.kind == scenes::LampKind::Rectangle || lamp.kind == scenes::LampKind::Disk;
+  Source source;
+  source.key = key;
+  source.group = group;
+  source.points = points * (wide ? 4 : 1);
+  source.sample = [&lamp](const Vec3& point, double u, double v) {
+    return scenes::sample_lamp(lamp, point, u, v);
+  };
+  source.distance_m = [&lamp](const Vec3& point) { return glm::length(point - lamp.position); };
+  return {lamp.name, std::move(source), scenes::lamp_flux_lm(lamp),
+          [&lamp](double u, double v, double x, double y) {
+            return scenes::emit_from_lamp(lamp, u, v, x, y);
+          }};
+}
+
+LightSource emitter_source(const scenes::Scene& scene, std::size_t material, std::size_t group,
+                           int points) {
+  const auto emitters = std::make_shared<scenes::EmitterSet>();
+  for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+    if (scene.triangles[t].material == material) {
+      emitters->add(scene, static_cast<std::uint32_t>(t));
+    }
+  }
+  Source source;
+  source.key = (std::uint64_t{1} << 32) + material;
+  source.group = group;
+  source.points = 4 * points;
+  source.sample = [emitters](const Vec3& point, double u, double v) {
+    return emitters->sample(point, u, v);
+  };
+  return {
+      scene.materials[material].name, std::move(source), emitters->flux_lm(),
+      [emitters](double u, double v, double x, double y) { return emitters->emit(u, v, x, y); }};
+}
+
+}  // namespace
+
+std::vector<LightSource> find_sources(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                                      const scenes::Effects& effects, int points) {
+  std::vector<LightSource> sources;
+  if (effects.sun) sources.push_back(sun_source(scene, groups.sun, points));
+  if (effects.earth && !effects.earth_by_gather) {
+    sources.push_back(earth_source(scene, groups.earth, points));
+  }
+  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
+    if (groups.lamp[k] == scenes::no_group) continue;
+    sources.push_back(lamp_source(scene.lamps[k], 16 + k, groups.lamp[k], points));
+  }
+  const std::vector<bool> is_explicit = emitter_is_explicit(scene);
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    if (!is_explicit[m] || groups.material[m] == scenes::no_group) continue;
+    sources.push_back(emitter_source(scene, m, groups.material[m], points));
+  }
+  return sources;
+}
+
+}  // namespace earthshine::radiosity

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/variation.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "scenes/sky.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+using scenes::RayPacket;
+
+constexpr double fewest_points = 16.0, most_points = 4096.0;  // per patch, of direct light
+constexpr std::size_t indirect_points = 4;                    // one in each quarter
+constexpr std::size_t wide_source_points = 4;  // per point and set; 1 for the Sun and small lamps
+
+// Sums per point, set and group.
+class Looks {
+ public:
+  Looks(std::size_t points, std::size_t groups)
+      : groups_(groups), where_(points), sum_(points * 2 * groups, 0.0) {}
+
+  // The point's place in the patch: x along s, y along t, from 0 to 1.
+  void place(std::size_t point, double x, double y) { where_[point] = {x, y}; }
+  double& at(std::size_t point, std::size_t set, std::size_t group) {
+    return sum_[(point * 2 + set) * groups_ + group];
+  }
+
+  [[nodiscard]] std::size_t points() const { return where_.size(); }
+
+  // Adds a group's variance between the points, and between the halves; nothing where the variance
+  // is not above its own noise.
+  void add_to(Unevenness& sum, std::size_t group) {
+    const auto n = static_cast<double>(where_.size());
+    std::array<double, 2> mean{}, s_step{}, t_step{};  // half the difference between halves
+    for (std::size_t k = 0; k < where_.size(); ++k) {
+      for (std::size_t set = 0; set < 2; ++set) {
+        const double value = at(k, set, group) / n;
+        mean[set] += value;
+        s_step[set] += where_[k][0] < 0.5 ? -value : value;
+        t_step[set] += where_[k][1] < 0.5 ? -value : value;
+      }
+    }
+    double both = 0.0, apart = 0.0;
+    for (std::size_t k = 0; k < where_.size(); ++k) {
+      const double a = at(k, 0, group) - mean[0], b = at(k, 1, group) - mean[1];
+      both += a * b;
+      apart += 0.25 * (a - b) * (a - b);
+    }
+    if (both <= apart) return;
+    sum.error += both / (n - 1.0);
+    sum.along_s += std::max(0.0, s_step[0] * s_step[1]);
+    sum.along_t += std::max(0.0, t_step[0] * t_step[1]);
+  }
+
+ private:
+  std::size_t groups_;
+  std::vector<std::array<double, 2>> where_;
+  std::vector<double> sum_;
+};
+
+// Shadow rays of one patch, eight at a time.
+class ShadowQueue {
+ public:
+  ShadowQueue(const scenes::RayQuery& query, Looks& looks) : query_(query), looks_(looks) {}
+  void add(const Vec3& origin, const scenes::LightSample& sample, double value, std::size_t point,
+           std::size_t set, std::size_t group) {
+    const double reach = sample.distance_m * (1.0 - 1e-5) - 2.0 * query_.surface_offset_m();
+    if (value <= 0.0 || reach <= 0.0) return;
+    query_.set(packet_, count_, origin, sample.direction, reach);
+    value_[count_] = value;
+    target_[count_] = {point, set, group};
+    if (++count_ == RayPacket::width) flush();
+  }
+  void flush() {
+    if (count_ == 0) return;
+    const std::uint32_t hidden = query_.occluded(packet_, count_);
+    for (std::size_t k = 0; k < count_; ++k) {
+      const auto [point, set, group] = target_[k];
+      if (((hidden >> k) & 1U) == 0) looks_.at(point, set, group) += value_[k];
+    }
+    rays_ += count_;
+    count_ = 0;
+  }
+  [[nodiscard]] std::uint64_t rays() const { return rays_; }
+
+ private:
+  const scenes::RayQuery& query_;
+  Looks& looks_;
+  RayPacket packet_;
+  std::size_t count_ = 0;
+  std::uint64_t rays_ = 0;
+  std::array<double, RayPacket::width> value_{};
+  std::array<std::array<std::size_t, 3>, RayPacket::width> target_{};
+};
+
+// Of one patch: a number of its own wherever it stands in the list of patches.
+std::uint64_t identity(const Patches& patches, std::uint32_t patch) {
+  const Cell& cell = patches.cell[patch];
+  const std::uint64_t place = (std::uint64_t{cell.s} << 32) | cell.t;
+  const std::uint64_t facet =
+      (std::uint64_t{patches.facet[patch]} << 16) | (std::uint64_t{cell.s_cuts} << 8) | cell.t_cuts;
+  return base::mix64(base::mix64(facet) ^ place) ^ patches.is_back[patch];
+}
+
+}  // namespace
+
+RelativeLight relative_light(const Solution& solution) {
+  RelativeLight light;
+  light.patches = &solution.patches;
+  light.groups = solution.columns / 3;
+  light.scale.assign(light.groups, 0.0);
+  light.brightness.resize(solution.patches.count() * light.groups);
+  for (std::size_t i = 0; i < solution.patches.count(); ++i) {
+    const double area = solution.patches.area_m2[i];
+    light.area_m2 += area;
+    for (std::size_t g = 0; g < light.groups; ++g) {
+      const float* b = &solution.radiosity[i * solution.columns + 3 * g];
+      const double y = base::luminance({b[0], b[1], b[2]});
+      light.brightness[i * light.groups + g] = static_cast<float>(y);
+      light.scale[g] += area * y * y;
+    }
+  }
+  for (double& scale : light.scale) scale = scale > 0.0 ? std::sqrt(light.area_m2 / scale) : 0.0;
+  for (std::size_t k = 0; k < light.brightness.size(); ++k) {
+    light.brightness[k] *= static_cast<float>(light.scale[k % light.groups]);
+  }
+  return light;
+}
+
+Variation::Variation(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                     const scenes::Effects& effects, const scenes::RayQuery& query,
+                     const VariationOptions& options)
+    : scene_(scene),
+      effects_(effects),
+      query_(query),
+      sources_(find_sources(scene, groups, effects, 16)),
+      groups_(groups.count()),
+      earth_group_(groups.earth),
+      options_(options) {}
+
+std::vector<Unevenness> Variation::find(const Patches& patches,
+                                        std::span<const std::uint32_t> which,
+                                        const RelativeLight& light) {
+  std::vector<Unevenness> found(which.size());
+  std::atomic<std::uint64_t> all_rays{0};
+  const auto gather_directions = static_cast<std::size_t>(options_.gather_directions);
+  const auto lit_groups = static_cast<double>(
+      std::max<std::ptrdiff_t>(1, std::count_if(light.scale.begin(), light.scale.end(),
+                                                [](double scale) { return scale > 0.0; })));
+  const auto points_on = [&](double area_m2) {
+    const double wanted = fewest_points + area_m2 / (options_.spacing_m * options_.spacing_m);
+    return std::bit_floor(static_cast<std::size_t>(std::min(wanted, most_points)));
+  };
+  const auto direct = [&](std::uint32_t patch, const Rgb& rho, Looks& looks) {
+    const base::Key key(options_.seed, base::Stream::Refinement, identity(patches, patch));
+    const base::SobolOwen4 where(key);
+    const Vec3 normal = patches.normal(patch), lift = normal * query_.surface_offset_m();
+    ShadowQueue queue(query_, looks);
+    for (std::size_t point = 0; point < looks.points(); ++point) {
+      const auto p = where.point2(static_cast<std::uint32_t>(point));
+      const Vec3 at = patches.point(patch, p[0], p[1]);
+      looks.place(point, p[0], p[1]);
+      for (std::size_t k = 0; k < sources_.size(); ++k) {
+        const Source& source = sources_[k].source;
+        const std::size_t samples = source.points > 16 ? wide_source_points : 1;
+        for (std::size_t set = 0; set < 2; ++set) {
+          const base::SobolOwen4 toward(key.with(2 * k + set));
+          for (std::size_t m = 0; m < samples; ++m) {
+            const auto u = toward.point2(static_cast<std::uint32_t>(m));
+            const scenes::LightSample sample = source.sample(at, u[0], u[1]);
+            const double cosine = glm::dot(sample.direction, normal);
+            const double y = base::luminance(rho * sample.normal_illuminance_lx);
+            queue.add(at + lift, sample,
+                      cosine * y * light.scale[source.group] / static_cast<double>(samples), point,
+                      set, source.group);
+          }
+        }
+      }
+    }
+    queue.flush();
+    return queue.rays();
+  };
+  const auto indirect = [&](std::uint32_t patch, double rho, Looks& looks) {
+    const base::Key key(options_.seed, base::Stream::Refinement, identity(patches, patch));
+    const base::Frame3 frame = base::frame_around(patches.normal(patch));
+    const Vec3 lift = frame.normal * query_.surface_offset_m();
+    RayPacket packet;
+    scenes::HitPacket hits;
+    std::array<Vec3, RayPacket::width> directions;
+    const double weight = rho / static_cast<double>(gather_directions);
+    for (std::size_t set = 0; set < 2; ++set) {
+      const base::SobolOwen4 toward(key.with(0xFFFF0000ULL + set));
+      for (std::size_t first = 0; first < gather_directions; first += RayPacket::width) {
+        for (std::size_t k = 0; k < RayPacket::width; ++k) {
+          const auto u = toward.point2(static_cast<std::uint32_t>(first + k));
+          const float r = std::sqrt(u[0]), phi = 2.0F * static_cast<float>(base::pi) * u[1];
+          directions[k] =
+              frame.to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0F - u[0])});
+        }
+        for (std::size_t point = 0; point < indirect_points; ++point) {
+          const double x = point < 2 ? 0.25 : 0.75, y = point % 2 == 0 ? 0.25 : 0.75;
+          const Vec3 origin = patches.point(patch, x, y) + lift;
+          looks.place(point, x, y);
+          for (std::size_t k = 0; k < RayPacket::width; ++k) {
+            query_.set(packet, k, origin, directions[k]);
+          }
+          query_.closest(packet, RayPacket::width, hits);
+          for (std::size_t k = 0; k < RayPacket::width; ++k) {
+            if (hits.triangle[k] == scenes::no_triangle) {
+              if (!effects_.earth_by_gather) continue;
+              const Rgb sky = scenes::earth_radiance(scene_, directions[k]);
+              looks.at(point, set, earth_group_) +=
+                  weight * light.scale[earth_group_] * base::pi * base::luminance(sky);
+              continue;
+            }
+            const std::uint32_t to = light.patches->find(hits.triangle[k], double(hits.u[k]),
+                                                         double(hits.v[k]), hits.front[k] != 0);
+            if (to == no_patch) continue;
+            for (std::size_t g = 0; g < groups_; ++g) {
+              looks.at(point, set, g) += weight * double(light.brightness[to * groups_ + g]);
+            }
+          }
+        }
+      }
+    }
+    return std::uint64_t{2 * indirect_points * gather_directions};
+  };
+  base::parallel_chunks(which.size(), 64, [&](std::size_t begin, std::size_t end) {
+    std::uint64_t rays = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      const Rgb& rho = scene_.materials[patches.material(which[k])].diffuse;
+      if (base::max_component(rho) <= 0.0) continue;
+      Looks sharp(points_on(patches.area_m2[which[k]]), groups_), soft(indirect_points, groups_);
+      rays += direct(which[k], rho, sharp);
+      rays += indirect(which[k], base::luminance(rho), soft);
+      const double weight = patches.area_m2[which[k]] / (light.area_m2 * lit_groups);
+      Unevenness& sum = found[k];
+      for (std::size_t g = 0; g < groups_; ++g) {
+        sharp.add_to(sum, g);
+        soft.add_to(sum, g);
+      }
+      sum = {weight * sum.error, weight * sum.along_s, weight * sum.along_t};
+    }
+    all_rays += rays;
+  });
+  rays_ += all_rays;
+  return found;
+}
+
+}  // namespace earthshine::radiosity
