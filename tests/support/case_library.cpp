@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "radiosity/exact_form_factors.h"
 #include "tests/support/case_builders.h"
 #include "tests/support/scene_builder.h"
 
@@ -122,6 +123,21 @@ radiosity::ObjectFormFactors object_factors_by_rays(const Case& of, std::uint64_
   radiosity::ObjectFactorReport report;
   return radiosity::object_form_factors_by_rays(of.made.scene, query, patches,
                                                 {of.rays, seed, false}, report);
+}
+
+radiosity::ObjectFormFactors object_factors_exact(const Case& of, std::uint64_t seed) {
+  const scenes::RayQuery query(of.made.scene);
+  const radiosity::Patches patches = radiosity::subdivide(of.made.scene, uncut_m);
+  radiosity::ExactOptions options;
+  options.tolerance = 1e-6;
+  options.seed = seed;
+  return radiosity::object_form_factors(
+      of.made.scene, patches,
+      radiosity::exact_form_factors(of.made.scene, query, patches, options).factors);
+}
+
+std::size_t patch_count(const Case& of) {
+  return radiosity::subdivide(of.made.scene, uncut_m).count();
 }
 
 CaseResult run_case(const Case& of, const ObjectFactorMethod& method, std::uint64_t seed) {

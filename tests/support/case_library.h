@@ -73,6 +73,12 @@ using ObjectFactorMethod =
 [[nodiscard]] radiosity::ObjectFormFactors object_factors_by_rays(const Case& of,
                                                                   std::uint64_t seed);
 
+// Throws base::Error (Input) where there are mirrors.
+[[nodiscard]] radiosity::ObjectFormFactors object_factors_exact(const Case& of, std::uint64_t seed);
+
+// How many patches the case's scene has.
+[[nodiscard]] std::size_t patch_count(const Case& of);
+
 // Factors come with their standard errors from one run; radiosities from the scatter of `seeds`
 // runs.
 inline constexpr int radiosity_seeds = 16;

@@ -113,7 +113,7 @@ void costs(const std::string& name, const scenes::Scene& scene) {
 
 }  // namespace
 
-void cost_table(const Options&, Verdict&) {
+void cost_table() {
   costs("STS-46 payload bay by day",
         scenes::read_scene(EARTHSHINE_SOURCE_DIR "/scenes/library/sts46/day-earthshine.toml"));
   costs("Closed room with 125 boxes", room_of_boxes());

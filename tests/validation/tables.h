@@ -11,7 +11,7 @@ namespace earthshine::validation {
 
 struct Options {
   bool quick = false;  // fewer seeds and rays, under a minute
-  bool slow = false;   // the cost tables too
+  bool cost = false;   // the cost tables and no others: minutes, and gigabytes
   std::uint64_t seed = 1;
   std::string only;  // cases whose name starts so, and no other table
 };
@@ -34,6 +34,6 @@ void extreme_table(const Options& options, Verdict& verdict);
 void furnace_table(const Options& options, Verdict& verdict);
 void balancing_table(const Options& options, Verdict& verdict);
 void energy_table(const Options& options, Verdict& verdict);
-void cost_table(const Options& options, Verdict& verdict);
+void cost_table();
 
 }  // namespace earthshine::validation
