@@ -72,7 +72,7 @@ void facing(const std::string& what, double first, double second, double h, int 
   // The closed form's differences lose digits where one square is tiny: there the factor from the
   // point under its middle is exact to the square of their ratio.
   double exact = 0.0;
-  const double ratio = std::min(first, second) / std::max({first, second, h});
+  const double ratio = std::min(first, second) / std::max(first, second);
   if (ratio < 0.1) {
     const double x = std::max(a, b) / h, root = std::sqrt(1.0 + x * x);
     const double from_small = 4.0 / base::pi * (x / root) * std::atan(x / root);
