@@ -38,8 +38,11 @@ void row(Verdict& verdict, const std::string& what, tests::Case& c, double exact
   c.record.name = what;
   c.record.value = exact;
   const tests::CaseResult found = tests::run_case(c, tests::object_factors_by_rays, options.seed);
-  fmt::print("| {} | {:.10g} | {:.10g} | {:.1e} | {:+.2f} |\n", what, exact, found.computed,
-             found.std_error, found.error(c) / found.std_error);
+  const double by_exact = tests::run_case(c, tests::object_factors_exact, options.seed).error(c);
+  fmt::print("| {} | {:.10g} | {:.10g} | {:.1e} | {:+.2f} | {:+.1e} |\n", what, exact,
+             found.computed, found.std_error, found.error(c) / found.std_error, by_exact);
+  verdict.check(std::abs(by_exact) <= 1e-6,
+                fmt::format("{}: {:.3e} off by the exact method", what, by_exact));
   // By the value itself where it is tiny: rounding of 1e-8 would pass anything there.
   verdict.check(
       std::abs(found.error(c)) <= 4.0 * found.std_error + 1e-8 * exact,
@@ -87,8 +90,8 @@ void facing(const std::string& what, double first, double second, double h, int 
 
 void extreme_table(const Options& options, Verdict& verdict) {
   fmt::print(
-      "| geometry | exact | computed | standard error | error in standard errors |\n| --- | --- | "
-      "--- | --- | --- |\n");
+      "| geometry | exact | computed | standard error | error in standard errors | exact method's "
+      "error |\n| --- | --- | --- | --- | --- | --- |\n");
   for (const double degrees : {5.0, 90.0, 175.0}) hinged(degrees, options, verdict);
   facing("plates of 1 m, 1 cm apart", 1.0, 1.0, 0.01, 16384, options, verdict);
   facing("plates of 1 m, 2 mm apart", 1.0, 1.0, 2e-3, 16384, options, verdict);
