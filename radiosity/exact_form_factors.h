@@ -7,8 +7,8 @@
 //   sum_j F_ij + F_i,sky + F_i,black = 1 to the last digits
 //
 // What a row leaves open, 1 - sum_j F_ij, is split between the sky and black backs by rays of the
-// patch; a row none of whose rays ends on either is closed and scaled to 1. Every defect that was
-// scaled away is in the report.
+// patch; a row none of whose rays ends on either and whose sum is 1 within its errors is closed and
+// scaled to 1. Every defect that was scaled away is in the report.
 #pragma once
 
 #include "radiosity/exact_pairs.h"
