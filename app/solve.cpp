@@ -103,8 +103,8 @@ double luminous(const Json& rgb) {
 // Luminous amounts (Y of the three channels); the channels are in the JSON.
 std::string text_of(const Json& json) {
   std::string text = fmt::format(
-      "{} patches, {} form-factor rays, {} shadow rays\n{} iterations, residual {:.2g}; balance "
-      "{:.2g} after {} sweeps\n",
+      "{} patches, {} form-factor rays, {} shadow rays\n{} iterations, solved to {:.2g}; column "
+      "defect {:.2g}, balanced to {:.2g} in {} sweeps\n",
       json["patches"].get<std::size_t>(), short_count(json["rays"].get<double>()),
       short_count(json["shadow_rays"].get<double>()), json["iterations"].get<int>(),
       json["solver_error"].get<double>(), json["balance"]["before"].get<double>(),

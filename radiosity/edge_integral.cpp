@@ -2,7 +2,9 @@
 #include "radiosity/edge_integral.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "radiosity/quadrature.h"
 
@@ -65,36 +67,58 @@ double meeting_integral(double s0, double s1, double t0, double t1, double cosin
   return 0.5 * (border - (s1 - s0) * (t1 - t0));
 }
 
-// Distance from the nearest point of e to the point of f at t, and the least over a piece of f.
-double piece_distance(const Segment& e, const Segment& f, double t0, double t1) {
-  // Alternating projections: three rounds suffice to steer the subdivision.
-  double t = 0.5 * (t0 + t1);
-  Vec3 p, q;
-  for (int round = 0; round < 3; ++round) {
-    q = f.start + t * f.direction;
-    p = e.start + std::clamp(glm::dot(q - e.start, e.direction), 0.0, e.length) * e.direction;
-    t = std::clamp(glm::dot(p - f.start, f.direction), t0, t1);
-  }
-  return glm::length(p - f.start - t * f.direction);
+// Where the inner integral, as a function of the place t on f, stops being analytic: beside the
+// ends of e, |q(t) - end| = 0, and beside the closest approach of the two lines, where the distance
+// to e's line is 0. Edges that nearly touch along all of their length have no others.
+struct Singularity {
+  double t, off;  // t + i off and t - i off
+};
+using Singularities = std::array<Singularity, 3>;
+
+Singularities singularities(const Segment& e, const Segment& f, double cosine, const Vec3& cross,
+                            double sine) {
+  const auto beside = [&f](const Vec3& end) {
+    const Vec3 to = end - f.start;
+    const double along = glm::dot(to, f.direction);
+    return Singularity{along, glm::length(to - along * f.direction)};
+  };
+  const Vec3 between = f.start - e.start;
+  const double a = glm::dot(between, e.direction), b = glm::dot(between, f.direction);
+  const double gap = std::abs(glm::dot(between, cross)) / sine;
+  return {beside(e.start), beside(e.start + e.length * e.direction),
+          Singularity{(a * cosine - b) / (sine * sine), gap / sine}};
 }
 
-double skew_piece(const Segment& e, const Segment& f, double t0, double t1, int depth) {
-  const double length = t1 - t0;
-  const double ratio = 2.0 * piece_distance(e, f, t0, t1) / length;
+double skew_piece(const Segment& e, const Segment& f, const Singularities& poles, double t0,
+                  double t1, int depth) {
+  const double half = 0.5 * (t1 - t0), middle = 0.5 * (t0 + t1);
   // A Gauss rule of n points errs by about growth^(-2n), growth of the largest ellipse about the
-  // piece that the integrand's singularities leave free.
-  const double growth = ratio + std::sqrt(1.0 + ratio * ratio);
+  // piece that the singularities leave free (half the sum of their distances from the foci is its
+  // larger half axis).
+  double axis = std::numeric_limits<double>::infinity();
+  for (const Singularity& pole : poles) {
+    const double x = (pole.t - middle) / half, y = pole.off / half;
+    axis = std::min(axis, 0.5 * (std::hypot(x - 1.0, y) + std::hypot(x + 1.0, y)));
+  }
+  const double growth = axis + std::sqrt(std::max(0.0, axis * axis - 1.0));
   if (growth < 2.0 && depth > 0) {
-    const double middle = 0.5 * (t0 + t1);
-    return skew_piece(e, f, t0, middle, depth - 1) + skew_piece(e, f, middle, t1, depth - 1);
+    return skew_piece(e, f, poles, t0, middle, depth - 1) +
+           skew_piece(e, f, poles, middle, t1, depth - 1);
   }
   const int points = std::clamp(static_cast<int>(10.0 / std::log(growth)) + 1, 3, 16);
   const GaussRule& rule = gauss_rule(points);
   double sum = 0.0;
   for (std::size_t k = 0; k < rule.node.size(); ++k) {
-    sum += rule.weight[k] * inner_integral(e, f.start + (t0 + rule.node[k] * length) * f.direction);
+    const double t = t0 + rule.node[k] * (t1 - t0);
+    sum += rule.weight[k] * inner_integral(e, f.start + t * f.direction);
   }
-  return sum * length;
+  return sum * (t1 - t0);
+}
+
+double skew_integral(const Segment& e, const Segment& f, double cosine, const Vec3& cross,
+                     double sine) {
+  constexpr int deepest = 30;
+  return skew_piece(e, f, singularities(e, f, cosine, cross, sine), 0.0, f.length, deepest);
 }
 
 }  // namespace
@@ -113,9 +137,8 @@ double log_distance_integral(const Segment& e, const Segment& f) {
     const double t = (a * cosine - b) / (sine * sine);
     return meeting_integral(-s, e.length - s, -t, f.length - t, cosine, sine);
   }
-  constexpr int deepest = 30;
-  return e.length >= f.length ? skew_piece(e, f, 0.0, f.length, deepest)
-                              : skew_piece(f, e, 0.0, e.length, deepest);
+  return e.length >= f.length ? skew_integral(e, f, cosine, cross, sine)
+                              : skew_integral(f, e, cosine, -cross, sine);
 }
 
 }  // namespace earthshine::radiosity

@@ -33,6 +33,7 @@ void demand_finite(const Hdf5Reader& file, const char* name, const std::vector<N
 struct Reading {
   const Hdf5Reader& file;
   std::size_t facets, tree, patches, groups;
+  const void* sized = nullptr;  // the records last sized
 
   template <class T>
   void column(const char* name, std::vector<T>& values, const Hdf5Shape& shape, const char*,
@@ -43,13 +44,19 @@ struct Reading {
   template <class Record, class T>
   void rows(const char* name, std::vector<Record>& records, T Record::*member, const char*,
             const char*) {
+    // The first member that is read of its records says how many there are; the others agree with
+    // it.
+    const auto resize = [&](std::size_t count) {
+      if (sized != &records) records.assign(count, Record{});
+      sized = &records;
+    };
     if constexpr (std::is_same_v<T, std::string>) {
-      // The first member of its records, which the others then agree with.
-      records.clear();
-      for (std::string& text : file.texts(name)) {
-        records.emplace_back();
-        records.back().*member = std::move(text);
+      std::vector<std::string> texts = file.texts(name);
+      resize(texts.size());
+      if (texts.size() != records.size()) {
+        file.fail(fmt::format("\"{}\" is {}, expected {}", name, texts.size(), records.size()));
       }
+      for (std::size_t k = 0; k < records.size(); ++k) records[k].*member = std::move(texts[k]);
     } else if constexpr (std::is_same_v<T, Rgb>) {
       const std::vector<double> numbers = file.array<double>(name, {records.size(), 3});
       demand_finite(file, name, numbers);
@@ -58,7 +65,11 @@ struct Reading {
       }
     } else {
       using Number = std::conditional_t<std::is_integral_v<T>, std::uint64_t, double>;
-      const std::vector<Number> numbers = file.array<Number>(name, {records.size()});
+      const Hdf5Shape shape = file.shape(name);
+      const std::size_t count =
+          sized == &records ? records.size() : (shape.empty() ? 0 : shape.front());
+      const std::vector<Number> numbers = file.array<Number>(name, {count});
+      resize(count);
       demand_finite(file, name, numbers);
       for (std::size_t k = 0; k < records.size(); ++k) records[k].*member = numbers[k];
     }

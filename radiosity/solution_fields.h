@@ -24,7 +24,7 @@ void visit_layout(Store& store, Layout& layout) {
   per_facet("facets/leaves", layout.leaves, "patches of each side");
   per_facet("facets/tree_start", layout.tree_start, "start in facets/tree; 2^32-1: no cell split");
   store.column("facets/tree", layout.tree, {store.tree}, "",
-               "leaf number, or 2^31 + start of four children");
+               "leaf number, or 2^31 + start of its two halves, + 2^30 if they lie along t");
   store.column("area", layout.area_m2, {store.patches}, "m2", "area of the patch");
 }
 

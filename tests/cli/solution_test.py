@@ -31,6 +31,18 @@ class Solution(program.Case):
             solved = self.render("solved.exr", *options)
             self.assertEqual(self.render("read.exr", *options, "--solution", "ball.h5"), solved)
 
+    def test_refined_patches_come_back_from_the_file(self):
+        refined = ["--set", "quality.refine=true", "--set", "quality.max_patches=400"]
+        report = json.loads(self.done("solve", "ball.toml", "-o", "ball.h5", "--json", *refined))
+        self.assertGreater(len(report["refinement"]["rounds"]), 1)
+        read = json.loads(self.done("solve", "ball.toml", "--solution", "ball.h5", "--json", *refined))
+        for of in (report, read):
+            del of["seconds"]
+        self.assertEqual(read, report)
+        solved = self.render("solved.exr", *refined)
+        self.assertEqual(self.render("read.exr", *refined, "--solution", "ball.h5"), solved)
+        self.says(self.refused("render", "ball.toml", "-o", "a.exr", "--solution", "ball.h5"), "refine")
+
     def test_reading_skips_the_solve(self):
         self.done("solve", "ball.toml", "-o", "ball.h5")
         plain = json.loads(self.done("render", "ball.toml", "-o", "a.exr", "--json"))
