@@ -59,11 +59,17 @@ bool any_passes_light_on(const scenes::Scene& scene) {
                      [](const scenes::Material& m) { return m.passes_light_on(); });
 }
 
+// Per face, so that all of them together take a fraction of a second.
+int split_rays(std::size_t faces) {
+  constexpr std::size_t all_rays = std::size_t{1} << 21, most = 1U << 16, fewest = 256;
+  return static_cast<int>(std::clamp(all_rays / std::max<std::size_t>(1, faces), fewest, most));
+}
+
 // Between objects the exact method needs no patches: whole facets are integrated over.
 void find_exactly(const scenes::Scene& scene, const scenes::RayQuery& query,
                   const radiosity::Patches& facets, const Common& common, Found& found) {
-  const radiosity::ExactFormFactors exact =
-      radiosity::exact_form_factors(scene, query, facets, {.seed = common.seed});
+  const radiosity::ExactFormFactors exact = radiosity::exact_form_factors(
+      scene, query, facets, {.split_rays = split_rays(facets.count()), .seed = common.seed});
   found.between = radiosity::object_form_factors(scene, facets, exact.factors);
   found.exact = exact.report;
   // The area rules of pairs in plain sight are good to this share of F.
@@ -75,8 +81,18 @@ void find_exactly(const scenes::Scene& scene, const scenes::RayQuery& query,
   for (std::size_t i = 0; i < o.F.size(); ++i) {
     std::transform(o.F[i].begin(), o.F[i].end(), o.std_error[i].begin(), error_of);
   }
-  std::transform(o.sky.begin(), o.sky.end(), o.sky_std_error.begin(), error_of);
-  std::transform(o.black.begin(), o.black.end(), o.black_std_error.begin(), error_of);
+  // Sky and black backs share what is left of a row, as rays found them.
+  std::vector<double> split(o.F.size(), 0.0);
+  for (std::uint32_t i = 0; i < facets.count(); ++i) {
+    const double error = facets.area_m2[i] * exact.report.split_std_error[i];
+    split[facets.object(i)] += error * error;
+  }
+  for (std::size_t i = 0; i < o.F.size(); ++i) {
+    if (o.area_m2[i] <= 0.0) continue;
+    const double error =
+        std::hypot(error_of(o.sky[i] + o.black[i]), std::sqrt(split[i]) / o.area_m2[i]);
+    o.sky_std_error[i] = o.black_std_error[i] = error;
+  }
 }
 
 Found find(const FactorsCall& call, const Common& common) {
@@ -99,6 +115,12 @@ Found find(const FactorsCall& call, const Common& common) {
     found.patches = patches.count();
     found.between = radiosity::object_form_factors_by_rays(
         scene, query, patches, {knobs.form_factor_rays, common.seed, call.raw}, found.rays);
+  }
+  if (found.rays.disagreeing_pairs > 0 && !common.quiet) {
+    note(
+        fmt::format("warning: the two estimates of {} pairs disagree beyond their noise, as where "
+                    "faces of two objects lie on each other; their errors are widened",
+                    found.rays.disagreeing_pairs));
   }
   for (const scenes::Object& object : scene.objects) found.names.push_back(object.name);
   const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;

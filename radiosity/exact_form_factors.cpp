@@ -142,6 +142,9 @@ void close_row(FormFactors& factors, std::size_t i, const Open& open, double cre
   }
   // Where no ray found the way out, it is a gap between surfaces: to the sky.
   const double to_sky = open_rays > 0 ? double(open.sky) / open_rays : 1.0;
+  // Binomial, and never less than one ray gone the other way.
+  const double n = std::max(1, open_rays);
+  report.split_std_error[i] = rest * std::max(std::sqrt(to_sky * (1.0 - to_sky) / n), 1.0 / n);
   factors.sky[i] = factors.escape[i] = rest * to_sky;
   factors.black[i] = factors.lost[i] = rest - factors.sky[i];
   factors.row_scale[i] = landed > 0.0 ? (1.0 - rest) / landed : 1.0;
@@ -190,6 +193,7 @@ ExactFormFactors exact_form_factors(const scenes::Scene& scene, const scenes::Ra
   });
   result.report.pairs = count < 2 ? 0 : std::uint64_t{count} * (count - 1) / 2;
   result.report.counts = pairs.counts;
+  result.report.split_std_error.assign(count, 0.0);
   for (std::size_t i = 0; i < count; ++i) {
     close_row(factors, i, open[i], credible[i], result.report);
     result.report.estimated_error =

@@ -11,6 +11,8 @@
 // scaled to 1. Every defect that was scaled away is in the report.
 #pragma once
 
+#include <vector>
+
 #include "radiosity/exact_pairs.h"
 #include "radiosity/form_factors.h"
 
@@ -26,6 +28,9 @@ struct ExactReport {
   std::uint64_t pairs = 0;  // unordered, and their kinds below
   PairCounts counts;
   double estimated_error = 0.0;  // greatest over rows of sqrt(sum_j dF_ij^2), estimated
+  // Per patch, of F_i,sky and F_i,black alike: what the rays leave open about the split between
+  // them.
+  std::vector<double> split_std_error;
   std::size_t closed_rows = 0;
   double max_closed_defect = 0.0;  // greatest |1 - sum_j F_ij| of closed rows before scaling
   std::size_t overfull_rows = 0;   // open rows with sum_j F_ij > 1, scaled to 1

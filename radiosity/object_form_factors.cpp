@@ -137,7 +137,7 @@ double patch_row_error(const FormFactors& f) {
 }
 
 void set_std_errors(const std::vector<ObjectTable>& signed_tables,
-                    const std::vector<double>& rays_per_m2, ObjectFormFactors& o) {
+                    const std::vector<double>& rays_per_m2, bool joined, ObjectFormFactors& o) {
   const std::size_t n = o.F.size();
   for (std::size_t i = 0; i < n; ++i) {
     const double area = o.area_m2[i];
@@ -146,13 +146,34 @@ void set_std_errors(const std::vector<ObjectTable>& signed_tables,
       double square = 0.0;
       for (const ObjectTable& table : signed_tables) square += table.row(i)[k] * table.row(i)[k];
       double error = std::sqrt(square / double(signed_tables.size())) / area;
-      if (error == 0.0) {
-        const double other = k < n ? rays_per_m2[k] : 0.0;
-        error = 1.0 / (area * (rays_per_m2[i] + other));
-      }
+      // Replicates that all found the same, but for rounding: as if one hit were in doubt.
+      const double other = joined && k < n ? rays_per_m2[k] : 0.0;
+      const double one_hit = 1.0 / (area * (rays_per_m2[i] + other));
+      if (error < 1e-3 * one_hit) error = one_hit;
       (k < n ? o.std_error[i][k] : k == n ? o.sky_std_error[i] : o.black_std_error[i]) = error;
     }
   }
+}
+
+// Two estimates of a pair that differ by more than their noise have another fault, mostly faces
+// that lie on each other (docs/theory.md, "Known limit"). Half their difference is then the error.
+// Returns how many pairs.
+std::size_t widen_by_disagreement(const ObjectFormFactors& cast, ObjectFormFactors& o) {
+  constexpr double errors_apart = 6.0;
+  std::size_t pairs = 0;
+  for (std::size_t i = 0; i < o.F.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      const double there = cast.area_m2[i] * cast.F[i][k], back = cast.area_m2[k] * cast.F[k][i];
+      const double noise = std::hypot(cast.area_m2[i] * cast.std_error[i][k],
+                                      cast.area_m2[k] * cast.std_error[k][i]);
+      const double apart = std::abs(there - back);
+      if (!(apart > errors_apart * noise)) continue;
+      ++pairs;
+      o.std_error[i][k] = std::max(o.std_error[i][k], 0.5 * apart / o.area_m2[i]);
+      o.std_error[k][i] = std::max(o.std_error[k][i], 0.5 * apart / o.area_m2[k]);
+    }
+  }
+  return pairs;
 }
 
 }  // namespace
@@ -214,7 +235,7 @@ ObjectFormFactors object_form_factors_by_rays(const scenes::Scene& scene,
     rays_per_m2[k] = area[k] > 0.0 ? rays_per_m2[k] / area[k] : 0.0;
   }
   ObjectFormFactors result = per_area(mean, area);
-  set_std_errors(signed_tables, rays_per_m2, result);
+  set_std_errors(signed_tables, rays_per_m2, false, result);
   report.reciprocity_error_before = reciprocity_error(result);
   report.reconciled = !options.raw && !any_passes_on(scene);
   if (report.reconciled) {
@@ -222,8 +243,10 @@ ObjectFormFactors object_form_factors_by_rays(const scenes::Scene& scene,
     reconcile.apply(mean, true);
     base::parallel_chunks(
         signings, 1, [&](std::size_t b, std::size_t) { reconcile.apply(signed_tables[b], false); });
+    const ObjectFormFactors cast = std::move(result);
     result = per_area(mean, area);
-    set_std_errors(signed_tables, rays_per_m2, result);
+    set_std_errors(signed_tables, rays_per_m2, true, result);
+    report.disagreeing_pairs = widen_by_disagreement(cast, result);
   }
   result.max_row_error = report.reconciled ? row_error(result) : report.row_error_before;
   result.max_reciprocity_error = reciprocity_error(result);

@@ -41,6 +41,8 @@ struct ObjectFactorReport {
   std::uint64_t rays = 0;
   double row_error_before = 0.0, reciprocity_error_before = 0.0;
   bool reconciled = false;
+  // Pairs whose two estimates differ by more than 6 standard errors; theirs is then half of that.
+  std::size_t disagreeing_pairs = 0;
 };
 
 // By rays. Sixteen independent Owen-Sobol replicates of every patch's rays tell the noise: a single

@@ -16,6 +16,8 @@ namespace {
 // The share of all surface area from which an emitter is carried by F.
 constexpr double wide_emitter_share = 0.05;
 
+constexpr double fewest_rays_met = 256.0;
+
 class Stopwatch {
  public:
   explicit Stopwatch(SolveReport& report) : report_(report) {}
@@ -100,7 +102,8 @@ std::vector<double> back_shares(const scenes::Scene& scene, const Patches& patch
   }
   std::vector<double> share(scene.objects.size(), 0.0);
   for (std::size_t o = 0; o < share.size(); ++o) {
-    if (met[o] > 0.0) share[o] = factors.back_hits[o] / met[o];
+    // A few stray rays, as past a needle's edge, say nothing.
+    if (met[o] >= fewest_rays_met) share[o] = factors.back_hits[o] / met[o];
   }
   return share;
 }

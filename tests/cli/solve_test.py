@@ -48,7 +48,11 @@ class Solve(program.Case):
 
     def test_text_and_file(self):
         self.write("ball.toml", program.BALL)
-        self.says(self.done("solve", "ball.toml"), "lamp", "sun", "ball", "patches", "imbalance")
+        table = self.done("solve", "ball.toml")
+        self.says(table, "lamp", "sun", "ball", "patches", "imbalance")
+        printed = self.json("solve", "ball.toml")
+        self.says(table, f"{printed['iterations']} iterations",
+                  f"in {printed['balance']['sweeps']} sweeps\n", f"to {printed['solver_error']:.2g};")
         self.assertEqual(self.done("solve", "ball.toml", "-o", "solved.json"), "")
         written = json.loads((self.folder / "solved.json").read_text())
         printed = self.json("solve", "ball.toml")

@@ -283,25 +283,5 @@ TEST(ExactFormFactors, MirrorsAndGlassAreRefused) {
   }
 }
 
-TEST(ExactFormFactors, AGapThatFewRaysFindIsNotScaledAway) {
-  // Facing unit squares 2 mm and 0.1 mm apart (Howell C-11, X = Y = 1 / h): of the share that
-  // escapes, about 2 h, 256 rays find nothing most of the time.
-  for (const double h : {2e-3, 1e-4}) {
-    tests::SceneBuilder builder;
-    const std::uint32_t m = builder.material(tests::grey(0.5));
-    builder.plate(m, 1.0, 0.0, true);
-    builder.plate(m, 1.0, h, false);
-    const scenes::RayQuery query(builder.scene);
-    const Patches patches = subdivide(builder.scene, 1e9);
-    const FormFactors f = exact_form_factors(builder.scene, query, patches, {}).factors;
-    const double x = 1.0 / h, root2 = 1.0 + x * x, root = std::sqrt(root2);
-    const double exact = 2.0 / (base::pi * x * x) *
-                         (0.5 * std::log(root2 * root2 / (1.0 + 2.0 * x * x)) +
-                          2.0 * x * root * std::atan(x / root) - 2.0 * x * std::atan(x));
-    EXPECT_NEAR(f.row_scale[0] * double(f.hits[0]), exact, 1e-6) << h;
-    EXPECT_NEAR(f.sky[0], 1.0 - exact, 1e-6) << h;
-  }
-}
-
 }  // namespace
 }  // namespace earthshine::radiosity
