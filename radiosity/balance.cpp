@@ -42,18 +42,21 @@ std::vector<double> weighted_column_sums(const FormFactors& f, Weight weight) {
   return total;
 }
 
-// A patch that no ray reached has an empty column, which no scaling can fill. Reciprocity gives its
-// entries: n_ij = n_ji A_j / A_i for the patches i that it saw itself.
+// A patch that no ray reached has an empty column, which no scaling can fill; one that only a
+// speck's rays reached would need a scale of a million. Reciprocity gives its entries: n_ij = n_ji
+// A_j / A_i for the patches i that it saw itself.
 std::size_t fill_empty_columns(FormFactors& f, std::span<const double> area_m2) {
+  constexpr double starved = 0.01;  // share of what a column should hold by its own row
   const std::size_t count = f.count();
-  std::vector<bool> reached(count, false);
-  for (std::size_t e = 0; e < f.column.size(); ++e) {
-    if (f.hits[e] > 0.0F) reached[f.column[e]] = true;
-  }
+  const std::vector<double> sums =
+      weighted_column_sums(f, [&](std::size_t i) { return area_m2[i] * f.kept[i]; });
+  const auto reached = [&](std::size_t j) {
+    return sums[j] >= starved * area_m2[j] * (1.0 - f.sky[j] - f.black[j]);
+  };
   std::vector<std::vector<std::pair<std::uint32_t, float>>> borrowed(count);
   std::size_t patches = 0;
   for (std::size_t j = 0; j < count; ++j) {
-    if (reached[j] || f.row_start[j] == f.row_start[j + 1]) continue;
+    if (reached(j) || f.row_start[j] == f.row_start[j + 1]) continue;
     ++patches;
     for (std::uint64_t e = f.row_start[j]; e < f.row_start[j + 1]; ++e) {
       const std::uint32_t i = f.column[e];
@@ -72,15 +75,13 @@ std::size_t fill_empty_columns(FormFactors& f, std::span<const double> area_m2) 
     std::uint64_t e = old.row_start[i];
     auto extra = borrowed[i].begin();  // ascending, since j ran upward
     while (e < old.row_start[i + 1] || extra != borrowed[i].end()) {
-      const bool take_extra =
-          e == old.row_start[i + 1] || (extra != borrowed[i].end() && extra->first < old.column[e]);
-      f.column.push_back(take_extra ? extra->first : old.column[e]);
-      f.hits.push_back(take_extra ? extra->second : old.hits[e]);
-      if (take_extra) {
-        ++extra;
-      } else {
-        ++e;
-      }
+      const bool has_old = e < old.row_start[i + 1], has_extra = extra != borrowed[i].end();
+      const bool take_old = has_old && (!has_extra || old.column[e] <= extra->first);
+      const bool take_extra = has_extra && (!has_old || extra->first <= old.column[e]);
+      f.column.push_back(take_old ? old.column[e] : extra->first);
+      f.hits.push_back((take_old ? old.hits[e] : 0.0F) + (take_extra ? extra->second : 0.0F));
+      if (take_old) ++e;
+      if (take_extra) ++extra;
     }
     f.row_start[i + 1] = f.column.size();
   }
@@ -171,8 +172,7 @@ class Scaling {
  private:
   // The bound stops a column that too few rays reached to ever fill from running off to infinity.
   void scale_column(std::size_t j, double factor) {
-    f_.column_scale[j] =
-        std::clamp(f_.column_scale[j] * factor, 1.0 / largest_scale, largest_scale);
+    f_.column_scale[j] = std::min(f_.column_scale[j] * factor, largest_scale);
   }
 
   void update_sums() {

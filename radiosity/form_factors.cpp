@@ -19,7 +19,7 @@ namespace {
 using scenes::HitPacket;
 using scenes::RayPacket;
 
-constexpr int most_specular_steps = 16;
+constexpr int most_specular_steps = 64;
 
 // What one row found beside its hits.
 struct Row {
@@ -146,7 +146,12 @@ class Caster {
       weight *= static_cast<float>(passed_on);
       if (weight <= 0.0F) return;
       if (step == most_specular_steps) {
-        row.black += weight;
+        // What is left of the weight stays where it is: no light may end that nothing absorbs.
+        if (to != no_patch && kept_[to] > 0.0) {
+          counter.add(to, weight / static_cast<float>(kept_[to]));
+        } else {
+          row.black += weight;
+        }
         return;
       }
       const Vec3 normal = scenes::triangle_normal(scene_, hit.triangle);

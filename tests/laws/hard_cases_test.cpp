@@ -279,6 +279,10 @@ TEST(HardCase, ClosedRoomThatReflectsEverythingIsRefusedByName) {
     EXPECT_EQ(error.blame(), base::Blame::Input);
     EXPECT_NE(std::string(error.what()).find("perfect-white"), std::string::npos) << error.what();
   }
+  // Half diffuse, half mirror: nothing is absorbed either.
+  tests::SceneBuilder mirrors = builder;
+  mirrors.scene.materials[0].diffuse = mirrors.scene.materials[0].mirror = Rgb(0.5);
+  EXPECT_THROW((void)solved(mirrors), base::Error);
   // With a way out the same material is fine.
   builder.scene.triangles.resize(10);
   builder.scene.objects.pop_back();

@@ -93,6 +93,26 @@ TEST(Balance, PatchesThatNoRayReachesBorrowTheTransposedEntries) {
   EXPECT_LE(worst_column_defect(factors, patches), 1e-8);
 }
 
+TEST(Balance, APatchThatOnlyASpecksRaysReachedBorrowsToo) {
+  // Patches 0 and 1 see each other, 2 sees both but was met by the rays of 3 alone, a speck of a
+  // billionth of its area: filling column 2 from that row would take a scale of a billion.
+  FormFactors f;
+  f.rays_per_patch = 64;
+  f.row_start = {0, 1, 2, 4, 5};
+  f.column = {1, 0, 0, 1, 2};
+  f.hits = {64, 64, 32, 32, 64};
+  f.row_scale.assign(4, 1.0 / 64.0);
+  f.column_scale.assign(4, 1.0);
+  f.kept.assign(4, 1.0);
+  for (auto* share : {&f.sky, &f.black, &f.escape, &f.lost}) share->assign(4, 0.0);
+  f.sky_illuminance.assign(4, Rgb(0.0));
+  const std::vector<double> area = {1.0, 1.0, 1.0, 1e-9};
+  const BalanceReport report = balance(f, area);
+  EXPECT_EQ(report.borrowed, 2U);  // 2, and the speck, which nobody met
+  EXPECT_TRUE(report.balanced) << report.after;
+  for (const double scale : f.column_scale) EXPECT_LT(scale, 10.0);
+}
+
 TEST(Balance, FacingPlatesWhoseRaysDisagreeStillBalance) {
   // Each plate's only neighbour is the other: without the sky's part in it no scaling could make
   // both sums right.
