@@ -37,19 +37,21 @@ void check_light_ends(const scenes::Scene& scene, const Patches& patches,
                       std::span<const double> reflectance, std::size_t columns) {
   // Only where some material reflects all of what it keeps can a part keep all light.
   const std::size_t count = factors.count();
+  // What rounding leaves of 1 - mirror - diffuse takes nothing.
+  constexpr double rounding = 1e-12;
   const auto takes = [&](std::size_t i, std::size_t c) {
-    return factors.kept[i] - reflectance[i * columns + c];
+    return factors.kept[i] - reflectance[i * columns + c] > rounding;
   };
   bool suspect = false;
   for (std::size_t k = 0; k < source.size() && !suspect; ++k) {
-    suspect = takes(k / columns, k % columns) <= 0.0;
+    suspect = !takes(k / columns, k % columns);
   }
   if (!suspect) return;
   const std::vector<std::uint32_t> part = connected_parts(factors);
   for (std::size_t c = 0; c < columns; ++c) {
     std::vector<char> ends(count, 0), lit(count, 0);
     for (std::size_t i = 0; i < count; ++i) {
-      if (takes(i, c) > 0.0 || factors.escape[i] > 0.0 || factors.lost[i] > 0.0) ends[part[i]] = 1;
+      if (takes(i, c) || factors.escape[i] > 0.0 || factors.lost[i] > 0.0) ends[part[i]] = 1;
       if (source[i * columns + c] > 0.0) lit[part[i]] = 1;
     }
     std::set<std::string> names;
