@@ -123,8 +123,6 @@ class Caster {
   // Counts a hit on a mirror or glass and the hits behind it.
   void follow(const RayPacket& packet, std::size_t lane, scenes::Hit hit, Row& row,
               HitCounter& counter) const {
-    Vec3 origin =
-        query_.centre() + Vec3(packet.origin_x[lane], packet.origin_y[lane], packet.origin_z[lane]);
     Vec3 way = direction(packet, lane);
     float weight = 1.0F;
     for (int step = 0;; ++step) {
@@ -155,13 +153,24 @@ class Caster {
         return;
       }
       const Vec3 normal = scenes::triangle_normal(scene_, hit.triangle);
-      const Vec3 at = origin + hit.t * way;
+      const Vec3 at = hit_point(hit);
       way = scenes::specular_direction(material, normal, way);
       const double side = glm::dot(way, normal) > 0.0 ? 1.0 : -1.0;
-      origin = at + normal * (side * query_.surface_offset_m());
-      hit = query_.closest(origin, way);
+      hit = query_.closest(at + normal * (side * query_.surface_offset_m()), way);
       ++row.rays;
     }
+  }
+
+  // Where a ray goes on from, drawn a hundred-thousandth of the way to the triangle's middle: off
+  // its edges, where rounding could put it behind a neighbour and let light leak from a closed
+  // room.
+  [[nodiscard]] Vec3 hit_point(const scenes::Hit& hit) const {
+    constexpr double drawn_in = 1e-5;
+    const auto& vertex = scene_.triangles[hit.triangle].vertex;
+    const Vec3& a = scene_.vertices[vertex[0]];
+    const Vec3 ab = scene_.vertices[vertex[1]] - a, ac = scene_.vertices[vertex[2]] - a;
+    const double keep = 1.0 - drawn_in;
+    return a + (keep * hit.u + drawn_in / 3.0) * ab + (keep * hit.v + drawn_in / 3.0) * ac;
   }
 
   const scenes::Scene& scene_;
