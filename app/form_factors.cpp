@@ -17,6 +17,7 @@
 #include "radiosity/patches.h"
 #include "scenes/quality.h"
 #include "scenes/ray_query.h"
+#include "scenes/specular.h"
 
 namespace earthshine::app {
 namespace {
@@ -53,11 +54,6 @@ struct Found {
   std::size_t patches = 0;
   double seconds = 0.0;
 };
-
-bool any_passes_light_on(const scenes::Scene& scene) {
-  return std::any_of(scene.materials.begin(), scene.materials.end(),
-                     [](const scenes::Material& m) { return m.passes_light_on(); });
-}
 
 // Per face, so that all of them together take a fraction of a second.
 int split_rays(std::size_t faces) {
@@ -105,8 +101,8 @@ Found find(const FactorsCall& call, const Common& common) {
       radiosity::subdivide(scene, std::numeric_limits<double>::infinity());
   Found found;
   found.is_exact = call.method == Method::Exact ||
-                   (call.method == Method::Auto && !call.raw && !any_passes_light_on(scene) &&
-                    facets.count() <= most_facets_for_auto);
+                   (call.method == Method::Auto && !call.raw &&
+                    !scenes::any_passes_light_on(scene) && facets.count() <= most_facets_for_auto);
   if (found.is_exact) {
     found.patches = facets.count();
     find_exactly(scene, query, facets, common, found);

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "radiosity/object_table.h"
+#include "scenes/specular.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -67,11 +68,6 @@ std::uint16_t half_of_the_replicates(std::uint64_t seed, std::size_t signing, st
     }
   }
   return static_cast<std::uint16_t>(bits);
-}
-
-bool any_passes_on(const scenes::Scene& scene) {
-  return std::any_of(scene.materials.begin(), scene.materials.end(),
-                     [](const scenes::Material& m) { return m.passes_light_on(); });
 }
 
 double reciprocity_error(const ObjectFormFactors& o) {
@@ -237,7 +233,7 @@ ObjectFormFactors object_form_factors_by_rays(const scenes::Scene& scene,
   ObjectFormFactors result = per_area(mean, area);
   set_std_errors(signed_tables, rays_per_m2, false, result);
   report.reciprocity_error_before = reciprocity_error(result);
-  report.reconciled = !options.raw && !any_passes_on(scene);
+  report.reconciled = !options.raw && !scenes::any_passes_light_on(scene);
   if (report.reconciled) {
     const Reconciliation reconcile(mean, area, rays_per_m2);
     reconcile.apply(mean, true);

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/specular.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace earthshine::scenes {
+
+bool any_passes_light_on(const Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const Material& m) { return m.passes_light_on(); });
+}
 
 Refraction refract(const Material& material, const Vec3& normal, const Vec3& direction) {
   if (material.two_sided) return {direction, false};

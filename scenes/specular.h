@@ -6,6 +6,9 @@
 
 namespace earthshine::scenes {
 
+// Whether any material is a mirror or glass.
+[[nodiscard]] bool any_passes_light_on(const Scene& scene);
+
 // The way of a ray that arrives along the unit vector `direction` at a surface of unit normal
 // `normal` (the front's): reflected, or refracted by Snell's law, whichever share of the material
 // is larger; total reflection where Snell's law has no solution. Sheets of glass are thin and do

@@ -279,10 +279,14 @@ TEST(HardCase, ClosedRoomThatReflectsEverythingIsRefusedByName) {
     EXPECT_EQ(error.blame(), base::Blame::Input);
     EXPECT_NE(std::string(error.what()).find("perfect-white"), std::string::npos) << error.what();
   }
-  // Half diffuse, half mirror: nothing is absorbed either.
+  // Diffuse and mirror together 1: nothing is absorbed either, nor lost where rays are followed no
+  // further (0.95^64 of them).
   tests::SceneBuilder mirrors = builder;
-  mirrors.scene.materials[0].diffuse = mirrors.scene.materials[0].mirror = Rgb(0.5);
-  EXPECT_THROW((void)solved(mirrors), base::Error);
+  for (const double mirror : {0.5, 0.95}) {
+    mirrors.scene.materials[0].diffuse = Rgb(1.0 - mirror);
+    mirrors.scene.materials[0].mirror = Rgb(mirror);
+    EXPECT_THROW((void)solved(mirrors, options(0.25, 16)), base::Error) << mirror;
+  }
   // With a way out the same material is fine.
   builder.scene.triangles.resize(10);
   builder.scene.objects.pop_back();

@@ -16,9 +16,9 @@ ExactFormFactors exact(const scenes::Scene& scene) {
 }
 
 TEST(ExactRows, AGapThatFewRaysFindIsNotScaledAway) {
-  // Facing unit squares 2 mm and 0.1 mm apart (Howell C-11, X = Y = 1 / h): of the share that
+  // Facing unit squares 2 mm, 0.1 mm and 7 um apart (Howell C-11, X = Y = 1 / h): of the share that
   // escapes, about 2 h, 256 rays find nothing most of the time.
-  for (const double h : {2e-3, 1e-4}) {
+  for (const double h : {2e-3, 1e-4, 7e-6}) {
     tests::SceneBuilder builder;
     const std::uint32_t m = builder.material(tests::grey(0.5));
     builder.plate(m, 1.0, 0.0, true);

@@ -159,6 +159,19 @@ TEST(ObjectFormFactor, ASpeckThatNoWallRayMeetsHasItsFactorFromItsOwnRays) {
   EXPECT_LE(o.std_error[0][1], 0.02 * up * 1e-8);
 }
 
+TEST(ObjectFormFactor, ReplicatesThatAllFindTheSameAreStillInDoubtByOneHit) {
+  // A plate of one patch 1 cm under a large one: 16 rays a replicate all land there, as 0.99999 of
+  // them should. What they found says 0 of the error; one hit more or less among 256 rays is 1 /
+  // 256.
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  builder.plate(m, 0.01, 0.0, true);
+  builder.plate(m, 10.0, 0.01, false);
+  const ObjectFormFactors o = by_rays(builder.scene, 20.0, 256, 1, true);
+  EXPECT_NEAR(o.F[0][1], 1.0, 1e-14);  // sixteen sums of sixteenths
+  EXPECT_NEAR(o.std_error[0][1], 1.0 / 256.0, 1e-12);
+}
+
 TEST(ObjectFormFactor, TwoEstimatesThatDisagreeWidenTheError) {
   // A plate with another 3 um above it, which hides it. Rays start 4e-6 of the diagonal, 7 um,
   // above their patch (docs/theory.md, "Known limit"): the hidden plate sees the ceiling, 0.1998,

@@ -25,6 +25,13 @@ scenes::Scene some_surfaces() {
   builder.quad(m, {0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0});
   builder.quad(m, {0, 0, 2}, {0, 1, 2}, {3, 0.2, 2.5}, {3, 0, 2.5});  // no parallelogram
   builder.quad(thin, {5, 0, 0}, {5, 1, 0}, {5, 1, 1}, {5, 0, 1});
+  // The same triangle with its apex, opposite the shortest edge, as first, second and third corner.
+  const auto v = static_cast<std::uint32_t>(builder.scene.vertices.size());
+  builder.scene.vertices.insert(builder.scene.vertices.end(), {{8, 0, 0}, {8, 2, 0}, {8, 2, 0.7}});
+  for (std::uint32_t turn = 0; turn < 3; ++turn) {
+    builder.scene.triangles.push_back(
+        {{v + turn, v + (turn + 1) % 3, v + (turn + 2) % 3}, 0, m, 100 + turn});
+  }
   for (Vec3& p : builder.scene.vertices) p += Vec3(300, -200, 100);
   return builder.scene;
 }
