@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/photometry.h"
 #include "scenes/ray_query.h"
 
 namespace earthshine::scenes {
@@ -49,6 +50,18 @@ LightSample toward_area(const Vec3& point, const Vec3& on_source, const Vec3& no
   return sample;
 }
 
+// Intensity in a unit direction away from the lamp, relative to intensity_cd.
+double relative_intensity(const Lamp& lamp, const Vec3& direction) {
+  if (lamp.kind == LampKind::Point) return 1.0;
+  const double cosine = glm::dot(direction, lamp.axis);
+  if (lamp.kind == LampKind::Spot) return spot_profile(lamp, cosine);
+  const double along_c0 = glm::dot(direction, lamp.c0);
+  const double along_c90 = glm::dot(direction, glm::cross(lamp.c0, lamp.axis));
+  // By the tangent: near the axis the cosine alone has lost half of the angle's digits.
+  return lamp.photometry->relative(std::atan2(std::hypot(along_c0, along_c90), cosine),
+                                   std::atan2(along_c90, along_c0));
+}
+
 }  // namespace
 
 double spot_profile(const Lamp& lamp, double cos_angle) {
@@ -70,10 +83,8 @@ LightSample sample_lamp(const Lamp& lamp, const Vec3& point, double u, double v)
   if (distance2 <= 0.0) return sample;
   sample.distance_m = std::sqrt(distance2);
   sample.direction = way / sample.distance_m;
-  const double profile = lamp.kind == LampKind::Spot
-                             ? spot_profile(lamp, -glm::dot(sample.direction, lamp.axis))
-                             : 1.0;
-  sample.normal_illuminance_lx = lamp.intensity_cd * (profile / distance2);
+  sample.normal_illuminance_lx =
+      lamp.intensity_cd * (relative_intensity(lamp, -sample.direction) / distance2);
   return sample;
 }
 
@@ -84,6 +95,8 @@ Rgb lamp_flux_lm(const Lamp& lamp) {
     case LampKind::Spot:
       return lamp.intensity_cd *
              (2.0 * pi * (1.0 - 0.5 * (beam_cosine(lamp) + field_cosine(lamp))));
+    case LampKind::Measured:
+      return lamp.intensity_cd * lamp.photometry->solid_angle_sr();
     case LampKind::Rectangle:
     case LampKind::Disk:
       break;
@@ -94,6 +107,15 @@ Rgb lamp_flux_lm(const Lamp& lamp) {
 EmittedRay emit_from_lamp(const Lamp& lamp, double u, double v, double x, double y) {
   if (lamp.kind == LampKind::Rectangle || lamp.kind == LampKind::Disk) {
     return {surface_point(lamp, u, v), cosine_direction(base::frame_around(lamp.axis), x, y), 1.0};
+  }
+  if (lamp.kind == LampKind::Measured) {
+    const Photometry::Angles angles = lamp.photometry->sample(x, y);
+    const Vec3 across = std::cos(angles.phi_rad) * lamp.c0 +
+                        std::sin(angles.phi_rad) * glm::cross(lamp.c0, lamp.axis);
+    return {lamp.position,
+            glm::normalize(std::cos(angles.theta_rad) * lamp.axis +
+                           std::sin(angles.theta_rad) * across),
+            1.0};
   }
   const double half_angle = lamp.kind == LampKind::Spot ? base::radians(lamp.field_deg / 2) : pi;
   const Vec3 direction = sample_cone(lamp.axis, half_angle, x, y);

@@ -22,7 +22,7 @@ struct LightSample {
 // cosine, 0 outside field_deg. Its flux is I 2 pi (1 - (cos(beam/2) + cos(field/2)) / 2) exactly.
 [[nodiscard]] double spot_profile(const Lamp& lamp, double cos_angle);
 
-// (u, v) in [0,1)^2 choose the point of a rectangle or disk; point and spot lamps do not use them.
+// (u, v) in [0,1)^2 choose the point of a rectangle or disk; other lamps do not use them.
 [[nodiscard]] LightSample sample_lamp(const Lamp& lamp, const Vec3& point, double u, double v);
 
 [[nodiscard]] Rgb lamp_flux_lm(const Lamp& lamp);
@@ -35,7 +35,7 @@ struct EmittedRay {
 [[nodiscard]] EmittedRay emit_from_lamp(const Lamp& lamp, double u, double v, double x, double y);
 
 // Distance at which a ray meets the shining side of a rectangle or disk lamp and its radiance
-// there; nothing for point and spot lamps.
+// there; nothing for lamps without a surface.
 struct LampHit {
   double distance_m;
   Rgb radiance;
