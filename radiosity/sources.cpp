@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 
+#include "radiosity/lamp_crowd.h"
 #include "radiosity/solution.h"
 #include "scenes/sky.h"
 
@@ -88,8 +89,17 @@ std::vector<LightSource> find_sources(const scenes::Scene& scene, const scenes::
   if (effects.earth && !effects.earth_by_gather) {
     sources.push_back(earth_source(scene, groups.earth, points));
   }
+  std::vector<std::vector<std::size_t>> lamps(groups.count());
+  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
+    if (groups.lamp[k] != scenes::no_group) lamps[groups.lamp[k]].push_back(k);
+  }
+  for (std::size_t g = 0; g < lamps.size(); ++g) {
+    if (lamps[g].size() < fewest_in_crowd) continue;
+    sources.push_back(crowd_source(scene, lamps[g], 16 + lamps[g][0], g, points));
+  }
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
     if (groups.lamp[k] == scenes::no_group) continue;
+    if (lamps[groups.lamp[k]].size() >= fewest_in_crowd) continue;
     sources.push_back(lamp_source(scene.lamps[k], 16 + k, groups.lamp[k], points));
   }
   const std::vector<bool> is_explicit = emitter_is_explicit(scene);

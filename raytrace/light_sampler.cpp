@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "scenes/sky.h"
 
@@ -13,13 +14,18 @@ namespace {
 constexpr double r2_u = 0.7548776662466927;
 constexpr double r2_v = 0.5698402909980532;
 
+// Up to this many lamps all get shadow rays: choosing among them costs more than it saves.
+constexpr std::size_t few_lamps = 32;
+// Lamps that may give more than this share of the light count as ones that matter.
+constexpr double smallest_share = 1.0 / 16.0;
+
 double fraction(double x) { return x - std::floor(x); }
 
 }  // namespace
 
 LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups& groups,
                            const scenes::Effects& effects, Indirect indirect,
-                           int distributed_lights)
+                           int distributed_lights, bool per_group)
     : scene_(scene), distributed_(indirect == Indirect::Distributed) {
   const int copies = distributed_ ? distributed_lights : 1;
   if (effects.sun) {
@@ -40,7 +46,9 @@ LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups
     const bool wide = scene.lamps[k].kind == scenes::LampKind::Rectangle ||
                       scene.lamps[k].kind == scenes::LampKind::Disk;
     add({Kind::Lamp, groups.lamp[k], k}, wide ? copies : 1);
+    if (wide) surfaces_.lights.push_back(k);
   }
+  surfaces_.tree = tree_of(surfaces_.lights);
   // Without interreflection nothing carries emitters through F, so that all of them are sampled.
   const std::vector<bool> is_explicit = radiosity::emitter_is_explicit(scene);
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
@@ -52,6 +60,60 @@ LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups
     }
     add({Kind::Emitters, groups.material[m], emitters_.size()}, copies);
     emitters_.push_back(std::move(set));
+  }
+  gather_crowds(per_group);
+}
+
+void LightSampler::gather_crowds(bool per_group) {
+  std::map<std::size_t, std::vector<std::size_t>> lamps;
+  for (std::size_t k = 0; k < lights_.size(); ++k) {
+    const bool lamp = lights_[k].kind == Kind::Lamp && !distributed_;
+    if (lamp) lamps[per_group ? lights_[k].group : 0].push_back(k);
+    if (!lamp) always_.push_back(k);
+  }
+  for (auto& [group, lights] : lamps) {
+    if (lights.size() <= few_lamps) {
+      always_.insert(always_.end(), lights.begin(), lights.end());
+      continue;
+    }
+    std::vector<std::size_t> of_scene;
+    for (const std::size_t k : lights) of_scene.push_back(lights_[k].index);
+    crowds_.push_back({tree_of(of_scene), std::move(lights)});
+  }
+}
+
+scenes::LightTree LightSampler::tree_of(const std::vector<std::size_t>& lamps) const {
+  std::vector<scenes::LightBounds> bounds;
+  for (const std::size_t k : lamps) bounds.push_back(scenes::bounds_of(scene_.lamps[k]));
+  return scenes::LightTree(bounds);
+}
+
+std::optional<LightSampler::SeenLamp> LightSampler::seen_lamp(const Vec3& origin,
+                                                              const Vec3& direction,
+                                                              double nearer_than_m) const {
+  thread_local std::vector<std::size_t> met;
+  met.clear();
+  surfaces_.tree.along(origin, direction, nearer_than_m, met);
+  std::optional<SeenLamp> seen;
+  for (const std::size_t k : met) {
+    const std::size_t lamp = surfaces_.lights[k];
+    const auto hit = scenes::hit_lamp(scene_.lamps[lamp], origin, direction);
+    if (!hit || hit->distance_m >= nearer_than_m) continue;
+    nearer_than_m = hit->distance_m;
+    seen = SeenLamp{lamp, *hit};
+  }
+  return seen;
+}
+
+void LightSampler::choose(const scenes::Receiver& receiver, double u,
+                          std::vector<scenes::LightChoice>& chosen) const {
+  for (const std::size_t light : always_) chosen.push_back({light, 1.0});
+  for (const Crowd& crowd : crowds_) {
+    const std::size_t first = chosen.size();
+    crowd.tree.choose(receiver, u, smallest_share, chosen);
+    for (std::size_t k = first; k < chosen.size(); ++k) {
+      chosen[k].light = crowd.lights[chosen[k].light];
+    }
   }
 }
 

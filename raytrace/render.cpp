@@ -220,7 +220,8 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
   const RadianceTable soft(
       solution, reads_solution && recursive ? solution.soft_radiosity : std::vector<float>{},
       options.per_light);
-  const LightSampler lights(scene, groups, effects, options.indirect, options.distributed_lights);
+  const LightSampler lights(scene, groups, effects, options.indirect, options.distributed_lights,
+                            options.per_light);
 
   const BrightPatches bright = reads_solution ? BrightPatches(solution) : BrightPatches();
 
@@ -231,11 +232,6 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
     shared.layer.push_back(options.per_light ? g : 0);
   shared.gathers =
       options.indirect != Indirect::Distributed && (reads_solution || effects.earth_by_gather);
-  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
-    const bool has_surface = scene.lamps[k].kind == scenes::LampKind::Rectangle ||
-                             scene.lamps[k].kind == scenes::LampKind::Disk;
-    if (has_surface && groups.lamp[k] != scenes::no_group) shared.area_lamps.push_back(k);
-  }
   shared.follows_specular = effects.mirror || effects.refraction;
   shared.sampled_emitter.assign(scene.materials.size(), true);
   if (options.indirect == Indirect::Radiosity) {

@@ -32,8 +32,7 @@ struct ShadingScene {
   bool gathers = false;           // cosine rays carry light in this render
   int gather_rays = 16;           // per camera sample
   std::uint64_t seed = 1;
-  std::vector<std::size_t> area_lamps = {};  // indices of lamps that a ray can meet
-  std::vector<bool> sampled_emitter = {};    // per material: shadow rays carry its light
+  std::vector<bool> sampled_emitter = {};  // per material: shadow rays carry its light
 };
 
 // Shades the samples of one pixel after another; one object per thread.
@@ -96,7 +95,7 @@ class PixelShader {
   std::size_t sample_ = 0;
   std::uint64_t pixel_ = 0;
   base::SobolOwen4 gather_points_;
-  std::vector<base::SobolOwen4> light_points_;
+  std::vector<scenes::LightChoice> chosen_;
   base::Rng rng_;
 
   static constexpr std::size_t width = scenes::RayPacket::width;

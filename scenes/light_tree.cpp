@@ -59,6 +59,23 @@ LightBounds joined(LightBounds a, const LightBounds& b) {
   return a;
 }
 
+// Whether a ray meets a box on its way to reach_m.
+bool meets(const Vec3& from_centre, const Vec3& direction, const Vec3& half, double reach_m) {
+  const double margin = 1e-9 * (1.0 + base::max_component(glm::abs(from_centre)));  // flat boxes
+  double near = 0.0, far = reach_m;
+  for (int c = 0; c < 3; ++c) {
+    const double reach = half[c] + margin;
+    if (std::abs(direction[c]) < 1e-12) {
+      if (std::abs(from_centre[c]) > reach) return false;
+      continue;
+    }
+    const double middle = -from_centre[c] / direction[c], width = std::abs(reach / direction[c]);
+    near = std::max(near, middle - width);
+    far = std::min(far, middle + width);
+  }
+  return near <= far;
+}
+
 }  // namespace
 
 LightBounds bounds_of(const Lamp& lamp) {
@@ -216,6 +233,20 @@ void LightTree::choose(const Receiver& receiver, double u, double share,
     }
     before += length;
   }
+}
+
+void LightTree::along(const Vec3& origin, const Vec3& direction, double reach_m,
+                      std::vector<std::size_t>& lights) const {
+  if (!nodes_.empty()) along(0, origin, direction, reach_m, lights);
+}
+
+void LightTree::along(std::uint32_t index, const Vec3& origin, const Vec3& direction,
+                      double reach_m, std::vector<std::size_t>& lights) const {
+  const Node& node = nodes_[index];
+  if (!meets(origin - node.centre, direction, node.half, reach_m)) return;
+  if (node.right == 0) return lights.push_back(node.light);
+  along(index + 1, origin, direction, reach_m, lights);
+  along(node.right, origin, direction, reach_m, lights);
 }
 
 void LightTree::draw(const Receiver& receiver, Piece piece, double t, double expected,

@@ -49,6 +49,10 @@ class LightTree {
   void choose(const Receiver& receiver, double u, double share,
               std::vector<LightChoice>& chosen) const;
 
+  // Adds the lights whose boxes a ray meets before `reach_m`.
+  void along(const Vec3& origin, const Vec3& direction, double reach_m,
+             std::vector<std::size_t>& lights) const;
+
   [[nodiscard]] std::size_t count() const { return (nodes_.size() + 1) / 2; }
 
  private:
@@ -75,6 +79,8 @@ class LightTree {
   };
   std::uint32_t build(const std::vector<LightBounds>& lights, std::uint32_t* first,
                       std::uint32_t* last);
+  void along(std::uint32_t node, const Vec3& origin, const Vec3& direction, double reach_m,
+             std::vector<std::size_t>& lights) const;
   void draw(const Receiver& receiver, Piece piece, double t, double expected,
             std::vector<LightChoice>& chosen) const;
   [[nodiscard]] static Value value_of(const Node& node, const Receiver& receiver);
