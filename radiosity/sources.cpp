@@ -6,6 +6,7 @@
 
 #include "radiosity/lamp_crowd.h"
 #include "radiosity/solution.h"
+#include "scenes/emitters.h"
 #include "scenes/sky.h"
 
 namespace earthshine::radiosity {
@@ -62,12 +63,7 @@ LightSource lamp_source(const scenes::Lamp& lamp, std::uint64_t key, std::size_t
 
 LightSource emitter_source(const scenes::Scene& scene, std::size_t material, std::size_t group,
                            int points) {
-  const auto emitters = std::make_shared<scenes::EmitterSet>();
-  for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
-    if (scene.triangles[t].material == material) {
-      emitters->add(scene, static_cast<std::uint32_t>(t));
-    }
-  }
+  const auto emitters = std::make_shared<const scenes::EmitterSet>(scene, material);
   Source source;
   source.key = (std::uint64_t{1} << 32) + material;
   source.group = group;

@@ -54,12 +54,8 @@ LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     if (groups.material[m] == scenes::no_group) continue;
     if (indirect == Indirect::Radiosity && !is_explicit[m]) continue;
-    scenes::EmitterSet set;
-    for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
-      if (scene.triangles[t].material == m) set.add(scene, static_cast<std::uint32_t>(t));
-    }
     add({Kind::Emitters, groups.material[m], emitters_.size()}, copies);
-    emitters_.push_back(std::move(set));
+    emitters_.emplace_back(scene, m);
   }
   gather_crowds(per_group);
 }
@@ -140,6 +136,7 @@ scenes::LightSample LightSampler::sample(std::size_t index, const Vec3& point, d
     u = light.u;
     v = light.v;
   }
+  const scenes::Spread spread = light.fixed ? scenes::Spread::OverArea : scenes::Spread::Best;
   scenes::LightSample sample;
   switch (light.kind) {
     case Kind::Sun:
@@ -154,10 +151,10 @@ scenes::LightSample LightSampler::sample(std::size_t index, const Vec3& point, d
       break;
     }
     case Kind::Lamp:
-      sample = scenes::sample_lamp(scene_.lamps[light.index], point, u, v);
+      sample = scenes::sample_lamp(scene_.lamps[light.index], point, u, v, spread);
       break;
     case Kind::Emitters:
-      sample = emitters_[light.index].sample(point, u, v);
+      sample = emitters_[light.index].sample(point, u, v, spread);
       break;
   }
   sample.normal_illuminance_lx *= light.share;

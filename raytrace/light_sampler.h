@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "raytrace/render.h"
+#include "scenes/emitters.h"
 #include "scenes/lamp_light.h"
 #include "scenes/light_tree.h"
 

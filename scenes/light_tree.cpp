@@ -162,7 +162,9 @@ LightTree::Value LightTree::value_of(const Node& node, const Receiver& receiver)
     const Vec3 direction = way / std::sqrt(distance2);
     const double sine2 = node.radius2 / distance2;
     const Angle seen{std::sqrt(1.0 - sine2), std::sqrt(sine2)};  // half angle of the sphere
-    const Angle incidence = less(of_cosine(glm::dot(direction, receiver.normal)), seen);
+    const bool any_side = receiver.normal == Vec3(0.0);
+    const Angle incidence =
+        any_side ? Angle{1.0, 0.0} : less(of_cosine(glm::dot(direction, receiver.normal)), seen);
     if (incidence.cosine <= 0.0) return {0.0, 0.0};
     constexpr double rounding = 1e-9;
     const Angle off_axis = less(of_cosine(-glm::dot(direction, node.axis)), seen);
@@ -229,7 +231,8 @@ void LightTree::choose(const Receiver& receiver, double u, double share,
     const bool last = k + 1 == count;  // rounding must not lose the last draw
     for (; next < before + length || (last && next < draws); next += 1.0) {
       const double t = std::clamp((next - before) / length, 0.0, 1.0);
-      draw(receiver, pieces[k], t, length, chosen);
+      const auto pick = descend(receiver, pieces[k].node, t);
+      if (pick) chosen.push_back({pick->light, 1.0 / (length * pick->probability)});
     }
     before += length;
   }
@@ -249,21 +252,28 @@ void LightTree::along(std::uint32_t index, const Vec3& origin, const Vec3& direc
   along(node.right, origin, direction, reach_m, lights);
 }
 
-void LightTree::draw(const Receiver& receiver, Piece piece, double t, double expected,
-                     std::vector<LightChoice>& chosen) const {
-  while (nodes_[piece.node].right != 0) {
-    const std::uint32_t children[] = {piece.node + 1, nodes_[piece.node].right};
-    const Value a = value_of(nodes_[children[0]], receiver);
-    const Value b = value_of(nodes_[children[1]], receiver);
-    const double both = a.estimate + b.estimate;
-    if (!(both > 0.0)) return;  // closer to, nothing of it reaches the receiver
-    const double share = a.estimate / both;
-    const bool left = t < share || !(b.estimate > 0.0);
-    t = left ? t / share : (t - share) / (1.0 - share);
-    expected *= left ? share : 1.0 - share;
-    piece = {children[left ? 0 : 1], left ? a : b};
+std::optional<LightTree::Pick> LightTree::descend(const Receiver& receiver, std::uint32_t node,
+                                                  double t) const {
+  double probability = 1.0;
+  while (nodes_[node].right != 0) {
+    const double a = value_of(nodes_[node + 1], receiver).estimate;
+    const double b = value_of(nodes_[nodes_[node].right], receiver).estimate;
+    if (!(a + b > 0.0)) return std::nullopt;  // seen closer, nothing of it reaches the receiver
+    const double share = a / (a + b);
+    const bool left = t < share || !(b > 0.0);
+    t = std::min(left ? t / share : (t - share) / (1.0 - share), 1.0);
+    probability *= left ? share : 1.0 - share;
+    node = left ? node + 1 : nodes_[node].right;
   }
-  chosen.push_back({nodes_[piece.node].light, 1.0 / expected});
+  return Pick{nodes_[node].light, probability, t};
+}
+
+std::optional<LightTree::Pick> LightTree::pick(const Vec3& point, double u) const {
+  Receiver receiver;
+  receiver.point = point;
+  receiver.normal = Vec3(0.0);
+  if (nodes_.empty() || !(value_of(nodes_[0], receiver).bound > 0.0)) return std::nullopt;
+  return descend(receiver, 0, u);
 }
 
 }  // namespace earthshine::scenes

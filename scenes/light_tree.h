@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "scenes/scene.h"
@@ -26,7 +27,8 @@ struct LightBounds {
 // What asks for light: a surface with the reflectance diffuse + specular cos^shininess(alpha), of
 // which only the proportion counts here.
 struct Receiver {
-  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
+  Vec3 point{0.0};
+  Vec3 normal{0.0, 0.0, 1.0};    // 0: light counts from whichever side it comes
   Vec3 mirrored{0.0, 0.0, 1.0};  // the mirror direction of the view
   double diffuse = 1.0, specular = 0.0, shininess = 1.0;
 };
@@ -48,6 +50,15 @@ class LightTree {
   // spread u give evenly spread lights. Lights that cannot reach the receiver are left out.
   void choose(const Receiver& receiver, double u, double share,
               std::vector<LightChoice>& chosen) const;
+
+  // One light, by what each may give the point, whichever way a surface there faces. `rest` is what
+  // the choice has left of u: uniform in [0, 1) for every light. Nothing if none can reach the
+  // point.
+  struct Pick {
+    std::size_t light;
+    double probability, rest;
+  };
+  [[nodiscard]] std::optional<Pick> pick(const Vec3& point, double u) const;
 
   // Adds the lights whose boxes a ray meets before `reach_m`.
   void along(const Vec3& origin, const Vec3& direction, double reach_m,
@@ -81,8 +92,9 @@ class LightTree {
                       std::uint32_t* last);
   void along(std::uint32_t node, const Vec3& origin, const Vec3& direction, double reach_m,
              std::vector<std::size_t>& lights) const;
-  void draw(const Receiver& receiver, Piece piece, double t, double expected,
-            std::vector<LightChoice>& chosen) const;
+  // From a node down to a light, for t uniform in [0, 1).
+  [[nodiscard]] std::optional<Pick> descend(const Receiver& receiver, std::uint32_t node,
+                                            double t) const;
   [[nodiscard]] static Value value_of(const Node& node, const Receiver& receiver);
 
   std::vector<Node> nodes_;  // a fork stands before its children

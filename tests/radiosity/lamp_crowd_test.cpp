@@ -37,7 +37,7 @@ scenes::Scene room_of_lamps(bool in_one_group) {
 }
 
 std::vector<LightSource> sources_of(const tests::Prepared& prepared) {
-  return find_sources(prepared.scene, prepared.groups, prepared.effects, 16);
+  return find_sources(prepared.scene, prepared.groups, prepared.effects, 4);
 }
 
 TEST(LampCrowd, ManyLampsOfOneGroupAreOneSourceOfTheirWholeFlux) {
@@ -59,7 +59,7 @@ TEST(LampCrowd, GivesPatchesTheLightOfItsLampsOneByOne) {
   // Mean over seeds of the flux that lands on every object, within four standard errors of that of
   // lamps sampled each for itself (groups of 16).
   const scenes::Scene scene[] = {room_of_lamps(true), room_of_lamps(false)};
-  const int seeds = 16;
+  const int seeds = 8;
   const std::size_t objects = scene[0].objects.size();
   std::vector<double> mean[2], square[2];
   std::uint64_t rays[2] = {0, 0};
@@ -92,7 +92,7 @@ TEST(LampCrowd, GivesPatchesTheLightOfItsLampsOneByOne) {
       variance += std::max(0.0, square[which][k] - m * m) / (seeds - 1);
     }
     EXPECT_NEAR(mean[0][k], mean[1][k], 4.0 * std::sqrt(variance)) << k;
-    EXPECT_LT(std::sqrt(variance), 0.01 * mean[1][k]) << k;
+    EXPECT_LE(std::sqrt(variance), 0.01 * mean[1][k]) << k;  // the screen's front is dark
   }
 }
 
