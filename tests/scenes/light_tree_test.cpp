@@ -115,8 +115,8 @@ TEST(LightTree, LightsThatMatterAreAlwaysChosenWhole) {
     chosen.clear();
     tree.choose(receiver, 0.3, share, chosen);
     for (std::size_t k = 0; k < lamps.size(); ++k) {
-      // The tree knows the total from its bounds, which are too wide by a factor of a few: of lights
-      // four times above the share none may be left to chance.
+      // The tree knows the total from its bounds, which are too wide by a factor of a few: of
+      // lights four times above the share none may be left to chance.
       if (contribution(lamps[k], receiver) < 4.0 * share * all || all <= 0.0) continue;
       ++mattering;
       const auto found = std::find_if(chosen.begin(), chosen.end(),
