@@ -26,8 +26,7 @@ struct Crowd {
 
   void sample(const Vec3& point, const Vec3& normal, double u, double v,
               std::vector<LightSample>& samples) const {
-    thread_local std::vector<scenes::LightChoice> chosen;
-    chosen.clear();
+    std::vector<scenes::LightChoice> chosen;
     scenes::Receiver receiver;
     receiver.point = point;
     receiver.normal = normal;

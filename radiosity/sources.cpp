@@ -15,16 +15,14 @@ namespace {
 using scenes::LightSample;
 
 LightSource sun_source(const scenes::Scene& scene, std::size_t group, int points) {
-  const scenes::Sun& sun = *scene.sun;
   const Rgb illuminance = scenes::sun_sample_illuminance(scene);
-  const double radius = base::radians(sun.angular_radius_deg);
   Source source;
   source.key = 1;
   source.group = group;
   source.points = points;
-  source.sample = [&sun, illuminance, radius](const Vec3&, double u, double v) {
-    return LightSample{scenes::sample_cone(sun.direction, radius, u, v),
-                       std::numeric_limits<double>::infinity(), illuminance};
+  source.sample = [&scene, illuminance](const Vec3&, double u, double v) {
+    return LightSample{scenes::sample_sun(scene, u, v), std::numeric_limits<double>::infinity(),
+                       illuminance};
   };
   return {{}, std::move(source), Rgb(0.0), {}};
 }

@@ -32,8 +32,6 @@ LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups
     sun_illuminance_lx_ = distributed_
                               ? scene.sun->illuminance_lx * scenes::visible_sun_share(scene)
                               : scenes::sun_sample_illuminance(scene);
-    // The report's lights have no extent: its Sun casts hard shadows.
-    sun_radius_rad_ = distributed_ ? 0.0 : base::radians(scene.sun->angular_radius_deg);
     add({Kind::Sun, groups.sun}, 1);
   }
   if (effects.earth && (distributed_ || !effects.earth_by_gather)) {
@@ -87,8 +85,7 @@ scenes::LightTree LightSampler::tree_of(const std::vector<std::size_t>& lamps) c
 std::optional<LightSampler::SeenLamp> LightSampler::seen_lamp(const Vec3& origin,
                                                               const Vec3& direction,
                                                               double nearer_than_m) const {
-  thread_local std::vector<std::size_t> met;
-  met.clear();
+  std::vector<std::size_t> met;
   surfaces_.tree.along(origin, direction, nearer_than_m, met);
   std::optional<SeenLamp> seen;
   for (const std::size_t k : met) {
@@ -140,7 +137,8 @@ scenes::LightSample LightSampler::sample(std::size_t index, const Vec3& point, d
   scenes::LightSample sample;
   switch (light.kind) {
     case Kind::Sun:
-      sample = {scenes::sample_cone(scene_.sun->direction, sun_radius_rad_, u, v),
+      // The report's lights have no extent: its Sun casts hard shadows.
+      sample = {distributed_ ? scene_.sun->direction : scenes::sample_sun(scene_, u, v),
                 std::numeric_limits<double>::infinity(), sun_illuminance_lx_};
       break;
     case Kind::Earth: {

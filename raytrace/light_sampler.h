@@ -69,7 +69,6 @@ class LightSampler {
   Crowd surfaces_{scenes::LightTree({}), {}};  // lamps that a ray can meet, by their number there
   std::vector<scenes::EmitterSet> emitters_;
   Rgb sun_illuminance_lx_{0.0};
-  double sun_radius_rad_ = 0.0;
   double earth_half_angle_rad_ = 0.0;
   double earth_solid_angle_sr_ = 0.0;
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/ies_numbers.h"
 #include "scenes/input_file.h"
 #include "scenes/message_text.h"
 #include "scenes/text_lines.h"
@@ -15,6 +16,8 @@ namespace {
 
 using base::Blame;
 using base::Error;
+
+using Numbers = IesNumbers;
 
 constexpr std::size_t most_angles = 4096;                  // in one direction
 constexpr std::size_t most_values = std::size_t{1} << 20;  // in the table as the file has it
@@ -32,93 +35,6 @@ std::string_view whole_line(const TextLines& lines) {
   return {first.text.data(),
           static_cast<std::size_t>(last.text.data() + last.text.size() - first.text.data())};
 }
-
-// The numbers after the TILT line, in whatever lines they stand; commas separate them too.
-class Numbers {
- public:
-  explicit Numbers(TextLines& lines, std::string file) : lines_(lines), file_(std::move(file)) {}
-
-  // `what` completes "the file ends where ... is wanted".
-  [[nodiscard]] double next(std::string_view what) {
-    if (!find()) {
-      throw Error(Blame::Input, base::Location{file_, last_line_},
-                  fmt::format("the file ends where {} is wanted", what),
-                  "a file of IES LM-63 holds as many numbers as its counts announce",
-                  "The file is cut off, or a count is wrong");
-    }
-    return lines_.number(word_);
-  }
-  [[nodiscard]] std::size_t count(std::string_view what, std::size_t low, std::size_t high) {
-    const double value = next(what);
-    if (!(value >= static_cast<double>(low) && value <= static_cast<double>(high)) ||
-        value != std::floor(value)) {
-      fail(fmt::format("{} is {}", what, in_quotes(word_.text)),
-           fmt::format("allowed is a whole number from {} to {}", low, high));
-    }
-    return static_cast<std::size_t>(value);
-  }
-  [[nodiscard]] double at_least(double low, bool above, std::string_view what) {
-    const double value = next(what);
-    if (above ? value <= low : value < low) {
-      fail(fmt::format("{} is {}", what, in_quotes(word_.text)),
-           fmt::format("allowed are numbers {} {}", above ? "above" : "from", low));
-    }
-    return value;
-  }
-  void skip(std::string_view what) { static_cast<void>(next(what)); }
-  // Angles that grow from one to the next.
-  [[nodiscard]] std::vector<double> angles(std::size_t count, std::string_view what) {
-    std::vector<double> list;
-    for (std::size_t k = 0; k < count; ++k) {
-      const double angle = next(fmt::format("{} {} of {}", what, k + 1, count));
-      if (k > 0 && !(angle > list.back())) {
-        fail(fmt::format("{} {} of {} is {} after {}", what, k + 1, count, in_quotes(word_.text),
-                         list.back()),
-             "angles grow from one to the next", "Check the counts of angles too");
-      }
-      list.push_back(angle);
-    }
-    return list;
-  }
-  void expect_end() {
-    if (find()) {
-      fail(fmt::format("{} follows the last candela value", in_quotes(word_.text)),
-           "a file of IES LM-63 holds as many numbers as its counts announce",
-           "Check the counts of angles");
-    }
-  }
-  [[noreturn]] void fail(std::string_view found, std::string_view allowed,
-                         std::string_view remedy = {}) const {
-    throw Error(Blame::Input, lines_.where(word_), found, allowed, remedy);
-  }
-
- private:
-  [[nodiscard]] bool find() {
-    while (true) {
-      while (rest_.text.empty() && in_line_ < lines_.words().size()) {
-        rest_ = lines_.words()[in_line_++];
-        last_line_ = rest_.line;
-      }
-      if (rest_.text.empty()) {
-        in_line_ = 0;
-        if (!lines_.next()) return false;
-        continue;
-      }
-      const std::size_t comma = std::min(rest_.text.find(','), rest_.text.size());
-      word_ = {rest_.text.substr(0, comma), rest_.line, rest_.column};
-      const std::size_t used = std::min(comma + 1, rest_.text.size());
-      rest_.text.remove_prefix(used);
-      rest_.column += static_cast<int>(used);
-      if (!word_.text.empty()) return true;
-    }
-  }
-
-  TextLines& lines_;
-  std::string file_;
-  std::size_t in_line_ = static_cast<std::size_t>(-1);  // the TILT line itself is used up
-  int last_line_ = 0;
-  Word word_, rest_;
-};
 
 // Until 1991 the number after the ballast factor was a factor too; since 1995 it is reserved, and
 // since 2019 it says how the file was made.
@@ -184,7 +100,7 @@ std::optional<TiltTable> read_tilt(const TextLines& lines, const Head& head, Num
   TiltTable table;
   table.angle_deg = numbers.angles(pairs, "tilt angle");
   for (std::size_t k = 0; k < pairs; ++k) {
-    table.factor.push_back(numbers.at_least(0.0, false, "a tilt factor"));
+    table.factor.push_back(numbers.not_negative("a tilt factor"));
   }
   return table;
 }
@@ -255,7 +171,7 @@ Luminaire parse_ies(std::string_view bytes, const std::string& file) {
 
   numbers.skip("the number of lamps");
   numbers.skip("the flux of a lamp");
-  double factor = numbers.at_least(0.0, true, "the candela multiplier");
+  double factor = numbers.above_zero("the candela multiplier");
   const std::size_t rows = numbers.count("the number of vertical angles", 2, most_angles);
   const std::size_t planes = numbers.count("the number of horizontal angles", 1, most_angles);
   if (rows * planes > most_values) {
@@ -272,9 +188,9 @@ Luminaire parse_ies(std::string_view bytes, const std::string& file) {
     // Negative sizes stand for round openings.
     luminaire.opening_m = std::max(luminaire.opening_m, unit_m * std::abs(numbers.next(side)));
   }
-  factor *= numbers.at_least(0.0, true, "the ballast factor");
+  factor *= numbers.above_zero("the ballast factor");
   if (head.second_factor) {
-    factor *= numbers.at_least(0.0, true, "the ballast-lamp photometric factor");
+    factor *= numbers.above_zero("the ballast-lamp photometric factor");
   } else {
     numbers.skip("the number after the ballast factor");
   }
@@ -288,8 +204,7 @@ Luminaire parse_ies(std::string_view bytes, const std::string& file) {
   std::vector<double> candela;
   for (std::size_t k = 0; k < rows * planes; ++k) {
     candela.push_back(
-        factor *
-        numbers.at_least(0.0, false, fmt::format("candela value {} of {}", k + 1, rows * planes)));
+        factor * numbers.not_negative(fmt::format("candela value {} of {}", k + 1, rows * planes)));
   }
   numbers.expect_end();
   const double peak = *std::max_element(candela.begin(), candela.end());

@@ -131,6 +131,27 @@ TEST(Plates, SunAtTheLimbShinesWithWhatIsLeftOfItsDisc) {
   }
 }
 
+TEST(Plates, SunAtTheLimbCastsThePenumbraOfWhatIsLeftOfIt) {
+  // Half of the disc is over the limb (x > 0 of the plate); a screen at 2 m hides what is further
+  // than c radii from the limb: left are the slices from 0 to c.
+  const double reach = 2.0 * std::tan(base::radians(0.2666));
+  for (const double c : {-0.3, 0.2, 0.5, 0.8}) {
+    PlateScene plate;
+    plate.scene.sun = scenes::Sun{};
+    plate.scene.sun->direction = Vec3(0, 0, 1);
+    scenes::Earth earth = uniform_earth(69.6);
+    earth.radiance = Rgb(0.0);
+    earth.direction = Vec3(-std::sin(base::radians(69.6)), 0.0, std::cos(base::radians(69.6)));
+    plate.scene.earth = earth;
+    plate.quad(plate.black, {c * reach, -5, 2}, {5, -5, 2}, {5, 5, 2}, {c * reach, 5, 2});
+    const double exact = c > 0.0 ? 133100.0 * (0.5 - beyond_chord(c)) : 0.0;
+    for (const Estimate& e : {solved(plate.scene, 64), pictured(plate.scene, 64)}) {
+      EXPECT_NEAR(e.mean, exact, 4.0 * e.std_error + 2e-5 * 133100.0) << c;
+      EXPECT_LT(e.std_error, 0.02 * 133100.0);
+    }
+  }
+}
+
 TEST(Plates, LambertEarthGivesTiltedPlatesTheTable) {
   // A of E = albedo E_sun A at 425 km, by independent integration to four digits: a plate that
   // faces the nadir, and vertical ones on the Sun's side and away from it. The plate stays, the

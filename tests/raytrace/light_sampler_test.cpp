@@ -63,6 +63,15 @@ TEST(LightSampler, DistributedLightsAreNeverLeftToChance) {
   std::vector<scenes::LightChoice> chosen;
   lights.choose({}, 0.5, chosen);
   EXPECT_EQ(chosen.size(), 50U + 4 * 50U);
+  // The report's lights are fixed points: the same wherever they are seen from, near or far.
+  for (std::size_t k = 0; k < lights.count(); ++k) {
+    const auto place = [&](const Vec3& point, double u) {
+      const scenes::LightSample sample = lights.sample(k, point, u, u);
+      return point + sample.distance_m * sample.direction;
+    };
+    const Vec3 first = place({0.1, 0.2, 0.0}, 0.2);
+    EXPECT_NEAR(glm::length(first - place({1.0, -0.5, 1.9}, 0.8)), 0.0, 1e-9);
+  }
 }
 
 TEST(LightSampler, PictureOfManyLampsIsThatOfAllOfThem) {
