@@ -17,6 +17,7 @@
 #include "base/exr_file.h"
 #include "base/png_file.h"
 #include "base/tone.h"
+#include "raytrace/camera_check.h"
 #include "scenes/quality.h"
 #include "scenes/ray_query.h"
 
@@ -70,6 +71,7 @@ Rendered compute(const RenderCall& call, const Common& common, const LoadedScene
                  const scenes::Camera& camera, StageTimes& times) {
   const scenes::RayQuery query =
       times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
+  raytrace::check_camera(loaded.scene, query, camera);
   Rendered r;
   r.solver = solve_options(loaded.scene, common);
   if (call.indirect == raytrace::Indirect::Radiosity) {

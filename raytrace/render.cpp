@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "base/parallel.h"
+#include "raytrace/pixel_filter.h"
 #include "raytrace/shading.h"
 
 namespace earthshine::raytrace {
@@ -116,9 +117,14 @@ float aov_value(const scenes::Scene& scene, const CameraModel& camera, const Ray
 
 class Renderer {
  public:
-  Renderer(const ShadingScene& shared, const CameraModel& camera, const Sampling& sampling,
-           Frame& frame, const Channels& channels)
-      : shared_(shared), camera_(camera), sampling_(sampling), frame_(frame), channels_(channels) {}
+  Renderer(const ShadingScene& shared, const CameraModel& camera, const PixelFilter& filter,
+           const Sampling& sampling, Frame& frame, const Channels& channels)
+      : shared_(shared),
+        camera_(camera),
+        filter_(filter),
+        sampling_(sampling),
+        frame_(frame),
+        channels_(channels) {}
 
   void pixel(int x, int y, PixelShader& shader, float* squared_error) const {
     const auto index = static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.columns) +
@@ -133,7 +139,8 @@ class Renderer {
       const std::size_t count = std::min(rays.size(), samples - first);
       for (std::size_t k = 0; k < count; ++k) {
         const auto p = points.point(static_cast<std::uint32_t>(first + k));
-        rays[k] = camera_.ray(x + double(p[0]), y + double(p[1]), p[2], p[3]);
+        const auto offset = filter_.offset(p[0], p[1]);
+        rays[k] = camera_.ray(x + 0.5 + offset[0], y + 0.5 + offset[1], p[2], p[3]);
         shared_.query.set(packet, k, rays[k].origin, rays[k].direction);
       }
       shared_.query.closest(packet, count, hits);
@@ -180,6 +187,7 @@ class Renderer {
 
   const ShadingScene& shared_;
   const CameraModel& camera_;
+  const PixelFilter& filter_;
   const Sampling& sampling_;
   Frame& frame_;
   const Channels& channels_;
@@ -252,7 +260,8 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
       frame.image, options.per_light ? groups.names : std::vector<std::string>{}, extra);
   const std::size_t first_aov = frame.image.channels.size() - extra.size();
   const CameraModel model = make_camera_model(camera, options.columns, options.rows);
-  const Renderer renderer(shared, model, sampling, frame, channels);
+  const PixelFilter filter(camera);
+  const Renderer renderer(shared, model, filter, sampling, frame, channels);
 
   const int tiles_x = (options.columns + tile_edge_px - 1) / tile_edge_px;
   const int tiles_y = (options.rows + tile_edge_px - 1) / tile_edge_px;
