@@ -11,6 +11,7 @@
 #include "app/cctv.h"
 #include "app/command.h"
 #include "app/console.h"
+#include "app/over.h"
 #include "app/provenance.h"
 #include "app/solution.h"
 #include "base/error.h"
@@ -32,6 +33,11 @@ struct RenderCall {
   std::uint64_t distributed_lights = 64;
   std::vector<std::string> aovs;
   bool per_light = false, timings = false, json = false;
+  OverCall over;
+  // Wire over a photograph: no light is computed.
+  [[nodiscard]] bool wire_alone() const {
+    return over.asked() && !over.needs_picture() && output.empty() && cctv.empty();
+  }
 };
 
 void check_call(const RenderCall& call) {
@@ -51,7 +57,18 @@ void check_call(const RenderCall& call) {
   check_ending(call.output, "-o", ".exr");
   check_ending(call.png, "--png", ".png");
   check_ending(call.cctv, "--cctv", ".png");
-  check_outputs({call.output, call.png, call.cctv}, {call.scene.path, call.solution});
+  check_over(call.over, call.png, call.size.has_value());
+  if (call.output.empty() && !call.over.asked()) {
+    throw base::Error(base::Blame::Input, "--output", "no file is named for the picture", {},
+                      "Add -o FILE.exr");
+  }
+  if (call.wire_alone() && (call.json || call.timings || call.per_light || !call.aovs.empty())) {
+    throw base::Error(base::Blame::Input, "--over", "draws lines and renders nothing to report",
+                      "--json, --timings, --per-light and --aov belong to a picture",
+                      "Add -o FILE.exr, or leave them out");
+  }
+  check_outputs({call.output, call.png, call.cctv},
+                {call.scene.path, call.solution, call.over.photo});
   if (!call.solution.empty() && call.indirect != raytrace::Indirect::Radiosity) {
     throw base::Error(base::Blame::Input, "--solution",
                       fmt::format("--indirect {} reads no solution", indirect_name(call.indirect)),
@@ -68,7 +85,7 @@ struct Rendered {
 };
 
 Rendered compute(const RenderCall& call, const Common& common, const LoadedScene& loaded,
-                 const scenes::Camera& camera, StageTimes& times) {
+                 const scenes::Camera& camera, const std::optional<Size>& size, StageTimes& times) {
   const scenes::RayQuery query =
       times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
   raytrace::check_camera(loaded.scene, query, camera);
@@ -80,8 +97,8 @@ Rendered compute(const RenderCall& call, const Common& common, const LoadedScene
     r.solved = true;
     if (!common.quiet) note_backs(r.solution.report);
   }
-  r.options.columns = call.size ? call.size->columns : camera.columns;
-  r.options.rows = call.size ? call.size->rows : camera.rows;
+  r.options.columns = size ? size->columns : camera.columns;
+  r.options.rows = size ? size->rows : camera.rows;
   r.options.gather_rays = scenes::resolve_quality(loaded.scene).gather_rays;
   r.options.indirect = call.indirect;
   r.options.distributed_lights = static_cast<int>(call.distributed_lights);
@@ -144,13 +161,24 @@ void run(const RenderCall& call, const Common& common) {
   if (call.camera.empty() && loaded.scene.cameras.size() > 1 && !common.quiet) {
     note("note: no --camera, taking the first, \"" + camera.name + "\"");
   }
+  std::optional<base::Picture8> photo;
+  if (call.over.asked()) photo = read_photo(call.over, camera, common.quiet);
+  if (call.wire_alone()) {
+    const base::Picture8 drawn = lay_over(call.over, *photo, loaded.scene, camera, {});
+    return base::write_png(call.png, drawn.width, drawn.height, 3, drawn.rgb);
+  }
   std::optional<CctvSetup> cctv;
   if (!call.cctv.empty()) cctv = cctv_of_camera(loaded.scene, camera, common);
-  const Rendered r = compute(call, common, loaded, camera, times);
+  const std::optional<Size> size = photo ? Size{photo->width, photo->height} : call.size;
+  const Rendered r = compute(call, common, loaded, camera, size, times);
   std::optional<base::ToneMapped> tone;
   std::optional<degrade::Result> screen;
   if (!call.png.empty()) {
     tone = times.measure("tone map", [&] { return base::tone_map(r.frame.image); });
+  }
+  if (photo) {
+    tone->rgb = times.measure(
+        "over", [&] { return lay_over(call.over, *photo, loaded.scene, camera, tone->rgb).rgb; });
   }
   if (cctv) screen = times.measure("cctv", [&] { return run_chain(*cctv, r.frame.image); });
   base::ExrHeader header =
@@ -160,7 +188,7 @@ void run(const RenderCall& call, const Common& common) {
   times.measure("write", [&] {
     if (tone) base::write_png(call.png, r.options.columns, r.options.rows, 3, tone->rgb);
     if (screen) write_cctv(call.cctv, *cctv, *screen);
-    base::write_exr(call.output, r.frame.image, header);
+    if (!call.output.empty()) base::write_exr(call.output, r.frame.image, header);
   });
   if (call.json) {
     Json json = json_of(r, times);
@@ -181,12 +209,13 @@ Command add_render(CLI::App& program) {
   const auto file_option = [parser](const char* name, std::string& path, const char* help) {
     return parser->add_option(name, path, help)->type_name("FILE");
   };
-  file_option("-o,--output", call->output, "Linear picture in cd/m2 (OpenEXR)")->required();
+  file_option("-o,--output", call->output, "Linear picture in cd/m2 (OpenEXR)");
   file_option("--png", call->png, "Also a tone-mapped picture");
   file_option("--cctv", call->cctv, "Also the picture on the camera's CCTV monitor (PNG)");
   parser->add_option("--camera", call->camera, "Camera of the scene (default: its first)")
       ->type_name("NAME");
   add_size_option(*parser, call->size);
+  add_over_options(*parser, call->over);
   add_solution_option(*parser, call->solution);
   using raytrace::Indirect;
   const std::map<std::string, Indirect> names = {{"radiosity", Indirect::Radiosity},
