@@ -24,7 +24,7 @@ using base::Error;
 
 namespace {
 
-constexpr double crease_deg = 30.0;
+constexpr double crease_deg = 35.0;  // a cylinder of 12 sides or more is round
 constexpr double aspect_tolerance = 0.01;
 constexpr double rim_px = 2.0;  // dark, on both sides of a line: it shows on bright ground too
 constexpr base::Colour8 line_colour = {0, 255, 140};
