@@ -10,12 +10,11 @@
 #include <vector>
 
 #include "app/console.h"
+#include "app/render_call.h"
 #include "base/error.h"
 #include "base/overlay.h"
 #include "raytrace/camera.h"
-#include "raytrace/camera_check.h"
 #include "raytrace/wire.h"
-#include "scenes/ray_query.h"
 
 namespace earthshine::app {
 
@@ -34,10 +33,8 @@ constexpr double rim_alpha = 0.5;  // of the line's
 // Lines keep their weight on photographs of any size.
 double line_width_px(const base::Picture8& photo) { return std::max(1.0, photo.height / 600.0); }
 
-void draw_wire(base::Picture8& photo, const scenes::Scene& scene, const scenes::Camera& camera,
-               double alpha) {
-  const scenes::RayQuery query(scene);
-  raytrace::check_camera(scene, query, camera);
+void draw_wire(base::Picture8& photo, const scenes::Scene& scene, const scenes::RayQuery& query,
+               const scenes::Camera& camera, double alpha) {
   const auto segments =
       raytrace::visible_wire(raytrace::feature_edges(scene, crease_deg), query,
                              raytrace::make_camera_model(camera, photo.width, photo.height));
@@ -91,18 +88,26 @@ void add_over_options(CLI::App& command, OverCall& call) {
       ->type_name("A");
 }
 
-void check_over(const OverCall& call, const std::string& png, bool has_size) {
-  if (!call.asked()) {
-    if (!call.style && !call.alpha) return;
-    throw Error(Blame::Input, call.style ? "--over-style" : "--over-alpha",
-                "stands without a photograph", {}, "Add --over PHOTO.png");
+void check_over(const RenderCall& call) {
+  const OverCall& over = call.over;
+  const auto fail = [](const char* option, const char* found, const char* allowed,
+                       const char* remedy) {
+    throw Error(Blame::Input, option, found, allowed, remedy);
+  };
+  if (!over.asked()) {
+    if (!over.style && !over.alpha) return;
+    fail(over.style ? "--over-style" : "--over-alpha", "stands without a photograph", "",
+         "Add --over PHOTO.png");
   }
-  if (png.empty()) {
-    throw Error(Blame::Input, "--over", "has no file for its picture", {}, "Add --png FILE.png");
+  if (call.png.empty()) fail("--over", "has no file for its picture", "", "Add --png FILE.png");
+  if (call.size || call.crop) {
+    fail(call.size ? "--size" : "--crop", "disagrees with --over",
+         "the picture has the photograph's size", "Leave one of the two out");
   }
-  if (has_size) {
-    throw Error(Blame::Input, "--size", "disagrees with --over",
-                "the picture has the photograph's size", "Leave one of the two out");
+  if (call.wire_alone() && (call.json || call.timings || call.per_light || !call.aovs.empty())) {
+    fail("--over", "draws lines and renders nothing to report",
+         "--json, --timings, --per-light and --aov belong to a picture",
+         "Add -o FILE.exr, or leave them out");
   }
 }
 
@@ -121,11 +126,12 @@ base::Picture8 read_photo(const OverCall& call, const scenes::Camera& camera, bo
 }
 
 base::Picture8 lay_over(const OverCall& call, base::Picture8 photo, const scenes::Scene& scene,
-                        const scenes::Camera& camera, std::span<const std::uint8_t> rendered_rgb) {
+                        const scenes::RayQuery& query, const scenes::Camera& camera,
+                        std::span<const std::uint8_t> rendered_rgb) {
   const OverStyle style = call.style.value_or(OverStyle::Wire);
   if (call.needs_picture()) base::blend(photo, rendered_rgb, call.alpha.value_or(0.5));
-  if (style == OverStyle::Wire) draw_wire(photo, scene, camera, call.alpha.value_or(1.0));
-  if (style == OverStyle::Both) draw_wire(photo, scene, camera, 1.0);
+  if (style == OverStyle::Wire) draw_wire(photo, scene, query, camera, call.alpha.value_or(1.0));
+  if (style == OverStyle::Both) draw_wire(photo, scene, query, camera, 1.0);
   return photo;
 }
 

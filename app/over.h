@@ -10,6 +10,7 @@
 
 #include "app/command.h"
 #include "base/png_file.h"
+#include "scenes/ray_query.h"
 #include "scenes/scene.h"
 
 namespace earthshine::app {
@@ -32,8 +33,10 @@ struct OverCall {
 void add_over_options(CLI::App& command, OverCall& call);
 
 // Throws base::Error (Input) if the options do not go together: --over without --png to receive the
-// picture, with --size (the photograph has one), --over-style without --over.
-void check_over(const OverCall& call, const std::string& png, bool has_size);
+// picture, with --size (the photograph has one), with a part of the picture or with several
+// cameras, --over-style without --over.
+struct RenderCall;
+void check_over(const RenderCall& call);
 
 // Reads the photograph; a note on stderr where its aspect is not the camera's, unless `quiet`.
 // Throws base::Error (Input).
@@ -43,7 +46,8 @@ void check_over(const OverCall& call, const std::string& png, bool has_size);
 // The photograph with the scene over it. rendered_rgb: the tone-mapped picture of the photograph's
 // size, which only styles with needs_picture() look at.
 [[nodiscard]] base::Picture8 lay_over(const OverCall& call, base::Picture8 photo,
-                                      const scenes::Scene& scene, const scenes::Camera& camera,
+                                      const scenes::Scene& scene, const scenes::RayQuery& query,
+                                      const scenes::Camera& camera,
                                       std::span<const std::uint8_t> rendered_rgb);
 
 }  // namespace earthshine::app

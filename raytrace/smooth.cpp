@@ -149,14 +149,16 @@ class Smoother {
       slope_u = (c1 * mean + d11 * mean_u + d12 * mean_v) / determinant;
       slope_v = (c2 * mean + d12 * mean_u + d22 * mean_v) / determinant;
     }
-    double left = 0.0;
+    double left = 0.0, squares = 0.0;
     for (std::size_t k = 0; k < count_; ++k) {
       Neighbour& n = neighbours_[k];
       const double off = luminance_[n.index] - height - slope_u * n.u - slope_v * n.v;
       left += n.weight * off * off;
+      squares += n.weight * n.weight;
       n.weight *= a + b * n.u + c * n.v;
     }
-    const double unknowns = plane ? 3.0 : 1.0, count = static_cast<double>(count_);
+    // Uneven weights count as fewer neighbours (Kish), of which the unknowns take their part.
+    const double unknowns = plane ? 3.0 : 1.0, count = w * w / squares;
     noise_ = left / w * (count / std::max(1.0, count - unknowns));
   }
 

@@ -90,13 +90,15 @@ class Over(program.Case):
         self.says(self.refused(*over), "--png")
         self.says(self.refused(*over, "-o", "a.exr"), "--png")
         self.says(self.refused(*over, "--png", "o.png", "--size", "10x10"), "--size", "photograph")
+        self.says(self.refused(*over, "--png", "o.png", "--camera", "all"), "one camera")
+        self.says(self.refused(*over, "--png", "o.png", "--crop", "0,0,4x4"), "--crop")
         self.says(self.refused(*over, "--png", "photo.png"), "photo.png", "overwritten")
         self.says(self.refused(*over, "--png", "o.png", "--json"), "--json", "-o")
         self.says(self.refused(*over, "--png", "o.png", "--over-style", "lines"), "wire, blend, both")
         for alpha in ("1.5", "-0.1", "nan", "half", ""):
             self.says(self.refused(*over, "--png", "o.png", "--over-alpha", alpha), "0 to 1")
         self.says(self.refused("render", "ball.toml", "-o", "a.exr", "--over-style", "wire"), "--over PHOTO.png")
-        self.says(self.refused("render", "ball.toml", "--png", "a.png"), "--output")
+        self.says(self.refused("render", "ball.toml", "--png", "a.png"), "-o is missing")
 
     def test_broken_photographs(self):
         whole = photograph(120, 90)
