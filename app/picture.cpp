@@ -150,6 +150,12 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
   if (!files.png.empty()) {
     tone = times.measure("tone map", [&] { return base::tone_map(frame.image); });
   }
+  if (tone && call.photo) {
+    tone->rgb = times.measure("over", [&] {
+      return lay_over(call.over, *call.photo, studio.loaded.scene, studio.query, camera, tone->rgb)
+          .rgb;
+    });
+  }
   if (cctv) screen = times.measure("cctv", [&] { return run_chain(*cctv, frame.image); });
   base::ExrHeader header = provenance_header(
       {studio.loaded.scene, call.scene.overrides, camera, options, studio.light.solver,

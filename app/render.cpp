@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -17,6 +16,8 @@
 #include "app/solution.h"
 #include "app/study.h"
 #include "base/error.h"
+#include "base/png_file.h"
+#include "raytrace/camera_check.h"
 
 namespace earthshine::app {
 namespace {
@@ -40,7 +41,8 @@ void check_call(const RenderCall& call) {
   check_ending(call.output, "-o", ".exr");
   check_ending(call.png, "--png", ".png");
   check_ending(call.cctv, "--cctv", ".png");
-  if (call.output.empty() && !call.only_pixel) {
+  check_over(call);
+  if (call.output.empty() && !call.only_pixel && !call.over.asked()) {
     throw Error(Blame::Input, "render", "-o is missing", {}, "Name the picture: -o FILE.exr");
   }
   if (call.crop && !call.cctv.empty()) {
@@ -95,8 +97,9 @@ std::vector<Wanted> wanted_pictures(const RenderCall& call, const scenes::Scene&
   if (call.cameras.empty() && scene.cameras.size() > 1 && !quiet) {
     note("note: no --camera, taking the first, \"" + scene.cameras.front().name + "\"");
   }
-  if (call.only_pixel && cameras.size() > 1) {
-    throw Error(Blame::Input, "--only-pixel", "belongs to one camera", {}, "Name one --camera");
+  if ((call.only_pixel || call.over.asked()) && cameras.size() > 1) {
+    throw Error(Blame::Input, call.only_pixel ? "--only-pixel" : "--over", "belongs to one camera",
+                {}, "Name one --camera");
   }
   std::vector<Wanted> wanted;
   std::vector<std::string> outputs;
@@ -110,7 +113,7 @@ std::vector<Wanted> wanted_pictures(const RenderCall& call, const scenes::Scene&
     outputs.insert(outputs.end(), {picture.files.output, picture.files.png, picture.files.cctv});
     wanted.push_back(std::move(picture));
   }
-  check_outputs(outputs, {scene.path.string(), call.solution});
+  check_outputs(outputs, {scene.path.string(), call.solution, call.over.photo});
   return wanted;
 }
 
@@ -154,13 +157,25 @@ Solved find_light(const RenderCall& call, const Common& common, const LoadedScen
   return light;
 }
 
-void run(const RenderCall& call, const Common& common) {
+void run(RenderCall call, const Common& common) {
   check_call(call);
   StageTimes times;
   const LoadedScene loaded = times.measure("read", [&] { return load(call.scene, common.quiet); });
   const std::vector<Wanted> pictures = wanted_pictures(call, loaded.scene, common.quiet);
   const scenes::RayQuery query =
       times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
+  for (const Wanted& picture : pictures) {
+    raytrace::check_camera(loaded.scene, query, *picture.camera);
+  }
+  if (call.over.asked()) {
+    const scenes::Camera& camera = *pictures.front().camera;
+    call.photo = read_photo(call.over, camera, common.quiet);
+    call.size = Size{call.photo->width, call.photo->height};
+    if (call.wire_alone()) {
+      const auto drawn = lay_over(call.over, *call.photo, loaded.scene, query, camera, {});
+      return base::write_png(call.png, drawn.width, drawn.height, 3, drawn.rgb);
+    }
+  }
   const Solved light = find_light(call, common, loaded, query, times);
   Studio studio{call, common, loaded, query, light};
   Json reports = Json::array();
@@ -184,74 +199,6 @@ void run(const RenderCall& call, const Common& common) {
               fmt::format("What was finished is in {}", pictures[reports.size() - 1].files.output));
 }
 
-// Whole numbers between the marks of `pattern`: "," and "x" stand for themselves, each # for one.
-std::optional<std::vector<int>> numbers_like(std::string_view pattern, std::string_view text) {
-  std::vector<int> numbers;
-  const char *at = text.data(), *end = at + text.size();
-  for (const char mark : pattern) {
-    if (mark == '#') {
-      int number = 0;
-      const auto read = std::from_chars(at, end, number);
-      if (read.ec != std::errc() || number < 0 || *at == '-') return std::nullopt;
-      at = read.ptr;
-      numbers.push_back(number);
-    } else if (at == end || *at++ != mark) {
-      return std::nullopt;
-    }
-  }
-  return at == end ? std::optional(numbers) : std::nullopt;
-}
-
-void add_window_options(CLI::App& parser, RenderCall& call) {
-  parser
-      .add_option_function<std::string>(
-          "--crop",
-          [&call](const std::string& text) {
-            const auto n = numbers_like("#,#,#x#", text);
-            if (!n || (*n)[2] < 1 || (*n)[3] < 1) {
-              throw CLI::ValidationError(
-                  "--crop", "\"" + text +
-                                "\" is not X,Y,COLUMNSxROWS in whole pixels from the top left "
-                                "corner, such as 100,40,64x64");
-            }
-            call.crop = raytrace::Window{(*n)[0], (*n)[1], (*n)[2], (*n)[3]};
-          },
-          "Only this part of the picture, as it is in the whole one")
-      ->type_name("X,Y,CxR");
-  parser
-      .add_option_function<std::string>(
-          "--only-pixel",
-          [&call](const std::string& text) {
-            const auto n = numbers_like("#,#", text);
-            if (!n) {
-              throw CLI::ValidationError(
-                  "--only-pixel", "\"" + text +
-                                      "\" is not X,Y in whole pixels from the top left corner, "
-                                      "such as 100,40");
-            }
-            call.crop = raytrace::Window{(*n)[0], (*n)[1], 1, 1};
-            call.only_pixel = true;
-          },
-          "Replays one pixel and prints all of it; -o is not needed")
-      ->type_name("X,Y")
-      ->excludes("--crop");
-  parser
-      .add_option_function<std::string>(
-          "--time-limit",
-          [&call](const std::string& text) {
-            const char* end = text.data() + text.size();
-            const auto read = std::from_chars(text.data(), end, call.time_limit_s);
-            if (read.ec == std::errc() && read.ptr == end && call.time_limit_s > 0.0 &&
-                call.time_limit_s <= 1e7) {
-              return;
-            }
-            throw CLI::ValidationError("--time-limit",
-                                       "\"" + text + "\" is not a number of seconds above 0");
-          },
-          "The best picture in that time; the bytes then differ between runs")
-      ->type_name("SECONDS");
-}
-
 }  // namespace
 
 Command add_render(CLI::App& program) {
@@ -270,6 +217,7 @@ Command add_render(CLI::App& program) {
                    "files are called FILE-A, FILE-B")
       ->type_name("NAME");
   add_size_option(*parser, call->size);
+  add_over_options(*parser, call->over);
   add_window_options(*parser, *call);
   add_solution_option(*parser, call->solution);
   using raytrace::Indirect;

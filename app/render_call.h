@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/command.h"
+#include "app/over.h"
 #include "radiosity/solution.h"
 #include "raytrace/render.h"
 #include "scenes/ray_query.h"
@@ -25,7 +26,17 @@ struct RenderCall {
   std::uint64_t distributed_lights = 64;
   std::vector<std::string> aovs;
   bool per_light = false, timings = false, json = false;
+  OverCall over;
+  std::optional<base::Picture8> photo;  // of --over, once it is read
+
+  // Lines over a photograph: no light is computed.
+  [[nodiscard]] bool wire_alone() const {
+    return over.asked() && !over.needs_picture() && output.empty() && cctv.empty();
+  }
 };
+
+// --crop, --only-pixel, --time-limit.
+void add_window_options(CLI::App& parser, RenderCall& call);
 
 // The light of the scene, for all of its cameras.
 struct Solved {
