@@ -43,7 +43,7 @@ void check_call(const RenderCall& call) {
   check_ending(call.cctv, "--cctv", ".png");
   check_over(call);
   if (call.output.empty() && !call.only_pixel && !call.over.asked()) {
-    throw Error(Blame::Input, "render", "-o is missing", {}, "Name the picture: -o FILE.exr");
+    throw Error(Blame::Input, "--output", "is missing", {}, "Name the picture: -o FILE.exr");
   }
   if (call.crop && !call.cctv.empty()) {
     throw Error(Blame::Input, "--cctv", "the CCTV stage needs the whole picture", {},
