@@ -11,6 +11,7 @@
 #include "base/output_file.h"
 #include "base/png_file.h"
 #include "base/tone.h"
+#include "raytrace/camera_check.h"
 #include "scenes/quality.h"
 #include "studies/compare.h"
 #include "studies/difference_picture.h"
@@ -178,6 +179,7 @@ void run(const CompareCall& call, const Common& common) {
   options.solver = solve_options(loaded.scene, common);
   options.seed = common.seed;
   const scenes::RayQuery query(loaded.scene);
+  raytrace::check_camera(loaded.scene, query, camera);
   const studies::Comparison comparison =
       studies::compare({loaded.scene, loaded.groups, loaded.effects, query}, camera, options,
                        progress_of_stages(common));

@@ -164,7 +164,8 @@ class Passes {
     const auto cast = [&](const Window& window) {
       return gather_field(shared_.query, shared_.incoming, surface, camera_, window, how);
     };
-    const Window wide = widened(around, options_.shared.smooth_pixels + find_pixels, camera_);
+    const Window wide = widened(
+        around, options_.shared.smooth_pixels + find_pixels + shared_.filter.reach_px(), camera_);
     if (options_.time_limit_s > 0.0) how.rays = affordable_rays(wide, cast, how.rays);
     how.stop = [this] { return stops() || out_of_time(); };
     const auto pixels = static_cast<double>(around.pixel_count());

@@ -18,20 +18,25 @@ void shade_pixel(const ShadingScene& shared, const CameraModel& camera, int x, i
   const std::uint64_t number =
       static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(camera.columns) +
       static_cast<std::uint64_t>(x);
-  shader.begin_pixel(x, y, number, first, end - first);
+  shader.begin_pixel(number, first, end - first);
   const base::SobolOwen4 points(base::Key(shared.seed, base::Stream::Pixel, number));
   scenes::RayPacket packet;
   scenes::HitPacket hits;
   std::array<Ray, scenes::RayPacket::width> rays;
+  std::array<std::array<double, 2>, scenes::RayPacket::width> at;  // in the picture, px
   for (std::size_t from = first; from < end; from += rays.size()) {
     const std::size_t count = std::min<std::size_t>(rays.size(), end - from);
     for (std::size_t k = 0; k < count; ++k) {
       const auto p = points.point(static_cast<std::uint32_t>(from + k));
-      rays[k] = camera.ray(x + double(p[0]), y + double(p[1]), p[2], p[3]);
+      const auto offset = shared.filter.offset(p[0], p[1]);
+      at[k] = {x + 0.5 + offset[0], y + 0.5 + offset[1]};
+      rays[k] = camera.ray(at[k][0], at[k][1], p[2], p[3]);
       shared.query.set(packet, k, rays[k].origin, rays[k].direction);
     }
     shared.query.closest(packet, count, hits);
     for (std::size_t k = 0; k < count; ++k) {
+      shader.look_near(static_cast<int>(std::floor(at[k][0])),
+                       static_cast<int>(std::floor(at[k][1])));
       shader.add_sample(from + k, rays[k],
                         {hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0});
     }

@@ -136,6 +136,7 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
   }
   shared.seed = options.seed;
   shared.camera_position = model.position;
+  shared.filter = PixelFilter(camera);
 
   const Window window = window_of(options);
   frame.window = window;

@@ -37,10 +37,7 @@ PixelShader::PixelShader(const ShadingScene& shared)
       gather_points_(base::Key(0, base::Stream::FinalGather, 0)),
       rng_(base::Key(0, base::Stream::Roulette, 0)) {}
 
-void PixelShader::begin_pixel(int x, int y, std::uint64_t pixel, std::size_t first,
-                              std::size_t count) {
-  x_ = x;
-  y_ = y;
+void PixelShader::begin_pixel(std::uint64_t pixel, std::size_t first, std::size_t count) {
   pixel_ = pixel;
   first_sample_ = first;
   source_samples_ = 0;

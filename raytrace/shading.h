@@ -9,6 +9,7 @@
 #include "base/random.h"
 #include "raytrace/gather_field.h"
 #include "raytrace/light_sampler.h"
+#include "raytrace/pixel_filter.h"
 #include "raytrace/render.h"
 
 namespace earthshine::raytrace {
@@ -37,7 +38,8 @@ struct ShadingScene {
   DiffuseSource diffuse = DiffuseSource::Gather;
   const GatherField* field = nullptr;  // with DiffuseSource::Field
   Vec3 camera_position{0.0};
-  int gather_rays = 16;  // per camera sample
+  PixelFilter filter{scenes::Camera{}};  // of the camera samples
+  int gather_rays = 16;                  // per camera sample
   std::uint64_t seed = 1;
   std::vector<bool> sampled_emitter = {};  // per material: shadow rays carry its light
 };
@@ -61,7 +63,13 @@ class PixelShader {
 
   // Keys all random numbers to the pixel (its number in the whole picture) and clears the sums.
   // Samples first .. first + count - 1 of the pixel follow.
-  void begin_pixel(int x, int y, std::uint64_t pixel, std::size_t first, std::size_t count);
+  void begin_pixel(std::uint64_t pixel, std::size_t first, std::size_t count);
+  // The pixel that the next sample falls into (a wide pixel filter puts some beside their own):
+  // there the gather field is looked up.
+  void look_near(int x, int y) {
+    x_ = x;
+    y_ = y;
+  }
   void add_sample(std::size_t sample, const Ray& ray, const scenes::Hit& hit);
   void end_pixel();  // traces what is still queued
 

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "raytrace/gather_field.h"
+#include "raytrace/local_fit.h"
 #include "raytrace/same_surface.h"
 
 namespace earthshine::raytrace {
@@ -14,7 +15,9 @@ namespace {
 
 constexpr int steps_each_way = 4;  // neighbours looked at: (2 * 4 + 1)^2, further apart if need be
 constexpr std::size_t most_neighbours = (2 * steps_each_way + 1) * (2 * steps_each_way + 1);
-constexpr std::size_t fewest_for_a_plane = 6;
+// Irradiance is linear in the normal as long as nothing crosses the horizon: neighbouring facets of
+// a curved surface may share that far.
+constexpr float most_turned = 0.2F;  // rad
 
 // Rounding of single-precision positions, and the spacing across the view of points one pixel
 // apart.
@@ -28,9 +31,13 @@ float stretch(const GatherPoint& point) {
   return 1.0F / std::max(cosine, 0.05F);
 }
 
+using Fit = LocalFit<5>;
+
 struct Neighbour {
   std::size_t index;
-  double u, v, weight;  // (u, v) in the tangent plane, in radii of the kernel
+  Fit::Values
+      x;  // 1; position in the tangent plane, in radii of the kernel; how the normal is turned
+  double weight;
 };
 
 class Smoother {
@@ -106,58 +113,54 @@ class Smoother {
         if (other.reach_m <= 0.0F) continue;
         const glm::vec3 way = other.position - at.position;
         const float of_pair = std::max(share_ * std::min(at.reach_m, other.reach_m), least);
-        const float d2 = glm::dot(way, way) / (of_pair * of_pair);
+        const glm::vec3 turned = other.normal - at.normal;
+        const float d2 = glm::dot(way, way) / (of_pair * of_pair) +
+                         glm::dot(turned, turned) / (most_turned * most_turned);
         if (d2 >= 1.0F ||
             !same_surface(at.position, at.normal, other.position, other.normal, slack(at))) {
           continue;
         }
-        neighbours_[count_++] = {q, double(glm::dot(way, tangent) / radius),
-                                 double(glm::dot(way, bitangent) / radius),
+        neighbours_[count_++] = {q,
+                                 {1.0, double(glm::dot(way, tangent) / radius),
+                                  double(glm::dot(way, bitangent) / radius),
+                                  double(glm::dot(turned, tangent) / most_turned),
+                                  double(glm::dot(turned, bitangent) / most_turned)},
                                  double((1.0F - d2) * (1.0F - d2))};
       }
     }
   }
 
-  // Kernel weights become the weights of a linear estimate: of a plane's value at (0, 0) where the
-  // neighbours span one, else of the mean. Also the noise that the fit leaves, per point.
+  // Kernel weights become the weights of a linear estimate of the value at the point itself. Also
+  // the noise that the fit leaves, per point.
   void weigh() {
-    double w = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0;
+    Fit fit;
+    Fit::Values right{};
+    double sum = 0.0, squares = 0.0;
     for (std::size_t k = 0; k < count_; ++k) {
       const Neighbour& n = neighbours_[k];
-      w += n.weight, u += n.weight * n.u, v += n.weight * n.v;
-      uu += n.weight * n.u * n.u, uv += n.weight * n.u * n.v, vv += n.weight * n.v * n.v;
+      fit.add(n.weight, n.x);
+      for (std::size_t i = 0; i < right.size(); ++i) {
+        right[i] += n.weight * n.x[i] * luminance_[n.index];
+      }
+      sum += n.weight;
+      squares += n.weight * n.weight;
     }
-    // First row of the inverse of the normal matrix, by cofactors.
-    const double c0 = uu * vv - uv * uv, c1 = uv * v - u * vv, c2 = u * uv - uu * v;
-    const double determinant = w * c0 + u * c1 + v * c2;
-    const double size = w * (uu + vv) * (uu + vv);
-    const bool plane = count_ >= fewest_for_a_plane && determinant > 1e-4 * size;
-    const double a = plane ? c0 / determinant : 1.0 / w;
-    const double b = plane ? c1 / determinant : 0.0, c = plane ? c2 / determinant : 0.0;
-    double mean = 0.0, mean_u = 0.0, mean_v = 0.0;
-    for (std::size_t k = 0; k < count_; ++k) {
-      const Neighbour& n = neighbours_[k];
-      mean += n.weight * luminance_[n.index];
-      mean_u += n.weight * n.u * luminance_[n.index];
-      mean_v += n.weight * n.v * luminance_[n.index];
-    }
-    // The plane's slopes in luminance, for what is left of it.
-    double height = mean / w, slope_u = 0.0, slope_v = 0.0;
-    if (plane) {
-      height = (c0 * mean + c1 * mean_u + c2 * mean_v) / determinant;
-      const double d11 = w * vv - v * v, d12 = u * v - w * uv, d22 = w * uu - u * u;
-      slope_u = (c1 * mean + d11 * mean_u + d12 * mean_v) / determinant;
-      slope_v = (c2 * mean + d12 * mean_u + d22 * mean_v) / determinant;
-    }
+    const auto unknowns = static_cast<double>(fit.factor());
+    const Fit::Values luminance = fit.solve(right), share = fit.solve({1.0});
     double left = 0.0;
     for (std::size_t k = 0; k < count_; ++k) {
       Neighbour& n = neighbours_[k];
-      const double off = luminance_[n.index] - height - slope_u * n.u - slope_v * n.v;
+      double off = luminance_[n.index], part = 0.0;
+      for (std::size_t i = 0; i < right.size(); ++i) {
+        off -= luminance[i] * n.x[i];
+        part += share[i] * n.x[i];
+      }
       left += n.weight * off * off;
-      n.weight *= a + b * n.u + c * n.v;
+      n.weight *= part;
     }
-    const double unknowns = plane ? 3.0 : 1.0, count = static_cast<double>(count_);
-    noise_ = left / w * (count / std::max(1.0, count - unknowns));
+    // Uneven weights count as fewer neighbours (Kish), of which the unknowns take their part.
+    const double count = sum * sum / squares;
+    noise_ = left / sum * (count / std::max(1.0, count - unknowns));
   }
 
   const GatherField& field_;

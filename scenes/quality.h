@@ -21,7 +21,9 @@ struct QualityKnobs {
 };
 
 // A knob that the scene sets wins. Otherwise a wanted relative error e sets it by the measured laws
-//   gather noise   ~ gather_rays^-1/2     256 rays for 0.02
+//   gather noise   ~ gather_rays^-1/2     32 rays for 0.02 if shared, else 256
+//   sharing        ~ smooth_share^2       a quarter of the mean ray for 0.02
+//   camera samples to a noise of e        their spread overstates what low-discrepancy samples leave
 //   radiosity      ~ form_factor_rays^-0.6  1024 rays for 0.02
 //   patch size     ~ patch_edge           (scene diagonal)/48 for 0.02
 // rounded up to powers of two for rays; without a wanted error, e = 0.02.

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -95,6 +96,10 @@ struct Earth {
   Rgb radiance{0.0};  // uniform model, cd/m^2
 };
 
+// How the light around a pixel's centre is weighed; raytrace/pixel_filter.h has the formulas.
+enum class FilterShape { Box, Triangle, Gaussian, BlackmanHarris };
+[[nodiscard]] std::string_view filter_name(FilterShape shape);  // as scene files have it
+
 struct Camera {
   std::string name;
   Vec3 position{0.0};
@@ -106,6 +111,9 @@ struct Camera {
   double focus_m = 0.0;     // } thin lens when both are positive
   double aperture_m = 0.0;  // } diameter
   std::string cctv;         // a [[cctv]] of the scene or one that ships; empty: none
+  FilterShape filter = FilterShape::Box;
+  double filter_width_px = 1.0;  // full width of the filter's support
+  base::Location where;          // of its position in the scene file
 };
 
 // A [[cctv]] or [monitor] table as written; degrade/ knows its keys and checks them.
