@@ -37,7 +37,7 @@ class IesNumbers {
   TextLines& lines_;
   std::string file_;
   std::size_t in_line_ = static_cast<std::size_t>(-1);  // the line it begins after is used up
-  int last_line_ = 0;
+  int last_line_ = lines_.line();  // of the words so far
   Word word_, rest_;
 };
 

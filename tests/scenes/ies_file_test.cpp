@@ -261,10 +261,10 @@ TEST(Photometry, SampledDirectionsHaveTheTablesMoments) {
   // the interpolated table. Independent draws; each lies in [-1, 1], so that the standard error of
   // a mean of N is below 1 / sqrt(N).
   IesText file;
-  file.vertical = {0.0, 10.0, 35.0, 90.0, 120.0, 180.0};
+  file.vertical = {0.0, 80.0, 120.0, 180.0};  // wide bands: how theta lies within one counts
   file.horizontal = {0.0, 45.0, 100.0, 180.0, 300.0, 360.0};
   file.candela = [](double theta, double phi) {
-    return theta == 35.0 && phi > 90.0 ? 0.0 : lopsided(theta, phi);
+    return theta == 80.0 && phi > 90.0 ? 0.0 : lopsided(theta, phi);
   };
   const auto light = parse_ies(file.text(), "a").light;
   double exact[3] = {0, 0, 0};
