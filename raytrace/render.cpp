@@ -113,7 +113,8 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
                                ? solution.soft_radiosity
                                : std::vector<float>{},
                            options.per_light);
-  const LightSampler lights(scene, groups, effects, options.indirect, options.distributed_lights);
+  const LightSampler lights(scene, groups, effects, options.indirect, options.distributed_lights,
+                            options.per_light);
   const BrightPatches bright = reads_solution ? BrightPatches(solution) : BrightPatches();
   const std::size_t layers = options.per_light ? std::max<std::size_t>(1, groups.count()) : 1;
   const std::size_t earth_layer =
@@ -129,11 +130,6 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
   }
   shared.gathers =
       options.indirect != Indirect::Distributed && (reads_solution || effects.earth_by_gather);
-  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
-    const bool has_surface = scene.lamps[k].kind == scenes::LampKind::Rectangle ||
-                             scene.lamps[k].kind == scenes::LampKind::Disk;
-    if (has_surface && groups.lamp[k] != scenes::no_group) shared.area_lamps.push_back(k);
-  }
   shared.sampled_emitter.assign(scene.materials.size(), true);
   if (options.indirect == Indirect::Radiosity) {
     shared.sampled_emitter = radiosity::emitter_is_explicit(scene);

@@ -2,7 +2,7 @@
 // Scene + solution + camera -> frame. Who carries which light path (each by exactly one strategy):
 //
 //   source seen by the camera itself       emission, sky radiance, lamp surfaces
-//   point, spot, rectangle, disk lamps;    shadow rays (diffuse and Phong lobe)
+//   lamps of every type;                   shadow rays (diffuse and Phong lobe)
 //     Sun; emitters that are explicit in
 //     radiosity
 //   Earth, wide                            gather rays that escape (diffuse), lobe rays (Phong)

@@ -74,8 +74,9 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   read_named(root, "material", [&](const TomlNode& node) {
     return scene.materials.emplace_back(read_material(node)).name;
   });
+  LuminaireShelf luminaires(path.parent_path());
   read_named(root, "light", [&](const TomlNode& node) {
-    return scene.lamps.emplace_back(read_lamp(node, unit_m)).name;
+    return scene.lamps.emplace_back(read_lamp(node, unit_m, luminaires)).name;
   });
   read_sky(scene, plain_table(root, "sun"), plain_table(root, "earth"), plain_table(root, "orbit"));
   if (const TomlNode* node = plain_table(root, "ambient")) {
