@@ -17,6 +17,7 @@
 #include "base/exr_file.h"
 #include "base/png_file.h"
 #include "base/tone.h"
+#include "raytrace/path_tracer.h"
 #include "scenes/quality.h"
 #include "scenes/ray_query.h"
 
@@ -51,6 +52,10 @@ void check_call(const RenderCall& call) {
   check_ending(call.png, "--png", ".png");
   check_ending(call.cctv, "--cctv", ".png");
   check_outputs({call.output, call.png, call.cctv}, {call.scene.path, call.solution});
+  if (!call.aovs.empty() && call.indirect == raytrace::Indirect::Paths) {
+    throw base::Error(base::Blame::Input, "--aov", "--indirect paths has no further layers", {},
+                      "Take them from a render without it");
+  }
   if (!call.solution.empty() && call.indirect != raytrace::Indirect::Radiosity) {
     throw base::Error(base::Blame::Input, "--solution",
                       fmt::format("--indirect {} reads no solution", indirect_name(call.indirect)),
@@ -88,6 +93,12 @@ Rendered compute(const RenderCall& call, const Common& common, const LoadedScene
   r.options.seed = common.seed;
   Progress progress("render", common.quiet);
   r.frame = times.measure("render", [&] {
+    if (call.indirect == raytrace::Indirect::Paths) {
+      return raytrace::trace_paths(loaded.scene, loaded.groups, loaded.effects, query, camera,
+                                   {r.options.columns, r.options.rows, r.options.gather_rays,
+                                    r.options.per_light, raytrace::PathSet::All, r.options.seed},
+                                   std::ref(progress));
+    }
     return raytrace::render(loaded.scene, loaded.groups, loaded.effects, query, r.solution, camera,
                             r.options, std::ref(progress));
   });
@@ -189,7 +200,8 @@ Command add_render(CLI::App& program) {
   using raytrace::Indirect;
   const std::map<std::string, Indirect> names = {{"radiosity", Indirect::Radiosity},
                                                  {"distributed", Indirect::Distributed},
-                                                 {"none", Indirect::None}};
+                                                 {"none", Indirect::None},
+                                                 {"paths", Indirect::Paths}};
   parser
       ->add_option_function<std::string>(
           "--indirect",
@@ -197,11 +209,13 @@ Command add_render(CLI::App& program) {
             const auto known = names.find(text);
             if (known == names.end()) {
               throw CLI::ValidationError(
-                  "--indirect", "\"" + text + "\" is not one of radiosity, distributed, none");
+                  "--indirect",
+                  "\"" + text + "\" is not one of radiosity, distributed, none, paths");
             }
             call->indirect = known->second;
           },
-          "radiosity (default), distributed (many lights, no interreflection), none")
+          "radiosity (default), distributed (many lights, no interreflection), none, paths (slow "
+          "reference)")
       ->type_name("HOW");
   add_whole_number(*parser, "--distributed-lights", call->distributed_lights, 1, 1U << 20U,
                    "Lights of --indirect distributed (default 64)");
