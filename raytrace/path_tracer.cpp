@@ -51,7 +51,7 @@ base::Image make_image(const PathOptions& options, const std::vector<std::string
 }
 
 // Mean of a pixel's paths per layer, and their luminance's variance as it goes (Welford 1962).
-struct PixelSums {
+struct PathSums {
   std::vector<Rgb> layers;
   double paths = 0.0, mean_luminance = 0.0, squares = 0.0;
 
@@ -69,7 +69,7 @@ struct PixelSums {
   [[nodiscard]] double variance_of_mean() const { return squares / (paths - 1.0) / paths; }
 };
 
-void store(const PixelSums& sums, std::size_t pixel, base::Image& image) {
+void store(const PathSums& sums, std::size_t pixel, base::Image& image) {
   for (std::size_t c = 0; c < rgb; ++c) {
     float total = 0.0F;
     for (std::size_t layer = 0; layer < sums.layers.size(); ++layer) {
@@ -105,6 +105,7 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
   const CameraModel model = make_camera_model(camera, options.columns, options.rows);
 
   Frame frame;
+  frame.window = {0, 0, options.columns, options.rows};
   frame.image = make_image(options, options.per_light ? groups.names : std::vector<std::string>{});
   const auto columns = static_cast<std::size_t>(options.columns);
   const auto rows = static_cast<std::size_t>(options.rows);
@@ -116,7 +117,7 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
     for (std::size_t x = 0; x < columns; ++x) {
       const std::size_t pixel = y * columns + x;
       const base::Key key(options.seed, base::Stream::Path, pixel);
-      PixelSums sums{std::vector<Rgb>(world.layers, Rgb(0.0))};
+      PathSums sums{std::vector<Rgb>(world.layers, Rgb(0.0))};
       for (int path = 0; path < options.paths_per_pixel; ++path) {
         base::Rng rng(key.with(static_cast<std::uint64_t>(path)));
         const double at_x = double(x) + rng.next();
@@ -135,6 +136,7 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
   });
   for (const RayCounts& rays : row_rays) frame.report.rays += rays;
   frame.report.camera_samples = options.paths_per_pixel;
+  frame.report.most_camera_samples = options.paths_per_pixel;
   frame.report.relative_noise = relative_noise(frame.image);
   frame.report.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
