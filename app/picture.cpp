@@ -10,6 +10,7 @@
 #include "base/exr_file.h"
 #include "base/png_file.h"
 #include "base/tone.h"
+#include "raytrace/path_tracer.h"
 #include "scenes/quality.h"
 
 namespace earthshine::app {
@@ -21,6 +22,11 @@ raytrace::RenderOptions options_of(const Studio& studio, const scenes::Camera& c
       raytrace::render_options(scenes::resolve_quality(studio.loaded.scene));
   options.columns = call.size ? call.size->columns : camera.columns;
   options.rows = call.size ? call.size->rows : camera.rows;
+  // Paths share nothing.
+  const bool alone = call.indirect == raytrace::Indirect::Paths && options.shared.on;
+  if (alone && !studio.loaded.scene.quality.gather_rays) {
+    options.gather_rays *= scenes::rays_alone_per_shared;
+  }
   if (call.crop) options.crop = *call.crop;
   options.indirect = call.indirect;
   options.distributed_lights = static_cast<int>(call.distributed_lights);
@@ -140,6 +146,13 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
   {
     Progress progress(fmt::format("render {}", camera.name), studio.common.quiet);
     frame = times.measure("render", [&] {
+      if (call.indirect == raytrace::Indirect::Paths) {
+        return raytrace::trace_paths(studio.loaded.scene, studio.loaded.groups,
+                                     studio.loaded.effects, studio.query, camera,
+                                     {options.columns, options.rows, options.gather_rays,
+                                      options.per_light, raytrace::PathSet::All, options.seed},
+                                     std::ref(progress));
+      }
       return raytrace::render(studio.loaded.scene, studio.loaded.groups, studio.loaded.effects,
                               studio.query, studio.light.solution, camera, options,
                               std::ref(progress));

@@ -51,6 +51,8 @@ std::string indirect_name(raytrace::Indirect indirect) {
       return "distributed";
     case raytrace::Indirect::None:
       return "none";
+    case raytrace::Indirect::Paths:
+      return "paths";
   }
   return "";
 }

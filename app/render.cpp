@@ -49,6 +49,14 @@ void check_call(const RenderCall& call) {
     throw Error(Blame::Input, "--cctv", "the CCTV stage needs the whole picture", {},
                 "Leave out --cctv, --crop or --only-pixel");
   }
+  if (call.indirect == raytrace::Indirect::Paths && !call.aovs.empty()) {
+    throw Error(Blame::Input, "--aov", "--indirect paths has no further layers", {},
+                "Take them from a render without it");
+  }
+  if (call.indirect == raytrace::Indirect::Paths && (call.crop || call.time_limit_s > 0.0)) {
+    throw Error(Blame::Input, "--indirect paths", "draws whole pictures, however long it takes", {},
+                "Leave out --crop, --only-pixel and --time-limit");
+  }
   if (!call.solution.empty() && call.indirect != raytrace::Indirect::Radiosity) {
     throw Error(Blame::Input, "--solution",
                 fmt::format("--indirect {} reads no solution", indirect_name(call.indirect)), {},
@@ -223,7 +231,8 @@ Command add_render(CLI::App& program) {
   using raytrace::Indirect;
   const std::map<std::string, Indirect> names = {{"radiosity", Indirect::Radiosity},
                                                  {"distributed", Indirect::Distributed},
-                                                 {"none", Indirect::None}};
+                                                 {"none", Indirect::None},
+                                                 {"paths", Indirect::Paths}};
   parser
       ->add_option_function<std::string>(
           "--indirect",
@@ -231,11 +240,13 @@ Command add_render(CLI::App& program) {
             const auto known = names.find(text);
             if (known == names.end()) {
               throw CLI::ValidationError(
-                  "--indirect", "\"" + text + "\" is not one of radiosity, distributed, none");
+                  "--indirect",
+                  "\"" + text + "\" is not one of radiosity, distributed, none, paths");
             }
             call->indirect = known->second;
           },
-          "radiosity (default), distributed (many lights, no interreflection), none")
+          "radiosity (default), distributed (many lights, no interreflection), none, paths (slow "
+          "reference)")
       ->type_name("HOW");
   add_whole_number(*parser, "--distributed-lights", call->distributed_lights, 1, 1U << 20U,
                    "Lights of --indirect distributed (default 64)");

@@ -31,7 +31,8 @@ enum class Indirect {
   Radiosity,    // final gather on the solution
   Distributed,  // the 1990 report's approximation: the Earth and area lamps as N lights, no
                 // interreflection
-  None          // direct light alone
+  None,         // direct light alone
+  Paths         // the reference: trace_paths (path_tracer.h) instead of render()
 };
 
 // How rays are spent on the final gather.
