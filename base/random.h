@@ -24,7 +24,8 @@ enum class Stream : std::uint32_t {
   Test,
   HalfSample,
   ExactOpening,
-  Refinement
+  Refinement,
+  RangeNoise
 };
 
 // A 64-bit mix of the key's parts (SplitMix64 finaliser, Steele et al. 2014).
