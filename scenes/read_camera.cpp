@@ -8,8 +8,9 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr std::string_view camera_keys[] = {"name",       "position", "look_at",  "up",  "fov_deg",
-                                            "resolution", "focus",    "aperture", "cctv"};
+constexpr std::string_view camera_keys[] = {"name",    "position",    "look_at", "up",
+                                            "fov_deg", "resolution",  "focus",   "aperture",
+                                            "cctv",    "range_sensor"};
 constexpr std::string_view quality_keys[] = {"error",           "patch_edge",       "max_patches",
                                              "refine",          "form_factor_rays", "gather_rays",
                                              "solver_tolerance"};
@@ -104,6 +105,7 @@ Camera read_camera(const TomlNode& node, double unit_m) {
   read_resolution(camera, table);
   read_lens(camera, table);
   camera.cctv = table.text("cctv").value_or("");
+  camera.range_sensor = table.text("range_sensor").value_or("");
   return camera;
 }
 

@@ -97,12 +97,14 @@ struct Camera {
   double fov_deg = 40.0;  // vertical, full
   int columns = 512;
   int rows = 512;
-  double focus_m = 0.0;     // } thin lens when both are positive
-  double aperture_m = 0.0;  // } diameter
-  std::string cctv;         // a [[cctv]] of the scene or one that ships; empty: none
+  double focus_m = 0.0;      // } thin lens when both are positive
+  double aperture_m = 0.0;   // } diameter
+  std::string cctv;          // a [[cctv]] of the scene or one that ships; empty: none
+  std::string range_sensor;  // a [[range_sensor]] of the scene; empty: none
 };
 
-// A [[cctv]] or [monitor] table as written; degrade/ knows its keys and checks them.
+// A [[cctv]], [monitor] or [[range_sensor]] table as written; degrade/ knows its keys and checks
+// them.
 struct Setting {
   std::string key;
   std::variant<bool, double, std::string, std::vector<double>> value;
@@ -139,6 +141,7 @@ struct Scene {
   std::vector<Camera> cameras;
   std::vector<SettingTable> cctv;
   std::optional<SettingTable> monitor;
+  std::vector<SettingTable> range_sensors;
   Quality quality;
   std::vector<std::string> warnings;  // one line each, e.g. counted degenerate triangles
 };
