@@ -12,6 +12,7 @@
 #include "app/command.h"
 #include "app/console.h"
 #include "app/provenance.h"
+#include "app/range.h"
 #include "app/solution.h"
 #include "base/error.h"
 #include "base/exr_file.h"
@@ -25,7 +26,7 @@ namespace {
 
 struct RenderCall {
   SceneInput scene;
-  std::string output, png, cctv, camera, solution;
+  std::string output, png, cctv, range, camera, solution;
   std::optional<Size> size;
   raytrace::Indirect indirect = raytrace::Indirect::Radiosity;
   std::uint64_t distributed_lights = 64;
@@ -50,7 +51,12 @@ void check_call(const RenderCall& call) {
   check_ending(call.output, "-o", ".exr");
   check_ending(call.png, "--png", ".png");
   check_ending(call.cctv, "--cctv", ".png");
-  check_outputs({call.output, call.png, call.cctv}, {call.scene.path, call.solution});
+  check_ending(call.range, "--range", ".exr");
+  check_outputs({call.output, call.png, call.cctv, call.range}, {call.scene.path, call.solution});
+  if (call.output.empty() && (call.range.empty() || !call.png.empty() || !call.cctv.empty())) {
+    throw base::Error(base::Blame::Input, "-o, --output", "no file is named for the picture", {},
+                      "Add -o FILE.exr; only --range does without");
+  }
   if (!call.solution.empty() && call.indirect != raytrace::Indirect::Radiosity) {
     throw base::Error(base::Blame::Input, "--solution",
                       fmt::format("--indirect {} reads no solution", indirect_name(call.indirect)),
@@ -142,6 +148,22 @@ void run(const RenderCall& call, const Common& common) {
   if (call.camera.empty() && loaded.scene.cameras.size() > 1 && !common.quiet) {
     note("note: no --camera, taking the first, \"" + camera.name + "\"");
   }
+  const Size size = call.size.value_or(Size{camera.columns, camera.rows});
+  Json range;
+  if (!call.range.empty()) {
+    range = times.measure("range", [&] {
+      return sense_range(call.range, loaded.scene, call.scene.overrides, camera, size, common);
+    });
+  }
+  if (call.output.empty()) {  // the range sensor alone needs no light
+    if (call.json) {
+      print(dump({{"columns", size.columns},
+                  {"rows", size.rows},
+                  {"seconds", times.json()},
+                  {"range", range}}));
+    }
+    return;
+  }
   std::optional<CctvSetup> cctv;
   if (!call.cctv.empty()) cctv = cctv_of_camera(loaded.scene, camera, common);
   const Rendered r = compute(call, common, loaded, camera, times);
@@ -163,6 +185,7 @@ void run(const RenderCall& call, const Common& common) {
   if (call.json) {
     Json json = json_of(r, times);
     if (screen) json["cctv"] = cctv_json(*cctv, *screen);
+    if (!range.is_null()) json["range"] = range;
     print(dump(json));
   }
   if (common.quiet) return;
@@ -179,9 +202,11 @@ Command add_render(CLI::App& program) {
   const auto file_option = [parser](const char* name, std::string& path, const char* help) {
     return parser->add_option(name, path, help)->type_name("FILE");
   };
-  file_option("-o,--output", call->output, "Linear picture in cd/m2 (OpenEXR)")->required();
+  file_option("-o,--output", call->output, "Linear picture in cd/m2 (OpenEXR)");
   file_option("--png", call->png, "Also a tone-mapped picture");
   file_option("--cctv", call->cctv, "Also the picture on the camera's CCTV monitor (PNG)");
+  file_option("--range", call->range,
+              "Also, or alone, what the camera's range sensor reports (OpenEXR)");
   parser->add_option("--camera", call->camera, "Camera of the scene (default: its first)")
       ->type_name("NAME");
   add_size_option(*parser, call->size);

@@ -32,11 +32,7 @@ struct RenderReport {
 };
 
 // image: R, G, B radiance in cd/m^2; with per_light also light_<group>.R/G/B, whose sum is R, G, B;
-// with aovs:
-//   albedo.R/G/B, N.X/Y/Z (unit, facing the camera), P.X/Y/Z (m), Z (m along the camera's axis),
-//   range (m along the ray), object (index), material (index): of the ray through the pixel's
-//   centre, never filtered; where it meets nothing: 0, Z and range infinite, object and material
-//   -1.
+// with aovs the channels of layers.h.
 struct Frame {
   base::Image image;
   RenderReport report;

@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "base/parallel.h"
+#include "raytrace/cryptomatte.h"
 #include "raytrace/shading.h"
 
 namespace earthshine::raytrace {
@@ -39,12 +40,12 @@ struct Channels {
 
 // Image::add may move the channels, hence all are added before any address is taken.
 Channels make_channels(base::Image& image, const std::vector<std::string>& layer_names,
-                       const std::vector<std::string>& aov_channels) {
+                       const std::vector<std::string>& more) {
   image = base::make_rgb_image(image.width, image.height);
   for (const std::string& name : layer_names) {
     for (const char* channel : {".R", ".G", ".B"}) image.add("light_" + name + channel);
   }
-  for (const std::string& name : aov_channels) image.add(name);
+  for (const std::string& name : more) image.add(name);
   Channels channels;
   for (std::size_t c = 0; c < rgb; ++c) channels.beauty[c] = &image.channels[c].values;
   for (std::size_t k = 0; k < layer_names.size(); ++k) {
@@ -54,73 +55,14 @@ Channels make_channels(base::Image& image, const std::vector<std::string>& layer
   return channels;
 }
 
-struct AovChannels {
-  const char* aov;
-  std::vector<const char*> channels;
-};
-const std::vector<AovChannels>& aov_table() {
-  static const std::vector<AovChannels> table = {{"albedo", {"albedo.R", "albedo.G", "albedo.B"}},
-                                                 {"normal", {"N.X", "N.Y", "N.Z"}},
-                                                 {"position", {"P.X", "P.Y", "P.Z"}},
-                                                 {"depth", {"Z"}},
-                                                 {"range", {"range"}},
-                                                 {"object", {"object"}},
-                                                 {"material", {"material"}}};
-  return table;
-}
-
-std::vector<std::string> aov_channels(const std::vector<std::string>& aovs) {
-  std::vector<std::string> channels;
-  for (const std::string& aov : aovs) {
-    const auto row = std::find_if(aov_table().begin(), aov_table().end(),
-                                  [&](const AovChannels& entry) { return aov == entry.aov; });
-    if (row == aov_table().end()) {
-      std::string allowed = "allowed:";
-      for (const AovChannels& entry : aov_table()) allowed += std::string(" ") + entry.aov;
-      const std::string nearest = base::nearest_word(aov, aov_names());
-      throw base::Error(base::Blame::Input, "--aov", "unknown layer \"" + aov + "\"", allowed,
-                        nearest.empty() ? "" : "Did you mean \"" + nearest + "\"?");
-    }
-    for (const char* channel : row->channels) {
-      if (std::find(channels.begin(), channels.end(), channel) == channels.end()) {
-        channels.emplace_back(channel);
-      }
-    }
-  }
-  return channels;
-}
-
-float aov_value(const scenes::Scene& scene, const CameraModel& camera, const Ray& ray,
-                const scenes::Hit& hit, std::string_view channel) {
-  const auto axis = [&](const Vec3& v) {
-    const char last = channel.back();
-    return static_cast<float>(last == 'X' || last == 'R'   ? v.x
-                              : last == 'Y' || last == 'G' ? v.y
-                                                           : v.z);
-  };
-  const float nothing = std::numeric_limits<float>::infinity();
-  if (channel == "Z") {
-    return hit.missed() ? nothing
-                        : static_cast<float>(hit.t * glm::dot(ray.direction, camera.forward));
-  }
-  if (channel == "range") return hit.missed() ? nothing : static_cast<float>(hit.t);
-  if (hit.missed()) return channel == "object" || channel == "material" ? -1.0F : 0.0F;
-  const scenes::Triangle& triangle = scene.triangles[hit.triangle];
-  if (channel == "object") return static_cast<float>(triangle.object);
-  if (channel == "material") return static_cast<float>(triangle.material);
-  if (channel.front() == 'a') return axis(scene.materials[triangle.material].diffuse);
-  if (channel.front() == 'P') return axis(hit_position(scene, hit));
-  const Vec3 normal = scenes::triangle_normal(scene, hit.triangle);
-  return axis(hit.front ? normal : -normal);
-}
-
 class Renderer {
  public:
   Renderer(const ShadingScene& shared, const CameraModel& camera, const Sampling& sampling,
-           Frame& frame, const Channels& channels)
-      : shared_(shared), camera_(camera), sampling_(sampling), frame_(frame), channels_(channels) {}
+           const Channels& channels)
+      : shared_(shared), camera_(camera), sampling_(sampling), channels_(channels) {}
 
-  void pixel(int x, int y, PixelShader& shader, float* squared_error) const {
+  void pixel(int x, int y, PixelShader& shader, CryptomatteWriter& covers,
+             float* squared_error) const {
     const auto index = static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.columns) +
                        static_cast<std::size_t>(x);
     const auto samples = static_cast<std::size_t>(sampling_.camera_samples);
@@ -140,21 +82,12 @@ class Renderer {
       for (std::size_t k = 0; k < count; ++k) {
         shader.add_sample(first + k, rays[k],
                           {hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0});
+        covers.add(hits.triangle[k]);
       }
     }
     shader.end_pixel();
+    covers.store(index);
     store(index, shader, squared_error[index]);
-  }
-
-  void aovs(int x, int y, const std::vector<std::string>& names, std::size_t first_channel) const {
-    const Ray ray = camera_.ray(x + 0.5, y + 0.5, 0.0, 0.0);
-    const scenes::Hit hit = shared_.query.closest(ray.origin, ray.direction);
-    const auto index = static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.columns) +
-                       static_cast<std::size_t>(x);
-    for (std::size_t k = 0; k < names.size(); ++k) {
-      frame_.image.channels[first_channel + k].values[index] =
-          aov_value(shared_.scene, camera_, ray, hit, names[k]);
-    }
   }
 
  private:
@@ -181,7 +114,6 @@ class Renderer {
   const ShadingScene& shared_;
   const CameraModel& camera_;
   const Sampling& sampling_;
-  Frame& frame_;
   const Channels& channels_;
 };
 
@@ -198,21 +130,12 @@ double relative_noise(const base::Image& image, const std::vector<float>& square
 
 }  // namespace
 
-const std::vector<std::string>& aov_names() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> list;
-    for (const AovChannels& row : aov_table()) list.emplace_back(row.aov);
-    return list;
-  }();
-  return names;
-}
-
 Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
              const scenes::Effects& effects, const scenes::RayQuery& query,
              const radiosity::Solution& solution, const scenes::Camera& camera,
              const RenderOptions& options, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  const std::vector<std::string> extra = aov_channels(options.aovs);
+  const std::vector<std::string> extra = layer_channels(options.aovs);
   const bool reads_solution = options.indirect == Indirect::Radiosity && solution.columns > 0;
   const RadianceTable all(solution, reads_solution ? solution.radiosity : std::vector<float>{},
                           options.per_light);
@@ -250,9 +173,9 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
   frame.image.height = options.rows;
   const Channels channels = make_channels(
       frame.image, options.per_light ? groups.names : std::vector<std::string>{}, extra);
-  const std::size_t first_aov = frame.image.channels.size() - extra.size();
+  const CryptomatteLayers cryptomatte(scene, frame.image);
   const CameraModel model = make_camera_model(camera, options.columns, options.rows);
-  const Renderer renderer(shared, model, sampling, frame, channels);
+  const Renderer renderer(shared, model, sampling, channels);
 
   const int tiles_x = (options.columns + tile_edge_px - 1) / tile_edge_px;
   const int tiles_y = (options.rows + tile_edge_px - 1) / tile_edge_px;
@@ -263,12 +186,12 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
   std::mutex progress_mutex;
   base::parallel_chunks(tile_count, 1, [&](std::size_t tile, std::size_t) {
     PixelShader shader(shared);
+    CryptomatteWriter covers(cryptomatte);
     const int x0 = static_cast<int>(tile % static_cast<std::size_t>(tiles_x)) * tile_edge_px;
     const int y0 = static_cast<int>(tile / static_cast<std::size_t>(tiles_x)) * tile_edge_px;
     for (int y = y0; y < std::min(y0 + tile_edge_px, options.rows); ++y) {
       for (int x = x0; x < std::min(x0 + tile_edge_px, options.columns); ++x) {
-        renderer.pixel(x, y, shader, squared_error.data());
-        if (!extra.empty()) renderer.aovs(x, y, extra, first_aov);
+        renderer.pixel(x, y, shader, covers, squared_error.data());
       }
     }
     tile_rays[tile] = shader.rays();
@@ -277,6 +200,10 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
       progress(++done, tile_count);
     }
   });
+  fill_first_hit(scene, query, model, frame.image);
+  for (base::Channel& channel : frame.image.channels) {
+    if (channel.name == "variance") channel.values = squared_error;
+  }
   for (const RayCounts& rays : tile_rays) frame.report.rays += rays;
   frame.report.camera_samples = sampling.camera_samples;
   frame.report.gather_rays = sampling.gather_rays;

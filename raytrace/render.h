@@ -20,6 +20,7 @@
 
 #include "radiosity/solution.h"
 #include "raytrace/frame.h"
+#include "raytrace/layers.h"
 #include "scenes/effects.h"
 #include "scenes/light_groups.h"
 #include "scenes/ray_query.h"
@@ -40,12 +41,9 @@ struct RenderOptions {
   Indirect indirect = Indirect::Radiosity;
   int distributed_lights = 64;  // N of Indirect::Distributed
   bool per_light = false;
-  std::vector<std::string> aovs;  // of aov_names()
+  std::vector<std::string> aovs;  // of aov_names(), layers.h
   std::uint64_t seed = 1;
 };
-
-[[nodiscard]] const std::vector<std::string>&
-aov_names();  // albedo, normal, position, depth, range, object, material
 
 // Told how many of `total` rows of tiles are done; called from one thread at a time.
 using Progress = std::function<void(std::size_t done, std::size_t total)>;
