@@ -8,7 +8,7 @@
 #include "base/exr_file.h"
 #include "degrade/range_sensor.h"
 #include "degrade/range_sensor_file.h"
-#include "raytrace/layers.h"
+#include "raytrace/first_hit.h"
 #include "scenes/ray_query.h"
 
 namespace earthshine::app {
@@ -33,12 +33,12 @@ degrade::RangeSensor sensor_of(const scenes::Scene& scene, const scenes::Camera&
 base::Image exact_layers(const scenes::Scene& scene, const scenes::Camera& camera,
                          const Size& size) {
   base::Image layers{size.columns, size.rows, {}};
-  for (const std::string& channel :
-       raytrace::layer_channels({"range", "normal", "position", "albedo"})) {
-    layers.add(channel);
+  for (const raytrace::FirstHitLayer& layer : raytrace::first_hit_layers()) {
+    for (const std::string& channel : layer.channels) layers.add(channel);
   }
   raytrace::fill_first_hit(scene, scenes::RayQuery(scene),
-                           raytrace::make_camera_model(camera, size.columns, size.rows), layers);
+                           raytrace::make_camera_model(camera, size.columns, size.rows),
+                           {0, 0, size.columns, size.rows}, layers);
   return layers;
 }
 

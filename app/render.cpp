@@ -84,9 +84,9 @@ Rendered compute(const RenderCall& call, const Common& common, const LoadedScene
     r.solved = true;
     if (!common.quiet) note_backs(r.solution.report);
   }
+  r.options = raytrace::render_options(scenes::resolve_quality(loaded.scene));
   r.options.columns = call.size ? call.size->columns : camera.columns;
   r.options.rows = call.size ? call.size->rows : camera.rows;
-  r.options.gather_rays = scenes::resolve_quality(loaded.scene).gather_rays;
   r.options.indirect = call.indirect;
   r.options.distributed_lights = static_cast<int>(call.distributed_lights);
   r.options.per_light = call.per_light;

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <bit>
 
-#include "scenes/ray_query.h"
+#include "base/parallel.h"
+#include "base/random.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -149,6 +150,54 @@ void CryptomatteWriter::store(std::size_t pixel) {
     }
   }
   whole_ = 0.0;
+}
+
+namespace {
+
+constexpr std::uint32_t least_samples = 16;
+
+// The points are those of shade_samples.
+void cover(const scenes::RayQuery& query, const CameraModel& camera, const base::SobolOwen4& points,
+           int x, int y, std::uint32_t count, CryptomatteWriter& writer) {
+  scenes::RayPacket packet;
+  scenes::HitPacket hits;
+  for (std::uint32_t first = 0; first < count; first += scenes::RayPacket::width) {
+    const std::size_t lanes = std::min<std::size_t>(scenes::RayPacket::width, count - first);
+    for (std::size_t k = 0; k < lanes; ++k) {
+      const auto p = points.point(first + static_cast<std::uint32_t>(k));
+      const Ray ray = camera.ray(x + double(p[0]), y + double(p[1]), p[2], p[3]);
+      query.set(packet, k, ray.origin, ray.direction);
+    }
+    query.closest(packet, lanes, hits);
+    for (std::size_t k = 0; k < lanes; ++k) writer.add(hits.triangle[k]);
+  }
+}
+
+}  // namespace
+
+void fill_cryptomatte(const scenes::Scene& scene, const scenes::RayQuery& query,
+                      const CameraModel& camera, const CoverageSamples& samples,
+                      base::Image& image) {
+  const CryptomatteLayers layers(scene, image);
+  if (layers.empty()) return;
+  const Window& window = samples.wanted;
+  base::parallel_chunks(
+      static_cast<std::size_t>(window.rows), 8, [&](std::size_t begin, std::size_t end) {
+        CryptomatteWriter writer(layers);
+        for (int y = window.y + static_cast<int>(begin); y < window.y + static_cast<int>(end);
+             ++y) {
+          for (int x = window.x; x < window.x + window.columns; ++x) {
+            const std::uint32_t count = samples.counts[samples.counted.index(x, y)];
+            if (count == 0) continue;
+            const auto number =
+                static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(camera.columns) +
+                static_cast<std::uint64_t>(x);
+            const base::SobolOwen4 points(base::Key(samples.seed, base::Stream::Pixel, number));
+            cover(query, camera, points, x, y, std::max(count, least_samples), writer);
+            writer.store(window.index(x, y));
+          }
+        }
+      });
 }
 
 }  // namespace earthshine::raytrace

@@ -18,7 +18,8 @@
 #include <vector>
 
 #include "base/image.h"
-#include "scenes/scene.h"
+#include "raytrace/camera.h"
+#include "scenes/ray_query.h"
 
 namespace earthshine::raytrace {
 
@@ -99,5 +100,20 @@ class CryptomatteWriter {
   std::vector<CoverageRanks> ranks_;  // per type
   double whole_ = 0.0;
 };
+
+// The camera samples that a picture was made of, and the window of the picture that is wanted.
+struct CoverageSamples {
+  std::uint64_t seed = 1;
+  Window wanted;
+  Window counted;                            // holds `wanted`
+  const std::vector<std::uint32_t>& counts;  // per pixel of `counted`; 0: not finished
+};
+
+// Fills the Cryptomatte channels that `image`, the wanted window, has, by casting the picture's own
+// camera samples once more, at least sixteen for each finished pixel. (How many a pixel has is
+// known only in the end, and rays without light are cheap.)
+void fill_cryptomatte(const scenes::Scene& scene, const scenes::RayQuery& query,
+                      const CameraModel& camera, const CoverageSamples& samples,
+                      base::Image& image);
 
 }  // namespace earthshine::raytrace

@@ -33,6 +33,9 @@ QualityKnobs resolve_quality(const Scene& scene) {
   knobs.form_factor_rays = scene.quality.form_factor_rays.value_or(
       power_of_two_at_least(1024.0 * std::pow(ratio, 1.0 / 0.6), 64, 1 << 18));
   const Quality& given = scene.quality;
+  knobs.share_gather = given.share_gather.value_or(true);
+  knobs.smooth_share = given.smooth_share.value_or(0.25);
+  knobs.picture_noise = given.picture_noise.value_or(0.5 * reference_error / ratio);
   if (!scene.vertices.empty()) {
     const double diagonal_m = diagonal(scene);
     knobs.patch_edge_m = diagonal_m / 48.0 / std::clamp(ratio, 0.25, 4.0);

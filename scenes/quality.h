@@ -14,6 +14,9 @@ struct QualityKnobs {
   double refine_error = 0.0;       // root mean square, relative, at which refinement ends
   int form_factor_rays = 1024;     // per patch, a power of two
   int gather_rays = 256;           // per pixel
+  bool share_gather = false;       // between a pixel's camera samples and neighbouring pixels
+  double smooth_share = 0.0;       // of the mean gather ray, how far neighbours share
+  double picture_noise = 0.01;     // wanted of the camera samples, relative to the mean luminance
   double solver_tolerance = 1e-8;  // relative residual
 };
 

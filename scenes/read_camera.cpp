@@ -11,9 +11,9 @@ namespace {
 constexpr std::string_view camera_keys[] = {"name",    "position",    "look_at", "up",
                                             "fov_deg", "resolution",  "focus",   "aperture",
                                             "cctv",    "range_sensor"};
-constexpr std::string_view quality_keys[] = {"error",           "patch_edge",       "max_patches",
-                                             "refine",          "form_factor_rays", "gather_rays",
-                                             "solver_tolerance"};
+constexpr std::string_view quality_keys[] = {
+    "error",       "patch_edge",       "max_patches", "refine", "form_factor_rays",
+    "gather_rays", "solver_tolerance", "gather",      "smooth", "picture_noise"};
 constexpr int most_pixels = 16384;           // per side
 constexpr std::size_t most_settings = 1000;  // of a CCTV camera or the monitor; a dozen exist
 
@@ -131,6 +131,23 @@ SettingTable read_settings(const TomlNode& node, const std::string& title, bool 
   return settings;
 }
 
+void read_gather(Quality& quality, const TableReader& table) {
+  const auto gather = table.text("gather");
+  if (gather && *gather != "shared" && *gather != "per-sample") {
+    table.fail("gather", fmt::format("is \"{}\"", *gather),
+               "allowed is \"shared\" or \"per-sample\"");
+  }
+  if (gather) quality.share_gather = *gather == "shared";
+  quality.smooth_share = table.number("smooth", {0.0, 1.0, false});
+  quality.picture_noise = table.number("picture_noise", {0.0, 1.0, true});
+  if (quality.share_gather.value_or(true)) return;
+  for (const char* key : {"smooth", "picture_noise"}) {
+    if (table.find(key) == nullptr) continue;
+    table.fail(key, "belongs to gather = \"shared\"", "gather is \"per-sample\"",
+               "Leave out one of the two");
+  }
+}
+
 Quality read_quality(const TomlNode& node) {
   const TableReader table(node, "[quality]", quality_keys);
   Quality quality;
@@ -146,6 +163,7 @@ Quality read_quality(const TomlNode& node) {
   quality.form_factor_rays = table.whole("form_factor_rays", 1, 1 << 24);
   quality.gather_rays = table.whole("gather_rays", 1, 1 << 20);
   quality.solver_tolerance = table.number("solver_tolerance", {0.0, 0.1, true});
+  read_gather(quality, table);
   return quality;
 }
 

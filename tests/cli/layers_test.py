@@ -113,12 +113,13 @@ class Layers(program.Case):
         self.assertNotIn("focus", self.render(program.BALL)[0])
 
     def test_variance_is_that_of_the_mean(self):
-        """Four times the samples: a quarter of the variance, over the picture."""
+        """16 and 256 rays are 4 and 16 camera samples: a quarter of the variance, over the picture."""
         def total(rays):
-            return sum(self.render(program.BALL, "--aov", "variance", "--set", f"quality.gather_rays={rays}")[3]["variance"])
-        few, many = total(64), total(256)
+            return sum(self.render(program.BALL, "--aov", "variance", "--set", "quality.gather=per-sample",
+                                   "--set", f"quality.gather_rays={rays}")[3]["variance"])
+        few, many = total(16), total(256)
         self.assertGreater(many, 0)
-        self.assertAlmostEqual(few / many, 4, delta=2)
+        self.assertAlmostEqual(few / many, 4, delta=1.5)
 
     def test_names_stand_only_where_numbers_need_them(self):
         header, _, _, channels = self.render(program.BALL, "--aov", "depth")
