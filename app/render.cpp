@@ -12,6 +12,7 @@
 #include "app/console.h"
 #include "app/interrupt.h"
 #include "app/provenance.h"
+#include "app/range.h"
 #include "app/render_call.h"
 #include "app/solution.h"
 #include "app/study.h"
@@ -41,9 +42,12 @@ void check_call(const RenderCall& call) {
   check_ending(call.output, "-o", ".exr");
   check_ending(call.png, "--png", ".png");
   check_ending(call.cctv, "--cctv", ".png");
+  check_ending(call.range, "--range", ".exr");
   check_over(call);
-  if (call.output.empty() && !call.only_pixel && !call.over.asked()) {
-    throw Error(Blame::Input, "--output", "is missing", {}, "Name the picture: -o FILE.exr");
+  const bool range_alone = !call.range.empty() && call.png.empty() && call.cctv.empty();
+  if (call.output.empty() && !call.only_pixel && !call.over.asked() && !range_alone) {
+    throw Error(Blame::Input, "--output", "is missing", {},
+                "Name the picture: -o FILE.exr; only --range does without");
   }
   if (call.crop && !call.cctv.empty()) {
     throw Error(Blame::Input, "--cctv", "the CCTV stage needs the whole picture", {},
@@ -112,13 +116,15 @@ std::vector<Wanted> wanted_pictures(const RenderCall& call, const scenes::Scene&
   std::vector<Wanted> wanted;
   std::vector<std::string> outputs;
   for (const scenes::Camera* camera : cameras) {
-    Wanted picture{camera, {call.output, call.png, call.cctv}};
+    Wanted picture{camera, {call.output, call.png, call.cctv, call.range}};
     if (cameras.size() > 1) {
-      for (std::string* path : {&picture.files.output, &picture.files.png, &picture.files.cctv}) {
+      for (std::string* path :
+           {&picture.files.output, &picture.files.png, &picture.files.cctv, &picture.files.range}) {
         *path = with_camera(*path, file_stem(scene, *camera));
       }
     }
-    outputs.insert(outputs.end(), {picture.files.output, picture.files.png, picture.files.cctv});
+    outputs.insert(outputs.end(), {picture.files.output, picture.files.png, picture.files.cctv,
+                                   picture.files.range});
     wanted.push_back(std::move(picture));
   }
   check_outputs(outputs, {scene.path.string(), call.solution, call.over.photo});
@@ -184,6 +190,25 @@ void run(RenderCall call, const Common& common) {
       return base::write_png(call.png, drawn.width, drawn.height, 3, drawn.rgb);
     }
   }
+  std::vector<Json> ranges(pictures.size());
+  for (std::size_t k = 0; k < pictures.size() && !call.range.empty(); ++k) {
+    const scenes::Camera& camera = *pictures[k].camera;
+    const Size size = call.size.value_or(Size{camera.columns, camera.rows});
+    ranges[k] = times.measure("range", [&] {
+      return sense_range(pictures[k].files.range, loaded.scene, call.scene.overrides, camera, size,
+                         common);
+    });
+    ranges[k] = {{"camera", camera.name},
+                 {"columns", size.columns},
+                 {"rows", size.rows},
+                 {"seconds", times.json()},
+                 {"range", ranges[k]}};
+  }
+  if (call.output.empty() && !call.only_pixel && !call.over.asked()) {
+    // The range sensor alone needs no light.
+    if (call.json) print(dump(ranges.size() == 1 ? ranges.front() : Json(ranges)));
+    return;
+  }
   const Solved light = find_light(call, common, loaded, query, times);
   Studio studio{call, common, loaded, query, light};
   Json reports = Json::array();
@@ -198,6 +223,7 @@ void run(RenderCall call, const Common& common) {
       Picture picture = take_picture(studio, *pictures[k].camera, pictures[k].files, times);
       times.add({{"pictures", picture.report["seconds"]["render"].get<double>()}});
       whole = picture.whole;
+      if (!call.range.empty()) picture.report["range"] = ranges[k]["range"];
       reports.push_back(std::move(picture.report));
     }
   }
@@ -219,6 +245,8 @@ Command add_render(CLI::App& program) {
   file_option("-o,--output", call->output, "Linear picture in cd/m2 (OpenEXR)");
   file_option("--png", call->png, "Also a tone-mapped picture");
   file_option("--cctv", call->cctv, "Also the picture on the camera's CCTV monitor (PNG)");
+  file_option("--range", call->range,
+              "Also, or alone, what the camera's range sensor reports (OpenEXR)");
   parser
       ->add_option("--camera", call->cameras,
                    "Cameras of the scene (default: its first): A or A,B or all; with several, "

@@ -16,7 +16,7 @@ namespace earthshine::app {
 
 struct RenderCall {
   SceneInput scene;
-  std::string output, png, cctv, solution;
+  std::string output, png, cctv, range, solution;
   std::vector<std::string> cameras;  // empty: the scene's first
   std::optional<Size> size;
   std::optional<raytrace::Window> crop;  // one pixel with only_pixel
@@ -56,7 +56,7 @@ struct Studio {
 };
 
 struct PictureFiles {
-  std::string output, png, cctv;  // empty: not wanted
+  std::string output, png, cctv, range;  // empty: not wanted
 };
 
 // Renders, writes the files, tells on standard error unless quiet. Returns the report for --json

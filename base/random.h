@@ -25,7 +25,8 @@ enum class Stream : std::uint32_t {
   HalfSample,
   ExactOpening,
   Refinement,
-  Path
+  Path,
+  RangeNoise
 };
 
 // A 64-bit mix of the key's parts (SplitMix64 finaliser, Steele et al. 2014).

@@ -111,12 +111,14 @@ struct Camera {
   double focus_m = 0.0;     // } thin lens when both are positive
   double aperture_m = 0.0;  // } diameter
   std::string cctv;         // a [[cctv]] of the scene or one that ships; empty: none
+  std::string range_sensor;  // a [[range_sensor]] of the scene; empty: none
   FilterShape filter = FilterShape::Box;
   double filter_width_px = 1.0;  // full width of the filter's support
   base::Location where;          // of its position in the scene file
 };
 
-// A [[cctv]] or [monitor] table as written; degrade/ knows its keys and checks them.
+// A [[cctv]], [monitor] or [[range_sensor]] table as written; degrade/ knows its keys and checks
+// them.
 struct Setting {
   std::string key;
   std::variant<bool, double, std::string, std::vector<double>> value;
@@ -156,6 +158,7 @@ struct Scene {
   std::vector<Camera> cameras;
   std::vector<SettingTable> cctv;
   std::optional<SettingTable> monitor;
+  std::vector<SettingTable> range_sensors;
   Quality quality;
   std::vector<std::string> warnings;  // one line each, e.g. counted degenerate triangles
 };

@@ -11,9 +11,9 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr std::string_view root_keys[] = {"format", "name", "unit",    "material", "object",
-                                          "light",  "sun",  "earth",   "orbit",    "ambient",
-                                          "camera", "cctv", "monitor", "quality"};
+constexpr std::string_view root_keys[] = {"format", "name", "unit",    "material",     "object",
+                                          "light",  "sun",  "earth",   "orbit",        "ambient",
+                                          "camera", "cctv", "monitor", "range_sensor", "quality"};
 constexpr std::string_view ambient_keys[] = {"radiance"};
 constexpr std::string_view units[] = {"m", "cm", "mm", "ft", "in"};
 constexpr double metres_per_unit[] = {1.0, 0.01, 0.001, 0.3048, 0.0254};
@@ -88,6 +88,9 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   });
   read_named(root, "cctv", [&](const TomlNode& node) {
     return scene.cctv.emplace_back(read_settings(node, "[[cctv]]", true)).name;
+  });
+  read_named(root, "range_sensor", [&](const TomlNode& node) {
+    return scene.range_sensors.emplace_back(read_settings(node, "[[range_sensor]]", true)).name;
   });
   if (const TomlNode* node = plain_table(root, "monitor")) {
     scene.monitor = read_settings(*node, "[monitor]", false);

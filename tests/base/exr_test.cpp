@@ -77,6 +77,22 @@ TEST(Exr, AttributesSurviveReadingAndWritingAgain) {
   EXPECT_EQ(read_bytes(folder / "a.exr"), read_bytes(folder / "b.exr"));
 }
 
+TEST(Exr, MatricesKeepTheirRowsAndTheScreenWindowItsWidth) {
+  const TemporaryFolder folder;
+  ExrMatrix matrix;
+  for (std::size_t k = 0; k < matrix.size(); ++k) matrix[k] = static_cast<float>(k) + 0.5F;
+  write_exr(folder / "a.exr", pattern(2, 2),
+            {{}, {{"screenWindowWidth", 1.25F}, {"focus", 8.0F}}, {{"worldToNDC", matrix}}});
+  const Imf::InputFile file((folder / "a.exr").c_str());
+  EXPECT_EQ(Imf::worldToNDC(file.header())[1][2], 6.5F);  // row 1, column 2
+  EXPECT_EQ(file.header().screenWindowWidth(), 1.25F);
+  EXPECT_EQ(Imf::focus(file.header()), 8.0F);
+  const ExrFile back = read_exr(folder / "a.exr");
+  ASSERT_EQ(back.header.matrices.size(), 1U);
+  EXPECT_EQ(back.header.matrices[0].first, "worldToNDC");
+  EXPECT_EQ(back.header.matrices[0].second, matrix);
+}
+
 TEST(Exr, DepthMayBeInfiniteColourMayNot) {
   const TemporaryFolder folder;
   const float infinity = std::numeric_limits<float>::infinity();
