@@ -11,6 +11,7 @@
 #include "app/cctv.h"
 #include "app/command.h"
 #include "app/console.h"
+#include "app/memory.h"
 #include "app/provenance.h"
 #include "app/solution.h"
 #include "base/error.h"
@@ -29,6 +30,7 @@ struct RenderCall {
   std::optional<Size> size;
   raytrace::Indirect indirect = raytrace::Indirect::Radiosity;
   std::uint64_t distributed_lights = 64;
+  std::string distributed_over;
   std::vector<std::string> aovs;
   bool per_light = false, timings = false, json = false;
 };
@@ -56,6 +58,11 @@ void check_call(const RenderCall& call) {
                       fmt::format("--indirect {} reads no solution", indirect_name(call.indirect)),
                       {}, "Leave one of the two out");
   }
+  if (!call.distributed_over.empty() && call.indirect != raytrace::Indirect::Distributed) {
+    throw base::Error(base::Blame::Input, "--distributed-over",
+                      fmt::format("--indirect {} spreads no lights", indirect_name(call.indirect)),
+                      {}, "Write --indirect distributed");
+  }
 }
 
 struct Rendered {
@@ -72,20 +79,22 @@ Rendered compute(const RenderCall& call, const Common& common, const LoadedScene
       times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
   Rendered r;
   r.solver = solve_options(loaded.scene, common);
+  r.options.columns = call.size ? call.size->columns : camera.columns;
+  r.options.rows = call.size ? call.size->rows : camera.rows;
+  r.options.gather_rays = scenes::resolve_quality(loaded.scene).gather_rays;
+  r.options.indirect = call.indirect;
+  r.options.distributed_lights = static_cast<int>(call.distributed_lights);
+  r.options.distributed_over = call.distributed_over;
+  r.options.per_light = call.per_light;
+  r.options.aovs = call.aovs;
+  r.options.seed = common.seed;
+  check_memory(loaded, query, r.solver, &r.options, call.solution.empty());
   if (call.indirect == raytrace::Indirect::Radiosity) {
     if (loaded.groups.count() == 0) note("note: nothing gives light, the picture is black");
     r.solution = solve_or_read(loaded, query, r.solver, call.solution, times);
     r.solved = true;
     if (!common.quiet) note_backs(r.solution.report);
   }
-  r.options.columns = call.size ? call.size->columns : camera.columns;
-  r.options.rows = call.size ? call.size->rows : camera.rows;
-  r.options.gather_rays = scenes::resolve_quality(loaded.scene).gather_rays;
-  r.options.indirect = call.indirect;
-  r.options.distributed_lights = static_cast<int>(call.distributed_lights);
-  r.options.per_light = call.per_light;
-  r.options.aovs = call.aovs;
-  r.options.seed = common.seed;
   Progress progress("render", common.quiet);
   r.frame = times.measure("render", [&] {
     return raytrace::render(loaded.scene, loaded.groups, loaded.effects, query, r.solution, camera,
@@ -205,6 +214,10 @@ Command add_render(CLI::App& program) {
       ->type_name("HOW");
   add_whole_number(*parser, "--distributed-lights", call->distributed_lights, 1, 1U << 20U,
                    "Lights of --indirect distributed (default 64)");
+  parser
+      ->add_option("--distributed-over", call->distributed_over,
+                   "Spread the Earth's lights over this [[area]] of the scene, not its disc")
+      ->type_name("NAME");
   parser
       ->add_option_function<std::string>(
           "--aov", [call](const std::string& text) { call->aovs = split_at_commas(text); },

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "raytrace/render.h"
@@ -14,9 +15,11 @@ namespace earthshine::raytrace {
 class LightSampler {
  public:
   // Radiosity and None: each source once, sampled at random. Distributed: wide sources are replaced
-  // by `distributed_lights` fixed points or directions of equal share, the same for every pixel.
+  // by `distributed_lights` fixed points or directions of equal share, the same for every pixel;
+  // the Earth by points of earth_area (distributed_area.h), or by directions to its disc.
   LightSampler(const scenes::Scene& scene, const scenes::LightGroups& groups,
-               const scenes::Effects& effects, Indirect indirect, int distributed_lights);
+               const scenes::Effects& effects, Indirect indirect, int distributed_lights,
+               std::optional<scenes::Lamp> earth_area = std::nullopt);
 
   [[nodiscard]] std::size_t count() const { return lights_.size(); }
   [[nodiscard]] std::size_t group(std::size_t light) const { return lights_[light].group; }
@@ -24,7 +27,7 @@ class LightSampler {
                                            double v) const;
 
  private:
-  enum class Kind { Sun, Earth, Lamp, Emitters };
+  enum class Kind { Sun, Earth, EarthArea, Lamp, Emitters };
   struct Light {
     Kind kind;
     std::size_t group;
@@ -37,6 +40,7 @@ class LightSampler {
 
   const scenes::Scene& scene_;
   bool distributed_;
+  std::optional<scenes::Lamp> earth_area_;
   std::vector<Light> lights_;
   std::vector<scenes::EmitterSet> emitters_;
   Rgb sun_illuminance_lx_{0.0};

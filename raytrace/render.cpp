@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "base/parallel.h"
+#include "raytrace/distributed_area.h"
 #include "raytrace/shading.h"
 
 namespace earthshine::raytrace {
@@ -220,7 +221,8 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
   const RadianceTable soft(
       solution, reads_solution && recursive ? solution.soft_radiosity : std::vector<float>{},
       options.per_light);
-  const LightSampler lights(scene, groups, effects, options.indirect, options.distributed_lights);
+  const LightSampler lights(scene, groups, effects, options.indirect, options.distributed_lights,
+                            earth_area(scene, options.distributed_over));
 
   const BrightPatches bright = reads_solution ? BrightPatches(solution) : BrightPatches();
 

@@ -38,7 +38,8 @@ struct RenderOptions {
   int rows = 512;
   int gather_rays = 256;  // per pixel, spread over the camera samples
   Indirect indirect = Indirect::Radiosity;
-  int distributed_lights = 64;  // N of Indirect::Distributed
+  int distributed_lights = 64;   // N of Indirect::Distributed
+  std::string distributed_over;  // the [[area]] that the Earth's N lights lie on; empty: its disc
   bool per_light = false;
   std::vector<std::string> aovs;  // of aov_names()
   std::uint64_t seed = 1;
@@ -51,7 +52,7 @@ aov_names();  // albedo, normal, position, depth, range, object, material
 using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
 // `solution` may be empty (default-constructed) unless indirect is Radiosity.
-// Throws base::Error (Input) for an unknown AOV name.
+// Throws base::Error (Input) for an unknown AOV name or [[area]].
 [[nodiscard]] Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
                            const scenes::Effects& effects, const scenes::RayQuery& query,
                            const radiosity::Solution& solution, const scenes::Camera& camera,

@@ -24,6 +24,8 @@ void check_energy(const Material& material, const base::Location& where, const s
 
 [[nodiscard]] Lamp read_lamp(const TomlNode& node, double unit_m);
 
+[[nodiscard]] Area read_area(const TomlNode& node, double unit_m);
+
 // [sun], [earth] and [orbit], each null when absent, to scene.sun and scene.earth.
 void read_sky(Scene& scene, const TomlNode* sun, const TomlNode* earth, const TomlNode* orbit);
 
