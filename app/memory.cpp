@@ -65,6 +65,18 @@ void check_memory(const LoadedScene& loaded, const scenes::RayQuery& query,
     studies::add_picture(sizes, loaded.groups, loaded.effects, *picture);
   }
   if (!solves) sizes.solves = false;
+  if (solver.refine.on && solver.refine.error > 0.0) {
+    const std::size_t coarse = radiosity::count_patches(loaded.scene, solver.refine.start_edge_m);
+    studies::set_patches(sizes, std::min(coarse, sizes.patches), solver);
+  }
+  refuse_too_much(loaded, query, solver, sizes);
+}
+
+void check_patch_memory(const LoadedScene& loaded, const scenes::RayQuery& query,
+                        const radiosity::SolveOptions& solver, std::size_t patches) {
+  studies::MemoryCase sizes =
+      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
+  studies::set_patches(sizes, patches, solver);
   refuse_too_much(loaded, query, solver, sizes);
 }
 

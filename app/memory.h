@@ -11,12 +11,16 @@
 namespace earthshine::app {
 
 // Throws base::Error (Work) with the figures when a run needs more than is free. Only where the
-// most it could take would not fit are a few rows cast to know better. picture: null for none;
-// solves: false when the solution comes from a file.
+// most it could take would not fit are a few rows cast to know better. Where refinement ends at an
+// error, its patches are not known yet: the coarse cut alone is counted, and check_patch_memory()
+// looks again. picture: null for none; solves: false when the solution comes from a file.
 void check_memory(const LoadedScene& loaded, const scenes::RayQuery& query,
                   const radiosity::SolveOptions& solver, const raytrace::RenderOptions* picture,
                   bool solves);
 
+// The same for the solution alone, once the patches are cut.
+void check_patch_memory(const LoadedScene& loaded, const scenes::RayQuery& query,
+                        const radiosity::SolveOptions& solver, std::size_t patches);
 // The same for rows cast one after another, `rays_per_patch` at a time, and not solved.
 void check_row_memory(const LoadedScene& loaded, const scenes::RayQuery& query, double patch_edge_m,
                       int rays_per_patch);

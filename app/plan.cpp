@@ -118,7 +118,8 @@ std::string text_of(const Json& report) {
   text += fmt::format("{} right-hand sides, solved to {:g}\n",
                       report["right_hand_sides"].get<std::size_t>(),
                       quality["solver_tolerance"].get<double>());
-  text += "memory of the solution: " + memory_text(report["memory"]) + "\n";
+  text += std::string("memory of the solution: ") + (refines ? "at most " : "") +
+          memory_text(report["memory"]) + "\n";
   for (const Json& image : report["images"]) {
     text += fmt::format("camera {}: {} x {} pixels, {} gather rays, {:.0f} MiB in all\n",
                         image["camera"].get<std::string>(), image["resolution"][0].get<int>(),
