@@ -21,12 +21,12 @@ constexpr double hierarchy_bytes = 150.0;             // per triangle
 constexpr double facet_bytes = sizeof(radiosity::Facet) + 32.0;
 
 constexpr double patch_bytes = 8.0 + 4.0 + sizeof(radiosity::Cell) + 1.0 + 8.0;
-// Of rows and columns while they are cast and balanced: scales, shares, sums in 16 bands, the
+// Of rows and columns: scales and shares; while they are balanced also sums in 16 bands and the
 // vectors of Newton's step.
-constexpr double row_bytes = 420.0;
+constexpr double row_bytes = 150.0, balance_bytes = 270.0;
 constexpr double counter_bytes = 4.125;  // per patch and thread
 constexpr double entry_bytes = 8.0;      // column and hits
-constexpr double entry_copies = 2.0;     // bands and the matrix they are joined to
+constexpr double entry_copies = 2.0;  // what bands leave behind, and the matrix they are joined to
 // Doubles per patch and column while the linear system is solved: the right-hand side and what it
 // is made of (7), BiCGSTAB on it (9), one correction (4).
 constexpr double solver_vectors = 20.0;
@@ -53,11 +53,14 @@ MemoryNeed memory_needed(const MemoryCase& m) {
   if (m.solves || m.columns > 0) {
     standing.parts.push_back({"patches", patches * patch_bytes + triangles * facet_bytes});
   }
-  MemoryNeed solving = standing;
+  // One after the other: the matrix is cast and balanced, the system solved, the picture drawn.
+  MemoryNeed casting = standing, solving = standing;
   if (m.solves) {
+    const double entries = patches * m.row_entries * entry_bytes;
+    const double rows = patches * (row_bytes + counter_bytes * m.threads);
     const double copies = entry_copies + (m.copies_matrix ? 1.0 : 0.0);
-    solving.parts.push_back({"form factors", patches * (m.row_entries * entry_bytes * copies +
-                                                        row_bytes + counter_bytes * m.threads)});
+    casting.parts.push_back({"form factors", entries * copies + rows + patches * balance_bytes});
+    solving.parts.push_back({"form factors", entries * entry_copies + rows});
     solving.parts.push_back({"light groups", patches * columns * solver_vectors * sizeof(double)});
   }
   MemoryNeed drawing = standing;
@@ -72,7 +75,8 @@ MemoryNeed memory_needed(const MemoryCase& m) {
         {"picture", pixels * (double(m.channels) * sizeof(float) + pixel_record_bytes.per_pixel +
                               pixel_record_bytes.per_pixel_layer * layers)});
   }
-  return solving.total() > drawing.total() ? solving : drawing;
+  return std::max({casting, solving, drawing},
+                  [](const MemoryNeed& a, const MemoryNeed& b) { return a.total() < b.total(); });
 }
 
 std::string memory_remedy(const MemoryNeed& need) {
@@ -127,10 +131,11 @@ void add_picture(MemoryCase& m, const scenes::LightGroups& groups, const scenes:
 void expect_rows(MemoryCase& m, const scenes::Scene& scene, const scenes::RayQuery& query,
                  const radiosity::SolveOptions& options) {
   if (!m.solves || m.patches == 0) return;
-  m.row_entries =
-      radiosity::expected_row_entries(scene, query, m.patches, options.form_factor_rays);
+  const radiosity::ExpectedRows rows =
+      radiosity::expected_rows(scene, query, m.patches, options.form_factor_rays);
+  m.row_entries = rows.entries;
   // Refinement leaves patches small enough to be missed wherever light varies.
-  m.copies_matrix = options.refine.on ||
+  m.copies_matrix = options.refine.on || rows.meets_backs ||
                     radiosity::expected_unreached(scene, m.patches, options.form_factor_rays) > 0.5;
 }
 

@@ -77,7 +77,7 @@ class Plan(program.Case):
     def test_memory_is_stated_by_part_and_near_what_is_taken(self):
         # Even patches: their number is no upper bound. The room's rows are all but full.
         self.write("box.toml", program.CLOSED_BOX)
-        finer = ("--set", "quality.patch_edge=0.02", "--set", "quality.form_factor_rays=1024")
+        finer = ("--set", "quality.patch_edge=0.04", "--set", "quality.form_factor_rays=512")
         plan = self.json("plan", "box.toml", *finer)
         memory = plan["images"][0]["memory"]
         self.assertAlmostEqual(sum(memory["parts_mib"].values()), memory["total_mib"], places=6)

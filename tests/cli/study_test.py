@@ -71,7 +71,7 @@ class Compare(Study):
         self.write("day.toml", program.BALL[:program.BALL.index("[sun]")] + program.BALL[program.BALL.index("[[camera]]"):]
                    + earth + area)
         call = ("study", "compare", "day.toml", "-o", "d", "--lights", "4,64", "--distributed-over")
-        self.says(self.done(*call, "panel"), "distributed-64", "area-4", "area-64", "rays", "ball: 64 distributed lights")
+        self.says(self.done(*call, "panel"), "distributed-64", "area-4", "area-64", "rays", "64 distributed lights")
         rows = {row["method"]: row for row in self.table("d", "compare.csv")}
         self.assertEqual([rows[m]["area"] for m in ("distributed-64", "area-64")], ["", "panel"])
         self.assertGreater(int(rows["area-64"]["rays"]), int(rows["area-4"]["rays"]))
