@@ -137,6 +137,7 @@ base::ExrHeader provenance_header(const Provenance& p) {
   header.text("indirect", indirect_name(p.options.indirect));
   if (p.options.indirect == raytrace::Indirect::Distributed) {
     header.number("distributed_lights", p.options.distributed_lights);
+    header.text("distributed_over", p.options.distributed_over);
   }
   header.text("aov", fmt::format("{}", fmt::join(p.options.aovs, ",")));
   header.text("per_light", p.options.per_light ? "yes" : "no");

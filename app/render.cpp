@@ -11,6 +11,7 @@
 #include "app/cctv.h"
 #include "app/console.h"
 #include "app/interrupt.h"
+#include "app/memory.h"
 #include "app/provenance.h"
 #include "app/range.h"
 #include "app/render_call.h"
@@ -65,6 +66,11 @@ void check_call(const RenderCall& call) {
     throw Error(Blame::Input, "--solution",
                 fmt::format("--indirect {} reads no solution", indirect_name(call.indirect)), {},
                 "Leave one of the two out");
+  }
+  if (!call.distributed_over.empty() && call.indirect != raytrace::Indirect::Distributed) {
+    throw base::Error(base::Blame::Input, "--distributed-over",
+                      fmt::format("--indirect {} spreads no lights", indirect_name(call.indirect)),
+                      {}, "Write --indirect distributed");
   }
 }
 
@@ -209,6 +215,11 @@ void run(RenderCall call, const Common& common) {
     if (call.json) print(dump(ranges.size() == 1 ? ranges.front() : Json(ranges)));
     return;
   }
+  for (const Wanted& picture : pictures) {
+    const raytrace::RenderOptions options = picture_options(call, common, loaded, *picture.camera);
+    check_memory(loaded, query, solve_options(loaded.scene, common), &options,
+                 call.solution.empty());
+  }
   const Solved light = find_light(call, common, loaded, query, times);
   Studio studio{call, common, loaded, query, light};
   Json reports = Json::array();
@@ -278,6 +289,10 @@ Command add_render(CLI::App& program) {
       ->type_name("HOW");
   add_whole_number(*parser, "--distributed-lights", call->distributed_lights, 1, 1U << 20U,
                    "Lights of --indirect distributed (default 64)");
+  parser
+      ->add_option("--distributed-over", call->distributed_over,
+                   "Spread the Earth's lights over this [[area]] of the scene, not its disc")
+      ->type_name("NAME");
   parser
       ->add_option_function<std::string>(
           "--aov", [call](const std::string& text) { call->aovs = split_at_commas(text); },

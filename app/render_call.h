@@ -24,6 +24,7 @@ struct RenderCall {
   double time_limit_s = 0.0;  // of the whole command; 0: none
   raytrace::Indirect indirect = raytrace::Indirect::Radiosity;
   std::uint64_t distributed_lights = 64;
+  std::string distributed_over;  // [[area]] of the scene; empty: none
   std::vector<std::string> aovs;
   bool per_light = false, timings = false, json = false;
   OverCall over;
@@ -54,6 +55,11 @@ struct Studio {
   const Solved& light;
   double time_limit_s = 0.0;  // for one picture; 0: none
 };
+
+// The size, the layers and the rays of one camera's picture.
+[[nodiscard]] raytrace::RenderOptions picture_options(const RenderCall& call, const Common& common,
+                                                      const LoadedScene& loaded,
+                                                      const scenes::Camera& camera);
 
 struct PictureFiles {
   std::string output, png, cctv, range;  // empty: not wanted

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "raytrace/cryptomatte.h"
+#include "raytrace/distributed_area.h"
 #include "raytrace/first_hit.h"
 #include "raytrace/layers.h"
 #include "raytrace/passes.h"
@@ -97,7 +98,7 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
                                : std::vector<float>{},
                            options.per_light);
   const LightSampler lights(scene, groups, effects, options.indirect, options.distributed_lights,
-                            options.per_light);
+                            options.per_light, earth_area(scene, options.distributed_over));
   const BrightPatches bright = reads_solution ? BrightPatches(solution) : BrightPatches();
   const std::size_t layers = options.per_light ? std::max<std::size_t>(1, groups.count()) : 1;
   const std::size_t earth_layer =

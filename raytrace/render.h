@@ -55,7 +55,8 @@ struct RenderOptions {
   int gather_rays = 256;  // per pixel
   SharedGather shared = {};
   Indirect indirect = Indirect::Radiosity;
-  int distributed_lights = 64;  // N of Indirect::Distributed
+  int distributed_lights = 64;   // N of Indirect::Distributed
+  std::string distributed_over;  // the [[area]] that the Earth's N lights lie on; empty: its disc
   bool per_light = false;
   std::vector<std::string> aovs;  // of aov_names()
   std::uint64_t seed = 1;
@@ -77,7 +78,8 @@ using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
 // `solution` may be empty (default-constructed) unless indirect is Radiosity. A crop has the very
 // pixels that the whole picture has there.
-// Throws base::Error (Input) for an unknown AOV name or a crop that leaves the picture.
+// Throws base::Error (Input) for an unknown AOV name or [[area]], or a crop that leaves the
+// picture.
 [[nodiscard]] Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
                            const scenes::Effects& effects, const scenes::RayQuery& query,
                            const radiosity::Solution& solution, const scenes::Camera& camera,

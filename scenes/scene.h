@@ -79,6 +79,15 @@ struct Lamp {
   std::string source;                            // measured: the file, as the scene names it
 };
 
+// A rectangle that lights may be spread over (Indirect::Distributed). It is not there: no ray meets
+// it. Its lights shine along edge_u x edge_v.
+struct Area {
+  std::string name;
+  Vec3 center{0.0};               // m
+  Vec3 edge_u{0.0}, edge_v{0.0};  // full edges, m
+  Vec3 normal{0.0, 0.0, 1.0};     // unit
+};
+
 struct Sun {
   Vec3 direction{0.0, 0.0, 1.0};  // unit, toward the Sun
   Rgb illuminance_lx{133100.0};   // at normal incidence, nothing in front of it
@@ -152,6 +161,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Object> objects;
   std::vector<Lamp> lamps;
+  std::vector<Area> areas;
   std::optional<Sun> sun;
   std::optional<Earth> earth;
   Rgb ambient_radiance{0.0};  // k_a I_a with k_a = diffuse; 0: off

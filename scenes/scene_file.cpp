@@ -12,7 +12,7 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr std::string_view root_keys[] = {"format", "name", "unit",    "material",     "object",
-                                          "light",  "sun",  "earth",   "orbit",        "ambient",
+                                          "light",  "area", "sun",  "earth",   "orbit",        "ambient",
                                           "camera", "cctv", "monitor", "range_sensor", "quality"};
 constexpr std::string_view ambient_keys[] = {"radiance"};
 constexpr std::string_view units[] = {"m", "cm", "mm", "ft", "in"};
@@ -77,6 +77,9 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   LuminaireShelf luminaires(path.parent_path());
   read_named(root, "light", [&](const TomlNode& node) {
     return scene.lamps.emplace_back(read_lamp(node, unit_m, luminaires)).name;
+  });
+  read_named(root, "area", [&](const TomlNode& node) {
+    return scene.areas.emplace_back(read_area(node, unit_m)).name;
   });
   read_sky(scene, plain_table(root, "sun"), plain_table(root, "earth"), plain_table(root, "orbit"));
   if (const TomlNode* node = plain_table(root, "ambient")) {
