@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <memory>
 
 #include "app/cctv.h"
@@ -267,32 +266,7 @@ Command add_render(CLI::App& program) {
   add_over_options(*parser, call->over);
   add_window_options(*parser, *call);
   add_solution_option(*parser, call->solution);
-  using raytrace::Indirect;
-  const std::map<std::string, Indirect> names = {{"radiosity", Indirect::Radiosity},
-                                                 {"distributed", Indirect::Distributed},
-                                                 {"none", Indirect::None},
-                                                 {"paths", Indirect::Paths}};
-  parser
-      ->add_option_function<std::string>(
-          "--indirect",
-          [call, names](const std::string& text) {
-            const auto known = names.find(text);
-            if (known == names.end()) {
-              throw CLI::ValidationError(
-                  "--indirect",
-                  "\"" + text + "\" is not one of radiosity, distributed, none, paths");
-            }
-            call->indirect = known->second;
-          },
-          "radiosity (default), distributed (many lights, no interreflection), none, paths (slow "
-          "reference)")
-      ->type_name("HOW");
-  add_whole_number(*parser, "--distributed-lights", call->distributed_lights, 1, 1U << 20U,
-                   "Lights of --indirect distributed (default 64)");
-  parser
-      ->add_option("--distributed-over", call->distributed_over,
-                   "Spread the Earth's lights over this [[area]] of the scene, not its disc")
-      ->type_name("NAME");
+  add_indirect_options(*parser, *call);
   parser
       ->add_option_function<std::string>(
           "--aov", [call](const std::string& text) { call->aovs = split_at_commas(text); },

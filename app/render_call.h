@@ -38,6 +38,8 @@ struct RenderCall {
 
 // --crop, --only-pixel, --time-limit.
 void add_window_options(CLI::App& parser, RenderCall& call);
+// --indirect and what belongs to its ways.
+void add_indirect_options(CLI::App& parser, RenderCall& call);
 
 // The light of the scene, for all of its cameras.
 struct Solved {

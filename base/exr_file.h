@@ -20,12 +20,12 @@ using ExrMatrix = std::array<float, 16>;
 struct ExrHeader {
   std::vector<std::pair<std::string, std::string>> text;
   std::vector<std::pair<std::string, float>> numbers;
+  std::vector<std::pair<std::string, ExrMatrix>> matrices = {};
   // The picture that the image is a part of (the display window), and where its top left pixel lies
   // in it; without columns the image is the whole.
   struct Whole {
     int columns = 0, rows = 0, x = 0, y = 0;
   } whole = {};
-  std::vector<std::pair<std::string, ExrMatrix>> matrices = {};
 };
 
 struct ExrFile {

@@ -77,6 +77,20 @@ TEST(Exr, AttributesSurviveReadingAndWritingAgain) {
   EXPECT_EQ(read_bytes(folder / "a.exr"), read_bytes(folder / "b.exr"));
 }
 
+TEST(Exr, APartOfAPictureSaysWhereItLies) {
+  const TemporaryFolder folder;
+  ExrHeader header;
+  header.whole = {20, 10, 5, 3};
+  const Image part = pattern(4, 2);
+  write_exr(folder / "a.exr", part, header);
+  const Imf::InputFile file((folder / "a.exr").c_str());
+  EXPECT_EQ(file.header().displayWindow(), Imath::Box2i({0, 0}, {19, 9}));
+  EXPECT_EQ(file.header().dataWindow(), Imath::Box2i({5, 3}, {8, 4}));
+  const ExrFile back = read_exr(folder / "a.exr");
+  ASSERT_EQ(back.image.width, 4);
+  EXPECT_EQ(back.image.channels.front().values, part.channels.front().values);
+}
+
 TEST(Exr, MatricesKeepTheirRowsAndTheScreenWindowItsWidth) {
   const TemporaryFolder folder;
   ExrMatrix matrix;
