@@ -88,7 +88,8 @@ TEST(Exr, APartOfAPictureSaysWhereItLies) {
   EXPECT_EQ(file.header().dataWindow(), Imath::Box2i({5, 3}, {8, 4}));
   const ExrFile back = read_exr(folder / "a.exr");
   ASSERT_EQ(back.image.width, 4);
-  EXPECT_EQ(back.image.channels.front().values, part.channels.front().values);
+  const std::string first = part.channels.front().name;  // files have channels in order of names
+  EXPECT_EQ(back.image.find(first)->values, part.channels.front().values);
 }
 
 TEST(Exr, MatricesKeepTheirRowsAndTheScreenWindowItsWidth) {
