@@ -11,6 +11,7 @@
 
 #include "app/command.h"
 #include "app/console.h"
+#include "app/memory.h"
 #include "base/error.h"
 #include "radiosity/exact_form_factors.h"
 #include "radiosity/object_form_factors.h"
@@ -107,6 +108,8 @@ Found find(const FactorsCall& call, const Common& common) {
     found.patches = facets.count();
     find_exactly(scene, query, facets, common, found);
   } else {
+    check_row_memory(loaded, query, knobs.patch_edge_m,
+                     knobs.form_factor_rays / static_cast<int>(radiosity::ray_replicates));
     const radiosity::Patches patches = radiosity::subdivide(scene, knobs.patch_edge_m);
     found.patches = patches.count();
     found.between = radiosity::object_form_factors_by_rays(

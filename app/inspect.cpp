@@ -89,6 +89,17 @@ Json lights_of(const scenes::Scene& scene) {
   return lamps;
 }
 
+Json areas_of(const scenes::Scene& scene) {
+  Json areas = Json::array();
+  for (const scenes::Area& area : scene.areas) {
+    areas.push_back({{"name", area.name},
+                     {"center_m", to_json(area.center)},
+                     {"normal", to_json(area.normal)},
+                     {"area_m2", glm::length(glm::cross(area.edge_u, area.edge_v))}});
+  }
+  return areas;
+}
+
 Json sky_of(const scenes::Scene& scene, const LoadedScene& loaded) {
   Json sky;
   sky["sun"] = Json();
@@ -145,6 +156,7 @@ Json report_of(const LoadedScene& loaded) {
   report["objects"] = objects_of(scene);
   report["materials"] = materials_of(scene);
   report["lamps"] = lights_of(scene);
+  report["areas"] = areas_of(scene);
   report.update(sky_of(scene, loaded));
   report["ambient_radiance_cd_m2"] = to_json(scene.ambient_radiance);
   report["light_groups"] = loaded.groups.names;
@@ -203,6 +215,10 @@ std::string lights_table(const Json& report) {
                         source.is_null() ? "" : " (" + source.get<std::string>() + ")",
                         lamp["group"].get<std::string>(), numbers(lamp["flux_lm"]),
                         numbers(lamp["position_m"]));
+  }
+  for (const Json& area : report["areas"]) {
+    text += fmt::format("area {}: {:.6g} m2, for distributed lights\n",
+                        area["name"].get<std::string>(), area["area_m2"].get<double>());
   }
   for (const char* name : {"sun", "earth"}) {
     const Json& body = report[name];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// earthshine plan: which effects will run and why, and how many rays that is. Traces nothing.
+// earthshine plan: which effects will run and why, how many rays and how much memory that is.
+// Traces nothing but a few rows of form factors, for the memory.
 #include <fmt/format.h>
 
 #include <bit>
@@ -7,6 +8,7 @@
 
 #include "app/command.h"
 #include "app/console.h"
+#include "app/memory.h"
 #include "degrade/camera_file.h"
 #include "degrade/chain.h"
 #include "radiosity/refine.h"
@@ -51,6 +53,24 @@ Json images_of(const scenes::Scene& scene, std::uint64_t gather_rays) {
   return images;
 }
 
+// Of the solution alone, and of each camera's picture of its own size, the solution included.
+void add_memory(Json& report, const LoadedScene& loaded) {
+  const radiosity::SolveOptions solver = solve_options(loaded.scene, {});
+  const scenes::RayQuery query(loaded.scene);
+  studies::MemoryCase sizes =
+      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
+  studies::expect_rows(sizes, loaded.scene, query, solver);
+  report["memory"] = memory_json(studies::memory_needed(sizes));
+  for (std::size_t k = 0; k < loaded.scene.cameras.size(); ++k) {
+    raytrace::RenderOptions picture;
+    picture.columns = loaded.scene.cameras[k].columns;
+    picture.rows = loaded.scene.cameras[k].rows;
+    studies::MemoryCase with_picture = sizes;
+    studies::add_picture(with_picture, loaded.groups, loaded.effects, picture);
+    report["images"][k]["memory"] = memory_json(studies::memory_needed(with_picture));
+  }
+}
+
 Json report_of(const LoadedScene& loaded) {
   const scenes::QualityKnobs knobs = scenes::resolve_quality(loaded.scene);
   const auto rays_per_patch = std::bit_ceil(static_cast<std::uint64_t>(knobs.form_factor_rays));
@@ -58,7 +78,7 @@ Json report_of(const LoadedScene& loaded) {
   const bool refines = knobs.refine && radiosity::is_lit(loaded.effects);
   const std::size_t patches =
       refines ? radiosity::most_refined_patches(loaded.scene, solve_options(loaded.scene, {}))
-              : radiosity::subdivide(loaded.scene, knobs.patch_edge_m).count();
+              : radiosity::count_patches(loaded.scene, knobs.patch_edge_m);
   const bool solves = lit && loaded.effects.interreflection;
   Json report;
   report["scene"] = loaded.scene.path.string();
@@ -76,6 +96,7 @@ Json report_of(const LoadedScene& loaded) {
   report["right_hand_sides"] = 3 * loaded.groups.count();
   report["images"] =
       images_of(loaded.scene, solves ? static_cast<std::uint64_t>(knobs.gather_rays) : 0);
+  add_memory(report, loaded);
   return report;
 }
 
@@ -97,11 +118,14 @@ std::string text_of(const Json& report) {
   text += fmt::format("{} right-hand sides, solved to {:g}\n",
                       report["right_hand_sides"].get<std::size_t>(),
                       quality["solver_tolerance"].get<double>());
+  text += std::string("memory of the solution: ") + (refines ? "at most " : "") +
+          memory_text(report["memory"]) + "\n";
   for (const Json& image : report["images"]) {
-    text += fmt::format("camera {}: {} x {} pixels, {} gather rays\n",
+    text += fmt::format("camera {}: {} x {} pixels, {} gather rays, {:.0f} MiB in all\n",
                         image["camera"].get<std::string>(), image["resolution"][0].get<int>(),
                         image["resolution"][1].get<int>(),
-                        short_count(image["gather_rays"].get<double>()));
+                        short_count(image["gather_rays"].get<double>()),
+                        image["memory"]["total_mib"].get<double>());
     const auto stages = image["cctv_stages"].get<std::vector<std::string>>();
     if (!stages.empty()) text += fmt::format("  cctv: {}\n", fmt::join(stages, ", "));
   }

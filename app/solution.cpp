@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/solution.h"
 
+#include "app/memory.h"
 #include "base/output_file.h"
 #include "radiosity/solution_mesh.h"
 
@@ -25,7 +26,10 @@ radiosity::Solution solve_or_read(const LoadedScene& loaded, const scenes::RayQu
                                   StageTimes& times) {
   radiosity::Solution solution;
   if (path.empty()) {
-    solution = radiosity::solve(loaded.scene, loaded.groups, loaded.effects, query, options);
+    const auto fits = [&](const radiosity::Patches& patches) {
+      check_patch_memory(loaded, query, options, patches.count());
+    };
+    solution = radiosity::solve(loaded.scene, loaded.groups, loaded.effects, query, options, fits);
     times.add(solution.report.seconds);
   } else {
     solution = times.measure("read solution", [&] {

@@ -6,6 +6,7 @@
 
 #include "app/command.h"
 #include "app/console.h"
+#include "app/memory.h"
 #include "app/solution.h"
 #include "base/error.h"
 #include "base/output_file.h"
@@ -161,6 +162,7 @@ void run(const SolveCall& call, const Common& common) {
   const scenes::RayQuery query =
       times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
   const radiosity::SolveOptions options = solve_options(loaded.scene, common);
+  check_memory(loaded, query, options, nullptr, call.solution.empty());
   const radiosity::Solution solution = solve_or_read(loaded, query, options, call.solution, times);
   if (!common.quiet) note_backs(solution.report);
   const bool writes_report = is_json(call.output);

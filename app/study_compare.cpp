@@ -12,6 +12,7 @@
 #include "base/png_file.h"
 #include "base/tone.h"
 #include "raytrace/camera_check.h"
+#include "raytrace/distributed_area.h"
 #include "scenes/quality.h"
 #include "studies/compare.h"
 #include "studies/difference_picture.h"
@@ -26,6 +27,7 @@ constexpr const char* results_json = "compare.json";
 
 struct CompareCall : StudyCall {
   std::vector<int> lights = studies::CompareOptions().distributed_lights;
+  std::string area;
 };
 
 std::string picture_name(const studies::Method& method) { return method.name + ".png"; }
@@ -35,9 +37,9 @@ std::optional<std::string> difference_name(const studies::Method& method) {
   return "difference-" + method.name + ".png";
 }
 
-std::vector<std::string> file_names(const std::vector<int>& lights) {
+std::vector<std::string> file_names(const std::vector<int>& lights, const std::string& area) {
   std::vector<std::string> names = {methods_csv, targets_csv, results_json};
-  for (const studies::Method& method : studies::compare_methods(lights)) {
+  for (const studies::Method& method : studies::compare_methods(lights, area)) {
     names.push_back(picture_name(method));
     if (const auto difference = difference_name(method)) names.push_back(*difference);
   }
@@ -49,8 +51,10 @@ Json method_rows(const studies::Comparison& comparison) {
   for (const studies::MethodResult& result : comparison.methods) {
     const raytrace::RenderReport& report = result.frame.report;
     const int lights = result.method.distributed_lights;
+    const std::string& over = result.method.distributed_over;
     rows.push_back({{"method", result.method.name},
                     {"lights", lights > 0 ? Json(lights) : Json()},
+                    {"area", over.empty() ? Json() : Json(over)},
                     {"solve_seconds", result.solve_seconds},
                     {"render_seconds", result.render_seconds},
                     {"rays", report.rays.total()},
@@ -142,12 +146,13 @@ void write_pictures(const std::filesystem::path& folder, const studies::Comparis
 }
 
 std::string summary(const studies::Comparison& comparison) {
-  std::string text = fmt::format("{:<18} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "method", "solve s",
-                                 "render s", "RMSE", "bias", "off");
+  std::string text = fmt::format("{:<18} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "method",
+                                 "solve s", "render s", "rays", "RMSE", "bias", "off");
   for (const studies::MethodResult& result : comparison.methods) {
     const studies::PictureDifference& difference = result.difference;
-    text += fmt::format("{:<18} {:>9.1f} {:>9.1f} {:>7.1f} % {:>+7.1f} % {:>7.1f} %\n",
+    text += fmt::format("{:<18} {:>9.1f} {:>9.1f} {:>9} {:>7.1f} % {:>+7.1f} % {:>7.1f} %\n",
                         result.method.name, result.solve_seconds, result.render_seconds,
+                        short_count(static_cast<double>(result.frame.report.rays.total())),
                         100.0 * difference.relative_rmse, 100.0 * difference.bias,
                         100.0 * difference.off_share);
   }
@@ -169,13 +174,19 @@ void run(const CompareCall& call, const Common& common) {
   if (call.cameras.empty() && loaded.scene.cameras.size() > 1 && !common.quiet) {
     note("note: no --camera, taking the first, \"" + camera.name + "\"");
   }
-  prepare_folder(call.folder, file_names(call.lights));
+  (void)raytrace::earth_area(loaded.scene, call.area);  // a wrong one is refused before the folder
+  prepare_folder(call.folder, file_names(call.lights, call.area));
 
   studies::CompareOptions options;
   options.columns = call.size ? call.size->columns : camera.columns;
   options.rows = call.size ? call.size->rows : camera.rows;
-  options.gather_rays = scenes::resolve_quality(loaded.scene).gather_rays;
+  // Every sample has gather rays of its own in all pictures: only the light differs between them.
+  const scenes::QualityKnobs knobs = scenes::resolve_quality(loaded.scene);
+  options.gather_rays =
+      knobs.gather_rays *
+      (loaded.scene.quality.gather_rays || !knobs.share_gather ? 1 : scenes::rays_alone_per_shared);
   options.distributed_lights = call.lights;
+  options.distributed_over = call.area;
   options.solver = solve_options(loaded.scene, common);
   options.seed = common.seed;
   const scenes::RayQuery query(loaded.scene);
@@ -218,6 +229,10 @@ Command add_study_compare(CLI::App& study) {
           fmt::format("How many lights stand for a wide source (default {})",
                       fmt::join(call->lights, ",")))
       ->type_name("LIST");
+  parser
+      ->add_option("--distributed-over", call->area,
+                   "Also with the Earth's lights over this [[area]] of the scene, not its disc")
+      ->type_name("NAME");
   return {parser, [call](const Common& common) { run(*call, common); }};
 }
 

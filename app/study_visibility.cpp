@@ -134,8 +134,7 @@ void run(const StudyCall& call, const Common& common) {
     studies::ViewOptions options;
     options.columns = call.size ? call.size->columns : camera->columns;
     options.rows = call.size ? call.size->rows : camera->rows;
-    const raytrace::RenderOptions render =
-        raytrace::render_options(scenes::resolve_quality(scene));
+    const raytrace::RenderOptions render = raytrace::render_options(scenes::resolve_quality(scene));
     options.gather_rays = render.gather_rays;
     options.shared = render.shared;
     options.seed = common.seed;

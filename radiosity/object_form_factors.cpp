@@ -13,7 +13,7 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr std::uint32_t replicates = 16;
+constexpr std::uint32_t replicates = ray_replicates;
 constexpr std::size_t signings = 64;
 
 // One patch's hits by object; `end` has the columns of sky and black backs after the objects.

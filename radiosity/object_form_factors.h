@@ -45,6 +45,8 @@ struct ObjectFactorReport {
   std::size_t disagreeing_pairs = 0;
 };
 
+inline constexpr std::uint32_t ray_replicates = 16;
+
 // By rays. Sixteen independent Owen-Sobol replicates of every patch's rays tell the noise: a single
 // set's hits are no independent draws, and the binomial formula misses their error by factors of 3
 // to 50. Unless `raw`, the two estimates of each pair, A_i F_ij and A_j F_ji, are joined with the

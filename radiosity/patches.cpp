@@ -156,10 +156,12 @@ Vec3 Patches::normal(std::uint32_t patch) const {
   return is_back[patch] != 0 ? -n : n;
 }
 
-Patches subdivide(const scenes::Scene& scene, double edge_m) {
-  Patches patches;
-  patches.of_triangle.resize(scene.triangles.size());
-  patches.second_half.assign(scene.triangles.size(), 0);
+namespace {
+
+// Calls take(facet, pair) for every facet in the scene's order, its patches numbered, and gives
+// their number.
+template <class Take>
+std::uint64_t for_each_facet(const scenes::Scene& scene, double edge_m, Take take) {
   std::uint64_t total = 0;
   for (std::size_t k = 0; k < scene.triangles.size(); ++k) {
     const bool pair = forms_parallelogram(scene, k);
@@ -183,14 +185,32 @@ Patches subdivide(const scenes::Scene& scene, double edge_m) {
       facet.first_back = static_cast<std::uint32_t>(total);
       total += cells;
     }
+    take(facet, pair);
+    if (pair) ++k;
+  }
+  return total;
+}
+
+}  // namespace
+
+std::size_t count_patches(const scenes::Scene& scene, double edge_m) {
+  return for_each_facet(scene, edge_m, [](const Facet&, bool) {});
+}
+
+Patches subdivide(const scenes::Scene& scene, double edge_m) {
+  Patches patches;
+  patches.of_triangle.resize(scene.triangles.size());
+  patches.second_half.assign(scene.triangles.size(), 0);
+  for_each_facet(scene, edge_m, [&](const Facet& facet, bool pair) {
     const auto index = static_cast<std::uint32_t>(patches.facets.size());
-    patches.of_triangle[k] = index;
+    patches.of_triangle[facet.triangle] = index;
     if (pair) {
-      patches.of_triangle[++k] = index;
-      patches.second_half[k] = 1;
+      patches.of_triangle[facet.triangle + 1] = index;
+      patches.second_half[facet.triangle + 1] = 1;
     }
-    for (int side = 0; side < (sheet ? 2 : 1); ++side) {
-      for (std::uint32_t c = 0; c < cells; ++c) {
+    const int sides = facet.first_back == no_patch ? 1 : 2;
+    for (int side = 0; side < sides; ++side) {
+      for (std::uint32_t c = 0; c < facet.leaves; ++c) {
         const Cell cell{c / facet.t_count, c % facet.t_count};
         patches.area_m2.push_back(area_of(facet, rectangle_of(facet, cell)));
         patches.facet.push_back(index);
@@ -199,7 +219,7 @@ Patches subdivide(const scenes::Scene& scene, double edge_m) {
       }
     }
     patches.facets.push_back(facet);
-  }
+  });
   return patches;
 }
 

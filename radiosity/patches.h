@@ -107,6 +107,9 @@ class Patches {
 // Throws base::Error (Input) when more than 2^26 patches would result.
 [[nodiscard]] Patches subdivide(const scenes::Scene& scene, double edge_m);
 
+// How many that would be, without making them. Throws as subdivide does.
+[[nodiscard]] std::size_t count_patches(const scenes::Scene& scene, double edge_m);
+
 // Area and place in parameters of a cell of a facet.
 [[nodiscard]] Rectangle rectangle_of(const Facet& facet, const Cell& cell);
 [[nodiscard]] double area_of(const Facet& facet, const Rectangle& rectangle);

@@ -217,8 +217,8 @@ class Refinement {
 std::size_t most_refined_patches(const scenes::Scene& scene, const SolveOptions& options) {
   const RefineOptions& refine = options.refine;
   const std::size_t budget =
-      refine.max_patches > 0 ? refine.max_patches : subdivide(scene, options.patch_edge_m).count();
-  return std::max(budget, subdivide(scene, refine.start_edge_m).count());
+      refine.max_patches > 0 ? refine.max_patches : count_patches(scene, options.patch_edge_m);
+  return std::max(budget, count_patches(scene, refine.start_edge_m));
 }
 
 Refined refine(const scenes::Scene& scene, const scenes::LightGroups& groups,

@@ -139,11 +139,12 @@ bool is_lit(const scenes::Effects& effects) {
 
 Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
                const scenes::Effects& effects, const scenes::RayQuery& query,
-               const SolveOptions& options) {
+               const SolveOptions& options, const PatchListener& listen) {
   SolveReport cutting;
   Stopwatch watch(cutting);
   Refined refined = refine(scene, groups, effects, query, options);
   watch.lap("patches");
+  if (listen) listen(refined.patches);
   Solution solution = solve(scene, groups, effects, query, options, std::move(refined.patches));
   SolveReport& report = solution.report;
   report.seconds.insert(report.seconds.begin(), cutting.seconds.front());

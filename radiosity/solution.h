@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -94,10 +95,13 @@ struct Solution {
 // area (a whole face, a furnace), else by explicit sampling. The only place where this is decided.
 [[nodiscard]] std::vector<bool> emitter_is_explicit(const scenes::Scene& scene);
 
+// Told how the scene is cut before its form factors are cast; may throw.
+using PatchListener = std::function<void(const Patches& patches)>;
+
 // With no light group there is nothing to solve: patches are cut, no rays are cast.
 [[nodiscard]] Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
                              const scenes::Effects& effects, const scenes::RayQuery& query,
-                             const SolveOptions& options);
+                             const SolveOptions& options, const PatchListener& listen = {});
 // On patches that are cut already; options.patch_edge_m and options.refine are not looked at.
 [[nodiscard]] Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
                              const scenes::Effects& effects, const scenes::RayQuery& query,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "scenes/sky.h"
 
@@ -25,8 +26,11 @@ double fraction(double x) { return x - std::floor(x); }
 
 LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups& groups,
                            const scenes::Effects& effects, Indirect indirect,
-                           int distributed_lights, bool per_group)
-    : scene_(scene), distributed_(indirect == Indirect::Distributed) {
+                           int distributed_lights, bool per_group,
+                           std::optional<scenes::Lamp> earth_area)
+    : scene_(scene),
+      distributed_(indirect == Indirect::Distributed),
+      earth_area_(distributed_ ? std::move(earth_area) : std::nullopt) {
   const int copies = distributed_ ? distributed_lights : 1;
   if (effects.sun) {
     sun_illuminance_lx_ = distributed_
@@ -37,7 +41,7 @@ LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups
   if (effects.earth && (distributed_ || !effects.earth_by_gather)) {
     earth_half_angle_rad_ = base::radians(scene.earth->half_angle_deg);
     earth_solid_angle_sr_ = scenes::cone_solid_angle_sr(earth_half_angle_rad_);
-    add({Kind::Earth, groups.earth}, copies);
+    add({earth_area_ ? Kind::EarthArea : Kind::Earth, groups.earth}, copies);
   }
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
     if (groups.lamp[k] == scenes::no_group) continue;
@@ -148,6 +152,9 @@ scenes::LightSample LightSampler::sample(std::size_t index, const Vec3& point, d
                 scenes::earth_radiance(scene_, direction) * earth_solid_angle_sr_};
       break;
     }
+    case Kind::EarthArea:
+      sample = scenes::sample_lamp(*earth_area_, point, u, v);
+      break;
     case Kind::Lamp:
       sample = scenes::sample_lamp(scene_.lamps[light.index], point, u, v, spread);
       break;

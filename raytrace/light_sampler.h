@@ -17,11 +17,12 @@ namespace earthshine::raytrace {
 class LightSampler {
  public:
   // Radiosity and None: each source once, sampled at random. Distributed: wide sources are replaced
-  // by `distributed_lights` fixed points or directions of equal share, the same for every pixel.
+  // by `distributed_lights` fixed points or directions of equal share, the same for every pixel;
+  // the Earth by points of earth_area (distributed_area.h), or by directions to its disc.
   // per_group: every light group gets an image of its own, so that lamps are chosen within each.
   LightSampler(const scenes::Scene& scene, const scenes::LightGroups& groups,
                const scenes::Effects& effects, Indirect indirect, int distributed_lights,
-               bool per_group = false);
+               bool per_group = false, std::optional<scenes::Lamp> earth_area = std::nullopt);
 
   // Adds the lights that get a shadow ray at the receiver: of few lamps all, of many those that
   // matter, with weight 1, and some of the others by chance, with weight 1 / probability
@@ -44,7 +45,7 @@ class LightSampler {
                                            double v) const;
 
  private:
-  enum class Kind { Sun, Earth, Lamp, Emitters };
+  enum class Kind { Sun, Earth, EarthArea, Lamp, Emitters };
   struct Light {
     Kind kind;
     std::size_t group;
@@ -63,6 +64,7 @@ class LightSampler {
 
   const scenes::Scene& scene_;
   bool distributed_;
+  std::optional<scenes::Lamp> earth_area_;
   std::vector<Light> lights_;
   std::vector<std::size_t> always_;  // lights that are not left to chance
   std::vector<Crowd> crowds_;

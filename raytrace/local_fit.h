@@ -15,7 +15,10 @@ class LocalFit {
  public:
   using Values = std::array<double, variables>;
 
-  void add(double weight, const Values& x) {
+  // x: at least `variables` values.
+  template <std::size_t more>
+  void add(double weight, const std::array<double, more>& x) {
+    static_assert(more >= variables);
     for (std::size_t i = 0; i < variables; ++i) {
       for (std::size_t j = 0; j <= i; ++j) matrix_[i][j] += weight * x[i] * x[j];
     }

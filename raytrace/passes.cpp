@@ -47,6 +47,8 @@ Sampling share_out(int rays_per_pixel, bool gathers) {
 // themselves are left out of the former.
 struct Outlook {
   double luminance = 0.0, deviation = 0.0;
+  // From here on pixels count as bright (PixelSums::deviation).
+  [[nodiscard]] double bright() const { return 4.0 * luminance; }
 };
 
 Outlook look_ahead(ShadingScene shared, const CameraModel& camera, int samples) {
@@ -55,33 +57,28 @@ Outlook look_ahead(ShadingScene shared, const CameraModel& camera, int samples) 
   const int step = std::max(1, std::min(camera.columns, camera.rows) / planning_grid);
   const int columns = (camera.columns + step - 1) / step, rows = (camera.rows + step - 1) / step;
   const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-  struct Sums {
-    double luminance = 0.0, deviation = 0.0, pixels = 0.0;
-    Sums& operator+=(const Sums& other) {
-      luminance += other.luminance;
-      deviation += other.deviation;
-      pixels += other.pixels;
-      return *this;
+  std::vector<PixelSums> looks(count, PixelSums({0, 0, 1, 1}, shared.layers));
+  base::parallel_chunks(count, 16, [&](std::size_t begin, std::size_t end) {
+    RayCounts rays;
+    for (std::size_t k = begin; k < end; ++k) {
+      const int column = static_cast<int>(k) % columns, row = static_cast<int>(k) / columns;
+      looks[k].window.x = std::min(camera.columns - 1, column * step + step / 2);
+      looks[k].window.y = std::min(camera.rows - 1, row * step + step / 2);
+      shade_samples(shared, camera, {static_cast<std::uint32_t>(samples)}, looks[k], rays, {}, {});
     }
-  };
-  const Sums sums =
-      base::ordered_sum<Sums>(count, 16, Sums{}, [&](std::size_t begin, std::size_t end) {
-        Sums part;
-        RayCounts rays;
-        for (std::size_t k = begin; k < end; ++k) {
-          const Window pixel{
-              std::min(camera.columns - 1, static_cast<int>(k) % columns * step + step / 2),
-              std::min(camera.rows - 1, static_cast<int>(k) / columns * step + step / 2), 1, 1};
-          PixelSums one(pixel, shared.layers);
-          shade_samples(shared, camera, {static_cast<std::uint32_t>(samples)}, one, rays, {}, {});
-          part.deviation += std::sqrt(one.sample_variance(0) * samples);
-          if (one.source_samples[0] > 0) continue;
-          part.luminance += one.luminance[0] / samples;
-          part.pixels += 1.0;
-        }
-        return part;
-      });
-  return {sums.luminance / std::max(1.0, sums.pixels), sums.deviation / static_cast<double>(count)};
+  });
+  Outlook outlook;
+  double pixels = 0.0;
+  for (const PixelSums& look : looks) {
+    if (look.source_samples[0] > 0) continue;
+    outlook.luminance += look.luminance[0] / samples;
+    pixels += 1.0;
+  }
+  outlook.luminance /= std::max(1.0, pixels);
+  for (const PixelSums& look : looks) {
+    outlook.deviation += look.deviation(0, outlook.bright()) / static_cast<double>(count);
+  }
+  return outlook;
 }
 
 class Passes {
@@ -137,12 +134,14 @@ class Passes {
     shade(wanted, sums, report);
     for (int round = 1; round < most_rounds && !stops() && !out_of_time(); ++round) {
       if (per_deviation <= 0.0) break;
-      wanted = wanted_samples(sums, per_deviation, how.least_samples, how.most_samples);
+      wanted = wanted_samples(sums, per_deviation, outlook.bright(), how.least_samples,
+                              how.most_samples);
       shade(wanted, sums, report);
     }
     while (options_.time_limit_s > 0.0 && per_deviation > 0.0 && !stops() && !out_of_time()) {
       per_deviation *= 0.5;
-      wanted = wanted_samples(sums, per_deviation, how.least_samples, 16 * how.most_samples);
+      wanted = wanted_samples(sums, per_deviation, outlook.bright(), how.least_samples,
+                              16 * how.most_samples);
       const std::uint64_t before = report.rays.camera;
       shade(wanted, sums, report);
       if (report.rays.camera == before && per_deviation < 1e-30) break;

@@ -78,6 +78,13 @@ double PixelSums::sample_variance(std::size_t pixel) const {
   return spread > 1e-12 * luminance2[pixel] ? spread / (n - 1.0) / n : 0.0;
 }
 
+double PixelSums::deviation(std::size_t pixel, double bright) const {
+  const double n = samples[pixel];
+  if (n < 2.0) return 0.0;
+  const double mean = luminance[pixel] / n;
+  return std::sqrt(sample_variance(pixel) * n) * (mean > bright ? bright / mean : 1.0);
+}
+
 double PixelSums::squared_error(std::size_t pixel) const {
   if (samples[pixel] == 0) return 0.0;
   const double field = field_error[pixel] / samples[pixel];
@@ -115,12 +122,12 @@ void shade_samples(const ShadingScene& shared, const CameraModel& camera,
   });
 }
 
-std::vector<std::uint32_t> wanted_samples(const PixelSums& sums, double per_deviation, int least,
-                                          int most) {
+std::vector<std::uint32_t> wanted_samples(const PixelSums& sums, double per_deviation,
+                                          double bright, int least, int most) {
   const Window& window = sums.window;
   std::vector<double> deviation(sums.samples.size());
   for (std::size_t p = 0; p < deviation.size(); ++p) {
-    deviation[p] = std::sqrt(sums.sample_variance(p) * sums.samples[p]);
+    deviation[p] = sums.deviation(p, bright);
   }
   std::vector<std::uint32_t> wanted(sums.samples.size());
   for (int y = 0; y < window.rows; ++y) {

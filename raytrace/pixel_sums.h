@@ -21,6 +21,10 @@ struct PixelSums {
   PixelSums(const Window& of, std::size_t entries_per_pixel);
   // Of the mean luminance, from the spread of the samples alone.
   [[nodiscard]] double sample_variance(std::size_t pixel) const;
+  // Standard deviation of one sample's luminance. Pixels brighter than `bright` are wanted as exact
+  // in proportion, not more: theirs is scaled down to that luminance, or glints and lamps would
+  // take all samples.
+  [[nodiscard]] double deviation(std::size_t pixel, double bright) const;
   // The same with what the gather points' own errors add. All samples of a pixel share a point,
   // hence the errors of its samples do not average out.
   [[nodiscard]] double squared_error(std::size_t pixel) const;
@@ -36,8 +40,8 @@ void shade_samples(const ShadingScene& shared, const CameraModel& camera,
 // Samples that give the picture the least error for their number are proportional to each pixel's
 // standard deviation: deviation / per_deviation, within [least, most], at most four times what the
 // pixel has. The deviation is that of the noisiest of the eight neighbours: a pixel's own samples
-// would stop where they happen to agree, and its mean would be biased.
+// would stop where they happen to agree, and its mean would be biased. bright: as in deviation().
 [[nodiscard]] std::vector<std::uint32_t> wanted_samples(const PixelSums& sums, double per_deviation,
-                                                        int least, int most);
+                                                        double bright, int least, int most);
 
 }  // namespace earthshine::raytrace

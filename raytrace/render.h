@@ -31,7 +31,8 @@ enum class Indirect {
   Radiosity,    // final gather on the solution
   Distributed,  // the 1990 report's approximation: the Earth and area lamps as N lights, no
                 // interreflection
-  None          // direct light alone
+  None,         // direct light alone
+  Paths         // the reference: trace_paths (path_tracer.h) instead of render()
 };
 
 // How rays are spent on the final gather.
@@ -54,7 +55,8 @@ struct RenderOptions {
   int gather_rays = 256;  // per pixel
   SharedGather shared = {};
   Indirect indirect = Indirect::Radiosity;
-  int distributed_lights = 64;  // N of Indirect::Distributed
+  int distributed_lights = 64;   // N of Indirect::Distributed
+  std::string distributed_over;  // the [[area]] that the Earth's N lights lie on; empty: its disc
   bool per_light = false;
   std::vector<std::string> aovs;  // of aov_names()
   std::uint64_t seed = 1;
@@ -76,7 +78,8 @@ using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
 // `solution` may be empty (default-constructed) unless indirect is Radiosity. A crop has the very
 // pixels that the whole picture has there.
-// Throws base::Error (Input) for an unknown AOV name or a crop that leaves the picture.
+// Throws base::Error (Input) for an unknown AOV name or [[area]], or a crop that leaves the
+// picture.
 [[nodiscard]] Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
                            const scenes::Effects& effects, const scenes::RayQuery& query,
                            const radiosity::Solution& solution, const scenes::Camera& camera,

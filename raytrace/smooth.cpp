@@ -31,12 +31,12 @@ float stretch(const GatherPoint& point) {
   return 1.0F / std::max(cosine, 0.05F);
 }
 
-using Fit = LocalFit<5>;
+constexpr std::size_t flat_variables = 3, all_variables = 5;
 
 struct Neighbour {
   std::size_t index;
-  Fit::Values
-      x;  // 1; position in the tangent plane, in radii of the kernel; how the normal is turned
+  // 1; position in the tangent plane, in radii of the kernel; how the normal is turned.
+  std::array<double, all_variables> x;
   double weight;
 };
 
@@ -57,7 +57,11 @@ class Smoother {
     if (field_.points[p].reach_m <= 0.0F) return;
     collect(x, y, p);
     if (count_ < 2) return;
-    weigh();
+    if (flat_) {
+      weigh<flat_variables>();
+    } else {
+      weigh<all_variables>();
+    }
     double squares = 0.0;
     std::fill(out.begin(), out.end(), glm::vec3(0.0F));
     for (std::size_t k = 0; k < count_; ++k) {
@@ -102,6 +106,7 @@ class Smoother {
     const float radius = std::max(share_ * at.reach_m, least);
     const Steps across = steps(x, y, 1, 0, radius), down = steps(x, y, 0, 1, radius);
     count_ = 0;
+    flat_ = true;
     for (int dy = -down.last; dy <= down.last; dy += down.step) {
       for (int dx = -across.last; dx <= across.last; dx += across.step) {
         const int qx = x + dx, qy = y + dy;
@@ -120,6 +125,7 @@ class Smoother {
             !same_surface(at.position, at.normal, other.position, other.normal, slack(at))) {
           continue;
         }
+        flat_ = flat_ && glm::dot(turned, turned) == 0.0F;
         neighbours_[count_++] = {q,
                                  {1.0, double(glm::dot(way, tangent) / radius),
                                   double(glm::dot(way, bitangent) / radius),
@@ -132,9 +138,11 @@ class Smoother {
 
   // Kernel weights become the weights of a linear estimate of the value at the point itself. Also
   // the noise that the fit leaves, per point.
+  template <std::size_t variables>
   void weigh() {
+    using Fit = LocalFit<variables>;
     Fit fit;
-    Fit::Values right{};
+    typename Fit::Values right{};
     double sum = 0.0, squares = 0.0;
     for (std::size_t k = 0; k < count_; ++k) {
       const Neighbour& n = neighbours_[k];
@@ -146,7 +154,7 @@ class Smoother {
       squares += n.weight * n.weight;
     }
     const auto unknowns = static_cast<double>(fit.factor());
-    const Fit::Values luminance = fit.solve(right), share = fit.solve({1.0});
+    const typename Fit::Values luminance = fit.solve(right), share = fit.solve({1.0});
     double left = 0.0;
     for (std::size_t k = 0; k < count_; ++k) {
       Neighbour& n = neighbours_[k];
@@ -168,6 +176,7 @@ class Smoother {
   float share_, most_pixels_;
   std::array<Neighbour, most_neighbours> neighbours_;
   std::size_t count_ = 0;
+  bool flat_ = true;  // all neighbours have the point's normal
   double noise_ = 0.0;
 };
 

@@ -15,7 +15,9 @@ namespace earthshine::scenes {
 // number's line and column; `what` is its name in the message.
 class IesNumbers {
  public:
-  IesNumbers(TextLines& lines, std::string file) : lines_(lines), file_(std::move(file)) {}
+  // Behind what was read of `lines` last.
+  IesNumbers(TextLines& lines, std::string file)
+      : lines_(lines), file_(std::move(file)), last_line_(lines.line()) {}
 
   // Finite.
   [[nodiscard]] double next(std::string_view what);
@@ -37,7 +39,7 @@ class IesNumbers {
   TextLines& lines_;
   std::string file_;
   std::size_t in_line_ = static_cast<std::size_t>(-1);  // the line it begins after is used up
-  int last_line_ = lines_.line();  // of the words so far
+  int last_line_;
   Word word_, rest_;
 };
 

@@ -77,20 +77,32 @@ void read_spot(Lamp& lamp, const TableReader& table, double unit_m) {
       read_strength(table, "intensity", 2.0 * base::pi * (1.0 - 0.5 * (cos_beam + cos_field)));
 }
 
-void read_rectangle(Lamp& lamp, const TableReader& table, double unit_m) {
-  table.allow_only(rectangle_keys, "a light of type \"rectangle\"");
-  lamp.kind = LampKind::Rectangle;
-  lamp.position = table.required(table.position("center", unit_m), "center", "center = [x, y, z]");
-  lamp.edge_u = table.required(table.position("edge_u", unit_m), "edge_u", "edge_u = [x, y, z]");
-  lamp.edge_v = table.required(table.position("edge_v", unit_m), "edge_v", "edge_v = [x, y, z]");
-  const Vec3 normal = glm::cross(lamp.edge_u, lamp.edge_v);
+// center, edge_u and edge_v of a lamp or an [[area]].
+Area read_sides(const TableReader& table, double unit_m) {
+  Area sides;
+  sides.center = table.required(table.position("center", unit_m), "center", "center = [x, y, z]");
+  sides.edge_u = table.required(table.position("edge_u", unit_m), "edge_u", "edge_u = [x, y, z]");
+  sides.edge_v = table.required(table.position("edge_v", unit_m), "edge_v", "edge_v = [x, y, z]");
+  const Vec3 normal = glm::cross(sides.edge_u, sides.edge_v);
   const double area = glm::length(normal);
-  if (!(area > 1e-9 * glm::length(lamp.edge_u) * glm::length(lamp.edge_v)) || !(area > 0.0)) {
+  if (!(area > 1e-9 * glm::length(sides.edge_u) * glm::length(sides.edge_v)) || !(area > 0.0)) {
     table.fail("edge_v", "spans no area with edge_u",
                "the edges have lengths and are not parallel");
   }
-  lamp.axis = normal / area;
-  lamp.exitance = read_strength(table, "exitance", area);
+  sides.normal = normal / area;
+  return sides;
+}
+
+void read_rectangle(Lamp& lamp, const TableReader& table, double unit_m) {
+  table.allow_only(rectangle_keys, "a light of type \"rectangle\"");
+  const Area sides = read_sides(table, unit_m);
+  lamp.kind = LampKind::Rectangle;
+  lamp.position = sides.center;
+  lamp.edge_u = sides.edge_u;
+  lamp.edge_v = sides.edge_v;
+  lamp.axis = sides.normal;
+  lamp.exitance =
+      read_strength(table, "exitance", glm::length(glm::cross(sides.edge_u, sides.edge_v)));
 }
 
 void read_disk(Lamp& lamp, const TableReader& table, double unit_m) {
@@ -102,6 +114,8 @@ void read_disk(Lamp& lamp, const TableReader& table, double unit_m) {
       table.required(table.length("radius", unit_m, above_zero), "radius", "radius = ...");
   lamp.exitance = read_strength(table, "exitance", base::pi * lamp.radius_m * lamp.radius_m);
 }
+
+constexpr std::string_view area_keys[] = {"name", "center", "edge_u", "edge_v"};
 
 // Direction of the plane C0: that of "up" as far as it is across the axis.
 Vec3 read_c0(const Lamp& lamp, const TableReader& table) {
@@ -151,6 +165,14 @@ void read_measured(Lamp& lamp, const TableReader& table, double unit_m, Luminair
 }
 
 }  // namespace
+
+Area read_area(const TomlNode& node, double unit_m) {
+  TableReader table(node, "[[area]]", area_keys);
+  const std::string name = table.read_name();
+  Area area = read_sides(table, unit_m);
+  area.name = name;
+  return area;
+}
 
 const Luminaire& LuminaireShelf::take(const std::filesystem::path& named,
                                       const base::Location& asked_at) {

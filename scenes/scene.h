@@ -79,6 +79,15 @@ struct Lamp {
   std::string source;                            // measured: the file, as the scene names it
 };
 
+// A rectangle that lights may be spread over (Indirect::Distributed). It is not there: no ray meets
+// it. Its lights shine along edge_u x edge_v.
+struct Area {
+  std::string name;
+  Vec3 center{0.0};               // m
+  Vec3 edge_u{0.0}, edge_v{0.0};  // full edges, m
+  Vec3 normal{0.0, 0.0, 1.0};     // unit
+};
+
 struct Sun {
   Vec3 direction{0.0, 0.0, 1.0};  // unit, toward the Sun
   Rgb illuminance_lx{133100.0};   // at normal incidence, nothing in front of it
@@ -111,12 +120,14 @@ struct Camera {
   double focus_m = 0.0;     // } thin lens when both are positive
   double aperture_m = 0.0;  // } diameter
   std::string cctv;         // a [[cctv]] of the scene or one that ships; empty: none
+  std::string range_sensor;  // a [[range_sensor]] of the scene; empty: none
   FilterShape filter = FilterShape::Box;
   double filter_width_px = 1.0;  // full width of the filter's support
   base::Location where;          // of its position in the scene file
 };
 
-// A [[cctv]] or [monitor] table as written; degrade/ knows its keys and checks them.
+// A [[cctv]], [monitor] or [[range_sensor]] table as written; degrade/ knows its keys and checks
+// them.
 struct Setting {
   std::string key;
   std::variant<bool, double, std::string, std::vector<double>> value;
@@ -150,12 +161,14 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Object> objects;
   std::vector<Lamp> lamps;
+  std::vector<Area> areas;
   std::optional<Sun> sun;
   std::optional<Earth> earth;
   Rgb ambient_radiance{0.0};  // k_a I_a with k_a = diffuse; 0: off
   std::vector<Camera> cameras;
   std::vector<SettingTable> cctv;
   std::optional<SettingTable> monitor;
+  std::vector<SettingTable> range_sensors;
   Quality quality;
   std::vector<std::string> warnings;  // one line each, e.g. counted degenerate triangles
 };

@@ -38,6 +38,8 @@ class LuminaireShelf {
 
 [[nodiscard]] Lamp read_lamp(const TomlNode& node, double unit_m, LuminaireShelf& shelf);
 
+[[nodiscard]] Area read_area(const TomlNode& node, double unit_m);
+
 // [sun], [earth] and [orbit], each null when absent, to scene.sun and scene.earth.
 void read_sky(Scene& scene, const TomlNode* sun, const TomlNode* earth, const TomlNode* orbit);
 

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "raytrace/distributed_area.h"
 
 namespace earthshine::studies {
 namespace {
@@ -32,6 +33,7 @@ raytrace::RenderOptions render_options(const CompareOptions& options, const Meth
   render.gather_rays = options.gather_rays;
   render.indirect = method.indirect;
   if (method.distributed_lights > 0) render.distributed_lights = method.distributed_lights;
+  render.distributed_over = method.distributed_over;
   render.seed = options.seed;
   if (is_reference) {
     render.gather_rays *= options.reference_factor;
@@ -43,7 +45,7 @@ raytrace::RenderOptions render_options(const CompareOptions& options, const Meth
 
 }  // namespace
 
-std::vector<Method> compare_methods(std::vector<int> lights) {
+std::vector<Method> compare_methods(std::vector<int> lights, const std::string& area) {
   if (lights.empty() || *std::min_element(lights.begin(), lights.end()) < fewest_lights) {
     throw base::Error(base::Blame::Input, "study compare", "lights are missing",
                       fmt::format("at least one number of lights, each {} or more", fewest_lights));
@@ -54,6 +56,10 @@ std::vector<Method> compare_methods(std::vector<int> lights) {
                                  {"radiosity", Indirect::Radiosity, 0}};
   for (const int n : lights) {
     methods.push_back({"distributed-" + std::to_string(n), Indirect::Distributed, n});
+  }
+  for (const int n : lights) {
+    if (area.empty()) break;
+    methods.push_back({"area-" + std::to_string(n), Indirect::Distributed, n, area});
   }
   methods.push_back({"direct", Indirect::None, 0});
   return methods;
@@ -104,6 +110,7 @@ Comparison compare(const StudyScene& study, const scenes::Camera& camera,
     return listen ? listen(stage) : raytrace::Progress{};
   };
   Comparison comparison;
+  (void)raytrace::earth_area(study.scene, options.distributed_over);  // a wrong one before the work
   (void)begin_stage("radiosity solution");
   const radiosity::Solution solution =
       radiosity::solve(study.scene, study.groups, study.effects, study.query, options.solver);
@@ -111,7 +118,8 @@ Comparison compare(const StudyScene& study, const scenes::Camera& camera,
   double solve_seconds = 0.0;
   for (const auto& [stage, seconds] : solution.report.seconds) solve_seconds += seconds;
 
-  for (const Method& method : compare_methods(options.distributed_lights)) {
+  for (const Method& method :
+       compare_methods(options.distributed_lights, options.distributed_over)) {
     MethodResult result;
     result.method = method;
     const raytrace::RenderOptions render =
@@ -155,6 +163,16 @@ std::string figures(const TargetDifference& found, const TargetLight& right) {
                      contrast_text(found.light), contrast_text(right));
 }
 
+// The last of those over the disc: compare_methods lists them from 2 on by rising N.
+std::size_t most_lights(const std::vector<MethodResult>& methods) {
+  std::size_t k = 2;
+  while (methods[k + 1].method.indirect == Indirect::Distributed &&
+         methods[k + 1].method.distributed_over.empty()) {
+    ++k;
+  }
+  return k;
+}
+
 TargetVerdict judge(const Comparison& comparison, std::size_t target) {
   const std::string& name = comparison.targets[target].name;
   const auto& right = comparison.reference().targets[target];
@@ -163,7 +181,8 @@ TargetVerdict judge(const Comparison& comparison, std::size_t target) {
     return {Verdict::NotInView, name + (hidden ? ": hidden by other objects." : ": not in view.")};
   }
   const std::vector<MethodResult>& methods = comparison.methods;
-  const MethodResult& best = methods[methods.size() - 2];  // the most lights
+  const std::size_t most = most_lights(methods);
+  const MethodResult& best = methods[most];
   const TargetDifference& found = *best.targets[target];
   const std::string numbers = figures(found, right->light);
   const int n = best.method.distributed_lights;
@@ -179,7 +198,7 @@ TargetVerdict judge(const Comparison& comparison, std::size_t target) {
   }
   // The fewest lights from which on none misleads.
   int enough = n;
-  for (std::size_t k = methods.size() - 2; k >= 2 && !methods[k].targets[target]->misleads; --k) {
+  for (std::size_t k = most; k >= 2 && !methods[k].targets[target]->misleads; --k) {
     enough = methods[k].method.distributed_lights;
   }
   const std::string from = enough == n ? "" : fmt::format(", nor would {}", enough);

@@ -25,6 +25,8 @@ struct CompareOptions {
   int gather_rays = 256;  // per pixel; without gathering the camera samples that go with them
   int reference_factor = 4;
   std::vector<int> distributed_lights = {4, 16, 64, 256};
+  std::string
+      distributed_over;  // an [[area]]: the Earth's lights over it too; empty: its disc only
   radiosity::SolveOptions solver;
   std::uint64_t seed = 1;
 };
@@ -52,16 +54,19 @@ struct TargetDifference {
 inline constexpr const char* reference_name = "reference";
 
 struct Method {
-  std::string name;  // reference_name, "radiosity", "distributed-16", "direct"
+  std::string name;  // reference_name, "radiosity", "distributed-16", "area-16", "direct"
   raytrace::Indirect indirect = raytrace::Indirect::Radiosity;
-  int distributed_lights = 0;  // 0: not that method
+  int distributed_lights = 0;         // 0: not that method
+  std::string distributed_over = {};  // the [[area]] of "area-16"
 };
 
-// What compare() will run, in its order: the reference, radiosity, distributed by rising N, direct.
-// Throws base::Error (Input) if `distributed_lights` is empty or holds less than `fewest_lights`: a
-// single light is not distributed, and the renderer takes it for the whole source.
+// What compare() will run, in its order: the reference, radiosity, distributed by rising N, the
+// same over the area if there is one, direct. Throws base::Error (Input) if `distributed_lights` is
+// empty or holds less than `fewest_lights`: a single light is not distributed, and the renderer
+// takes it for the whole source.
 inline constexpr int fewest_lights = 2;
-[[nodiscard]] std::vector<Method> compare_methods(std::vector<int> distributed_lights);
+[[nodiscard]] std::vector<Method> compare_methods(std::vector<int> distributed_lights,
+                                                  const std::string& distributed_over = {});
 
 struct MethodResult {
   Method method;
@@ -81,7 +86,7 @@ struct Comparison {
 };
 
 // Seconds apart, the same values for the same options and seed on any number of threads. Throws as
-// compare_methods does.
+// compare_methods and raytrace::earth_area do.
 [[nodiscard]] Comparison compare(const StudyScene& scene, const scenes::Camera& camera,
                                  const CompareOptions& options, const StageListener& listen = {});
 
@@ -99,7 +104,8 @@ struct TargetVerdict {
   Verdict verdict = Verdict::NotInView;
   std::string sentence;
 };
-// The approximation at its best, with the most lights. One sentence for each target.
+// The approximation at its best, with the most lights; over the Earth's disc, which is where its
+// light comes from. One sentence for each target.
 [[nodiscard]] std::vector<TargetVerdict> judge_approximation(const Comparison& comparison);
 
 }  // namespace earthshine::studies

@@ -86,6 +86,18 @@ class Plan(program.Case):
             self.assertTrue(row["effect"] and row["why"])
         self.says(self.done("plan", "ball.toml"), "yes", "no ", "patches")
 
+    def test_memory_is_stated_by_part_and_near_what_is_taken(self):
+        # Even patches: their number is no upper bound. The room's rows are all but full.
+        self.write("box.toml", program.CLOSED_BOX)
+        finer = ("--set", "quality.patch_edge=0.04", "--set", "quality.form_factor_rays=512")
+        plan = self.json("plan", "box.toml", *finer)
+        memory = plan["images"][0]["memory"]
+        self.assertAlmostEqual(sum(memory["parts_mib"].values()), memory["total_mib"], places=6)
+        self.assertGreater(memory["parts_mib"]["form factors"], 0.8 * memory["total_mib"])
+        taken = self.json("render", "box.toml", "-o", "a.exr", *finer)["peak_memory_mib"]
+        self.assertAlmostEqual(memory["total_mib"] / taken, 1, delta=0.25)
+        self.says(self.done("plan", "box.toml", *finer), "memory of the solution: about", "form factors")
+
     def test_cctv_stages(self):
         self.write("ball.toml", program.BALL.replace('name = "above"', 'name = "above"\ncctv = "report-1990"'))
         none, some = self.json("plan", "ball.toml")["images"]

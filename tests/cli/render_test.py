@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """render: pixels, layers, header, and the same bytes from the same seed."""
 import math
+import resource
 import unittest
 
 import exr
@@ -98,11 +99,27 @@ class Render(program.Case):
         self.assertIn("earthshine:seconds.read", seconds)
         self.assertTrue(all(value >= 0 for value in seconds.values()))
 
-    def test_indirect_is_one_of_three_words(self):
+    def test_indirect_is_one_of_four_words(self):
         self.write("ball.toml", program.BALL)
         for how in ("1", "Radiosity", ""):
             self.says(self.refused("render", "ball.toml", "-o", "a.exr", "--indirect", how),
-                      "radiosity, distributed, none")
+                      "radiosity, distributed, none, paths")
+
+    def test_paths_agree_with_radiosity_and_carry_their_variance(self):
+        radiosity = sum(self.render("ball.toml")[3]["G"])
+        header, _, _, paths = self.render("ball.toml", "--indirect", "paths", "--per-light")
+        self.assertEqual(header["earthshine:indirect"], "paths")
+        # The pixels' own variances say how far the sum may be off; patches add about 1 %.
+        error = 4 * sum(paths["variance"]) ** 0.5 + 0.02 * radiosity
+        self.assertLess(error, 0.1 * radiosity)
+        self.assertAlmostEqual(sum(paths["G"]), radiosity, delta=error)
+        self.assertIn("light_lamp.R", paths)
+
+    def test_paths_refuse_what_they_do_not_have(self):
+        self.write("ball.toml", program.BALL)
+        for arguments, words in ((("--aov", "depth"), ("--aov", "--indirect paths")),
+                                 (("--set", "quality.gather_rays=1"), ("1 paths", "2 or more"))):
+            self.says(self.refused("render", "ball.toml", "-o", "a.exr", "--indirect", "paths", *arguments), *words)
 
     def test_indirect_light_adds(self):
         sums = {how: sum(self.render("ball.toml", "--indirect", how)[3]["G"])
@@ -111,6 +128,45 @@ class Render(program.Case):
         self.assertGreater(sums["radiosity"], sums["none"])
         # Neither lamp nor Sun is spread, so the distributed lights are the direct light.
         self.assertAlmostEqual(sums["distributed"] / sums["none"], 1, delta=0.02)
+
+    def test_lights_over_an_area_stand_for_the_earth(self):
+        # A plate of 2 m under a uniform Earth of half angle 60 degrees: L = rho L_earth sin^2 = 0.5 x 100 x 0.75.
+        plate = program.BALL[program.BALL.index("[[object]]"):program.BALL.index("[[object]]\nname = \"ball\"")]
+        area = '[[area]]\nname = "panel"\ncenter = [0, 0, 4]\nedge_u = [0, 9, 0]\nedge_v = [9, 0, 0]\n'
+        earth = '[earth]\ndirection = [0, 0, 1]\nmodel = "uniform"\nradiance = 100\nhalf_angle_deg = 60\n'
+        camera = '[[camera]]\nname = "A"\nposition = [0, 0, 1]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\nfov_deg = 1\n' \
+                 'resolution = [4, 4]\n'
+        material = '[[material]]\nname = "floor"\ndiffuse = 0.5\n'
+        self.write("plate.toml", "format = 1\n" + material + plate + area + earth + camera)
+        over = ("--indirect", "distributed", "--distributed-lights", "4096", "--distributed-over")
+        header, _, _, channels = self.render("plate.toml", *over, "panel")
+        self.assertEqual(header["earthshine:distributed_over"], "panel")
+        self.assertAlmostEqual(sum(channels["G"]) / 16 / 37.5, 1, delta=2e-3)
+        self.says(self.refused("render", "plate.toml", "-o", "a.exr", *over, "pannel"), "its areas are panel")
+        self.says(self.refused("render", "plate.toml", "-o", "a.exr", *over, "panel", "--set",
+                               "area.panel.center=[0,0,-4]"), "does not light")
+        self.says(self.refused("render", "plate.toml", "-o", "a.exr", "--distributed-over", "panel"),
+                  "--indirect distributed")
+        flat = area.replace("[9, 0, 0]", "[0, 3, 0]")
+        self.write("flat.toml", "format = 1\n" + material + plate + flat + earth + camera)
+        self.says(self.refused("inspect", "flat.toml"), "edge_v", "not parallel")
+
+    def test_what_cannot_fit_into_memory_is_refused_before_the_work(self):
+        # 2^28 pixels of 9 channels are 9 GiB, and what is kept until they are done several times that; a limit of the address space stands for a small machine.
+        self.write("ball.toml", program.BALL)
+        limit = 4 << 30
+        def refused(*arguments):
+            run = self.run_program(*arguments, timeout=60, preexec_fn=lambda: resource.setrlimit(
+                resource.RLIMIT_AS, (limit, limit)))
+            self.assertEqual(run.returncode, 1, run.stderr)
+            self.assertFalse((self.folder / "big.exr").exists())
+            return run.stderr
+        self.says(refused("render", "ball.toml", "-o", "big.exr", "--size", "16384x16384", "--per-light"),
+                  "needs about", "GiB (picture", "are free", "Lower --size")
+        self.says(refused("solve", "ball.toml", "--set", "quality.max_patches=30000000"),
+                  "form factors", "are free", "quality.max_patches")
+        self.says(refused("form-factors", "ball.toml", "--method", "rays", "--set", "quality.patch_edge=0.0015",
+                          "--set", "quality.form_factor_rays=4096"), "form factors", "are free")
 
     def test_report(self):
         report = self.json("render", "ball.toml", "-o", "a.exr")

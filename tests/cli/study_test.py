@@ -65,6 +65,19 @@ class Compare(Study):
                          [("ball", method) for method in self.METHODS])
         self.assertEqual([verdict["target"] for verdict in printed["verdicts"]], ["ball"])
 
+    def test_the_earths_lights_over_an_area_have_rows_of_their_own(self):
+        earth = '\n[earth]\ndirection = [0, 0, 1]\nmodel = "uniform"\nradiance = 100\nhalf_angle_deg = 60\n'
+        area = '\n[[area]]\nname = "panel"\ncenter = [0, 0, 9]\nedge_u = [0, 30, 0]\nedge_v = [30, 0, 0]\n'
+        self.write("day.toml", program.BALL[:program.BALL.index("[sun]")] + program.BALL[program.BALL.index("[[camera]]"):]
+                   + earth + area)
+        call = ("study", "compare", "day.toml", "-o", "d", "--lights", "4,64", "--distributed-over")
+        self.says(self.done(*call, "panel"), "distributed-64", "area-4", "area-64", "rays", "64 distributed lights")
+        rows = {row["method"]: row for row in self.table("d", "compare.csv")}
+        self.assertEqual([rows[m]["area"] for m in ("distributed-64", "area-64")], ["", "panel"])
+        self.assertGreater(int(rows["area-64"]["rays"]), int(rows["area-4"]["rays"]))
+        self.assertGreater(float(rows["area-4"]["relative_rmse"]), float(rows["area-64"]["relative_rmse"]))
+        self.says(self.refused(*call, "lid"), "its areas are panel")
+
     def test_the_rule_decides(self):
         targets = self.json("study", "compare", "ball.toml", "-o", "d", "--lights", "4")["targets"]
         for row in targets:

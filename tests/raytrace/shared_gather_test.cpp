@@ -186,11 +186,14 @@ TEST(SharedGather, SamplesGoWhereNeighboursScatter) {
   }
   const std::size_t middle = sums.window.index(3, 3);
   sums.luminance2[middle] = 4.0 + 3.0 * 9.0;  // variance 9 of a sample, deviation 3
-  const auto wanted = wanted_samples(sums, 0.3, 4, 256);
+  const auto wanted = wanted_samples(sums, 0.3, 8.0, 4, 256);
   EXPECT_EQ(wanted[middle], 4U);
   EXPECT_EQ(wanted[sums.window.index(2, 3)], 16U);  // 3 / 0.3 = 10, rounded up to a power of two
   EXPECT_EQ(wanted[sums.window.index(1, 3)], 4U);
-  EXPECT_EQ(wanted_samples(sums, 0.03, 4, 256)[sums.window.index(4, 4)], 16U);  // 100, but 4 x 4
+  EXPECT_EQ(wanted_samples(sums, 0.03, 8.0, 4, 256)[sums.window.index(4, 4)],
+            16U);  // 100, but 4 x 4
+  // From half of the luminance of 1 on, proportion counts: deviation 3 * 0.5.
+  EXPECT_EQ(wanted_samples(sums, 0.3, 0.5, 4, 256)[sums.window.index(2, 3)], 8U);
 }
 
 TEST(SharedGather, ATimeLimitIsKeptAndStillGivesEveryPixelASample) {

@@ -191,12 +191,20 @@ def sky_text(kind):
             "[earth]", "direction = [0, 0, -1]  # behind the orbiter", "altitude_km = 425  # [S]",
             "albedo = 0.3  # mean [S]", 'model = "lambert"'])
     position = "0  # orbit noon" if kind == "orbit-noon" else "180  # orbit midnight"
-    return "\n".join([
+    orbit = "\n".join([
         "[orbit]", "altitude_km = 425  # [S] EURECA phase", "beta_deg = 6  # [D] two days into the flight",
         f"position_deg = {position}", 'attitude = "bay-to-earth"  # chosen; the flight\'s attitudes were not found', "",
         "[sun]", "illuminance = 129100  # lx: 133 100 at 1 AU [B], x 0.970 for 1.0145 AU on the date [D]",
         "angular_radius_deg = 0.2628  # 0.2666 / 1.0145 [D]", "",
         "[earth]", "albedo = 0.3  # mean [S]"])
+    return orbit + "\n\n" + FIGURE_7_AREA if kind == "orbit-noon" else orbit
+
+
+FIGURE_7_AREA = """[[area]]
+name = "overhead"  # for study compare --distributed-over: Figure 7's area; its size and height are chosen
+center = [9.1, 0, 33]
+edge_u = [0, 165, 0]
+edge_v = [165, 0, 0]"""
 
 
 def camera_text(camera):

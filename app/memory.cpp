@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/memory.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/free_memory.h"
+
+namespace earthshine::app {
+namespace {
+
+constexpr double mib = 1024.0 * 1024.0;
+
+std::string size_text(double in_mib) {
+  if (in_mib < 1000.0) return fmt::format("{:.0f} MiB", in_mib);
+  return fmt::format("{:.{}f} GiB", in_mib / 1024.0, in_mib < 10240.0 ? 1 : 0);
+}
+
+// Refuses what cannot fit. Rows are looked at only if the most that could be does not fit.
+void refuse_too_much(const LoadedScene& loaded, const scenes::RayQuery& query,
+                     const radiosity::SolveOptions& solver, studies::MemoryCase sizes) {
+  const auto free_bytes = base::free_memory_bytes();
+  if (!free_bytes) return;
+  const auto free = static_cast<double>(*free_bytes);
+  studies::MemoryNeed need = studies::memory_needed(sizes);
+  if (need.total() > free && sizes.solves) {
+    studies::expect_rows(sizes, loaded.scene, query, solver);
+    need = studies::memory_needed(sizes);
+  }
+  if (need.total() <= free) return;
+  throw base::Error(base::Blame::Work, loaded.scene.path.string(),
+                    "needs " + memory_text(memory_json(need)), size_text(free / mib) + " are free",
+                    studies::memory_remedy(need));
+}
+
+}  // namespace
+
+Json memory_json(const studies::MemoryNeed& need) {
+  Json parts = Json::object();
+  for (const studies::MemoryPart& part : need.parts) parts[part.name] = part.bytes / mib;
+  return {{"total_mib", need.total() / mib}, {"parts_mib", parts}};
+}
+
+std::string memory_text(const Json& need) {
+  const auto total = need["total_mib"].get<double>();
+  std::vector<std::pair<double, std::string>> parts;
+  for (const auto& [name, size] : need["parts_mib"].items()) {
+    if (size.get<double>() >= 0.01 * total) parts.emplace_back(size.get<double>(), name);
+  }
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::string> words;
+  for (const auto& [size, name] : parts) words.push_back(name + " " + size_text(size));
+  return fmt::format("about {} ({})", size_text(total), fmt::join(words, ", "));
+}
+
+void check_memory(const LoadedScene& loaded, const scenes::RayQuery& query,
+                  const radiosity::SolveOptions& solver, const raytrace::RenderOptions* picture,
+                  bool solves) {
+  studies::MemoryCase sizes =
+      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
+  if (picture != nullptr) {
+    studies::add_picture(sizes, loaded.groups, loaded.effects, *picture);
+  }
+  if (!solves) sizes.solves = false;
+  if (solver.refine.on && solver.refine.error > 0.0) {
+    const std::size_t coarse = radiosity::count_patches(loaded.scene, solver.refine.start_edge_m);
+    studies::set_patches(sizes, std::min(coarse, sizes.patches), solver);
+  }
+  refuse_too_much(loaded, query, solver, sizes);
+}
+
+void check_patch_memory(const LoadedScene& loaded, const scenes::RayQuery& query,
+                        const radiosity::SolveOptions& solver, std::size_t patches) {
+  studies::MemoryCase sizes =
+      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
+  studies::set_patches(sizes, patches, solver);
+  refuse_too_much(loaded, query, solver, sizes);
+}
+
+void check_row_memory(const LoadedScene& loaded, const scenes::RayQuery& query, double patch_edge_m,
+                      int rays_per_patch) {
+  radiosity::SolveOptions rows;
+  rows.patch_edge_m = patch_edge_m;
+  rows.form_factor_rays = rays_per_patch;
+  studies::MemoryCase sizes =
+      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, rows);
+  sizes.patches = radiosity::count_patches(loaded.scene, patch_edge_m);
+  sizes.row_entries = std::min(double(sizes.patches), double(rays_per_patch));
+  sizes.columns = 0;
+  sizes.solves = true;
+  refuse_too_much(loaded, query, rows, sizes);
+}
+
+}  // namespace earthshine::app

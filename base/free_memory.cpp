@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/free_memory.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace earthshine::base {
+namespace {
+
+namespace fs = std::filesystem;
+using Bytes = std::optional<std::uint64_t>;
+
+void take_least(Bytes& least, Bytes found) {
+  if (found && (!least || *found < *least)) least = found;
+}
+
+std::uint64_t less(std::uint64_t a, std::uint64_t b) { return a > b ? a - b : 0; }
+
+// A file that holds one number; nothing for "max".
+Bytes number_in(const fs::path& path) {
+  std::ifstream file(path);
+  std::uint64_t value = 0;
+  if (!(file >> value)) return std::nullopt;
+  return value;
+}
+
+// The number behind a word: "MemAvailable: 123 kB", "inactive_file 123".
+Bytes number_after(const fs::path& path, const std::string& word) {
+  std::ifstream file(path);
+  std::string line;
+  while (std::getline(file, line)) {
+    std::istringstream words(line);
+    std::string first;
+    std::uint64_t value = 0;
+    if (words >> first >> value && first == word) return value;
+  }
+  return std::nullopt;
+}
+
+struct GroupFiles {
+  const char *limit, *usage, *cache;
+};
+constexpr GroupFiles version_1 = {"memory.limit_in_bytes", "memory.usage_in_bytes",
+                                  "total_inactive_file"};
+constexpr GroupFiles version_2 = {"memory.max", "memory.current", "inactive_file"};
+
+// What is left of one control group.
+Bytes left_of(const fs::path& folder, const GroupFiles& files) {
+  const Bytes limit = number_in(folder / files.limit);
+  if (!limit) return std::nullopt;
+  const std::uint64_t usage = number_in(folder / files.usage).value_or(0);
+  const std::uint64_t cache = number_after(folder / "memory.stat", files.cache).value_or(0);
+  return less(*limit, less(usage, cache));
+}
+
+// Of the process's group and all above it. In a container /proc may name a path that is not mounted
+// there: the walk upward then finds the mount's own top, which is the container's group.
+Bytes left_of_groups(const fs::path& root) {
+  Bytes least;
+  std::ifstream file(root / "proc/self/cgroup");
+  std::string line;
+  while (std::getline(file, line)) {  // "4:memory:/a/b" or, version 2, "0::/a/b"
+    const std::size_t first = line.find(':');
+    const std::size_t second = first == std::string::npos ? first : line.find(':', first + 1);
+    if (second == std::string::npos) continue;
+    const std::string controllers = line.substr(first + 1, second - first - 1);
+    const bool second_version = controllers.empty();
+    if (!second_version && ("," + controllers + ",").find(",memory,") == std::string::npos)
+      continue;
+    const fs::path mount = root / (second_version ? "sys/fs/cgroup" : "sys/fs/cgroup/memory");
+    fs::path group = fs::path(line.substr(second + 1)).relative_path();
+    while (true) {
+      take_least(least, left_of(mount / group, second_version ? version_2 : version_1));
+      if (group.empty()) break;
+      group = group.parent_path();
+    }
+  }
+  return least;
+}
+
+Bytes left_of_address_space(const fs::path& root) {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
+  const std::uint64_t pages = number_in(root / "proc/self/statm").value_or(0);
+  const auto page_bytes = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  return less(limit.rlim_cur, pages * page_bytes);
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> free_memory_bytes(const fs::path& root) {
+  Bytes least;
+  if (const Bytes kib = number_after(root / "proc/meminfo", "MemAvailable:")) least = *kib * 1024;
+  take_least(least, left_of_groups(root));
+  take_least(least, left_of_address_space(root));
+  return least;
+}
+
+}  // namespace earthshine::base

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much memory this process may still take: of the machine, of its control group, of its limit.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+namespace earthshine::base {
+
+// Bytes. The least of what Linux calls MemAvailable, what is left below the limit of the control
+// group or any above it (versions 1 and 2; file cache that can be dropped counts as free), and what
+// is left of RLIMIT_AS. Nothing where none of them can be read. Inside `root`, for tests, stand
+// proc/ and sys/.
+[[nodiscard]] std::optional<std::uint64_t> free_memory_bytes(
+    const std::filesystem::path& root = "/");
+
+}  // namespace earthshine::base

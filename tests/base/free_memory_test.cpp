@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/free_memory.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/base/temporary_folder.h"
+
+namespace earthshine::base {
+namespace {
+
+class FreeMemory : public ::testing::Test {
+ protected:
+  void write(const std::string& name, const std::string& text) {
+    const std::filesystem::path path = folder_.path() / name;
+    std::filesystem::create_directories(path.parent_path());
+    std::ofstream(path) << text;
+  }
+  [[nodiscard]] std::optional<std::uint64_t> found() const {
+    return free_memory_bytes(folder_.path());
+  }
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(FreeMemory, NothingIsKnownWhereNothingCanBeRead) { EXPECT_FALSE(found()); }
+
+TEST_F(FreeMemory, TheMachineHasWhatLinuxCallsAvailable) {
+  write("proc/meminfo", "MemTotal:       4000 kB\nMemFree:  1 kB\nMemAvailable:    3000 kB\n");
+  EXPECT_EQ(found(), 3000U * 1024);
+}
+
+TEST_F(FreeMemory, AControlGroupLeavesItsLimitLessWhatIsUsedAndCannotBeDropped) {
+  write("proc/meminfo", "MemAvailable: 3000 kB\n");
+  write("proc/self/cgroup", "0::/user/run\n");
+  write("sys/fs/cgroup/user/run/memory.max", "max\n");
+  EXPECT_EQ(found(), 3000U * 1024);
+  write("sys/fs/cgroup/user/memory.max", "1000000\n");
+  write("sys/fs/cgroup/user/memory.current", "700000\n");
+  write("sys/fs/cgroup/user/memory.stat", "anon 5\ninactive_file 200000\n");
+  EXPECT_EQ(found(), 500000U);
+}
+
+TEST_F(FreeMemory, TheFirstVersionOfControlGroupsIsReadToo) {
+  write("proc/self/cgroup", "5:cpu,cpuacct:/\n4:memory:/box\n");
+  write("sys/fs/cgroup/memory/memory.limit_in_bytes", "90000\n");
+  write("sys/fs/cgroup/memory/memory.usage_in_bytes", "100000\n");
+  EXPECT_EQ(found(), 0U);  // over its limit: nothing is left, and not a huge number
+}
+
+TEST(FreeMemoryHere, ThisMachineHasSome) {
+  ASSERT_TRUE(free_memory_bytes());
+  EXPECT_GT(*free_memory_bytes(), 1U << 20U);
+}
+
+}  // namespace
+}  // namespace earthshine::base
