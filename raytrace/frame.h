@@ -33,8 +33,10 @@ struct RenderReport {
   double relative_noise = 0.0;
   double camera_samples = 0.0;  // per pixel, mean
   int most_camera_samples = 0;
-  int gather_rays = 0;          // per pixel
-  double finished_share = 1.0;  // of the pixels; less than 1 if it was stopped
+  int gather_rays = 0;           // per pixel
+  int least_camera_samples = 0;  // of a finished pixel
+  double finished_share = 1.0;   // of the pixels; less than 1 if it was stopped, the others then
+                                 // show a single sample
   bool stopped = false;
 };
 

@@ -75,8 +75,9 @@ class Gatherer {
   }
 
   void aim(std::size_t k, std::size_t count) {
-    base::Rng rng(
-        base::Key(options_.seed, base::Stream::FinalGather, points_.pixel[k]).with(rays_.rays()));
+    base::Rng rng(base::Key(options_.seed, base::Stream::FinalGather, points_.pixel[k])
+                      .with(rays_.rays())
+                      .with(1));
     for (std::size_t j = 0; j < count; ++j) {
       const double choice = rng.next(), x = rng.next(), y = rng.next();
       const auto aimed =
@@ -115,8 +116,8 @@ class Gatherer {
 
 // The points of a tile: what the rays through its pixels' centres meet.
 void find_points(const scenes::RayQuery& query, const GatherSurface& surface,
-                 const CameraModel& camera, const Window& tile, GatherField& field,
-                 TilePoints& points) {
+                 const CameraModel& camera, const Window& tile,
+                 const std::vector<std::uint8_t>* marks, GatherField& field, TilePoints& points) {
   RayPacket packet;
   HitPacket hits;
   std::array<Ray, width> rays;
@@ -134,10 +135,12 @@ void find_points(const scenes::RayQuery& query, const GatherSurface& surface,
       if (hit.missed() || !surface(hit, wanted)) continue;
       const int x = tile.x + static_cast<int>(k);
       const std::size_t index = field.window.index(x, y);
+      if (marks != nullptr && (*marks)[index] == 0) continue;
       GatherPoint& point = field.points[index];
       point.position = glm::vec3(wanted.position - camera.position);
       point.normal = glm::vec3(wanted.normal);
       point.spacing_m = static_cast<float>(hit.t * pixel_m);
+      point.reflectance = static_cast<float>(wanted.reflectance);
       points.add(index,
                  static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(camera.columns) +
                      static_cast<std::uint64_t>(x),
@@ -147,18 +150,11 @@ void find_points(const scenes::RayQuery& query, const GatherSurface& surface,
   }
 }
 
-}  // namespace
-
-GatherField gather_field(const scenes::RayQuery& query, const IncomingLight& incoming,
-                         const GatherSurface& surface, const CameraModel& camera,
-                         const Window& window, const GatherOptions& options) {
-  GatherField field;
-  field.window = window;
-  field.image_layers = options.image_layers;
-  field.layers = options.image_layers + (options.keeps_sky_apart ? 1 : 0);
-  field.points.resize(window.pixel_count());
-  field.radiance.assign(window.pixel_count() * field.layers, glm::vec3(0.0F));
-  field.squared_error.assign(window.pixel_count(), 0.0F);
+void cast_tiles(GatherField& field, const std::vector<std::uint8_t>* marks,
+                const scenes::RayQuery& query, const IncomingLight& incoming,
+                const GatherSurface& surface, const CameraModel& camera,
+                const GatherOptions& options) {
+  const Window& window = field.window;
   const GatherRays rays(static_cast<std::uint32_t>(options.rays));
   // Tiles lie on a grid of the picture, so that a window of it casts the same packets.
   const int x0 = window.x / gather_tile_px,
@@ -178,13 +174,14 @@ GatherField gather_field(const scenes::RayQuery& query, const IncomingLight& inc
     tile.columns = std::min(right, window.x + window.columns) - tile.x;
     tile.rows = std::min(bottom, window.y + window.rows) - tile.y;
     TilePoints points;
-    find_points(query, surface, camera, tile, field, points);
+    find_points(query, surface, camera, tile, marks, field, points);
     Gatherer gatherer(query, incoming, rays, options, field.layers, points);
     const TileSums& sums = gatherer.run();
     const auto n = static_cast<double>(options.rays);
     for (std::size_t k = 0; k < points.count; ++k) {
       GatherPoint& point = field.points[points.index[k]];
       point.reach_m = static_cast<float>(n / std::max(sums.inverse_length[k], 1e-30));
+      point.rays = static_cast<float>(n);
       for (std::size_t layer = 0; layer < field.layers; ++layer) {
         field.radiance[points.index[k] * field.layers + layer] =
             glm::vec3(sums.radiance[k * field.layers + layer]);
@@ -199,7 +196,29 @@ GatherField gather_field(const scenes::RayQuery& query, const IncomingLight& inc
     field.camera_rays += tile.pixel_count();
     if (options.progress) options.progress(++done, tiles);
   });
+}
+
+}  // namespace
+
+GatherField gather_field(const scenes::RayQuery& query, const IncomingLight& incoming,
+                         const GatherSurface& surface, const CameraModel& camera,
+                         const Window& window, const GatherOptions& options) {
+  GatherField field;
+  field.window = window;
+  field.image_layers = options.image_layers;
+  field.layers = options.image_layers + (options.keeps_sky_apart ? 1 : 0);
+  field.points.resize(window.pixel_count());
+  field.radiance.assign(window.pixel_count() * field.layers, glm::vec3(0.0F));
+  field.squared_error.assign(window.pixel_count(), 0.0F);
+  cast_tiles(field, nullptr, query, incoming, surface, camera, options);
   return field;
+}
+
+void gather_again(GatherField& field, const std::vector<std::uint8_t>& marks,
+                  const scenes::RayQuery& query, const IncomingLight& incoming,
+                  const GatherSurface& surface, const CameraModel& camera,
+                  const GatherOptions& options) {
+  cast_tiles(field, &marks, query, incoming, surface, camera, options);
 }
 
 }  // namespace earthshine::raytrace

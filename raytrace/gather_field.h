@@ -23,6 +23,8 @@ struct GatherPoint {
   float reach_m = -1.0F;     // harmonic mean length of its rays; negative: nothing gathered here
   glm::vec3 normal{0.0F};    // unit, on the camera's side
   float spacing_m = 0.0F;    // how far apart neighbouring pixels are there, across the view
+  float reflectance = 0.0F;  // luminance of the surface's k_d
+  float rays = 0.0F;         // that its radiance is the mean of
 };
 
 struct GatherField {
@@ -47,6 +49,7 @@ struct GatherField {
 // shines.
 struct GatherRequest {
   Vec3 position, normal;
+  double reflectance = 1.0;  // luminance of k_d
 };
 using GatherSurface = std::function<bool(const scenes::Hit&, GatherRequest&)>;
 
@@ -64,9 +67,17 @@ struct GatherOptions {
                                        const GatherSurface& surface, const CameraModel& camera,
                                        const Window& window, const GatherOptions& options);
 
+// The same with other rays for some of the field's points, those with a mark: their radiance is
+// replaced by that of options.rays new rays.
+void gather_again(GatherField& field, const std::vector<std::uint8_t>& marks,
+                  const scenes::RayQuery& query, const IncomingLight& incoming,
+                  const GatherSurface& surface, const CameraModel& camera,
+                  const GatherOptions& options);
+
 // Replaces every point's radiance by the value there of a plane fitted to its neighbours' on the
-// same surface, weighted down to nothing at `share` of the reach. Linear in the radiance, and exact
-// where that is linear in position. Errors are estimated from what the fits leave.
+// same surface, weighted by their rays and down to nothing at `share` of the reach. Linear in the
+// radiance, and exact where that is linear in position. Errors are estimated from what the fits
+// leave.
 void smooth(GatherField& field, double share, int most_pixels);
 
 }  // namespace earthshine::raytrace

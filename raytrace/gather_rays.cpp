@@ -33,7 +33,9 @@ void GatherRays::draw(const TilePoints& points, std::size_t first, std::size_t c
   samples.u.resize(rays() * samples.padded);
   samples.v.resize(rays() * samples.padded);
   for (std::size_t k = 0; k < count; ++k) {
-    fill(k, base::Key(seed, base::Stream::FinalGather, points.pixel[first + k]), samples);
+    // A point that is gathered at again, with more rays, gets other ones.
+    fill(k, base::Key(seed, base::Stream::FinalGather, points.pixel[first + k]).with(rays()),
+         samples);
   }
 }
 

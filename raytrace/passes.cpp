@@ -6,16 +6,16 @@
 #include <chrono>
 #include <cmath>
 
-#include "base/parallel.h"
+#include "raytrace/outlook.h"
 
 namespace earthshine::raytrace {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int find_pixels = 2;     // how far GatherField::find looks beyond the pixel
-constexpr int most_rounds = 6;     // of camera samples, each at most four times the one before
-constexpr int planning_grid = 48;  // pixels along the shorter edge that are looked at for planning
+constexpr int find_pixels = 2;  // how far GatherField::find looks beyond the pixel
+constexpr int most_rounds = 6;  // of camera samples, each at most four times the one before
+constexpr int most_gather_rays = 1 << 16;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -40,45 +40,6 @@ Sampling share_out(int rays_per_pixel, bool gathers) {
   const int log2 = static_cast<int>(std::bit_width(rays)) - 1;
   const int samples = 1 << std::min((log2 + 1) / 2, 6);
   return {samples, gathers ? static_cast<int>(rays) / samples : 0};
-}
-
-// What a coarse look at the whole picture tells, read from the solution: the mean luminance of what
-// is lit, and the mean deviation of a camera sample from its pixel. Sources that the camera sees
-// themselves are left out of the former.
-struct Outlook {
-  double luminance = 0.0, deviation = 0.0;
-  // From here on pixels count as bright (PixelSums::deviation).
-  [[nodiscard]] double bright() const { return 4.0 * luminance; }
-};
-
-Outlook look_ahead(ShadingScene shared, const CameraModel& camera, int samples) {
-  shared.diffuse = DiffuseSource::Solution;
-  shared.splits_parts = false;
-  const int step = std::max(1, std::min(camera.columns, camera.rows) / planning_grid);
-  const int columns = (camera.columns + step - 1) / step, rows = (camera.rows + step - 1) / step;
-  const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-  std::vector<PixelSums> looks(count, PixelSums({0, 0, 1, 1}, shared.layers));
-  base::parallel_chunks(count, 16, [&](std::size_t begin, std::size_t end) {
-    RayCounts rays;
-    for (std::size_t k = begin; k < end; ++k) {
-      const int column = static_cast<int>(k) % columns, row = static_cast<int>(k) / columns;
-      looks[k].window.x = std::min(camera.columns - 1, column * step + step / 2);
-      looks[k].window.y = std::min(camera.rows - 1, row * step + step / 2);
-      shade_samples(shared, camera, {static_cast<std::uint32_t>(samples)}, looks[k], rays, {}, {});
-    }
-  });
-  Outlook outlook;
-  double pixels = 0.0;
-  for (const PixelSums& look : looks) {
-    if (look.source_samples[0] > 0) continue;
-    outlook.luminance += look.luminance[0] / samples;
-    pixels += 1.0;
-  }
-  outlook.luminance /= std::max(1.0, pixels);
-  for (const PixelSums& look : looks) {
-    outlook.deviation += look.deviation(0, outlook.bright()) / static_cast<double>(count);
-  }
-  return outlook;
 }
 
 class Passes {
@@ -111,7 +72,7 @@ class Passes {
     PixelSums sums(window_, entries());
     const auto count = static_cast<std::uint32_t>(sampling.camera_samples);
     expected_ = static_cast<std::uint64_t>(sampling.camera_samples) * window_.pixel_count();
-    shade(std::vector<std::uint32_t>(window_.pixel_count(), count), sums, report);
+    first_round(count, sums, report);
     report.gather_rays = sampling.camera_samples * sampling.gather_rays;
     return sums;
   }
@@ -128,10 +89,9 @@ class Passes {
     // Rounds look at neighbours, the gather at more of them: a crop gets the same pixels as the
     // whole picture only if what surrounds it is worked out too.
     PixelSums sums(widened(window_, most_rounds, camera_), entries());
-    if (shared_.gathers) gather(sums.window, mean_samples, report);
-    std::vector<std::uint32_t> wanted(sums.samples.size(),
-                                      static_cast<std::uint32_t>(how.least_samples));
-    shade(wanted, sums, report);
+    if (shared_.gathers) gather(sums.window, outlook.luminance, mean_samples, report);
+    first_round(static_cast<std::uint32_t>(how.least_samples), sums, report);
+    std::vector<std::uint32_t> wanted;
     for (int round = 1; round < most_rounds && !stops() && !out_of_time(); ++round) {
       if (per_deviation <= 0.0) break;
       wanted = wanted_samples(sums, per_deviation, outlook.bright(), how.least_samples,
@@ -149,42 +109,86 @@ class Passes {
     return sums;
   }
 
-  void gather(const Window& around, double mean_samples, RenderReport& report) {
+  void gather(const Window& around, double luminance, double mean_samples, RenderReport& report) {
     const auto start = Clock::now();
+    const SharedGather& sharing = options_.shared;
     GatherOptions how;
-    how.rays = static_cast<int>(
-        std::bit_ceil(static_cast<std::uint32_t>(std::clamp(options_.gather_rays, 8, 1 << 16))));
+    how.rays = static_cast<int>(std::bit_ceil(
+        static_cast<std::uint32_t>(std::clamp(options_.gather_rays, 8, most_gather_rays))));
     how.seed = options_.seed;
     how.image_layers = shared_.layers;
     how.keeps_sky_apart = shared_.splits_parts;
-    const auto surface = [this](const scenes::Hit& hit, GatherRequest& request) {
+    const GatherSurface surface = [this](const scenes::Hit& hit, GatherRequest& request) {
       return gathers_at(shared_.scene, hit, request);
     };
     const auto cast = [&](const Window& window) {
       return gather_field(shared_.query, shared_.incoming, surface, camera_, window, how);
     };
+    const bool limited = options_.time_limit_s > 0.0;
+    // Points look at neighbours twice: to find out who needs more rays, and to share.
     const Window wide = widened(
-        around, options_.shared.smooth_pixels + find_pixels + shared_.filter.reach_px(), camera_);
-    if (options_.time_limit_s > 0.0) how.rays = affordable_rays(wide, cast, how.rays);
+        around, 2 * sharing.smooth_pixels + find_pixels + shared_.filter.reach_px(), camera_);
+    if (limited) how.rays = affordable_rays(wide, cast, how.rays);
     how.stop = [this] { return stops() || out_of_time(); };
     const auto pixels = static_cast<double>(around.pixel_count());
     const double rays = pixels * how.rays, samples = pixels * mean_samples;
     expected_ = static_cast<std::uint64_t>(
         rays + samples * (1.0 + static_cast<double>(shared_.lights.count())));
-    how.progress = [&](std::size_t done, std::size_t total) {
-      tell(static_cast<std::uint64_t>(rays * static_cast<double>(done) /
-                                      static_cast<double>(total)));
+    how.progress = [&](std::size_t, std::size_t total) {
+      tell(static_cast<std::uint64_t>(rays / static_cast<double>(total)));
     };
-    field_ = cast(wide);
-    smooth(field_, options_.shared.smooth_share, options_.shared.smooth_pixels);
-    done_ = static_cast<std::uint64_t>(rays);
+    GatherField plain = cast(wide);
+    field_ = plain;
+    smooth(field_, sharing.smooth_share, sharing.smooth_pixels);
+    report.gather_rays = how.rays;
+    if (sharing.gather_noise > 0.0 && !limited) {
+      how.progress = {};
+      bool again = false;
+      const int first_rays = how.rays;
+      for (const int factor : {4, 16}) {
+        how.rays = factor * first_rays;
+        const auto marks = noisy_points(field_, factor, luminance);
+        if (how.rays > most_gather_rays || how.stop() || marks.empty()) continue;
+        gather_again(plain, marks, shared_.query, shared_.incoming, surface, camera_, how);
+        again = true;
+      }
+      if (again) {
+        field_ = std::move(plain);
+        smooth(field_, sharing.smooth_share, sharing.smooth_pixels);
+      }
+    }
     shared_.diffuse = DiffuseSource::Field;
     shared_.field = &field_;
     report.rays.gather += field_.gather_rays;
     report.rays.mirror += field_.mirror_rays;
     report.rays.camera += field_.camera_rays;
-    report.gather_rays = how.rays;
     report.gather_seconds = seconds_since(start);
+  }
+
+  // Points whose share in the picture is less exact than wanted, by more than the sharing can
+  // mend: those for which `factor` times as many rays are about right. Empty if there are none.
+  [[nodiscard]] std::vector<std::uint8_t> noisy_points(const GatherField& field, int factor,
+                                                       double luminance) const {
+    const double wanted = options_.shared.gather_noise;
+    std::vector<std::uint8_t> marks(field.points.size(), 0);
+    bool any = false;
+    for (std::size_t p = 0; p < marks.size(); ++p) {
+      const GatherPoint& point = field.points[p];
+      if (point.reach_m <= 0.0F) continue;
+      Rgb gathered(0.0);
+      for (std::size_t k = 0; k < field.image_layers; ++k) {
+        gathered += Rgb(field.radiance[p * field.layers + k]);
+      }
+      const double reflectance = double(point.reflectance);
+      const double scale = wanted * std::max(luminance, reflectance * base::luminance(gathered));
+      const double excess =
+          reflectance * reflectance * double(field.squared_error[p]) / (scale * scale);
+      const bool many = excess > 6.0;
+      if (excess <= 1.0 || many != (factor > 4)) continue;
+      marks[p] = 1;
+      any = true;
+    }
+    return any ? marks : std::vector<std::uint8_t>{};
   }
 
   // As many as half of the time that is left allows, from the time that a few pixels take.
@@ -203,13 +207,19 @@ class Passes {
         std::bit_floor(static_cast<std::uint32_t>(std::clamp(count, 8.0, 65536.0))));
   }
 
+  // What was not reached when it was stopped gets a single sample all the same: a quick look.
+  void first_round(std::uint32_t samples, PixelSums& sums, RenderReport& report) {
+    report.least_camera_samples = static_cast<int>(samples);
+    const std::size_t pixels = sums.samples.size();
+    shade(std::vector<std::uint32_t>(pixels, samples), sums, report);
+    if (!stops() && !out_of_time()) return;
+    shade_samples(shared_, camera_, std::vector<std::uint32_t>(pixels, 1U), sums, report.rays, {},
+                  {});
+  }
+
   void shade(const std::vector<std::uint32_t>& wanted, PixelSums& sums, RenderReport& report) {
-    // Whatever the limit, every pixel gets a first sample.
-    const bool first = report.camera_samples == 0.0;
-    report.camera_samples = 1.0;
     shade_samples(
-        shared_, camera_, wanted, sums, report.rays,
-        [&] { return stops() || (!first && out_of_time()); },
+        shared_, camera_, wanted, sums, report.rays, [&] { return stops() || out_of_time(); },
         [&](std::uint64_t samples) { tell(samples * (1 + shared_.lights.count())); });
   }
 

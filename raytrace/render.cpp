@@ -56,8 +56,7 @@ void summarise(const PixelSums& sums, const Window& window, RenderReport& report
       samples += sums.samples[p];
       report.most_camera_samples =
           std::max(report.most_camera_samples, static_cast<int>(sums.samples[p]));
-      if (sums.samples[p] == 0) continue;
-      finished += 1.0;
+      if (static_cast<int>(sums.samples[p]) >= report.least_camera_samples) finished += 1.0;
       if (sums.source_samples[p] > 0) continue;
       error += sums.squared_error(p);
       mean += sums.luminance[p] / sums.samples[p];
@@ -78,6 +77,7 @@ RenderOptions render_options(const scenes::QualityKnobs& knobs) {
   options.shared.on = knobs.share_gather;
   options.shared.smooth_share = knobs.smooth_share;
   options.shared.noise = knobs.picture_noise;
+  options.shared.gather_noise = knobs.gather_noise;
   return options;
 }
 

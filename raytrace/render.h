@@ -44,7 +44,10 @@ struct SharedGather {
   bool on = false;
   double smooth_share = 0.25;  // of the mean ray length, how far points share; 0: not at all
   int smooth_pixels = 16;      // but no further than that
-  double noise = 0.01;  // wanted RMS standard error from camera samples, over the mean luminance
+  // Points that are left with more noise than this, over the mean luminance or their own, are
+  // gathered at again with 4 or 16 times the rays; 0: never.
+  double gather_noise = 0.02;
+  double noise = 0.02;  // wanted RMS standard error from camera samples, over the mean luminance
   int least_samples = 4, most_samples = 1024;  // per pixel, powers of two
 };
 

@@ -26,7 +26,8 @@ bool gathers_at(const scenes::Scene& scene, const scenes::Hit& hit, GatherReques
   const scenes::Material& material = scene.materials[scene.triangles[hit.triangle].material];
   if (!(hit.front || material.two_sided) || !lit(material.diffuse)) return false;
   const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
-  request = {scenes::hit_position(scene, hit), hit.front ? outward : -outward};
+  request = {scenes::hit_position(scene, hit), hit.front ? outward : -outward,
+             base::luminance(material.diffuse)};
   return true;
 }
 

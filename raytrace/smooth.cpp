@@ -37,7 +37,8 @@ struct Neighbour {
   std::size_t index;
   // 1; position in the tangent plane, in radii of the kernel; how the normal is turned.
   std::array<double, all_variables> x;
-  double weight;
+  double kernel, rays;
+  double weight;  // both together; then of the estimate
 };
 
 class Smoother {
@@ -69,7 +70,7 @@ class Smoother {
       const auto share = static_cast<float>(n.weight);
       const glm::vec3* from = &field_.radiance[n.index * field_.layers];
       for (std::size_t layer = 0; layer < out.size(); ++layer) out[layer] += share * from[layer];
-      squares += n.weight * n.weight;
+      squares += n.weight * n.weight / n.rays;
     }
     squared_error = static_cast<float>(noise_ * squares);
   }
@@ -125,19 +126,22 @@ class Smoother {
             !same_surface(at.position, at.normal, other.position, other.normal, slack(at))) {
           continue;
         }
+        const auto kernel = double((1.0F - d2) * (1.0F - d2));
         flat_ = flat_ && glm::dot(turned, turned) == 0.0F;
         neighbours_[count_++] = {q,
                                  {1.0, double(glm::dot(way, tangent) / radius),
                                   double(glm::dot(way, bitangent) / radius),
                                   double(glm::dot(turned, tangent) / most_turned),
                                   double(glm::dot(turned, bitangent) / most_turned)},
-                                 double((1.0F - d2) * (1.0F - d2))};
+                                 kernel,
+                                 double(other.rays),
+                                 kernel * double(other.rays)};
       }
     }
   }
 
   // Kernel weights become the weights of a linear estimate of the value at the point itself. Also
-  // the noise that the fit leaves, per point.
+  // the noise that the fit leaves, as the variance of a single ray.
   template <std::size_t variables>
   void weigh() {
     using Fit = LocalFit<variables>;
@@ -150,8 +154,8 @@ class Smoother {
       for (std::size_t i = 0; i < right.size(); ++i) {
         right[i] += n.weight * n.x[i] * luminance_[n.index];
       }
-      sum += n.weight;
-      squares += n.weight * n.weight;
+      sum += n.kernel;
+      squares += n.kernel * n.kernel;
     }
     const auto unknowns = static_cast<double>(fit.factor());
     const typename Fit::Values luminance = fit.solve(right), share = fit.solve({1.0});

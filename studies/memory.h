@@ -19,8 +19,9 @@ namespace earthshine::studies {
 
 // Per pixel of a picture beside its channels: what the renderer keeps until the picture is whole.
 struct PixelRecordBytes {
-  double per_pixel = 96.0;        // gather point, sums over samples and what they tell
-  double per_pixel_layer = 48.0;  // radiance of the gather point, twice while it is smoothed; sum
+  double per_pixel = 140.0;  // gather point, sums over samples and what they tell
+  double per_pixel_layer =
+      60.0;  // radiance of the gather point, three times while it is smoothed; sum
 };
 inline constexpr PixelRecordBytes pixel_record_bytes;
 

@@ -28,6 +28,7 @@ GatherField flat_field(float reach_m, Radiance radiance) {
       point.normal = glm::vec3(0.0F, 0.0F, 1.0F);
       point.reach_m = reach_m;
       point.spacing_m = spacing_m;
+      point.rays = 32.0F;
       field.points.push_back(point);
       field.radiance.emplace_back(static_cast<float>(radiance(x, y)));
       field.squared_error.push_back(0.0F);
