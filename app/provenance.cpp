@@ -37,6 +37,8 @@ void write_camera(HeaderWriter& header, const scenes::Camera& camera, int rows) 
     header.number("camera.focus_m", camera.focus_m);
     header.number("camera.aperture_m", camera.aperture_m);
   }
+  header.text("camera.filter", std::string(scenes::filter_name(camera.filter)));
+  header.number("camera.filter_width_px", camera.filter_width_px);
 }
 
 }  // namespace

@@ -1,182 +1,222 @@
 // SPDX-License-Identifier: Apache-2.0
-// earthshine render: scene to linear EXR, a viewable PNG and the CCTV picture.
-#include "raytrace/render.h"
-
+// earthshine render: scene to linear EXR, a viewable PNG and the CCTV picture, for one camera or
+// several.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <map>
 #include <memory>
-#include <optional>
 
 #include "app/cctv.h"
-#include "app/command.h"
 #include "app/console.h"
+#include "app/interrupt.h"
 #include "app/memory.h"
 #include "app/provenance.h"
+#include "app/render_call.h"
 #include "app/solution.h"
+#include "app/study.h"
 #include "base/error.h"
-#include "base/exr_file.h"
 #include "base/png_file.h"
-#include "base/tone.h"
-#include "scenes/quality.h"
-#include "scenes/ray_query.h"
+#include "raytrace/camera_check.h"
+#include "raytrace/distributed_area.h"
 
 namespace earthshine::app {
 namespace {
 
-struct RenderCall {
-  SceneInput scene;
-  std::string output, png, cctv, camera, solution;
-  std::optional<Size> size;
-  raytrace::Indirect indirect = raytrace::Indirect::Radiosity;
-  std::uint64_t distributed_lights = 64;
-  std::string distributed_over;
-  std::vector<std::string> aovs;
-  bool per_light = false, timings = false, json = false;
-};
+using base::Blame;
+using base::Error;
 
 void check_call(const RenderCall& call) {
   for (const std::string& name : call.aovs) {
     const std::vector<std::string>& known = raytrace::aov_names();
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    throw base::Error(base::Blame::Input, "--aov", "there is no layer \"" + name + "\"",
-                      fmt::format("the layers are {}", fmt::join(known, ", ")));
+    throw Error(Blame::Input, "--aov", "there is no layer \"" + name + "\"",
+                fmt::format("the layers are {}", fmt::join(known, ", ")));
   }
   const auto check_ending = [](const std::string& path, std::string_view option,
                                std::string_view ending) {
     if (path.empty() || path.ends_with(ending) || path.starts_with("/dev/")) return;
-    throw base::Error(base::Blame::Input, option,
-                      fmt::format("\"{}\" is not a {} file", path, ending), {},
-                      fmt::format("Name a file that ends in {}", ending));
+    throw Error(Blame::Input, option, fmt::format("\"{}\" is not a {} file", path, ending), {},
+                fmt::format("Name a file that ends in {}", ending));
   };
   check_ending(call.output, "-o", ".exr");
   check_ending(call.png, "--png", ".png");
   check_ending(call.cctv, "--cctv", ".png");
-  check_outputs({call.output, call.png, call.cctv}, {call.scene.path, call.solution});
+  check_over(call);
+  if (call.output.empty() && !call.only_pixel && !call.over.asked()) {
+    throw Error(Blame::Input, "render", "-o is missing", {}, "Name the picture: -o FILE.exr");
+  }
+  if (call.crop && !call.cctv.empty()) {
+    throw Error(Blame::Input, "--cctv", "the CCTV stage needs the whole picture", {},
+                "Leave out --cctv, --crop or --only-pixel");
+  }
   if (!call.solution.empty() && call.indirect != raytrace::Indirect::Radiosity) {
-    throw base::Error(base::Blame::Input, "--solution",
-                      fmt::format("--indirect {} reads no solution", indirect_name(call.indirect)),
-                      {}, "Leave one of the two out");
+    throw Error(Blame::Input, "--solution",
+                fmt::format("--indirect {} reads no solution", indirect_name(call.indirect)), {},
+                "Leave one of the two out");
   }
   if (!call.distributed_over.empty() && call.indirect != raytrace::Indirect::Distributed) {
-    throw base::Error(base::Blame::Input, "--distributed-over",
-                      fmt::format("--indirect {} spreads no lights", indirect_name(call.indirect)),
-                      {}, "Write --indirect distributed");
+    throw Error(Blame::Input, "--distributed-over",
+                fmt::format("--indirect {} spreads no lights", indirect_name(call.indirect)), {},
+                "Write --indirect distributed");
   }
 }
 
-struct Rendered {
-  radiosity::Solution solution;
-  raytrace::Frame frame;
-  raytrace::RenderOptions options;
-  radiosity::SolveOptions solver;
-  bool solved = false;
+// "views/bay.exr" and camera A give "views/bay-A.exr".
+std::string with_camera(const std::string& path, const std::string& camera) {
+  if (path.empty() || path.starts_with("/dev/")) return path;
+  const std::filesystem::path whole(path);
+  return (whole.parent_path() / (whole.stem().string() + "-" + camera + whole.extension().string()))
+      .string();
+}
+
+// Names, lists of names with commas between, or "all".
+std::vector<const scenes::Camera*> wanted_cameras(const std::vector<std::string>& texts,
+                                                  const scenes::Scene& scene) {
+  std::vector<const scenes::Camera*> cameras;
+  const auto is_name = [&scene](const std::string& text) {
+    return std::any_of(scene.cameras.begin(), scene.cameras.end(),
+                       [&text](const scenes::Camera& camera) { return camera.name == text; });
+  };
+  for (const std::string& text : texts) {
+    if (text == "all" && !is_name(text)) {
+      for (const scenes::Camera& camera : scene.cameras) cameras.push_back(&camera);
+      continue;
+    }
+    for (const std::string& name :
+         is_name(text) ? std::vector<std::string>{text} : split_at_commas(text)) {
+      cameras.push_back(&choose_camera(scene, name));
+    }
+  }
+  if (cameras.empty()) cameras.push_back(&choose_camera(scene, ""));
+  return cameras;
+}
+
+struct Wanted {
+  const scenes::Camera* camera;
+  PictureFiles files;
 };
 
-Rendered compute(const RenderCall& call, const Common& common, const LoadedScene& loaded,
-                 const scenes::Camera& camera, StageTimes& times) {
-  const scenes::RayQuery query =
-      times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
-  Rendered r;
-  r.solver = solve_options(loaded.scene, common);
-  r.options.columns = call.size ? call.size->columns : camera.columns;
-  r.options.rows = call.size ? call.size->rows : camera.rows;
-  r.options.gather_rays = scenes::resolve_quality(loaded.scene).gather_rays;
-  r.options.indirect = call.indirect;
-  r.options.distributed_lights = static_cast<int>(call.distributed_lights);
-  r.options.distributed_over = call.distributed_over;
-  r.options.per_light = call.per_light;
-  r.options.aovs = call.aovs;
-  r.options.seed = common.seed;
-  check_memory(loaded, query, r.solver, &r.options, call.solution.empty());
-  if (call.indirect == raytrace::Indirect::Radiosity) {
-    if (loaded.groups.count() == 0) note("note: nothing gives light, the picture is black");
-    r.solution = solve_or_read(loaded, query, r.solver, call.solution, times);
-    r.solved = true;
-    if (!common.quiet) note_backs(r.solution.report);
+std::vector<Wanted> wanted_pictures(const RenderCall& call, const scenes::Scene& scene,
+                                    bool quiet) {
+  const std::vector<const scenes::Camera*> cameras = wanted_cameras(call.cameras, scene);
+  if (call.cameras.empty() && scene.cameras.size() > 1 && !quiet) {
+    note("note: no --camera, taking the first, \"" + scene.cameras.front().name + "\"");
   }
-  Progress progress("render", common.quiet);
-  r.frame = times.measure("render", [&] {
-    return raytrace::render(loaded.scene, loaded.groups, loaded.effects, query, r.solution, camera,
-                            r.options, std::ref(progress));
-  });
-  return r;
+  if ((call.only_pixel || call.over.asked()) && cameras.size() > 1) {
+    throw Error(Blame::Input, call.only_pixel ? "--only-pixel" : "--over", "belongs to one camera",
+                {}, "Name one --camera");
+  }
+  std::vector<Wanted> wanted;
+  std::vector<std::string> outputs;
+  for (const scenes::Camera* camera : cameras) {
+    Wanted picture{camera, {call.output, call.png, call.cctv}};
+    if (cameras.size() > 1) {
+      for (std::string* path : {&picture.files.output, &picture.files.png, &picture.files.cctv}) {
+        *path = with_camera(*path, file_stem(scene, *camera));
+      }
+    }
+    outputs.insert(outputs.end(), {picture.files.output, picture.files.png, picture.files.cctv});
+    wanted.push_back(std::move(picture));
+  }
+  check_outputs(outputs, {scene.path.string(), call.solution, call.over.photo});
+  return wanted;
 }
 
-Json json_of(const Rendered& r, const StageTimes& times) {
-  const raytrace::RayCounts& rays = r.frame.report.rays;
-  const radiosity::SolveReport& solved = r.solution.report;
-  return {{"columns", r.options.columns},
-          {"rows", r.options.rows},
-          {"seconds", times.json()},
-          {"peak_memory_mib", peak_memory_mib()},
-          {"patches", solved.patches},
-          {"iterations", solved.iterations},
-          {"residual", solved.residual},
-          {"rays",
-           {{"form_factors", solved.form_factor_rays},
-            {"direct", solved.shadow_rays},
-            {"camera", rays.camera},
-            {"shadow", rays.shadow},
-            {"gather", rays.gather},
-            {"lobe", rays.lobe},
-            {"mirror", rays.mirror}}},
-          {"relative_noise", r.frame.report.relative_noise}};
+// With a time limit and no word on accuracy the solve gets about a third of the time: a coarse one
+// tells how fast the machine and the scene are. Cost grows about with error^-2.5 (patches times
+// rays, docs/validation.md).
+Solved solve_within(const LoadedScene& loaded, const scenes::RayQuery& query, const Common& common,
+                    double seconds, StageTimes& times) {
+  constexpr double coarse = 0.2, fine = 0.005, share = 0.3, exponent = 2.5;
+  LoadedScene quick = loaded;
+  quick.scene.quality.error = coarse;
+  const double before = times.total();
+  Solved light{{}, solve_options(quick.scene, common), true};
+  light.solution = solve_or_read(quick, query, light.solver, "", times);
+  const double taken = std::max(1e-3, times.total() - before);
+  const double error = coarse * std::pow(taken / (share * seconds), 1.0 / exponent);
+  if (error > 0.6 * coarse) return light;
+  quick.scene.quality.error = std::max(fine, error);
+  light.solver = solve_options(quick.scene, common);
+  light.solution = solve_or_read(quick, query, light.solver, "", times);
+  return light;
 }
 
-void report(const Rendered& r, const StageTimes& times) {
-  for (const auto& [stage, seconds] : times.stages()) {
-    note(fmt::format("  {:<16} {:>10}", stage, duration(seconds)));
-  }
-  note(fmt::format("  {:<16} {:>10}, peak memory {:.0f} MiB", "total", duration(times.total()),
-                   peak_memory_mib()));
-  const radiosity::SolveReport& solved = r.solution.report;
-  if (r.solved && solved.patches > 0) {
-    note(fmt::format("  {} patches, {} form-factor and {} shadow rays, {} iterations to {:.1g}",
-                     solved.patches, short_count(static_cast<double>(solved.form_factor_rays)),
-                     short_count(static_cast<double>(solved.shadow_rays)), solved.iterations,
-                     solved.residual));
-  }
-  const auto rays = static_cast<double>(r.frame.report.rays.total());
-  note(fmt::format("  {} rays for the picture, {} rays/s; noise {:.2g} of the mean",
-                   short_count(rays), short_count(rays / std::max(1e-9, r.frame.report.seconds)),
-                   r.frame.report.relative_noise));
+bool says_how_exact(const scenes::Quality& quality) {
+  return quality.error || quality.patch_edge_m || quality.max_patches || quality.form_factor_rays;
 }
 
-void run(const RenderCall& call, const Common& common) {
+Solved find_light(const RenderCall& call, const Common& common, const LoadedScene& loaded,
+                  const scenes::RayQuery& query, StageTimes& times) {
+  Solved light;
+  light.solver = solve_options(loaded.scene, common);
+  if (call.indirect != raytrace::Indirect::Radiosity) return light;
+  if (loaded.groups.count() == 0) note("note: nothing gives light, the picture is black");
+  if (call.time_limit_s > 0.0 && call.solution.empty() && !says_how_exact(loaded.scene.quality)) {
+    light = solve_within(loaded, query, common, call.time_limit_s, times);
+  } else {
+    light.solution = solve_or_read(loaded, query, light.solver, call.solution, times);
+    light.solved = true;
+  }
+  if (!common.quiet) note_backs(light.solution.report);
+  return light;
+}
+
+// What no memory holds, and lights over an area that is not there, before any work.
+void refuse_too_large(const RenderCall& call, const Common& common, const LoadedScene& loaded,
+                      const scenes::RayQuery& query, const std::vector<Wanted>& pictures) {
+  (void)raytrace::earth_area(loaded.scene, call.distributed_over);
+  const Solved none{{}, solve_options(loaded.scene, common)};
+  for (const Wanted& picture : pictures) {
+    const raytrace::RenderOptions options =
+        options_of({call, common, loaded, query, none}, *picture.camera);
+    check_memory(loaded, query, none.solver, &options, call.solution.empty());
+  }
+}
+
+void run(RenderCall call, const Common& common) {
   check_call(call);
   StageTimes times;
   const LoadedScene loaded = times.measure("read", [&] { return load(call.scene, common.quiet); });
-  const scenes::Camera& camera = choose_camera(loaded.scene, call.camera);
-  if (call.camera.empty() && loaded.scene.cameras.size() > 1 && !common.quiet) {
-    note("note: no --camera, taking the first, \"" + camera.name + "\"");
+  const std::vector<Wanted> pictures = wanted_pictures(call, loaded.scene, common.quiet);
+  const scenes::RayQuery query =
+      times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
+  for (const Wanted& picture : pictures) {
+    raytrace::check_camera(loaded.scene, query, *picture.camera);
   }
-  std::optional<CctvSetup> cctv;
-  if (!call.cctv.empty()) cctv = cctv_of_camera(loaded.scene, camera, common);
-  const Rendered r = compute(call, common, loaded, camera, times);
-  std::optional<base::ToneMapped> tone;
-  std::optional<degrade::Result> screen;
-  if (!call.png.empty()) {
-    tone = times.measure("tone map", [&] { return base::tone_map(r.frame.image); });
+  if (call.over.asked()) {
+    const scenes::Camera& camera = *pictures.front().camera;
+    call.photo = read_photo(call.over, camera, common.quiet);
+    call.size = Size{call.photo->width, call.photo->height};
+    if (call.wire_alone()) {
+      const auto drawn = lay_over(call.over, *call.photo, loaded.scene, query, camera, {});
+      return base::write_png(call.png, drawn.width, drawn.height, 3, drawn.rgb);
+    }
   }
-  if (cctv) screen = times.measure("cctv", [&] { return run_chain(*cctv, r.frame.image); });
-  base::ExrHeader header =
-      provenance_header({loaded.scene, call.scene.overrides, camera, r.options, r.solver,
-                         r.solved ? &r.solution.report : nullptr, r.frame.report});
-  if (call.timings) add_times(header, times);
-  times.measure("write", [&] {
-    if (tone) base::write_png(call.png, r.options.columns, r.options.rows, 3, tone->rgb);
-    if (screen) write_cctv(call.cctv, *cctv, *screen);
-    base::write_exr(call.output, r.frame.image, header);
-  });
-  if (call.json) {
-    Json json = json_of(r, times);
-    if (screen) json["cctv"] = cctv_json(*cctv, *screen);
-    print(dump(json));
+  refuse_too_large(call, common, loaded, query, pictures);
+  const Solved light = find_light(call, common, loaded, query, times);
+  Studio studio{call, common, loaded, query, light};
+  Json reports = Json::array();
+  bool whole = true;
+  {
+    const Interrupt interrupt;
+    for (std::size_t k = 0; k < pictures.size() && whole; ++k) {
+      if (call.time_limit_s > 0.0) {
+        const double left = call.time_limit_s - times.total();
+        studio.time_limit_s = std::max(1e-3, left / static_cast<double>(pictures.size() - k));
+      }
+      Picture picture = take_picture(studio, *pictures[k].camera, pictures[k].files, times);
+      times.add({{"pictures", picture.report["seconds"]["render"].get<double>()}});
+      whole = picture.whole;
+      reports.push_back(std::move(picture.report));
+    }
   }
-  if (common.quiet) return;
-  report(r, times);
-  if (screen) note("  " + cctv_summary(*cctv, *screen));
+  if (call.json) print(dump(reports.size() == 1 ? reports.front() : reports));
+  if (whole) return;
+  throw Error(Blame::Work, "render", "interrupted", {},
+              fmt::format("What was finished is in {}", pictures[reports.size() - 1].files.output));
 }
 
 }  // namespace
@@ -188,12 +228,17 @@ Command add_render(CLI::App& program) {
   const auto file_option = [parser](const char* name, std::string& path, const char* help) {
     return parser->add_option(name, path, help)->type_name("FILE");
   };
-  file_option("-o,--output", call->output, "Linear picture in cd/m2 (OpenEXR)")->required();
+  file_option("-o,--output", call->output, "Linear picture in cd/m2 (OpenEXR)");
   file_option("--png", call->png, "Also a tone-mapped picture");
   file_option("--cctv", call->cctv, "Also the picture on the camera's CCTV monitor (PNG)");
-  parser->add_option("--camera", call->camera, "Camera of the scene (default: its first)")
+  parser
+      ->add_option("--camera", call->cameras,
+                   "Cameras of the scene (default: its first): A or A,B or all; with several, "
+                   "files are called FILE-A, FILE-B")
       ->type_name("NAME");
   add_size_option(*parser, call->size);
+  add_over_options(*parser, call->over);
+  add_window_options(*parser, *call);
   add_solution_option(*parser, call->solution);
   using raytrace::Indirect;
   const std::map<std::string, Indirect> names = {{"radiosity", Indirect::Radiosity},

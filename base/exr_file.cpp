@@ -88,6 +88,11 @@ class CheckedStream : public Imf::OStream {
 
 Imf::Header make_header(const Image& image, const ExrHeader& attributes) {
   Imf::Header header(image.width, image.height);
+  if (const ExrHeader::Whole& whole = attributes.whole; whole.columns > 0) {
+    header.displayWindow() = {{0, 0}, {whole.columns - 1, whole.rows - 1}};
+    header.dataWindow() = {{whole.x, whole.y},
+                           {whole.x + image.width - 1, whole.y + image.height - 1}};
+  }
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::addChromaticities(header, Imf::Chromaticities());  // the default is Rec. 709
   Imf::addWhiteLuminance(header, 1.0F);
@@ -120,9 +125,7 @@ void write_exr(const std::filesystem::path& path, const Image& image, const ExrH
       }
       header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
       char* values = reinterpret_cast<char*>(const_cast<float*>(channel.values.data()));
-      buffer.insert(channel.name,
-                    Imf::Slice(Imf::FLOAT, values, sizeof(float),
-                               sizeof(float) * static_cast<std::size_t>(image.width)));
+      buffer.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, values, header.dataWindow()));
     }
     Imf::OutputFile file(stream, header);
     file.setFrameBuffer(buffer);

@@ -15,6 +15,11 @@ namespace earthshine::base {
 struct ExrHeader {
   std::vector<std::pair<std::string, std::string>> text;
   std::vector<std::pair<std::string, float>> numbers;
+  // The picture that the image is a part of (the display window), and where its top left pixel lies
+  // in it; without columns the image is the whole.
+  struct Whole {
+    int columns = 0, rows = 0, x = 0, y = 0;
+  } whole = {};
 };
 
 struct ExrFile {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writing 8-bit PNG files (libpng). The only user of the library.
+// Reading and writing PNG files (libpng; png_file.cpp and png_reader.cpp are its only users).
 #pragma once
 
 #include <cstdint>
@@ -17,5 +17,20 @@ namespace earthshine::base {
 void write_png(const std::filesystem::path& path, int width, int height, int channels,
                std::span<const std::uint8_t> pixels,
                const std::vector<std::pair<std::string, std::string>>& text = {});
+
+// 8 bits per channel, as a screen shows them.
+struct Picture8 {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;  // width * height * 3, rows from the top
+};
+
+inline constexpr int largest_png_edge_px = 16384;
+
+// Any PNG: grey, palette or RGB of 1 to 16 bits, interlaced or not. 16 bits are rounded to 8, what
+// is transparent is laid on black; profiles and gamma are not applied. Throws base::Error (Input)
+// for a file that is missing, another format, broken, cut short or larger than 16384 pixels an
+// edge.
+[[nodiscard]] Picture8 read_png(const std::filesystem::path& path);
 
 }  // namespace earthshine::base

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/turn.h"
+
 namespace earthshine::radiosity {
 namespace {
 
@@ -12,26 +14,6 @@ static_assert(width == base::SobolSet4::width);
 
 // Keeps sample points off the patch's edges, where rounding could put them behind a neighbour.
 constexpr double inset = 1e-4;
-
-// Cosine and sine of `turns` full turns, turns in [0, 1): Taylor series within an eighth of a turn
-// of the nearest quarter, exact to 4e-7. Written without branches so that eight run side by side.
-struct Turned {
-  float cosine, sine;
-};
-inline Turned turn(float turns) {
-  const float quarters = 4.0F * turns;
-  const auto quarter = static_cast<std::int32_t>(quarters + 0.5F);
-  const float x = (quarters - static_cast<float>(quarter)) * static_cast<float>(0.5 * base::pi);
-  const float x2 = x * x;
-  const float sine =
-      x *
-      (1.0F + x2 * (-1.0F / 6 + x2 * (1.0F / 120 + x2 * (-1.0F / 5040 + x2 * (1.0F / 362880)))));
-  const float cosine =
-      1.0F + x2 * (-0.5F + x2 * (1.0F / 24 + x2 * (-1.0F / 720 + x2 * (1.0F / 40320))));
-  const bool swap = (quarter & 1) != 0;
-  const float c = swap ? sine : cosine, s = swap ? cosine : sine;
-  return {((quarter + 1) & 2) != 0 ? -c : c, (quarter & 2) != 0 ? -s : s};
-}
 
 }  // namespace
 
@@ -76,7 +58,7 @@ void PatchRays::make(const Sender& from, std::uint32_t first, scenes::RayPacket&
   }
   for (std::uint32_t k = 0; k < width; ++k) {
     const float radius = std::sqrt(p.x[0][k]), height = std::sqrt(1.0F - p.x[0][k]);
-    const Turned way = turn(p.x[1][k]);
+    const base::Turned way = base::turn(p.x[1][k]);
     const float x = radius * way.cosine, y = radius * way.sine;
     rays.direction_x[k] = x * from.tangent.x + y * from.bitangent.x + height * from.normal.x;
     rays.direction_y[k] = x * from.tangent.y + y * from.bitangent.y + height * from.normal.y;

@@ -2,6 +2,8 @@
 // Pixel to ray: pinhole or thin lens.
 #pragma once
 
+#include <cstddef>
+
 #include "scenes/scene.h"
 
 namespace earthshine::raytrace {
@@ -9,6 +11,22 @@ namespace earthshine::raytrace {
 struct Ray {
   Vec3 origin{0.0};
   Vec3 direction{0.0};  // unit
+};
+
+// A part of the picture, in pixels from its top left corner.
+struct Window {
+  int x = 0, y = 0, columns = 0, rows = 0;
+  [[nodiscard]] std::size_t pixel_count() const {
+    return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  }
+  // Of a pixel of the picture that lies in the window.
+  [[nodiscard]] std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row - y) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(column - x);
+  }
+  [[nodiscard]] bool contains(int column, int row) const {
+    return column >= x && column < x + columns && row >= y && row < y + rows;
+  }
 };
 
 // The camera's frame and the half size of its picture at unit distance.

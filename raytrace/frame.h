@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/image.h"
+#include "raytrace/camera.h"
 
 namespace earthshine::raytrace {
 
@@ -25,20 +26,31 @@ struct RayCounts {
 
 struct RenderReport {
   RayCounts rays;
-  double seconds = 0.0;
-  double relative_noise = 0.0;  // RMS standard error of a pixel's luminance over the mean luminance
-  int camera_samples = 0;       // per pixel
-  int gather_rays = 0;          // per camera sample
+  double seconds = 0.0;         // wall
+  double gather_seconds = 0.0;  // of them for the gather field
+  // RMS standard error of a pixel's luminance over the mean luminance, both without the pixels that
+  // show a source itself.
+  double relative_noise = 0.0;
+  double camera_samples = 0.0;  // per pixel, mean
+  int most_camera_samples = 0;
+  int gather_rays = 0;          // per pixel
+  double finished_share = 1.0;  // of the pixels; less than 1 if it was stopped
+  bool stopped = false;
 };
 
 // image: R, G, B radiance in cd/m^2; with per_light also light_<group>.R/G/B, whose sum is R, G, B;
 // with aovs:
+//   direct, indirect, specular .R/G/B: what the camera sees of sources themselves and of light
+//   straight from them on diffuse surfaces; light that other surfaces reflected first; highlights,
+//   glossy and mirror reflections, glass. Their sum is R, G, B.
+//   variance: of the mean luminance of the pixel, (cd/m^2)^2
 //   albedo.R/G/B, N.X/Y/Z (unit, facing the camera), P.X/Y/Z (m), Z (m along the camera's axis),
 //   range (m along the ray), object (index), material (index): of the ray through the pixel's
 //   centre, never filtered; where it meets nothing: 0, Z and range infinite, object and material
 //   -1.
 struct Frame {
   base::Image image;
+  Window window;  // which part of the picture the image is
   RenderReport report;
 };
 

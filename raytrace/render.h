@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scene + solution + camera -> frame. Who carries which light path (each by exactly one strategy):
 //
-//   source seen by the camera itself                     emission, sky radiance, lamp surfaces
-//   point, spot, rectangle, disk lamps; Sun; emitters    shadow rays (diffuse and Phong lobe)
-//     that are explicit in radiosity
-//   Earth, wide                                          gather rays that escape (diffuse), lobe
-//   rays (Phong) Earth, narrow                                        shadow rays emitters carried
-//   by F; light after >= 1 diffuse      gather rays that meet patches (diffuse), lobe rays (Phong)
-//     bounce
-//   mirror, glass                                        recursion; behind it direct light by
-//   shadow rays and the
-//                                                        rest from the solution
+//   source seen by the camera itself       emission, sky radiance, lamp surfaces
+//   point, spot, rectangle, disk lamps;    shadow rays (diffuse and Phong lobe)
+//     Sun; emitters that are explicit in
+//     radiosity
+//   Earth, wide                            gather rays that escape (diffuse), lobe rays (Phong)
+//   Earth, narrow                          shadow rays
+//   emitters carried by F; light after     gather rays that meet patches (diffuse), lobe rays
+//     >= 1 diffuse bounce                    (Phong)
+//   mirror, glass                          recursion; behind it direct light by shadow rays and the
+//                                            rest from the solution
 #pragma once
 
 #include <cstdint>
@@ -22,6 +22,7 @@
 #include "raytrace/frame.h"
 #include "scenes/effects.h"
 #include "scenes/light_groups.h"
+#include "scenes/quality.h"
 #include "scenes/ray_query.h"
 
 namespace earthshine::raytrace {
@@ -33,26 +34,51 @@ enum class Indirect {
   None          // direct light alone
 };
 
+// How rays are spent on the final gather.
+struct SharedGather {
+  // On: gather rays start at one point per pixel and serve all of its camera samples, and
+  // neighbouring points share theirs. Camera samples go where the picture is not yet as exact as
+  // wanted. Off: every camera sample has gather rays of its own and every pixel equally many of
+  // both: unbiased given the solution, slow, the oracle of the former.
+  bool on = false;
+  double smooth_share = 0.25;  // of the mean ray length, how far points share; 0: not at all
+  int smooth_pixels = 16;      // but no further than that
+  double noise = 0.01;  // wanted RMS standard error from camera samples, over the mean luminance
+  int least_samples = 4, most_samples = 1024;  // per pixel, powers of two
+};
+
 struct RenderOptions {
   int columns = 512;
   int rows = 512;
-  int gather_rays = 256;  // per pixel, spread over the camera samples
+  Window crop;            // of the picture; without columns the whole of it
+  int gather_rays = 256;  // per pixel
+  SharedGather shared = {};
   Indirect indirect = Indirect::Radiosity;
   int distributed_lights = 64;   // N of Indirect::Distributed
   std::string distributed_over;  // the [[area]] that the Earth's N lights lie on; empty: its disc
   bool per_light = false;
   std::vector<std::string> aovs;  // of aov_names()
   std::uint64_t seed = 1;
+  // With SharedGather: goes on until these seconds have passed, however exact the picture is by
+  // then, with as many gather rays as half of them allow; 0: no limit. The bytes then differ
+  // between runs.
+  double time_limit_s = 0.0;
+  // Asked often, from many threads; once it says true the frame is returned with what is finished.
+  std::function<bool()> stop = {};
 };
 
-[[nodiscard]] const std::vector<std::string>&
-aov_names();  // albedo, normal, position, depth, range, object, material
+// The knobs' part of the options; the size, the seed and the rest stay at their defaults.
+[[nodiscard]] RenderOptions render_options(const scenes::QualityKnobs& knobs);
 
-// Told how many of `total` rows of tiles are done; called from one thread at a time.
+[[nodiscard]] const std::vector<std::string>& aov_names();  // as in frame.h
+
+// Told how much of the expected work is done; called from one thread at a time.
 using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
-// `solution` may be empty (default-constructed) unless indirect is Radiosity.
-// Throws base::Error (Input) for an unknown AOV name or [[area]].
+// `solution` may be empty (default-constructed) unless indirect is Radiosity. A crop has the very
+// pixels that the whole picture has there.
+// Throws base::Error (Input) for an unknown AOV name or [[area]], or a crop that leaves the
+// picture.
 [[nodiscard]] Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
                            const scenes::Effects& effects, const scenes::RayQuery& query,
                            const radiosity::Solution& solution, const scenes::Camera& camera,

@@ -13,32 +13,37 @@ namespace {
 using base::pi;
 using scenes::no_group;
 
-constexpr int deepest = 12;           // mirror and glass steps before the path is cut
-constexpr int roulette_depth = 3;     // from here on weak paths end by chance, without bias
-constexpr int lobe_rays = 4;          // per camera sample
+constexpr int roulette_depth = 3;       // from here on paths end by chance, without bias
+constexpr double most_survival = 0.95;  // even between perfect mirrors
+constexpr int lobe_rays = 4;            // per camera sample
 constexpr double sharp_lobe = 100.0;  // from this exponent on the surroundings are shaded, not read
 
 bool lit(const Rgb& c) { return base::max_component(c) > 0.0; }
 
 }  // namespace
 
-Vec3 hit_position(const scenes::Scene& scene, const scenes::Hit& hit) {
-  const auto& v = scene.triangles[hit.triangle].vertex;
-  return (1.0 - hit.u - hit.v) * scene.vertices[v[0]] + hit.u * scene.vertices[v[1]] +
-         hit.v * scene.vertices[v[2]];
+bool gathers_at(const scenes::Scene& scene, const scenes::Hit& hit, GatherRequest& request) {
+  const scenes::Material& material = scene.materials[scene.triangles[hit.triangle].material];
+  if (!(hit.front || material.two_sided) || !lit(material.diffuse)) return false;
+  const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
+  request = {scenes::hit_position(scene, hit), hit.front ? outward : -outward};
+  return true;
 }
 
 PixelShader::PixelShader(const ShadingScene& shared)
     : shared_(shared),
-      sums_(shared.layers),
+      sums_(shared.layers + (shared.splits_parts ? part_count : 0)),
       scratch_(shared.layers),
       gather_points_(base::Key(0, base::Stream::FinalGather, 0)),
       rng_(base::Key(0, base::Stream::Roulette, 0)) {}
 
-void PixelShader::begin_pixel(std::uint64_t pixel, std::size_t samples) {
+void PixelShader::begin_pixel(std::uint64_t pixel, std::size_t first, std::size_t count) {
   pixel_ = pixel;
+  first_sample_ = first;
+  source_samples_ = 0;
+  field_error_ = 0.0;
   std::fill(sums_.begin(), sums_.end(), Rgb(0.0));
-  sample_luminance_.assign(samples, 0.0);
+  sample_luminance_.assign(count, 0.0);
   gather_points_ = base::SobolOwen4(base::Key(shared_.seed, base::Stream::FinalGather, pixel));
   light_points_.clear();
   const base::Key light_key(shared_.seed, base::Stream::LightSample, pixel);
@@ -59,16 +64,16 @@ void PixelShader::end_pixel() {
   flush_gather();
 }
 
-void PixelShader::add(std::size_t layer, std::size_t sample, const Rgb& radiance) {
+void PixelShader::add(std::size_t layer, std::size_t sample, Part part, const Rgb& radiance) {
   sums_[layer] += radiance;
-  sample_luminance_[sample] += base::luminance(radiance);
+  if (shared_.splits_parts) sums_[shared_.layers + static_cast<std::size_t>(part)] += radiance;
+  sample_luminance_[sample - first_sample_] += base::luminance(radiance);
 }
 
 void PixelShader::trace(const Ray& ray, const Rgb& weight, int depth, Seen seen) {
   Rgb kept = weight;
-  if (depth >= deepest) return;
   if (depth >= roulette_depth) {
-    const double survival = std::min(1.0, base::max_component(weight));
+    const double survival = std::min(most_survival, base::max_component(weight));
     if (rng_.next() >= survival) return;
     kept /= survival;
   }
@@ -76,7 +81,12 @@ void PixelShader::trace(const Ray& ray, const Rgb& weight, int depth, Seen seen)
   shade(ray, shared_.query.closest(ray.origin, ray.direction), kept, depth, seen);
 }
 
-void PixelShader::see_sky(const Vec3& direction, const Rgb& weight, Seen seen) {
+void PixelShader::see_source(std::size_t group, const Rgb& radiance, int depth) {
+  add(shared_.layer[group], sample_, depth == 0 ? Part::Direct : Part::Specular, radiance);
+  if (depth == 0 && lit(radiance)) ++source_samples_;
+}
+
+void PixelShader::see_sky(const Vec3& direction, const Rgb& weight, int depth, Seen seen) {
   const scenes::Scene& scene = shared_.scene;
   const bool on_earth = scene.earth && glm::dot(direction, scene.earth->direction) >=
                                            std::cos(base::radians(scene.earth->half_angle_deg));
@@ -84,16 +94,14 @@ void PixelShader::see_sky(const Vec3& direction, const Rgb& weight, Seen seen) {
     // A lobe ray reads the Earth only where shadow rays do not already carry its highlight.
     const bool carried = seen == Seen::ByLobe && !shared_.effects.earth_by_gather;
     if (shared_.groups.earth != no_group && !carried) {
-      add(shared_.layer[shared_.groups.earth], sample_,
-          weight * scenes::earth_radiance(scene, direction));
+      see_source(shared_.groups.earth, weight * scenes::earth_radiance(scene, direction), depth);
     }
   } else if (seen == Seen::ByCamera && shared_.groups.sun != no_group) {
-    add(shared_.layer[shared_.groups.sun], sample_,
-        weight * scenes::sky_radiance(scene, direction));
+    see_source(shared_.groups.sun, weight * scenes::sky_radiance(scene, direction), depth);
   }
 }
 
-bool PixelShader::see_lamp(const Ray& ray, double nearer_than_m, const Rgb& weight) {
+bool PixelShader::see_lamp(const Ray& ray, double nearer_than_m, const Rgb& weight, int depth) {
   bool found = false;
   scenes::LampHit nearest{nearer_than_m, Rgb(0.0)};
   std::size_t which = 0;
@@ -105,15 +113,15 @@ bool PixelShader::see_lamp(const Ray& ray, double nearer_than_m, const Rgb& weig
       found = true;
     }
   }
-  if (found) add(shared_.layer[shared_.groups.lamp[which]], sample_, weight * nearest.radiance);
+  if (found) see_source(shared_.groups.lamp[which], weight * nearest.radiance, depth);
   return found;
 }
 
 void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weight, int depth,
                         Seen seen) {
   const double distance = hit.missed() ? std::numeric_limits<double>::infinity() : hit.t;
-  if (seen == Seen::ByCamera && see_lamp(ray, distance, weight)) return;
-  if (hit.missed()) return see_sky(ray.direction, weight, seen);
+  if (seen == Seen::ByCamera && see_lamp(ray, distance, weight, depth)) return;
+  if (hit.missed()) return see_sky(ray.direction, weight, depth, seen);
 
   const scenes::Scene& scene = shared_.scene;
   const scenes::Triangle& triangle = scene.triangles[hit.triangle];
@@ -122,39 +130,29 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
   if (!hit.front && !material.two_sided && !glass) return;  // the black back
 
   const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
-  const Surface surface{material, hit_position(scene, hit), outward, hit.front ? outward : -outward,
-                        -ray.direction};
+  const Surface surface{material, scenes::hit_position(scene, hit), outward,
+                        hit.front ? outward : -outward, -ray.direction};
   const bool shines = hit.front || material.two_sided;
   const bool shows_emission = seen == Seen::ByCamera || !shared_.sampled_emitter[triangle.material];
   if (shines && shows_emission && shared_.groups.material[triangle.material] != no_group) {
-    add(shared_.layer[shared_.groups.material[triangle.material]], sample_,
-        weight * material.emit / pi);
+    see_source(shared_.groups.material[triangle.material], weight * material.emit / pi, depth);
   }
   if (shines) {
-    if (lit(material.diffuse) || lit(material.specular)) direct(surface, weight);
+    if (lit(material.diffuse) || lit(material.specular)) direct(surface, weight, depth);
     if (lit(material.diffuse)) {
       if (shared_.groups.ambient != no_group) {
         add(shared_.layer[shared_.groups.ambient], sample_,
+            depth == 0 ? Part::Indirect : Part::Specular,
             weight * material.diffuse * scene.ambient_radiance);
       }
-      if (depth > 0 && shared_.indirect == Indirect::Radiosity) {
-        if (!shared_.soft_radiance.empty()) {
-          std::fill(scratch_.begin(), scratch_.end(), Rgb(0.0));
-          shared_.soft_radiance.add(hit, weight, scratch_);
-          for (std::size_t k = 0; k < scratch_.size(); ++k) add(k, sample_, scratch_[k]);
-        }
-      } else if (shared_.gathers) {
-        gather(surface, weight * material.diffuse, depth);
-      }
+      diffuse(surface, hit, weight, depth);
     }
     if (lit(material.specular) && shared_.gathers) lobe(surface, weight, depth);
   }
-  if (glass || lit(material.mirror)) {
-    mirror_and_glass(ray, surface, weight, depth, seen);
-  }
+  if (glass || lit(material.mirror)) mirror_and_glass(ray, surface, weight, depth, seen);
 }
 
-void PixelShader::direct(const Surface& surface, const Rgb& weight) {
+void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
   const double offset = shared_.query.surface_offset_m();
   const Vec3 origin = surface.position + surface.normal * offset;
   const Vec3 mirrored =
@@ -165,17 +163,19 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight) {
     const double cosine = glm::dot(light.direction, surface.normal);
     if (cosine <= 0.0 || !lit(light.normal_illuminance_lx)) continue;
     // L = (E cos / pi) (k_d + k_s cos^n alpha): the measured Phong form.
-    Rgb factor = surface.material.diffuse;
+    Rgb highlight(0.0);
     const double cos_alpha = glm::dot(light.direction, mirrored);
     if (cos_alpha > 0.0 && lit(surface.material.specular)) {
-      factor += surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
+      highlight = surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
     }
-    const Rgb value = weight * factor * light.normal_illuminance_lx * (cosine / pi);
+    const Rgb incident = weight * light.normal_illuminance_lx * (cosine / pi);
+    const Rgb value = incident * (surface.material.diffuse + highlight);
     if (!lit(value)) continue;
     const double reach = light.distance_m * (1.0 - 1e-5) - 2.0 * offset;
-    if (reach > 0.0) {
-      queue_shadow(origin, light.direction, reach, value, shared_.layer[shared_.lights.group(k)]);
-    }
+    if (reach <= 0.0) continue;
+    queue_shadow(
+        origin, light.direction, reach,
+        {value, incident * highlight, shared_.layer[shared_.lights.group(k)], sample_, depth == 0});
   }
 }
 
@@ -199,7 +199,7 @@ void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
       trace({origin, direction}, value, depth + 1, Seen::ByLobe);
     } else {
       ++rays_.lobe;
-      queue_gather(origin, direction, value);
+      queue_gather(origin, {direction, value, {}, Part::Specular, sample_});
     }
   }
 }
@@ -207,19 +207,29 @@ void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
 void PixelShader::mirror_and_glass(const Ray& ray, const Surface& surface, const Rgb& weight,
                                    int depth, Seen seen) {
   const Vec3 lift = surface.normal * shared_.query.surface_offset_m();
-  Rgb reflected_weight = weight * surface.material.mirror;
+  Rgb reflected = weight * surface.material.mirror, through(0.0);
+  Vec3 bent(0.0);
   if (lit(surface.material.transmit)) {
-    const Rgb through = weight * surface.material.transmit;
+    through = weight * surface.material.transmit;
     const scenes::Refraction refraction =
         scenes::refract(surface.material, surface.outward, ray.direction);
+    bent = refraction.direction;
     if (refraction.total) {
-      reflected_weight += through;
-    } else {
-      trace({surface.position - lift, refraction.direction}, through, depth + 1, seen);
+      reflected += through;
+      through = Rgb(0.0);
     }
   }
-  if (lit(reflected_weight)) {
-    trace({surface.position + lift, glm::reflect(ray.direction, surface.normal)}, reflected_weight,
+  if (depth >= roulette_depth && lit(reflected) && lit(through)) {
+    // Deep paths take one way, or their number would grow without end.
+    const double share = base::max_component(reflected) /
+                         (base::max_component(reflected) + base::max_component(through));
+    const bool goes_back = rng_.next() < share;
+    reflected *= goes_back ? 1.0 / share : 0.0;
+    through *= goes_back ? 0.0 : 1.0 / (1.0 - share);
+  }
+  if (lit(through)) trace({surface.position - lift, bent}, through, depth + 1, seen);
+  if (lit(reflected)) {
+    trace({surface.position + lift, glm::reflect(ray.direction, surface.normal)}, reflected,
           depth + 1, seen);
   }
 }

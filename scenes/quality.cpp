@@ -28,11 +28,16 @@ QualityKnobs resolve_quality(const Scene& scene) {
   constexpr double reference_error = 0.02;
   const double ratio = reference_error / scene.quality.error.value_or(reference_error);
   QualityKnobs knobs;
-  knobs.gather_rays =
-      scene.quality.gather_rays.value_or(power_of_two_at_least(256.0 * ratio * ratio, 16, 1 << 16));
   knobs.form_factor_rays = scene.quality.form_factor_rays.value_or(
       power_of_two_at_least(1024.0 * std::pow(ratio, 1.0 / 0.6), 64, 1 << 18));
   const Quality& given = scene.quality;
+  knobs.share_gather = given.share_gather.value_or(true);
+  const double rays = (knobs.share_gather ? 32.0 : 256.0) * ratio * ratio;
+  knobs.gather_rays =
+      given.gather_rays.value_or(power_of_two_at_least(rays, knobs.share_gather ? 8 : 16, 1 << 16));
+  knobs.smooth_share =
+      given.smooth_share.value_or(std::clamp(0.25 / std::sqrt(ratio), 0.05, 0.5));
+  knobs.picture_noise = given.picture_noise.value_or(reference_error / ratio);
   if (!scene.vertices.empty()) {
     const double diagonal_m = diagonal(scene);
     knobs.patch_edge_m = diagonal_m / 48.0 / std::clamp(ratio, 0.25, 4.0);

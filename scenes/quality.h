@@ -14,11 +14,16 @@ struct QualityKnobs {
   double refine_error = 0.0;       // root mean square, relative, at which refinement ends
   int form_factor_rays = 1024;     // per patch, a power of two
   int gather_rays = 256;           // per pixel
+  bool share_gather = false;       // between a pixel's camera samples and neighbouring pixels
+  double smooth_share = 0.0;       // of the mean gather ray, how far neighbours share
+  double picture_noise = 0.01;     // wanted of the camera samples, relative to the mean luminance
   double solver_tolerance = 1e-8;  // relative residual
 };
 
 // A knob that the scene sets wins. Otherwise a wanted relative error e sets it by the measured laws
-//   gather noise   ~ gather_rays^-1/2     256 rays for 0.02
+//   gather noise   ~ gather_rays^-1/2     32 rays for 0.02 if shared, else 256
+//   sharing        ~ smooth_share^2       a quarter of the mean ray for 0.02
+//   camera samples to a noise of e        their spread overstates what low-discrepancy samples leave
 //   radiosity      ~ form_factor_rays^-0.6  1024 rays for 0.02
 //   patch size     ~ patch_edge           (scene diagonal)/48 for 0.02
 // rounded up to powers of two for rays; without a wanted error, e = 0.02.

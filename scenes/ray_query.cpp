@@ -201,6 +201,12 @@ std::uint32_t RayQuery::occluded(const RayPacket& rays, std::size_t count) const
   return bits;
 }
 
+Vec3 hit_position(const Scene& scene, const Hit& hit) {
+  const auto& v = scene.triangles[hit.triangle].vertex;
+  return (1.0 - hit.u - hit.v) * scene.vertices[v[0]] + hit.u * scene.vertices[v[1]] +
+         hit.v * scene.vertices[v[2]];
+}
+
 Vec3 triangle_normal(const Scene& scene, std::uint32_t triangle) {
   const auto& v = scene.triangles[triangle].vertex;
   const Vec3& a = scene.vertices[v[0]];

@@ -79,6 +79,9 @@ class RayQuery {
   Vec3 centre_{0.0};
 };
 
+// Point of a hit, found from the triangle's corners: more exact than origin + t direction.
+[[nodiscard]] Vec3 hit_position(const Scene& scene, const Hit& hit);
+
 // Unit normal of a triangle's front.
 [[nodiscard]] Vec3 triangle_normal(const Scene& scene, std::uint32_t triangle);
 [[nodiscard]] double triangle_area(const Scene& scene, std::uint32_t triangle);

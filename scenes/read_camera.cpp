@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "scenes/scene_parts.h"
@@ -8,11 +9,24 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr std::string_view camera_keys[] = {"name",       "position", "look_at",  "up",  "fov_deg",
-                                            "resolution", "focus",    "aperture", "cctv"};
-constexpr std::string_view quality_keys[] = {"error",           "patch_edge",       "max_patches",
-                                             "refine",          "form_factor_rays", "gather_rays",
-                                             "solver_tolerance"};
+constexpr std::string_view camera_keys[] = {"name",       "position", "look_at",     "up",
+                                            "fov_deg",    "focus",    "aperture",    "cctv",
+                                            "resolution", "filter",   "filter_width"};
+struct FilterRow {
+  std::string_view name;
+  FilterShape shape;
+  double width_px;  // unless the scene says otherwise
+};
+constexpr FilterRow filters[] = {{"box", FilterShape::Box, 1.0},
+                                 {"triangle", FilterShape::Triangle, 2.0},
+                                 {"gaussian", FilterShape::Gaussian, 3.0},
+                                 {"blackman-harris", FilterShape::BlackmanHarris, 4.0}};
+constexpr Range filter_widths{0.0, 16.0, true};  // px
+// The view of a camera closer to its target than this is made of rounding.
+constexpr double least_relative_view = 1e-9;
+constexpr std::string_view quality_keys[] = {
+    "error",       "patch_edge",       "max_patches", "refine", "form_factor_rays",
+    "gather_rays", "solver_tolerance", "gather",      "smooth", "picture_noise"};
 constexpr int most_pixels = 16384;           // per side
 constexpr std::size_t most_settings = 1000;  // of a CCTV camera or the monitor; a dozen exist
 
@@ -51,6 +65,17 @@ void read_lens(Camera& camera, const TableReader& table) {
   camera.aperture_m = aperture.value_or(0.0);
 }
 
+void read_filter(Camera& camera, const TableReader& table) {
+  std::vector<std::string_view> names;
+  for (const FilterRow& row : filters) names.push_back(row.name);
+  const std::string name = table.choice("filter", names).value_or("box");
+  for (const FilterRow& row : filters) {
+    if (row.name != name) continue;
+    camera.filter = row.shape;
+    camera.filter_width_px = table.number("filter_width", filter_widths).value_or(row.width_px);
+  }
+}
+
 Setting read_setting(const TableReader& table, const TomlEntry& entry) {
   Setting setting{entry.key, false, entry.where};
   const TomlNode& node = entry.node;
@@ -82,6 +107,13 @@ Setting read_setting(const TableReader& table, const TomlEntry& entry) {
 
 }  // namespace
 
+std::string_view filter_name(FilterShape shape) {
+  for (const FilterRow& row : filters) {
+    if (row.shape == shape) return row.name;
+  }
+  return "";
+}
+
 Camera read_camera(const TomlNode& node, double unit_m) {
   TableReader table(node, "[[camera]]", camera_keys);
   Camera camera;
@@ -90,9 +122,11 @@ Camera read_camera(const TomlNode& node, double unit_m) {
       table.required(table.position("position", unit_m), "position", "position = [x, y, z]");
   camera.look_at =
       table.required(table.position("look_at", unit_m), "look_at", "look_at = [x, y, z]");
+  camera.where = table.where("position");
   const Vec3 view = camera.look_at - camera.position;
-  if (!(glm::length(view) > 1e-9 * unit_m)) {
-    table.fail("look_at", "is the camera's own position", "it is another point");
+  if (!(glm::length(view) > least_relative_view * std::max(unit_m, glm::length(camera.position)))) {
+    table.fail("look_at", "is the camera's own position",
+               "it is another point, far enough away to give a direction");
   }
   camera.up = table.direction("up").value_or(camera.up);
   if (!(glm::length(glm::cross(glm::normalize(view), camera.up)) > 1e-6)) {
@@ -103,6 +137,7 @@ Camera read_camera(const TomlNode& node, double unit_m) {
   camera.fov_deg = table.number("fov_deg", {0.0, 180.0, true, true}).value_or(camera.fov_deg);
   read_resolution(camera, table);
   read_lens(camera, table);
+  read_filter(camera, table);
   camera.cctv = table.text("cctv").value_or("");
   return camera;
 }
@@ -129,6 +164,23 @@ SettingTable read_settings(const TomlNode& node, const std::string& title, bool 
   return settings;
 }
 
+void read_gather(Quality& quality, const TableReader& table) {
+  const auto gather = table.text("gather");
+  if (gather && *gather != "shared" && *gather != "per-sample") {
+    table.fail("gather", fmt::format("is \"{}\"", *gather),
+               "allowed is \"shared\" or \"per-sample\"");
+  }
+  if (gather) quality.share_gather = *gather == "shared";
+  quality.smooth_share = table.number("smooth", {0.0, 1.0, false});
+  quality.picture_noise = table.number("picture_noise", {0.0, 1.0, true});
+  if (quality.share_gather.value_or(true)) return;
+  for (const char* key : {"smooth", "picture_noise"}) {
+    if (table.find(key) == nullptr) continue;
+    table.fail(key, "belongs to gather = \"shared\"", "gather is \"per-sample\"",
+               "Leave out one of the two");
+  }
+}
+
 Quality read_quality(const TomlNode& node) {
   const TableReader table(node, "[quality]", quality_keys);
   Quality quality;
@@ -144,6 +196,7 @@ Quality read_quality(const TomlNode& node) {
   quality.form_factor_rays = table.whole("form_factor_rays", 1, 1 << 24);
   quality.gather_rays = table.whole("gather_rays", 1, 1 << 20);
   quality.solver_tolerance = table.number("solver_tolerance", {0.0, 0.1, true});
+  read_gather(quality, table);
   return quality;
 }
 

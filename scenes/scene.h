@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -98,6 +99,10 @@ struct Earth {
   Rgb radiance{0.0};  // uniform model, cd/m^2
 };
 
+// How the light around a pixel's centre is weighed; raytrace/pixel_filter.h has the formulas.
+enum class FilterShape { Box, Triangle, Gaussian, BlackmanHarris };
+[[nodiscard]] std::string_view filter_name(FilterShape shape);  // as scene files have it
+
 struct Camera {
   std::string name;
   Vec3 position{0.0};
@@ -109,6 +114,9 @@ struct Camera {
   double focus_m = 0.0;     // } thin lens when both are positive
   double aperture_m = 0.0;  // } diameter
   std::string cctv;         // a [[cctv]] of the scene or one that ships; empty: none
+  FilterShape filter = FilterShape::Box;
+  double filter_width_px = 1.0;  // full width of the filter's support
+  base::Location where;          // of its position in the scene file
 };
 
 // A [[cctv]] or [monitor] table as written; degrade/ knows its keys and checks them.
@@ -131,6 +139,9 @@ struct Quality {
   std::optional<bool> refine;           // patches where they matter; unset: see resolve_quality
   std::optional<int> form_factor_rays;  // per patch
   std::optional<int> gather_rays;       // per pixel
+  std::optional<bool> share_gather;     // gather rays serve a pixel's samples and its neighbours
+  std::optional<double> smooth_share;   // of the mean gather ray, how far neighbours share
+  std::optional<double> picture_noise;  // of the camera samples, relative
   std::optional<double> solver_tolerance;
 };
 

@@ -22,7 +22,7 @@ OWNERS = {
     "OpenEXR": (r"(OpenEXR/|Imath/|Imf|Imath|Iex|half\.h)", ["base/exr_file.cpp"]),
     "oneTBB": (r"(tbb|oneapi)/", ["base/parallel.cpp"]),
     "toml++": (r"toml(\+\+|plusplus)", ["scenes/toml_file.cpp"]),
-    "libpng": (r"png\.h", ["base/png_file.cpp"]),
+    "libpng": (r"png\.h", ["base/png_file.cpp", "base/png_reader.cpp"]),
     "tinygltf": (r"tiny_?gltf", ["scenes/gltf_model.cpp", "scenes/gltf_writer.cpp"]),
     "HDF5": (r"(hdf5(_hl)?|H5\w*)\.h", ["base/hdf5_handle.h"]),
     "CLI11": (r"CLI/", ["app/*"]),

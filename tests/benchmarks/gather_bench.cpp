@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays per second of the final gather on a solved payload bay.
+// Rays per second of the final gather on a solved payload bay, against the bare query for the very
+// same rays: their ratio is what finding radiance and drawing samples leave of Embree.
 #include <benchmark/benchmark.h>
 
+#include "base/parallel.h"
 #include "radiosity/solution.h"
-#include "raytrace/render.h"
+#include "raytrace/gather_field.h"
+#include "raytrace/gather_rays.h"
+#include "raytrace/shading.h"
 #include "tests/benchmarks/payload_bay.h"
 
 namespace earthshine {
 namespace {
+
+using raytrace::TilePoints;
+using scenes::RayPacket;
+
+constexpr int edge_px = 128;
 
 const radiosity::Solution& solution() {
   static const radiosity::Solution solved = [] {
@@ -20,29 +29,107 @@ const radiosity::Solution& solution() {
   return solved;
 }
 
-void gather(benchmark::State& state) {
+bool surface(const scenes::Hit& hit, raytrace::GatherRequest& request) {
+  return raytrace::gathers_at(payload_bay().scene, hit, request);
+}
+
+struct Setup {
   const PayloadBay& bay = payload_bay();
-  raytrace::RenderOptions options;
-  options.columns = options.rows = static_cast<int>(state.range(0));
-  options.gather_rays = static_cast<int>(state.range(1));
+  raytrace::CameraModel camera =
+      raytrace::make_camera_model(bay.scene.cameras[1], edge_px, edge_px);
+  raytrace::RadianceTable table{solution(), solution().radiosity, false};
+  raytrace::BrightPatches bright{solution()};
+  raytrace::IncomingLight incoming{bay.scene, bay.query, bay.effects, table, bright, 1, 0, true};
+};
+
+const Setup& setup() {
+  static const Setup made;
+  return made;
+}
+
+// One point per pixel, tile by tile, as gather_field casts from.
+std::vector<TilePoints> tiles() {
+  const Setup& s = setup();
+  std::vector<TilePoints> all;
+  for (int y0 = 0; y0 < edge_px; y0 += raytrace::gather_tile_px) {
+    for (int x0 = 0; x0 < edge_px; x0 += raytrace::gather_tile_px) {
+      TilePoints& tile = all.emplace_back();
+      for (int y = y0; y < y0 + raytrace::gather_tile_px; ++y) {
+        for (int x = x0; x < x0 + raytrace::gather_tile_px; ++x) {
+          const raytrace::Ray ray = s.camera.ray(x + 0.5, y + 0.5, 0.0, 0.0);
+          const scenes::Hit hit = s.bay.query.closest(ray.origin, ray.direction);
+          raytrace::GatherRequest at;
+          if (hit.missed() || !surface(hit, at)) continue;
+          tile.add(tile.count, static_cast<std::uint64_t>(y * edge_px + x),
+                   at.position + at.normal * s.bay.query.surface_offset_m(), at.normal,
+                   s.bay.query.centre());
+        }
+      }
+    }
+  }
+  return all;
+}
+
+void gather(benchmark::State& state) {
+  const Setup& s = setup();
+  raytrace::GatherOptions options;
+  options.rays = static_cast<int>(state.range(0));
   double rays = 0.0;
-  static_cast<void>(solution());  // outside the clock
   for (auto round : state) {
-    const raytrace::Frame frame = raytrace::render(bay.scene, bay.groups, bay.effects, bay.query,
-                                                   solution(), bay.scene.cameras[1], options);
-    rays = static_cast<double>(frame.report.rays.total());
-    benchmark::DoNotOptimize(frame.image.channels.data());
+    const raytrace::GatherField field = raytrace::gather_field(
+        s.bay.query, s.incoming, surface, s.camera, {0, 0, edge_px, edge_px}, options);
+    rays = static_cast<double>(field.gather_rays);
+    benchmark::DoNotOptimize(field.radiance.data());
   }
   state.counters["rays"] = benchmark::Counter(
       rays, benchmark::Counter::kIsRate | benchmark::Counter::kIsIterationInvariant);
 }
 BENCHMARK(gather)
     ->Name("gather/sts46/camera-b")
-    ->ArgNames({"px", "gather_rays"})
-    ->Args({128, 64})
-    ->Args({128, 256})
+    ->ArgName("rays")
+    ->Arg(32)
+    ->Arg(256)
     ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
+    ->MeasureProcessCPUTime();
+
+// The packets are made outside the clock.
+void bare(benchmark::State& state) {
+  const Setup& s = setup();
+  const raytrace::GatherRays rays(static_cast<std::uint32_t>(state.range(0)));
+  std::vector<RayPacket> packets;
+  for (const TilePoints& tile : tiles()) {
+    raytrace::GatherRays::Samples samples;
+    for (std::size_t first = 0; first < tile.count; first += rays.batch()) {
+      const std::size_t count = std::min(rays.batch(), tile.count - first);
+      rays.draw(tile, first, count, 1, samples);
+      for (std::size_t j = 0; j < rays.rays(); ++j) {
+        for (std::size_t k = 0; k + RayPacket::width <= count; k += RayPacket::width) {
+          std::array<float, RayPacket::width> cosine;
+          raytrace::GatherRays::make(tile, first, k, j, samples, packets.emplace_back(), cosine);
+        }
+      }
+    }
+  }
+  for (auto round : state) {
+    base::parallel_chunks(packets.size(), 512, [&](std::size_t begin, std::size_t end) {
+      scenes::HitPacket hits;
+      for (std::size_t k = begin; k < end; ++k) {
+        s.bay.query.closest(packets[k], RayPacket::width, hits);
+        benchmark::DoNotOptimize(hits);
+      }
+    });
+  }
+  state.counters["rays"] =
+      benchmark::Counter(static_cast<double>(packets.size() * RayPacket::width),
+                         benchmark::Counter::kIsRate | benchmark::Counter::kIsIterationInvariant);
+}
+BENCHMARK(bare)
+    ->Name("bare-query/sts46/camera-b")
+    ->ArgName("rays")
+    ->Arg(32)
+    ->Arg(256)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
 
 }  // namespace
 }  // namespace earthshine

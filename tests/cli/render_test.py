@@ -47,8 +47,9 @@ class Render(program.Case):
                 self.assertLessEqual(abs(whole - lamp - sun), 1e-6 * max(whole, 1e-3))
 
     def test_a_lamp_switched_off_leaves_the_other_layer(self):
-        both = self.render("ball.toml", "--per-light")[3]
-        sun = self.render("ball.toml", "--set", "light.lamp.intensity=0")[3]
+        same = ("--set", "quality.gather=per-sample")  # else samples go where all light together is noisy
+        both = self.render("ball.toml", "--per-light", *same)[3]
+        sun = self.render("ball.toml", "--set", "light.lamp.intensity=0", *same)[3]
         for c in "RGB":
             for a, b in zip(both[f"light_sun.{c}"], sun[c]):
                 self.assertLessEqual(abs(a - b), 1e-4 * max(a, b, 1e-3))
@@ -145,7 +146,7 @@ class Render(program.Case):
             self.assertFalse((self.folder / "big.exr").exists())
             return run.stderr
         self.says(refused("render", "ball.toml", "-o", "big.exr", "--size", "16384x16384", "--per-light"),
-                  "needs about 1", "GiB (picture 1", "are free", "Lower --size")
+                  "needs about", "GiB (picture", "are free", "Lower --size")
         self.says(refused("solve", "ball.toml", "--set", "quality.max_patches=30000000"),
                   "form factors", "are free", "quality.max_patches")
         self.says(refused("form-factors", "ball.toml", "--method", "rays", "--set", "quality.patch_edge=0.0015",

@@ -81,7 +81,7 @@ TEST(PhongFit, LeastSquaresIsNeverWorseThanTheReportsMethodOnNoisyData) {
     auto points = sampled(-80, 80, 4, 0.4, 0.6, 15.0);
     base::Rng rng(base::Key(seed, base::Stream::Test, 0));
     for (ReflectancePoint& p : points) p.reflectance *= 0.95 + 0.1 * rng.next();
-    const PhongFits fits = fit_phong(points, "test");
+    const PhongFits fits = fit_phong(points, "test", ReflectanceNoise::Constant);
     EXPECT_LE(fits.least_squares.residual, fits.report.residual);
     EXPECT_NEAR(fits.least_squares.shininess, 15.0, 3.0);
   }
@@ -100,7 +100,8 @@ TEST(PhongFit, FlatDataHaveNoHighlight) {
   const PhongFits fits = fit_phong(sampled(0, 80, 10, 0.5, 0.0, 1.0), "test");
   EXPECT_EQ(fits.report.specular, 0.0);
   EXPECT_NEAR(fits.least_squares.diffuse + fits.least_squares.specular, 0.5, 1e-9);
-  EXPECT_EQ(fits.notes.size(), 1U);
+  ASSERT_EQ(fits.notes.size(), 2U);  // of each method
+  EXPECT_NE(fits.notes[1].find("no highlight above the noise"), std::string::npos);
 }
 
 TEST(PhongFit, TooMuchReflectedEnergyIsNoted) {

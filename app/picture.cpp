@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// One camera's picture: rendered, degraded, written, reported.
+#include <fmt/format.h>
+
+#include "app/cctv.h"
+#include "app/console.h"
+#include "app/interrupt.h"
+#include "app/provenance.h"
+#include "app/render_call.h"
+#include "base/exr_file.h"
+#include "base/png_file.h"
+#include "base/tone.h"
+#include "scenes/quality.h"
+
+namespace earthshine::app {
+namespace {
+
+Json json_of(const Studio& studio, const scenes::Camera& camera, const raytrace::Frame& frame,
+             const StageTimes& times) {
+  const raytrace::RenderReport& report = frame.report;
+  const raytrace::RayCounts& rays = report.rays;
+  const radiosity::SolveReport& solved = studio.light.solution.report;
+  return {{"camera", camera.name},
+          {"columns", frame.image.width},
+          {"rows", frame.image.height},
+          {"seconds", times.json()},
+          {"peak_memory_mib", peak_memory_mib()},
+          {"patches", solved.patches},
+          {"iterations", solved.iterations},
+          {"residual", solved.residual},
+          {"rays",
+           {{"form_factors", solved.form_factor_rays},
+            {"direct", solved.shadow_rays},
+            {"camera", rays.camera},
+            {"shadow", rays.shadow},
+            {"gather", rays.gather},
+            {"lobe", rays.lobe},
+            {"mirror", rays.mirror}}},
+          {"gather_rays", report.gather_rays},
+          {"camera_samples", report.camera_samples},
+          {"relative_noise", report.relative_noise},
+          {"finished_share", report.finished_share},
+          {"partial", report.stopped}};
+}
+
+// The single pixel of --only-pixel, layer by layer.
+Json pixel_json(const scenes::Scene& scene, const raytrace::Frame& frame) {
+  const auto value = [&](const char* channel) {
+    return double(frame.image.find(channel)->values.front());
+  };
+  const auto name_of = [](const auto& list, double index) {
+    return index < 0.0 ? Json(nullptr) : Json(list[static_cast<std::size_t>(index)].name);
+  };
+  Json pixel = {{"x", frame.window.x}, {"y", frame.window.y}};
+  pixel["luminance_cd_m2"] = base::luminance({value("R"), value("G"), value("B")});
+  pixel["standard_error_cd_m2"] = std::sqrt(value("variance"));
+  pixel["camera_samples"] = frame.report.camera_samples;
+  pixel["object"] = name_of(scene.objects, value("object"));
+  pixel["material"] = name_of(scene.materials, value("material"));
+  Json channels = Json::object();
+  for (const base::Channel& channel : frame.image.channels) {
+    channels[channel.name] = double(channel.values.front());
+  }
+  pixel["channels"] = channels;
+  return pixel;
+}
+
+std::string pixel_text(const Json& pixel) {
+  std::string text = fmt::format(
+      "pixel {},{}: {:.6g} cd/m2 +- {:.2g}, {:.0f} camera samples, {}\n", pixel["x"].get<int>(),
+      pixel["y"].get<int>(), pixel["luminance_cd_m2"].get<double>(),
+      pixel["standard_error_cd_m2"].get<double>(), pixel["camera_samples"].get<double>(),
+      pixel["object"].is_null()
+          ? std::string("nothing there")
+          : fmt::format("object \"{}\", material \"{}\"", pixel["object"].get<std::string>(),
+                        pixel["material"].get<std::string>()));
+  for (const auto& [name, value] : pixel["channels"].items()) {
+    text += fmt::format("  {:<20} {:.9g}\n", name, value.get<double>());
+  }
+  return text;
+}
+
+void tell(const Studio& studio, const raytrace::Frame& frame, const StageTimes& times) {
+  for (const auto& [stage, seconds] : times.stages()) {
+    note(fmt::format("  {:<16} {:>10}", stage, duration(seconds)));
+  }
+  note(fmt::format("  {:<16} {:>10}, peak memory {:.0f} MiB", "total", duration(times.total()),
+                   peak_memory_mib()));
+  const radiosity::SolveReport& solved = studio.light.solution.report;
+  if (studio.light.solved && solved.patches > 0) {
+    note(fmt::format("  {} patches, {} form-factor and {} shadow rays, {} iterations to {:.1g}",
+                     solved.patches, short_count(static_cast<double>(solved.form_factor_rays)),
+                     short_count(static_cast<double>(solved.shadow_rays)), solved.iterations,
+                     solved.residual));
+  }
+  const raytrace::RenderReport& report = frame.report;
+  const auto rays = static_cast<double>(report.rays.total());
+  note(fmt::format(
+      "  {} rays for the picture, {} rays/s; {} gather rays and {:.1f} camera samples a "
+      "pixel; noise {:.2g} of the mean",
+      short_count(rays), short_count(rays / std::max(1e-9, report.seconds)), report.gather_rays,
+      report.camera_samples, report.relative_noise));
+  if (report.stopped) {
+    note(fmt::format("  stopped: {:.0f} % of the pixels are finished; the file is marked partial",
+                     100.0 * report.finished_share));
+  }
+}
+
+}  // namespace
+
+raytrace::RenderOptions options_of(const Studio& studio, const scenes::Camera& camera) {
+  const RenderCall& call = studio.call;
+  raytrace::RenderOptions options =
+      raytrace::render_options(scenes::resolve_quality(studio.loaded.scene));
+  options.columns = call.size ? call.size->columns : camera.columns;
+  options.rows = call.size ? call.size->rows : camera.rows;
+  if (call.crop) options.crop = *call.crop;
+  options.indirect = call.indirect;
+  options.distributed_lights = static_cast<int>(call.distributed_lights);
+  options.distributed_over = call.distributed_over;
+  options.per_light = call.per_light;
+  options.aovs = call.aovs;
+  if (call.only_pixel) {
+    for (const char* layer : {"object", "material", "range", "variance"}) {
+      options.aovs.emplace_back(layer);
+    }
+  }
+  options.seed = studio.common.seed;
+  options.time_limit_s = studio.time_limit_s;
+  options.stop = Interrupt::asked;
+  return options;
+}
+
+Picture take_picture(const Studio& studio, const scenes::Camera& camera, const PictureFiles& files,
+                     StageTimes times) {
+  const RenderCall& call = studio.call;
+  const raytrace::RenderOptions options = options_of(studio, camera);
+  std::optional<CctvSetup> cctv;
+  if (!files.cctv.empty()) cctv = cctv_of_camera(studio.loaded.scene, camera, studio.common);
+  raytrace::Frame frame;
+  {
+    Progress progress(fmt::format("render {}", camera.name), studio.common.quiet);
+    frame = times.measure("render", [&] {
+      return raytrace::render(studio.loaded.scene, studio.loaded.groups, studio.loaded.effects,
+                              studio.query, studio.light.solution, camera, options,
+                              std::ref(progress));
+    });
+  }
+  std::optional<base::ToneMapped> tone;
+  std::optional<degrade::Result> screen;
+  if (!files.png.empty()) {
+    tone = times.measure("tone map", [&] { return base::tone_map(frame.image); });
+  }
+  if (tone && call.photo) {
+    tone->rgb = times.measure("over", [&] {
+      return lay_over(call.over, *call.photo, studio.loaded.scene, studio.query, camera, tone->rgb)
+          .rgb;
+    });
+  }
+  if (cctv) screen = times.measure("cctv", [&] { return run_chain(*cctv, frame.image); });
+  base::ExrHeader header = provenance_header(
+      {studio.loaded.scene, call.scene.overrides, camera, options, studio.light.solver,
+       studio.light.solved ? &studio.light.solution.report : nullptr, frame.report});
+  header.whole = {options.columns, options.rows, frame.window.x, frame.window.y};
+  if (call.timings) add_times(header, times);
+  times.measure("write", [&] {
+    if (tone) base::write_png(files.png, frame.image.width, frame.image.height, 3, tone->rgb);
+    if (screen) write_cctv(files.cctv, *cctv, *screen);
+    if (!files.output.empty()) base::write_exr(files.output, frame.image, header);
+  });
+  Picture picture{json_of(studio, camera, frame, times), !frame.report.stopped};
+  if (screen) picture.report["cctv"] = cctv_json(*cctv, *screen);
+  if (call.only_pixel) {
+    picture.report["pixel"] = pixel_json(studio.loaded.scene, frame);
+    if (!call.json) print(pixel_text(picture.report["pixel"]));
+  }
+  if (studio.common.quiet) return picture;
+  tell(studio, frame, times);
+  if (screen) note("  " + cctv_summary(*cctv, *screen));
+  return picture;
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `earthshine render` was asked for, and one camera's picture of it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/command.h"
+#include "app/over.h"
+#include "radiosity/solution.h"
+#include "raytrace/render.h"
+#include "scenes/ray_query.h"
+
+namespace earthshine::app {
+
+struct RenderCall {
+  SceneInput scene;
+  std::string output, png, cctv, solution;
+  std::vector<std::string> cameras;  // empty: the scene's first
+  std::optional<Size> size;
+  std::optional<raytrace::Window> crop;  // one pixel with only_pixel
+  bool only_pixel = false;
+  double time_limit_s = 0.0;  // of the whole command; 0: none
+  raytrace::Indirect indirect = raytrace::Indirect::Radiosity;
+  std::uint64_t distributed_lights = 64;
+  std::string distributed_over;
+  std::vector<std::string> aovs;
+  bool per_light = false, timings = false, json = false;
+  OverCall over;
+  std::optional<base::Picture8> photo;  // of --over, once it is read
+
+  // Lines over a photograph: no light is computed.
+  [[nodiscard]] bool wire_alone() const {
+    return over.asked() && !over.needs_picture() && output.empty() && cctv.empty();
+  }
+};
+
+// --crop, --only-pixel, --time-limit.
+void add_window_options(CLI::App& parser, RenderCall& call);
+
+// The light of the scene, for all of its cameras.
+struct Solved {
+  radiosity::Solution solution;
+  radiosity::SolveOptions solver;
+  bool solved = false;
+};
+
+// What all pictures of a call share.
+struct Studio {
+  const RenderCall& call;
+  const Common& common;
+  const LoadedScene& loaded;
+  const scenes::RayQuery& query;
+  const Solved& light;
+  double time_limit_s = 0.0;  // for one picture; 0: none
+};
+
+// What the call asks of the camera's picture; the light is not looked at.
+[[nodiscard]] raytrace::RenderOptions options_of(const Studio& studio,
+                                                 const scenes::Camera& camera);
+
+struct PictureFiles {
+  std::string output, png, cctv;  // empty: not wanted
+};
+
+// Renders, writes the files, tells on standard error unless quiet. Returns the report for --json
+// and whether the picture is whole.
+struct Picture {
+  Json report;
+  bool whole = true;
+};
+[[nodiscard]] Picture take_picture(const Studio& studio, const scenes::Camera& camera,
+                                   const PictureFiles& files, StageTimes times);
+
+}  // namespace earthshine::app
