@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/output_file.h"
 #include "degrade/camera_file.h"
+#include "degrade/range_sensor_file.h"
 #include "scenes/scene_file.h"
 
 namespace earthshine::app {
@@ -106,6 +107,7 @@ LoadedScene load(const SceneInput& input, bool quiet) {
   LoadedScene loaded;
   loaded.scene = scenes::read_scene(input.path, input.overrides);
   degrade::check_settings(loaded.scene);
+  degrade::check_range_sensors(loaded.scene);
   loaded.groups = scenes::find_light_groups(loaded.scene);
   loaded.effects = scenes::find_effects(loaded.scene, loaded.groups);
   for (const std::string& warning : loaded.scene.warnings) {

@@ -70,6 +70,8 @@ std::string kind_of(const scenes::Lamp& lamp) {
       return "rectangle";
     case scenes::LampKind::Disk:
       return "disk";
+    case scenes::LampKind::Measured:
+      return "ies";
   }
   return "";
 }
@@ -80,6 +82,7 @@ Json lights_of(const scenes::Scene& scene) {
     lamps.push_back({{"name", lamp.name},
                      {"group", lamp.group},
                      {"type", kind_of(lamp)},
+                     {"source", lamp.source.empty() ? Json() : Json(lamp.source)},
                      {"position_m", to_json(lamp.position)},
                      {"flux_lm", to_json(scenes::lamp_flux_lm(lamp))}});
   }
@@ -206,9 +209,12 @@ std::string materials_table(const Json& report) {
 std::string lights_table(const Json& report) {
   std::string text;
   for (const Json& lamp : report["lamps"]) {
-    text += fmt::format("lamp {}: {}, group {}, {} lm, at {}\n", lamp["name"].get<std::string>(),
-                        lamp["type"].get<std::string>(), lamp["group"].get<std::string>(),
-                        numbers(lamp["flux_lm"]), numbers(lamp["position_m"]));
+    const Json& source = lamp["source"];
+    text += fmt::format("lamp {}: {}{}, group {}, {} lm, at {}\n", lamp["name"].get<std::string>(),
+                        lamp["type"].get<std::string>(),
+                        source.is_null() ? "" : " (" + source.get<std::string>() + ")",
+                        lamp["group"].get<std::string>(), numbers(lamp["flux_lm"]),
+                        numbers(lamp["position_m"]));
   }
   for (const Json& area : report["areas"]) {
     text += fmt::format("area {}: {:.6g} m2, for distributed lights\n",

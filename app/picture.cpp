@@ -10,6 +10,7 @@
 #include "base/exr_file.h"
 #include "base/png_file.h"
 #include "base/tone.h"
+#include "raytrace/path_tracer.h"
 #include "scenes/quality.h"
 
 namespace earthshine::app {
@@ -108,12 +109,16 @@ void tell(const Studio& studio, const raytrace::Frame& frame, const StageTimes& 
 
 }  // namespace
 
-raytrace::RenderOptions options_of(const Studio& studio, const scenes::Camera& camera) {
-  const RenderCall& call = studio.call;
-  raytrace::RenderOptions options =
-      raytrace::render_options(scenes::resolve_quality(studio.loaded.scene));
+raytrace::RenderOptions picture_options(const RenderCall& call, const Common& common,
+                                        const LoadedScene& loaded, const scenes::Camera& camera) {
+  raytrace::RenderOptions options = raytrace::render_options(scenes::resolve_quality(loaded.scene));
   options.columns = call.size ? call.size->columns : camera.columns;
   options.rows = call.size ? call.size->rows : camera.rows;
+  // Paths share nothing.
+  const bool alone = call.indirect == raytrace::Indirect::Paths && options.shared.on;
+  if (alone && !loaded.scene.quality.gather_rays) {
+    options.gather_rays *= scenes::rays_alone_per_shared;
+  }
   if (call.crop) options.crop = *call.crop;
   options.indirect = call.indirect;
   options.distributed_lights = static_cast<int>(call.distributed_lights);
@@ -125,8 +130,7 @@ raytrace::RenderOptions options_of(const Studio& studio, const scenes::Camera& c
       options.aovs.emplace_back(layer);
     }
   }
-  options.seed = studio.common.seed;
-  options.time_limit_s = studio.time_limit_s;
+  options.seed = common.seed;
   options.stop = Interrupt::asked;
   return options;
 }
@@ -134,13 +138,21 @@ raytrace::RenderOptions options_of(const Studio& studio, const scenes::Camera& c
 Picture take_picture(const Studio& studio, const scenes::Camera& camera, const PictureFiles& files,
                      StageTimes times) {
   const RenderCall& call = studio.call;
-  const raytrace::RenderOptions options = options_of(studio, camera);
+  raytrace::RenderOptions options = picture_options(call, studio.common, studio.loaded, camera);
+  options.time_limit_s = studio.time_limit_s;
   std::optional<CctvSetup> cctv;
   if (!files.cctv.empty()) cctv = cctv_of_camera(studio.loaded.scene, camera, studio.common);
   raytrace::Frame frame;
   {
     Progress progress(fmt::format("render {}", camera.name), studio.common.quiet);
     frame = times.measure("render", [&] {
+      if (call.indirect == raytrace::Indirect::Paths) {
+        return raytrace::trace_paths(studio.loaded.scene, studio.loaded.groups,
+                                     studio.loaded.effects, studio.query, camera,
+                                     {options.columns, options.rows, options.gather_rays,
+                                      options.per_light, raytrace::PathSet::All, options.seed},
+                                     std::ref(progress));
+      }
       return raytrace::render(studio.loaded.scene, studio.loaded.groups, studio.loaded.effects,
                               studio.query, studio.light.solution, camera, options,
                               std::ref(progress));

@@ -3,6 +3,7 @@
 // Never the number of threads or a time (unless asked for): the same call gives the same bytes.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,22 @@ struct Provenance {
 
 [[nodiscard]] std::string indirect_name(raytrace::Indirect indirect);
 
+// Version, scene, overrides and seed.
+void add_origin(base::ExrHeader& header, const scenes::Scene& scene,
+                const std::vector<std::string>& overrides, std::uint64_t seed);
+
 // Attributes "earthshine:…".
 [[nodiscard]] base::ExrHeader provenance_header(const Provenance& provenance);
+
+// Adds the camera: its keys, intrinsics and pose (camera_header.h) as "earthshine:camera.K" and
+// "earthshine:camera.to_world", and as OpenEXR's worldToCamera, worldToNDC, screenWindowWidth and
+// focus.
+void add_camera(base::ExrHeader& header, const scenes::Camera& camera, int columns, int rows);
+
+// Adds what the numbers of the layers asked for mean: "earthshine:objects" and
+// "earthshine:materials" as JSON arrays of names, and Cryptomatte's attributes and manifests.
+void add_names(base::ExrHeader& header, const scenes::Scene& scene,
+               const std::vector<std::string>& aovs);
 
 // Adds "earthshine:seconds.<stage>".
 void add_times(base::ExrHeader& header, const StageTimes& times);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <memory>
 
 #include "app/cctv.h"
@@ -13,13 +12,13 @@
 #include "app/interrupt.h"
 #include "app/memory.h"
 #include "app/provenance.h"
+#include "app/range.h"
 #include "app/render_call.h"
 #include "app/solution.h"
 #include "app/study.h"
 #include "base/error.h"
 #include "base/png_file.h"
 #include "raytrace/camera_check.h"
-#include "raytrace/distributed_area.h"
 
 namespace earthshine::app {
 namespace {
@@ -43,13 +42,24 @@ void check_call(const RenderCall& call) {
   check_ending(call.output, "-o", ".exr");
   check_ending(call.png, "--png", ".png");
   check_ending(call.cctv, "--cctv", ".png");
+  check_ending(call.range, "--range", ".exr");
   check_over(call);
-  if (call.output.empty() && !call.only_pixel && !call.over.asked()) {
-    throw Error(Blame::Input, "render", "-o is missing", {}, "Name the picture: -o FILE.exr");
+  const bool range_alone = !call.range.empty() && call.png.empty() && call.cctv.empty();
+  if (call.output.empty() && !call.only_pixel && !call.over.asked() && !range_alone) {
+    throw Error(Blame::Input, "--output", "is missing", {},
+                "Name the picture: -o FILE.exr; only --range does without");
   }
   if (call.crop && !call.cctv.empty()) {
     throw Error(Blame::Input, "--cctv", "the CCTV stage needs the whole picture", {},
                 "Leave out --cctv, --crop or --only-pixel");
+  }
+  if (call.indirect == raytrace::Indirect::Paths && !call.aovs.empty()) {
+    throw Error(Blame::Input, "--aov", "--indirect paths has no further layers", {},
+                "Take them from a render without it");
+  }
+  if (call.indirect == raytrace::Indirect::Paths && (call.crop || call.time_limit_s > 0.0)) {
+    throw Error(Blame::Input, "--indirect paths", "draws whole pictures, however long it takes", {},
+                "Leave out --crop, --only-pixel and --time-limit");
   }
   if (!call.solution.empty() && call.indirect != raytrace::Indirect::Radiosity) {
     throw Error(Blame::Input, "--solution",
@@ -57,9 +67,9 @@ void check_call(const RenderCall& call) {
                 "Leave one of the two out");
   }
   if (!call.distributed_over.empty() && call.indirect != raytrace::Indirect::Distributed) {
-    throw Error(Blame::Input, "--distributed-over",
-                fmt::format("--indirect {} spreads no lights", indirect_name(call.indirect)), {},
-                "Write --indirect distributed");
+    throw base::Error(base::Blame::Input, "--distributed-over",
+                      fmt::format("--indirect {} spreads no lights", indirect_name(call.indirect)),
+                      {}, "Write --indirect distributed");
   }
 }
 
@@ -111,13 +121,15 @@ std::vector<Wanted> wanted_pictures(const RenderCall& call, const scenes::Scene&
   std::vector<Wanted> wanted;
   std::vector<std::string> outputs;
   for (const scenes::Camera* camera : cameras) {
-    Wanted picture{camera, {call.output, call.png, call.cctv}};
+    Wanted picture{camera, {call.output, call.png, call.cctv, call.range}};
     if (cameras.size() > 1) {
-      for (std::string* path : {&picture.files.output, &picture.files.png, &picture.files.cctv}) {
+      for (std::string* path :
+           {&picture.files.output, &picture.files.png, &picture.files.cctv, &picture.files.range}) {
         *path = with_camera(*path, file_stem(scene, *camera));
       }
     }
-    outputs.insert(outputs.end(), {picture.files.output, picture.files.png, picture.files.cctv});
+    outputs.insert(outputs.end(), {picture.files.output, picture.files.png, picture.files.cctv,
+                                   picture.files.range});
     wanted.push_back(std::move(picture));
   }
   check_outputs(outputs, {scene.path.string(), call.solution, call.over.photo});
@@ -164,18 +176,6 @@ Solved find_light(const RenderCall& call, const Common& common, const LoadedScen
   return light;
 }
 
-// What no memory holds, and lights over an area that is not there, before any work.
-void refuse_too_large(const RenderCall& call, const Common& common, const LoadedScene& loaded,
-                      const scenes::RayQuery& query, const std::vector<Wanted>& pictures) {
-  (void)raytrace::earth_area(loaded.scene, call.distributed_over);
-  const Solved none{{}, solve_options(loaded.scene, common)};
-  for (const Wanted& picture : pictures) {
-    const raytrace::RenderOptions options =
-        options_of({call, common, loaded, query, none}, *picture.camera);
-    check_memory(loaded, query, none.solver, &options, call.solution.empty());
-  }
-}
-
 void run(RenderCall call, const Common& common) {
   check_call(call);
   StageTimes times;
@@ -195,7 +195,30 @@ void run(RenderCall call, const Common& common) {
       return base::write_png(call.png, drawn.width, drawn.height, 3, drawn.rgb);
     }
   }
-  refuse_too_large(call, common, loaded, query, pictures);
+  std::vector<Json> ranges(pictures.size());
+  for (std::size_t k = 0; k < pictures.size() && !call.range.empty(); ++k) {
+    const scenes::Camera& camera = *pictures[k].camera;
+    const Size size = call.size.value_or(Size{camera.columns, camera.rows});
+    ranges[k] = times.measure("range", [&] {
+      return sense_range(pictures[k].files.range, loaded.scene, call.scene.overrides, camera, size,
+                         common);
+    });
+    ranges[k] = {{"camera", camera.name},
+                 {"columns", size.columns},
+                 {"rows", size.rows},
+                 {"seconds", times.json()},
+                 {"range", ranges[k]}};
+  }
+  if (call.output.empty() && !call.only_pixel && !call.over.asked()) {
+    // The range sensor alone needs no light.
+    if (call.json) print(dump(ranges.size() == 1 ? ranges.front() : Json(ranges)));
+    return;
+  }
+  for (const Wanted& picture : pictures) {
+    const raytrace::RenderOptions options = picture_options(call, common, loaded, *picture.camera);
+    check_memory(loaded, query, solve_options(loaded.scene, common), &options,
+                 call.solution.empty());
+  }
   const Solved light = find_light(call, common, loaded, query, times);
   Studio studio{call, common, loaded, query, light};
   Json reports = Json::array();
@@ -210,6 +233,7 @@ void run(RenderCall call, const Common& common) {
       Picture picture = take_picture(studio, *pictures[k].camera, pictures[k].files, times);
       times.add({{"pictures", picture.report["seconds"]["render"].get<double>()}});
       whole = picture.whole;
+      if (!call.range.empty()) picture.report["range"] = ranges[k]["range"];
       reports.push_back(std::move(picture.report));
     }
   }
@@ -231,6 +255,8 @@ Command add_render(CLI::App& program) {
   file_option("-o,--output", call->output, "Linear picture in cd/m2 (OpenEXR)");
   file_option("--png", call->png, "Also a tone-mapped picture");
   file_option("--cctv", call->cctv, "Also the picture on the camera's CCTV monitor (PNG)");
+  file_option("--range", call->range,
+              "Also, or alone, what the camera's range sensor reports (OpenEXR)");
   parser
       ->add_option("--camera", call->cameras,
                    "Cameras of the scene (default: its first): A or A,B or all; with several, "
@@ -240,29 +266,7 @@ Command add_render(CLI::App& program) {
   add_over_options(*parser, call->over);
   add_window_options(*parser, *call);
   add_solution_option(*parser, call->solution);
-  using raytrace::Indirect;
-  const std::map<std::string, Indirect> names = {{"radiosity", Indirect::Radiosity},
-                                                 {"distributed", Indirect::Distributed},
-                                                 {"none", Indirect::None}};
-  parser
-      ->add_option_function<std::string>(
-          "--indirect",
-          [call, names](const std::string& text) {
-            const auto known = names.find(text);
-            if (known == names.end()) {
-              throw CLI::ValidationError(
-                  "--indirect", "\"" + text + "\" is not one of radiosity, distributed, none");
-            }
-            call->indirect = known->second;
-          },
-          "radiosity (default), distributed (many lights, no interreflection), none")
-      ->type_name("HOW");
-  add_whole_number(*parser, "--distributed-lights", call->distributed_lights, 1, 1U << 20U,
-                   "Lights of --indirect distributed (default 64)");
-  parser
-      ->add_option("--distributed-over", call->distributed_over,
-                   "Spread the Earth's lights over this [[area]] of the scene, not its disc")
-      ->type_name("NAME");
+  add_indirect_options(*parser, *call);
   parser
       ->add_option_function<std::string>(
           "--aov", [call](const std::string& text) { call->aovs = split_at_commas(text); },

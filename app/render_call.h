@@ -16,7 +16,7 @@ namespace earthshine::app {
 
 struct RenderCall {
   SceneInput scene;
-  std::string output, png, cctv, solution;
+  std::string output, png, cctv, range, solution;
   std::vector<std::string> cameras;  // empty: the scene's first
   std::optional<Size> size;
   std::optional<raytrace::Window> crop;  // one pixel with only_pixel
@@ -24,7 +24,7 @@ struct RenderCall {
   double time_limit_s = 0.0;  // of the whole command; 0: none
   raytrace::Indirect indirect = raytrace::Indirect::Radiosity;
   std::uint64_t distributed_lights = 64;
-  std::string distributed_over;
+  std::string distributed_over;  // [[area]] of the scene; empty: none
   std::vector<std::string> aovs;
   bool per_light = false, timings = false, json = false;
   OverCall over;
@@ -38,6 +38,8 @@ struct RenderCall {
 
 // --crop, --only-pixel, --time-limit.
 void add_window_options(CLI::App& parser, RenderCall& call);
+// --indirect and what belongs to its ways.
+void add_indirect_options(CLI::App& parser, RenderCall& call);
 
 // The light of the scene, for all of its cameras.
 struct Solved {
@@ -56,12 +58,13 @@ struct Studio {
   double time_limit_s = 0.0;  // for one picture; 0: none
 };
 
-// What the call asks of the camera's picture; the light is not looked at.
-[[nodiscard]] raytrace::RenderOptions options_of(const Studio& studio,
-                                                 const scenes::Camera& camera);
+// The size, the layers and the rays of one camera's picture.
+[[nodiscard]] raytrace::RenderOptions picture_options(const RenderCall& call, const Common& common,
+                                                      const LoadedScene& loaded,
+                                                      const scenes::Camera& camera);
 
 struct PictureFiles {
-  std::string output, png, cctv;  // empty: not wanted
+  std::string output, png, cctv, range;  // empty: not wanted
 };
 
 // Renders, writes the files, tells on standard error unless quiet. Returns the report for --json

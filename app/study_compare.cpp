@@ -11,6 +11,7 @@
 #include "base/output_file.h"
 #include "base/png_file.h"
 #include "base/tone.h"
+#include "raytrace/camera_check.h"
 #include "raytrace/distributed_area.h"
 #include "scenes/quality.h"
 #include "studies/compare.h"
@@ -179,12 +180,17 @@ void run(const CompareCall& call, const Common& common) {
   studies::CompareOptions options;
   options.columns = call.size ? call.size->columns : camera.columns;
   options.rows = call.size ? call.size->rows : camera.rows;
-  options.gather_rays = scenes::resolve_quality(loaded.scene).gather_rays;
+  // Every sample has gather rays of its own in all pictures: only the light differs between them.
+  const scenes::QualityKnobs knobs = scenes::resolve_quality(loaded.scene);
+  options.gather_rays =
+      knobs.gather_rays *
+      (loaded.scene.quality.gather_rays || !knobs.share_gather ? 1 : scenes::rays_alone_per_shared);
   options.distributed_lights = call.lights;
   options.distributed_over = call.area;
   options.solver = solve_options(loaded.scene, common);
   options.seed = common.seed;
   const scenes::RayQuery query(loaded.scene);
+  raytrace::check_camera(loaded.scene, query, camera);
   const studies::Comparison comparison =
       studies::compare({loaded.scene, loaded.groups, loaded.effects, query}, camera, options,
                        progress_of_stages(common));

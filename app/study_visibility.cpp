@@ -13,6 +13,7 @@
 #include "base/output_file.h"
 #include "base/png_file.h"
 #include "base/tone.h"
+#include "raytrace/camera_check.h"
 #include "scenes/quality.h"
 #include "studies/visibility.h"
 
@@ -120,6 +121,7 @@ void run(const StudyCall& call, const Common& common) {
   const std::filesystem::path folder = call.folder;
 
   const scenes::RayQuery query(scene);
+  for (const scenes::Camera* camera : cameras) raytrace::check_camera(scene, query, *camera);
   StageTimes times;
   const radiosity::Solution solution = times.measure("solve", [&] {
     return radiosity::solve(scene, loaded.groups, loaded.effects, query,
@@ -132,7 +134,9 @@ void run(const StudyCall& call, const Common& common) {
     studies::ViewOptions options;
     options.columns = call.size ? call.size->columns : camera->columns;
     options.rows = call.size ? call.size->rows : camera->rows;
-    options.gather_rays = scenes::resolve_quality(scene).gather_rays;
+    const raytrace::RenderOptions render = raytrace::render_options(scenes::resolve_quality(scene));
+    options.gather_rays = render.gather_rays;
+    options.shared = render.shared;
     options.seed = common.seed;
     if (cctv) options.cctv = cctv->chain;
     const studies::View view =

@@ -4,19 +4,14 @@
 #include <Iex.h>
 #include <ImathBox.h>
 #include <ImfChannelList.h>
-#include <ImfChromaticities.h>
-#include <ImfDoubleAttribute.h>
-#include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfInputPart.h>
-#include <ImfIntAttribute.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
-#include <ImfStringAttribute.h>
 
 #include <cerrno>
 #include <cmath>
@@ -25,6 +20,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/exr_attributes.h"
 #include "base/output_file.h"
 
 namespace earthshine::base {
@@ -86,24 +82,6 @@ class CheckedStream : public Imf::OStream {
               "An older file of that name was kept");
 }
 
-Imf::Header make_header(const Image& image, const ExrHeader& attributes) {
-  Imf::Header header(image.width, image.height);
-  if (const ExrHeader::Whole& whole = attributes.whole; whole.columns > 0) {
-    header.displayWindow() = {{0, 0}, {whole.columns - 1, whole.rows - 1}};
-    header.dataWindow() = {{whole.x, whole.y},
-                           {whole.x + image.width - 1, whole.y + image.height - 1}};
-  }
-  header.compression() = Imf::ZIP_COMPRESSION;
-  Imf::addChromaticities(header, Imf::Chromaticities());  // the default is Rec. 709
-  Imf::addWhiteLuminance(header, 1.0F);
-  for (const auto& [name, value] : attributes.text)
-    header.insert(name, Imf::StringAttribute(value));
-  for (const auto& [name, value] : attributes.numbers) {
-    header.insert(name, Imf::FloatAttribute(value));
-  }
-  return header;
-}
-
 }  // namespace
 
 void write_exr(const std::filesystem::path& path, const Image& image, const ExrHeader& attributes) {
@@ -114,7 +92,8 @@ void write_exr(const std::filesystem::path& path, const Image& image, const ExrH
   CheckedStream stream(output.temporary());
   if (stream.problem() != 0) refuse_writing(path, stream.reason());
   try {
-    Imf::Header header = make_header(image, attributes);
+    Imf::Header header(image.width, image.height);
+    set_exr_attributes(header, attributes);
     Imf::FrameBuffer buffer;
     for (const Channel& channel : image.channels) {
       if (channel.values.size() != image.pixel_count()) {
@@ -175,33 +154,6 @@ void check_header(const std::filesystem::path& path, const Imf::Header& header) 
     refuse_reading(path, "has " + size + " pixels in " + std::to_string(channels) + " channels",
                    "at most 1073741824 values are read", "Leave out some channels");
   }
-}
-
-// Attributes that describe the storage or are set by write_exr, so that what was read can be
-// written again.
-bool is_own_business(std::string_view name) {
-  for (std::string_view standard : {"type", "name", "view", "version", "chunkCount",
-                                    "whiteLuminance", "pixelAspectRatio", "screenWindowWidth"}) {
-    if (name == standard) return true;
-  }
-  return false;
-}
-
-ExrHeader attributes_of(const Imf::Header& header) {
-  ExrHeader result;
-  for (auto a = header.begin(); a != header.end(); ++a) {
-    if (is_own_business(a.name())) continue;
-    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute())) {
-      result.text.emplace_back(a.name(), text->value());
-    } else if (const auto* real = dynamic_cast<const Imf::FloatAttribute*>(&a.attribute())) {
-      result.numbers.emplace_back(a.name(), real->value());
-    } else if (const auto* wide = dynamic_cast<const Imf::DoubleAttribute*>(&a.attribute())) {
-      result.numbers.emplace_back(a.name(), static_cast<float>(wide->value()));
-    } else if (const auto* whole = dynamic_cast<const Imf::IntAttribute*>(&a.attribute())) {
-      result.numbers.emplace_back(a.name(), static_cast<float>(whole->value()));
-    }
-  }
-  return result;
 }
 
 bool ends_with_word(std::string_view layer, std::string_view word) {
@@ -278,7 +230,7 @@ ExrFile read_exr(const std::filesystem::path& path) {
       refuse_reading(path, "is incomplete: some of its pixels are missing", {}, "Copy it again");
     }
     white = white_luminance(path, header);
-    result.header = attributes_of(header);
+    result.header = exr_attributes(header);
     const Imath::Box2i& window = header.dataWindow();
     Image& image = result.image;
     image.width = window.max.x - window.min.x + 1;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading and writing OpenEXR. The only user of the library.
+// Reading and writing OpenEXR. The only user of the library, with exr_attributes.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -11,10 +12,15 @@
 
 namespace earthshine::base {
 
-// Text and number attributes of the header, beside the standard ones.
+// Four rows of four, for points as rows as OpenEXR has it: (x, y, z, 1) M.
+using ExrMatrix = std::array<float, 16>;
+
+// Attributes of the header. A standard attribute (focus, screenWindowWidth, worldToCamera ...) goes
+// by its standard name.
 struct ExrHeader {
   std::vector<std::pair<std::string, std::string>> text;
   std::vector<std::pair<std::string, float>> numbers;
+  std::vector<std::pair<std::string, ExrMatrix>> matrices = {};
   // The picture that the image is a part of (the display window), and where its top left pixel lies
   // in it; without columns the image is the whole.
   struct Whole {

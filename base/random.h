@@ -24,7 +24,9 @@ enum class Stream : std::uint32_t {
   Test,
   HalfSample,
   ExactOpening,
-  Refinement
+  Refinement,
+  Path,
+  RangeNoise
 };
 
 // A 64-bit mix of the key's parts (SplitMix64 finaliser, Steele et al. 2014).

@@ -17,24 +17,28 @@ using scenes::RayPacket;
 // Adds up shadowed samples eight at a time.
 class Receiver {
  public:
-  Receiver(const scenes::RayQuery& query, const Vec3& normal) : query_(query), normal_(normal) {}
+  Receiver(const scenes::RayQuery& query, const Vec3& normal, int points)
+      : query_(query), normal_(normal), by_point_(static_cast<std::size_t>(points), 0.0) {}
 
-  void add(const Vec3& origin, const LightSample& sample) {
+  void add(int point, const Vec3& origin, const LightSample& sample) {
     const double cosine = glm::dot(sample.direction, normal_);
     if (cosine <= 0.0 || base::max_component(sample.normal_illuminance_lx) <= 0.0) return;
     // Stops short of the source, which may be a surface of the scene itself.
     const double reach = sample.distance_m * (1.0 - 1e-5) - 2.0 * query_.surface_offset_m();
     if (reach <= 0.0) return;
     query_.set(packet_, count_, origin, sample.direction, reach);
+    point_[count_] = static_cast<std::size_t>(point);
     contribution_[count_++] = sample.normal_illuminance_lx * cosine;
     if (count_ == RayPacket::width) flush();
   }
 
   void finish() { flush(); }
   [[nodiscard]] const Rgb& sum() const { return sum_; }
-  [[nodiscard]] double sum_of_squares() const {
-    return squares_;
-  }  // of the luminance-weighted samples
+  [[nodiscard]] double sum_of_squares() const {  // of the points' luminance-weighted values
+    double squares = 0.0;
+    for (const double y : by_point_) squares += y * y;
+    return squares;
+  }
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
  private:
@@ -44,8 +48,7 @@ class Receiver {
     for (std::size_t k = 0; k < count_; ++k) {
       if (((hidden >> k) & 1U) != 0) continue;
       sum_ += contribution_[k];
-      const double y = base::luminance(contribution_[k]);
-      squares_ += y * y;
+      by_point_[point_[k]] += base::luminance(contribution_[k]);
     }
     rays_ += count_;
     count_ = 0;
@@ -57,7 +60,8 @@ class Receiver {
   Rgb contribution_[RayPacket::width];
   std::size_t count_ = 0;
   Rgb sum_{0.0};
-  double squares_ = 0.0;
+  std::size_t point_[RayPacket::width];
+  std::vector<double> by_point_;
   std::uint64_t rays_ = 0;
 };
 
@@ -67,11 +71,21 @@ int points_for(const Source& source, const Patches& patches, std::uint32_t patch
   if (!source.distance_m) return source.points;
   const double ratio =
       source.distance_m(patches.point(patch, 0.5, 0.5)) / std::sqrt(patches.area_m2[patch]);
-  if (ratio < 2.0) return source.points * 64;
+  if (ratio < 2.0) return source.points * source.near_factor;
   return ratio < 6.0 ? source.points * 4 : source.points;
 }
 
 }  // namespace
+
+void take_samples(const Source& source, const Vec3& point, const Vec3& normal, double u, double v,
+                  std::vector<LightSample>& samples) {
+  samples.clear();
+  if (source.crowd) {
+    source.crowd(point, normal, u, v, samples);
+  } else {
+    samples.push_back(source.sample(point, u, v));
+  }
+}
 
 Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, const Source& source,
                        std::uint64_t seed, std::uint64_t& rays) {
@@ -80,17 +94,19 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
   std::atomic<std::uint64_t> ray_count{0};
   base::parallel_chunks(patches.count(), 256, [&](std::size_t begin, std::size_t end) {
     std::uint64_t chunk_rays = 0;
+    std::vector<LightSample> samples;
     for (std::size_t i = begin; i < end; ++i) {
       const auto patch = static_cast<std::uint32_t>(i);
       const Vec3 normal = patches.normal(patch);
       const Vec3 lift = normal * query.surface_offset_m();
       const base::SobolOwen4 sobol(base::Key(seed, base::Stream::DirectLight, i).with(source.key));
-      Receiver receiver(query, normal);
       const int points = points_for(source, patches, patch);
+      Receiver receiver(query, normal, points);
       for (int k = 0; k < points; ++k) {
         const auto p = sobol.point(static_cast<std::uint32_t>(k));
         const Vec3 at = patches.point(patch, p[0], p[1]);
-        receiver.add(at + lift, source.sample(at, p[2], p[3]));
+        take_samples(source, at, normal, p[2], p[3], samples);
+        for (const LightSample& sample : samples) receiver.add(k, at + lift, sample);
       }
       receiver.finish();
       const double n = points, y = base::luminance(receiver.sum());

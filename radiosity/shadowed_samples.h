@@ -17,8 +17,13 @@ namespace earthshine::radiosity {
 struct Source {
   std::uint64_t key = 0;  // of its random numbers
   std::size_t group = 0;
-  int points = 16;  // receiver points per patch
+  int points = 16;       // receiver points per patch
+  int near_factor = 64;  // how many times as many near the source
   std::function<scenes::LightSample(const Vec3& point, double u, double v)> sample;
+  // In place of `sample`: many lamps as one. Adds those that get a shadow ray from a surface.
+  std::function<void(const Vec3& point, const Vec3& normal, double u, double v,
+                     std::vector<scenes::LightSample>& samples)>
+      crowd;
   std::function<double(const Vec3& point)> distance_m;  // empty for the sky
 };
 
@@ -26,6 +31,10 @@ struct Sampled {
   std::vector<Rgb> illuminance_lx;  // per patch
   std::vector<double> variance;     // of its luminance-weighted value, as if the points were random
 };
+
+// The source's samples at a surface, in place of what `samples` held.
+void take_samples(const Source& source, const Vec3& point, const Vec3& normal, double u, double v,
+                  std::vector<scenes::LightSample>& samples);
 
 // Owen-Sobol in four dimensions (point of the patch, point of the source), keyed by patch and
 // source. Adds the rays cast to `rays`.

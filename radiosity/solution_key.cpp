@@ -2,6 +2,7 @@
 #include "radiosity/solution_key.h"
 
 #include "base/digest.h"
+#include "scenes/photometry.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -54,11 +55,19 @@ std::uint64_t lights(const Scene& scene, const scenes::LightGroups& groups) {
   for (const std::string& name : groups.names) digest.add(std::string_view(name));
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
     const auto& [name, group, kind, position, axis, intensity_cd, beam_deg, field_deg, edge_u,
-                 edge_v, radius_m, exitance] = scene.lamps[k];
+                 edge_v, radius_m, exitance, c0, photometry, source] = scene.lamps[k];
     digest.add(std::uint64_t{groups.lamp[k]});
     digest.add(static_cast<std::uint64_t>(kind));
     for (const Vec3& v : {position, axis, intensity_cd, edge_u, edge_v, exitance}) digest.add(v);
     for (const double x : {beam_deg, field_deg, radius_m}) digest.add(x);
+    if (photometry) {
+      digest.add(c0);
+      for (const auto* list :
+           {&photometry->vertical_rad(), &photometry->horizontal_rad(), &photometry->values()}) {
+        digest.add(std::uint64_t{list->size()});
+        for (const double x : *list) digest.add(x);
+      }
+    }
   }
   digest.add(of_worn(scene, [&](std::size_t m) {
     Digest emission;

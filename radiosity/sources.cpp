@@ -4,7 +4,9 @@
 #include <limits>
 #include <memory>
 
+#include "radiosity/lamp_crowd.h"
 #include "radiosity/solution.h"
+#include "scenes/emitters.h"
 #include "scenes/sky.h"
 
 namespace earthshine::radiosity {
@@ -13,16 +15,14 @@ namespace {
 using scenes::LightSample;
 
 LightSource sun_source(const scenes::Scene& scene, std::size_t group, int points) {
-  const scenes::Sun& sun = *scene.sun;
   const Rgb illuminance = scenes::sun_sample_illuminance(scene);
-  const double radius = base::radians(sun.angular_radius_deg);
   Source source;
   source.key = 1;
   source.group = group;
   source.points = points;
-  source.sample = [&sun, illuminance, radius](const Vec3&, double u, double v) {
-    return LightSample{scenes::sample_cone(sun.direction, radius, u, v),
-                       std::numeric_limits<double>::infinity(), illuminance};
+  source.sample = [&scene, illuminance](const Vec3&, double u, double v) {
+    return LightSample{scenes::sample_sun(scene, u, v), std::numeric_limits<double>::infinity(),
+                       illuminance};
   };
   return {{}, std::move(source), Rgb(0.0), {}};
 }
@@ -61,12 +61,7 @@ LightSource lamp_source(const scenes::Lamp& lamp, std::uint64_t key, std::size_t
 
 LightSource emitter_source(const scenes::Scene& scene, std::size_t material, std::size_t group,
                            int points) {
-  const auto emitters = std::make_shared<scenes::EmitterSet>();
-  for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
-    if (scene.triangles[t].material == material) {
-      emitters->add(scene, static_cast<std::uint32_t>(t));
-    }
-  }
+  const auto emitters = std::make_shared<const scenes::EmitterSet>(scene, material);
   Source source;
   source.key = (std::uint64_t{1} << 32) + material;
   source.group = group;
@@ -88,8 +83,17 @@ std::vector<LightSource> find_sources(const scenes::Scene& scene, const scenes::
   if (effects.earth && !effects.earth_by_gather) {
     sources.push_back(earth_source(scene, groups.earth, points));
   }
+  std::vector<std::vector<std::size_t>> lamps(groups.count());
+  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
+    if (groups.lamp[k] != scenes::no_group) lamps[groups.lamp[k]].push_back(k);
+  }
+  for (std::size_t g = 0; g < lamps.size(); ++g) {
+    if (lamps[g].size() < fewest_in_crowd) continue;
+    sources.push_back(crowd_source(scene, lamps[g], 16 + lamps[g][0], g, points));
+  }
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
     if (groups.lamp[k] == scenes::no_group) continue;
+    if (lamps[groups.lamp[k]].size() >= fewest_in_crowd) continue;
     sources.push_back(lamp_source(scene.lamps[k], 16 + k, groups.lamp[k], points));
   }
   const std::vector<bool> is_explicit = emitter_is_explicit(scene);

@@ -162,6 +162,7 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
     const base::SobolOwen4 where(key);
     const Vec3 normal = patches.normal(patch), lift = normal * query_.surface_offset_m();
     ShadowQueue queue(query_, looks);
+    std::vector<scenes::LightSample> taken;
     for (std::size_t point = 0; point < looks.points(); ++point) {
       const auto p = where.point2(static_cast<std::uint32_t>(point));
       const Vec3 at = patches.point(patch, p[0], p[1]);
@@ -173,12 +174,14 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
           const base::SobolOwen4 toward(key.with(2 * k + set));
           for (std::size_t m = 0; m < samples; ++m) {
             const auto u = toward.point2(static_cast<std::uint32_t>(m));
-            const scenes::LightSample sample = source.sample(at, u[0], u[1]);
-            const double cosine = glm::dot(sample.direction, normal);
-            const double y = base::luminance(rho * sample.normal_illuminance_lx);
-            queue.add(at + lift, sample,
-                      cosine * y * light.scale[source.group] / static_cast<double>(samples), point,
-                      set, source.group);
+            take_samples(source, at, normal, u[0], u[1], taken);
+            for (const scenes::LightSample& sample : taken) {
+              const double cosine = glm::dot(sample.direction, normal);
+              const double y = base::luminance(rho * sample.normal_illuminance_lx);
+              queue.add(at + lift, sample,
+                        cosine * y * light.scale[source.group] / static_cast<double>(samples),
+                        point, set, source.group);
+            }
           }
         }
       }

@@ -44,10 +44,7 @@ struct RenderReport {
 //   straight from them on diffuse surfaces; light that other surfaces reflected first; highlights,
 //   glossy and mirror reflections, glass. Their sum is R, G, B.
 //   variance: of the mean luminance of the pixel, (cd/m^2)^2
-//   albedo.R/G/B, N.X/Y/Z (unit, facing the camera), P.X/Y/Z (m), Z (m along the camera's axis),
-//   range (m along the ray), object (index), material (index): of the ray through the pixel's
-//   centre, never filtered; where it meets nothing: 0, Z and range infinite, object and material
-//   -1.
+//   the unfiltered layers of first_hit.h and the coverages of cryptomatte.h
 struct Frame {
   base::Image image;
   Window window;  // which part of the picture the image is

@@ -2,30 +2,37 @@
 #include "raytrace/layers.h"
 
 #include <algorithm>
-#include <limits>
 
+#include "raytrace/cryptomatte.h"
+#include "raytrace/first_hit.h"
 #include "raytrace/shading.h"
 
 namespace earthshine::raytrace {
 namespace {
 
+// In the order of Part.
+constexpr std::array<const char*, part_count> part_names = {"direct", "indirect", "specular"};
+
 struct AovChannels {
-  const char* aov;
-  std::vector<const char*> channels;
+  std::string aov;
+  std::vector<std::string> channels;
 };
 const std::vector<AovChannels>& aov_table() {
-  static const std::vector<AovChannels> table = {
-      {"albedo", {"albedo.R", "albedo.G", "albedo.B"}},
-      {"normal", {"N.X", "N.Y", "N.Z"}},
-      {"position", {"P.X", "P.Y", "P.Z"}},
-      {"depth", {"Z"}},
-      {"range", {"range"}},
-      {"object", {"object"}},
-      {"material", {"material"}},
-      {"direct", {"direct.R", "direct.G", "direct.B"}},
-      {"indirect", {"indirect.R", "indirect.G", "indirect.B"}},
-      {"specular", {"specular.R", "specular.G", "specular.B"}},
-      {"variance", {"variance"}}};
+  static const std::vector<AovChannels> table = [] {
+    std::vector<AovChannels> all;
+    for (const FirstHitLayer& layer : first_hit_layers()) {
+      all.push_back({layer.aov, layer.channels});
+    }
+    for (const char* part : part_names) {
+      const std::string name = part;
+      all.push_back({name, {name + ".R", name + ".G", name + ".B"}});
+    }
+    all.push_back({"variance", {"variance"}});
+    for (const CryptomatteType& type : cryptomatte_types) {
+      all.push_back({type.aov, cryptomatte_channels(type.name)});
+    }
+    return all;
+  }();
   return table;
 }
 
@@ -34,14 +41,11 @@ const AovChannels& find_aov(const std::string& aov) {
                                 [&](const AovChannels& entry) { return aov == entry.aov; });
   if (row != aov_table().end()) return *row;
   std::string allowed = "allowed:";
-  for (const AovChannels& entry : aov_table()) allowed += std::string(" ") + entry.aov;
+  for (const AovChannels& entry : aov_table()) allowed += " " + entry.aov;
   const std::string nearest = base::nearest_word(aov, aov_names());
   throw base::Error(base::Blame::Input, "--aov", "unknown layer \"" + aov + "\"", allowed,
                     nearest.empty() ? "" : "Did you mean \"" + nearest + "\"?");
 }
-
-// In the order of Part.
-constexpr std::array<const char*, part_count> part_names = {"direct", "indirect", "specular"};
 
 }  // namespace
 
@@ -62,43 +66,15 @@ Layout add_layers(base::Image& image, const std::vector<std::string>& light_grou
     const AovChannels& row = find_aov(aov);
     const std::size_t first = image.channels.size();
     if (image.find(row.channels.front()) != nullptr) continue;  // asked for twice
-    for (const char* channel : row.channels) image.add(channel);
+    for (const std::string& channel : row.channels) image.add(channel);
     const auto part = std::find(part_names.begin(), part_names.end(), aov);
     if (part != part_names.end()) {
       layout.parts[static_cast<std::size_t>(part - part_names.begin())] = first;
     } else if (aov == "variance") {
       layout.variance = first;
-    } else {
-      for (std::size_t k = 0; k < row.channels.size(); ++k) {
-        layout.unfiltered.push_back({row.channels[k], first + k});
-      }
     }
   }
   return layout;
-}
-
-float unfiltered_value(const scenes::Scene& scene, const CameraModel& camera, const Ray& ray,
-                       const scenes::Hit& hit, const std::string& channel) {
-  const auto axis = [&](const Vec3& v) {
-    const char last = channel.back();
-    return static_cast<float>(last == 'X' || last == 'R'   ? v.x
-                              : last == 'Y' || last == 'G' ? v.y
-                                                           : v.z);
-  };
-  const float nothing = std::numeric_limits<float>::infinity();
-  if (channel == "Z") {
-    return hit.missed() ? nothing
-                        : static_cast<float>(hit.t * glm::dot(ray.direction, camera.forward));
-  }
-  if (channel == "range") return hit.missed() ? nothing : static_cast<float>(hit.t);
-  if (hit.missed()) return channel == "object" || channel == "material" ? -1.0F : 0.0F;
-  const scenes::Triangle& triangle = scene.triangles[hit.triangle];
-  if (channel == "object") return static_cast<float>(triangle.object);
-  if (channel == "material") return static_cast<float>(triangle.material);
-  if (channel.front() == 'a') return axis(scene.materials[triangle.material].diffuse);
-  if (channel.front() == 'P') return axis(scenes::hit_position(scene, hit));
-  const Vec3 normal = scenes::triangle_normal(scene, hit.triangle);
-  return axis(hit.front ? normal : -normal);
 }
 
 const std::vector<std::string>& aov_names() {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The layers of a frame, by the names that compositing programs know, and what the ray through a
-// pixel's centre meets.
+// The layers of a frame, by the names that compositing programs know.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +7,6 @@
 #include <vector>
 
 #include "base/image.h"
-#include "raytrace/camera.h"
 #include "raytrace/render.h"
 
 namespace earthshine::raytrace {
@@ -19,23 +17,14 @@ struct Layout {
                                       // than one group light_<group>, else none
   std::vector<std::size_t> parts;     // per Part: its first channel, or none_wanted
   std::size_t variance = none_wanted;
-  struct Unfiltered {
-    std::string name;
-    std::size_t channel;
-  };
-  std::vector<Unfiltered> unfiltered;
 
   static constexpr std::size_t none_wanted = static_cast<std::size_t>(-1);
   [[nodiscard]] bool splits_parts() const;
 };
 
-// R, G, B come first. Throws base::Error (Input) for a layer that does not exist.
+// R, G, B come first. The layers of first_hit.h and cryptomatte.h are found by name. Throws
+// base::Error (Input) for a layer that does not exist.
 [[nodiscard]] Layout add_layers(base::Image& image, const std::vector<std::string>& light_groups,
                                 const std::vector<std::string>& aovs);
-
-// Of one unfiltered channel; see Frame.
-[[nodiscard]] float unfiltered_value(const scenes::Scene& scene, const CameraModel& camera,
-                                     const Ray& ray, const scenes::Hit& hit,
-                                     const std::string& channel);
 
 }  // namespace earthshine::raytrace

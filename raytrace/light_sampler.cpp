@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "scenes/sky.h"
@@ -14,13 +15,19 @@ namespace {
 constexpr double r2_u = 0.7548776662466927;
 constexpr double r2_v = 0.5698402909980532;
 
+// Up to this many lamps all get shadow rays: choosing among them costs more than it saves.
+constexpr std::size_t few_lamps = 32;
+// Lamps that may give more than this share of the light count as ones that matter.
+constexpr double smallest_share = 1.0 / 16.0;
+
 double fraction(double x) { return x - std::floor(x); }
 
 }  // namespace
 
 LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups& groups,
                            const scenes::Effects& effects, Indirect indirect,
-                           int distributed_lights, std::optional<scenes::Lamp> earth_area)
+                           int distributed_lights, bool per_group,
+                           std::optional<scenes::Lamp> earth_area)
     : scene_(scene),
       distributed_(indirect == Indirect::Distributed),
       earth_area_(distributed_ ? std::move(earth_area) : std::nullopt) {
@@ -29,8 +36,6 @@ LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups
     sun_illuminance_lx_ = distributed_
                               ? scene.sun->illuminance_lx * scenes::visible_sun_share(scene)
                               : scenes::sun_sample_illuminance(scene);
-    // The report's lights have no extent: its Sun casts hard shadows.
-    sun_radius_rad_ = distributed_ ? 0.0 : base::radians(scene.sun->angular_radius_deg);
     add({Kind::Sun, groups.sun}, 1);
   }
   if (effects.earth && (distributed_ || !effects.earth_by_gather)) {
@@ -43,18 +48,69 @@ LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups
     const bool wide = scene.lamps[k].kind == scenes::LampKind::Rectangle ||
                       scene.lamps[k].kind == scenes::LampKind::Disk;
     add({Kind::Lamp, groups.lamp[k], k}, wide ? copies : 1);
+    if (wide) surfaces_.lights.push_back(k);
   }
+  surfaces_.tree = tree_of(surfaces_.lights);
   // Without interreflection nothing carries emitters through F, so that all of them are sampled.
   const std::vector<bool> is_explicit = radiosity::emitter_is_explicit(scene);
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     if (groups.material[m] == scenes::no_group) continue;
     if (indirect == Indirect::Radiosity && !is_explicit[m]) continue;
-    scenes::EmitterSet set;
-    for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
-      if (scene.triangles[t].material == m) set.add(scene, static_cast<std::uint32_t>(t));
-    }
     add({Kind::Emitters, groups.material[m], emitters_.size()}, copies);
-    emitters_.push_back(std::move(set));
+    emitters_.emplace_back(scene, m);
+  }
+  gather_crowds(per_group);
+}
+
+void LightSampler::gather_crowds(bool per_group) {
+  std::map<std::size_t, std::vector<std::size_t>> lamps;
+  for (std::size_t k = 0; k < lights_.size(); ++k) {
+    const bool lamp = lights_[k].kind == Kind::Lamp && !distributed_;
+    if (lamp) lamps[per_group ? lights_[k].group : 0].push_back(k);
+    if (!lamp) always_.push_back(k);
+  }
+  for (auto& [group, lights] : lamps) {
+    if (lights.size() <= few_lamps) {
+      always_.insert(always_.end(), lights.begin(), lights.end());
+      continue;
+    }
+    std::vector<std::size_t> of_scene;
+    for (const std::size_t k : lights) of_scene.push_back(lights_[k].index);
+    crowds_.push_back({tree_of(of_scene), std::move(lights)});
+  }
+}
+
+scenes::LightTree LightSampler::tree_of(const std::vector<std::size_t>& lamps) const {
+  std::vector<scenes::LightBounds> bounds;
+  for (const std::size_t k : lamps) bounds.push_back(scenes::bounds_of(scene_.lamps[k]));
+  return scenes::LightTree(bounds);
+}
+
+std::optional<LightSampler::SeenLamp> LightSampler::seen_lamp(const Vec3& origin,
+                                                              const Vec3& direction,
+                                                              double nearer_than_m) const {
+  std::vector<std::size_t> met;
+  surfaces_.tree.along(origin, direction, nearer_than_m, met);
+  std::optional<SeenLamp> seen;
+  for (const std::size_t k : met) {
+    const std::size_t lamp = surfaces_.lights[k];
+    const auto hit = scenes::hit_lamp(scene_.lamps[lamp], origin, direction);
+    if (!hit || hit->distance_m >= nearer_than_m) continue;
+    nearer_than_m = hit->distance_m;
+    seen = SeenLamp{lamp, *hit};
+  }
+  return seen;
+}
+
+void LightSampler::choose(const scenes::Receiver& receiver, double u,
+                          std::vector<scenes::LightChoice>& chosen) const {
+  for (const std::size_t light : always_) chosen.push_back({light, 1.0});
+  for (const Crowd& crowd : crowds_) {
+    const std::size_t first = chosen.size();
+    crowd.tree.choose(receiver, u, smallest_share, chosen);
+    for (std::size_t k = first; k < chosen.size(); ++k) {
+      chosen[k].light = crowd.lights[chosen[k].light];
+    }
   }
 }
 
@@ -81,10 +137,12 @@ scenes::LightSample LightSampler::sample(std::size_t index, const Vec3& point, d
     u = light.u;
     v = light.v;
   }
+  const scenes::Spread spread = light.fixed ? scenes::Spread::OverArea : scenes::Spread::Best;
   scenes::LightSample sample;
   switch (light.kind) {
     case Kind::Sun:
-      sample = {scenes::sample_cone(scene_.sun->direction, sun_radius_rad_, u, v),
+      // The report's lights have no extent: its Sun casts hard shadows.
+      sample = {distributed_ ? scene_.sun->direction : scenes::sample_sun(scene_, u, v),
                 std::numeric_limits<double>::infinity(), sun_illuminance_lx_};
       break;
     case Kind::Earth: {
@@ -98,10 +156,10 @@ scenes::LightSample LightSampler::sample(std::size_t index, const Vec3& point, d
       sample = scenes::sample_lamp(*earth_area_, point, u, v);
       break;
     case Kind::Lamp:
-      sample = scenes::sample_lamp(scene_.lamps[light.index], point, u, v);
+      sample = scenes::sample_lamp(scene_.lamps[light.index], point, u, v, spread);
       break;
     case Kind::Emitters:
-      sample = emitters_[light.index].sample(point, u, v);
+      sample = emitters_[light.index].sample(point, u, v, spread);
       break;
   }
   sample.normal_illuminance_lx *= light.share;

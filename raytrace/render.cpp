@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "raytrace/cryptomatte.h"
 #include "raytrace/distributed_area.h"
+#include "raytrace/first_hit.h"
 #include "raytrace/layers.h"
 #include "raytrace/passes.h"
 
@@ -44,25 +46,6 @@ void fill_layers(const PixelSums& sums, const Layout& layout, std::size_t image_
       }
     }
   }
-}
-
-void fill_unfiltered(const ShadingScene& shared, const CameraModel& camera, const Layout& layout,
-                     const Window& window, base::Image& image) {
-  if (layout.unfiltered.empty()) return;
-  base::parallel_chunks(
-      static_cast<std::size_t>(window.rows), 8, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t row = begin; row < end; ++row) {
-          const int y = window.y + static_cast<int>(row);
-          for (int x = window.x; x < window.x + window.columns; ++x) {
-            const Ray ray = camera.ray(x + 0.5, y + 0.5, 0.0, 0.0);
-            const scenes::Hit hit = shared.query.closest(ray.origin, ray.direction);
-            for (const Layout::Unfiltered& layer : layout.unfiltered) {
-              image.channels[layer.channel].values[window.index(x, y)] =
-                  unfiltered_value(shared.scene, camera, ray, hit, layer.name);
-            }
-          }
-        }
-      });
 }
 
 void summarise(const PixelSums& sums, const Window& window, RenderReport& report) {
@@ -115,7 +98,7 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
                                : std::vector<float>{},
                            options.per_light);
   const LightSampler lights(scene, groups, effects, options.indirect, options.distributed_lights,
-                            earth_area(scene, options.distributed_over));
+                            options.per_light, earth_area(scene, options.distributed_over));
   const BrightPatches bright = reads_solution ? BrightPatches(solution) : BrightPatches();
   const std::size_t layers = options.per_light ? std::max<std::size_t>(1, groups.count()) : 1;
   const std::size_t earth_layer =
@@ -131,11 +114,6 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
   }
   shared.gathers =
       options.indirect != Indirect::Distributed && (reads_solution || effects.earth_by_gather);
-  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
-    const bool has_surface = scene.lamps[k].kind == scenes::LampKind::Rectangle ||
-                             scene.lamps[k].kind == scenes::LampKind::Disk;
-    if (has_surface && groups.lamp[k] != scenes::no_group) shared.area_lamps.push_back(k);
-  }
   shared.sampled_emitter.assign(scene.materials.size(), true);
   if (options.indirect == Indirect::Radiosity) {
     shared.sampled_emitter = radiosity::emitter_is_explicit(scene);
@@ -153,7 +131,9 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
 
   const PixelSums sums = sample_picture(shared, model, options, progress, frame.report);
   fill_layers(sums, layout, layers, window, frame.image);
-  fill_unfiltered(shared, model, layout, window, frame.image);
+  fill_first_hit(scene, query, model, window, frame.image);
+  fill_cryptomatte(scene, query, model, {options.seed, window, sums.window, sums.samples},
+                   frame.image);
   summarise(sums, window, frame.report);
   frame.report.stopped = options.stop && options.stop();
   frame.report.seconds = std::chrono::duration<double>(Clock::now() - start).count();

@@ -2,7 +2,7 @@
 // Scene + solution + camera -> frame. Who carries which light path (each by exactly one strategy):
 //
 //   source seen by the camera itself       emission, sky radiance, lamp surfaces
-//   point, spot, rectangle, disk lamps;    shadow rays (diffuse and Phong lobe)
+//   lamps of every type;                   shadow rays (diffuse and Phong lobe)
 //     Sun; emitters that are explicit in
 //     radiosity
 //   Earth, wide                            gather rays that escape (diffuse), lobe rays (Phong)
@@ -31,7 +31,8 @@ enum class Indirect {
   Radiosity,    // final gather on the solution
   Distributed,  // the 1990 report's approximation: the Earth and area lamps as N lights, no
                 // interreflection
-  None          // direct light alone
+  None,         // direct light alone
+  Paths         // the reference: trace_paths (path_tracer.h) instead of render()
 };
 
 // How rays are spent on the final gather.

@@ -45,11 +45,6 @@ void PixelShader::begin_pixel(std::uint64_t pixel, std::size_t first, std::size_
   std::fill(sums_.begin(), sums_.end(), Rgb(0.0));
   sample_luminance_.assign(count, 0.0);
   gather_points_ = base::SobolOwen4(base::Key(shared_.seed, base::Stream::FinalGather, pixel));
-  light_points_.clear();
-  const base::Key light_key(shared_.seed, base::Stream::LightSample, pixel);
-  for (std::size_t k = 0; k < shared_.lights.count(); ++k) {
-    light_points_.emplace_back(light_key.with(k));
-  }
 }
 
 void PixelShader::add_sample(std::size_t sample, const Ray& ray, const scenes::Hit& hit) {
@@ -102,19 +97,10 @@ void PixelShader::see_sky(const Vec3& direction, const Rgb& weight, int depth, S
 }
 
 bool PixelShader::see_lamp(const Ray& ray, double nearer_than_m, const Rgb& weight, int depth) {
-  bool found = false;
-  scenes::LampHit nearest{nearer_than_m, Rgb(0.0)};
-  std::size_t which = 0;
-  for (const std::size_t k : shared_.area_lamps) {
-    const auto hit = scenes::hit_lamp(shared_.scene.lamps[k], ray.origin, ray.direction);
-    if (hit && hit->distance_m < nearest.distance_m) {
-      nearest = *hit;
-      which = k;
-      found = true;
-    }
-  }
-  if (found) see_source(shared_.groups.lamp[which], weight * nearest.radiance, depth);
-  return found;
+  const auto seen = shared_.lights.seen_lamp(ray.origin, ray.direction, nearer_than_m);
+  if (!seen) return false;
+  see_source(shared_.groups.lamp[seen->lamp], weight * seen->hit.radiance, depth);
+  return true;
 }
 
 void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weight, int depth,
@@ -157,8 +143,18 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
   const Vec3 origin = surface.position + surface.normal * offset;
   const Vec3 mirrored =
       2.0 * glm::dot(surface.view, surface.normal) * surface.normal - surface.view;
-  for (std::size_t k = 0; k < shared_.lights.count(); ++k) {
-    const auto u = light_points_[k].point2(static_cast<std::uint32_t>(sample_));
+  const base::Key light_key(shared_.seed, base::Stream::LightSample, pixel_);
+  const auto light_point = [&](std::size_t k) {
+    return base::SobolOwen4(light_key.with(k)).point2(static_cast<std::uint32_t>(sample_));
+  };
+  const auto choice = light_point(shared_.lights.count());
+  chosen_.clear();
+  shared_.lights.choose(
+      {surface.position, surface.normal, mirrored, base::max_component(surface.material.diffuse),
+       base::max_component(surface.material.specular), surface.material.shininess},
+      double(choice[0]) + 0x1p-24 * double(choice[1]), chosen_);
+  for (const auto& [k, chance_weight] : chosen_) {
+    const auto u = light_point(k);
     const scenes::LightSample light = shared_.lights.sample(k, surface.position, u[0], u[1]);
     const double cosine = glm::dot(light.direction, surface.normal);
     if (cosine <= 0.0 || !lit(light.normal_illuminance_lx)) continue;
@@ -168,7 +164,7 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
     if (cos_alpha > 0.0 && lit(surface.material.specular)) {
       highlight = surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
     }
-    const Rgb incident = weight * light.normal_illuminance_lx * (cosine / pi);
+    const Rgb incident = weight * light.normal_illuminance_lx * (chance_weight * cosine / pi);
     const Rgb value = incident * (surface.material.diffuse + highlight);
     if (!lit(value)) continue;
     const double reach = light.distance_m * (1.0 - 1e-5) - 2.0 * offset;

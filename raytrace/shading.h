@@ -41,8 +41,7 @@ struct ShadingScene {
   PixelFilter filter{scenes::Camera{}};  // of the camera samples
   int gather_rays = 16;                  // per camera sample
   std::uint64_t seed = 1;
-  std::vector<std::size_t> area_lamps = {};  // indices of lamps that a ray can meet
-  std::vector<bool> sampled_emitter = {};    // per material: shadow rays carry its light
+  std::vector<bool> sampled_emitter = {};  // per material: shadow rays carry its light
 };
 
 // How light reached the camera, by the last surface before it.
@@ -139,7 +138,7 @@ class PixelShader {
   int x_ = 0, y_ = 0;
   std::uint64_t pixel_ = 0;
   base::SobolOwen4 gather_points_;
-  std::vector<base::SobolOwen4> light_points_;
+  std::vector<scenes::LightChoice> chosen_;
   base::Rng rng_;
 
   static constexpr std::size_t width = scenes::RayPacket::width;

@@ -62,6 +62,7 @@ Effects find_effects(const Scene& scene, const LightGroups& groups) {
   for (const Camera& camera : scene.cameras) {
     effects.depth_of_field |= camera.aperture_m > 0.0 && camera.focus_m > 0.0;
     effects.cctv |= !camera.cctv.empty();
+    effects.range_sensor |= !camera.range_sensor.empty();
   }
   return effects;
 }
@@ -106,6 +107,9 @@ std::vector<EffectRow> describe_effects(const Scene& scene, const LightGroups& g
                   std::to_string(groups.count()) + " group(s) give light"});
   rows.push_back({"cctv", e.cctv,
                   pick(e.cctv, "a camera names a cctv model", "no camera names a cctv model")});
+  rows.push_back({"range sensor", e.range_sensor,
+                  pick(e.range_sensor, "a camera names a range_sensor; render --range shows it",
+                       "no camera names a range_sensor")});
   return rows;
 }
 

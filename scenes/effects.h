@@ -26,6 +26,7 @@ struct Effects {
   bool ambient = false;
   bool depth_of_field = false;  // of at least one camera
   bool cctv = false;            // of at least one camera
+  bool range_sensor = false;    // of at least one camera
 };
 
 [[nodiscard]] Effects find_effects(const Scene& scene, const LightGroups& groups);

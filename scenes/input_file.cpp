@@ -55,6 +55,19 @@ std::string read_input_file(const std::filesystem::path& path, std::size_t max_b
   return bytes;
 }
 
+std::string read_regular_file(const std::filesystem::path& path, std::size_t max_bytes,
+                              const base::Location& asked_at) {
+  std::error_code ignored;
+  const auto kind = std::filesystem::status(path, ignored).type();
+  if (kind == std::filesystem::file_type::fifo || kind == std::filesystem::file_type::character ||
+      kind == std::filesystem::file_type::block || kind == std::filesystem::file_type::socket) {
+    throw Error(Blame::Input, asked_at,
+                fmt::format("{} is a pipe or a device", in_quotes(path.string())),
+                "a file on disk is wanted here");
+  }
+  return read_input_file(path, max_bytes, asked_at);
+}
+
 std::filesystem::path confined_path(const std::filesystem::path& base_folder,
                                     std::string_view named,
                                     std::span<const std::filesystem::path> folders,

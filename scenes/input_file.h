@@ -18,6 +18,11 @@ namespace earthshine::scenes {
 [[nodiscard]] std::string read_input_file(const std::filesystem::path& path, std::size_t max_bytes,
                                           const base::Location& asked_at);
 
+// The same, of a file on disk only: a pipe or a device, which may keep the reader waiting for ever,
+// is refused.
+[[nodiscard]] std::string read_regular_file(const std::filesystem::path& path,
+                                            std::size_t max_bytes, const base::Location& asked_at);
+
 // A file that another file names by a relative path, which may not lead out of the given folders: a
 // mesh from elsewhere must not make the program read files it has no business with. Throws
 // base::Error (Input) at asked_at if `named` is absolute or leads out of all of them.

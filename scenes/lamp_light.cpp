@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenes/ray_query.h"
+#include "scenes/emitters.h"
+#include "scenes/photometry.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -14,15 +15,7 @@ using base::pi;
 double beam_cosine(const Lamp& lamp) { return std::cos(base::radians(lamp.beam_deg / 2)); }
 double field_cosine(const Lamp& lamp) { return std::cos(base::radians(lamp.field_deg / 2)); }
 
-Vec3 cosine_direction(const base::Frame3& frame, double x, double y) {
-  const double r = std::sqrt(x), phi = 2.0 * pi * y;
-  return frame.to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0, 1.0 - x))});
-}
-
-Vec3 surface_point(const Lamp& lamp, double u, double v) {
-  if (lamp.kind == LampKind::Rectangle) {
-    return lamp.position + (u - 0.5) * lamp.edge_u + (v - 0.5) * lamp.edge_v;
-  }
+Vec3 disk_point(const Lamp& lamp, double u, double v) {
   const base::Frame3 frame = base::frame_around(lamp.axis);
   const double r = lamp.radius_m * std::sqrt(u), phi = 2.0 * pi * v;
   return lamp.position + r * (std::cos(phi) * frame.tangent + std::sin(phi) * frame.bitangent);
@@ -33,20 +26,27 @@ double surface_area(const Lamp& lamp) {
   return pi * lamp.radius_m * lamp.radius_m;
 }
 
-// A piece of a Lambertian emitter of exitance M and area A seen from a point:
-// E_normal = (M / pi) cos(theta') A / r^2.
-LightSample toward_area(const Vec3& point, const Vec3& on_source, const Vec3& normal,
-                        bool two_sided, const Rgb& exitance, double area_m2) {
-  LightSample sample;
-  const Vec3 way = on_source - point;
-  const double distance2 = glm::dot(way, way);
-  if (distance2 <= 0.0) return sample;
-  sample.distance_m = std::sqrt(distance2);
-  sample.direction = way / sample.distance_m;
-  double cosine = -glm::dot(sample.direction, normal);
-  if (two_sided) cosine = std::abs(cosine);
-  if (cosine > 0.0) sample.normal_illuminance_lx = exitance * (cosine * area_m2 / (pi * distance2));
-  return sample;
+FlatEmitter rectangle(const Lamp& lamp) {
+  return {lamp.position - 0.5 * (lamp.edge_u + lamp.edge_v),
+          lamp.edge_u,
+          lamp.edge_v,
+          lamp.axis,
+          surface_area(lamp),
+          lamp.exitance,
+          false,
+          FlatShape::Parallelogram};
+}
+
+// Intensity in a unit direction away from the lamp, relative to intensity_cd.
+double relative_intensity(const Lamp& lamp, const Vec3& direction) {
+  if (lamp.kind == LampKind::Point) return 1.0;
+  const double cosine = glm::dot(direction, lamp.axis);
+  if (lamp.kind == LampKind::Spot) return spot_profile(lamp, cosine);
+  const double along_c0 = glm::dot(direction, lamp.c0);
+  const double along_c90 = glm::dot(direction, glm::cross(lamp.c0, lamp.axis));
+  // By the tangent: near the axis the cosine alone has lost half of the angle's digits.
+  return lamp.photometry->relative(std::atan2(std::hypot(along_c0, along_c90), cosine),
+                                   std::atan2(along_c90, along_c0));
 }
 
 }  // namespace
@@ -59,9 +59,10 @@ double spot_profile(const Lamp& lamp, double cos_angle) {
   return x * x * (3.0 - 2.0 * x);
 }
 
-LightSample sample_lamp(const Lamp& lamp, const Vec3& point, double u, double v) {
-  if (lamp.kind == LampKind::Rectangle || lamp.kind == LampKind::Disk) {
-    return toward_area(point, surface_point(lamp, u, v), lamp.axis, false, lamp.exitance,
+LightSample sample_lamp(const Lamp& lamp, const Vec3& point, double u, double v, Spread spread) {
+  if (lamp.kind == LampKind::Rectangle) return sample_flat(rectangle(lamp), point, u, v, spread);
+  if (lamp.kind == LampKind::Disk) {
+    return toward_area(point, disk_point(lamp, u, v), lamp.axis, false, lamp.exitance,
                        surface_area(lamp));
   }
   LightSample sample;
@@ -70,10 +71,8 @@ LightSample sample_lamp(const Lamp& lamp, const Vec3& point, double u, double v)
   if (distance2 <= 0.0) return sample;
   sample.distance_m = std::sqrt(distance2);
   sample.direction = way / sample.distance_m;
-  const double profile = lamp.kind == LampKind::Spot
-                             ? spot_profile(lamp, -glm::dot(sample.direction, lamp.axis))
-                             : 1.0;
-  sample.normal_illuminance_lx = lamp.intensity_cd * (profile / distance2);
+  sample.normal_illuminance_lx =
+      lamp.intensity_cd * (relative_intensity(lamp, -sample.direction) / distance2);
   return sample;
 }
 
@@ -84,6 +83,8 @@ Rgb lamp_flux_lm(const Lamp& lamp) {
     case LampKind::Spot:
       return lamp.intensity_cd *
              (2.0 * pi * (1.0 - 0.5 * (beam_cosine(lamp) + field_cosine(lamp))));
+    case LampKind::Measured:
+      return lamp.intensity_cd * lamp.photometry->solid_angle_sr();
     case LampKind::Rectangle:
     case LampKind::Disk:
       break;
@@ -93,7 +94,18 @@ Rgb lamp_flux_lm(const Lamp& lamp) {
 
 EmittedRay emit_from_lamp(const Lamp& lamp, double u, double v, double x, double y) {
   if (lamp.kind == LampKind::Rectangle || lamp.kind == LampKind::Disk) {
-    return {surface_point(lamp, u, v), cosine_direction(base::frame_around(lamp.axis), x, y), 1.0};
+    const Vec3 origin =
+        lamp.kind == LampKind::Disk ? disk_point(lamp, u, v) : point_on(rectangle(lamp), u, v);
+    return {origin, cosine_direction(base::frame_around(lamp.axis), x, y), 1.0};
+  }
+  if (lamp.kind == LampKind::Measured) {
+    const Photometry::Angles angles = lamp.photometry->sample(x, y);
+    const Vec3 across = std::cos(angles.phi_rad) * lamp.c0 +
+                        std::sin(angles.phi_rad) * glm::cross(lamp.c0, lamp.axis);
+    return {lamp.position,
+            glm::normalize(std::cos(angles.theta_rad) * lamp.axis +
+                           std::sin(angles.theta_rad) * across),
+            1.0};
   }
   const double half_angle = lamp.kind == LampKind::Spot ? base::radians(lamp.field_deg / 2) : pi;
   const Vec3 direction = sample_cone(lamp.axis, half_angle, x, y);
@@ -124,50 +136,9 @@ std::optional<LampHit> hit_lamp(const Lamp& lamp, const Vec3& origin, const Vec3
   return LampHit{t, lamp.exitance / pi};
 }
 
-void EmitterSet::add(const Scene& scene, std::uint32_t triangle) {
-  const Triangle& t = scene.triangles[triangle];
-  const Material& material = scene.materials[t.material];
-  const Vec3& corner = scene.vertices[t.vertex[0]];
-  const double area = triangle_area(scene, triangle);
-  triangles_.push_back({corner, scene.vertices[t.vertex[1]] - corner,
-                        scene.vertices[t.vertex[2]] - corner, triangle_normal(scene, triangle),
-                        area, material.emit, material.two_sided});
-  const Rgb flux = material.emit * (material.two_sided ? 2.0 * area : area);
-  flux_lm_ += flux;
-  cumulative_.push_back((cumulative_.empty() ? 0.0 : cumulative_.back()) + base::luminance(flux));
-}
-
-const EmitterSet::Emitter& EmitterSet::choose(double& u, double& probability) const {
-  const double wanted = u * cumulative_.back();
-  const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, wanted);
-  const auto index = static_cast<std::size_t>(found - cumulative_.begin());
-  const double low = index == 0 ? 0.0 : cumulative_[index - 1];
-  const double width = cumulative_[index] - low;
-  probability = width / cumulative_.back();
-  u = std::clamp((wanted - low) / width, 0.0, 1.0);
-  return triangles_[index];
-}
-
-LightSample EmitterSet::sample(const Vec3& point, double u, double v) const {
-  double probability = 1.0;
-  const Emitter& emitter = choose(u, probability);
-  const double root = std::sqrt(u);
-  const Vec3 on_source = emitter.corner + root * ((1.0 - v) * emitter.edge1 + v * emitter.edge2);
-  return toward_area(point, on_source, emitter.normal, emitter.two_sided, emitter.exitance,
-                     emitter.area_m2 / probability);
-}
-
-EmittedRay EmitterSet::emit(double u, double v, double x, double y) const {
-  double probability = 1.0;
-  const Emitter& emitter = choose(u, probability);
-  Vec3 normal = emitter.normal;
-  if (emitter.two_sided) {  // half of the rays leave from either side
-    if (x >= 0.5) normal = -normal;
-    x = x >= 0.5 ? 2.0 * x - 1.0 : 2.0 * x;
-  }
-  const double root = std::sqrt(u);
-  const Vec3 origin = emitter.corner + root * ((1.0 - v) * emitter.edge1 + v * emitter.edge2);
-  return {origin, cosine_direction(base::frame_around(normal), x, y), 1.0};
+Vec3 cosine_direction(const base::Frame3& frame, double x, double y) {
+  const double r = std::sqrt(x), phi = 2.0 * pi * y;
+  return frame.to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0, 1.0 - x))});
 }
 
 Vec3 sample_cone(const Vec3& axis, double half_angle_rad, double u, double v) {

@@ -2,9 +2,7 @@
 // What a source of finite extent gives a point: one sample of its light, and where its flux goes.
 #pragma once
 
-#include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "scenes/scene.h"
 
@@ -22,8 +20,13 @@ struct LightSample {
 // cosine, 0 outside field_deg. Its flux is I 2 pi (1 - (cos(beam/2) + cos(field/2)) / 2) exactly.
 [[nodiscard]] double spot_profile(const Lamp& lamp, double cos_angle);
 
-// (u, v) in [0,1)^2 choose the point of a rectangle or disk; point and spot lamps do not use them.
-[[nodiscard]] LightSample sample_lamp(const Lamp& lamp, const Vec3& point, double u, double v);
+// What (u, v) are even over: what leaves least noise where the point is, or always the same points
+// of the source, wherever it is seen from.
+enum class Spread { Best, OverArea };
+
+// (u, v) in [0,1)^2 choose the point of a rectangle or disk; other lamps do not use them.
+[[nodiscard]] LightSample sample_lamp(const Lamp& lamp, const Vec3& point, double u, double v,
+                                      Spread spread = Spread::Best);
 
 [[nodiscard]] Rgb lamp_flux_lm(const Lamp& lamp);
 
@@ -35,7 +38,7 @@ struct EmittedRay {
 [[nodiscard]] EmittedRay emit_from_lamp(const Lamp& lamp, double u, double v, double x, double y);
 
 // Distance at which a ray meets the shining side of a rectangle or disk lamp and its radiance
-// there; nothing for point and spot lamps.
+// there; nothing for lamps without a surface.
 struct LampHit {
   double distance_m;
   Rgb radiance;
@@ -43,30 +46,8 @@ struct LampHit {
 [[nodiscard]] std::optional<LampHit> hit_lamp(const Lamp& lamp, const Vec3& origin,
                                               const Vec3& direction);
 
-// The emitting triangles of one light group, chosen in proportion to their flux. Sheets shine from
-// both sides.
-class EmitterSet {
- public:
-  void add(const Scene& scene, std::uint32_t triangle);
-  [[nodiscard]] bool empty() const { return triangles_.empty(); }
-  [[nodiscard]] Rgb flux_lm() const { return flux_lm_; }
-  // u chooses the triangle and, rescaled, the point together with v. Zero illuminance if the point
-  // sees the dark side.
-  [[nodiscard]] LightSample sample(const Vec3& point, double u, double v) const;
-  [[nodiscard]] EmittedRay emit(double u, double v, double x, double y) const;
-
- private:
-  struct Emitter {
-    Vec3 corner, edge1, edge2, normal;
-    double area_m2;
-    Rgb exitance;
-    bool two_sided;
-  };
-  [[nodiscard]] const Emitter& choose(double& u, double& probability) const;
-  std::vector<Emitter> triangles_;
-  std::vector<double> cumulative_;  // luminous flux, running sum
-  Rgb flux_lm_{0.0};
-};
+// A direction with density cos / pi about frame.normal.
+[[nodiscard]] Vec3 cosine_direction(const base::Frame3& frame, double x, double y);
 
 // Light that reaches a point from a distant disc of directions, sampled uniformly over its solid
 // angle.

@@ -19,7 +19,8 @@ using base::Error;
 constexpr std::string_view root_keys[] = {"format", "name", "unit"};
 constexpr std::string_view plain_tables[] = {"sun",     "earth",   "orbit",
                                              "ambient", "monitor", "quality"};
-constexpr std::string_view named_tables[] = {"material", "object", "light", "area", "camera", "cctv"};
+constexpr std::string_view named_tables[] = {"material", "object", "light",       "area",
+                                             "camera",   "cctv",   "range_sensor"};
 
 template <std::size_t N>
 bool among(std::string_view word, const std::string_view (&words)[N]) {

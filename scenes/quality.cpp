@@ -32,7 +32,7 @@ QualityKnobs resolve_quality(const Scene& scene) {
       power_of_two_at_least(1024.0 * std::pow(ratio, 1.0 / 0.6), 64, 1 << 18));
   const Quality& given = scene.quality;
   knobs.share_gather = given.share_gather.value_or(true);
-  const double rays = (knobs.share_gather ? 32.0 : 256.0) * ratio * ratio;
+  const double rays = 32.0 * (knobs.share_gather ? 1 : rays_alone_per_shared) * ratio * ratio;
   knobs.gather_rays =
       given.gather_rays.value_or(power_of_two_at_least(rays, knobs.share_gather ? 8 : 16, 1 << 16));
   knobs.smooth_share =

@@ -6,6 +6,9 @@
 
 namespace earthshine::scenes {
 
+// Gather rays of a pixel that shares none, for the noise of one that does.
+inline constexpr int rays_alone_per_shared = 8;
+
 struct QualityKnobs {
   double patch_edge_m = 0.25;  // of patches that are all alike
   bool refine = false;         // adaptive patches instead, from cells of start_edge_m at most

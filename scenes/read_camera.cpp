@@ -9,9 +9,9 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr std::string_view camera_keys[] = {"name",       "position", "look_at",     "up",
-                                            "fov_deg",    "focus",    "aperture",    "cctv",
-                                            "resolution", "filter",   "filter_width"};
+constexpr std::string_view camera_keys[] = {
+    "name",     "position", "look_at",    "up",     "fov_deg",      "focus",
+    "aperture", "cctv",     "resolution", "filter", "filter_width", "range_sensor"};
 struct FilterRow {
   std::string_view name;
   FilterShape shape;
@@ -139,6 +139,7 @@ Camera read_camera(const TomlNode& node, double unit_m) {
   read_lens(camera, table);
   read_filter(camera, table);
   camera.cctv = table.text("cctv").value_or("");
+  camera.range_sensor = table.text("range_sensor").value_or("");
   return camera;
 }
 

@@ -9,10 +9,11 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr std::string_view all_keys[] = {
-    "name",      "group",  "type",   "position", "aim",    "intensity", "flux",    "beam_deg",
-    "field_deg", "center", "edge_u", "edge_v",   "normal", "radius",    "exitance"};
-constexpr std::string_view types[] = {"point", "spot", "rectangle", "disk"};
+constexpr std::string_view all_keys[] = {"name",      "group",  "type",     "position",  "aim",
+                                         "intensity", "flux",   "beam_deg", "field_deg", "center",
+                                         "edge_u",    "edge_v", "normal",   "radius",    "exitance",
+                                         "file",      "up",     "color",    "tilt_deg"};
+constexpr std::string_view types[] = {"point", "spot", "rectangle", "disk", "ies"};
 constexpr std::string_view point_keys[] = {"name",     "group",     "type",
                                            "position", "intensity", "flux"};
 constexpr std::string_view spot_keys[] = {"name",      "group", "type",     "position", "aim",
@@ -21,6 +22,8 @@ constexpr std::string_view rectangle_keys[] = {"name",   "group",  "type",     "
                                                "edge_u", "edge_v", "exitance", "flux"};
 constexpr std::string_view disk_keys[] = {"name",   "group",  "type",     "center",
                                           "normal", "radius", "exitance", "flux"};
+constexpr std::string_view ies_keys[] = {"name", "group", "type", "file",  "position",
+                                         "aim",  "up",    "flux", "color", "tilt_deg"};
 
 // The lamp's strength: given as such, or as flux that spreads over `flux_per_unit` of it.
 Rgb read_strength(const TableReader& table, std::string_view key, double flux_per_unit) {
@@ -36,6 +39,16 @@ Rgb read_strength(const TableReader& table, std::string_view key, double flux_pe
   return strength ? *strength : *flux / flux_per_unit;
 }
 
+// Position and, toward the aim, the axis.
+void read_aim(Lamp& lamp, const TableReader& table, double unit_m) {
+  lamp.position =
+      table.required(table.position("position", unit_m), "position", "position = [x, y, z]");
+  const Vec3 aim = table.required(table.position("aim", unit_m), "aim", "aim = [x, y, z]");
+  const double distance = glm::length(aim - lamp.position);
+  if (!(distance > 1e-9 * unit_m)) table.fail("aim", "is the light's own position");
+  lamp.axis = (aim - lamp.position) / distance;
+}
+
 void read_point(Lamp& lamp, const TableReader& table, double unit_m) {
   table.allow_only(point_keys, "a light of type \"point\"");
   lamp.kind = LampKind::Point;
@@ -47,12 +60,7 @@ void read_point(Lamp& lamp, const TableReader& table, double unit_m) {
 void read_spot(Lamp& lamp, const TableReader& table, double unit_m) {
   table.allow_only(spot_keys, "a light of type \"spot\"");
   lamp.kind = LampKind::Spot;
-  lamp.position =
-      table.required(table.position("position", unit_m), "position", "position = [x, y, z]");
-  const Vec3 aim = table.required(table.position("aim", unit_m), "aim", "aim = [x, y, z]");
-  const double distance = glm::length(aim - lamp.position);
-  if (!(distance > 1e-9 * unit_m)) table.fail("aim", "is the light's own position");
-  lamp.axis = (aim - lamp.position) / distance;
+  read_aim(lamp, table, unit_m);
   lamp.field_deg = table.required(table.number("field_deg", {0.0, 180.0, true}), "field_deg",
                                   "field_deg = ..., the full angle beyond which there is no light");
   lamp.beam_deg = table.required(table.number("beam_deg", {0.0, 180.0}), "beam_deg",
@@ -109,6 +117,53 @@ void read_disk(Lamp& lamp, const TableReader& table, double unit_m) {
 
 constexpr std::string_view area_keys[] = {"name", "center", "edge_u", "edge_v"};
 
+// Direction of the plane C0: that of "up" as far as it is across the axis.
+Vec3 read_c0(const Lamp& lamp, const TableReader& table) {
+  const auto across = [&](const Vec3& up) { return up - glm::dot(up, lamp.axis) * lamp.axis; };
+  constexpr double nearly_parallel = 1e-6;
+  if (const auto up = table.direction("up")) {
+    const Vec3 c0 = across(*up);
+    if (glm::length(c0) < nearly_parallel) {
+      table.fail("up", "is parallel to the light's axis",
+                 "it gives the direction of the plane C0, across the axis");
+    }
+    return glm::normalize(c0);
+  }
+  const Vec3 c0 = across({1.0, 0.0, 0.0});
+  return glm::normalize(glm::length(c0) < nearly_parallel ? across({0.0, 0.0, 1.0}) : c0);
+}
+
+void read_measured(Lamp& lamp, const TableReader& table, double unit_m, LuminaireShelf& shelf) {
+  table.allow_only(ies_keys, "a light of type \"ies\"");
+  lamp.kind = LampKind::Measured;
+  read_aim(lamp, table, unit_m);
+  lamp.source = table.required(table.text("file"), "file", "file = \"LUMINAIRE.ies\"");
+  const Luminaire& luminaire = shelf.take(lamp.source, table.where("file"));
+  lamp.photometry = luminaire.light;
+  lamp.c0 = read_c0(lamp, table);
+  const auto tilt_deg = table.number("tilt_deg", {0.0, 180.0});
+  if (tilt_deg && !luminaire.tilt) {
+    table.fail("tilt_deg", "has no effect",
+               "the file says TILT=NONE: its output does not depend on tilt", "Leave it out");
+  }
+  const auto flux = table.colour("flux");
+  const auto color = table.colour("color");
+  if (flux && color) {
+    table.fail("color", "stands beside \"flux\"", "a light has one of the two",
+               "Give the flux as [r, g, b]");
+  }
+  if (flux) {
+    lamp.intensity_cd = *flux / lamp.photometry->solid_angle_sr();
+    return;
+  }
+  const double tilt = luminaire.tilt ? luminaire.tilt->factor_at(tilt_deg.value_or(0.0)) : 1.0;
+  lamp.intensity_cd = Rgb(tilt * lamp.photometry->peak_cd());
+  if (!color) return;
+  // Only its hue: the file's candelas are luminous intensity and stay what they are.
+  if (!(base::luminance(*color) > 0.0)) table.fail("color", "is black", "it gives the light's hue");
+  lamp.intensity_cd *= *color / base::luminance(*color);
+}
+
 }  // namespace
 
 Area read_area(const TomlNode& node, double unit_m) {
@@ -119,17 +174,28 @@ Area read_area(const TomlNode& node, double unit_m) {
   return area;
 }
 
-Lamp read_lamp(const TomlNode& node, double unit_m) {
+const Luminaire& LuminaireShelf::take(const std::filesystem::path& named,
+                                      const base::Location& asked_at) {
+  const std::filesystem::path path = scene_folder_ / named;
+  const auto key = path.lexically_normal();
+  const auto found = luminaires_.find(key);
+  if (found != luminaires_.end()) return found->second;
+  return luminaires_.emplace(key, read_ies(path, asked_at)).first->second;
+}
+
+Lamp read_lamp(const TomlNode& node, double unit_m, LuminaireShelf& shelf) {
   TableReader table(node, "[[light]]", all_keys);
   Lamp lamp;
   lamp.name = table.read_name();
   lamp.group = table.name("group").value_or(lamp.name);
-  const std::string type = table.required(table.choice("type", types), "type",
-                                          "type = \"point\", \"spot\", \"rectangle\" or \"disk\"");
+  const std::string type =
+      table.required(table.choice("type", types), "type",
+                     "type = \"point\", \"spot\", \"rectangle\", \"disk\" or \"ies\"");
   if (type == "point") read_point(lamp, table, unit_m);
   if (type == "spot") read_spot(lamp, table, unit_m);
   if (type == "rectangle") read_rectangle(lamp, table, unit_m);
   if (type == "disk") read_disk(lamp, table, unit_m);
+  if (type == "ies") read_measured(lamp, table, unit_m, shelf);
   for (const Rgb& strength : {lamp.intensity_cd, lamp.exitance}) {
     if (!std::isfinite(base::max_component(strength))) {
       table.fail("flux", "gives no finite strength",

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -57,20 +58,25 @@ struct Object {
   std::string source;                  // "meshes/bay.obj#Liner" or "sphere"
 };
 
-enum class LampKind { Point, Spot, Rectangle, Disk };
+class Photometry;
+
+enum class LampKind { Point, Spot, Rectangle, Disk, Measured };
 
 struct Lamp {
   std::string name;
   std::string group;
   LampKind kind = LampKind::Point;
-  Vec3 position{0.0};        // m; the centre of a rectangle or disk
-  Vec3 axis{0.0, 0.0, 1.0};  // unit: toward the aim of a spot; the normal of a rectangle or disk
-  Rgb intensity_cd{0.0};     // point and spot: on the axis
-  double beam_deg = 0.0;     // spot: full angle of the cone of full intensity
-  double field_deg = 0.0;    // spot: full angle beyond which there is none
+  Vec3 position{0.0};             // m; the centre of a rectangle or disk
+  Vec3 axis{0.0, 0.0, 1.0};       // unit: toward the aim; the normal of a rectangle or disk
+  Rgb intensity_cd{0.0};          // point; spot: on the axis; measured: where it is greatest
+  double beam_deg = 0.0;          // spot: full angle of the cone of full intensity
+  double field_deg = 0.0;         // spot: full angle beyond which there is none
   Vec3 edge_u{0.0}, edge_v{0.0};  // rectangle: full edges, m; it shines along edge_u x edge_v
   double radius_m = 0.0;          // disk
   Rgb exitance{0.0};              // rectangle and disk, lm/m^2
+  Vec3 c0{1.0, 0.0, 0.0};  // measured: unit, across the axis, in the plane C0; C90: c0 x axis
+  std::shared_ptr<const Photometry> photometry;  // measured
+  std::string source;                            // measured: the file, as the scene names it
 };
 
 // A rectangle that lights may be spread over (Indirect::Distributed). It is not there: no ray meets
@@ -114,12 +120,14 @@ struct Camera {
   double focus_m = 0.0;     // } thin lens when both are positive
   double aperture_m = 0.0;  // } diameter
   std::string cctv;         // a [[cctv]] of the scene or one that ships; empty: none
+  std::string range_sensor;  // a [[range_sensor]] of the scene; empty: none
   FilterShape filter = FilterShape::Box;
   double filter_width_px = 1.0;  // full width of the filter's support
   base::Location where;          // of its position in the scene file
 };
 
-// A [[cctv]] or [monitor] table as written; degrade/ knows its keys and checks them.
+// A [[cctv]], [monitor] or [[range_sensor]] table as written; degrade/ knows its keys and checks
+// them.
 struct Setting {
   std::string key;
   std::variant<bool, double, std::string, std::vector<double>> value;
@@ -160,6 +168,7 @@ struct Scene {
   std::vector<Camera> cameras;
   std::vector<SettingTable> cctv;
   std::optional<SettingTable> monitor;
+  std::vector<SettingTable> range_sensors;
   Quality quality;
   std::vector<std::string> warnings;  // one line each, e.g. counted degenerate triangles
 };

@@ -11,9 +11,9 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr std::string_view root_keys[] = {"format",  "name",   "unit", "material", "object",
-                                          "light",   "area",   "sun",  "earth",    "orbit",
-                                          "ambient", "camera", "cctv", "monitor",  "quality"};
+constexpr std::string_view root_keys[] = {"format", "name", "unit",    "material",     "object",
+                                          "light",  "area", "sun",  "earth",   "orbit",        "ambient",
+                                          "camera", "cctv", "monitor", "range_sensor", "quality"};
 constexpr std::string_view ambient_keys[] = {"radiance"};
 constexpr std::string_view units[] = {"m", "cm", "mm", "ft", "in"};
 constexpr double metres_per_unit[] = {1.0, 0.01, 0.001, 0.3048, 0.0254};
@@ -74,8 +74,9 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   read_named(root, "material", [&](const TomlNode& node) {
     return scene.materials.emplace_back(read_material(node)).name;
   });
+  LuminaireShelf luminaires(path.parent_path());
   read_named(root, "light", [&](const TomlNode& node) {
-    return scene.lamps.emplace_back(read_lamp(node, unit_m)).name;
+    return scene.lamps.emplace_back(read_lamp(node, unit_m, luminaires)).name;
   });
   read_named(root, "area", [&](const TomlNode& node) {
     return scene.areas.emplace_back(read_area(node, unit_m)).name;
@@ -90,6 +91,9 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   });
   read_named(root, "cctv", [&](const TomlNode& node) {
     return scene.cctv.emplace_back(read_settings(node, "[[cctv]]", true)).name;
+  });
+  read_named(root, "range_sensor", [&](const TomlNode& node) {
+    return scene.range_sensors.emplace_back(read_settings(node, "[[range_sensor]]", true)).name;
   });
   if (const TomlNode* node = plain_table(root, "monitor")) {
     scene.monitor = read_settings(*node, "[monitor]", false);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/ies_file.h"
 #include "scenes/mesh.h"
 #include "scenes/place_mesh.h"
 #include "scenes/scene.h"
@@ -22,7 +23,20 @@ namespace earthshine::scenes {
 // at `where` that gives the numbers. `what` names the material in the message.
 void check_energy(const Material& material, const base::Location& where, const std::string& what);
 
-[[nodiscard]] Lamp read_lamp(const TomlNode& node, double unit_m);
+// Measured luminaires are read once however many lamps are of their kind.
+class LuminaireShelf {
+ public:
+  explicit LuminaireShelf(std::filesystem::path scene_folder)
+      : scene_folder_(std::move(scene_folder)) {}
+  [[nodiscard]] const Luminaire& take(const std::filesystem::path& named,
+                                      const base::Location& asked_at);
+
+ private:
+  std::filesystem::path scene_folder_;
+  std::map<std::filesystem::path, Luminaire> luminaires_;
+};
+
+[[nodiscard]] Lamp read_lamp(const TomlNode& node, double unit_m, LuminaireShelf& shelf);
 
 [[nodiscard]] Area read_area(const TomlNode& node, double unit_m);
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/lamp_light.h"
+
 namespace earthshine::scenes {
 namespace {
 
@@ -25,6 +27,20 @@ double sun_zenith_cosine(const Earth& earth, const Vec3& sun, const Vec3& direct
   const Vec3 surface_normal = direction * t - earth.direction * d;  // unit by construction
   return glm::dot(surface_normal, sun);
 }
+
+// Where the limb crosses the Sun's disc: its height over the limb in radii of the disc, from -1,
+// hidden, to 1, free.
+double sun_over_limb(const Scene& scene) {
+  const double radius = base::radians(scene.sun->angular_radius_deg);
+  const double separation =
+      std::acos(std::clamp(glm::dot(scene.sun->direction, scene.earth->direction), -1.0, 1.0));
+  const double over_limb = separation - base::radians(scene.earth->half_angle_deg);
+  if (radius <= 0.0) return over_limb > 0.0 ? 1.0 : -1.0;
+  return std::clamp(over_limb / radius, -1.0, 1.0);
+}
+
+// Share of a disc on one side of a chord at distance x radii from its centre.
+double disc_share(double x) { return 0.5 + (x * std::sqrt(1.0 - x * x) + std::asin(x)) / base::pi; }
 
 }  // namespace
 
@@ -60,15 +76,32 @@ bool earth_is_lit(const Scene& scene) {
 
 double visible_sun_share(const Scene& scene) {
   if (!scene.sun) return 0.0;
-  if (!scene.earth) return 1.0;
+  return scene.earth ? disc_share(sun_over_limb(scene)) : 1.0;
+}
+
+Vec3 sample_sun(const Scene& scene, double u, double v) {
+  const Vec3& sun = scene.sun->direction;
   const double radius = base::radians(scene.sun->angular_radius_deg);
-  const double separation =
-      std::acos(std::clamp(glm::dot(scene.sun->direction, scene.earth->direction), -1.0, 1.0));
-  const double over_limb = separation - base::radians(scene.earth->half_angle_deg);
-  if (radius <= 0.0) return over_limb > 0.0 ? 1.0 : 0.0;
-  const double x = std::clamp(over_limb / radius, -1.0, 1.0);
-  // Share of a disc on one side of a chord at distance x radii from its centre.
-  return 0.5 + (x * std::sqrt(1.0 - x * x) + std::asin(x)) / base::pi;
+  const double over = scene.earth ? sun_over_limb(scene) : 1.0;
+  if (over >= 1.0 || over <= -1.0) return sample_cone(sun, radius, u, v);
+  // Across the limb the place has the density of the chords' lengths, whose integral is inverted by
+  // halving; along the chord it is uniform. In radii of the disc, x away from the Earth.
+  const double wanted = u * disc_share(over);
+  double low = -1.0, high = over;  // of -x
+  for (int step = 0; step < 50; ++step) {
+    const double middle = 0.5 * (low + high);
+    (disc_share(middle) > wanted ? high : low) = middle;
+  }
+  const double x = -0.5 * (low + high);
+  const double y = (2.0 * v - 1.0) * std::sqrt(std::max(0.0, 1.0 - x * x));
+  const Vec3 away =
+      glm::normalize(glm::dot(sun, scene.earth->direction) * sun - scene.earth->direction);
+  // Equal areas of the disc are equal solid angles: 1 - cos = r^2 (1 - cos radius).
+  const double half_sine = std::sin(radius / 2);
+  const double r2 = x * x + y * y, one_minus_cos = r2 * 2.0 * half_sine * half_sine;
+  const double per_radius = std::sqrt(one_minus_cos * (2.0 - one_minus_cos) / std::max(r2, 1e-300));
+  return glm::normalize((1.0 - one_minus_cos) * sun +
+                        per_radius * (x * away + y * glm::cross(sun, away)));
 }
 
 Rgb sun_sample_illuminance(const Scene& scene) {

@@ -23,7 +23,11 @@ namespace earthshine::scenes {
 // 1e-4 of the disc).
 [[nodiscard]] double visible_sun_share(const Scene& scene);
 
-// What directions spread uniformly over the Sun's disc must each carry so that a plate that faces
+// A direction spread uniformly, for u and v in [0, 1), over what the Earth leaves of the Sun's disc
+// (the limb taken as straight, as above).
+[[nodiscard]] Vec3 sample_sun(const Scene& scene, double u, double v);
+
+// What directions spread so must each carry so that a plate that faces
 // it gets illuminance_lx times the share in view: the mean cosine over the disc is (1 + cos r) / 2.
 [[nodiscard]] Rgb sun_sample_illuminance(const Scene& scene);
 

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "radiosity/refine.h"
 #include "radiosity/row_pilot.h"
+#include "raytrace/cryptomatte.h"
 #include "raytrace/knots.h"
 
 namespace earthshine::studies {
@@ -128,8 +129,11 @@ void add_picture(MemoryCase& m, const scenes::LightGroups& groups, const scenes:
                                       : static_cast<std::size_t>(options.columns) *
                                             static_cast<std::size_t>(options.rows);
   m.layers = options.per_light ? std::max<std::size_t>(1, groups.count()) : 1;
-  // Three channels for the picture and each layer; of the others, none has more.
-  m.channels = 3 + (options.per_light ? 3 * groups.count() : 0) + 3 * options.aovs.size();
+  m.channels = 3 + (options.per_light ? 3 * groups.count() : 0);
+  for (const std::string& aov : options.aovs) {
+    // Of the others none has more than a colour's.
+    m.channels += aov.starts_with("crypto_") ? raytrace::cryptomatte_channel_count : 3;
+  }
   m.specular = effects.mirror || effects.refraction || effects.phong || options.shared.on;
   const auto is_part = [](const std::string& aov) {
     return aov == "direct" || aov == "indirect" || aov == "specular";

@@ -86,6 +86,7 @@ View look(const StudyScene& study, const radiosity::Solution& solution,
   render.columns = options.columns;
   render.rows = options.rows;
   render.gather_rays = options.gather_rays;
+  render.shared = options.shared;
   render.seed = options.seed;
   render.aovs = {"object"};
   View view;

@@ -57,6 +57,7 @@ struct ViewOptions {
   int columns = 512;
   int rows = 512;
   int gather_rays = 256;  // per pixel
+  raytrace::SharedGather shared = {};
   std::uint64_t seed = 1;
   std::optional<degrade::Setup> cctv;  // none: no shares of clipped pixels
 };

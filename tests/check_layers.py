@@ -19,7 +19,7 @@ LAYERS = ["base", "scenes", "radiosity", "raytrace", "degrade", "studies", "app"
 OWNERS = {
     "Embree": (r"embree[34]?/", ["scenes/ray_query.cpp"]),
     "Eigen": (r"Eigen/", ["radiosity/*", "degrade/*"]),
-    "OpenEXR": (r"(OpenEXR/|Imath/|Imf|Imath|Iex|half\.h)", ["base/exr_file.cpp"]),
+    "OpenEXR": (r"(OpenEXR/|Imath/|Imf|Imath|Iex|half\.h)", ["base/exr_*"]),
     "oneTBB": (r"(tbb|oneapi)/", ["base/parallel.cpp"]),
     "toml++": (r"toml(\+\+|plusplus)", ["scenes/toml_file.cpp"]),
     "libpng": (r"png\.h", ["base/png_file.cpp", "base/png_reader.cpp"]),

@@ -77,6 +77,36 @@ TEST(Exr, AttributesSurviveReadingAndWritingAgain) {
   EXPECT_EQ(read_bytes(folder / "a.exr"), read_bytes(folder / "b.exr"));
 }
 
+TEST(Exr, APartOfAPictureSaysWhereItLies) {
+  const TemporaryFolder folder;
+  ExrHeader header;
+  header.whole = {20, 10, 5, 3};
+  const Image part = pattern(4, 2);
+  write_exr(folder / "a.exr", part, header);
+  const Imf::InputFile file((folder / "a.exr").c_str());
+  EXPECT_EQ(file.header().displayWindow(), Imath::Box2i({0, 0}, {19, 9}));
+  EXPECT_EQ(file.header().dataWindow(), Imath::Box2i({5, 3}, {8, 4}));
+  const ExrFile back = read_exr(folder / "a.exr");
+  ASSERT_EQ(back.image.width, 4);
+  EXPECT_EQ(back.image.channels.front().values, part.channels.front().values);
+}
+
+TEST(Exr, MatricesKeepTheirRowsAndTheScreenWindowItsWidth) {
+  const TemporaryFolder folder;
+  ExrMatrix matrix;
+  for (std::size_t k = 0; k < matrix.size(); ++k) matrix[k] = static_cast<float>(k) + 0.5F;
+  write_exr(folder / "a.exr", pattern(2, 2),
+            {{}, {{"screenWindowWidth", 1.25F}, {"focus", 8.0F}}, {{"worldToNDC", matrix}}});
+  const Imf::InputFile file((folder / "a.exr").c_str());
+  EXPECT_EQ(Imf::worldToNDC(file.header())[1][2], 6.5F);  // row 1, column 2
+  EXPECT_EQ(file.header().screenWindowWidth(), 1.25F);
+  EXPECT_EQ(Imf::focus(file.header()), 8.0F);
+  const ExrFile back = read_exr(folder / "a.exr");
+  ASSERT_EQ(back.header.matrices.size(), 1U);
+  EXPECT_EQ(back.header.matrices[0].first, "worldToNDC");
+  EXPECT_EQ(back.header.matrices[0].second, matrix);
+}
+
 TEST(Exr, DepthMayBeInfiniteColourMayNot) {
   const TemporaryFolder folder;
   const float infinity = std::numeric_limits<float>::infinity();

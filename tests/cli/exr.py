@@ -28,7 +28,7 @@ def _unpack(block, size):
 
 
 def read(path):
-    """(header, width, height, channels): header maps names to str, float or raw bytes."""
+    """(header, width, height, channels): header maps names to str, float, 16 floats or raw bytes."""
     with open(path, "rb") as file:
         data = file.read()
     magic, version = struct.unpack_from("<ii", data)
@@ -44,6 +44,8 @@ def read(path):
             value = value.decode()
         elif kind == "float":
             value, = struct.unpack("<f", value)
+        elif kind == "m44f":
+            value = struct.unpack("<16f", value)
         elif kind == "chlist":
             place = 0
             while value[place]:

@@ -44,6 +44,18 @@ class Inspect(program.Case):
         self.assertEqual(report["cameras"][1]["fov_deg"], 30)
         self.assertEqual(report["light_groups"], ["sun"])
 
+    def test_measured_luminaire_is_shown_like_other_lamps(self):
+        self.write("even.ies", program.EVEN_IES)
+        self.write("ball.toml", program.BALL + program.IES_LAMP)
+        lamp = self.json("inspect", "ball.toml")["lamps"][-1]
+        self.assertEqual((lamp["type"], lamp["source"], lamp["group"]), ("ies", "even.ies", "flood"))
+        self.assertAlmostEqual(lamp["flux_lm"][1], 2 * 3.141592653589793 * 100)  # 100 cd, below only
+        self.says(self.done("inspect", "ball.toml"), "lamp flood: ies (even.ies), group flood, 628.319")
+        self.assertIn("flood", self.json("plan", "ball.toml")["light_groups"])
+        flux = self.json("inspect", "ball.toml", "--set", "light.flood.flux=300")["lamps"][-1]["flux_lm"]
+        self.assertAlmostEqual(flux[0], 300.0)
+        landed = [s for s in self.json("solve", "ball.toml")["sources"] if s["name"] == "flood"]
+        self.assertAlmostEqual(landed[0]["emitted_lm"][0], 2 * 3.141592653589793 * 100)
 
     def test_scene_of_the_guide_is_sound(self):
         guide = (program.TOP / "docs" / "guide.md").read_text(encoding="utf-8")

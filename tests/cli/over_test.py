@@ -98,7 +98,7 @@ class Over(program.Case):
         for alpha in ("1.5", "-0.1", "nan", "half", ""):
             self.says(self.refused(*over, "--png", "o.png", "--over-alpha", alpha), "0 to 1")
         self.says(self.refused("render", "ball.toml", "-o", "a.exr", "--over-style", "wire"), "--over PHOTO.png")
-        self.says(self.refused("render", "ball.toml", "--png", "a.png"), "-o is missing")
+        self.says(self.refused("render", "ball.toml", "--png", "a.png"), "--output")
 
     def test_broken_photographs(self):
         whole = photograph(120, 90)

@@ -42,6 +42,25 @@ form_factor_rays = 64
 gather_rays = 16
 """
 
+# 100 cd every way below, and a lamp with that light over the ball's floor.
+EVEN_IES = """IESNA:LM-63-2002
+[LUMINAIRE] even
+TILT=NONE
+1 1000 1 3 1 1 2 0.1 0.1 0
+1 1 50
+0 45 90
+0
+100 100 100
+"""
+IES_LAMP = """
+[[light]]
+name = "flood"
+type = "ies"
+file = "even.ies"
+position = [0, 0, 2.5]
+aim = [0, 0, 0]
+"""
+
 # A ball on a floor under a lamp and the Sun, open above: two light groups, shadows, a highlight.
 BALL = """format = 1
 name = "ball on a floor"

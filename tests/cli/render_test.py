@@ -99,11 +99,27 @@ class Render(program.Case):
         self.assertIn("earthshine:seconds.read", seconds)
         self.assertTrue(all(value >= 0 for value in seconds.values()))
 
-    def test_indirect_is_one_of_three_words(self):
+    def test_indirect_is_one_of_four_words(self):
         self.write("ball.toml", program.BALL)
         for how in ("1", "Radiosity", ""):
             self.says(self.refused("render", "ball.toml", "-o", "a.exr", "--indirect", how),
-                      "radiosity, distributed, none")
+                      "radiosity, distributed, none, paths")
+
+    def test_paths_agree_with_radiosity_and_carry_their_variance(self):
+        radiosity = sum(self.render("ball.toml")[3]["G"])
+        header, _, _, paths = self.render("ball.toml", "--indirect", "paths", "--per-light")
+        self.assertEqual(header["earthshine:indirect"], "paths")
+        # The pixels' own variances say how far the sum may be off; patches add about 1 %.
+        error = 4 * sum(paths["variance"]) ** 0.5 + 0.02 * radiosity
+        self.assertLess(error, 0.1 * radiosity)
+        self.assertAlmostEqual(sum(paths["G"]), radiosity, delta=error)
+        self.assertIn("light_lamp.R", paths)
+
+    def test_paths_refuse_what_they_do_not_have(self):
+        self.write("ball.toml", program.BALL)
+        for arguments, words in ((("--aov", "depth"), ("--aov", "--indirect paths")),
+                                 (("--set", "quality.gather_rays=1"), ("1 paths", "2 or more"))):
+            self.says(self.refused("render", "ball.toml", "-o", "a.exr", "--indirect", "paths", *arguments), *words)
 
     def test_indirect_light_adds(self):
         sums = {how: sum(self.render("ball.toml", "--indirect", how)[3]["G"])

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Broken scenes: each is refused with its place, what was found and what is allowed, exit code 2."""
+import os
 import unittest
 
 import program
@@ -72,6 +73,19 @@ class BrokenScenes(program.Case):
             self.write("part.obj", obj)
             self.write("scene.toml", BOX + TRIANGLE)
             self.says(self.refused("inspect", "scene.toml"), "part.obj:")
+
+    def test_broken_luminaires(self):
+        lines = program.EVEN_IES.split("\n")
+        for ies, place in ((program.EVEN_IES[:-8], "even.ies:8"), (program.EVEN_IES.replace("100 100", "100 nan"), "even.ies:8:5"),
+                           (program.EVEN_IES.replace("0 45 90", "0 45 30"), "even.ies:6:6"),
+                           ("\n".join(lines[:3]), "even.ies:3"), ("", "even.ies")):
+            self.write("even.ies", ies)
+            self.write("scene.toml", BOX + program.IES_LAMP)
+            self.says(self.refused("inspect", "scene.toml"), place)
+        (self.folder / "even.ies").unlink()
+        self.broken(BOX + program.IES_LAMP, "even.ies", "No such file")
+        os.mkfifo(self.folder / "even.ies")
+        self.broken(BOX + program.IES_LAMP, "even.ies", "a pipe or a device")
 
     def test_degenerate_triangles_are_counted_not_refused(self):
         self.write("part.obj", "v 0.5 0.5 0.5\nv 1 0.5 0.5\nv 0.5 1 0.5\nv 1.5 0.5 0.5\nf 1 2 3\nf 1 2 4\nf 1 1 2\n")

@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "scenes/photometry.h"
 #include "tests/base/temporary_folder.h"
 #include "tests/support/scene_builder.h"
 
@@ -161,6 +162,11 @@ TEST(SolutionFile, AChangeThatTheSolutionDependsOnIsNamed) {
   changed("the materials", [](auto& s) { s.triangles[0].material = 1; });
   changed("the lights", [](auto& s) { s.lamps[0].intensity_cd *= 0.5; });
   changed("the lights", [](auto& s) { s.lamps[0].group = "panels"; });
+  changed("the lights", [](auto& s) {
+    using Table = std::vector<double>;
+    s.lamps[0].photometry =
+        std::make_shared<const scenes::Photometry>(Table{0, 90}, Table{0, 360}, Table{1, 2, 1, 2});
+  });
   changed("the lights", [](auto& s) { s.materials[3].emit.b = 3.0; });
   changed("the lights, the Sun or the Earth", [](auto& s) { s.sun.emplace(); });
   changed("the geometry, the materials", [](auto& s) {

@@ -43,7 +43,7 @@ double exact_illuminance() {  // E = pi L sin^2
 double illuminance(const scenes::Scene& scene, int lights, const Vec3& point) {
   const tests::Prepared prepared(scene);
   const LightSampler sampler(scene, prepared.groups, prepared.effects, Indirect::Distributed,
-                             lights, earth_area(scene, "panel"));
+                             lights, false, earth_area(scene, "panel"));
   double sum = 0.0;
   for (std::size_t k = 0; k < sampler.count(); ++k) {
     const scenes::LightSample sample = sampler.sample(k, point, 0.5, 0.5);

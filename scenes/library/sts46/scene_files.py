@@ -241,8 +241,7 @@ spread = "gaussian"
 
 [quality]
 patch_edge = 0.45  # m: about {patches} patches
-form_factor_rays = 1024
-gather_rays = 256"""
+form_factor_rays = 1024"""
 
 
 def scene_text(name, patches):

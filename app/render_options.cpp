@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options of render that ask for less than the whole picture: a part of it, or a time.
+// Options of render: less than the whole picture (a part of it, a time), and how light gets around.
 #include <charconv>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -80,6 +81,35 @@ void add_window_options(CLI::App& parser, RenderCall& call) {
           },
           "The best picture in that time; the bytes then differ between runs")
       ->type_name("SECONDS");
+}
+
+void add_indirect_options(CLI::App& parser, RenderCall& call) {
+  using raytrace::Indirect;
+  const std::map<std::string, Indirect> names = {{"radiosity", Indirect::Radiosity},
+                                                 {"distributed", Indirect::Distributed},
+                                                 {"none", Indirect::None},
+                                                 {"paths", Indirect::Paths}};
+  parser
+      .add_option_function<std::string>(
+          "--indirect",
+          [&call, names](const std::string& text) {
+            const auto known = names.find(text);
+            if (known == names.end()) {
+              throw CLI::ValidationError(
+                  "--indirect",
+                  "\"" + text + "\" is not one of radiosity, distributed, none, paths");
+            }
+            call.indirect = known->second;
+          },
+          "radiosity (default), distributed (many lights, no interreflection), none, paths (slow "
+          "reference)")
+      ->type_name("HOW");
+  add_whole_number(parser, "--distributed-lights", call.distributed_lights, 1, 1U << 20U,
+                   "Lights of --indirect distributed (default 64)");
+  parser
+      .add_option("--distributed-over", call.distributed_over,
+                  "Spread the Earth's lights over this [[area]] of the scene, not its disc")
+      ->type_name("NAME");
 }
 
 }  // namespace earthshine::app
