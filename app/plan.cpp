@@ -62,7 +62,8 @@ void add_memory(Json& report, const LoadedScene& loaded) {
   studies::expect_rows(sizes, loaded.scene, query, solver);
   report["memory"] = memory_json(studies::memory_needed(sizes));
   for (std::size_t k = 0; k < loaded.scene.cameras.size(); ++k) {
-    raytrace::RenderOptions picture;
+    raytrace::RenderOptions picture =
+        raytrace::render_options(scenes::resolve_quality(loaded.scene));
     picture.columns = loaded.scene.cameras[k].columns;
     picture.rows = loaded.scene.cameras[k].rows;
     studies::MemoryCase with_picture = sizes;

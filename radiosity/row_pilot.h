@@ -24,8 +24,8 @@ struct ExpectedRows {
                                          std::size_t patches, int rays_per_patch);
 
 // How many patches will be too small for any ray when the scene is cut evenly into `patches`: those
-// borrow entries (balance), and the matrix is then copied. By reciprocity a patch of area a gets R
-// a N / A rays of N patches with R rays each and A area in all, Poisson.
+// borrow entries (balance), and the matrix is then copied. By reciprocity a patch of area a gets
+// R a N / A rays of N patches with R rays each and A area in all, Poisson.
 [[nodiscard]] double expected_unreached(const scenes::Scene& scene, std::size_t patches,
                                         int rays_per_patch);
 

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "radiosity/refine.h"
 #include "radiosity/row_pilot.h"
+#include "raytrace/cryptomatte.h"
 #include "raytrace/knots.h"
 
 namespace earthshine::studies {
@@ -33,6 +34,14 @@ constexpr double solver_vectors = 20.0;
 constexpr double solution_bytes = 4.0 * sizeof(float);  // per patch and column
 
 constexpr double texel_bytes = 16.0;  // radiance of a patch or knot in a layer
+
+double record_bytes(const MemoryCase& m) {
+  const auto layers = static_cast<double>(m.layers);
+  const double entries = layers + (m.splits_parts ? 3.0 : 0.0);
+  const PixelRecordBytes& b = pixel_record_bytes;
+  return b.sums + b.sums_per_entry * entries +
+         (m.shares_gather ? b.gather_point + b.gather_per_layer * layers : 0.0);
+}
 
 }  // namespace
 
@@ -72,8 +81,7 @@ MemoryNeed memory_needed(const MemoryCase& m) {
   }
   if (m.pixels > 0) {
     drawing.parts.push_back(
-        {"picture", pixels * (double(m.channels) * sizeof(float) + pixel_record_bytes.per_pixel +
-                              pixel_record_bytes.per_pixel_layer * layers)});
+        {"picture", pixels * (double(m.channels) * sizeof(float) + record_bytes(m))});
   }
   return std::max({casting, solving, drawing},
                   [](const MemoryNeed& a, const MemoryNeed& b) { return a.total() < b.total(); });
@@ -117,11 +125,21 @@ void set_patches(MemoryCase& m, std::size_t patches, const radiosity::SolveOptio
 
 void add_picture(MemoryCase& m, const scenes::LightGroups& groups, const scenes::Effects& effects,
                  const raytrace::RenderOptions& options) {
-  m.pixels = static_cast<std::size_t>(options.columns) * static_cast<std::size_t>(options.rows);
+  m.pixels = options.crop.columns > 0 ? options.crop.pixel_count()
+                                      : static_cast<std::size_t>(options.columns) *
+                                            static_cast<std::size_t>(options.rows);
   m.layers = options.per_light ? std::max<std::size_t>(1, groups.count()) : 1;
-  // Three channels for the picture and each layer; of the others, none has more.
-  m.channels = 3 + (options.per_light ? 3 * groups.count() : 0) + 3 * options.aovs.size();
-  m.specular = effects.mirror || effects.refraction || effects.phong;
+  m.channels = 3 + (options.per_light ? 3 * groups.count() : 0);
+  for (const std::string& aov : options.aovs) {
+    // Of the others none has more than a colour's.
+    m.channels += aov.starts_with("crypto_") ? raytrace::cryptomatte_channel_count : 3;
+  }
+  m.specular = effects.mirror || effects.refraction || effects.phong || options.shared.on;
+  const auto is_part = [](const std::string& aov) {
+    return aov == "direct" || aov == "indirect" || aov == "specular";
+  };
+  m.splits_parts = std::any_of(options.aovs.begin(), options.aovs.end(), is_part);
+  m.shares_gather = options.shared.on;
   if (options.indirect != raytrace::Indirect::Radiosity) {
     m.solves = false;
     m.columns = 0;

@@ -17,11 +17,13 @@
 
 namespace earthshine::studies {
 
-// Per pixel of a picture beside its channels: what the renderer keeps until the picture is whole.
+// Per pixel of a picture beside its channels: what the renderer keeps until the picture is whole
+// (raytrace/pixel_sums.h, gather_field.h).
 struct PixelRecordBytes {
-  double per_pixel = 140.0;  // gather point, sums over samples and what they tell
-  double per_pixel_layer =
-      60.0;  // radiance of the gather point, three times while it is smoothed; sum
+  double sums = 64.0;              // samples, moments of the luminance, wanted samples
+  double sums_per_entry = 24.0;    // radiance of an image layer or part
+  double gather_point = 60.0;      // with SharedGather; its error, luminance, a mark
+  double gather_per_layer = 36.0;  // radiance, as cast, smoothed, and a copy meanwhile
 };
 inline constexpr PixelRecordBytes pixel_record_bytes;
 
@@ -35,10 +37,12 @@ struct MemoryCase {
   std::size_t columns = 0;     // 3 * light groups
   bool solves = false;         // the matrix is cast; false with columns: the solution is read
   int threads = 1;
-  std::size_t pixels = 0;    // 0: no picture
-  std::size_t channels = 0;  // of the picture, 4 bytes each
-  std::size_t layers = 0;    // that read the solution: 1, or the light groups
-  bool specular = false;     // a second table of the solution for highlights, mirrors, glass
+  std::size_t pixels = 0;      // 0: no picture
+  std::size_t channels = 0;    // of the picture, 4 bytes each
+  std::size_t layers = 0;      // that read the solution: 1, or the light groups
+  bool splits_parts = false;   // layers direct, indirect, specular
+  bool shares_gather = false;  // RenderOptions::shared
+  bool specular = false;       // a second table of the solution for highlights, mirrors, glass
 };
 
 struct MemoryPart {

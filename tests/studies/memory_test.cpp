@@ -81,6 +81,26 @@ TEST(Memory, PicturesWithoutASolutionNeedNoPatches) {
   EXPECT_LT(memory_needed(sizes).total(), 0.2 * solved);
 }
 
+TEST(Memory, EveryLayerOfThePictureCounts) {
+  const auto builder = lit_room();
+  const tests::Prepared prepared(builder.scene);
+  raytrace::RenderOptions picture;
+  picture.columns = picture.rows = 1000;
+  const auto bytes = [&](const std::vector<std::string>& aovs) {
+    picture.aovs = aovs;
+    MemoryCase sizes;
+    add_picture(sizes, prepared.groups, prepared.effects, picture);
+    return part(memory_needed(sizes), "picture");
+  };
+  EXPECT_NEAR(bytes({"albedo"}) - bytes({}), 12e6, 1.0);
+  // Three ranks of two objects and the preview: 15 channels.
+  EXPECT_NEAR(bytes({"crypto_object"}) - bytes({}), 60e6, 1.0);
+  // A part is summed apart, in doubles, with the two others.
+  EXPECT_NEAR(bytes({"direct"}) - bytes({}), 12e6 + 72e6, 1.0);
+  picture.crop = {0, 0, 10, 10};
+  EXPECT_LT(bytes({}), 1e5);
+}
+
 TEST(Memory, RowsExpectedAreTheRowsThatAreCast) {
   const auto builder = lit_room();
   const tests::Prepared prepared(builder.scene);
