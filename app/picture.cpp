@@ -147,11 +147,11 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
     Progress progress(fmt::format("render {}", camera.name), studio.common.quiet);
     frame = times.measure("render", [&] {
       if (call.indirect == raytrace::Indirect::Paths) {
-        return raytrace::trace_paths(studio.loaded.scene, studio.loaded.groups,
-                                     studio.loaded.effects, studio.query, camera,
-                                     {options.columns, options.rows, options.gather_rays,
-                                      options.per_light, raytrace::PathSet::All, options.seed},
-                                     std::ref(progress));
+        return raytrace::trace_paths(
+            studio.loaded.scene, studio.loaded.groups, studio.loaded.effects, studio.query, camera,
+            {options.columns, options.rows, options.gather_rays, options.per_light,
+             raytrace::PathSet::All, options.seed, options.stop},
+            std::ref(progress));
       }
       return raytrace::render(studio.loaded.scene, studio.loaded.groups, studio.loaded.effects,
                               studio.query, studio.light.solution, camera, options,

@@ -146,6 +146,8 @@ base::ExrHeader provenance_header(const Provenance& p) {
   header.number("gather_rays", p.options.gather_rays);
   header.number("camera_samples", p.render.camera_samples);
   header.number("relative_noise", p.render.relative_noise);
+  if (p.render.stopped) header.number("finished_share", p.render.finished_share);
+  header.text("partial", p.render.stopped ? "yes" : "no");
   if (p.solution != nullptr) {
     header.text("refined", p.solver.refine.on ? "yes" : "no");
     header.number("patch_edge_m", p.solver.patch_edge_m);

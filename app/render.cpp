@@ -239,8 +239,9 @@ void run(RenderCall call, const Common& common) {
   }
   if (call.json) print(dump(reports.size() == 1 ? reports.front() : reports));
   if (whole) return;
+  const std::string& file = pictures[reports.size() - 1].files.output;
   throw Error(Blame::Work, "render", "interrupted", {},
-              fmt::format("What was finished is in {}", pictures[reports.size() - 1].files.output));
+              file.empty() ? "" : "What was finished is in " + file + ", which says it is partial");
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 
 #include "base/image.h"
 #include "raytrace/camera.h"
+#include "raytrace/pixel_filter.h"
 #include "scenes/ray_query.h"
 
 namespace earthshine::raytrace {
@@ -107,6 +108,7 @@ struct CoverageSamples {
   Window wanted;
   Window counted;                            // holds `wanted`
   const std::vector<std::uint32_t>& counts;  // per pixel of `counted`; 0: not finished
+  const PixelFilter& filter;
 };
 
 // Fills the Cryptomatte channels that `image`, the wanted window, has, by casting the picture's own

@@ -43,11 +43,15 @@ bool PixelShader::read_field(const Surface& surface, const Rgb& weight) {
       x_, y_, glm::vec3(surface.position - shared_.camera_position), glm::vec3(surface.normal));
   if (point == no_point) return false;
   const std::span<const glm::vec3> radiance = field.at(point);
+  Rgb all(0.0);
   for (std::size_t k = 0; k < shared_.layers; ++k) {
+    all += Rgb(radiance[k]);
     add(k, sample_, Part::Indirect, weight * Rgb(radiance[k]));
   }
-  if (shared_.splits_parts) {  // what came straight from the sky is no interreflection
-    const Rgb sky = weight * Rgb(radiance[shared_.layers]);
+  if (shared_.splits_parts) {
+    // What came straight from the sky is no interreflection; fits of their own may leave it larger
+    // than the whole by their noise.
+    const Rgb sky = weight * glm::min(Rgb(radiance[shared_.layers]), all);
     sums_[shared_.layers + static_cast<std::size_t>(Part::Direct)] += sky;
     sums_[shared_.layers + static_cast<std::size_t>(Part::Indirect)] -= sky;
   }

@@ -128,7 +128,10 @@ class Passes {
     // Points look at neighbours twice: to find out who needs more rays, and to share.
     const Window wide = widened(
         around, 2 * sharing.smooth_pixels + find_pixels + shared_.filter.reach_px(), camera_);
-    if (limited) how.rays = affordable_rays(wide, cast, how.rays);
+    if (limited) {
+      how.rays = 8;
+      how.rays = affordable_rays(wide, cast);
+    }
     how.stop = [this] { return stops() || out_of_time(); };
     const auto pixels = static_cast<double>(around.pixel_count());
     const double rays = pixels * how.rays, samples = pixels * mean_samples;
@@ -191,20 +194,27 @@ class Passes {
     return any ? marks : std::vector<std::uint8_t>{};
   }
 
-  // As many as half of the time that is left allows, from the time that a few pixels take.
+  // As many as half of the time that is left allows, from the time that a few rays take in four
+  // small windows.
   template <class Cast>
-  int affordable_rays(const Window& wide, const Cast& cast, int rays) const {
-    constexpr int probe_px = 24;
-    const Window probe{wide.x + (wide.columns - std::min(wide.columns, probe_px)) / 2,
-                       wide.y + (wide.rows - std::min(wide.rows, probe_px)) / 2,
-                       std::min(wide.columns, probe_px), std::min(wide.rows, probe_px)};
+  int affordable_rays(const Window& wide, const Cast& cast) const {
+    constexpr int probe_px = 16;
     const auto start = Clock::now();
-    static_cast<void>(cast(probe));
-    const double per_ray = seconds_since(start) / (static_cast<double>(probe.pixel_count()) * rays);
+    double rays = 1.0;
+    for (const double x : {0.3, 0.7}) {
+      for (const double y : {0.3, 0.7}) {
+        const Window probe{wide.x + static_cast<int>(x * std::max(0, wide.columns - probe_px)),
+                           wide.y + static_cast<int>(y * std::max(0, wide.rows - probe_px)),
+                           std::min(wide.columns, probe_px), std::min(wide.rows, probe_px)};
+        const GatherField field = cast(probe);
+        rays += static_cast<double>(field.gather_rays + field.camera_rays);
+      }
+    }
+    const double per_ray = seconds_since(start) / rays;
     const double left = options_.time_limit_s - seconds_since(start_);
     const double count = 0.5 * left / (per_ray * static_cast<double>(wide.pixel_count()));
-    return static_cast<int>(
-        std::bit_floor(static_cast<std::uint32_t>(std::clamp(count, 8.0, 65536.0))));
+    return static_cast<int>(std::bit_floor(
+        static_cast<std::uint32_t>(std::clamp(count, 8.0, double(most_gather_rays)))));
   }
 
   // What was not reached when it was stopped gets a single sample all the same: a quick look.

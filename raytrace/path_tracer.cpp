@@ -113,6 +113,7 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
   std::size_t done = 0;
   std::mutex progress_mutex;
   base::parallel_chunks(rows, 1, [&](std::size_t y, std::size_t) {
+    if (options.stop && options.stop()) return;
     PathWalker walker(world);
     for (std::size_t x = 0; x < columns; ++x) {
       const std::size_t pixel = y * columns + x;
@@ -129,12 +130,13 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
       store(sums, pixel, frame.image);
     }
     row_rays[y] = walker.rays();
-    if (progress) {
-      const std::lock_guard lock(progress_mutex);
-      progress(++done, rows);
-    }
+    const std::lock_guard lock(progress_mutex);
+    ++done;
+    if (progress) progress(done, rows);
   });
   for (const RayCounts& rays : row_rays) frame.report.rays += rays;
+  frame.report.finished_share = static_cast<double>(done) / static_cast<double>(rows);
+  frame.report.stopped = done < rows;
   frame.report.camera_samples = options.paths_per_pixel;
   frame.report.most_camera_samples = options.paths_per_pixel;
   frame.report.relative_noise = relative_noise(frame.image);

@@ -20,6 +20,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "raytrace/render.h"
 
@@ -39,6 +40,8 @@ struct PathOptions {
   bool per_light = false;
   PathSet paths = PathSet::All;
   std::uint64_t seed = 1;
+  // Asked once per row; once it says true the rows that are left stay black.
+  std::function<bool()> stop = {};
 };
 
 // Channels R, G, B (cd/m^2); `variance`, of the pixel's mean luminance, (cd/m^2)^2; with per_light

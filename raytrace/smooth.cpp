@@ -31,6 +31,9 @@ float stretch(const GatherPoint& point) {
   return 1.0F / std::max(cosine, 0.05F);
 }
 
+// Of its mean ray's length: how far off a point may stand for another.
+constexpr float most_found_share = 0.25F;
+
 constexpr std::size_t flat_variables = 3, all_variables = 5;
 
 struct Neighbour {
@@ -73,6 +76,11 @@ class Smoother {
       squares += n.weight * n.weight / n.rays;
     }
     squared_error = static_cast<float>(noise_ * squares);
+    if (std::any_of(out.begin(), out.end(), [](const glm::vec3& value) {
+          return std::min({value.x, value.y, value.z}) < 0.0F;
+        })) {
+      take_mean(out);
+    }
   }
 
  private:
@@ -137,6 +145,18 @@ class Smoother {
                                  double(other.rays),
                                  kernel * double(other.rays)};
       }
+    }
+  }
+
+  // Where neighbours lie on one side only, the fit may run below zero: there their mean.
+  void take_mean(std::span<glm::vec3> out) const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < count_; ++k) sum += neighbours_[k].kernel * neighbours_[k].rays;
+    std::fill(out.begin(), out.end(), glm::vec3(0.0F));
+    for (std::size_t k = 0; k < count_; ++k) {
+      const auto share = static_cast<float>(neighbours_[k].kernel * neighbours_[k].rays / sum);
+      const glm::vec3* from = &field_.radiance[neighbours_[k].index * field_.layers];
+      for (std::size_t layer = 0; layer < out.size(); ++layer) out[layer] += share * from[layer];
     }
   }
 
@@ -221,7 +241,9 @@ std::size_t GatherField::find(int x, int y, const glm::vec3& position,
     if (point.reach_m <= 0.0F) return false;
     const glm::vec3 way = position - point.position;
     distance = glm::length(way);
-    return distance <= 3.0F * point.spacing_m * stretch(point) &&
+    // Further off, irradiance may be another: a gap in a wall, the foot of a box.
+    return distance <= std::min(3.0F * point.spacing_m * stretch(point),
+                                most_found_share * point.reach_m) &&
            same_surface(point.position, point.normal, position, normal, slack(point));
   };
   float distance = 0.0F;

@@ -42,7 +42,7 @@ std::size_t pixel(int x, int y) {
 }
 
 TEST(GatherField, SharingKeepsWhatIsLinearInPosition) {
-  const auto linear = [](int x, int y) { return 5.0 + 0.3 * x - 0.2 * y; };
+  const auto linear = [](int x, int y) { return 9.0 + 0.3 * x - 0.2 * y; };
   GatherField field = flat_field(1.0F, linear);
   smooth(field, 0.2, 16);
   for (int y = 0; y < edge_px; ++y) {
@@ -98,6 +98,14 @@ TEST(GatherField, NothingIsSharedAcrossAnEdgeOrAStep) {
       EXPECT_NEAR(field.radiance[pixel(x, 20)].g, x < 20 ? 1.0 : 7.0, 1e-5) << x << " " << folded;
     }
   }
+}
+
+TEST(GatherField, SharingNeverGoesBelowZero) {
+  // At the foot of a steep rise the plane through the neighbours would: there their mean stands.
+  GatherField field =
+      flat_field(1.0F, [](int x, int) { return x < 3 ? 0.0 : std::pow(x - 2.0, 2.0); });
+  smooth(field, 0.12, 16);
+  for (const glm::vec3& value : field.radiance) EXPECT_GE(value.g, 0.0F);
 }
 
 TEST(GatherField, PointsShareOnlyWithinTheirReach) {

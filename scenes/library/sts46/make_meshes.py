@@ -17,7 +17,7 @@ import payloads
 import scene_files
 
 HERE = pathlib.Path(__file__).resolve().parent
-PATCH_EDGE = 0.45  # m, as in the scene files
+PATCH_EDGE = 0.45  # m, of the estimate in --table
 ENVELOPE = 90.0 * mesh_kit.INCH  # payload envelope: this far from the axis [S]
 
 
@@ -59,9 +59,8 @@ def scene_totals(table):
 def outputs(all_models):
     """Path -> text of every generated file."""
     files = {f"meshes/{name}.obj": mesh_kit.obj_text(title, bodies) for name, (title, bodies) in all_models.items()}
-    patches = round(scene_totals(group_table(all_models))[2], -3)
     for scene in scene_files.SCENES:
-        files[f"{scene}.toml"] = scene_files.scene_text(scene, patches)
+        files[f"{scene}.toml"] = scene_files.scene_text(scene)
     return files
 
 

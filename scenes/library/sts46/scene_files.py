@@ -240,18 +240,17 @@ columns = 400
 spread = "gaussian"
 
 [quality]
-patch_edge = 0.45  # m: about {patches} patches
-form_factor_rays = 1024"""
+error = 0.02  # of the picture"""
 
 
-def scene_text(name, patches):
+def scene_text(name):
     scene = SCENES[name]
     parts = [HEAD.format(title=scene["title"], intro="\n# ".join(scene["intro"])),
              "# ---- light", sky_text(scene["sky"])]
     if scene["lamps"] != "off":
         parts += [lamp_text(lamp, scene["lamps"]) for lamp in fittings.lamp_list()]
     parts += ["# ---- cameras"] + [camera_text(c) for c in fittings.CAMERAS] + [OVERVIEW]
-    parts += [QUALITY.format(patches=f"{patches:,}".replace(",", " "))]
+    parts += [QUALITY]
     parts += ["# ---- objects; target: visibility studies measure it"] + [object_text(o) for o in OBJECTS]
     parts += ["# ---- materials"] + [material_text(m) for m in MATERIALS]
     return "\n\n".join(parts) + "\n"
