@@ -117,9 +117,9 @@ struct Camera {
   double fov_deg = 40.0;  // vertical, full
   int columns = 512;
   int rows = 512;
-  double focus_m = 0.0;     // } thin lens when both are positive
-  double aperture_m = 0.0;  // } diameter
-  std::string cctv;         // a [[cctv]] of the scene or one that ships; empty: none
+  double focus_m = 0.0;      // } thin lens when both are positive
+  double aperture_m = 0.0;   // } diameter
+  std::string cctv;          // a [[cctv]] of the scene or one that ships; empty: none
   std::string range_sensor;  // a [[range_sensor]] of the scene; empty: none
   FilterShape filter = FilterShape::Box;
   double filter_width_px = 1.0;  // full width of the filter's support

@@ -11,9 +11,9 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr std::string_view root_keys[] = {"format", "name", "unit",    "material",     "object",
-                                          "light",  "area", "sun",  "earth",   "orbit",        "ambient",
-                                          "camera", "cctv", "monitor", "range_sensor", "quality"};
+constexpr std::string_view root_keys[] = {
+    "format", "name",  "unit",    "material", "object", "light",   "area",         "sun",
+    "earth",  "orbit", "ambient", "camera",   "cctv",   "monitor", "range_sensor", "quality"};
 constexpr std::string_view ambient_keys[] = {"radiance"};
 constexpr std::string_view units[] = {"m", "cm", "mm", "ft", "in"};
 constexpr double metres_per_unit[] = {1.0, 0.01, 0.001, 0.3048, 0.0254};
