@@ -9,7 +9,6 @@
 #include "degrade/range_sensor.h"
 #include "degrade/range_sensor_file.h"
 #include "raytrace/first_hit.h"
-#include "scenes/ray_query.h"
 
 namespace earthshine::app {
 namespace {
@@ -30,14 +29,13 @@ degrade::RangeSensor sensor_of(const scenes::Scene& scene, const scenes::Camera&
   return {};
 }
 
-base::Image exact_layers(const scenes::Scene& scene, const scenes::Camera& camera,
-                         const Size& size) {
+base::Image exact_layers(const RangeShot& shot, const Size& size) {
   base::Image layers{size.columns, size.rows, {}};
   for (const raytrace::FirstHitLayer& layer : raytrace::first_hit_layers()) {
     for (const std::string& channel : layer.channels) layers.add(channel);
   }
-  raytrace::fill_first_hit(scene, scenes::RayQuery(scene),
-                           raytrace::make_camera_model(camera, size.columns, size.rows),
+  raytrace::fill_first_hit(shot.scene, shot.query,
+                           raytrace::make_camera_model(shot.camera, size.columns, size.rows),
                            {0, 0, size.columns, size.rows}, layers);
   return layers;
 }
@@ -55,13 +53,18 @@ std::string summary(const std::string& name, const degrade::RangeReport& report,
 
 }  // namespace
 
-Json sense_range(const std::string& path, const scenes::Scene& scene,
-                 const std::vector<std::string>& overrides, const scenes::Camera& camera,
-                 const Size& size, const Common& common) {
+Json sense_range(const RangeShot& shot, const std::string& path,
+                 const std::vector<std::string>& overrides, const Common& common,
+                 StageTimes& times) {
+  const scenes::Scene& scene = shot.scene;
+  const scenes::Camera& camera = shot.camera;
+  const Size size = shot.size.value_or(Size{camera.columns, camera.rows});
   const degrade::RangeSensor sensor = sensor_of(scene, camera, common.quiet);
   const auto view = static_cast<std::uint64_t>(&camera - scene.cameras.data());
-  const degrade::RangeView sensed = degrade::sense_range(
-      exact_layers(scene, camera, size), camera.position, sensor, {common.seed, view});
+  const degrade::RangeView sensed = times.measure("range", [&] {
+    return degrade::sense_range(exact_layers(shot, size), camera.position, sensor,
+                                {common.seed, view});
+  });
 
   base::ExrHeader header;
   add_origin(header, scene, overrides, common.seed);
@@ -78,10 +81,18 @@ Json sense_range(const std::string& path, const scenes::Scene& scene,
   if (!common.quiet) {
     note(summary(sensor_name(camera), report, static_cast<double>(sensed.image.pixel_count())));
   }
-  return {
-      {"sensor", sensor_name(camera)},      {"returned", report.returned}, {"empty", report.empty},
-      {"grazing", report.grazing},          {"dim", report.dim},           {"lost", report.lost},
-      {"out_of_range", report.out_of_range}};
+  return {{"camera", camera.name},
+          {"columns", size.columns},
+          {"rows", size.rows},
+          {"seconds", times.json()},
+          {"range",
+           {{"sensor", sensor_name(camera)},
+            {"returned", report.returned},
+            {"empty", report.empty},
+            {"grazing", report.grazing},
+            {"dim", report.dim},
+            {"lost", report.lost},
+            {"out_of_range", report.out_of_range}}}};
 }
 
 }  // namespace earthshine::app

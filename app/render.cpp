@@ -190,24 +190,16 @@ void run(RenderCall call, const Common& common) {
     const scenes::Camera& camera = *pictures.front().camera;
     call.photo = read_photo(call.over, camera, common.quiet);
     call.size = Size{call.photo->width, call.photo->height};
-    if (call.wire_alone()) {
-      const auto drawn = lay_over(call.over, *call.photo, loaded.scene, query, camera, {});
-      return base::write_png(call.png, drawn.width, drawn.height, 3, drawn.rgb);
-    }
   }
-  std::vector<Json> ranges(pictures.size());
+  std::vector<Json> ranges;
   for (std::size_t k = 0; k < pictures.size() && !call.range.empty(); ++k) {
-    const scenes::Camera& camera = *pictures[k].camera;
-    const Size size = call.size.value_or(Size{camera.columns, camera.rows});
-    ranges[k] = times.measure("range", [&] {
-      return sense_range(pictures[k].files.range, loaded.scene, call.scene.overrides, camera, size,
-                         common);
-    });
-    ranges[k] = {{"camera", camera.name},
-                 {"columns", size.columns},
-                 {"rows", size.rows},
-                 {"seconds", times.json()},
-                 {"range", ranges[k]}};
+    ranges.push_back(sense_range({loaded.scene, query, *pictures[k].camera, call.size},
+                                 pictures[k].files.range, call.scene.overrides, common, times));
+  }
+  if (call.wire_alone()) {
+    const auto drawn =
+        lay_over(call.over, *call.photo, loaded.scene, query, *pictures.front().camera, {});
+    return base::write_png(call.png, drawn.width, drawn.height, 3, drawn.rgb);
   }
   if (call.output.empty() && !call.only_pixel && !call.over.asked()) {
     // The range sensor alone needs no light.

@@ -66,6 +66,37 @@ class Layers(program.Case):
                    ranks(channels, "CryptoObject", pixel) if bits == manifest(header, "CryptoObject")["ball"])
         self.assertLess(abs(ball - sum(n == 1 for n in channels["object"])), 0.25 * len(partial))
 
+    def test_matte_is_made_of_the_pictures_own_samples(self):
+        """A panel of one radiance L before the dark: each pixel is L times the panel's coverage, whatever the
+        filter and the lens, since both are the same mean of the same samples."""
+        panel = """format = 1
+[[material]]
+name = "panel"
+emit = 10.0
+[[object]]
+name = "panel"
+shape = "quad"
+corners = [[-1, -0.8, 0], [1.1, -1, 0], [1, 0.9, 0], [-0.9, 1, 0]]
+material = "panel"
+[[camera]]
+name = "A"
+position = [0, 0, 4]
+look_at = [0, 0, 0]
+up = [0, 1, 0]
+resolution = [30, 20]
+focus = 2
+aperture = 0.1
+"""
+        for shape, width in (("box", 1), ("gaussian", 3)):
+            _, _, _, channels = self.render(
+                panel, "--aov", "crypto_object", "--set", "quality.gather=per-sample", "--set",
+                "quality.gather_rays=256", "--set", f"camera.A.filter={shape}", "--set", f"camera.A.filter_width={width}")
+            partial = 0
+            for luminance, coverage in zip(channels["R"], channels["CryptoObject00.G"]):
+                self.assertAlmostEqual(luminance, coverage * 10 / math.pi, places=5)
+                partial += 0 < coverage < 1
+            self.assertGreater(partial, 40)
+
     def test_names_may_hold_anything(self):
         odd = 'm\u00e4d"chen \\\\ 1'  # quote and backslash are escaped once more in TOML
         toml = odd.replace('"', '\\"')

@@ -68,6 +68,22 @@ class Range(program.Case):
         report = self.json("render", "scene.toml", "--range", "a.exr", "-o", "b.exr", "--indirect", "none")
         self.assertEqual(report["range"]["returned"], counts["returned"])
 
+    def test_several_cameras_have_files_and_noise_of_their_own(self):
+        scene = SCENE.replace('name = "above"\n', 'name = "above"\nrange_sensor = "lidar"\n', 1)
+        self.write("scene.toml", scene)
+        reports = self.json("render", "scene.toml", "--range", "r.exr", "--camera", "A,above")
+        self.assertEqual([report["camera"] for report in reports], ["A", "above"])
+        alone = self.sense(scene, "--camera", "above")[3]["range"]
+        self.assertEqual(exr.read(self.folder / "r-above.exr")[3]["range"], alone)
+        self.assertTrue((self.folder / "r-A.exr").exists())
+
+    def test_range_beside_lines_over_a_photograph(self):
+        self.write("scene.toml", SCENE)
+        self.done("render", "scene.toml", "-o", "a.exr", "--png", "photo.png", "--indirect", "none", "--camera", "A")
+        self.done("render", "scene.toml", "--camera", "A", "--over", "photo.png", "--png", "over.png", "--range", "r.exr")
+        self.assertTrue((self.folder / "over.png").exists())
+        self.assertEqual(exr.read(self.folder / "r.exr")[1:3], (32, 24))
+
     def test_plan_says_why(self):
         self.write("scene.toml", SCENE)
         rows = {row["effect"]: row for row in self.json("plan", "scene.toml")["effects"]}
