@@ -106,6 +106,7 @@ TEST(SharedGather, PictureIsThePlainOneWithinTheStatedErrors) {
 
 TEST(SharedGather, CropAndReplayHaveThePixelsOfTheWholePicture) {
   RenderOptions options = shared_options();
+  options.shared.noise = 0.002;  // five rounds of samples, each looks at the neighbours of the last
   options.aovs = {"direct", "indirect", "variance", "depth"};
   const Frame whole = studio().picture(options);
   for (const Window& crop : {Window{13, 9, 11, 17}, Window{30, 22, 1, 1}, Window{0, 0, 5, 3}}) {
@@ -160,6 +161,57 @@ TEST(SharedGather, DirectIndirectAndSpecularAddUpToThePicture) {
     EXPECT_GT(indirect, 0.0);
     EXPECT_GT(mean(frame), mean(direct));
   }
+}
+
+TEST(SharedGather, LightStraightFromTheEarthIsDirect) {
+  // A plate alone under a wide Earth: nothing else reflects, hence direct is all of the picture.
+  tests::SceneBuilder builder;
+  builder.plate(builder.material(tests::grey(0.5)), 2.0, 0.0, true);
+  scenes::Earth earth;
+  earth.half_angle_deg = 70.0;
+  earth.model = scenes::EarthModel::Uniform;
+  earth.radiance = Rgb(1000.0);
+  builder.scene.earth = earth;
+  const tests::Prepared prepared(builder.scene);
+  scenes::Camera camera;
+  camera.position = Vec3(0, 0, 1);
+  camera.look_at = Vec3(0.0);
+  camera.up = Vec3(0, 1, 0);
+  RenderOptions options = shared_options(12, 12);
+  options.aovs = {"direct", "indirect"};
+  const Frame frame = render(builder.scene, prepared.groups, prepared.effects, prepared.query,
+                             prepared.solve({}), camera, options);
+  for (std::size_t p = 0; p < frame.image.pixel_count(); ++p) {
+    const double all = double(frame.image.find("G")->values[p]);
+    EXPECT_GT(all, 0.0);
+    EXPECT_NEAR(double(frame.image.find("direct.G")->values[p]), all, 1e-5 * all);
+    EXPECT_NEAR(double(frame.image.find("indirect.G")->values[p]), 0.0, 1e-5 * all);
+  }
+}
+
+TEST(SharedGather, PathsBetweenMirrorsHaveNoEnd) {
+  // A closed room whose walls reflect 0.8 and send out M: L = M / pi + 0.8 L, five times what a
+  // wall sends itself; a tenth of it comes over paths of more than ten mirrors.
+  tests::SceneBuilder builder;
+  scenes::Material wall = tests::grey(0.0, 1.0);
+  wall.mirror = Rgb(0.8);
+  const std::uint32_t m = builder.material(wall);
+  builder.room({m, m, m, m, m, m});
+  const tests::Prepared prepared(builder.scene);
+  scenes::Camera camera;
+  camera.position = Vec3(0.3, 0.4, 0.5);
+  camera.look_at = Vec3(1, 0.6, 0.3);
+  RenderOptions options = shared_options(32, 32);
+  options.shared.on = false;
+  options.gather_rays = 256;
+  const Frame frame = render(builder.scene, prepared.groups, prepared.effects, prepared.query,
+                             prepared.solve({}), camera, options);
+  double variance = 0.0;
+  for (const float v : frame.image.find("variance")->values) variance += double(v);
+  const double standard_error = std::sqrt(variance) / 1024.0;
+  EXPECT_GT(standard_error, 0.0);
+  EXPECT_LT(standard_error, 0.02);
+  EXPECT_NEAR(mean(frame), 5.0 / base::pi, 4.0 * standard_error);
 }
 
 TEST(SharedGather, AStoppedPictureKeepsWhatIsFinished) {
