@@ -152,25 +152,12 @@ class Caster {
         }
         return;
       }
-      const Vec3 normal = scenes::triangle_normal(scene_, hit.triangle);
-      const Vec3 at = hit_point(hit);
-      way = scenes::specular_direction(material, normal, way);
-      const double side = glm::dot(way, normal) > 0.0 ? 1.0 : -1.0;
-      hit = query_.closest(at + normal * (side * query_.surface_offset_m()), way);
+      const scenes::SpecularStep on =
+          scenes::specular_step(scene_, hit, way, query_.surface_offset_m());
+      way = on.direction;
+      hit = query_.closest(on.origin, way);
       ++row.rays;
     }
-  }
-
-  // Where a ray goes on from, drawn a hundred-thousandth of the way to the triangle's middle: off
-  // its edges, where rounding could put it behind a neighbour and let light leak from a closed
-  // room.
-  [[nodiscard]] Vec3 hit_point(const scenes::Hit& hit) const {
-    constexpr double drawn_in = 1e-5;
-    const auto& vertex = scene_.triangles[hit.triangle].vertex;
-    const Vec3& a = scene_.vertices[vertex[0]];
-    const Vec3 ab = scene_.vertices[vertex[1]] - a, ac = scene_.vertices[vertex[2]] - a;
-    const double keep = 1.0 - drawn_in;
-    return a + (keep * hit.u + drawn_in / 3.0) * ab + (keep * hit.v + drawn_in / 3.0) * ac;
   }
 
   const scenes::Scene& scene_;

@@ -30,11 +30,10 @@ void IncomingLight::follow_specular(scenes::Hit hit, Vec3 direction, Rgb weight,
     const bool glass = base::max_component(material.transmit) > 0.0;
     if (!material.passes_light_on() || !(hit.front || material.two_sided || glass)) return;
     weight *= material.mirror + material.transmit;
-    const Vec3 normal = scenes::triangle_normal(scene_, hit.triangle);
-    const Vec3 at = scenes::hit_position(scene_, hit);
-    direction = scenes::specular_direction(material, normal, direction);
-    const double side = glm::dot(direction, normal) > 0.0 ? 1.0 : -1.0;
-    hit = query_.closest(at + normal * (side * query_.surface_offset_m()), direction);
+    const scenes::SpecularStep on =
+        scenes::specular_step(scene_, hit, direction, query_.surface_offset_m());
+    direction = on.direction;
+    hit = query_.closest(on.origin, direction);
     ++specular_rays;
     if (hit.missed()) return see_sky(direction, weight, out, false);
     if (!table_.empty()) table_.add(hit, weight, out);

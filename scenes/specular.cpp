@@ -30,4 +30,17 @@ Vec3 specular_direction(const Material& material, const Vec3& normal, const Vec3
   return refract(material, normal, direction).direction;
 }
 
+SpecularStep specular_step(const Scene& scene, const Hit& hit, const Vec3& direction,
+                           double offset_m) {
+  constexpr double drawn_in = 1e-5;
+  const Triangle& triangle = scene.triangles[hit.triangle];
+  const Vec3 normal = triangle_normal(scene, hit.triangle);
+  const Vec3 way = specular_direction(scene.materials[triangle.material], normal, direction);
+  const double side = glm::dot(way, normal) > 0.0 ? 1.0 : -1.0;
+  Hit inner = hit;
+  inner.u = (1.0 - drawn_in) * hit.u + drawn_in / 3.0;
+  inner.v = (1.0 - drawn_in) * hit.v + drawn_in / 3.0;
+  return {hit_position(scene, inner) + normal * (side * offset_m), way};
+}
+
 }  // namespace earthshine::scenes

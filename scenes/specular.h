@@ -2,6 +2,7 @@
 // Where light goes on from a mirror or glass.
 #pragma once
 
+#include "scenes/ray_query.h"
 #include "scenes/scene.h"
 
 namespace earthshine::scenes {
@@ -24,5 +25,15 @@ struct Refraction {
 };
 [[nodiscard]] Refraction refract(const Material& material, const Vec3& normal,
                                  const Vec3& direction);
+
+// The ray that goes on along specular_direction() from a hit on a mirror or glass: its origin lies
+// offset_m off the surface on the side it goes to, and is drawn a hundred-thousandth of the way to
+// the triangle's middle, off its edges, where rounding could put it behind a neighbour and let
+// light leak from a closed room.
+struct SpecularStep {
+  Vec3 origin, direction;
+};
+[[nodiscard]] SpecularStep specular_step(const Scene& scene, const Hit& hit, const Vec3& direction,
+                                         double offset_m);
 
 }  // namespace earthshine::scenes
