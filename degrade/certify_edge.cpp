@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// Slanted edge, 5 degrees off the lines and off the columns, from black's neighbourhood to white's.
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+#include "degrade/slanted_edge.h"
+#include "degrade/test_bench.h"
+
+namespace earthshine::degrade {
+namespace {
+
+constexpr double tilt = 5.0 * base::pi / 180.0;
+constexpr double low = 0.2, high = 0.8;
+constexpr double nyquist = 0.5;
+constexpr double limit_of_sight = 0.05;  // modulation at which lines are no longer told apart
+constexpr int chart_fineness = 2;        // so that the area average onto the grid is measured too
+
+base::Image edge_chart(const Bench& bench, Axis axis) {
+  const double middle_x = 0.5 * bench.columns(), middle_y = 0.5 * bench.rows();
+  return bench.chart(
+      [&](double x, double y) {
+        const double u = x - middle_x, v = y - middle_y;
+        const double away = axis == Axis::Along ? u * std::cos(tilt) + v * std::sin(tilt)
+                                                : v * std::cos(tilt) + u * std::sin(tilt);
+        return low + (high - low) * edge_coverage(tilt, away * chart_fineness);
+      },
+      chart_fineness);
+}
+
+SlantedEdge measure(const Picture& picture, Axis axis, double reach) {
+  if (axis == Axis::Along) {
+    return measure_edge(picture.planes[0], picture.columns, picture.rows, reach);
+  }
+  return measure_edge(transposed(picture.planes[0], picture.columns, picture.rows), picture.rows,
+                      picture.columns, reach);
+}
+
+struct Laws {
+  const Bench& bench;
+  Axis axis;
+  Filter filter;
+
+  [[nodiscard]] double modulation(double f) const {
+    return edge_modulation(bench.camera(), bench.monitor(), axis, tilt, f);
+  }
+  [[nodiscard]] double profile(double x) const { return edge_profile(filter, axis, tilt, x); }
+  // The first crossing, from far on the dark side.
+  [[nodiscard]] double crossing(double level) const {
+    double x = -filter.radius() - 2.0;
+    while (profile(x + 0.01) < level) x += 0.01;
+    const double before = profile(x), after = profile(x + 0.01);
+    return x + 0.01 * (level - before) / (after - before);
+  }
+};
+
+// Noise: eight frames, the mean modulation and its scatter.
+CertificateRow with_noise(const Bench& bench, const base::Image& chart, const Laws& law,
+                          double reach, std::string_view name) {
+  const double sigma = std::sqrt(line_noise(bench.camera(), bench.monitor()).total(high));
+  if (sigma == 0.0) return absent(name, "1", "the camera has no noise");
+  if (sigma > 0.25 * (high - low)) return absent(name, "1", "its noise drowns the edge");
+  constexpr double frequency = 0.25;
+  std::vector<double> found;
+  for (std::uint64_t frame = 0; frame < 8; ++frame) {
+    found.push_back(measure(bench.linear(chart, frame), law.axis, reach).modulation(frequency));
+  }
+  return within_errors(name, "1", mean_of(found), law.modulation(frequency),
+                       "product of the stages' transfers; 0.02 besides four standard errors", 0.02);
+}
+
+void measure_axis(const Bench& bench, Axis axis, Rows& rows, std::vector<SharpnessPoint>& points) {
+  const bool along = axis == Axis::Along;
+  const auto named = [&](std::string_view what) {
+    return std::string(along ? "along the line: " : "across lines: ") + std::string(what);
+  };
+  const Laws law{bench, axis, filter_of(bench.camera(), bench.monitor(), Travels::Picture)};
+  const double reach =
+      std::min(law.filter.radius() + 6.0, 0.4 * (along ? bench.columns() : bench.rows()));
+  const base::Image chart = edge_chart(bench, axis);
+  const SlantedEdge edge = measure(bench.linear(chart, 0, stage::noise), axis, reach);
+  const auto measured = [&](double f) { return edge.modulation(f); };
+  const auto expected = [&](double f) { return law.modulation(f); };
+
+  double worst = 0.0;
+  if (points.empty()) {
+    for (int k = 0; k <= 20; ++k) points.push_back({.frequency = nyquist * k / 20.0});
+  }
+  for (SharpnessPoint& point : points) {
+    const double found = measured(point.frequency), due = expected(point.frequency);
+    (along ? point.along : point.across) = found;
+    (along ? point.law_along : point.law_across) = due;
+    // Kept when it is not a number.
+    if (!(std::abs(found - due) <= std::abs(worst))) worst = found - due;
+  }
+  rows.push_back(within(named("MTF, worst difference up to Nyquist"), "1", worst, 0.0, 0.02,
+                        "product of the stages' transfers with the resel's sinc"));
+  rows.push_back(within(named("MTF at Nyquist"), "1", measured(nyquist), expected(nyquist), 0.02,
+                        "the same at 0.5 cycles per resel"));
+  rows.push_back(with_noise(bench, chart, law, reach, named("MTF at 0.25, noise on")));
+  rows.push_back(within(named("MTF50"), "cycles/resel", frequency_at(measured, 0.5, 1.0),
+                        frequency_at(expected, 0.5, 1.0), 0.02, "the transfers' product = 1/2"));
+  rows.push_back(within(named("10 to 90 % rise"), "resel", edge.crossing(0.9) - edge.crossing(0.1),
+                        law.crossing(0.9) - law.crossing(0.1), 0.03,
+                        "resel's box through the stages' taps"));
+  rows.push_back(within(named("RER"), "1", edge.profile_at(0.5) - edge.profile_at(-0.5),
+                        law.profile(0.5) - law.profile(-0.5), 0.01,
+                        "rise of the edge over one resel"));
+  const double lines = 2.0 * bench.rows();
+  rows.push_back(within(named("limiting resolution"), "TV lines",
+                        lines * frequency_at(measured, limit_of_sight, nyquist),
+                        lines * frequency_at(expected, limit_of_sight, nyquist), 0.02 * lines,
+                        "lines to a picture's height at 5 % modulation, at most the raster's"));
+}
+
+}  // namespace
+
+Rows edge_rows(const Bench& bench, std::vector<SharpnessPoint>& points) {
+  Rows rows;
+  measure_axis(bench, Axis::Along, rows, points);
+  measure_axis(bench, Axis::Across, rows, points);
+  return rows;
+}
+
+}  // namespace earthshine::degrade

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The noise laws of transfer_law.h.
+#include <cmath>
+
+#include "degrade/transfer_law.h"
+
+namespace earthshine::degrade {
+
+double LineNoise::in_time(double signal, int dx, int dy) const {
+  return (dark + light * signal + share * signal * signal) * lag * light_filter.covariance(dx, dy) +
+         amplifier * amplifier_filter.covariance(dx, dy);
+}
+
+double LineNoise::fixed(double signal, int dx, int dy) const {
+  return fixed_share * signal * signal * light_filter.covariance(dx, dy) +
+         fixed_black * amplifier_filter.covariance(dx, dy);
+}
+
+double LineNoise::light_cumulant(double signal, int order) const {
+  if (light == 0.0) return 0.0;
+  // Counts of mean S / b, each worth b.
+  return std::pow(light, order - 1) * signal * light_filter.power_sum(order);
+}
+
+LineNoise line_noise(const CctvCamera& camera, const Monitor& monitor) {
+  LineNoise line;
+  line.light_filter = filter_of(camera, monitor, Travels::LightNoise);
+  line.amplifier_filter = filter_of(camera, monitor, Travels::AmplifierNoise);
+  const double white_over_rms = std::pow(10.0, camera.snr_db / 20.0);
+  const double n = camera.electrons_at_white;
+  switch (camera.noise) {
+    case NoiseMode::None:
+      break;
+    case NoiseMode::Report:
+      line.share = 1.0 / (white_over_rms * white_over_rms);
+      break;
+    case NoiseMode::Spec:
+      line.amplifier = 1.0 / (white_over_rms * white_over_rms);
+      break;
+    case NoiseMode::Law:
+      line.amplifier = camera.noise_a;
+      line.light = camera.noise_b;
+      line.share = camera.noise_c;
+      break;
+    case NoiseMode::Photon:
+      line.amplifier = std::pow(camera.read_electrons / n, 2.0);
+      line.light = camera.excess_noise / n;
+      line.fixed_share = std::pow(camera.prnu_percent / 100.0, 2.0);
+      break;
+  }
+  return line;
+}
+
+}  // namespace earthshine::degrade
