@@ -68,33 +68,24 @@ std::vector<std::uint8_t> screen_bytes(const Picture& viewed, double white) {
   return bytes;
 }
 
-}  // namespace
-
-std::vector<StagePlan> plan(const CctvCamera& camera, const Monitor& monitor,
-                            const Options& options) {
+// fields: one picture, or two that differ.
+Result run_chain(std::vector<const base::Image*> seen, const Setup& setup, const Memory& before) {
+  const CctvCamera& camera = setup.camera;
+  const Options& options = setup.options;
   check_names(options.off);
-  const Setup setup{camera, monitor, options};
-  std::vector<StagePlan> rows;
-  for (const Stage& stage : stages()) {
-    rows.push_back({&stage, !is_off(stage, options) && stage.runs(setup, nullptr)});
-  }
-  return rows;
-}
-
-Result degrade(const base::Image& radiance, const CctvCamera& camera, const Monitor& monitor,
-               const Options& options, const Memory& before) {
-  check_names(options.off);
-  if (radiance.width < 1 || radiance.height < 1) {
-    throw base::Error(base::Blame::Input, "picture", "has no pixels");
-  }
-  const Setup setup{camera, monitor, options};
   Result result;
   result.memory = before;
   Report& report = result.report;
-  std::vector<Picture> fields = {take_in(radiance, camera.colour, report.negative_pixels)};
+  std::vector<Picture> fields;
+  for (const base::Image* radiance : seen) {
+    if (radiance->width < 1 || radiance->height < 1) {
+      throw base::Error(base::Blame::Input, "picture", "has no pixels");
+    }
+    fields.push_back(take_in(*radiance, camera.colour, report.negative_pixels));
+  }
   report.noise = noise_law(camera);
   // What stands if the stages that decide it are off.
-  report.sensor = {radiance.width, radiance.height};
+  report.sensor = {fields.front().columns, fields.front().rows};
   report.exposure.f_number = camera.f_number;
 
   const auto runs = [&](const Stage& stage) {
@@ -108,7 +99,7 @@ Result degrade(const base::Image& radiance, const CctvCamera& camera, const Moni
   bool exposed = false;
   for (const Stage& stage : table) {
     if (stage.part == Part::Sensor && !exposed) {
-      if (interlaced) fields.push_back(fields.front());
+      if (interlaced && fields.size() == 1) fields.push_back(fields.front());
       exposed = true;
     }
     if (stage.part == Part::Monitor && result.signal.channels.empty()) {
@@ -125,8 +116,8 @@ Result degrade(const base::Image& radiance, const CctvCamera& camera, const Moni
     }
     report.stages.emplace_back(stage.name);
     if (options.watch) options.watch(stage.name, fields.front());
-    if (stage.name == "screen") white = monitor.white_luminance;
-    if (stage.name == "room-light") white += room_luminance(monitor);
+    if (stage.name == "screen") white = setup.monitor.white_luminance;
+    if (stage.name == "room-light") white += room_luminance(setup.monitor);
   }
   const Picture& shown = fields.front();
   result.columns = shown.columns;
@@ -135,6 +126,39 @@ Result degrade(const base::Image& radiance, const CctvCamera& camera, const Moni
   result.pixels = screen_bytes(shown, white);
   result.viewed = to_image(shown);
   return result;
+}
+
+}  // namespace
+
+std::vector<StagePlan> plan(const CctvCamera& camera, const Monitor& monitor,
+                            const Options& options) {
+  check_names(options.off);
+  const Setup setup{camera, monitor, options};
+  std::vector<StagePlan> rows;
+  for (const Stage& stage : stages()) {
+    rows.push_back({&stage, !is_off(stage, options) && stage.runs(setup, nullptr)});
+  }
+  return rows;
+}
+
+Result degrade(const base::Image& radiance, const CctvCamera& camera, const Monitor& monitor,
+               const Options& options, const Memory& before) {
+  return run_chain({&radiance}, {camera, monitor, options}, before);
+}
+
+Result degrade_fields(const base::Image& first, const base::Image& second, const CctvCamera& camera,
+                      const Monitor& monitor, const Options& options, const Memory& before) {
+  const auto refuse = [](const char* found, const char* allowed) {
+    throw base::Error(base::Blame::Input, "fields", found, allowed);
+  };
+  if (!camera.interlace) refuse("the camera is not interlaced", "it must have interlace = true");
+  if (std::find(options.off.begin(), options.off.end(), "interlace") != options.off.end()) {
+    refuse("stage \"interlace\" is left out", "two fields need it");
+  }
+  if (first.width != second.width || first.height != second.height) {
+    refuse("the two pictures differ in size", "both fields of a frame have the same size");
+  }
+  return run_chain({&first, &second}, {camera, monitor, options}, before);
 }
 
 }  // namespace earthshine::degrade

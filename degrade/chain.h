@@ -114,4 +114,11 @@ struct StagePlan {
                              const Monitor& monitor, const Options& options = {},
                              const Memory& before = {});
 
+// The same for a scene that moved between the two fields of a frame: each field of its own picture,
+// of the same size; the iris follows the first. Throws base::Error (Input) also when the camera is
+// not interlaced or the sizes differ.
+[[nodiscard]] Result degrade_fields(const base::Image& first, const base::Image& second,
+                                    const CctvCamera& camera, const Monitor& monitor,
+                                    const Options& options = {}, const Memory& before = {});
+
 }  // namespace earthshine::degrade

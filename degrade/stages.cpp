@@ -42,6 +42,7 @@ Picture fall_off(Picture p, const Passing& at) {
 }
 
 Picture iris(Picture p, const Passing& at) {
+  if (at.field > 0) return p;
   const CctvCamera& camera = at.setup.camera;
   const bool slow = camera.iris_rate != 1.0 || camera.iris_slew > 0.0;
   at.report.exposure = expose(camera, metered_luminance(p, camera),
