@@ -52,9 +52,13 @@ struct Certificate {
 using Chain =
     std::function<Result(const base::Image&, const CctvCamera&, const Monitor&, const Options&)>;
 
+// degrade() of a still scene, without memory.
+[[nodiscard]] Result still_chain(const base::Image& radiance, const CctvCamera& camera,
+                                 const Monitor& monitor, const Options& options);
+
 struct CertifyOptions {
   std::uint64_t seed = 1;
-  Chain chain = degrade;  // what is measured
+  Chain chain = still_chain;  // what is measured
 };
 
 // Smallest monitor that can be measured, in resels each way.

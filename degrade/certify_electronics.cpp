@@ -78,6 +78,9 @@ CertificateRow line_signal(const Bench& bench, const base::Image& ramp, const Pl
 CertificateRow black(const Bench& bench) {
   constexpr std::string_view name = "mean of black behind the clamp";
   if (!bench.camera().black_clamp) return absent(name, "1", "signals below black pass");
+  if (bench.camera().noise == NoiseMode::Photon && bench.camera().dark_electrons > 0.0) {
+    return absent(name, "1", "dark counts are not normal");
+  }
   const Options options =
       bench.options(stage::uneven + stage::coding + stage::screen + Names{"saturation", "bloom"});
   const Picture signal = to_picture(bench.run(bench.flat(0.0), bench.held(), options).signal);

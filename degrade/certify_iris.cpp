@@ -48,7 +48,9 @@ struct Reach {
     target = camera.iris_target > 0.0 ? camera.iris_target
                                       : targets[static_cast<std::size_t>(camera.iris)];
     most_gain = std::pow(10.0, camera.gain_max_db / 20.0);
-    const double per_n2 = 4.0 * target * camera.white_lux / (base::pi * camera.transmittance);
+    const double image = 1.0 + camera.magnification;
+    const double per_n2 =
+        4.0 * target * camera.white_lux * image * image / (base::pi * camera.transmittance);
     open = per_n2 * camera.f_number_min * camera.f_number_min;
     bright = per_n2 * camera.f_number_max * camera.f_number_max;
     dark = open / most_gain;
@@ -125,11 +127,11 @@ Rows range_rows(const Bench& bench, const Scene& scene, const Reach& reach) {
     return scene.flat(l).report.exposure.underexposed;
   });
   rows.push_back(within("darkest flat scene not underexposed", "cd/m2", least, reach.dark,
-                        1e-4 * reach.dark, "4 t E_white N_min^2 / (pi tau G_max)"));
+                        1e-4 * reach.dark, "4 t E_white N_min^2 (1 + m)^2 / (pi tau G_max)"));
   const double most = luminance_at(0.999 * reach.bright, 100.0 * reach.bright,
                                    [&](double l) { return scene.flat(l).report.exposure.blown; });
   rows.push_back(within("brightest flat scene not blown", "cd/m2", most, reach.bright,
-                        1e-4 * reach.bright, "4 t E_white N_max^2 / (pi tau)"));
+                        1e-4 * reach.bright, "4 t E_white N_max^2 (1 + m)^2 / (pi tau)"));
   rows.push_back(within("signal at half the darkest", "1", first_value(darkest), 0.5 * reach.target,
                         rounding, "falls in proportion: t / 2"));
   rows.push_back(within("signal at twice the brightest", "1", first_value(brightest),

@@ -113,9 +113,12 @@ Rows ratio_rows(const Bench& bench, const std::vector<FlatField>& fields, const 
 Rows photon_transfer_rows(const Bench& bench, std::vector<TransferPoint>& points) {
   const LineNoise line = line_noise(bench.camera(), bench.monitor());
   std::vector<FlatField> fields;
+  std::uint64_t frame = 0;
   for (const double level : levels) {
     const base::Image chart = bench.flat(level);
-    const Picture frames[] = {bench.linear(chart, 0), bench.linear(chart, 1)};
+    // New frames for each level, else all levels would miss their laws in the same direction.
+    const Picture frames[] = {bench.linear(chart, frame), bench.linear(chart, frame + 1)};
+    frame += 2;
     fields.push_back(measure_flat(level, frames, bench.blocks()));
     const FlatField& field = fields.back();
     points.push_back({level, mean_of(field.mean).value, mean_of(field.in_time).value,

@@ -18,14 +18,21 @@ double LineNoise::fixed(double signal, int dx, int dy) const {
 
 double LineNoise::light_cumulant(double signal, int order) const {
   if (light == 0.0) return 0.0;
-  // Counts of mean S / b, each worth b.
-  return std::pow(light, order - 1) * signal * light_filter.power_sum(order);
+  // Counts of mean S / b + dark / b^2, each worth b.
+  return std::pow(light, order) * (signal / light + dark / (light * light)) *
+         light_filter.power_sum(order);
 }
 
 LineNoise line_noise(const CctvCamera& camera, const Monitor& monitor) {
   LineNoise line;
   line.light_filter = filter_of(camera, monitor, Travels::LightNoise);
   line.amplifier_filter = filter_of(camera, monitor, Travels::AmplifierNoise);
+  // The share that stays from one reading to the next; a frame that is read at once lasts two
+  // fields. A first-order recursion of white noise keeps (1 - k) / (1 + k) of its variance.
+  const double kept = camera.interlace ? camera.lag : camera.lag * camera.lag;
+  line.lag = (1.0 - kept) / (1.0 + kept);
+  line.two_fields = camera.interlace;
+  line.field_to_field = kept;
   const double white_over_rms = std::pow(10.0, camera.snr_db / 20.0);
   const double n = camera.electrons_at_white;
   switch (camera.noise) {
@@ -45,7 +52,9 @@ LineNoise line_noise(const CctvCamera& camera, const Monitor& monitor) {
     case NoiseMode::Photon:
       line.amplifier = std::pow(camera.read_electrons / n, 2.0);
       line.light = camera.excess_noise / n;
+      line.dark = camera.excess_noise * camera.dark_electrons / (n * n);
       line.fixed_share = std::pow(camera.prnu_percent / 100.0, 2.0);
+      line.fixed_black = std::pow(camera.dsnu_percent / 100.0, 2.0);
       break;
   }
   return line;

@@ -59,16 +59,17 @@ Plane transposed(const Plane& plane, int columns, int rows) {
   return turned;
 }
 
-SlantedEdge measure_edge(const Plane& plane, int columns, int rows, double reach) {
+SlantedEdge measure_edge(const Plane& plane, int columns, int rows, double reach, int bins) {
   Line line{0.5 * (columns - 1), 0.0};
   const double lean = 0.5 * rows * std::tan(15.0 * base::pi / 180.0);
   for (const double window : {lean + reach, reach, reach}) {
     line = fit_line(plane, columns, rows, line, window);
   }
   SlantedEdge edge;
+  edge.bins = bins;
   edge.angle = std::atan(line.slope);
   const double cosine = std::cos(edge.angle);
-  const int half = static_cast<int>(std::ceil(reach * edge_bins_per_resel));
+  const int half = static_cast<int>(std::ceil(reach * bins));
   std::vector<double> sum(static_cast<std::size_t>(2 * half), 0.0), count = sum;
   for (int y = 0; y < rows; ++y) {
     const double centre = line.at_middle + line.slope * (y - 0.5 * (rows - 1));
@@ -76,8 +77,7 @@ SlantedEdge measure_edge(const Plane& plane, int columns, int rows, double reach
     const int last =
         std::min(columns - 1, static_cast<int>(std::ceil(centre + reach / cosine)) + 1);
     for (int x = first; x <= last; ++x) {
-      const int bin =
-          static_cast<int>(std::floor((x - centre) * cosine * edge_bins_per_resel)) + half;
+      const int bin = static_cast<int>(std::floor((x - centre) * cosine * bins)) + half;
       if (bin < 0 || bin >= 2 * half) continue;
       sum[static_cast<std::size_t>(bin)] += static_cast<double>(plane[index(x, y, columns)]);
       count[static_cast<std::size_t>(bin)] += 1.0;
@@ -85,7 +85,7 @@ SlantedEdge measure_edge(const Plane& plane, int columns, int rows, double reach
   }
   for (std::size_t bin = 0; bin < sum.size(); ++bin) {
     if (count[bin] == 0.0) continue;
-    edge.position.push_back((static_cast<double>(bin) + 0.5 - half) / edge_bins_per_resel);
+    edge.position.push_back((static_cast<double>(bin) + 0.5 - half) / bins);
     edge.profile.push_back(sum[bin] / count[bin]);
   }
   // The ends are what the edge stands between: an eighth of the reach, to hold noise down.
@@ -105,7 +105,7 @@ double SlantedEdge::modulation(double frequency) const {
     const double phase = 2.0 * base::pi * frequency * 0.5 * (position[k] + position[k + 1]);
     sum += (profile[k + 1] - profile[k]) * std::polar(1.0, -phase);
   }
-  const double u = base::pi * frequency / edge_bins_per_resel;
+  const double u = base::pi * frequency / bins;
   const double damped = u == 0.0 ? 1.0 : std::pow(std::sin(u) / u, 2.0);
   return std::abs(sum) / damped;
 }

@@ -25,6 +25,9 @@ extern const Names coding;   // gamma and steps
 extern const Names screen;   // everything behind the line
 }  // namespace stage
 
+// Vertical field of view that the charts fill.
+inline constexpr double bench_fov_deg = 40.0;
+
 class Bench {
  public:
   Bench(const CctvCamera& camera, const Monitor& monitor, const CertifyOptions& options);
@@ -46,7 +49,8 @@ class Bench {
   [[nodiscard]] base::Image flat(double signal) const;
 
   [[nodiscard]] Result run(const base::Image& chart, const CctvCamera& camera,
-                           Options options) const;
+                           const Options& options) const;
+  // `frame` counts frames that have nothing in common but fixed patterns.
   [[nodiscard]] Options options(Names off, std::uint64_t frame = 0) const;
   // The held camera's linear signal, with noise: every limit, code and unevenness left out.
   [[nodiscard]] Picture linear(const base::Image& chart, std::uint64_t frame,

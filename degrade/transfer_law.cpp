@@ -15,10 +15,35 @@ double gaussian(double sigma, double f) {
   return std::exp(-sigma * sigma * (1.0 - std::cos(2.0 * base::pi * f)));
 }
 
+// RS-170: a line shows the picture during 52.66 us, over all columns of the screen.
+double cycles_per_resel(double mhz, const Monitor& monitor) {
+  return mhz * 52.66 / monitor.columns;
+}
+
+// Down to 1 / sqrt 2 at B; where B lies beyond the resels' Nyquist frequency, the variance of the
+// continuous Gaussian that is.
+double bandwidth(double mhz, const Monitor& monitor, double f) {
+  if (mhz == 0.0) return 1.0;
+  const double b = cycles_per_resel(mhz, monitor);
+  const double variance = b < 0.5 ? 0.5 * std::log(2.0) / (1.0 - std::cos(2.0 * base::pi * b))
+                                  : std::log(2.0) / std::pow(2.0 * base::pi * b, 2.0);
+  return gaussian(std::sqrt(variance), f);
+}
+
 constexpr TransferRow table[] = {
+    {"lens-spread", true, false, false,
+     [](const CctvCamera& camera, const Monitor&, Axis, double f) {
+       return gaussian(camera.lens_blur, f);
+     }},
     {"blur", true, true, false,
      [](const CctvCamera& camera, const Monitor&, Axis axis, double f) {
        return gaussian(axis == Axis::Along ? camera.blur_h : camera.blur_v, f);
+     }},
+    {"bandwidth", true, true, true,
+     [](const CctvCamera& camera, const Monitor& monitor, Axis axis, double f) {
+       if (axis == Axis::Across) return 1.0;
+       return bandwidth(camera.bandwidth_mhz, monitor, f) *
+              (1.0 + camera.aperture_correction * (1.0 - std::cos(2.0 * base::pi * f)));
      }},
 };
 
@@ -83,6 +108,17 @@ std::vector<double> taps(const CctvCamera& camera, const Monitor& monitor, Trave
   std::vector<double> all(half.rbegin(), half.rend());
   all.insert(all.end(), half.begin() + 1, half.end());
   return all;
+}
+
+double gaussian_tap(double sigma, int n) {
+  // Fourier coefficient of the transfer, by the trapezium rule over its period.
+  constexpr int points = 1024;
+  double sum = 0.0;
+  for (int k = 0; k < points; ++k) {
+    const double f = static_cast<double>(k) / points;
+    sum += gaussian(sigma, f) * std::cos(2.0 * base::pi * f * n);
+  }
+  return sum / points;
 }
 
 int Filter::radius() const { return static_cast<int>(std::max(along.size(), across.size()) / 2); }

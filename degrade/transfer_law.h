@@ -36,6 +36,9 @@ struct TransferRow {
 [[nodiscard]] std::vector<double> taps(const CctvCamera& camera, const Monitor& monitor,
                                        Travels what, Axis axis);
 
+// e^-t I_n(t), t = sigma^2, the tap at n of a discrete Gaussian.
+[[nodiscard]] double gaussian_tap(double sigma, int n);
+
 struct Filter {
   std::vector<double> along, across;
 
@@ -70,6 +73,8 @@ struct LineNoise {
   double light = 0.0, share = 0.0;              // b; c, where it is new in each frame
   double fixed_black = 0.0, fixed_share = 0.0;  // of a and c, the same in every frame
   double lag = 1.0;                             // what the lag leaves of the light's noise in time
+  bool two_fields = false;                      // odd lines are of another field
+  double field_to_field = 0.0;                  // correlation that the lag makes between the two
   Filter light_filter, amplifier_filter;
 
   // Covariance of two resels (dx, dy) apart in a flat field of signal S; (0, 0) is the variance.
@@ -81,8 +86,8 @@ struct LineNoise {
   // What white noise of the light, of the amplifier, is multiplied by.
   [[nodiscard]] double light_factor() const { return light_filter.power_sum(2); }
   [[nodiscard]] double amplifier_factor() const { return amplifier_filter.power_sum(2); }
-  // Third or fourth cumulant of the photons' counts: a count has all its cumulants equal to its
-  // mean, and a filter multiplies the p-th by sum h^p.
+  // Third or fourth cumulant of the counts of light and dark: a count has all its cumulants equal
+  // to its mean, and a filter multiplies the p-th by sum h^p. Without lag.
   [[nodiscard]] double light_cumulant(double signal, int order) const;
 };
 [[nodiscard]] LineNoise line_noise(const CctvCamera& camera, const Monitor& monitor);
