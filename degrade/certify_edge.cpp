@@ -58,7 +58,7 @@ struct Laws {
 // Noise: eight frames, the mean modulation and its scatter.
 CertificateRow with_noise(const Bench& bench, const base::Image& chart, const Laws& law,
                           double reach, std::string_view name) {
-  const double sigma = std::sqrt(line_noise(bench.camera(), bench.monitor()).total(high));
+  const double sigma = std::sqrt(bench.noise().total(high));
   if (sigma == 0.0) return absent(name, "1", "the camera has no noise");
   if (sigma > 0.25 * (high - low)) return absent(name, "1", "its noise drowns the edge");
   constexpr double frequency = 0.25;

@@ -91,7 +91,7 @@ CertificateRow black(const Bench& bench) {
                                   [&](std::size_t i) { return static_cast<double>(plane[i]); }));
     }
   }
-  const double sigma = std::sqrt(line_noise(bench.camera(), bench.monitor()).total(0.0));
+  const double sigma = std::sqrt(bench.noise().total(0.0));
   const double clip = bench.camera().white_clip;
   if (clip > 0.0 && clip < 5.0 * sigma) return absent(name, "1", "white clips the noise of black");
   return within_errors(name, "1", mean_of(blocks), sigma / std::sqrt(2.0 * base::pi),

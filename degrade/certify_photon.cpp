@@ -111,7 +111,7 @@ Rows ratio_rows(const Bench& bench, const std::vector<FlatField>& fields, const 
 }  // namespace
 
 Rows photon_transfer_rows(const Bench& bench, std::vector<TransferPoint>& points) {
-  const LineNoise line = line_noise(bench.camera(), bench.monitor());
+  const LineNoise& line = bench.noise();
   std::vector<FlatField> fields;
   std::uint64_t frame = 0;
   for (const double level : levels) {

@@ -7,8 +7,10 @@
 namespace earthshine::degrade {
 
 double LineNoise::in_time(double signal, int dx, int dy) const {
-  return (dark + light * signal + share * signal * signal) * lag * light_filter.covariance(dx, dy) +
-         amplifier * amplifier_filter.covariance(dx, dy);
+  const bool other_field = two_fields && dy % 2 != 0;
+  const double counts = (dark + light * signal + share * signal * signal) * lag;
+  return counts * (other_field ? field_to_field : 1.0) * light_filter.covariance(dx, dy) +
+         (other_field ? 0.0 : amplifier * amplifier_filter.covariance(dx, dy));
 }
 
 double LineNoise::fixed(double signal, int dx, int dy) const {
@@ -19,8 +21,10 @@ double LineNoise::fixed(double signal, int dx, int dy) const {
 double LineNoise::light_cumulant(double signal, int order) const {
   if (light == 0.0) return 0.0;
   // Counts of mean S / b + dark / b^2, each worth b.
-  return std::pow(light, order) * (signal / light + dark / (light * light)) *
-         light_filter.power_sum(order);
+  double counts = std::pow(light, order) * (signal / light + dark / (light * light));
+  // Where the fixed pattern makes a resel brighter, its counts scatter more.
+  if (order == 3) counts += 3.0 * fixed_share * signal * signal * light;
+  return counts * light_filter.power_sum(order);
 }
 
 LineNoise line_noise(const CctvCamera& camera, const Monitor& monitor) {

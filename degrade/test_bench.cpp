@@ -32,7 +32,11 @@ Names operator+(Names a, const Names& b) {
 }
 
 Bench::Bench(const CctvCamera& camera, const Monitor& monitor, const CertifyOptions& options)
-    : camera_(camera), held_(camera), monitor_(monitor), options_(options) {
+    : camera_(camera),
+      held_(camera),
+      monitor_(monitor),
+      options_(options),
+      noise_(line_noise(camera, monitor)) {
   if (monitor.rows < least_certified_resels || monitor.columns < least_certified_resels) {
     throw base::Error(
         base::Blame::Input, "monitor",
@@ -43,16 +47,18 @@ Bench::Bench(const CctvCamera& camera, const Monitor& monitor, const CertifyOpti
   held_.iris = IrisMode::Fixed;
   held_.gain_db = 0.0;
   if (camera.iris != IrisMode::Fixed) held_.f_number = camera.f_number_min;
-  const int radius = std::max(filter_of(camera, monitor, Travels::LightNoise).radius(),
-                              filter_of(camera, monitor, Travels::Picture).radius());
+  const int radius =
+      std::max(noise_.light_filter.radius(), filter_of(camera, monitor, Travels::Picture).radius());
   const int smallest = std::min(columns(), rows());
   margin_ = std::min(radius + 2, smallest / 6);
-  blocks_ = cut_blocks(columns(), rows(), margin_, std::clamp(2 * radius, 12, smallest / 6));
+  blocks_ =
+      cut_blocks(columns(), rows(), margin_, std::min(std::max(2 * radius, 12), smallest / 6));
 }
 
 double Bench::white_luminance() const {
-  // S = pi tau L / (4 N^2 E_white)
-  return held_.white_lux * 4.0 * held_.f_number * held_.f_number / (base::pi * held_.transmittance);
+  // S = pi tau L / (4 N^2 (1 + m)^2 E_white)
+  const double n = held_.f_number * (1.0 + held_.magnification);
+  return held_.white_lux * 4.0 * n * n / (base::pi * held_.transmittance);
 }
 
 base::Image Bench::flat(double signal) const {

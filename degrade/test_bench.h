@@ -37,6 +37,8 @@ class Bench {
   // signal are proportional.
   [[nodiscard]] const CctvCamera& held() const { return held_; }
   [[nodiscard]] const Monitor& monitor() const { return monitor_; }
+  // The law of its noise.
+  [[nodiscard]] const LineNoise& noise() const { return noise_; }
   [[nodiscard]] int columns() const { return monitor_.columns; }
   [[nodiscard]] int rows() const { return monitor_.rows; }
 
@@ -65,6 +67,7 @@ class Bench {
   CctvCamera camera_, held_;
   Monitor monitor_;
   CertifyOptions options_;
+  LineNoise noise_;
   int margin_ = 0;
   std::vector<Block> blocks_;
 };

@@ -88,7 +88,7 @@ std::vector<double> taps(const CctvCamera& camera, const Monitor& monitor, Trave
                          Axis axis) {
   // T has the period 1 and is smooth, so the trapezium rule gives its Fourier coefficients exactly,
   // but for those beyond `points`, far more than any blur here reaches.
-  constexpr int points = 1024;
+  constexpr int points = 512;
   std::vector<double> spectrum;
   for (int k = 0; k < points; ++k) {
     spectrum.push_back(transfer(camera, monitor, what, axis, static_cast<double>(k) / points));
@@ -112,7 +112,7 @@ std::vector<double> taps(const CctvCamera& camera, const Monitor& monitor, Trave
 
 double gaussian_tap(double sigma, int n) {
   // Fourier coefficient of the transfer, by the trapezium rule over its period.
-  constexpr int points = 1024;
+  constexpr int points = 512;
   double sum = 0.0;
   for (int k = 0; k < points; ++k) {
     const double f = static_cast<double>(k) / points;

@@ -87,7 +87,8 @@ struct LineNoise {
   [[nodiscard]] double light_factor() const { return light_filter.power_sum(2); }
   [[nodiscard]] double amplifier_factor() const { return amplifier_filter.power_sum(2); }
   // Third or fourth cumulant of the counts of light and dark: a count has all its cumulants equal
-  // to its mean, and a filter multiplies the p-th by sum h^p. Without lag.
+  // to its mean, and a filter multiplies the p-th by sum h^p. Without lag. The pattern's share in
+  // the fourth is left out.
   [[nodiscard]] double light_cumulant(double signal, int order) const;
 };
 [[nodiscard]] LineNoise line_noise(const CctvCamera& camera, const Monitor& monitor);
