@@ -5,6 +5,13 @@
 
 namespace earthshine::degrade {
 
+double four_errors(const Estimate& estimate) {
+  // t = z + (z^3 + z) / (4 n) + (5 z^5 + 16 z^3 + 3 z) / (96 n^2)
+  //     + (3 z^7 + 19 z^5 + 17 z^3 - 15 z) / (384 n^3) at z = 4.
+  const double n = estimate.freedom;
+  return (4.0 + 17.0 / n + 64.125 / (n * n) + 181.34 / (n * n * n)) * estimate.error;
+}
+
 std::vector<Block> cut_blocks(int columns, int rows, int margin, int edge) {
   std::vector<Block> blocks;
   for (int y = margin; y + edge <= rows - margin; y += edge) {
@@ -32,7 +39,8 @@ Estimate ratio_of(const std::vector<double>& numerators, const std::vector<doubl
     const double rest = numerators[i] - value * denominators[i];
     squares += rest * rest;
   }
-  return {value, std::sqrt(squares / (count * (count - 1.0))) / std::abs(under / count)};
+  return {value, std::sqrt(squares / (count * (count - 1.0))) / std::abs(under / count),
+          count - 1.0};
 }
 
 double plane_mean(const Plane& plane, int columns, const std::vector<Block>& blocks) {

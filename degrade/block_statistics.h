@@ -3,6 +3,7 @@
 // into blocks larger than its grain, and the scatter of the blocks gives the error.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "degrade/picture.h"
@@ -11,8 +12,13 @@ namespace earthshine::degrade {
 
 struct Estimate {
   double value = 0.0;
-  double error = 0.0;  // one standard error
+  double error = 0.0;                                        // one standard error
+  double freedom = std::numeric_limits<double>::infinity();  // degrees of freedom of the error
 };
+
+// Four standard errors; more where the error is itself known from few blocks, so that the chance of
+// a miss stays that of a normal number (Student's t, Cornish and Fisher's expansion).
+[[nodiscard]] double four_errors(const Estimate& estimate);
 
 // [x0, x1) x [y0, y1)
 struct Block {

@@ -19,7 +19,9 @@ const FlatField& at(const std::vector<FlatField>& fields, double signal) {
                        [&](const FlatField& field) { return field.signal == signal; });
 }
 
-Estimate scaled(Estimate e, double factor) { return {e.value * factor, e.error * factor}; }
+Estimate scaled(Estimate e, double factor) {
+  return {e.value * factor, e.error * factor, e.freedom};
+}
 
 Estimate total_variance(const FlatField& field) {
   std::vector<double> blocks = field.in_time;
@@ -30,7 +32,7 @@ Estimate total_variance(const FlatField& field) {
 // 20 lg(top / sigma) with the error of a sample variance.
 Estimate decibel(double top, const Estimate& variance) {
   return {10.0 * std::log10(top * top / variance.value),
-          10.0 / std::numbers::ln10 * variance.error / variance.value};
+          10.0 / std::numbers::ln10 * variance.error / variance.value, variance.freedom};
 }
 
 CertificateRow coefficient(std::string_view name, const Estimate& on_line, double factor,
@@ -44,11 +46,23 @@ CertificateRow coefficient(std::string_view name, const Estimate& on_line, doubl
 CertificateRow percent(std::string_view name, const Estimate& on_line, double factor,
                        double expected, std::string_view law) {
   const Estimate variance = scaled(on_line, 1.0 / factor);
-  const double slack = 4.0 * variance.error + variance_rounding / factor;
+  const double slack = four_errors(variance) + variance_rounding / factor;
   const auto root = [](double v) { return 100.0 * std::sqrt(std::max(0.0, v)); };
   const double tolerance =
       std::max(root(expected + slack) - root(expected), root(expected) - root(expected - slack));
   CertificateRow row = within(name, "%", root(variance.value), root(expected), tolerance, law);
+  row.statistical = true;
+  return row;
+}
+
+// The reciprocal of b, whose tolerance is that of b carried through.
+CertificateRow electrons(const Estimate& b, double law, double excess) {
+  constexpr std::string_view name = "electrons at white";
+  const double relative = four_errors(b) / law;
+  if (relative >= 0.9) return absent(name, "1", "other noise hides that of the light");
+  const double count = excess / law;
+  CertificateRow row =
+      within(name, "1", excess / b.value, count, count * relative / (1.0 - relative), "F^2 / b");
   row.statistical = true;
   return row;
 }
@@ -66,7 +80,7 @@ Rows mean_rows(const std::vector<FlatField>& fields) {
     const double z = std::abs(mean.value - field.signal) / (mean.error + 0.25 * mean_rounding);
     if (z <= worst_z) continue;
     worst_z = z;
-    worst = {mean.value - field.signal, mean.error};
+    worst = {mean.value - field.signal, mean.error, mean.freedom};
   }
   rows.push_back(within_errors("linearity: worst level's distance from the line", "1", worst, 0.0,
                                "mean signal proportional to light, 12 levels", mean_rounding));
@@ -140,10 +154,7 @@ Rows photon_transfer_rows(const Bench& bench, std::vector<TransferPoint>& points
   if (line.light > 0.0) {
     const double excess =
         bench.camera().noise == NoiseMode::Photon ? bench.camera().excess_noise : 1.0;
-    const double count = excess * light * line.lag / fit.b.value;
-    rows.push_back(within_errors("electrons at white", "1",
-                                 {count, count * fit.b.error / std::abs(fit.b.value)},
-                                 excess / line.light, "F^2 / b"));
+    rows.push_back(electrons(scaled(fit.b, 1.0 / (light * line.lag)), line.light, excess));
   } else {
     rows.push_back(absent("electrons at white", "1", "the light brings no noise (b = 0)"));
   }

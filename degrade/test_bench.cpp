@@ -112,7 +112,7 @@ CertificateRow within(std::string_view name, std::string_view unit, double measu
 CertificateRow within_errors(std::string_view name, std::string_view unit, const Estimate& measured,
                              double expected, std::string_view law, double rounding) {
   CertificateRow row =
-      within(name, unit, measured.value, expected, 4.0 * measured.error + rounding, law);
+      within(name, unit, measured.value, expected, four_errors(measured) + rounding, law);
   row.statistical = true;
   return row;
 }

@@ -121,7 +121,18 @@ double gaussian_tap(double sigma, int n) {
   return sum / points;
 }
 
-int Filter::radius() const { return static_cast<int>(std::max(along.size(), across.size()) / 2); }
+int Filter::radius() const {
+  constexpr double least = 1e-5;
+  std::size_t reach = 0;
+  for (const std::vector<double>* h : {&along, &across}) {
+    for (std::size_t n = 0; n <= h->size() / 2; ++n) {
+      if (std::abs((*h)[n]) < least) continue;
+      reach = std::max(reach, h->size() / 2 - n);
+      break;
+    }
+  }
+  return static_cast<int>(reach);
+}
 
 double Filter::power_sum(int p) const {
   const auto sum = [&](const std::vector<double>& h) {

@@ -42,6 +42,7 @@ struct TransferRow {
 struct Filter {
   std::vector<double> along, across;
 
+  // Resels that taps above 1e-5 reach.
   [[nodiscard]] int radius() const;
   // sum over both axes of h^p. p = 2: what white noise's variance is multiplied by.
   [[nodiscard]] double power_sum(int p) const;

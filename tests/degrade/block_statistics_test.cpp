@@ -31,6 +31,16 @@ TEST(BlockStatistics, MeanAndItsError) {
   EXPECT_DOUBLE_EQ(mean.error, std::sqrt(14.0 / 12.0));
 }
 
+// Two-sided quantiles of Student's t at the chance of four deviations, 6.334e-5.
+TEST(BlockStatistics, FewBlocksWidenFourErrorsAsStudentsTDoes) {
+  EXPECT_DOUBLE_EQ(four_errors({1.0, 0.5}), 2.0);
+  constexpr std::pair<double, double> quantiles[] = {
+      {10.0, 6.5672}, {23.0, 4.8767}, {300.0, 4.0574}};
+  for (const auto& [freedom, t] : quantiles) {
+    EXPECT_NEAR(four_errors({1.0, 1.0, freedom}), t, 0.03 * t) << freedom;
+  }
+}
+
 // Numerators exactly proportional to denominators leave no error.
 TEST(BlockStatistics, ProportionalSumsHaveARatioWithoutError) {
   const Estimate ratio = ratio_of({2.0, 4.0, 10.0}, {1.0, 2.0, 5.0});

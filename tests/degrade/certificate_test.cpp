@@ -88,7 +88,7 @@ TEST(Certificate, FixedIrisAndStrongBlurPass) {
   camera.bits = 3;
   expect_passes(camera, small_screen(), "fixed");
   const Certificate certificate = certify(camera, small_screen());
-  EXPECT_EQ(find_row(certificate, "all tests of the iris")->why, "it is fixed");
+  EXPECT_EQ(find_row(certificate.rows, "all tests of the iris")->why, "it is fixed");
 }
 
 TEST(Certificate, SameSeedSameNumbersAnotherSeedOthers) {

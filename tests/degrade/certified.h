@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <vector>
 
 #include "degrade/certificate.h"
 
@@ -42,7 +43,7 @@ inline degrade::CctvCamera busy_camera() {
   camera.electrons_at_white = 640.0;
   camera.read_electrons = 3.0;
   camera.prnu_percent = 2.0;
-  camera.dark_electrons = 6.0;
+  camera.dark_electrons = 12.0;
   camera.dsnu_percent = 0.5;
   camera.bandwidth_mhz = 1.6;
   camera.aperture_correction = 0.3;
@@ -51,11 +52,11 @@ inline degrade::CctvCamera busy_camera() {
   return camera;
 }
 
-inline const degrade::CertificateRow* find_row(const degrade::Certificate& certificate,
+inline const degrade::CertificateRow* find_row(const std::vector<degrade::CertificateRow>& rows,
                                                std::string_view name) {
-  const auto row = std::find_if(certificate.rows.begin(), certificate.rows.end(),
+  const auto row = std::find_if(rows.begin(), rows.end(),
                                 [&](const degrade::CertificateRow& r) { return r.name == name; });
-  return row == certificate.rows.end() ? nullptr : &*row;
+  return row == rows.end() ? nullptr : &*row;
 }
 
 }  // namespace earthshine::test
