@@ -76,10 +76,11 @@ void add_smooth(Sums& sums, double a, double b, bool kink_at_a, F g) {
   }
 }
 
-constexpr double spacing = 0.15;      // of the table, in mean / sigma and in ln sigma
+// Of the table: in mean / sigma and, as tails change fast with it, closer in ln sigma.
+constexpr double spacing = 0.2, log_spacing = 0.1;
 constexpr int before = 2, after = 3;  // nodes of the fifth-degree polynomial around a place
 
-// Moments on the nodes mean = i * spacing * sigma of one sigma = exp(level * spacing).
+// Moments on the nodes mean = i * spacing * sigma of one sigma = exp(level * log_spacing).
 struct Row {
   double sigma = 0.0;
   std::int64_t first = 0, last = -1;
@@ -103,8 +104,8 @@ Weights lagrange(double t) {
           a * b * c * e * f / 12.0,   -a * b * c * d * f / 24.0, a * b * c * d * e / 120.0};
 }
 
-double row_sigma(int level) { return std::exp(level * spacing); }
-int level_of(double sigma) { return static_cast<int>(std::floor(std::log(sigma) / spacing)); }
+double row_sigma(int level) { return std::exp(level * log_spacing); }
+int level_of(double sigma) { return static_cast<int>(std::floor(std::log(sigma) / log_spacing)); }
 
 // The moments as smooth functions of (mean / sigma, ln sigma): both scales follow sigma, on which
 // any f is smooth once the noise has gone over it. Only for the levels where it saves work.
@@ -148,7 +149,7 @@ class Table {
   [[nodiscard]] std::optional<PointMoments> operator()(double mean, double sigma) const {
     const int level = level_of(sigma);
     if (!std::binary_search(tabulated_.begin(), tabulated_.end(), level)) return {};
-    const Weights across = lagrange(std::log(sigma) / spacing - level);
+    const Weights across = lagrange(std::log(sigma) / log_spacing - level);
     PointMoments sum;
     auto row = rows_.find(level - before);
     for (std::size_t j = 0; j < across.size(); ++j, ++row) {

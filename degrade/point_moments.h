@@ -33,7 +33,7 @@ struct PointMoments {
 
 // The same for each pixel; variances below 0 (rounding) count as 0. Where many pixels are alike in
 // mean and sigma the moments are interpolated in a table. With d the standard deviation of f(S) and
-// r the rise of f from mean - 4 sigma to mean + 4 sigma, mean and slope * sigma are then within
+// r the rise of f from mean - 6 sigma to mean + 6 sigma, mean and slope * sigma are then within
 // 1e-4 d + 1e-5 r and the variance within 1e-4 d^2 + 1e-6 r^2. What is tabulated depends on the
 // whole picture, so a part of it may differ by as much. Same bits on any number of threads.
 struct MomentPlanes {

@@ -207,14 +207,14 @@ Pixels many(double least, double most, double least_sigma, double most_sigma) {
   return pixels;
 }
 
-// Where next to nothing comes through, errors are seen against the rise of f within four sigma.
+// Where next to nothing comes through, errors are seen against the rise of f within six sigma.
 void expect_each_on_its_own(const PointMap& map, const Pixels& pixels) {
   const MomentPlanes planes = through(map, pixels.mean, pixels.variance);
   for (std::size_t i = 0; i < pixels.mean.size(); i += 7) {
     const double mu = static_cast<double>(pixels.mean[i]);
     const double sigma = std::sqrt(static_cast<double>(pixels.variance[i]));
     const PointMoments one = through(map, mu, sigma);
-    const double rise = map(mu + 4.0 * sigma) - map(mu - 4.0 * sigma);
+    const double rise = map(mu + 6.0 * sigma) - map(mu - 6.0 * sigma);
     const double tolerance = 1e-4 * std::sqrt(one.variance) + 1e-5 * rise;
     SCOPED_TRACE(std::to_string(mu) + " +- " + std::to_string(sigma));
     ASSERT_NEAR(planes.mean[i], one.mean, tolerance + 1e-7 * one.mean);
