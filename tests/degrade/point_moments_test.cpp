@@ -192,6 +192,14 @@ TEST(PointMap, KinksAreTracedBackToTheSignal) {
   EXPECT_NEAR(map.stretches()[4].value, 1.0, 1e-15);
 }
 
+// Between 0.2 and 0.4 two bits know one level only, 1/3; their thresholds are out of reach.
+TEST(PointMap, KinksOutOfReachAreNone) {
+  PointMap map;
+  map.limit_below(0.2).limit_above(0.4).quantise(2);
+  EXPECT_EQ(map.kinks(), (std::vector<double>{0.2, 0.4}));
+  EXPECT_EQ(through(map, 0.3, 0.2).variance, 0.0);
+}
+
 struct Pixels {
   Plane mean, variance;
 };
