@@ -28,6 +28,10 @@ struct CctvSetup {
 
 [[nodiscard]] degrade::Result run_chain(const CctvSetup& setup, const base::Image& radiance);
 
+// Every setting in use.
+[[nodiscard]] Json settings_json(const degrade::CctvCamera& camera);
+
+// A PNG, or an EXR of what the viewer sees in cd/m^2; both say the settings and the exposure.
 void write_cctv(const std::string& path, const CctvSetup& setup, const degrade::Result& result);
 
 [[nodiscard]] Json cctv_json(const CctvSetup& setup, const degrade::Result& result);

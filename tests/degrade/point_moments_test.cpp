@@ -14,6 +14,7 @@
 #include "degrade/electronics.h"
 #include "degrade/monitor.h"
 #include "degrade/noise.h"
+#include "degrade/sensor.h"
 #include "tests/degrade/fields.h"
 
 namespace earthshine::degrade {
