@@ -131,11 +131,15 @@ Covariance scaled(const Covariance& noise, const Plane& gain) {
   });
 }
 
-Covariance mapped(const Covariance& noise, const MomentPlanes& moments) {
+Covariance shared(const Covariance& noise, const MomentPlanes& moments) {
   const Plane &slope = moments.slope, &curvature = moments.curvature;
-  Covariance result = for_pairs(noise, [&](float c, std::size_t z, std::size_t partner) {
+  return for_pairs(noise, [&](float c, std::size_t z, std::size_t partner) {
     return c * slope[z] * slope[partner] + 0.5F * (c * curvature[z]) * (c * curvature[partner]);
   });
+}
+
+Covariance mapped(const Covariance& noise, const MomentPlanes& moments) {
+  Covariance result = shared(noise, moments);
   result.planes.front() = moments.variance;
   return result;
 }

@@ -44,12 +44,15 @@ struct Covariance {
 // After a gain g(z) that may differ from pixel to pixel: C_d(z) g(z) g(z + d).
 [[nodiscard]] Covariance scaled(const Covariance& noise, const Plane& gain);
 
-// After a curved map point by point, of which the moments are known (degrade/point_moments.h): the
-// variance is theirs, and neighbours keep
+// After a curved map point by point, of which the moments are known (degrade/point_moments.h): two
+// jointly Gaussian signals of covariance C_d keep
 //   slope(z) slope(z + d) C_d + curvature(z) curvature(z + d) C_d^2 / 2,
-// the first two terms of the series of Mehler (1866) for two jointly Gaussian signals. The next
-// terms go with the third power of their correlation; for a clamp in the middle of its noise they
-// are below 4 % of the variance. The variance holds all terms, so this stays a covariance.
+// the first two terms of Mehler's series (1866). The next terms go with the third power of their
+// correlation; for a clamp in the middle of its noise they are below 4 % of the variance. shared:
+// of two signals that have no more than this noise in common, as two frames have a fixed pattern.
+// mapped: of one signal whose noise this is, with the variance from the moments; it holds all
+// terms, so this stays a covariance.
+[[nodiscard]] Covariance shared(const Covariance& noise, const MomentPlanes& moments);
 [[nodiscard]] Covariance mapped(const Covariance& noise, const MomentPlanes& moments);
 
 // Odd and even rows come from two fields: C_d with odd dy times `across_fields`, the correlation

@@ -142,8 +142,17 @@ TEST(NoiseMoments, GainsScaleEachPairByBothEnds) {
 
 // Noise about black, half of it clamped: for zero means, equal sigmas and the correlation rho
 //   E max(X, 0) max(Y, 0) = sigma^2 (sqrt(1 - rho^2) + rho (pi - arccos rho)) / 2 pi,
-// and each mean is sigma / sqrt(2 pi). Its series is rho / 4 + rho^2 / 4 pi + rho^4 / 48 pi + ...,
-// all terms positive, so the first two leave between rho^4 / 48 pi and 3 rho^4 / 48 pi.
+// and each mean is sigma / sqrt(2 pi). The series of the covariance is rho / 4 + rho^2 / 4 pi +
+// rho^4 / 48 pi + ..., all terms positive and ever smaller, so the first two leave between rho^4 /
+// 48 pi and 3 rho^4 / 48 pi. found, in units of sigma^2.
+void expect_two_terms(double found, double rho) {
+  const double exact =
+      (std::sqrt(1.0 - rho * rho) + rho * (base::pi - std::acos(rho)) - 1.0) / (2.0 * base::pi);
+  const double third = std::pow(rho, 4) / (48.0 * base::pi);
+  EXPECT_GT(exact - found, third - 1e-6) << rho;
+  EXPECT_LT(exact - found, 3.0 * third + 1e-6) << rho;
+}
+
 TEST(NoiseMoments, ClampedNeighboursShareTheFirstTwoTermsOfTheClosedForm) {
   const Covariance c =
       filtered(white(30, 30, Plane(900, 0.04F)), gaussian_blur(30, 0.8), gaussian_blur(30, 0.6));
@@ -153,14 +162,18 @@ TEST(NoiseMoments, ClampedNeighboursShareTheFirstTwoTermsOfTheClosedForm) {
   const double variance = entry(c, 15, 15, 15, 15);
   EXPECT_NEAR(entry(after, 15, 15, 15, 15), variance * (0.5 - 0.5 / base::pi), 1e-6 * variance);
   for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {1, 1}, {-1, 1}, {2, 0}}) {
-    const double rho = entry(c, 15, 15, 15 + dx, 15 + dy) / variance;
-    const double exact =
-        (std::sqrt(1.0 - rho * rho) + rho * (base::pi - std::acos(rho)) - 1.0) / (2.0 * base::pi);
-    const double rest = exact - entry(after, 15, 15, 15 + dx, 15 + dy) / variance;
-    const double third = std::pow(rho, 4) / (48.0 * base::pi);
-    EXPECT_GT(rest, third - 1e-6) << dx << ", " << dy;
-    EXPECT_LT(rest, 3.0 * third + 1e-6) << dx << ", " << dy;
+    expect_two_terms(entry(after, 15, 15, 15 + dx, 15 + dy) / variance,
+                     entry(c, 15, 15, 15 + dx, 15 + dy) / variance);
   }
+}
+
+// Two frames with 0.3 of their variance in common.
+TEST(NoiseMoments, ClampedFramesShareTheFirstTwoTermsOfTheirPattern) {
+  const Covariance pattern = white(4, 3, Plane(12, 0.3F));
+  PointMap clamp;
+  clamp.limit_below(0.0);
+  const Covariance after = shared(pattern, through(clamp, Plane(12, 0.0F), Plane(12, 1.0F)));
+  expect_two_terms(entry(after, 2, 1, 2, 1), 0.3);
 }
 
 // Rows of the two fields woven: n(y) from field y mod 2, each with the covariance C within a field
