@@ -77,18 +77,47 @@ degrade::Result run_chain(const CctvSetup& setup, const base::Image& radiance) {
   return degrade::degrade(radiance, setup.chain.camera, setup.chain.monitor, setup.chain.options);
 }
 
+namespace {
+
+std::vector<std::pair<std::string, std::string>> provenance(const CctvSetup& setup,
+                                                            const degrade::Result& result) {
+  return {{"Software", "earthshine " EARTHSHINE_VERSION},
+          {"earthshine:cctv", setup.name},
+          {"earthshine:seed", std::to_string(setup.chain.options.seed)},
+          {"earthshine:frame", std::to_string(setup.chain.options.frame)},
+          {"earthshine:cctv.report", cctv_json(setup, result).dump()}};
+}
+
+}  // namespace
+
 void write_cctv(const std::string& path, const CctvSetup& setup, const degrade::Result& result) {
-  const std::vector<std::pair<std::string, std::string>> text = {
-      {"Software", "earthshine " EARTHSHINE_VERSION},
-      {"earthshine:cctv", setup.name},
-      {"earthshine:seed", std::to_string(setup.chain.options.seed)},
-      {"earthshine:frame", std::to_string(setup.chain.options.frame)},
-      {"earthshine:cctv.report", cctv_json(setup, result).dump()}};
-  if (!path.ends_with(".exr")) {
-    base::write_png(path, result.columns, result.rows, result.channels, result.pixels, text);
-    return;
+  if (path.ends_with(".exr")) {
+    base::write_exr(path, result.viewed, {provenance(setup, result), {}});
+  } else {
+    base::write_png(path, result.columns, result.rows, result.channels, result.pixels,
+                    provenance(setup, result));
   }
-  base::write_exr(path, result.viewed, {text, {}});
+}
+
+void write_twin(const std::string& path, const CctvSetup& setup, const degrade::Twin& twin,
+                const degrade::Result& noisy) {
+  base::write_exr(path, degrade::to_image(twin, noisy), {provenance(setup, noisy), {}});
+}
+
+Json twin_json(const degrade::Twin& twin) {
+  const auto mean = [](const degrade::Plane& values) {
+    double sum = 0.0;
+    for (float value : values) sum += static_cast<double>(value);
+    return sum / static_cast<double>(values.size());
+  };
+  std::size_t likely = 0;
+  for (float p : twin.detection.probability) likely += p >= 0.5F ? 1 : 0;
+  return {{"median_snr", degrade::quantile(twin.snr, 0.5)},
+          {"detectable_share",
+           static_cast<double>(likely) / static_cast<double>(twin.detection.probability.size())},
+          {"mean_detection_probability", mean(twin.detection.probability)},
+          {"saturated_share", mean(twin.saturated)},
+          {"crushed_share", mean(twin.crushed)}};
 }
 
 Json cctv_json(const CctvSetup& setup, const degrade::Result& result) {

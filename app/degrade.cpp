@@ -22,7 +22,8 @@ constexpr std::uint64_t most_frames = 1'000'000'000;
 
 struct DegradeCall {
   TapeCall tape;
-  std::string output, stages, scene, camera, preset;
+  std::string output, twin, stages, scene, camera, preset;
+  std::uint64_t target_resels = 5;
   std::optional<double> fov_deg, f_number;
   std::vector<std::string> off;
   bool list = false, json = false;
@@ -64,6 +65,15 @@ void check_call(const DegradeCall& call) {
     refuse("-o", "\"" + call.output + "\" is neither a .png nor an .exr file",
            "Name a file that ends in .png or .exr");
   }
+  if (!call.twin.empty() && !call.twin.ends_with(".exr") && !call.twin.starts_with("/dev/")) {
+    refuse("--twin", "\"" + call.twin + "\" is not an .exr file", "Name a file that ends in .exr");
+  }
+  if (!call.twin.empty() && call.tape.fields) {
+    refuse("--twin", "stands beside --fields", "A twin belongs to a scene that stands still");
+  }
+  if (call.target_resels % 2 == 0) {
+    refuse("--target-resels", "is even", "Give an odd number, so that a target has a middle");
+  }
   if (!call.scene.empty() && !call.preset.empty()) {
     refuse("--preset", "stands beside --scene", "Give one of them");
   }
@@ -75,10 +85,14 @@ void check_call(const DegradeCall& call) {
 // Every file that the frames will be written into.
 void check_files(const DegradeCall& call, const std::vector<TapeFrame>& tape) {
   check_numbered("-o", call.output, tape.size());
+  check_numbered("--twin", call.twin, tape.size());
   check_numbered("--stages", call.stages, tape.size());
   std::vector<std::string> inputs = call.tape.inputs, outputs;
   inputs.push_back(call.scene);
-  for (const TapeFrame& frame : tape) outputs.push_back(numbered(call.output, frame.number));
+  for (const TapeFrame& frame : tape) {
+    outputs.push_back(numbered(call.output, frame.number));
+    outputs.push_back(numbered(call.twin, frame.number));
+  }
   check_outputs(outputs, inputs);
 }
 
@@ -139,8 +153,8 @@ void run(const DegradeCall& call, const Common& common) {
   degrade::Options& options = setup.chain.options;
   options.off = call.off;
   options.fov_deg = field_of_view(call, options.fov_deg, header);
-  degrade::Memory memory;
-  memory.f_number = call.f_number;
+  degrade::Memory memory, twin_memory;
+  memory.f_number = twin_memory.f_number = call.f_number;
   Json reports = Json::array();
   for (const TapeFrame& frame : tape) {
     options.frame = frame.number;
@@ -156,7 +170,16 @@ void run(const DegradeCall& call, const Common& common) {
     }
     memory = result.memory;
     write_cctv(numbered(call.output, frame.number), setup, result);
-    reports.push_back(cctv_json(setup, result));
+    Json report = cctv_json(setup, result);
+    if (!call.twin.empty()) {
+      const degrade::Twin twin =
+          degrade::twin(reader.read(frame.inputs[0]).image, setup.chain.camera, setup.chain.monitor,
+                        options, {static_cast<int>(call.target_resels)}, twin_memory);
+      twin_memory = twin.memory;
+      write_twin(numbered(call.twin, frame.number), setup, twin, result);
+      report["twin"] = twin_json(twin);
+    }
+    reports.push_back(std::move(report));
     if (!common.quiet) note("  " + cctv_summary(setup, result));
   }
   if (!call.json) return;
@@ -202,6 +225,13 @@ std::vector<Command> add_degrade(CLI::App& program) {
                    "the picture says)")
       ->check(CLI::Range(0.001, 179.0))
       ->type_name("DEG");
+  parser
+      ->add_option("--twin", call->twin,
+                   "The picture's analytic twin: noise-free, mean, variance, SNR, probability of "
+                   "detection, masks (EXR)")
+      ->type_name("FILE.exr");
+  add_whole_number(*parser, "--target-resels", call->target_resels, 1, 199,
+                   "Size of the target whose detection --twin maps, odd (default 5)");
   parser
       ->add_option("--stages", call->stages,
                    "Folder for the picture after each stage (EXR, in the stage's unit)")

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "degrade/noise_lines.h"
 #include "degrade/slanted_edge.h"
 #include "degrade/test_bench.h"
 

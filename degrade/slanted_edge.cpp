@@ -51,14 +51,6 @@ Line fit_line(const Plane& plane, int columns, int rows, const Line& guess, doub
 
 }  // namespace
 
-Plane transposed(const Plane& plane, int columns, int rows) {
-  Plane turned(plane.size());
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < columns; ++x) turned[index(y, x, rows)] = plane[index(x, y, columns)];
-  }
-  return turned;
-}
-
 SlantedEdge measure_edge(const Plane& plane, int columns, int rows, double reach, int bins) {
   Line line{0.5 * (columns - 1), 0.0};
   const double lean = 0.5 * rows * std::tan(15.0 * base::pi / 180.0);

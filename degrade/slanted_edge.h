@@ -35,8 +35,6 @@ struct SlantedEdge {
 [[nodiscard]] SlantedEdge measure_edge(const Plane& plane, int columns, int rows, double reach,
                                        int bins = bins_per_resel);
 
-[[nodiscard]] Plane transposed(const Plane& plane, int columns, int rows);
-
 // First frequency, in steps of 1/1000, where the modulation falls to `level`; `most` if it does
 // not.
 template <class Modulation>

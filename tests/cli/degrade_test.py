@@ -95,6 +95,36 @@ class Degrade(program.Case):
         names = sorted(path.name for path in (self.folder / "steps").iterdir())
         self.assertEqual(names, [f"{number:02}-{stage}.exr" for number, stage in enumerate(report["stages"], 1)])
 
+    def test_the_analytic_twin(self):
+        self.done("render", "ball.toml", "-o", "a.exr")
+        report = self.json("degrade", "a.exr", "-o", "noisy.exr", "--twin", "twin.exr")
+        _, width, height, twin = exr.read(self.folder / "twin.exr")
+        _, _, _, noisy = exr.read(self.folder / "noisy.exr")
+        self.assertEqual((width, height), (report["columns"], report["rows"]))
+        self.assertEqual(sorted(twin), ["Y", "crushed.Y", "detection.probability.Y", "detection.snr.Y", "mean.Y",
+                                        "saturated.Y", "snr.Y", "twin.Y", "variance.Y"])
+        self.assertEqual(twin["Y"], noisy["Y"])
+        quiet = ["--off", "signal-noise", "--off", "read-noise"]
+        self.done("degrade", "a.exr", "-o", "clean.exr", *quiet)
+        self.assertEqual(twin["twin.Y"], exr.read(self.folder / "clean.exr")[3]["Y"])
+        self.assertLess(report["twin"]["detectable_share"], 1)
+        for wrong in (["--twin", "t.png"], ["--twin", "t.exr", "--target-resels", 4], ["--twin", "noisy.exr"]):
+            self.refused("degrade", "a.exr", "-o", "noisy.exr", *wrong)
+
+    # Light adds: what the camera shows of the sum of the lights' layers is what it shows of the picture.
+    def test_lights_may_be_mixed_before_the_camera_sees_them(self):
+        self.done("render", "ball.toml", "-o", "a.exr", "--per-light")
+        header, width, height, channels = exr.read(self.folder / "a.exr")
+        layers = {}
+        for name, values in channels.items():
+            if "." in name and name.rsplit(".", 1)[1] in "RGB":
+                layers.setdefault(name.rsplit(".", 1)[0], {})[name[-1]] = values
+        lights = [layer for name, layer in layers.items() if name not in ("direct", "indirect", "specular", "variance")]
+        self.assertGreater(len(lights), 1)
+        for colour in "RGB":
+            for values in zip(channels[colour], *(layer[colour] for layer in lights)):
+                self.assertAlmostEqual(values[0], sum(values[1:]), delta=1e-4 * max(1, values[0]))
+
     def test_what_the_viewer_sees_as_numbers(self):
         self.done("render", "ball.toml", "-o", "a.exr")
         report = self.json("degrade", "a.exr", "-o", "c.exr")

@@ -76,12 +76,6 @@ TEST(SlantedEdge, FineBinsGiveTheProfile) {
   EXPECT_NEAR(found.crossing(0.9) - found.crossing(0.1), 0.8 * std::cos(base::radians(5.0)), 0.03);
 }
 
-TEST(SlantedEdge, TurnedPictureIsTheSameEdge) {
-  const Plane upright = edge(5.0, 0.4);
-  const Plane back = transposed(transposed(upright, columns, rows), rows, columns);
-  EXPECT_EQ(back, upright);
-}
-
 // Noise of a tenth of the step: found to four of the errors that eight edges show.
 TEST(SlantedEdge, NoiseDoesNotShiftTheModulation) {
   std::vector<double> found;
