@@ -86,17 +86,17 @@ std::string text_of(const std::string& camera, const degrade::CctvCamera& settin
     if (row.group != group) {
       group = row.group;
       text +=
-          fmt::format("\n{}\n  {:<58} {:>11} {:>11} {:>11}\n", group, "", "measured", "+-", "law");
+          fmt::format("\n{}\n  {:<66}{:>11} {:>11}  {:>10}\n", group, "", "measured", "+-", "law");
     }
     if (row.verdict == Verdict::DoesNotApply) {
-      text += fmt::format("  -    {:<53} does not apply: {}\n", row.name, row.why);
+      text += fmt::format("  -    {:<60} does not apply: {}\n", row.name, row.why);
       continue;
     }
-    text += fmt::format("  {} {:<53} {:>11.5g} {:>11.2g}{} {:>10.5g}  {}\n",
+    text += fmt::format("  {} {:<60} {:>11.5g} {:>11.2g}{} {:>10.5g}  {}\n",
                         row.verdict == Verdict::Pass ? "pass" : "FAIL", row.name, row.measured,
                         row.tolerance, row.statistical ? "*" : " ", row.expected, row.unit);
   }
-  return text + "\n* four standard errors\n" + verdict_line(camera, certificate) + "\n";
+  return text + "\n* four standard errors of this measurement; the rest is rounding or method\n" + verdict_line(camera, certificate) + "\n";
 }
 
 void run(const CertifyCall& call, const Common& common) {

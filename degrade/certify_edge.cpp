@@ -56,7 +56,7 @@ struct Laws {
   }
 };
 
-// Noise: eight frames, the mean modulation and its scatter.
+// Noise: sixteen frames, the mean modulation and its scatter.
 CertificateRow with_noise(const Bench& bench, const base::Image& chart, const Laws& law,
                           double reach, std::string_view name) {
   const double sigma = std::sqrt(bench.noise().total(high));
@@ -64,7 +64,7 @@ CertificateRow with_noise(const Bench& bench, const base::Image& chart, const La
   if (sigma > 0.25 * (high - low)) return absent(name, "1", "its noise drowns the edge");
   constexpr double frequency = 0.25;
   std::vector<double> found;
-  for (std::uint64_t frame = 0; frame < 8; ++frame) {
+  for (std::uint64_t frame = 0; frame < 16; ++frame) {
     found.push_back(measure(bench.linear(chart, frame), law.axis, reach).modulation(frequency));
   }
   return within_errors(name, "1", mean_of(found), law.modulation(frequency),
