@@ -109,7 +109,7 @@ CertificateRow fixed_point(const Bench& bench, const Scene& scene, const Reach& 
     const double metered = reach.dark * 1.01 * std::pow(reach.bright / reach.dark * 0.98, k / 4.0);
     const Picture signal = to_picture(scene.of(scene.chart(metered / unit), camera).signal);
     const double miss = meter(camera, camera.iris, signal) / reach.target - 1.0;
-    if (!(std::abs(miss) <= std::abs(worst))) worst = miss;
+    worst = farther(worst, miss);
   }
   return within("metered signal over its target, less 1: worst of its range", "1", worst, 0.0,
                 rounding, "M(E(N)) = t E_white wherever neither end is reached");

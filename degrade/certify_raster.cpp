@@ -142,7 +142,7 @@ CertificateRow phosphor(const Bench& bench, const Screen& screen, Axis axis) {
     const double found = static_cast<double>(
         viewed(result)[static_cast<std::size_t>(row) * static_cast<std::size_t>(result.columns) +
                        static_cast<std::size_t>(column)]);
-    if (!(std::abs(found - law) <= std::abs(worst))) worst = found - law;
+    worst = farther(worst, found - law);
   }
   return within(along ? "phosphor along the line: worst of an edge's profile"
                       : "phosphor across lines: worst of an edge's profile",

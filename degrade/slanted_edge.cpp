@@ -11,6 +11,8 @@
 namespace earthshine::degrade {
 namespace {
 
+constexpr double most_degrees = 15.0;
+
 struct Line {
   double at_middle = 0.0, slope = 0.0;  // x = at_middle + slope * (y - middle)
 };
@@ -37,6 +39,7 @@ Line fit_line(const Plane& plane, int columns, int rows, const Line& guess, doub
     }
     if (weights == 0.0) continue;
     const double found = moment / weights, t = y - middle;
+    if (!std::isfinite(found)) continue;
     n += 1.0;
     sx += found;
     sy += t;
@@ -46,14 +49,17 @@ Line fit_line(const Plane& plane, int columns, int rows, const Line& guess, doub
   const double spread = n * syy - sy * sy;
   if (!(spread > 0.0)) return guess;
   const double slope = (n * sxy - sx * sy) / spread;
-  return {(sx - slope * sy) / n, slope};
+  // Where noise buries the edge the line could lie anywhere; it is kept in the picture.
+  const double steepest = std::tan(base::radians(most_degrees));
+  return {std::clamp((sx - slope * sy) / n, 0.0, columns - 1.0),
+          std::clamp(slope, -steepest, steepest)};
 }
 
 }  // namespace
 
 SlantedEdge measure_edge(const Plane& plane, int columns, int rows, double reach, int bins) {
   Line line{0.5 * (columns - 1), 0.0};
-  const double lean = 0.5 * rows * std::tan(15.0 * base::pi / 180.0);
+  const double lean = 0.5 * rows * std::tan(base::radians(most_degrees));
   for (const double window : {lean + reach, reach, reach}) {
     line = fit_line(plane, columns, rows, line, window);
   }

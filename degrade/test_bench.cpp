@@ -125,14 +125,14 @@ CertificateRow absent(std::string_view name, std::string_view unit, std::string_
   return row;
 }
 
+double farther(double a, double b) { return std::isnan(a) || std::abs(b) <= std::abs(a) ? a : b; }
+
 double largest_difference(const Plane& a, const Plane& b) {
   double most = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    const double d = std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i]));
-    if (std::isnan(d)) return d;
-    most = std::max(most, d);
+    most = farther(most, static_cast<double>(a[i]) - static_cast<double>(b[i]));
   }
-  return most;
+  return std::abs(most);
 }
 
 }  // namespace earthshine::degrade

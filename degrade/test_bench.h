@@ -84,6 +84,8 @@ class Bench {
 [[nodiscard]] CertificateRow absent(std::string_view name, std::string_view unit,
                                     std::string_view why);
 
+// The one of two that is farther from 0; what is not a number is farthest.
+[[nodiscard]] double farther(double a, double b);
 // Largest |a - b|; NaN if one is in either.
 [[nodiscard]] double largest_difference(const Plane& a, const Plane& b);
 

@@ -88,6 +88,17 @@ TEST(SlantedEdge, NoiseDoesNotShiftTheModulation) {
   EXPECT_NEAR(mean.value, sinc(0.25 * std::cos(base::radians(5.0))), 4.0 * mean.error + 0.01);
 }
 
+// Neither noise alone nor a picture that is not a number has an edge; both come back without one.
+TEST(SlantedEdge, NoEdgeIsNoFault) {
+  const Picture noise =
+      add_read_noise({columns, rows, {Plane(columns * rows, 0.5F)}}, {.a = 1.0}, {});
+  const SlantedEdge none = measure_edge(noise.planes[0], columns, rows, 8.0);
+  EXPECT_LE(std::abs(none.angle), base::radians(15.0) + 1e-9);
+  EXPECT_FALSE(none.profile.empty());
+  const Plane invalid(columns * rows, std::nanf(""));
+  EXPECT_TRUE(std::isnan(measure_edge(invalid, columns, rows, 8.0).modulation(0.2)));
+}
+
 TEST(SlantedEdge, FrequencyAtALevelIsThatOfTheCurve) {
   const auto line = [](double f) { return 1.0 - f; };
   EXPECT_NEAR(frequency_at(line, 0.5, 1.0), 0.5, 1e-12);
