@@ -90,7 +90,8 @@ Rows level_rows(const Screen& screen) {
 
 CertificateRow checkerboard(const Bench& bench, const Screen& screen) {
   // A sinc's negative light beside black would be cut, and light would be gained.
-  const double low = bench.monitor().spread == Spread::Sinc ? 0.6 : 0.0;
+  const double low =
+      bench.monitor().spread == Spread::Sinc ? std::pow(0.7, 1.0 / bench.monitor().gamma) : 0.0;
   const auto is_bright = [](double x, double y) {
     return (static_cast<int>(x) + static_cast<int>(y)) % 2 == 0;
   };
@@ -110,7 +111,7 @@ CertificateRow light_sum(const Bench& bench, const Screen& screen) {
   const base::Key key(1, base::Stream::Test, 0);
   const auto drive = [&](double x, double y) {
     const auto n = static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint64_t>(x);
-    return 0.6 + 0.4 * base::uniform(key, n);
+    return std::pow(0.7 + 0.3 * base::uniform(key, n), 1.0 / bench.monitor().gamma);
   };
   double law = 0.0;
   for (int y = 0; y < bench.rows(); ++y) {
