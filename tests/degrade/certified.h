@@ -45,7 +45,7 @@ inline degrade::CctvCamera busy_camera() {
   camera.prnu_percent = 2.0;
   camera.dark_electrons = 12.0;
   camera.dsnu_percent = 0.5;
-  camera.bandwidth_mhz = 1.6;
+  camera.bandwidth_mhz = 0.8;
   camera.aperture_correction = 0.3;
   camera.bits = 8;
   camera.interlace = true;
