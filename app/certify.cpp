@@ -96,7 +96,8 @@ std::string text_of(const std::string& camera, const degrade::CctvCamera& settin
                         row.verdict == Verdict::Pass ? "pass" : "FAIL", row.name, row.measured,
                         row.tolerance, row.statistical ? "*" : " ", row.expected, row.unit);
   }
-  return text + "\n* four standard errors of this measurement; the rest is rounding or method\n" + verdict_line(camera, certificate) + "\n";
+  return text + "\n* four standard errors of this measurement; the rest is rounding or method\n" +
+         verdict_line(camera, certificate) + "\n";
 }
 
 void run(const CertifyCall& call, const Common& common) {
