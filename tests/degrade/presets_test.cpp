@@ -41,8 +41,59 @@ struct WithinLimits {
 TEST(Presets, EveryValueLiesInTheRangeThatTheReaderAllows) {
   for (const Preset& preset : presets())
     visit_camera_fields(preset.camera, WithinLimits{preset.name});
-  const Monitor monitor;
-  visit_monitor_fields(monitor, WithinLimits{"monitor"});
+  for (const Preset& preset : presets())
+    visit_monitor_fields(preset.monitor, WithinLimits{preset.name});
+}
+
+std::vector<std::string> keys_of(const std::vector<SettingSource>& sources) {
+  std::vector<std::string> keys;
+  for (const SettingSource& source : sources) keys.push_back(source.key);
+  return keys;
+}
+
+// Each setting in use has one source, in the order of the fields, and nothing else has.
+TEST(Presets, EverySettingInUseHasItsSourceAndNoOther) {
+  for (const Preset& preset : presets()) {
+    std::vector<std::string> camera, monitor;
+    visit_camera_fields(preset.camera, [&](const char* key, auto&&...) {
+      if (is_used(preset.camera, key)) camera.emplace_back(key);
+    });
+    visit_monitor_fields(preset.monitor, [&](const char* key, auto&&...) {
+      if (is_used(preset.monitor, key)) monitor.emplace_back(key);
+    });
+    EXPECT_EQ(keys_of(preset.sources), camera) << preset.name;
+    EXPECT_EQ(keys_of(preset.monitor_sources), monitor) << preset.name;
+  }
+}
+
+// A reader can tell what was measured from what was guessed.
+TEST(Presets, EverySourceSaysWhatKindItIs) {
+  const auto known = [](const std::string& source) {
+    for (const std::string_view kind :
+         {"[1990] ", "[GCTA] ", "[IUCr] ", "[SCOM] ", "computed: ", "estimate: ", "none: "}) {
+      if (source.starts_with(kind)) return source.size() > kind.size();
+    }
+    return false;
+  };
+  for (const Preset& preset : presets()) {
+    for (const SettingSource& s : preset.sources) {
+      EXPECT_TRUE(known(s.source)) << preset.name << " " << s.key << ": " << s.source;
+    }
+    for (const SettingSource& s : preset.monitor_sources) {
+      EXPECT_TRUE(known(s.source)) << preset.name << " " << s.key << ": " << s.source;
+    }
+  }
+}
+
+// The report speaks of neither a black level nor a lit room: what comes through is the picture's
+// light alone, on 300 x 400 points with a Gaussian spread.
+TEST(Presets, ReportOf1990HasItsOwnMonitor) {
+  const Monitor& monitor = find_preset("report-1990")->monitor;
+  EXPECT_EQ(monitor.rows, 300);
+  EXPECT_EQ(monitor.columns, 400);
+  EXPECT_EQ(monitor.spread, Spread::Gaussian);
+  EXPECT_EQ(monitor.black_luminance, 0.0);
+  EXPECT_EQ(room_luminance(monitor), 0.0);
 }
 
 // 20 lg(1 / 0.10) = 20 dB.
