@@ -4,56 +4,23 @@
 
 #include <memory>
 
+#include "app/camera_argument.h"
 #include "app/cctv.h"
 #include "app/command.h"
 #include "app/console.h"
+#include "app/degrade_list.h"
 #include "base/error.h"
 #include "base/exr_file.h"
-#include "degrade/noise.h"
-#include "degrade/presets.h"
 
 namespace earthshine::app {
 namespace {
 
 struct DegradeCall {
-  std::string input, output, scene, camera, preset;
+  std::string input, output, scene, camera, preset, cctv, describe;
   std::uint64_t frame = 0;
   std::vector<std::string> off;
   bool list = false, json = false;
 };
-
-template <class Value>
-Json plain(const Value& value) {
-  if constexpr (std::is_enum_v<Value>) {
-    return degrade::word_of(value);
-  } else {
-    return value;
-  }
-}
-
-void list(bool as_json) {
-  Json presets = Json::array(), stages = Json::array();
-  std::string text = "presets\n";
-  for (const degrade::Preset& preset : degrade::presets()) {
-    Json settings;
-    degrade::visit_camera_fields(preset.camera,
-                                 [&](const char* name, const auto& value, auto&&...) {
-                                   if (degrade::is_used(preset.camera, name))
-                                     settings[name] = plain(value);
-                                 });
-    presets.push_back({{"name", preset.name}, {"about", preset.about}, {"settings", settings}});
-    text += fmt::format("  {:<18} {}\n  {:<18} {}\n", preset.name, preset.about, "",
-                        degrade::describe_noise(preset.camera));
-  }
-  text += "\nstages, in order\n";
-  for (const degrade::Stage& stage : degrade::stages()) {
-    stages.push_back({{"name", stage.name},
-                      {"part", stage.part == degrade::Part::Camera ? "camera" : "monitor"},
-                      {"law", stage.law}});
-    text += fmt::format("  {:<18} {}\n", stage.name, stage.law);
-  }
-  print(as_json ? dump({{"presets", presets}, {"stages", stages}}) : text);
-}
 
 [[noreturn]] void refuse(std::string_view where, std::string_view found, std::string_view remedy) {
   throw base::Error(base::Blame::Input, where, found, {}, remedy);
@@ -69,10 +36,13 @@ void check_call(const DegradeCall& call) {
   if (!call.scene.empty() && !call.preset.empty()) {
     refuse("--preset", "stands beside --scene", "Give one of them");
   }
+  if (!call.cctv.empty() && !(call.scene.empty() && call.preset.empty())) {
+    refuse("--cctv", "stands beside --scene or --preset", "Give one of them");
+  }
   if (call.scene.empty() && !call.camera.empty()) {
     refuse("--camera", "needs a scene", "Add --scene SCENE");
   }
-  check_outputs({call.output}, {call.input, call.scene});
+  check_outputs({call.output}, {call.input, call.scene, file_of_camera(call.cctv)});
 }
 
 // The camera asked for, else the one that the picture says it was rendered with, else the first.
@@ -90,18 +60,22 @@ std::string camera_of(const DegradeCall& call, const scenes::Scene& scene,
 
 CctvSetup setup_for(const DegradeCall& call, const Common& common, const base::ExrHeader& header) {
   if (!call.preset.empty()) return cctv_of_preset(call.preset, common);
+  if (!call.cctv.empty()) return cctv_of(camera_of_argument("--cctv", call.cctv), common);
   if (!call.scene.empty()) {
     const LoadedScene loaded = load({call.scene, {}}, common.quiet);
     return cctv_of_camera(
         loaded.scene, choose_camera(loaded.scene, camera_of(call, loaded.scene, header)), common);
   }
   if (!common.quiet)
-    note(fmt::format("note: no --preset and no --scene, taking \"{}\"", default_preset));
+    note(fmt::format("note: no --preset, --cctv or --scene, taking \"{}\"", default_preset));
   return cctv_of_preset(std::string(default_preset), common);
 }
 
 void run(const DegradeCall& call, const Common& common) {
-  if (call.list) return list(call.json);
+  if (call.list) return list_cameras(call.json);
+  if (!call.describe.empty()) {
+    return print_camera(camera_of_argument("--describe", call.describe), call.json);
+  }
   check_call(call);
   const base::ExrFile file = base::read_exr(call.input);
   CctvSetup setup = setup_for(call, common, file.header);
@@ -127,6 +101,10 @@ Command add_degrade(CLI::App& program) {
       ->add_option("--camera", call->camera,
                    "Camera of the scene (default: the one in the picture's header, or the first)")
       ->type_name("NAME");
+  parser
+      ->add_option("--cctv", call->cctv,
+                   "CCTV camera: one that ships, FILE.toml with a [[cctv]], or FILE.toml:NAME")
+      ->type_name("CAMERA");
   parser->add_option("--preset", call->preset, "CCTV camera that ships (see --list)")
       ->type_name("NAME");
   add_whole_number(*parser, "--frame", call->frame, 0, ~std::uint64_t{0},
@@ -137,6 +115,10 @@ Command add_degrade(CLI::App& program) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->allow_extra_args(false);
   parser->add_flag("--list", call->list, "Show the presets and the stages");
+  parser
+      ->add_option("--describe", call->describe,
+                   "Show a CCTV camera's settings with sources, and its noise in all forms")
+      ->type_name("CAMERA");
   parser->add_flag("--json", call->json, "Report as JSON on standard output");
   return {parser, [call](const Common& common) { run(*call, common); }};
 }
