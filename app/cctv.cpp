@@ -25,6 +25,7 @@ CctvSetup cctv_of_camera(const scenes::Scene& scene, const scenes::Camera& camer
   setup.chain.camera = degrade::resolve_camera(scene, setup.name);
   setup.chain.monitor = degrade::resolve_monitor(scene, setup.name);
   setup.chain.options.seed = common.seed;
+  setup.chain.options.fov_deg = camera.fov_deg;
   setup.chain.options.view = static_cast<std::uint64_t>(&camera - scene.cameras.data());
   return setup;
 }
@@ -68,9 +69,11 @@ Json cctv_json(const CctvSetup& setup, const degrade::Result& result) {
           {"metered_cd_m2", report.exposure.metered},
           {"underexposed", report.exposure.underexposed},
           {"blown", report.exposure.blown},
-          {"noise", {{"a", report.noise.a}, {"b", report.noise.b}, {"c", report.noise.c}}},
+          {"noise", {{"a", report.noise.at_black()}, {"b", report.noise.b}, {"c", report.noise.c}}},
           {"saturated_share", report.levels.saturated_share},
           {"crushed_share", report.levels.crushed_share},
+          {"excess_share", report.excess_share},
+          {"lost_share", report.lost_share},
           {"negative_pixels", report.negative_pixels},
           {"clipped_negative_light", report.clipped_negative_light},
           {"stages", report.stages}};

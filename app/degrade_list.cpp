@@ -168,7 +168,7 @@ void list_cameras(bool as_json) {
   text += "\nstages, in order\n";
   for (const degrade::Stage& stage : degrade::stages()) {
     stages.push_back({{"name", stage.name},
-                      {"part", stage.part == degrade::Part::Camera ? "camera" : "monitor"},
+                      {"part", stage.part == degrade::Part::Monitor ? "monitor" : "camera"},
                       {"law", stage.law}});
     text += fmt::format("  {:<18} {}\n", stage.name, stage.law);
   }

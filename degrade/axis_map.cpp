@@ -98,7 +98,7 @@ std::vector<double> discrete_gaussian(double sigma) {
   // e^-t I_n(t) = (1/pi) integral over [0, pi] of exp(-t (1 - cos u)) cos(n u) du. The trapezoid
   // rule on a periodic function is exact up to terms of order 2 * steps - n, far beyond any kernel
   // here.
-  constexpr int steps = 512;
+  const int steps = std::max(512, static_cast<int>(std::ceil(16.0 * sigma)));
   const auto term = [&](int n) {
     double sum = 0.0;
     for (int k = 0; k <= steps; ++k) {
@@ -109,7 +109,7 @@ std::vector<double> discrete_gaussian(double sigma) {
     return sum / steps;
   };
   std::vector<double> half = {term(0)};
-  while (half.back() > 1e-10 && half.size() < steps / 2) {
+  while (half.back() > 1e-10 && half.size() < static_cast<std::size_t>(steps) / 2) {
     half.push_back(std::max(0.0, term(static_cast<int>(half.size()))));
   }
   std::vector<double> kernel(half.rbegin(), half.rend());
@@ -117,14 +117,16 @@ std::vector<double> discrete_gaussian(double sigma) {
   return kernel;
 }
 
-AxisMap gaussian_blur(int size, double sigma) {
+AxisMap symmetric_filter(int size, const std::vector<double>& taps) {
   AxisMap map;
   map.in = size;
-  const std::vector<double> kernel =
-      sigma > 0.0 ? discrete_gaussian(sigma) : std::vector<double>{1.0};
-  const int radius = static_cast<int>(kernel.size() / 2);
-  for (int i = 0; i < size; ++i) add_output(map, i - radius, kernel);
+  const int radius = static_cast<int>(taps.size() / 2);
+  for (int i = 0; i < size; ++i) add_output(map, i - radius, taps);
   return map;
+}
+
+AxisMap gaussian_blur(int size, double sigma) {
+  return symmetric_filter(size, sigma > 0.0 ? discrete_gaussian(sigma) : std::vector<double>{1.0});
 }
 
 Picture apply(const Picture& picture, const AxisMap& along, const AxisMap& across) {

@@ -131,4 +131,8 @@ double room_luminance(const Monitor& monitor) {
   return monitor.reflectance * monitor.room_illuminance / base::pi;
 }
 
+Picture add_light(Picture light, double veil) {
+  return transform(std::move(light), [&](double i) { return i + veil; });
+}
+
 }  // namespace earthshine::degrade

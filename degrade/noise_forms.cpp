@@ -33,22 +33,36 @@ NoiseWords noise_words(const CctvCamera& camera) {
   const NoiseLaw law = noise_law(camera);
   const auto snr_db = [&](double s) { return decibels_over(law.variance(s) / (s * s)); };
   NoiseWords words;
-  words.a = law.a;
+  words.a = law.at_black();
   words.b = law.b;
   words.c = law.c;
   words.snr_white_db = snr_db(1.0);
   words.snr_half_db = snr_db(0.5);
   words.snr_dark_db = snr_db(0.05);
-  words.floor_db = decibels_over(law.a);
+  words.floor_db = decibels_over(words.a);
   words.percent_at_white = 100.0 * std::sqrt(law.variance(1.0));
   words.percent_of_signal = 100.0 * std::sqrt(law.c);
   words.electrons_at_white = law.b > 0.0 ? 1.0 / law.b : infinite;
-  words.read_electrons = law.b > 0.0 ? std::sqrt(law.a) / law.b : 0.0;
+  words.read_electrons = law.b > 0.0 ? std::sqrt(words.a) / law.b : 0.0;
   words.line_sigma_white = std::sqrt(law.variance(1.0)) / camera.gamma;
   words.gamma_db = 20.0 * std::log10(camera.gamma);
   words.line_snr_white_db = words.snr_white_db + words.gamma_db;
   return words;
 }
+
+namespace {
+
+// What a law of three numbers does not keep of a photon camera's noise.
+std::string lost_in_law(const NoiseLaw& law) {
+  std::string lost;
+  if ((law.c_is_fixed_pattern && law.c > 0.0) || law.black_pattern > 0.0) {
+    lost = "patterns new in every frame";
+  }
+  if (law.dark > 0.0) lost += std::string(lost.empty() ? "" : ", ") + "dark counts not blurred";
+  return lost;
+}
+
+}  // namespace
 
 std::vector<NoiseForm> other_forms(const CctvCamera& camera) {
   const NoiseWords words = noise_words(camera);
@@ -57,9 +71,7 @@ std::vector<NoiseForm> other_forms(const CctvCamera& camera) {
   const double n = words.electrons_at_white;
   forms.push_back({NoiseMode::Law,
                    {{"noise_a", words.a}, {"noise_b", words.b}, {"noise_c", words.c}},
-                   camera.noise == NoiseMode::Photon && words.c > 0.0
-                       ? "c new in every frame, not a pattern"
-                       : ""});
+                   lost_in_law(noise_law(camera))});
   if (std::isfinite(n)) {
     forms.push_back({NoiseMode::Photon,
                      {{"electrons_at_white", n},

@@ -17,6 +17,7 @@ namespace earthshine::degrade {
 //   [GCTA]   Apollo ground-commanded television assembly, an RCA SIT camera of the same makers
 //   [IUCr]   International Tables for Crystallography C, 7.1.6.5.4, on SIT tubes
 //   [SCOM]   Shuttle Crew Operations Manual 2.3, the closed-circuit television
+//   [shutref] NASA's Shuttle Reference, closed-circuit television: monochrome, colour by the lens
 //   computed: from the other numbers or a standard
 //   estimate: usual for the kind of device and the years; no flight figure was found
 //   none: off, with the reason

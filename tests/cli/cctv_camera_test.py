@@ -48,7 +48,7 @@ class CctvCamera(program.Case):
         self.assertEqual(self.json("degrade", "--describe", "scene.toml:bay")["settings"]["glare"], 0.05)
 
     def test_description(self):
-        self.says(self.done("degrade", "--describe", "sit-monochrome"), "estimate: zoom lens", "27.76 dB at white",
+        self.says(self.done("degrade", "--describe", "sit-monochrome"), "estimate: zoom lens", "27.75 dB at white",
                   'noise = "law", noise_a = ', "cd/m^2")
         told = self.json("degrade", "--describe", "cameras.toml:bay")
         self.assertEqual(told["sources"]["glare"], "cameras.toml:4:1")

@@ -27,7 +27,7 @@ CctvCamera with_noise(NoiseMode mode, double snr_db = 40.0) {
 // The camera with the settings of a form put into their fields, as a file with them would have it.
 CctvCamera with_form(CctvCamera camera, const NoiseForm& form) {
   camera.noise = form.mode;
-  camera.read_electrons = camera.prnu_percent = 0.0;
+  camera.read_electrons = camera.prnu_percent = camera.dark_electrons = camera.dsnu_percent = 0.0;
   for (const auto& [name, given] : form.settings) {
     visit_camera_fields(camera,
                         [&, &key = name, &value = given](const char* k, auto& field, auto&&...) {
@@ -120,7 +120,7 @@ TEST(NoiseForms, EveryFormGivesBackTheNoise) {
       const double s = in_the_dark ? 0.0 : 1.0;
       EXPECT_NEAR(got.variance(s), wanted.variance(s), 1e-9 * wanted.variance(s));
       if (form.differs.find("the same at") != std::string::npos) continue;
-      EXPECT_NEAR(got.a, wanted.a, 1e-9 * wanted.a);
+      EXPECT_NEAR(got.at_black(), wanted.at_black(), 1e-9 * wanted.at_black());
       EXPECT_NEAR(got.b, wanted.b, 1e-9 * wanted.b);
       EXPECT_NEAR(got.c, wanted.c, 1e-9 * wanted.c);
     }
