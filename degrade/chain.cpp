@@ -119,12 +119,12 @@ Result run_chain(std::vector<const base::Image*> seen, const Setup& setup, const
     if (stage.name == "screen") white = setup.monitor.white_luminance;
     if (stage.name == "room-light") white += room_luminance(setup.monitor);
   }
-  const Picture& shown = fields.front();
+  Picture& shown = fields.front();
   result.columns = shown.columns;
   result.rows = shown.rows;
   result.channels = static_cast<int>(shown.planes.size());
   result.pixels = screen_bytes(shown, white);
-  result.viewed = to_image(shown);
+  result.viewed = to_image(std::move(shown));
   return result;
 }
 

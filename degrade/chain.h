@@ -78,6 +78,8 @@ struct Passing {
 };
 
 // Lens: the same for both fields. Sensor: each field of a frame for itself. Monitor: the frame.
+struct Moments;  // degrade/carry.h
+
 enum class Part { Lens, Sensor, Monitor };
 
 struct Stage {
@@ -88,12 +90,19 @@ struct Stage {
   // Report: what earlier stages found, nullptr while there is no picture yet.
   bool (*runs)(const Setup&, const Report*);
   Picture (*apply)(Picture, const Passing&);
+  // What the stage does to the moments of a picture with noise; without it noise passes unchanged
+  // and the mean goes through apply. Stages of the lens come before any noise.
+  Moments (*carry)(Moments, const Passing&) = nullptr;
   // Where the two fields become a frame, in place of apply.
   Picture (*merge)(Picture first, const Picture& second) = nullptr;
 };
 
 // All stages in order.
 [[nodiscard]] std::span<const Stage> stages();
+
+// Share of the signal that is left when the next picture comes: after a field of an interlaced
+// camera, else after a frame, which lasts two fields.
+[[nodiscard]] double lag_of(const Passing& at);
 
 // Which stages this camera and monitor call for, as far as it is known without a picture (an
 // automatic gain may turn out to be 1).

@@ -123,7 +123,7 @@ Picture spread_on_screen(const Picture& light, const Monitor& monitor, double& n
       value = std::max(value, 0.0F);
     }
   }
-  negative_share = positive > 0.0 ? -negative / positive : 0.0;
+  negative_share = negative < 0.0 && positive > 0.0 ? -negative / positive : 0.0;
   return spread;
 }
 

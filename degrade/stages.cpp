@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "degrade/carry.h"
 #include "degrade/chain.h"
 #include "degrade/line.h"
 #include "degrade/optics.h"
@@ -18,12 +19,6 @@ NoiseKey noise_key(const Passing& at) {
 }
 
 double from_db(double db) { return std::pow(10.0, -db / 20.0); }
-
-// Of a field when there are two to a frame; else of a frame, which lasts two fields.
-double lag_of(const Passing& at) {
-  const double lag = at.setup.camera.lag;
-  return at.fields == 2 ? lag : lag * lag;
-}
 
 // The mean over the fields.
 void add_levels(Levels& sum, const Levels& field, std::uint64_t fields) {
@@ -142,15 +137,17 @@ constexpr Stage table[] = {
        return shade(std::move(p), at.setup.camera.shading_percent / 100.0);
      }},
     {"signal-noise", Part::Sensor, "signal", "signal", "variance b S + c S^2, and dark counts",
-     [](const Setup& s, const Report*) { return noise_law(s.camera).with_light(); }, signal_noise},
+     [](const Setup& s, const Report*) { return noise_law(s.camera).with_light(); }, signal_noise,
+     carry_signal_noise},
     {"lag", Part::Sensor, "signal", "signal", "y = (1 - lag) S + lag y of the field before",
-     [](const Setup& s, const Report*) { return s.camera.lag > 0.0; }, lag},
+     [](const Setup& s, const Report*) { return s.camera.lag > 0.0; }, lag, carry_lag},
     {"blur", Part::Sensor, "signal", "signal",
      "discrete Gaussian, sigma_h along and sigma_v across lines",
      [](const Setup& s, const Report*) { return s.camera.blur_h > 0.0 || s.camera.blur_v > 0.0; },
      [](Picture p, const Passing& at) {
        return blur(p, at.setup.camera.blur_h, at.setup.camera.blur_v);
-     }},
+     },
+     carry_blur},
     {"smear", Part::Sensor, "signal", "signal", "S = S + 10 smear mean(column)",
      [](const Setup& s, const Report*) { return s.camera.smear_db > 0.0; },
      [](Picture p, const Passing& at) {
@@ -161,14 +158,16 @@ constexpr Stage table[] = {
      [](const Setup& s, const Report*) {
        return s.camera.saturation > 0.0 && s.camera.bloom > 0.0;
      },
-     bloom},
+     bloom, carry_bloom},
     {"saturation", Part::Sensor, "signal", "signal", "S = min(S, S_most)",
-     [](const Setup& s, const Report*) { return s.camera.saturation > 0.0; }, saturate},
+     [](const Setup& s, const Report*) { return s.camera.saturation > 0.0; }, saturate,
+     carry_saturation},
     {"read-noise", Part::Sensor, "signal", "signal", "variance a",
      [](const Setup& s, const Report*) { return noise_law(s.camera).with_amplifier(); },
      [](Picture p, const Passing& at) {
        return add_read_noise(std::move(p), at.report.noise, noise_key(at));
-     }},
+     },
+     carry_read_noise},
     {"bandwidth", Part::Sensor, "signal", "signal",
      "along the line: low pass of -3 dB at B, then aperture correction",
      [](const Setup& s, const Report*) {
@@ -180,48 +179,60 @@ constexpr Stage table[] = {
                     line_filter(p.columns, camera.bandwidth_mhz, camera.aperture_correction,
                                 at.setup.monitor.columns),
                     gaussian_blur(p.rows, 0.0));
-     }},
+     },
+     carry_bandwidth},
     {"black-clamp", Part::Sensor, "signal", "signal", "S = max(S, 0)",
      [](const Setup& s, const Report*) { return s.camera.black_clamp; },
-     [](Picture p, const Passing&) { return limit_below_zero(std::move(p)); }},
+     [](Picture p, const Passing&) { return limit_below_zero(std::move(p)); }, carry_black_clamp},
     {"gain", Part::Sensor, "signal", "signal", "S = G S", gain_runs,
-     [](Picture p, const Passing& at) { return amplify(std::move(p), at.report.exposure.gain); }},
+     [](Picture p, const Passing& at) { return amplify(std::move(p), at.report.exposure.gain); },
+     carry_gain},
     {"levels", Part::Sensor, "signal", "signal",
      "counts white and black resels; the picture passes", always, levels},
     {"white-clip", Part::Sensor, "signal", "signal", "S = min(S, S_clip)",
      [](const Setup& s, const Report*) { return s.camera.white_clip > 0.0; },
      [](Picture p, const Passing& at) {
        return limit_above(std::move(p), at.setup.camera.white_clip);
-     }},
+     },
+     carry_white_clip},
     {"camera-gamma", Part::Sensor, "signal", "line signal", "v = S^(1/gamma)",
      [](const Setup& s, const Report*) { return s.camera.gamma != 1.0; },
-     [](Picture p, const Passing& at) {
-       return encode_gamma(std::move(p), at.setup.camera.gamma);
-     }},
+     [](Picture p, const Passing& at) { return encode_gamma(std::move(p), at.setup.camera.gamma); },
+     carry_camera_gamma},
     {"quantisation", Part::Sensor, "line signal", "line signal", "nearest of 2^bits levels",
      [](const Setup& s, const Report*) { return s.camera.bits > 0; },
-     [](Picture p, const Passing& at) { return quantise(std::move(p), at.setup.camera.bits); }},
+     [](Picture p, const Passing& at) { return quantise(std::move(p), at.setup.camera.bits); },
+     carry_quantisation},
     {"interlace", Part::Sensor, "line signal", "line signal",
      "even lines from the first field, odd ones from the second",
-     [](const Setup& s, const Report*) { return s.camera.interlace; }, nullptr, weave},
+     [](const Setup& s, const Report*) { return s.camera.interlace; }, nullptr, carry_interlace,
+     weave},
     {"screen", Part::Monitor, "line signal", "cd/m^2", "I = I_b + (I_w - I_b) v^gamma", always,
-     [](Picture p, const Passing& at) { return drive_screen(std::move(p), at.setup.monitor); }},
+     [](Picture p, const Passing& at) { return drive_screen(std::move(p), at.setup.monitor); },
+     carry_screen},
     {"spread", Part::Monitor, "cd/m^2", "cd/m^2", "point spread, on the finer grid of pixels",
      [](const Setup& s, const Report*) {
        return s.monitor.spread != Spread::None || s.monitor.pixels_per_resel > 1;
      },
      [](Picture p, const Passing& at) {
        return spread_on_screen(p, at.setup.monitor, at.report.clipped_negative_light);
-     }},
+     },
+     carry_spread},
     {"room-light", Part::Monitor, "cd/m^2", "cd/m^2", "I = I + reflectance E_room / pi",
      [](const Setup& s, const Report*) { return room_luminance(s.monitor) > 0.0; },
      [](Picture p, const Passing& at) {
        return add_light(std::move(p), room_luminance(at.setup.monitor));
-     }},
+     },
+     carry_room_light},
 };
 
 }  // namespace
 
 std::span<const Stage> stages() { return table; }
+
+double lag_of(const Passing& at) {
+  const double lag = at.setup.camera.lag;
+  return at.fields == 2 ? lag : lag * lag;
+}
 
 }  // namespace earthshine::degrade
