@@ -13,7 +13,8 @@
 #include "app/stage_pictures.h"
 #include "app/tape.h"
 #include "base/error.h"
-#include "base/exr_file.h"
+#include "base/exr_reader.h"
+#include "degrade/radiance_file.h"
 
 namespace earthshine::app {
 namespace {
@@ -109,11 +110,14 @@ CctvSetup setup_for(const DegradeCall& call, const Common& common, const base::E
 // What a sequence goes through: the picture read last, so that a still is read once.
 struct Reader {
   std::string path;
-  base::ExrFile file;
-  const base::ExrFile& read(const std::string& wanted) {
-    if (wanted != path) file = base::read_exr(wanted);
+  degrade::RadianceFile file;
+  const base::Image& read(const std::string& wanted, const degrade::Setup& setup) {
+    if (wanted != path) {
+      base::ExrReader reader(wanted);
+      file = degrade::read_radiance(reader, setup);
+    }
     path = wanted;
-    return file;
+    return file.image;
   }
 };
 
@@ -127,6 +131,16 @@ double field_of_view(const DegradeCall& call, double of_scene, const base::ExrHe
   return 0.0;
 }
 
+// What was read: its size, and where it lies in the whole view if it is a crop of it.
+Json picture_json(const degrade::RadianceFile& file, const base::ExrHeader::Whole& whole) {
+  Json json = {{"columns", file.columns}, {"rows", file.rows}, {"read_in_strips", file.averaged}};
+  if (whole.columns > 0) {
+    json["crop_of"] = {
+        {"columns", whole.columns}, {"rows", whole.rows}, {"x", whole.x}, {"y", whole.y}};
+  }
+  return json;
+}
+
 void run(const DegradeCall& call, const Common& common) {
   if (call.list) return list_cameras(call.json);
   if (!call.describe.empty()) {
@@ -136,7 +150,7 @@ void run(const DegradeCall& call, const Common& common) {
   const std::vector<TapeFrame> tape = lay_out(call.tape);
   check_files(call, tape);
   Reader reader;
-  const base::ExrHeader& header = reader.read(tape.front().inputs.front()).header;
+  const base::ExrHeader header = base::ExrReader(tape.front().inputs.front()).header();
   CctvSetup setup = setup_for(call, common, header);
   degrade::Options& options = setup.chain.options;
   options.off = call.off;
@@ -144,25 +158,30 @@ void run(const DegradeCall& call, const Common& common) {
   degrade::Memory memory, twin_memory;
   memory.f_number = twin_memory.f_number = call.f_number;
   Json reports = Json::array();
+  if (header.whole.columns > 0 && !common.quiet) {
+    note("note: the picture is a crop: iris and glare see only this part of the view");
+  }
   for (const TapeFrame& frame : tape) {
     options.frame = frame.number;
     StagePictures stages(numbered(call.stages, frame.number), options);
     degrade::Result result;
     if (frame.inputs.size() == 2) {
-      const base::Image first = reader.read(frame.inputs[0]).image;
-      result = degrade::degrade_fields(first, reader.read(frame.inputs[1]).image,
+      const base::Image first = reader.read(frame.inputs[0], setup.chain);
+      result = degrade::degrade_fields(first, reader.read(frame.inputs[1], setup.chain),
                                        setup.chain.camera, setup.chain.monitor, options, memory);
     } else {
-      result = degrade::degrade(reader.read(frame.inputs[0]).image, setup.chain.camera,
+      result = degrade::degrade(reader.read(frame.inputs[0], setup.chain), setup.chain.camera,
                                 setup.chain.monitor, options, memory);
     }
     memory = result.memory;
+    result.report.negative_pixels += reader.file.negative_pixels;
     write_cctv(numbered(call.output, frame.number), setup, result);
     Json report = cctv_json(setup, result);
+    report["picture"] = picture_json(reader.file, header.whole);
     if (!call.twin.empty()) {
-      const degrade::Twin twin =
-          degrade::twin(reader.read(frame.inputs[0]).image, setup.chain.camera, setup.chain.monitor,
-                        options, {static_cast<int>(call.target_resels)}, twin_memory);
+      const degrade::Twin twin = degrade::twin(reader.read(frame.inputs[0], setup.chain),
+                                               setup.chain.camera, setup.chain.monitor, options,
+                                               {static_cast<int>(call.target_resels)}, twin_memory);
       twin_memory = twin.memory;
       write_twin(numbered(call.twin, frame.number), setup, twin, result);
       report["twin"] = twin_json(twin);
