@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "app/cctv.h"
+#include "app/camera_argument.h"
 #include "app/command.h"
 #include "app/console.h"
 #include "base/error.h"
@@ -101,16 +101,16 @@ std::string text_of(const std::string& camera, const degrade::CctvCamera& settin
 }
 
 void run(const CertifyCall& call, const Common& common) {
-  if (!call.output.empty()) check_outputs({call.output}, {});
-  const CctvSetup setup = cctv_of_preset(call.camera, common);
+  if (!call.output.empty()) check_outputs({call.output}, {file_of_camera(call.camera)});
+  const degrade::ResolvedCamera found = camera_of_argument("CAMERA", call.camera);
   const Certificate certificate =
-      degrade::certify(setup.chain.camera, setup.chain.monitor, {.seed = common.seed});
-  const Json json = json_of(setup.name, certificate, common.seed);
+      degrade::certify(found.camera, found.monitor, {.seed = common.seed});
+  const Json json = json_of(found.name, certificate, common.seed);
   if (!call.output.empty()) base::write_text(call.output, dump(json));
-  print(call.json ? dump(json) : text_of(setup.name, setup.chain.camera, certificate, common.seed));
+  print(call.json ? dump(json) : text_of(found.name, found.camera, certificate, common.seed));
   if (!certificate.passed()) {
     throw base::Error(
-        base::Blame::Work, setup.name,
+        base::Blame::Work, found.name,
         fmt::format("{} of {} measurements miss their law: {}", certificate.count(Verdict::Fail),
                     certificate.count(Verdict::Fail) + certificate.count(Verdict::Pass),
                     certificate.failures()));
@@ -123,7 +123,9 @@ Command add_certify(CLI::App& degrade) {
   CLI::App* parser = degrade.add_subcommand(
       "certify", "Measures a camera on a bench of charts: a datasheet, each number beside its law");
   const auto call = std::make_shared<CertifyCall>();
-  parser->add_option("CAMERA", call->camera, "CCTV camera that ships (see degrade --list)")
+  parser
+      ->add_option("CAMERA", call->camera,
+                   "CCTV camera: one that ships (see degrade --list), FILE.toml or FILE.toml:NAME")
       ->type_name("")
       ->required();
   parser->add_option("-o,--output", call->output, "Also write the JSON to a file")

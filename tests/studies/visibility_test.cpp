@@ -72,7 +72,8 @@ TEST(Visibility, SharesBeyondTheShownRangeCountTheTargetsPixels) {
 }
 
 // The chain's own counts, taken from the signal, are those of the range carried back to the scene:
-// on a picture of one pixel per resel, with blur and noise off, pixel by pixel.
+// on a picture of one pixel per resel, pixel by pixel, with all off that is not the same everywhere
+// or that mixes them.
 TEST(Visibility, ShownRangeAgreesWithTheChainsLevels) {
   constexpr int edge = 300;
   base::Image image = base::make_rgb_image(edge, edge);
@@ -90,7 +91,8 @@ TEST(Visibility, ShownRangeAgreesWithTheChainsLevels) {
       degrade::CctvCamera camera = preset.camera;
       camera.glare = glare;
       degrade::Options options;
-      options.off = {"signal-noise", "read-noise", "blur"};
+      options.off = {"signal-noise", "read-noise", "shading",  "blur",
+                     "smear",        "bloom",      "bandwidth"};
       const degrade::Result result = degrade::degrade(image, camera, {}, options);
       const ShownRange shown = shown_range(camera, result.report, mean);
       double saturated = 0.0, crushed = 0.0;
