@@ -169,6 +169,8 @@ void list_cameras(bool as_json) {
   for (const degrade::Stage& stage : degrade::stages()) {
     stages.push_back({{"name", stage.name},
                       {"part", stage.part == degrade::Part::Monitor ? "monitor" : "camera"},
+                      {"in", stage.in},
+                      {"out", stage.out},
                       {"law", stage.law}});
     text += fmt::format("  {:<18} {}\n", stage.name, stage.law);
   }
