@@ -24,7 +24,8 @@ base::Image scattered(int width, int height) {
   return image;
 }
 
-RadianceFile read(const std::filesystem::path& path, const Setup& setup, std::size_t most_pixels) {
+RadianceFile read(const std::filesystem::path& path, const degrade::Setup& setup,
+                  std::size_t most_pixels) {
   base::ExrReader reader(path);
   return read_radiance(reader, setup, most_pixels);
 }
@@ -37,7 +38,7 @@ TEST(RadianceFile, StripsGiveTheBytesOfTheWholePicture) {
     base::write_exr(folder / "a.exr", scattered(width, height));
     for (const char* name : {"ccd-colour", "sit-monochrome"}) {
       const Preset& preset = *find_preset(name);
-      const Setup setup{preset.camera, preset.monitor, {}};
+      const degrade::Setup setup{preset.camera, preset.monitor, {}};
       const RadianceFile whole = read(folder / "a.exr", setup, most_pixels_kept);
       const RadianceFile strips = read(folder / "a.exr", setup, 0);
       EXPECT_FALSE(whole.averaged);
@@ -55,7 +56,7 @@ TEST(RadianceFile, StripsGiveTheBytesOfTheWholePicture) {
 TEST(RadianceFile, WithoutTheSensorsGridThePictureKeepsItsSize) {
   const test::TemporaryFolder folder;
   base::write_exr(folder / "a.exr", scattered(31, 17));
-  Setup setup;
+  degrade::Setup setup;
   setup.options.off = {"sensor-grid"};
   EXPECT_EQ(read(folder / "a.exr", setup, 0).image.width, 31);
 }
