@@ -195,7 +195,7 @@ void run(const DegradeCall& call, const Common& common) {
 
 }  // namespace
 
-Command add_degrade(CLI::App& program) {
+std::vector<Command> add_degrade(CLI::App& program) {
   CLI::App* parser =
       program.add_subcommand("degrade", "What a CCTV camera and its monitor make of a linear EXR");
   const auto call = std::make_shared<DegradeCall>();
@@ -258,7 +258,11 @@ Command add_degrade(CLI::App& program) {
                    "Show a CCTV camera's settings with sources, and its noise in all forms")
       ->type_name("CAMERA");
   parser->add_flag("--json", call->json, "Report as JSON on standard output");
-  return {parser, [call](const Common& common) { run(*call, common); }};
+  const Command certify = add_certify(*parser);
+  const auto picture = [call, certify](const Common& common) {
+    if (!certify.parser->parsed()) run(*call, common);
+  };
+  return {{parser, picture}, certify};
 }
 
 }  // namespace earthshine::app
