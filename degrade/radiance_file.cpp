@@ -14,12 +14,14 @@ namespace {
 constexpr std::size_t strip_pixels = std::size_t{1} << 22;
 // Lines that no compression of OpenEXR splits (DWAB's block).
 constexpr int strip_lines = 256;
-// The picture itself, and the planes that the chain makes of it.
+// The picture itself, and the planes that the chain makes of it: those of the screen, too, when
+// their number does not depend on the sensor's grid.
 constexpr double copies = 3.0;
 
-void check_memory(std::size_t pixels, int channels) {
+void check_memory(std::size_t pixels, int channels, double screen_pixels_per_pixel) {
   const auto free_bytes = base::free_memory_bytes();
-  const double needed = copies * 4.0 * static_cast<double>(channels) * static_cast<double>(pixels);
+  const double needed = copies * (1.0 + screen_pixels_per_pixel) * 4.0 *
+                        static_cast<double>(channels) * static_cast<double>(pixels);
   if (!free_bytes || needed <= static_cast<double>(*free_bytes)) return;
   const auto mib = [](double bytes) {
     return std::to_string(static_cast<long long>(bytes / 1048576.0)) + " MiB";
@@ -105,7 +107,9 @@ RadianceFile read_radiance(base::ExrReader& reader, const Setup& setup, std::siz
   const std::vector<std::string>& off = setup.options.off;
   const bool keeps_size = std::find(off.begin(), off.end(), "sensor-grid") != off.end();
   if (pixels <= most_pixels || keeps_size) {
-    check_memory(pixels, std::max(reader.channel_count(), setup.camera.colour ? 3 : 1));
+    const double per_resel = keeps_size ? setup.monitor.pixels_per_resel : 0.0;
+    check_memory(pixels, std::max(reader.channel_count(), setup.camera.colour ? 3 : 1),
+                 per_resel * per_resel);
     file.image = reader.read_rows(0, file.rows);
     return file;
   }

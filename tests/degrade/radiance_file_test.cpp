@@ -24,7 +24,8 @@ base::Image scattered(int width, int height) {
   return image;
 }
 
-RadianceFile read(const std::filesystem::path& path, const Setup& setup, std::size_t most_pixels) {
+RadianceFile read(const std::filesystem::path& path, const degrade::Setup& setup,
+                  std::size_t most_pixels) {
   base::ExrReader reader(path);
   return read_radiance(reader, setup, most_pixels);
 }
