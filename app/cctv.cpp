@@ -5,11 +5,41 @@
 
 #include "app/console.h"
 #include "base/error.h"
+#include "base/exr_file.h"
 #include "base/png_file.h"
 #include "degrade/camera_file.h"
 #include "degrade/presets.h"
 
 namespace earthshine::app {
+namespace {
+
+// An enumerator as its word.
+template <class Value>
+Json plain(const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    return degrade::word_of(value);
+  } else {
+    return value;
+  }
+}
+
+Json monitor_json(const degrade::Monitor& monitor) {
+  Json settings;
+  degrade::visit_monitor_fields(monitor, [&](const char* name, const auto& value, auto&&...) {
+    settings[name] = plain(value);
+  });
+  return settings;
+}
+
+}  // namespace
+
+Json settings_json(const degrade::CctvCamera& camera) {
+  Json settings;
+  degrade::visit_camera_fields(camera, [&](const char* name, const auto& value, auto&&...) {
+    if (degrade::is_used(camera, name)) settings[name] = plain(value);
+  });
+  return settings;
+}
 
 CctvSetup cctv_of_camera(const scenes::Scene& scene, const scenes::Camera& camera,
                          const Common& common) {
@@ -25,6 +55,7 @@ CctvSetup cctv_of_camera(const scenes::Scene& scene, const scenes::Camera& camer
   setup.chain.camera = degrade::resolve_camera(scene, setup.name);
   setup.chain.monitor = degrade::resolve_monitor(scene);
   setup.chain.options.seed = common.seed;
+  setup.chain.options.fov_deg = camera.fov_deg;
   setup.chain.options.view = static_cast<std::uint64_t>(&camera - scene.cameras.data());
   return setup;
 }
@@ -46,12 +77,47 @@ degrade::Result run_chain(const CctvSetup& setup, const base::Image& radiance) {
   return degrade::degrade(radiance, setup.chain.camera, setup.chain.monitor, setup.chain.options);
 }
 
+namespace {
+
+std::vector<std::pair<std::string, std::string>> provenance(const CctvSetup& setup,
+                                                            const degrade::Result& result) {
+  return {{"Software", "earthshine " EARTHSHINE_VERSION},
+          {"earthshine:cctv", setup.name},
+          {"earthshine:seed", std::to_string(setup.chain.options.seed)},
+          {"earthshine:frame", std::to_string(setup.chain.options.frame)},
+          {"earthshine:cctv.report", cctv_json(setup, result).dump()}};
+}
+
+}  // namespace
+
 void write_cctv(const std::string& path, const CctvSetup& setup, const degrade::Result& result) {
-  base::write_png(path, result.columns, result.rows, result.channels, result.pixels,
-                  {{"Software", "earthshine " EARTHSHINE_VERSION},
-                   {"earthshine:cctv", setup.name},
-                   {"earthshine:seed", std::to_string(setup.chain.options.seed)},
-                   {"earthshine:frame", std::to_string(setup.chain.options.frame)}});
+  if (path.ends_with(".exr")) {
+    base::write_exr(path, result.viewed, {provenance(setup, result), {}});
+  } else {
+    base::write_png(path, result.columns, result.rows, result.channels, result.pixels,
+                    provenance(setup, result));
+  }
+}
+
+void write_twin(const std::string& path, const CctvSetup& setup, const degrade::Twin& twin,
+                const degrade::Result& noisy) {
+  base::write_exr(path, degrade::to_image(twin, noisy), {provenance(setup, noisy), {}});
+}
+
+Json twin_json(const degrade::Twin& twin) {
+  const auto mean = [](const degrade::Plane& values) {
+    double sum = 0.0;
+    for (float value : values) sum += static_cast<double>(value);
+    return sum / static_cast<double>(values.size());
+  };
+  std::size_t likely = 0;
+  for (float p : twin.detection.probability) likely += p >= 0.5F ? 1 : 0;
+  return {{"median_snr", degrade::quantile(twin.snr, 0.5)},
+          {"detectable_share",
+           static_cast<double>(likely) / static_cast<double>(twin.detection.probability.size())},
+          {"mean_detection_probability", mean(twin.detection.probability)},
+          {"saturated_share", mean(twin.saturated)},
+          {"crushed_share", mean(twin.crushed)}};
 }
 
 Json cctv_json(const CctvSetup& setup, const degrade::Result& result) {
@@ -65,12 +131,18 @@ Json cctv_json(const CctvSetup& setup, const degrade::Result& result) {
           {"metered_cd_m2", report.exposure.metered},
           {"underexposed", report.exposure.underexposed},
           {"blown", report.exposure.blown},
-          {"noise", {{"a", report.noise.a}, {"b", report.noise.b}, {"c", report.noise.c}}},
+          {"noise", {{"a", report.noise.at_black()}, {"b", report.noise.b}, {"c", report.noise.c}}},
           {"saturated_share", report.levels.saturated_share},
           {"crushed_share", report.levels.crushed_share},
+          {"excess_share", report.excess_share},
+          {"lost_share", report.lost_share},
           {"negative_pixels", report.negative_pixels},
           {"clipped_negative_light", report.clipped_negative_light},
-          {"stages", report.stages}};
+          {"stages", report.stages},
+          {"frame", setup.chain.options.frame},
+          {"seed", setup.chain.options.seed},
+          {"settings", settings_json(setup.chain.camera)},
+          {"monitor", monitor_json(setup.chain.monitor)}};
 }
 
 std::string cctv_summary(const CctvSetup& setup, const degrade::Result& result) {

@@ -8,6 +8,7 @@
 #include "app/command.h"
 #include "base/image.h"
 #include "degrade/chain.h"
+#include "degrade/twin.h"
 #include "scenes/scene.h"
 
 namespace earthshine::app {
@@ -28,7 +29,16 @@ struct CctvSetup {
 
 [[nodiscard]] degrade::Result run_chain(const CctvSetup& setup, const base::Image& radiance);
 
+// Every setting in use.
+[[nodiscard]] Json settings_json(const degrade::CctvCamera& camera);
+
+// A PNG, or an EXR of what the viewer sees in cd/m^2; both say the settings and the exposure.
 void write_cctv(const std::string& path, const CctvSetup& setup, const degrade::Result& result);
+
+void write_twin(const std::string& path, const CctvSetup& setup, const degrade::Twin& twin,
+                const degrade::Result& noisy);
+// Medians over the resels, and the share of the picture where a target is seen as often as not.
+[[nodiscard]] Json twin_json(const degrade::Twin& twin);
 
 [[nodiscard]] Json cctv_json(const CctvSetup& setup, const degrade::Result& result);
 // One line for people: f-number, gain, what clips.

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 #include "app/cctv.h"
 #include "app/command.h"
 #include "app/console.h"
+#include "app/stage_pictures.h"
+#include "app/tape.h"
 #include "base/error.h"
 #include "base/exr_file.h"
 #include "degrade/noise.h"
@@ -15,40 +18,31 @@
 namespace earthshine::app {
 namespace {
 
+constexpr std::uint64_t most_frames = 1'000'000'000;
+
 struct DegradeCall {
-  std::string input, output, scene, camera, preset;
-  std::uint64_t frame = 0;
+  TapeCall tape;
+  std::string output, twin, stages, scene, camera, preset;
+  std::uint64_t target_resels = 5;
+  std::optional<double> fov_deg, f_number;
   std::vector<std::string> off;
   bool list = false, json = false;
 };
-
-template <class Value>
-Json plain(const Value& value) {
-  if constexpr (std::is_enum_v<Value>) {
-    return degrade::word_of(value);
-  } else {
-    return value;
-  }
-}
 
 void list(bool as_json) {
   Json presets = Json::array(), stages = Json::array();
   std::string text = "presets\n";
   for (const degrade::Preset& preset : degrade::presets()) {
-    Json settings;
-    degrade::visit_camera_fields(preset.camera,
-                                 [&](const char* name, const auto& value, auto&&...) {
-                                   if (degrade::is_used(preset.camera, name))
-                                     settings[name] = plain(value);
-                                 });
-    presets.push_back({{"name", preset.name}, {"about", preset.about}, {"settings", settings}});
+    presets.push_back({{"name", preset.name},
+                       {"about", preset.about},
+                       {"settings", settings_json(preset.camera)}});
     text += fmt::format("  {:<18} {}\n  {:<18} {}\n", preset.name, preset.about, "",
                         degrade::describe_noise(preset.camera));
   }
   text += "\nstages, in order\n";
   for (const degrade::Stage& stage : degrade::stages()) {
     stages.push_back({{"name", stage.name},
-                      {"part", stage.part == degrade::Part::Camera ? "camera" : "monitor"},
+                      {"part", stage.part == degrade::Part::Monitor ? "monitor" : "camera"},
                       {"law", stage.law}});
     text += fmt::format("  {:<18} {}\n", stage.name, stage.law);
   }
@@ -59,12 +53,26 @@ void list(bool as_json) {
   throw base::Error(base::Blame::Input, where, found, {}, remedy);
 }
 
+bool is_picture_name(const std::string& path) {
+  return path.ends_with(".png") || path.ends_with(".exr") || path.starts_with("/dev/");
+}
+
 void check_call(const DegradeCall& call) {
-  if (call.input.empty()) refuse("degrade", "no picture is named", "Name an EXR file");
+  if (call.tape.inputs.empty()) refuse("degrade", "no picture is named", "Name an EXR file");
   if (call.output.empty())
-    refuse("degrade", "-o is missing", "Name a PNG file to write: -o OUT.png");
-  if (!call.output.ends_with(".png") && !call.output.starts_with("/dev/")) {
-    refuse("-o", "\"" + call.output + "\" is not a .png file", "Name a file that ends in .png");
+    refuse("degrade", "-o is missing", "Name a file to write: -o OUT.png or OUT.exr");
+  if (!is_picture_name(call.output)) {
+    refuse("-o", "\"" + call.output + "\" is neither a .png nor an .exr file",
+           "Name a file that ends in .png or .exr");
+  }
+  if (!call.twin.empty() && !call.twin.ends_with(".exr") && !call.twin.starts_with("/dev/")) {
+    refuse("--twin", "\"" + call.twin + "\" is not an .exr file", "Name a file that ends in .exr");
+  }
+  if (!call.twin.empty() && call.tape.fields) {
+    refuse("--twin", "stands beside --fields", "A twin belongs to a scene that stands still");
+  }
+  if (call.target_resels % 2 == 0) {
+    refuse("--target-resels", "is even", "Give an odd number, so that a target has a middle");
   }
   if (!call.scene.empty() && !call.preset.empty()) {
     refuse("--preset", "stands beside --scene", "Give one of them");
@@ -72,7 +80,20 @@ void check_call(const DegradeCall& call) {
   if (call.scene.empty() && !call.camera.empty()) {
     refuse("--camera", "needs a scene", "Add --scene SCENE");
   }
-  check_outputs({call.output}, {call.input, call.scene});
+}
+
+// Every file that the frames will be written into.
+void check_files(const DegradeCall& call, const std::vector<TapeFrame>& tape) {
+  check_numbered("-o", call.output, tape.size());
+  check_numbered("--twin", call.twin, tape.size());
+  check_numbered("--stages", call.stages, tape.size());
+  std::vector<std::string> inputs = call.tape.inputs, outputs;
+  inputs.push_back(call.scene);
+  for (const TapeFrame& frame : tape) {
+    outputs.push_back(numbered(call.output, frame.number));
+    outputs.push_back(numbered(call.twin, frame.number));
+  }
+  check_outputs(outputs, inputs);
 }
 
 // The camera asked for, else the one that the picture says it was rendered with, else the first.
@@ -100,17 +121,69 @@ CctvSetup setup_for(const DegradeCall& call, const Common& common, const base::E
   return cctv_of_preset(std::string(default_preset), common);
 }
 
+// What a sequence goes through: the picture read last, so that a still is read once.
+struct Reader {
+  std::string path;
+  base::ExrFile file;
+  const base::ExrFile& read(const std::string& wanted) {
+    if (wanted != path) file = base::read_exr(wanted);
+    path = wanted;
+    return file;
+  }
+};
+
+// Vertical field of view: as told, the scene's camera's, or what the picture's header says.
+double field_of_view(const DegradeCall& call, double of_scene, const base::ExrHeader& header) {
+  if (call.fov_deg) return *call.fov_deg;
+  if (of_scene > 0.0) return of_scene;
+  for (const auto& [name, value] : header.numbers) {
+    if (name == "earthshine:camera.fov_deg") return static_cast<double>(value);
+  }
+  return 0.0;
+}
+
 void run(const DegradeCall& call, const Common& common) {
   if (call.list) return list(call.json);
   check_call(call);
-  const base::ExrFile file = base::read_exr(call.input);
-  CctvSetup setup = setup_for(call, common, file.header);
-  setup.chain.options.frame = call.frame;
-  setup.chain.options.off = call.off;
-  const degrade::Result result = run_chain(setup, file.image);
-  write_cctv(call.output, setup, result);
-  if (call.json) print(dump(cctv_json(setup, result)));
-  if (!common.quiet) note("  " + cctv_summary(setup, result));
+  const std::vector<TapeFrame> tape = lay_out(call.tape);
+  check_files(call, tape);
+  Reader reader;
+  const base::ExrHeader& header = reader.read(tape.front().inputs.front()).header;
+  CctvSetup setup = setup_for(call, common, header);
+  degrade::Options& options = setup.chain.options;
+  options.off = call.off;
+  options.fov_deg = field_of_view(call, options.fov_deg, header);
+  degrade::Memory memory, twin_memory;
+  memory.f_number = twin_memory.f_number = call.f_number;
+  Json reports = Json::array();
+  for (const TapeFrame& frame : tape) {
+    options.frame = frame.number;
+    StagePictures stages(numbered(call.stages, frame.number), options);
+    degrade::Result result;
+    if (frame.inputs.size() == 2) {
+      const base::Image first = reader.read(frame.inputs[0]).image;
+      result = degrade::degrade_fields(first, reader.read(frame.inputs[1]).image,
+                                       setup.chain.camera, setup.chain.monitor, options, memory);
+    } else {
+      result = degrade::degrade(reader.read(frame.inputs[0]).image, setup.chain.camera,
+                                setup.chain.monitor, options, memory);
+    }
+    memory = result.memory;
+    write_cctv(numbered(call.output, frame.number), setup, result);
+    Json report = cctv_json(setup, result);
+    if (!call.twin.empty()) {
+      const degrade::Twin twin =
+          degrade::twin(reader.read(frame.inputs[0]).image, setup.chain.camera, setup.chain.monitor,
+                        options, {static_cast<int>(call.target_resels)}, twin_memory);
+      twin_memory = twin.memory;
+      write_twin(numbered(call.twin, frame.number), setup, twin, result);
+      report["twin"] = twin_json(twin);
+    }
+    reports.push_back(std::move(report));
+    if (!common.quiet) note("  " + cctv_summary(setup, result));
+  }
+  if (!call.json) return;
+  print(dump(tape.size() == 1 ? reports.front() : Json{{"frames", reports}}));
 }
 
 }  // namespace
@@ -119,8 +192,14 @@ Command add_degrade(CLI::App& program) {
   CLI::App* parser =
       program.add_subcommand("degrade", "What a CCTV camera and its monitor make of a linear EXR");
   const auto call = std::make_shared<DegradeCall>();
-  parser->add_option("IN", call->input, "Picture in cd/m2 (OpenEXR)")->type_name("");
-  parser->add_option("-o,--output", call->output, "Picture to write (PNG)")->type_name("FILE");
+  parser
+      ->add_option("IN", call->tape.inputs,
+                   "Picture in cd/m2 (OpenEXR); several are the frames of a sequence")
+      ->type_name("");
+  parser
+      ->add_option("-o,--output", call->output,
+                   "Picture to write: PNG, or EXR in cd/m2; # stands for the frame's number")
+      ->type_name("FILE");
   parser->add_option("--scene", call->scene, "Scene whose camera and [monitor] to use")
       ->type_name("SCENE");
   parser
@@ -129,8 +208,34 @@ Command add_degrade(CLI::App& program) {
       ->type_name("NAME");
   parser->add_option("--preset", call->preset, "CCTV camera that ships (see --list)")
       ->type_name("NAME");
-  add_whole_number(*parser, "--frame", call->frame, 0, ~std::uint64_t{0},
-                   "Number of the television frame: other noise (default 0)");
+  add_whole_number(*parser, "--frame", call->tape.first, 0, most_frames,
+                   "Number of the (first) television frame: other noise (default 0)");
+  add_whole_number(*parser, "--frames", call->tape.frames, 1, most_frames,
+                   "How many frames one picture is shown (default 1)");
+  parser->add_flag("--fields", call->tape.fields,
+                   "The pictures are fields: two make a frame of an interlaced camera");
+  parser
+      ->add_option("--f-number", call->f_number,
+                   "Where the iris stood before the first frame (default: where it ends)")
+      ->check(CLI::Range(0.5, 1e6))
+      ->type_name("N");
+  parser
+      ->add_option("--fov", call->fov_deg,
+                   "Vertical field of view in degrees, for fall_off (default: what the scene or "
+                   "the picture says)")
+      ->check(CLI::Range(0.001, 179.0))
+      ->type_name("DEG");
+  parser
+      ->add_option("--twin", call->twin,
+                   "The picture's analytic twin: noise-free, mean, variance, SNR, probability of "
+                   "detection, masks (EXR)")
+      ->type_name("FILE.exr");
+  add_whole_number(*parser, "--target-resels", call->target_resels, 1, 199,
+                   "Size of the target whose detection --twin maps, odd (default 5)");
+  parser
+      ->add_option("--stages", call->stages,
+                   "Folder for the picture after each stage (EXR, in the stage's unit)")
+      ->type_name("DIR");
   parser->add_option("--off", call->off, "Leave out a stage (see --list; may be repeated)")
       ->type_name("STAGE")
       ->expected(1)

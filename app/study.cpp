@@ -32,8 +32,7 @@ void prepare_folder(const std::string& folder, const std::vector<std::string>& f
   fs::create_directories(folder, problem);
   if (!fs::is_directory(folder)) {
     const std::string why = problem ? ": " + problem.message() : "";
-    throw Error(Blame::Input, folder, "cannot be made a folder" + why, {},
-                "Name another folder for -o");
+    throw Error(Blame::Input, folder, "cannot be made a folder" + why, {}, "Name another folder");
   }
   std::vector<std::string> paths;
   paths.reserve(files.size());

@@ -2,6 +2,7 @@
 #include "base/tone.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -91,12 +92,43 @@ ToneMapped apply_exposure(const Image& image, const std::vector<float>& luminanc
   return result;
 }
 
+double srgb_curve(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
+
+// Where the bytes begin, so that a pixel costs a look-up in place of a power.
+struct SrgbSteps {
+  static constexpr std::size_t cells = 4096;
+  std::array<double, 256> begin{};          // smallest value that rounds to this byte
+  std::array<std::uint8_t, cells> first{};  // byte of a cell's lower end
+
+  SrgbSteps() {
+    for (std::size_t byte = 1; byte < begin.size(); ++byte) {
+      double below = 0.0, from = 1.0;
+      while (true) {
+        const double middle = 0.5 * (below + from);
+        if (middle <= below || middle >= from) break;
+        (255.0 * srgb_curve(middle) >= static_cast<double>(byte) - 0.5 ? from : below) = middle;
+      }
+      begin[byte] = from;
+    }
+    std::size_t byte = 0;
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+      while (byte < 255 && begin[byte + 1] <= static_cast<double>(cell) / cells) ++byte;
+      first[cell] = static_cast<std::uint8_t>(byte);
+    }
+  }
+};
+
 }  // namespace
 
 std::uint8_t srgb_byte(double linear) {
-  const double v =
-      linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(v, 0.0, 1.0)));
+  static const SrgbSteps steps;
+  if (!(linear > 0.0)) return 0;
+  if (linear >= 1.0) return 255;
+  std::size_t byte = steps.first[static_cast<std::size_t>(linear * SrgbSteps::cells)];
+  while (byte < 255 && linear >= steps.begin[byte + 1]) ++byte;
+  return static_cast<std::uint8_t>(byte);
 }
 
 ToneMapped tone_map(const Image& image) {

@@ -2,6 +2,7 @@
 #include "degrade/axis_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -17,22 +18,35 @@ std::size_t mirrored(int index, int size) {
   return static_cast<std::size_t>(m < size ? m : period - 1 - m);
 }
 
+// Rows are taken eight at a time, their values at one place side by side, so that a weight meets
+// eight neighbours in memory whatever the places it applies to.
+constexpr std::size_t side_by_side = 8;
+
 Plane map_rows(const Plane& in, int columns, int rows, const AxisMap& map) {
   const std::size_t width = static_cast<std::size_t>(columns);
   const std::size_t out_width = static_cast<std::size_t>(map.out());
   Plane out(out_width * static_cast<std::size_t>(rows));
-  base::parallel_chunks(static_cast<std::size_t>(rows), 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y) {
-      const float* const line = in.data() + y * width;
-      for (std::size_t x = 0; x < out_width; ++x) {
-        double sum = 0.0;
-        for (std::size_t k = map.start[x]; k < map.start[x + 1]; ++k) {
-          sum += map.weight[k] * static_cast<double>(line[map.source[k]]);
-        }
-        out[y * out_width + x] = static_cast<float>(sum);
-      }
-    }
-  });
+  base::parallel_chunks(static_cast<std::size_t>(rows), side_by_side,
+                        [&](std::size_t begin, std::size_t end) {
+                          std::vector<std::array<float, side_by_side>> block(width);
+                          for (std::size_t y = begin; y < end; ++y) {
+                            const float* const line = in.data() + y * width;
+                            for (std::size_t x = 0; x < width; ++x) block[x][y - begin] = line[x];
+                          }
+                          for (std::size_t x = 0; x < out_width; ++x) {
+                            std::array<double, side_by_side> sum{};
+                            for (std::size_t k = map.start[x]; k < map.start[x + 1]; ++k) {
+                              const std::array<float, side_by_side>& values = block[map.source[k]];
+                              const double weight = map.weight[k];
+                              for (std::size_t r = 0; r < side_by_side; ++r) {
+                                sum[r] += weight * static_cast<double>(values[r]);
+                              }
+                            }
+                            for (std::size_t y = begin; y < end; ++y) {
+                              out[y * out_width + x] = static_cast<float>(sum[y - begin]);
+                            }
+                          }
+                        });
   return out;
 }
 
@@ -98,7 +112,7 @@ std::vector<double> discrete_gaussian(double sigma) {
   // e^-t I_n(t) = (1/pi) integral over [0, pi] of exp(-t (1 - cos u)) cos(n u) du. The trapezoid
   // rule on a periodic function is exact up to terms of order 2 * steps - n, far beyond any kernel
   // here.
-  constexpr int steps = 512;
+  const int steps = std::max(512, static_cast<int>(std::ceil(16.0 * sigma)));
   const auto term = [&](int n) {
     double sum = 0.0;
     for (int k = 0; k <= steps; ++k) {
@@ -109,7 +123,7 @@ std::vector<double> discrete_gaussian(double sigma) {
     return sum / steps;
   };
   std::vector<double> half = {term(0)};
-  while (half.back() > 1e-10 && half.size() < steps / 2) {
+  while (half.back() > 1e-10 && half.size() < static_cast<std::size_t>(steps) / 2) {
     half.push_back(std::max(0.0, term(static_cast<int>(half.size()))));
   }
   std::vector<double> kernel(half.rbegin(), half.rend());
@@ -117,14 +131,16 @@ std::vector<double> discrete_gaussian(double sigma) {
   return kernel;
 }
 
-AxisMap gaussian_blur(int size, double sigma) {
+AxisMap symmetric_filter(int size, const std::vector<double>& taps) {
   AxisMap map;
   map.in = size;
-  const std::vector<double> kernel =
-      sigma > 0.0 ? discrete_gaussian(sigma) : std::vector<double>{1.0};
-  const int radius = static_cast<int>(kernel.size() / 2);
-  for (int i = 0; i < size; ++i) add_output(map, i - radius, kernel);
+  const int radius = static_cast<int>(taps.size() / 2);
+  for (int i = 0; i < size; ++i) add_output(map, i - radius, taps);
   return map;
+}
+
+AxisMap gaussian_blur(int size, double sigma) {
+  return symmetric_filter(size, sigma > 0.0 ? discrete_gaussian(sigma) : std::vector<double>{1.0});
 }
 
 Picture apply(const Picture& picture, const AxisMap& along, const AxisMap& across) {

@@ -12,9 +12,8 @@ namespace earthshine::degrade {
 namespace {
 
 // The channels that the chain works on, checked; negative light counts as none.
-Frame take_in(const base::Image& radiance, bool colour) {
-  Frame frame;
-  Picture& picture = frame.picture;
+Picture take_in(const base::Image& radiance, bool colour, std::size_t& negative_pixels) {
+  Picture picture;
   picture.columns = radiance.width;
   picture.rows = radiance.height;
   const bool has_rgb = radiance.find("R") != nullptr && radiance.find("G") != nullptr &&
@@ -34,12 +33,12 @@ Frame take_in(const base::Image& radiance, bool colour) {
                           "radiance must be finite", "Render it again or repair the picture");
       }
       if (plane[i] < 0.0F) {
-        ++frame.report.negative_pixels;
+        ++negative_pixels;
         plane[i] = 0.0F;
       }
     }
   }
-  return frame;
+  return picture;
 }
 
 void check_names(const std::vector<std::string>& off) {
@@ -69,6 +68,66 @@ std::vector<std::uint8_t> screen_bytes(const Picture& viewed, double white) {
   return bytes;
 }
 
+// fields: one picture, or two that differ.
+Result run_chain(std::vector<const base::Image*> seen, const Setup& setup, const Memory& before) {
+  const CctvCamera& camera = setup.camera;
+  const Options& options = setup.options;
+  check_names(options.off);
+  Result result;
+  result.memory = before;
+  Report& report = result.report;
+  std::vector<Picture> fields;
+  for (const base::Image* radiance : seen) {
+    if (radiance->width < 1 || radiance->height < 1) {
+      throw base::Error(base::Blame::Input, "picture", "has no pixels");
+    }
+    fields.push_back(take_in(*radiance, camera.colour, report.negative_pixels));
+  }
+  report.noise = noise_law(camera);
+  // What stands if the stages that decide it are off.
+  report.sensor = {fields.front().columns, fields.front().rows};
+  report.exposure.f_number = camera.f_number;
+
+  const auto runs = [&](const Stage& stage) {
+    return !is_off(stage, options) && stage.runs(setup, &report);
+  };
+  const std::span<const Stage> table = stages();
+  const bool interlaced = std::any_of(table.begin(), table.end(), [&](const Stage& stage) {
+    return stage.merge != nullptr && runs(stage);
+  });
+  double white = 1.0;
+  bool exposed = false;
+  for (const Stage& stage : table) {
+    if (stage.part == Part::Sensor && !exposed) {
+      if (interlaced && fields.size() == 1) fields.push_back(fields.front());
+      exposed = true;
+    }
+    if (stage.part == Part::Monitor && result.signal.channels.empty()) {
+      result.signal = to_image(fields.front());
+    }
+    if (!runs(stage)) continue;
+    if (stage.merge != nullptr) {
+      fields = {stage.merge(std::move(fields[0]), fields[1])};
+    } else {
+      for (std::size_t f = 0; f < fields.size(); ++f) {
+        fields[f] =
+            stage.apply(std::move(fields[f]), {setup, report, result.memory, f, fields.size()});
+      }
+    }
+    report.stages.emplace_back(stage.name);
+    if (options.watch) options.watch(stage.name, fields.front());
+    if (stage.name == "screen") white = setup.monitor.white_luminance;
+    if (stage.name == "room-light") white += room_luminance(setup.monitor);
+  }
+  Picture& shown = fields.front();
+  result.columns = shown.columns;
+  result.rows = shown.rows;
+  result.channels = static_cast<int>(shown.planes.size());
+  result.pixels = screen_bytes(shown, white);
+  result.viewed = to_image(std::move(shown));
+  return result;
+}
+
 }  // namespace
 
 std::vector<StagePlan> plan(const CctvCamera& camera, const Monitor& monitor,
@@ -83,37 +142,23 @@ std::vector<StagePlan> plan(const CctvCamera& camera, const Monitor& monitor,
 }
 
 Result degrade(const base::Image& radiance, const CctvCamera& camera, const Monitor& monitor,
-               const Options& options) {
-  check_names(options.off);
-  if (radiance.width < 1 || radiance.height < 1) {
-    throw base::Error(base::Blame::Input, "picture", "has no pixels");
-  }
-  const Setup setup{camera, monitor, options};
-  Frame frame = take_in(radiance, camera.colour);
-  frame.report.noise = noise_law(camera);
-  // What stands if the stages that decide it are off.
-  frame.report.sensor = {radiance.width, radiance.height};
-  frame.report.exposure.f_number = camera.f_number;
+               const Options& options, const Memory& before) {
+  return run_chain({&radiance}, {camera, monitor, options}, before);
+}
 
-  Result result;
-  double white = 1.0;
-  for (const Stage& stage : stages()) {
-    if (stage.part == Part::Monitor && result.signal.channels.empty()) {
-      result.signal = to_image(frame.picture);
-    }
-    if (is_off(stage, options) || !stage.runs(setup, &frame.report)) continue;
-    frame = stage.apply(std::move(frame), setup);
-    frame.report.stages.emplace_back(stage.name);
-    if (stage.name == "screen") white = monitor.white_luminance;
-    if (stage.name == "room-light") white += room_luminance(monitor);
+Result degrade_fields(const base::Image& first, const base::Image& second, const CctvCamera& camera,
+                      const Monitor& monitor, const Options& options, const Memory& before) {
+  const auto refuse = [](const char* found, const char* allowed) {
+    throw base::Error(base::Blame::Input, "fields", found, allowed);
+  };
+  if (!camera.interlace) refuse("the camera is not interlaced", "it must have interlace = true");
+  if (std::find(options.off.begin(), options.off.end(), "interlace") != options.off.end()) {
+    refuse("stage \"interlace\" is left out", "two fields need it");
   }
-  result.columns = frame.picture.columns;
-  result.rows = frame.picture.rows;
-  result.channels = static_cast<int>(frame.picture.planes.size());
-  result.pixels = screen_bytes(frame.picture, white);
-  result.viewed = to_image(frame.picture);
-  result.report = std::move(frame.report);
-  return result;
+  if (first.width != second.width || first.height != second.height) {
+    refuse("the two pictures differ in size", "both fields of a frame have the same size");
+  }
+  return run_chain({&first, &second}, {camera, monitor, options}, before);
 }
 
 }  // namespace earthshine::degrade

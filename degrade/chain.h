@@ -5,6 +5,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,7 +27,10 @@ struct Options {
   std::uint64_t frame = 0;
   std::uint64_t view = 0;  // another number for each camera of a run: other noise
   std::vector<std::string>
-      off;  // stages left out by name, e.g. both noises for the noise-free twin
+      off;               // stages left out by name, e.g. both noises for the noise-free twin
+  double fov_deg = 0.0;  // vertical, of the picture; 0: not known
+  // Called with the picture after each stage that ran; of an interlaced camera the first field's.
+  std::function<void(std::string_view stage, const Picture&)> watch = {};
 };
 
 struct Report {
@@ -33,9 +38,17 @@ struct Report {
   NoiseLaw noise;
   Grid sensor;                          // columns and rows used
   Levels levels;                        // of the amplified signal, before white is clipped
+  double excess_share = 0.0;            // of the signal: what lay above saturation
+  double lost_share = 0.0;              // of the signal: what saturation and bloom threw away
   std::size_t negative_pixels = 0;      // of the input, taken as black
   double clipped_negative_light = 0.0;  // share of the light that a sinc spread made negative
   std::vector<std::string> stages;      // that ran, in order
+};
+
+// What a camera remembers from frame to frame.
+struct Memory {
+  std::optional<double> f_number;  // where the iris stood
+  Picture charge;                  // what the last field left on the target; empty without lag
 };
 
 struct Result {
@@ -46,6 +59,7 @@ struct Result {
   base::Image viewed;                // what the viewer sees, cd/m^2: Y, or R, G, B
   base::Image signal;                // the line signal on the sensor's grid, 1 = white
   Report report;
+  Memory memory;  // for the next frame
 };
 
 struct Setup {
@@ -54,13 +68,19 @@ struct Setup {
   Options options;
 };
 
-// A picture on its way, and what the stages found out.
-struct Frame {
-  Picture picture;
-  Report report;
+// A stage's surroundings: what the settings are, what earlier stages found out, what the camera
+// remembers, and which of how many fields of the frame this is.
+struct Passing {
+  const Setup& setup;
+  Report& report;
+  Memory& memory;
+  std::uint64_t field = 0, fields = 1;
 };
 
-enum class Part { Camera, Monitor };
+// Lens: the same for both fields. Sensor: each field of a frame for itself. Monitor: the frame.
+struct Moments;  // degrade/carry.h
+
+enum class Part { Lens, Sensor, Monitor };
 
 struct Stage {
   std::string_view name;
@@ -69,11 +89,20 @@ struct Stage {
   std::string_view law;
   // Report: what earlier stages found, nullptr while there is no picture yet.
   bool (*runs)(const Setup&, const Report*);
-  Frame (*apply)(Frame, const Setup&);
+  Picture (*apply)(Picture, const Passing&);
+  // What the stage does to the moments of a picture with noise; without it noise passes unchanged
+  // and the mean goes through apply. Stages of the lens come before any noise.
+  Moments (*carry)(Moments, const Passing&) = nullptr;
+  // Where the two fields become a frame, in place of apply.
+  Picture (*merge)(Picture first, const Picture& second) = nullptr;
 };
 
 // All stages in order.
 [[nodiscard]] std::span<const Stage> stages();
+
+// Share of the signal that is left when the next picture comes: after a field of an interlaced
+// camera, else after a frame, which lasts two fields.
+[[nodiscard]] double lag_of(const Passing& at);
 
 // Which stages this camera and monitor call for, as far as it is known without a picture (an
 // automatic gain may turn out to be 1).
@@ -85,9 +114,20 @@ struct StagePlan {
                                           const Options& options = {});
 
 // radiance: R, G, B or Y in cd/m^2, any size; its whole field of view goes onto the grid of
-// picture_grid. Same input, settings, seed, frame and view: same bytes, on any number of threads.
-// Throws base::Error (Input) if a pixel is NaN or infinite, or options.off names no stage.
+// picture_grid. Same input, settings, seed, frame, view and memory: same bytes, on any number of
+// threads. before: the memory of the frame before; without it the camera has looked at this scene
+// for long: its iris stands where it ends and the charge that lags is that of a still scene.
+// Throws base::Error (Input) if a pixel is NaN or infinite, options.off names no stage, fall_off is
+// asked for and fov_deg is not known, or `before` belongs to a picture of another shape.
 [[nodiscard]] Result degrade(const base::Image& radiance, const CctvCamera& camera,
-                             const Monitor& monitor, const Options& options = {});
+                             const Monitor& monitor, const Options& options = {},
+                             const Memory& before = {});
+
+// The same for a scene that moved between the two fields of a frame: each field of its own picture,
+// of the same size; the iris follows the first. Throws base::Error (Input) also when the camera is
+// not interlaced or the sizes differ.
+[[nodiscard]] Result degrade_fields(const base::Image& first, const base::Image& second,
+                                    const CctvCamera& camera, const Monitor& monitor,
+                                    const Options& options = {}, const Memory& before = {});
 
 }  // namespace earthshine::degrade

@@ -12,29 +12,9 @@ constexpr double endless = 1e12;
 
 }  // namespace
 
-Picture through_lens(Picture radiance, const CctvCamera& camera, double f_number) {
-  const double factor = lens_transfer(camera, f_number);
-  return transform(std::move(radiance), [&](double l) { return std::min(l, 1e30) * factor; });
-}
-
-Picture add_glare(Picture illuminance, double share) {
-  for (Plane& plane : illuminance.planes) {
-    double sum = 0.0;
-    for (float value : plane) sum += static_cast<double>(value);
-    const double veil = share * sum / static_cast<double>(plane.size());
-    for (float& value : plane)
-      value = static_cast<float>((1.0 - share) * static_cast<double>(value) + veil);
-  }
-  return illuminance;
-}
-
 Picture to_signal(Picture illuminance, double white_lux) {
   return transform(std::move(illuminance),
                    [&](double e) { return std::min(e / white_lux, endless); });
-}
-
-Picture limit_above(Picture signal, double most) {
-  return transform(std::move(signal), [&](double s) { return std::min(s, most); });
 }
 
 Picture limit_below_zero(Picture signal) {

@@ -2,19 +2,12 @@
 // Point by point from light on the sensor to the signal on the line.
 #pragma once
 
-#include "degrade/camera.h"
-#include "degrade/iris.h"
 #include "degrade/picture.h"
 
 namespace earthshine::degrade {
 
-// E = pi tau L / (4 N^2), lx.
-[[nodiscard]] Picture through_lens(Picture radiance, const CctvCamera& camera, double f_number);
-// E <- (1 - g) E + g mean(E): stray light; the mean stays.
-[[nodiscard]] Picture add_glare(Picture illuminance, double share);
 // S = E / E_white.
 [[nodiscard]] Picture to_signal(Picture illuminance, double white_lux);
-[[nodiscard]] Picture limit_above(Picture signal, double most);
 [[nodiscard]] Picture limit_below_zero(Picture signal);
 [[nodiscard]] Picture amplify(Picture signal, double gain);
 // v = S^(1/gamma); a signal below black is black.

@@ -28,6 +28,13 @@ double target_signal(const CctvCamera& camera) {
   return 1.0;
 }
 
+// N after a frame on the way from `before` to `goal`.
+double moved(const CctvCamera& camera, double before, double goal) {
+  double stops = camera.iris_rate * 2.0 * std::log2(goal / before);
+  if (camera.iris_slew > 0.0) stops = std::clamp(stops, -camera.iris_slew, camera.iris_slew);
+  return std::clamp(before * std::exp2(stops / 2.0), camera.f_number_min, camera.f_number_max);
+}
+
 }  // namespace
 
 double power_mean(const Plane& luminance, int columns, int rows, double p, double centre) {
@@ -78,10 +85,11 @@ double metered_luminance(const Picture& radiance, const CctvCamera& camera) {
 }
 
 double lens_transfer(const CctvCamera& camera, double f_number) {
-  return base::pi * camera.transmittance / (4.0 * f_number * f_number);
+  const double effective = f_number * (1.0 + camera.magnification);
+  return base::pi * camera.transmittance / (4.0 * effective * effective);
 }
 
-Exposure expose(const CctvCamera& camera, double metered) {
+Exposure expose(const CctvCamera& camera, double metered, std::optional<double> before) {
   Exposure exposure;
   exposure.metered = metered;
   if (camera.iris == IrisMode::Fixed) {
@@ -92,13 +100,13 @@ Exposure expose(const CctvCamera& camera, double metered) {
   exposure.target = target_signal(camera);
   const double wanted_lux = exposure.target * camera.white_lux;
   const double ideal = std::sqrt(lens_transfer(camera, 1.0) * metered / wanted_lux);
-  exposure.f_number = std::clamp(ideal, camera.f_number_min, camera.f_number_max);
+  const double goal = std::clamp(ideal, camera.f_number_min, camera.f_number_max);
+  exposure.f_number = before ? moved(camera, *before, goal) : goal;
   const double reached_lux = lens_transfer(camera, exposure.f_number) * metered;
   const double most = gain_of_db(camera.gain_max_db);
-  // Only where the iris is wide open: inside its range it misses the target by rounding alone.
-  exposure.gain =
-      ideal < camera.f_number_min ? std::clamp(wanted_lux / reached_lux, 1.0, most) : 1.0;
   // A relative margin, because an iris inside its range meets the target only to rounding.
+  const bool too_dark = reached_lux < wanted_lux * (1.0 - 1e-9);
+  exposure.gain = too_dark ? std::min(wanted_lux / reached_lux, most) : 1.0;
   exposure.underexposed = reached_lux * exposure.gain < wanted_lux * (1.0 - 1e-9);
   exposure.blown = reached_lux > wanted_lux * (1.0 + 1e-9);
   return exposure;

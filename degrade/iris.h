@@ -2,6 +2,8 @@
 // What the iris sees and where it goes. Closed form: the steady state of the loop, no iteration.
 #pragma once
 
+#include <optional>
+
 #include "degrade/camera.h"
 #include "degrade/picture.h"
 
@@ -29,11 +31,14 @@ struct Exposure {
   bool blown = false;         // closed, and still too bright
 };
 
-// N = clamp(sqrt(pi tau M / (4 t E_white)), N_min, N_max), then gain = clamp(t E_white / E(N), 1,
-// gain_max).
-[[nodiscard]] Exposure expose(const CctvCamera& camera, double metered);
+// N* = clamp(sqrt(pi tau M / (4 t E_white (1 + m)^2)), N_min, N_max), then gain = clamp(t E_white /
+// E(N), 1, gain_max): the steady state. With `before`, the f-number of the frame before, ln N^2
+// goes from there the share iris_rate of its way to ln N*^2, and no further than iris_slew stops;
+// the gain follows at once. A still scene brings it (1 - iris_rate)^j of the way after j frames.
+[[nodiscard]] Exposure expose(const CctvCamera& camera, double metered,
+                              std::optional<double> before = {});
 
-// E / L = pi tau / (4 N^2), lx per cd/m^2.
+// E / L = pi tau / (4 N^2 (1 + m)^2), lx per cd/m^2.
 [[nodiscard]] double lens_transfer(const CctvCamera& camera, double f_number);
 
 }  // namespace earthshine::degrade

@@ -119,12 +119,16 @@ Picture spread_on_screen(const Picture& light, const Monitor& monitor, double& n
       value = std::max(value, 0.0F);
     }
   }
-  negative_share = positive > 0.0 ? -negative / positive : 0.0;
+  negative_share = negative < 0.0 && positive > 0.0 ? -negative / positive : 0.0;
   return spread;
 }
 
 double room_luminance(const Monitor& monitor) {
   return monitor.reflectance * monitor.room_illuminance / base::pi;
+}
+
+Picture add_light(Picture light, double veil) {
+  return transform(std::move(light), [&](double i) { return i + veil; });
 }
 
 }  // namespace earthshine::degrade

@@ -75,5 +75,6 @@ struct Grid {
                                        double& negative_share);
 // Luminance that the room adds everywhere: reflectance * illuminance / pi.
 [[nodiscard]] double room_luminance(const Monitor& monitor);
+[[nodiscard]] Picture add_light(Picture light, double veil);
 
 }  // namespace earthshine::degrade

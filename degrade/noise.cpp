@@ -15,7 +15,7 @@ constexpr double exact_poisson_below = 64.0;
 
 // Independent numbers of one stage; the planes and the two parts of the signal noise are kept
 // apart.
-enum class Part : std::uint64_t { Photons = 1, Pattern, Amplifier };
+enum class Part : std::uint64_t { Photons = 1, Pattern, Amplifier, BlackPattern };
 
 base::Key plane_key(const NoiseKey& key, base::Stream stream, std::uint64_t frame, Part part,
                     std::size_t plane) {
@@ -61,14 +61,18 @@ NoiseLaw noise_law(const CctvCamera& camera) {
   const auto square = [](double x) { return x * x; };
   switch (camera.noise) {
     case NoiseMode::Report:
-      return {0.0, 0.0, inverse_snr2, false};
+      return {.c = inverse_snr2};
     case NoiseMode::Spec:
-      return {inverse_snr2, 0.0, 0.0, false};
+      return {.a = inverse_snr2};
     case NoiseMode::Photon:
-      return {square(camera.read_electrons / n), camera.excess_noise / n,
-              square(camera.prnu_percent / 100.0), true};
+      return {.a = square(camera.read_electrons / n),
+              .b = camera.excess_noise / n,
+              .c = square(camera.prnu_percent / 100.0),
+              .c_is_fixed_pattern = true,
+              .dark = camera.excess_noise * camera.dark_electrons / square(n),
+              .black_pattern = square(camera.dsnu_percent / 100.0)};
     case NoiseMode::Law:
-      return {camera.noise_a, camera.noise_b, camera.noise_c, false};
+      return {.a = camera.noise_a, .b = camera.noise_b, .c = camera.noise_c};
     case NoiseMode::None:
       break;
   }
@@ -82,7 +86,7 @@ NoiseFigures noise_figures(const CctvCamera& camera) {
     return variance > 0.0 ? -10.0 * std::log10(variance) : std::numeric_limits<double>::infinity();
   };
   figures.snr_db = decibel(figures.law.variance(1.0));
-  figures.floor_db = decibel(figures.law.a);
+  figures.floor_db = decibel(figures.law.at_black());
   figures.percent_of_signal = 100.0 * std::sqrt(figures.law.c);
   figures.electrons_at_white =
       figures.law.b > 0.0 ? 1.0 / figures.law.b : std::numeric_limits<double>::infinity();
@@ -95,42 +99,84 @@ std::string describe_noise(const CctvCamera& camera) {
   std::ostringstream text;
   text.imbue(std::locale::classic());
   text.precision(4);
-  text << "a = " << figures.law.a << ", b = " << figures.law.b << ", c = " << figures.law.c
+  text << "a = " << figures.law.at_black() << ", b = " << figures.law.b << ", c = " << figures.law.c
        << ": SNR " << figures.snr_db << " dB at white";
-  if (figures.law.a > 0.0) text << ", white over black noise " << figures.floor_db << " dB";
+  if (figures.law.at_black() > 0.0)
+    text << ", white over black noise " << figures.floor_db << " dB";
   if (figures.law.b > 0.0) text << ", " << figures.electrons_at_white << " electrons at white";
   if (figures.law.c > 0.0) text << ", " << figures.percent_of_signal << " % of the signal";
   return text.str();
 }
 
-Picture add_signal_noise(Picture signal, const NoiseLaw& law, const NoiseKey& key) {
-  const std::size_t planes = signal.planes.size();
-  std::vector<base::Key> photons, pattern;
-  for (std::size_t plane = 0; plane < planes; ++plane) {
-    photons.push_back(plane_key(key, base::Stream::ShotNoise, key.frame, Part::Photons, plane));
-    // A fixed pattern belongs to the camera: no frame number in its key.
-    pattern.push_back(plane_key(key, base::Stream::ShotNoise,
-                                law.c_is_fixed_pattern ? 0 : key.frame, Part::Pattern, plane));
+namespace {
+
+// One key for each plane.
+std::vector<base::Key> plane_keys(const Picture& picture, const NoiseKey& key, base::Stream stream,
+                                  std::uint64_t frame, Part part) {
+  std::vector<base::Key> keys;
+  for (std::size_t plane = 0; plane < picture.planes.size(); ++plane) {
+    keys.push_back(plane_key(key, stream, frame, part, plane));
   }
-  const double relative = std::sqrt(law.c);
+  return keys;
+}
+
+// S <- S + sigma(S) normal.
+template <class Sigma>
+Picture add_normal(Picture signal, const std::vector<base::Key>& keys, Sigma sigma) {
   return for_each_pixel(std::move(signal), [&](double s, std::size_t plane, std::uint64_t n) {
-    if (!(s > 0.0)) return s;
+    return s + sigma(s) * normal(keys[plane], n);
+  });
+}
+
+// A fixed pattern belongs to the camera: no frame number in its key.
+constexpr std::uint64_t every_frame = 0;
+
+}  // namespace
+
+Picture differ_in_sensitivity(Picture signal, const NoiseLaw& law, const NoiseKey& key) {
+  if (!law.c_is_fixed_pattern || !(law.c > 0.0)) return signal;
+  const double relative = std::sqrt(law.c);
+  const auto keys = plane_keys(signal, key, base::Stream::ShotNoise, every_frame, Part::Pattern);
+  return add_normal(std::move(signal), keys, [&](double s) { return s * relative; });
+}
+
+Picture add_grain(Picture signal, const NoiseLaw& law, const NoiseKey& key) {
+  const auto photons = plane_keys(signal, key, base::Stream::ShotNoise, key.frame, Part::Photons);
+  const auto gauss = plane_keys(signal, key, base::Stream::ShotNoise, key.frame, Part::Pattern);
+  const double relative = law.c_is_fixed_pattern ? 0.0 : std::sqrt(law.c);
+  // Signal per count. Photon noise always has b > 0, and only it has dark counts.
+  const double per_count = law.b;
+  const double dark_counts = per_count > 0.0 ? law.dark / (per_count * per_count) : 0.0;
+  return for_each_pixel(std::move(signal), [&](double s, std::size_t plane, std::uint64_t n) {
     double noisy = s;
-    if (law.b > 0.0) noisy = law.b * poisson_quantile(s / law.b, base::uniform(photons[plane], n));
-    if (law.c > 0.0) noisy += s * relative * normal(pattern[plane], n);
+    const double light = std::max(s, 0.0);
+    if (per_count > 0.0) {
+      const double counts = light / per_count + dark_counts;
+      noisy =
+          per_count * (poisson_quantile(counts, base::uniform(photons[plane], n)) - dark_counts);
+    }
+    if (relative > 0.0) noisy += light * relative * normal(gauss[plane], n);
     return noisy;
   });
 }
 
+Picture add_signal_noise(Picture signal, const NoiseLaw& law, const NoiseKey& key) {
+  return add_grain(differ_in_sensitivity(std::move(signal), law, key), law, key);
+}
+
 Picture add_read_noise(Picture signal, const NoiseLaw& law, const NoiseKey& key) {
-  std::vector<base::Key> keys;
-  for (std::size_t plane = 0; plane < signal.planes.size(); ++plane) {
-    keys.push_back(plane_key(key, base::Stream::ReadNoise, key.frame, Part::Amplifier, plane));
+  if (law.a > 0.0) {
+    const auto keys = plane_keys(signal, key, base::Stream::ReadNoise, key.frame, Part::Amplifier);
+    const double sigma = std::sqrt(law.a);
+    signal = add_normal(std::move(signal), keys, [&](double) { return sigma; });
   }
-  const double sigma = std::sqrt(law.a);
-  return for_each_pixel(std::move(signal), [&](double s, std::size_t plane, std::uint64_t n) {
-    return s + sigma * normal(keys[plane], n);
-  });
+  if (law.black_pattern > 0.0) {
+    const auto keys =
+        plane_keys(signal, key, base::Stream::ReadNoise, every_frame, Part::BlackPattern);
+    const double sigma = std::sqrt(law.black_pattern);
+    signal = add_normal(std::move(signal), keys, [&](double) { return sigma; });
+  }
+  return signal;
 }
 
 double normal_quantile(double p) {

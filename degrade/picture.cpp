@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "degrade/picture.h"
 
+#include <utility>
+
 #include "base/parallel.h"
 #include "base/units.h"
 
@@ -16,11 +18,12 @@ Plane luminance_plane(const Picture& picture) {
   return y;
 }
 
-base::Image to_image(const Picture& picture) {
+base::Image to_image(Picture picture) {
   base::Image image{picture.columns, picture.rows, {}};
   const char* const colour[] = {"R", "G", "B"};
+  const bool grey = picture.planes.size() == 1;
   for (std::size_t p = 0; p < picture.planes.size(); ++p) {
-    image.channels.push_back({picture.planes.size() == 1 ? "Y" : colour[p], picture.planes[p]});
+    image.channels.push_back({grey ? "Y" : colour[p], std::move(picture.planes[p])});
   }
   return image;
 }

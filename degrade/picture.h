@@ -31,7 +31,7 @@ template <class F>
 [[nodiscard]] Plane luminance_plane(const Picture& picture);
 
 // Channel Y, or R, G and B.
-[[nodiscard]] base::Image to_image(const Picture& picture);
+[[nodiscard]] base::Image to_image(Picture picture);
 
 // Calls body(plane, first, last) for runs of pixels, in parallel; body may write only pixels of its
 // run.

@@ -1,166 +1,238 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table. A new stage is a file with its function and a row here.
+// The table. A new stage is a function in a file and a row here.
 #include <cmath>
 
+#include "base/error.h"
+#include "degrade/carry.h"
 #include "degrade/chain.h"
+#include "degrade/line.h"
+#include "degrade/optics.h"
+#include "degrade/sensor.h"
 
 namespace earthshine::degrade {
 namespace {
 
-NoiseKey noise_key(const Setup& setup) {
-  return {setup.options.seed, setup.options.frame, setup.options.view};
+// Fields are counted through the sequence, so that each has noise of its own.
+NoiseKey noise_key(const Passing& at) {
+  const Options& options = at.setup.options;
+  return {options.seed, 2 * options.frame + at.field, options.view};
 }
 
-// A stage that only replaces the picture.
-template <class F>
-Frame with_picture(Frame frame, F f) {
-  frame.picture = f(std::move(frame.picture), frame.report);
-  return frame;
+double from_db(double db) { return std::pow(10.0, -db / 20.0); }
+
+// The mean over the fields.
+void add_levels(Levels& sum, const Levels& field, std::uint64_t fields) {
+  sum.saturated_share += field.saturated_share / static_cast<double>(fields);
+  sum.crushed_share += field.crushed_share / static_cast<double>(fields);
 }
 
-constexpr auto always = [](const Setup&, const Report*) { return true; };
+Picture fall_off(Picture p, const Passing& at) {
+  const double fov = at.setup.options.fov_deg;
+  if (!(fov > 0.0 && fov < 180.0)) {
+    throw base::Error(
+        base::Blame::Input, "fall_off", "needs the picture's field of view, which is not known",
+        "an angle above 0 and below 180 degrees", "Give --fov DEGREES, or leave fall_off out");
+  }
+  return fall_off_from_axis(std::move(p), at.setup.camera.fall_off, fov);
+}
+
+Picture iris(Picture p, const Passing& at) {
+  if (at.field > 0) return p;
+  const CctvCamera& camera = at.setup.camera;
+  const bool slow = camera.iris_rate != 1.0 || camera.iris_slew > 0.0;
+  at.report.exposure = expose(camera, metered_luminance(p, camera),
+                              slow ? at.memory.f_number : std::optional<double>());
+  at.memory.f_number = at.report.exposure.f_number;
+  return p;
+}
+
+Picture signal_noise(Picture p, const Passing& at) {
+  const NoiseLaw& law = at.report.noise;
+  NoiseKey key = noise_key(at);
+  const double lag = lag_of(at);
+  if (lag > 0.0 && at.memory.charge.planes.empty()) {
+    // The field before the first one.
+    at.memory.charge = settled_charge(p, law, {key.seed, key.frame - 1, key.view}, lag);
+  }
+  return add_signal_noise(std::move(p), law, key);
+}
+
+Picture lag(Picture p, const Passing& at) {
+  Picture& charge = at.memory.charge;
+  if (charge.planes.empty()) charge = p;  // no noise, nothing moved
+  if (charge.columns != p.columns || charge.rows != p.rows ||
+      charge.planes.size() != p.planes.size()) {
+    throw base::Error(base::Blame::Input, "sequence",
+                      "a frame differs in shape from the one before",
+                      "all frames of a sequence have the same shape and colours");
+  }
+  p = after_lag(std::move(p), charge, lag_of(at));
+  charge = p;
+  return p;
+}
+
+Picture levels(Picture p, const Passing& at) {
+  const double black_noise = at.report.exposure.gain * std::sqrt(at.report.noise.at_black());
+  add_levels(at.report.levels, measure_levels(p, black_noise), at.fields);
+  return p;
+}
+
+Picture saturate(Picture p, const Passing& at) {
+  const double most = at.setup.camera.saturation;
+  at.report.lost_share += share_above(p, most) / static_cast<double>(at.fields);
+  return limit_above(std::move(p), most);
+}
+
+Picture bloom(Picture p, const Passing& at) {
+  const CctvCamera& camera = at.setup.camera;
+  const double share = share_above(p, camera.saturation);
+  if (share == 0.0) return p;
+  at.report.excess_share += share / static_cast<double>(at.fields);
+  at.report.lost_share += (1.0 - camera.bloom) * share / static_cast<double>(at.fields);
+  return bloom_over(std::move(p), camera.saturation, camera.bloom, camera.bloom_radius);
+}
+
+Picture blur(const Picture& p, double along, double across) {
+  return apply(p, gaussian_blur(p.columns, along), gaussian_blur(p.rows, across));
+}
+
+bool gain_runs(const Setup& setup, const Report* found) {
+  if (found != nullptr) return found->exposure.gain != 1.0;
+  return setup.camera.iris == IrisMode::Fixed ? setup.camera.gain_db > 0.0
+                                              : setup.camera.gain_max_db > 0.0;
+}
+
+bool always(const Setup&, const Report*) { return true; }
 
 constexpr Stage table[] = {
-    {"sensor-grid", Part::Camera, "cd/m^2", "cd/m^2", "area average onto 300 rows", always,
-     [](Frame frame, const Setup& setup) {
-       const Picture& in = frame.picture;
-       const Grid grid = picture_grid(in.columns, in.rows, setup.monitor);
-       frame.report.sensor = grid;
-       frame.picture =
-           apply(in, area_average(in.columns, grid.columns), area_average(in.rows, grid.rows));
-       return frame;
+    {"sensor-grid", Part::Lens, "cd/m^2", "cd/m^2", "area average onto 300 rows", always,
+     [](Picture p, const Passing& at) {
+       const Grid grid = picture_grid(p.columns, p.rows, at.setup.monitor);
+       at.report.sensor = grid;
+       return apply(p, area_average(p.columns, grid.columns), area_average(p.rows, grid.rows));
      }},
-    {"iris", Part::Camera, "cd/m^2", "cd/m^2", "finds N and the gain; the picture passes", always,
-     [](Frame frame, const Setup& setup) {
-       frame.report.exposure = expose(setup.camera, metered_luminance(frame.picture, setup.camera));
-       return frame;
+    {"iris", Part::Lens, "cd/m^2", "cd/m^2", "finds N and the gain; the picture passes", always,
+     iris},
+    {"lens", Part::Lens, "cd/m^2", "lx", "E = pi tau L / (4 N^2 (1 + m)^2)", always,
+     [](Picture p, const Passing& at) {
+       return through_lens(std::move(p), at.setup.camera, at.report.exposure.f_number);
      }},
-    {"lens", Part::Camera, "cd/m^2", "lx", "E = pi tau L / (4 N^2)", always,
-     [](Frame frame, const Setup& setup) {
-       return with_picture(std::move(frame), [&](Picture p, const Report& report) {
-         return through_lens(std::move(p), setup.camera, report.exposure.f_number);
-       });
+    {"fall-off", Part::Lens, "lx", "lx", "E = E cos(theta)^fall_off",
+     [](const Setup& s, const Report*) { return s.camera.fall_off > 0.0; }, fall_off},
+    {"glare", Part::Lens, "lx", "lx", "E = (1 - g) E + g mean(E)",
+     [](const Setup& s, const Report*) { return s.camera.glare > 0.0; },
+     [](Picture p, const Passing& at) { return add_glare(std::move(p), at.setup.camera.glare); }},
+    {"lens-spread", Part::Lens, "lx", "lx", "discrete Gaussian, in light",
+     [](const Setup& s, const Report*) { return s.camera.lens_blur > 0.0; },
+     [](Picture p, const Passing& at) {
+       return blur(p, at.setup.camera.lens_blur, at.setup.camera.lens_blur);
      }},
-    {"glare", Part::Camera, "lx", "lx", "E = (1 - g) E + g mean(E)",
-     [](const Setup& setup, const Report*) { return setup.camera.glare > 0.0; },
-     [](Frame frame, const Setup& setup) {
-       return with_picture(std::move(frame), [&](Picture p, const Report&) {
-         return add_glare(std::move(p), setup.camera.glare);
-       });
+    {"conversion", Part::Lens, "lx", "signal", "S = E / E_white", always,
+     [](Picture p, const Passing& at) {
+       return to_signal(std::move(p), at.setup.camera.white_lux);
      }},
-    {"conversion", Part::Camera, "lx", "signal", "S = E / E_white", always,
-     [](Frame frame, const Setup& setup) {
-       return with_picture(std::move(frame), [&](Picture p, const Report&) {
-         return to_signal(std::move(p), setup.camera.white_lux);
-       });
+    {"shading", Part::Lens, "signal", "signal", "S = S (1 - d r^2), r = 1 in the corners",
+     [](const Setup& s, const Report*) { return s.camera.shading_percent > 0.0; },
+     [](Picture p, const Passing& at) {
+       return shade(std::move(p), at.setup.camera.shading_percent / 100.0);
      }},
-    {"saturation", Part::Camera, "signal", "signal", "S = min(S, S_most)",
-     [](const Setup& setup, const Report*) { return setup.camera.saturation > 0.0; },
-     [](Frame frame, const Setup& setup) {
-       return with_picture(std::move(frame), [&](Picture p, const Report&) {
-         return limit_above(std::move(p), setup.camera.saturation);
-       });
-     }},
-    {"signal-noise", Part::Camera, "signal", "signal", "variance b S + c S^2",
-     [](const Setup& setup, const Report*) {
-       const NoiseLaw law = noise_law(setup.camera);
-       return law.b > 0.0 || law.c > 0.0;
-     },
-     [](Frame frame, const Setup& setup) {
-       return with_picture(std::move(frame), [&](Picture p, const Report& report) {
-         return add_signal_noise(std::move(p), report.noise, noise_key(setup));
-       });
-     }},
-    {"blur", Part::Camera, "signal", "signal",
+    {"signal-noise", Part::Sensor, "signal", "signal", "variance b S + c S^2, and dark counts",
+     [](const Setup& s, const Report*) { return noise_law(s.camera).with_light(); }, signal_noise,
+     carry_signal_noise},
+    {"lag", Part::Sensor, "signal", "signal", "y = (1 - lag) S + lag y of the field before",
+     [](const Setup& s, const Report*) { return s.camera.lag > 0.0; }, lag, carry_lag},
+    {"blur", Part::Sensor, "signal", "signal",
      "discrete Gaussian, sigma_h along and sigma_v across lines",
-     [](const Setup& setup, const Report*) {
-       return setup.camera.blur_h > 0.0 || setup.camera.blur_v > 0.0;
+     [](const Setup& s, const Report*) { return s.camera.blur_h > 0.0 || s.camera.blur_v > 0.0; },
+     [](Picture p, const Passing& at) {
+       return blur(p, at.setup.camera.blur_h, at.setup.camera.blur_v);
      },
-     [](Frame frame, const Setup& setup) {
-       const Picture& in = frame.picture;
-       frame.picture = apply(in, gaussian_blur(in.columns, setup.camera.blur_h),
-                             gaussian_blur(in.rows, setup.camera.blur_v));
-       return frame;
+     carry_blur},
+    {"smear", Part::Sensor, "signal", "signal", "S = S + 10 smear mean(column)",
+     [](const Setup& s, const Report*) { return s.camera.smear_db > 0.0; },
+     [](Picture p, const Passing& at) {
+       return smear_columns(std::move(p), from_db(at.setup.camera.smear_db));
      }},
-    {"read-noise", Part::Camera, "signal", "signal", "variance a",
-     [](const Setup& setup, const Report*) { return noise_law(setup.camera).a > 0.0; },
-     [](Frame frame, const Setup& setup) {
-       return with_picture(std::move(frame), [&](Picture p, const Report& report) {
-         return add_read_noise(std::move(p), report.noise, noise_key(setup));
-       });
-     }},
-    {"black-clamp", Part::Camera, "signal", "signal", "S = max(S, 0)",
-     [](const Setup& setup, const Report*) { return setup.camera.black_clamp; },
-     [](Frame frame, const Setup&) {
-       return with_picture(std::move(frame),
-                           [](Picture p, const Report&) { return limit_below_zero(std::move(p)); });
-     }},
-    {"gain", Part::Camera, "signal", "signal", "S = G S",
-     [](const Setup& setup, const Report* found) {
-       if (found != nullptr) return found->exposure.gain != 1.0;
-       return setup.camera.iris == IrisMode::Fixed ? setup.camera.gain_db > 0.0
-                                                   : setup.camera.gain_max_db > 0.0;
+    {"bloom", Part::Sensor, "signal", "signal",
+     "S = min(S, S_most) + bloom * Gaussian of what lay above",
+     [](const Setup& s, const Report*) {
+       return s.camera.saturation > 0.0 && s.camera.bloom > 0.0;
      },
-     [](Frame frame, const Setup&) {
-       return with_picture(std::move(frame), [](Picture p, const Report& report) {
-         return amplify(std::move(p), report.exposure.gain);
-       });
-     }},
-    {"levels", Part::Camera, "signal", "signal",
-     "counts white and black resels; the picture passes", always,
-     [](Frame frame, const Setup&) {
-       const double black_noise = frame.report.exposure.gain * std::sqrt(frame.report.noise.a);
-       frame.report.levels = measure_levels(frame.picture, black_noise);
-       return frame;
-     }},
-    {"white-clip", Part::Camera, "signal", "signal", "S = min(S, S_clip)",
-     [](const Setup& setup, const Report*) { return setup.camera.white_clip > 0.0; },
-     [](Frame frame, const Setup& setup) {
-       return with_picture(std::move(frame), [&](Picture p, const Report&) {
-         return limit_above(std::move(p), setup.camera.white_clip);
-       });
-     }},
-    {"camera-gamma", Part::Camera, "signal", "line signal", "v = S^(1/gamma)",
-     [](const Setup& setup, const Report*) { return setup.camera.gamma != 1.0; },
-     [](Frame frame, const Setup& setup) {
-       return with_picture(std::move(frame), [&](Picture p, const Report&) {
-         return encode_gamma(std::move(p), setup.camera.gamma);
-       });
-     }},
-    {"quantisation", Part::Camera, "line signal", "line signal", "nearest of 2^bits levels",
-     [](const Setup& setup, const Report*) { return setup.camera.bits > 0; },
-     [](Frame frame, const Setup& setup) {
-       return with_picture(std::move(frame), [&](Picture p, const Report&) {
-         return quantise(std::move(p), setup.camera.bits);
-       });
-     }},
+     bloom, carry_bloom},
+    {"saturation", Part::Sensor, "signal", "signal", "S = min(S, S_most)",
+     [](const Setup& s, const Report*) { return s.camera.saturation > 0.0; }, saturate,
+     carry_saturation},
+    {"read-noise", Part::Sensor, "signal", "signal", "variance a",
+     [](const Setup& s, const Report*) { return noise_law(s.camera).with_amplifier(); },
+     [](Picture p, const Passing& at) {
+       return add_read_noise(std::move(p), at.report.noise, noise_key(at));
+     },
+     carry_read_noise},
+    {"bandwidth", Part::Sensor, "signal", "signal",
+     "along the line: low pass of -3 dB at B, then aperture correction",
+     [](const Setup& s, const Report*) {
+       return s.camera.bandwidth_mhz > 0.0 || s.camera.aperture_correction > 0.0;
+     },
+     [](Picture p, const Passing& at) {
+       const CctvCamera& camera = at.setup.camera;
+       return apply(p,
+                    line_filter(p.columns, camera.bandwidth_mhz, camera.aperture_correction,
+                                at.setup.monitor.columns),
+                    gaussian_blur(p.rows, 0.0));
+     },
+     carry_bandwidth},
+    {"black-clamp", Part::Sensor, "signal", "signal", "S = max(S, 0)",
+     [](const Setup& s, const Report*) { return s.camera.black_clamp; },
+     [](Picture p, const Passing&) { return limit_below_zero(std::move(p)); }, carry_black_clamp},
+    {"gain", Part::Sensor, "signal", "signal", "S = G S", gain_runs,
+     [](Picture p, const Passing& at) { return amplify(std::move(p), at.report.exposure.gain); },
+     carry_gain},
+    {"levels", Part::Sensor, "signal", "signal",
+     "counts white and black resels; the picture passes", always, levels},
+    {"white-clip", Part::Sensor, "signal", "signal", "S = min(S, S_clip)",
+     [](const Setup& s, const Report*) { return s.camera.white_clip > 0.0; },
+     [](Picture p, const Passing& at) {
+       return limit_above(std::move(p), at.setup.camera.white_clip);
+     },
+     carry_white_clip},
+    {"camera-gamma", Part::Sensor, "signal", "line signal", "v = S^(1/gamma)",
+     [](const Setup& s, const Report*) { return s.camera.gamma != 1.0; },
+     [](Picture p, const Passing& at) { return encode_gamma(std::move(p), at.setup.camera.gamma); },
+     carry_camera_gamma},
+    {"quantisation", Part::Sensor, "line signal", "line signal", "nearest of 2^bits levels",
+     [](const Setup& s, const Report*) { return s.camera.bits > 0; },
+     [](Picture p, const Passing& at) { return quantise(std::move(p), at.setup.camera.bits); },
+     carry_quantisation},
+    {"interlace", Part::Sensor, "line signal", "line signal",
+     "even lines from the first field, odd ones from the second",
+     [](const Setup& s, const Report*) { return s.camera.interlace; }, nullptr, carry_interlace,
+     weave},
     {"screen", Part::Monitor, "line signal", "cd/m^2", "I = I_b + (I_w - I_b) v^gamma", always,
-     [](Frame frame, const Setup& setup) {
-       return with_picture(std::move(frame), [&](Picture p, const Report&) {
-         return drive_screen(std::move(p), setup.monitor);
-       });
-     }},
+     [](Picture p, const Passing& at) { return drive_screen(std::move(p), at.setup.monitor); },
+     carry_screen},
     {"spread", Part::Monitor, "cd/m^2", "cd/m^2", "point spread, on the finer grid of pixels",
-     [](const Setup& setup, const Report*) {
-       return setup.monitor.spread != Spread::None || setup.monitor.pixels_per_resel > 1;
+     [](const Setup& s, const Report*) {
+       return s.monitor.spread != Spread::None || s.monitor.pixels_per_resel > 1;
      },
-     [](Frame frame, const Setup& setup) {
-       frame.picture =
-           spread_on_screen(frame.picture, setup.monitor, frame.report.clipped_negative_light);
-       return frame;
-     }},
+     [](Picture p, const Passing& at) {
+       return spread_on_screen(p, at.setup.monitor, at.report.clipped_negative_light);
+     },
+     carry_spread},
     {"room-light", Part::Monitor, "cd/m^2", "cd/m^2", "I = I + reflectance E_room / pi",
-     [](const Setup& setup, const Report*) { return room_luminance(setup.monitor) > 0.0; },
-     [](Frame frame, const Setup& setup) {
-       return with_picture(std::move(frame), [&](Picture p, const Report&) {
-         const double veil = room_luminance(setup.monitor);
-         return transform(std::move(p), [&](double i) { return i + veil; });
-       });
-     }},
+     [](const Setup& s, const Report*) { return room_luminance(s.monitor) > 0.0; },
+     [](Picture p, const Passing& at) {
+       return add_light(std::move(p), room_luminance(at.setup.monitor));
+     },
+     carry_room_light},
 };
 
 }  // namespace
 
 std::span<const Stage> stages() { return table; }
+
+double lag_of(const Passing& at) {
+  const double lag = at.setup.camera.lag;
+  return at.fields == 2 ? lag : lag * lag;
+}
 
 }  // namespace earthshine::degrade

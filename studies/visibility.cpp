@@ -47,7 +47,7 @@ ShownRange shown_range(const degrade::CctvCamera& camera, const degrade::Report&
   };
   double white = white_signal / report.exposure.gain;
   if (camera.saturation > 0.0) white = std::min(white, camera.saturation);
-  return {luminance_of_signal(std::sqrt(report.noise.a)), luminance_of_signal(white)};
+  return {luminance_of_signal(std::sqrt(report.noise.at_black())), luminance_of_signal(white)};
 }
 
 std::vector<TargetMetrics> target_metrics(const scenes::Scene& scene, const scenes::Camera& camera,

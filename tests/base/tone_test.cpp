@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -126,6 +127,26 @@ TEST(Tone, SameBytesForOneAndTwoThreads) {
   const ToneMapped a = tone_map(image);
   const ThreadLimit two(2);
   EXPECT_EQ(a.rgb, tone_map(image).rgb);
+}
+
+// IEC 61966-2-1: 12.92 x up to 0.0031308, then 1.055 x^(1/2.4) - 0.055, times 255 to the nearest.
+TEST(Srgb, EveryByteBeginsWhereTheCurveRoundsToIt) {
+  const auto exact = [](double x) {
+    const double v = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
+    return static_cast<int>(std::lround(255.0 * std::clamp(v, 0.0, 1.0)));
+  };
+  for (int i = 0; i <= 200'000; ++i) {
+    const double x = i / 200'000.0;
+    ASSERT_EQ(static_cast<int>(srgb_byte(x)), exact(x)) << x;
+  }
+  for (int byte = 1; byte < 256; ++byte) {
+    const double v = (byte - 0.5) / 255.0;
+    const double begin = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+    EXPECT_EQ(static_cast<int>(srgb_byte(begin * (1.0 + 1e-12))), byte);
+    EXPECT_EQ(static_cast<int>(srgb_byte(begin * (1.0 - 1e-12))), byte - 1);
+  }
+  EXPECT_EQ(srgb_byte(-1.0), 0);
+  EXPECT_EQ(srgb_byte(7.0), 255);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixels of the input per second through the whole CCTV chain, for each camera that ships.
+// The CCTV chain: pixels of the input per second for each camera that ships, for one with every
+// stage on, and for each of its stages alone (pixels that the stage takes in).
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <string>
 
 #include "base/random.h"
@@ -10,6 +12,10 @@
 
 namespace earthshine {
 namespace {
+
+using degrade::CctvCamera;
+using degrade::Monitor;
+using degrade::Picture;
 
 base::Image noise_picture(int edge_px) {
   base::Image image = base::make_rgb_image(edge_px, edge_px);
@@ -20,14 +26,83 @@ base::Image noise_picture(int edge_px) {
   return image;
 }
 
-void chain(benchmark::State& state, const degrade::Preset& preset) {
+// A monochrome camera with everything that a camera can have.
+CctvCamera everything() {
+  CctvCamera camera = degrade::find_preset("sit-monochrome")->camera;
+  camera.fall_off = 4.0;
+  camera.glare = 0.02;
+  camera.lens_blur = 0.3;
+  camera.shading_percent = 20.0;
+  camera.lag = 0.42;
+  camera.smear_db = 90.0;
+  camera.saturation = 0.5;
+  camera.bloom = 0.5;
+  camera.dark_electrons = 5.0;
+  camera.dsnu_percent = 0.1;
+  camera.bandwidth_mhz = 4.2;
+  camera.aperture_correction = 0.3;
+  camera.bits = 8;
+  camera.interlace = true;
+  return camera;
+}
+
+// Of `rows` lines, wide enough for a square picture.
+Monitor monitor_of(int rows) {
+  Monitor monitor;
+  monitor.rows = rows;
+  monitor.columns = rows * 4 / 3;
+  return monitor;
+}
+
+degrade::Options options() {
+  degrade::Options wanted;
+  wanted.fov_deg = 40.0;
+  return wanted;
+}
+
+void set_rate(benchmark::State& state, std::size_t pixels) {
+  state.counters["px"] =
+      benchmark::Counter(static_cast<double>(pixels),
+                         benchmark::Counter::kIsRate | benchmark::Counter::kIsIterationInvariant);
+}
+
+void chain(benchmark::State& state, const CctvCamera& camera, const Monitor& monitor) {
   const base::Image image = noise_picture(static_cast<int>(state.range(0)));
   for (auto round : state) {
-    benchmark::DoNotOptimize(degrade::degrade(image, preset.camera, {}).pixels.data());
+    benchmark::DoNotOptimize(degrade::degrade(image, camera, monitor, options()).pixels.data());
   }
-  state.counters["px"] =
-      benchmark::Counter(static_cast<double>(image.pixel_count()),
-                         benchmark::Counter::kIsRate | benchmark::Counter::kIsIterationInvariant);
+  set_rate(state, image.pixel_count());
+}
+
+// One stage on the picture that reaches it, on a monitor of as many lines as the picture has.
+void one_stage(benchmark::State& state, const degrade::Stage& stage) {
+  const int lines = static_cast<int>(state.range(0));
+  const base::Image image = noise_picture(lines);
+  Picture before{image.width, image.height, {base::luminance_of(image)}};
+  degrade::Options watched = options();
+  bool reached = false;
+  watched.watch = [&](std::string_view name, const Picture& picture) {
+    reached = reached || name == stage.name;
+    if (!reached) before = picture;
+  };
+  const degrade::Setup setup{everything(), monitor_of(lines), options()};
+  const degrade::Result whole = degrade::degrade(image, setup.camera, setup.monitor, watched, {});
+  degrade::Report report = whole.report;
+  degrade::Memory memory = whole.memory;
+  for (auto round : state) {
+    const Picture after = stage.merge != nullptr
+                              ? stage.merge(before, before)
+                              : stage.apply(before, {setup, report, memory, 1, 2});
+    benchmark::DoNotOptimize(after.planes.front().data());
+  }
+  set_rate(state, before.pixel_count());
+}
+
+template <class Body>
+benchmark::internal::Benchmark* add(const std::string& name, Body body) {
+  return benchmark::RegisterBenchmark(name.c_str(), body)
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime();
 }
 
 }  // namespace
@@ -37,14 +112,33 @@ int main(int argc, char** argv) {
   using namespace earthshine;
   benchmark::Initialize(&argc, argv);
   for (const degrade::Preset& preset : degrade::presets()) {
-    const std::string name = "degrade/" + std::string(preset.name);
-    benchmark::RegisterBenchmark(name.c_str(),
-                                 [&preset](benchmark::State& state) { chain(state, preset); })
+    add("degrade/" + std::string(preset.name),
+        [&preset](benchmark::State& state) { chain(state, preset.camera, {}); })
         ->ArgName("px")
         ->Arg(512)
-        ->Arg(2048)
-        ->Unit(benchmark::kMillisecond)
-        ->UseRealTime();
+        ->Arg(2048);
+  }
+  add("everything/300-lines", [](benchmark::State& state) { chain(state, everything(), {}); })
+      ->ArgName("px")
+      ->Arg(512)
+      ->Arg(1024)
+      ->Arg(2048);
+  // As many lines as the picture has: its cost grows with the picture.
+  add("everything/own-lines",
+      [](benchmark::State& state) {
+        chain(state, everything(), monitor_of(static_cast<int>(state.range(0))));
+      })
+      ->ArgName("px")
+      ->Arg(256)
+      ->Arg(512)
+      ->Arg(1024)
+      ->Arg(2000);
+  for (const degrade::Stage& stage : degrade::stages()) {
+    add("stage/" + std::string(stage.name),
+        [&stage](benchmark::State& state) { one_stage(state, stage); })
+        ->ArgName("lines")
+        ->Arg(1024)
+        ->Arg(2000);
   }
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """degrade: the CCTV stage on pictures that render wrote."""
+import math
 import unittest
 
+import exr
 import program
 
 
@@ -49,6 +51,98 @@ class Degrade(program.Case):
         fewer = self.json("degrade", "a.exr", "-o", "c.png", "--off", "spread")["stages"]
         self.assertEqual(fewer, [stage for stage in stages if stage != "spread"])
         self.refused("degrade", "a.exr", "-o", "c.png", "--off", "nothing")
+
+    def test_a_still_shown_for_some_frames(self):
+        self.done("render", "ball.toml", "-o", "a.exr")
+        report = self.json("degrade", "a.exr", "-o", "f-##.png", "--preset", "sit-monochrome", "--frames", 3, "--frame", 8)
+        self.assertEqual([frame["frame"] for frame in report["frames"]], [8, 9, 10])
+        frames = [self.picture(f"f-{number:02}.png") for number in (8, 9, 10)]
+        self.assertEqual(len(set(frames)), 3)
+        # The same sequence again, frame by frame the same bytes.
+        self.done("degrade", "a.exr", "-o", "g-#.png", "--preset", "sit-monochrome", "--frames", 3, "--frame", 8)
+        self.assertEqual(frames, [self.picture(f"g-{number}.png") for number in (8, 9, 10)])
+
+    def test_iris_that_needs_time_and_light_that_lags(self):
+        table = '\n[[cctv]]\nname = "slow"\niris_slew = 1.0\nlag = 0.4\n'
+        self.write("ball.toml", program.BALL.replace('name = "above"', 'name = "above"\ncctv = "slow"') + table)
+        self.done("render", "ball.toml", "-o", "a.exr", "--camera", "above")
+        self.done("render", "ball.toml", "-o", "b.exr", "--camera", "above", "--set", "sun.illuminance=1000")
+        at_rest = self.json("degrade", "b.exr", "-o", "c.png", "--scene", "ball.toml")["f_number"]
+        opened = self.json("degrade", "b.exr", "-o", "c.png", "--scene", "ball.toml", "--f-number", 8 * at_rest)
+        self.assertAlmostEqual(opened["f_number"] / at_rest, 8 / 2 ** 0.5, 5)
+        frames = self.json("degrade", "a.exr", "b.exr", "-o", "m#.png", "--scene", "ball.toml")["frames"]
+        self.assertEqual(len(frames), 2)
+        self.assertIn("lag", frames[1]["stages"])
+
+    def test_fields_of_an_interlaced_camera(self):
+        table = '\n[[cctv]]\nname = "woven"\ninterlace = true\n'
+        self.write("ball.toml", program.BALL.replace('name = "above"', 'name = "above"\ncctv = "woven"') + table)
+        self.done("render", "ball.toml", "-o", "a.exr", "--camera", "above")
+        self.done("degrade", "a.exr", "-o", "one.png", "--scene", "ball.toml")
+        self.done("degrade", "a.exr", "a.exr", "--fields", "-o", "two.png", "--scene", "ball.toml")
+        self.assertEqual(self.picture("one.png"), self.picture("two.png"))
+        self.says(self.refused("degrade", "a.exr", "--fields", "-o", "x.png", "--scene", "ball.toml"), "even number")
+        self.says(self.refused("degrade", "a.exr", "a.exr", "--fields", "-o", "x.png", "--preset", "ideal"), "interlace")
+
+    def test_sequences_need_a_place_for_the_number(self):
+        self.done("render", "ball.toml", "-o", "a.exr")
+        self.says(self.refused("degrade", "a.exr", "-o", "x.png", "--frames", 2), "#")
+        self.says(self.refused("degrade", "a.exr", "a.exr", "-o", "x#.png", "--frames", 2), "--frames")
+
+    def test_the_picture_after_each_stage(self):
+        self.done("render", "ball.toml", "-o", "a.exr")
+        report = self.json("degrade", "a.exr", "-o", "c.png", "--stages", "steps")
+        names = sorted(path.name for path in (self.folder / "steps").iterdir())
+        self.assertEqual(names, [f"{number:02}-{stage}.exr" for number, stage in enumerate(report["stages"], 1)])
+
+    def test_the_analytic_twin(self):
+        self.done("render", "ball.toml", "-o", "a.exr")
+        report = self.json("degrade", "a.exr", "-o", "noisy.exr", "--twin", "twin.exr")
+        _, width, height, twin = exr.read(self.folder / "twin.exr")
+        _, _, _, noisy = exr.read(self.folder / "noisy.exr")
+        self.assertEqual((width, height), (report["columns"], report["rows"]))
+        self.assertEqual(sorted(twin), ["Y", "crushed.Y", "detection.probability.Y", "detection.snr.Y", "mean.Y",
+                                        "saturated.Y", "snr.Y", "twin.Y", "variance.Y"])
+        self.assertEqual(twin["Y"], noisy["Y"])
+        quiet = ["--off", "signal-noise", "--off", "read-noise"]
+        self.done("degrade", "a.exr", "-o", "clean.exr", *quiet)
+        self.assertEqual(twin["twin.Y"], exr.read(self.folder / "clean.exr")[3]["Y"])
+        self.assertLess(report["twin"]["detectable_share"], 1)
+        for wrong in (["--twin", "t.png"], ["--twin", "t.exr", "--target-resels", 4], ["--twin", "noisy.exr"]):
+            self.refused("degrade", "a.exr", "-o", "noisy.exr", *wrong)
+
+    # Light adds: what the camera shows of the sum of the lights' layers is what it shows of the picture.
+    def test_lights_may_be_mixed_before_the_camera_sees_them(self):
+        self.done("render", "ball.toml", "-o", "a.exr", "--per-light")
+        header, width, height, channels = exr.read(self.folder / "a.exr")
+        layers = {}
+        for name, values in channels.items():
+            if "." in name and name.rsplit(".", 1)[1] in "RGB":
+                layers.setdefault(name.rsplit(".", 1)[0], {})[name[-1]] = values
+        lights = [layer for name, layer in layers.items() if name not in ("direct", "indirect", "specular", "variance")]
+        self.assertGreater(len(lights), 1)
+        for colour in "RGB":
+            for values in zip(channels[colour], *(layer[colour] for layer in lights)):
+                self.assertAlmostEqual(values[0], sum(values[1:]), delta=1e-4 * max(1, values[0]))
+
+    def test_what_the_viewer_sees_as_numbers(self):
+        self.done("render", "ball.toml", "-o", "a.exr")
+        report = self.json("degrade", "a.exr", "-o", "c.exr")
+        _, _, _, channels = exr.read(self.folder / "c.exr")
+        self.assertEqual(sorted(channels), ["Y"])
+        monitor = report["monitor"]
+        veil = monitor["reflectance"] * monitor["room_illuminance"] / math.pi
+        self.assertGreaterEqual(min(channels["Y"]), monitor["black_luminance"] + veil - 1e-4)
+        self.assertLessEqual(max(channels["Y"]), monitor["white_luminance"] + veil + 1e-4)
+
+    def test_fall_off_needs_the_field_of_view(self):
+        table = '\n[[cctv]]\nname = "simple"\nfall_off = 4\n'
+        self.write("ball.toml", program.BALL.replace('name = "above"', 'name = "above"\ncctv = "simple"') + table)
+        self.done("render", "ball.toml", "-o", "a.exr", "--camera", "above", "--cctv", "whole.png")
+        self.done("degrade", "a.exr", "-o", "alone.png", "--scene", "ball.toml")
+        self.assertEqual(self.picture("whole.png"), self.picture("alone.png"))
+        self.done("degrade", "a.exr", "-o", "wide.png", "--scene", "ball.toml", "--fov", 120)
+        self.assertNotEqual(self.picture("alone.png"), self.picture("wide.png"))
 
     def test_list(self):
         self.says(self.done("degrade", "--list"), "sit-monochrome", "ccd-colour", "stages")

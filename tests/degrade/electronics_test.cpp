@@ -8,6 +8,7 @@
 
 #include "base/units.h"
 #include "degrade/noise.h"
+#include "degrade/sensor.h"
 #include "tests/degrade/fields.h"
 
 namespace earthshine::degrade {
@@ -22,7 +23,7 @@ double density(double z) { return std::exp(-z * z / 2.0) / std::sqrt(2.0 * base:
 double distribution(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
 Picture gaussian_field(float mean, double sigma) {
-  return add_read_noise(flat(500, 500, mean), {sigma * sigma, 0.0, 0.0, false}, {});
+  return add_read_noise(flat(500, 500, mean), {.a = sigma * sigma}, {});
 }
 
 // min(X, W) of a Gaussian with z = (W - mu) / sigma: mean mu Phi + W (1 - Phi) - sigma phi, mean

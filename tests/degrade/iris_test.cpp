@@ -7,6 +7,7 @@
 
 #include "degrade/chain.h"
 #include "degrade/electronics.h"
+#include "degrade/optics.h"
 #include "tests/degrade/fields.h"
 
 namespace earthshine::degrade {

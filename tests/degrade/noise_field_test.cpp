@@ -18,8 +18,8 @@ using test::moments;
 
 constexpr int edge = 256;
 constexpr double count = 65'536.0;
-constexpr NoiseLaw white{0.01, 0.0, 0.0, false};
-constexpr NoiseLaw all{1e-4, 1e-3, 1e-3, false};
+constexpr NoiseLaw white{.a = 0.01};
+constexpr NoiseLaw all{.a = 1e-4, .b = 1e-3, .c = 1e-3};
 
 Plane field(const NoiseKey& key, std::size_t plane = 0) {
   return add_read_noise(flat(edge, edge, 0.5F, 3), white, key).planes[plane];
@@ -85,7 +85,7 @@ TEST(NoiseField, PartOfThePictureHasThatPartOfTheNoise) {
 }
 
 TEST(NoiseField, DifferingSensitivityIsTheSamePatternInEveryFrame) {
-  const NoiseLaw pattern{0.0, 0.0, 0.01, true}, grain{0.0, 0.0, 0.01, false};
+  const NoiseLaw pattern{.c = 0.01, .c_is_fixed_pattern = true}, grain{.c = 0.01};
   const auto frame = [](const NoiseLaw& law, std::uint64_t number) {
     return add_signal_noise(flat(20, 20, 0.5F), law, {1, number, 0}).planes[0];
   };

@@ -111,6 +111,54 @@ TEST(Noise, ShotNoiseHasVarianceAndThirdMomentEqualToItsMean) {
   }
 }
 
+// Dark counts of the rate I during t: Poisson of mean I t, whose mean is taken off, so the signal's
+// mean stays and its variance grows by I t (not I t^2, nor nothing).
+TEST(Noise, DarkCountsHaveTheVarianceOfTheirMean) {
+  for (const double t : {0.01, 1.0, 100.0}) {
+    CctvCamera camera;
+    camera.noise = NoiseMode::Photon;
+    camera.electrons_at_white = 1.0;  // signals in electrons
+    camera.dark_electrons = 3.0 * t;
+    const double n = 3.0 * t;
+    const Moments m = noisy(noise_law(camera), 0.0F);
+    EXPECT_NEAR(m.mean, 0.0, 4.0 * std::sqrt(n / count)) << t;
+    EXPECT_NEAR(m.variance, n, 4.0 * std::sqrt((n + 2.0 * n * n) / count)) << t;
+    EXPECT_NEAR(noise_law(camera).at_black(), n, 1e-12) << t;
+  }
+}
+
+// An intensifier multiplies the variance of light and dark alike by F^2.
+TEST(Noise, ExcessNoiseMultipliesTheVarianceOfAllCounts) {
+  CctvCamera camera;
+  camera.noise = NoiseMode::Photon;
+  camera.electrons_at_white = 1000.0;
+  camera.dark_electrons = 50.0;
+  camera.excess_noise = 1.6;
+  const Moments m = noisy(noise_law(camera), 0.2F);
+  const double v = 1.6 * (200.0 + 50.0) / 1e6;
+  EXPECT_NEAR(m.mean, 0.2, 4.0 * std::sqrt(v / count));
+  EXPECT_NEAR(m.variance / v, 1.0, 4.0 * std::sqrt(2.1 / count));
+}
+
+// What differs from resel to resel has the mean 1, and its spread is the one stated: dark pattern
+// over white, sensitivity over itself.
+TEST(Noise, PatternsHaveMeanOneAndTheirSpread) {
+  CctvCamera camera;
+  camera.noise = NoiseMode::Photon;
+  camera.electrons_at_white = 1e9;
+  camera.prnu_percent = 2.0;
+  camera.dsnu_percent = 0.5;
+  const NoiseLaw law = noise_law(camera);
+  const Moments light = noisy(law, 0.5F);
+  const double v = 0.01 * 0.01 + 0.005 * 0.005;  // 2 % of 0.5, and 0.5 % of white
+  EXPECT_NEAR(light.mean, 0.5, 4.0 * std::sqrt(v / count));
+  EXPECT_NEAR(light.variance / v, 1.0, 4.0 * std::sqrt(2.0 / count));
+  const Picture black = add_read_noise(flat(edge, edge, 0.0F), law, {});
+  EXPECT_NEAR(std::sqrt(moments(black.planes[0]).variance) / 0.005, 1.0,
+              4.0 * std::sqrt(0.5 / count));
+  EXPECT_EQ(black.planes[0], add_read_noise(flat(edge, edge, 0.0F), law, {1, 9, 0}).planes[0]);
+}
+
 TEST(Noise, FewElectronsAreCountedWhole) {
   const Picture out = add_signal_noise(flat(50, 50, 3.0F), {0.0, 1.0, 0.0, false}, {});
   for (float value : out.planes[0]) ASSERT_EQ(value, std::round(value));
