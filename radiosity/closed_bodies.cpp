@@ -13,6 +13,7 @@ namespace {
 constexpr double least_volume_share = 1e-9;  // of its box: below it a surface holds nothing
 constexpr double most_cells = 512.0;         // per way of the grid
 constexpr std::uint32_t none = 0xFFFFFFFFU;
+constexpr std::uint32_t outside = none;  // stands for a body: all that is in no room
 
 // Whether the half-line from p along +x crosses the edge, +1 upward, -1 downward. The same edge the
 // other way round gives the opposite number to the last bit.
@@ -171,6 +172,7 @@ int ClosedSurface::winding(const Vec3& point) const {
 ClosedBodies::ClosedBodies(const scenes::Scene& scene, const Vec3& centre) : centre_(centre) {
   const Parts parts = find_parts(scene);
   std::vector<std::uint32_t> order;
+  std::vector<char> walls(parts.of.size(), 0);
   for (std::uint32_t t = 0; t < parts.of.size(); ++t) {
     if (parts.closed[parts.of[t]] != 0) order.push_back(t);
   }
@@ -185,24 +187,57 @@ ClosedBodies::ClosedBodies(const scenes::Scene& scene, const Vec3& centre) : cen
     }
     ClosedSurface surface(corners);
     const double least = least_volume_share * surface.box_m3();
-    if (surface.volume_m3() > least)
+    if (surface.volume_m3() > least) {
       bodies_.push_back({std::move(surface), {}});
-    else if (surface.volume_m3() < -least)
+    } else if (surface.volume_m3() < -least) {
+      for (std::size_t k = begin; k < end; ++k) walls[order[k]] = 1;
       cavities_.push_back(std::move(surface));
+    }
   }
   for (Body& body : bodies_) {
     for (std::uint32_t c = 0; c < cavities_.size(); ++c) {
       if (cavities_[c].lies_in_box_of(body.surface)) body.cavities.push_back(c);
     }
   }
-  // Where a lamp stands light is meant to be: a room whose faces look the wrong way.
-  for (std::uint32_t b = static_cast<std::uint32_t>(bodies_.size()); b-- > 0;) {
+  leave_out_lit(scene);
+  dark_outside_ = !cavities_.empty() && light_is_in_rooms(scene, walls);
+}
+
+// Where a lamp stands light is meant to be: a room whose faces look the wrong way.
+void ClosedBodies::leave_out_lit(const scenes::Scene& scene) {
+  for (auto b = static_cast<std::uint32_t>(bodies_.size()); b-- > 0;) {
     const bool lit =
         std::any_of(scene.lamps.begin(), scene.lamps.end(), [&](const scenes::Lamp& lamp) {
           return cover(lamp.position - centre_, std::span<const std::uint32_t>(&b, 1));
         });
     if (lit) bodies_.erase(bodies_.begin() + b);
   }
+}
+
+bool ClosedBodies::in_room(const Vec3& point) const {
+  return std::any_of(cavities_.begin(), cavities_.end(),
+                     [&](const ClosedSurface& room) { return room.winding(point) < 0; });
+}
+
+// No sky shines, every lamp stands in a room, and every object that shines is a wall of one or has
+// a corner in one.
+bool ClosedBodies::light_is_in_rooms(const scenes::Scene& scene,
+                                     const std::vector<char>& walls) const {
+  if (scene.sun || scene.earth) return false;
+  for (const scenes::Lamp& lamp : scene.lamps) {
+    if (!in_room(lamp.position - centre_)) return false;
+  }
+  std::vector<char> shines(scene.objects.size(), 0), inside(scene.objects.size(), 0);
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    const scenes::Triangle& triangle = scene.triangles[t];
+    if (!scene.materials[triangle.material].emits()) continue;
+    shines[triangle.object] = 1;
+    if (inside[triangle.object] != 0) continue;
+    bool in = walls[t] != 0;
+    for (const std::uint32_t v : triangle.vertex) in = in || in_room(scene.vertices[v] - centre_);
+    if (in) inside[triangle.object] = 1;
+  }
+  return shines == inside;
 }
 
 std::vector<std::uint32_t> ClosedBodies::near(const Patches& patches, std::uint32_t patch,
@@ -216,22 +251,18 @@ std::vector<std::uint32_t> ClosedBodies::near(const Patches& patches, std::uint3
   for (std::uint32_t b = 0; b < bodies_.size(); ++b) {
     if (bodies_[b].surface.may_wind(low - margin_m, high + margin_m)) found.push_back(b);
   }
+  if (dark_outside_) found.push_back(outside);
   return found;
 }
 
 bool ClosedBodies::cover(const Vec3& point, std::span<const std::uint32_t> bodies) const {
   return std::any_of(bodies.begin(), bodies.end(), [&](std::uint32_t b) {
+    if (b == outside) return !in_room(point);
     const Body& body = bodies_[b];
     return body.surface.winding(point) > 0 &&
            std::none_of(body.cavities.begin(), body.cavities.end(),
                         [&](std::uint32_t c) { return cavities_[c].winding(point) < 0; });
   });
-}
-
-std::vector<double> open_areas(const OpenParts& open, std::span<const double> area_m2) {
-  std::vector<double> areas(area_m2.begin(), area_m2.end());
-  for (std::size_t i = 0; i < open.share.size(); ++i) areas[i] *= open.share[i];
-  return areas;
 }
 
 }  // namespace earthshine::radiosity

@@ -6,12 +6,14 @@
 // by edges (alike corners to the last bit), every edge used equally often both ways. How often such
 // a surface winds around a point is a whole number, whatever way one looks: 1 inside, 0 outside. A
 // room that is seen from inside (faces inward, winding -1) covers nothing, and lays open what it
-// takes from a body around it (a house: walls within an outer shell). Sheets, glass, open meshes
-// and meshes with some faces turned over cover nothing: where their inside is cannot be told.
+// takes from a body around it (a house: walls within an outer shell). Where all light there is
+// shines in such rooms, what pokes out of them is covered too: the foot of a box that stands on a
+// floor, or is sunk in it, has nothing to receive beyond the floor and nobody to send it to.
+// Sheets, glass, open meshes and meshes with some faces turned over cover nothing: where their
+// inside is cannot be told.
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -68,11 +70,10 @@ class ClosedBodies {
   // Points, here and below, are relative to `centre`. A body in which a lamp stands is none.
   ClosedBodies(const scenes::Scene& scene, const Vec3& centre);
 
-  // The bodies that may cover points within margin_m of a patch.
+  // What may cover points within margin_m of a patch: bodies, and the dark outside.
   [[nodiscard]] std::vector<std::uint32_t> near(const Patches& patches, std::uint32_t patch,
                                                 double margin_m) const;
   [[nodiscard]] bool cover(const Vec3& point, std::span<const std::uint32_t> bodies) const;
-  [[nodiscard]] std::size_t count() const { return bodies_.size(); }
   [[nodiscard]] const Vec3& centre() const { return centre_; }
 
  private:
@@ -80,19 +81,15 @@ class ClosedBodies {
     ClosedSurface surface;
     std::vector<std::uint32_t> cavities;
   };
+  void leave_out_lit(const scenes::Scene& scene);
+  [[nodiscard]] bool in_room(const Vec3& point) const;
+  [[nodiscard]] bool light_is_in_rooms(const scenes::Scene& scene,
+                                       const std::vector<char>& walls) const;
+
   Vec3 centre_;
   std::vector<Body> bodies_;
-  std::vector<ClosedSurface> cavities_;
+  std::vector<ClosedSurface> cavities_;  // rooms among them
+  bool dark_outside_ = false;
 };
-
-// What bodies leave of the patches.
-struct OpenParts {
-  std::vector<double> share;  // per patch: of its points, those that no body covers; empty: all 1
-  std::shared_ptr<const ClosedBodies> bodies;  // null: nothing is covered
-};
-
-// area_m2 times the share.
-[[nodiscard]] std::vector<double> open_areas(const OpenParts& open,
-                                             std::span<const double> area_m2);
 
 }  // namespace earthshine::radiosity

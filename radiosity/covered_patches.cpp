@@ -5,6 +5,12 @@
 
 namespace earthshine::radiosity {
 
+std::vector<double> open_areas(const OpenParts& open, std::span<const double> area_m2) {
+  std::vector<double> areas(area_m2.begin(), area_m2.end());
+  for (std::size_t i = 0; i < open.share.size(); ++i) areas[i] *= open.share[i];
+  return areas;
+}
+
 CoveredPatches::CoveredPatches(const Patches& patches, const OpenParts& open) {
   constexpr double step = 0x1p-23;  // less than half of the smallest cell (radiosity/split.h)
   for (std::uint32_t i = 0; i < open.share.size(); ++i) {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// What patches show that a body covers wholly. Nobody sees them, but who reads the radiosity between
-// the cells of a facet (raytrace/radiance_table.h, viewers) mixes in neighbours of what is seen.
+// What patches show that a body covers wholly. Nobody sees them, but who reads the radiosity
+// between the cells of a facet (raytrace/radiance_table.h, viewers) mixes in neighbours of what is
+// seen.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "radiosity/closed_bodies.h"
+#include "radiosity/open_parts.h"
+#include "radiosity/patches.h"
 
 namespace earthshine::radiosity {
 

@@ -68,6 +68,20 @@ void close_row(FormFactors& factors, std::size_t i, double sky_rays, double blac
   factors.black[i] = factors.lost[i] = black_rays / all;
 }
 
+// A ray that slipped through the seam between two bodies meets patches that take no part: it is
+// lost, as if it had met the body's back.
+void lose_hits_on_covered(FormFactors& factors) {
+  for (std::size_t i = 0; i < factors.count(); ++i) {
+    for (std::uint64_t e = factors.row_start[i]; e < factors.row_start[i + 1]; ++e) {
+      const std::uint32_t j = factors.column[e];
+      if (factors.open.share[j] > 0.0) continue;
+      factors.black[i] += factors.row_scale[i] * double(factors.hits[e]) * factors.kept[j];
+      factors.lost[i] = factors.black[i];
+      factors.hits[e] = 0.0F;
+    }
+  }
+}
+
 }  // namespace
 
 FormFactors cast_form_factors(const scenes::Scene& scene, const scenes::RayQuery& query,
@@ -75,7 +89,9 @@ FormFactors cast_form_factors(const scenes::Scene& scene, const scenes::RayQuery
                               const SkyRadiance& sky) {
   std::vector<std::uint32_t> rows(patches.count());
   std::iota(rows.begin(), rows.end(), 0U);
-  return cast_rows(scene, query, patches, rows, options, sky);
+  FormFactors factors = cast_rows(scene, query, patches, rows, options, sky);
+  if (!factors.open.share.empty()) lose_hits_on_covered(factors);
+  return factors;
 }
 
 FormFactors cast_rows(const scenes::Scene& scene, const scenes::RayQuery& query,

@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "radiosity/closed_bodies.h"
+#include "radiosity/open_parts.h"
 #include "radiosity/patches.h"
 #include "scenes/ray_query.h"
 

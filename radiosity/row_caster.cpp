@@ -40,6 +40,7 @@ RowCaster::RowCaster(const scenes::Scene& scene, const scenes::RayQuery& query,
       seed_(options.seed),
       replicate_(options.replicate),
       leave_out_covered_(options.leave_out_covered),
+      dark_sky_(!scene.sun && !scene.earth),
       rays_(patches, query, rays),
       targets_(patches, materials_that_pass_on(scene)) {}
 
@@ -86,7 +87,7 @@ bool RowCaster::trace(std::uint32_t patch, const PatchRays::Sender& sender, bool
     }
     if (n == 0) continue;
     count_hits(packets[(n - 1) % 2], hits[(n - 1) % 2], near, row, counter, band);
-    if (!look_out || row.black == 0.0) continue;
+    if (!look_out || !(row.black > 0.0 || (row.sky > 0.0 && dark_sky_))) continue;
     look_out = false;
     near = bodies_near(patch);
     if (!near.empty()) return false;

@@ -65,7 +65,7 @@ class RowCaster {
   const SkyRadiance& sky_;
   std::uint64_t seed_;
   std::uint32_t replicate_;
-  bool leave_out_covered_;
+  bool leave_out_covered_, dark_sky_;
   PatchRays rays_;
   HitTargets targets_;
   // Made when the first row asks: most scenes have no use for them.

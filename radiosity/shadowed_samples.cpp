@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "radiosity/closed_bodies.h"
 
 namespace earthshine::radiosity {
 namespace {

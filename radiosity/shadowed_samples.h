@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "radiosity/closed_bodies.h"
+#include "radiosity/open_parts.h"
 #include "radiosity/patches.h"
 #include "scenes/lamp_light.h"
 #include "scenes/ray_query.h"
