@@ -200,7 +200,7 @@ ClosedBodies::ClosedBodies(const scenes::Scene& scene, const Vec3& centre) : cen
     }
   }
   leave_out_lit(scene);
-  dark_outside_ = !cavities_.empty() && light_is_in_rooms(scene, walls);
+  dark_outside_ = !cavities_.empty() && light_is_in_rooms(scene, parts.of, walls);
 }
 
 // Where a lamp stands light is meant to be: a room whose faces look the wrong way.
@@ -219,23 +219,27 @@ bool ClosedBodies::in_room(const Vec3& point) const {
                      [&](const ClosedSurface& room) { return room.winding(point) < 0; });
 }
 
-// No sky shines, every lamp stands in a room, and every object that shines is a wall of one or has
-// a corner in one.
+// No sky shines, every lamp stands in a room, and everything that shines hangs together with a wall
+// of one or has a corner in one.
 bool ClosedBodies::light_is_in_rooms(const scenes::Scene& scene,
+                                     const std::vector<std::uint32_t>& part_of,
                                      const std::vector<char>& walls) const {
   if (scene.sun || scene.earth) return false;
   for (const scenes::Lamp& lamp : scene.lamps) {
     if (!in_room(lamp.position - centre_)) return false;
   }
-  std::vector<char> shines(scene.objects.size(), 0), inside(scene.objects.size(), 0);
-  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+  std::vector<char> shines(part_of.size(), 0), inside(part_of.size(), 0);
+  for (std::uint32_t t = 0; t < part_of.size(); ++t) {
     const scenes::Triangle& triangle = scene.triangles[t];
-    if (!scene.materials[triangle.material].emits()) continue;
-    shines[triangle.object] = 1;
-    if (inside[triangle.object] != 0) continue;
+    if (scene.materials[triangle.material].emits()) shines[part_of[t]] = 1;
+  }
+  for (std::uint32_t t = 0; t < part_of.size(); ++t) {
+    if (shines[part_of[t]] == 0 || inside[part_of[t]] != 0) continue;
     bool in = walls[t] != 0;
-    for (const std::uint32_t v : triangle.vertex) in = in || in_room(scene.vertices[v] - centre_);
-    if (in) inside[triangle.object] = 1;
+    for (const std::uint32_t v : scene.triangles[t].vertex) {
+      in = in || in_room(scene.vertices[v] - centre_);
+    }
+    if (in) inside[part_of[t]] = 1;
   }
   return shines == inside;
 }

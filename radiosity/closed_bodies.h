@@ -84,6 +84,7 @@ class ClosedBodies {
   void leave_out_lit(const scenes::Scene& scene);
   [[nodiscard]] bool in_room(const Vec3& point) const;
   [[nodiscard]] bool light_is_in_rooms(const scenes::Scene& scene,
+                                       const std::vector<std::uint32_t>& part_of,
                                        const std::vector<char>& walls) const;
 
   Vec3 centre_;
