@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// What patches show that a body covers wholly. Nobody sees them, but who reads the radiosity
+// between the cells of a facet (raytrace/radiance_table.h, viewers) mixes in neighbours of what is
+// seen.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "radiosity/open_parts.h"
+#include "radiosity/patches.h"
+
+namespace earthshine::radiosity {
+
+class CoveredPatches {
+ public:
+  CoveredPatches(const Patches& patches, const OpenParts& open);
+
+  // Gives each the mean of those around it on its side of the facet that are open. Where there are
+  // none its value stays.
+  void show_neighbours(std::vector<float>& values, std::size_t columns) const;
+
+ private:
+  struct Border {
+    std::uint32_t patch;
+    std::vector<std::uint32_t> open;
+  };
+  std::vector<Border> borders_;
+};
+
+}  // namespace earthshine::radiosity
