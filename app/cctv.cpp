@@ -13,20 +13,10 @@
 namespace earthshine::app {
 namespace {
 
-// An enumerator as its word.
-template <class Value>
-Json plain(const Value& value) {
-  if constexpr (std::is_enum_v<Value>) {
-    return degrade::word_of(value);
-  } else {
-    return value;
-  }
-}
-
 Json monitor_json(const degrade::Monitor& monitor) {
   Json settings;
   degrade::visit_monitor_fields(monitor, [&](const char* name, const auto& value, auto&&...) {
-    settings[name] = plain(value);
+    settings[name] = setting_json(value);
   });
   return settings;
 }
@@ -36,7 +26,7 @@ Json monitor_json(const degrade::Monitor& monitor) {
 Json settings_json(const degrade::CctvCamera& camera) {
   Json settings;
   degrade::visit_camera_fields(camera, [&](const char* name, const auto& value, auto&&...) {
-    if (degrade::is_used(camera, name)) settings[name] = plain(value);
+    if (degrade::is_used(camera, name)) settings[name] = setting_json(value);
   });
   return settings;
 }

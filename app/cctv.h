@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <type_traits>
 
 #include "app/command.h"
 #include "base/image.h"
@@ -31,6 +32,15 @@ struct CctvSetup {
 
 [[nodiscard]] degrade::Result run_chain(const CctvSetup& setup, const base::Image& radiance);
 
+// The value of a setting; an enumerator as its word.
+template <class Value>
+[[nodiscard]] Json setting_json(const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    return degrade::word_of(value);
+  } else {
+    return value;
+  }
+}
 // Every setting in use.
 [[nodiscard]] Json settings_json(const degrade::CctvCamera& camera);
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "app/cctv.h"
 #include "app/console.h"
 #include "degrade/chain.h"
 #include "degrade/noise_forms.h"
@@ -13,15 +14,6 @@ namespace earthshine::app {
 namespace {
 
 using degrade::SettingSource;
-
-template <class Value>
-Json plain(const Value& value) {
-  if constexpr (std::is_enum_v<Value>) {
-    return degrade::word_of(value);
-  } else {
-    return value;
-  }
-}
 
 struct Row {
   std::string key, unit, source;
@@ -37,7 +29,7 @@ class Rows {
   void operator()(const char* key, const Value& value, degrade::Limits, const char* unit,
                   const char*) {
     for (const SettingSource& known : sources_) {
-      if (known.key == key) rows_.push_back({key, unit, known.source, plain(value)});
+      if (known.key == key) rows_.push_back({key, unit, known.source, setting_json(value)});
     }
   }
   [[nodiscard]] std::vector<Row> take() { return std::move(rows_); }
