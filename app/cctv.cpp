@@ -124,6 +124,7 @@ Json cctv_json(const CctvSetup& setup, const degrade::Result& result) {
           {"metered_cd_m2", report.exposure.metered},
           {"underexposed", report.exposure.underexposed},
           {"blown", report.exposure.blown},
+          {"iris_moving", report.exposure.moving},
           {"noise", {{"a", report.noise.at_black()}, {"b", report.noise.b}, {"c", report.noise.c}}},
           {"saturated_share", report.levels.saturated_share},
           {"crushed_share", report.levels.crushed_share},
@@ -144,6 +145,7 @@ std::string cctv_summary(const CctvSetup& setup, const degrade::Result& result) 
       fmt::format("{}: f/{:.3g}, gain {:.3g}, {:.1f} % at white, {:.1f} % lost in black",
                   setup.name, report.exposure.f_number, report.exposure.gain,
                   100.0 * report.levels.saturated_share, 100.0 * report.levels.crushed_share);
+  if (report.exposure.moving) text += "; its iris is on the way";
   if (report.exposure.underexposed) text += "; too dark for it, wide open";
   if (report.exposure.blown) text += "; too bright for it, closed";
   if (report.negative_pixels > 0) {

@@ -73,6 +73,13 @@ void add_size_option(CLI::App& command, std::optional<Size>& size);
 void add_whole_number(CLI::App& command, const std::string& flags, std::uint64_t& value,
                       std::uint64_t least, std::uint64_t most, const std::string& help);
 
+// An option that takes a finite number within [least, most].
+void add_number(CLI::App& command, const std::string& flags, std::optional<double>& value,
+                double least, double most, const std::string& help);
+
+// Refuses an empty word, such as that of a variable that the shell does not know.
+[[nodiscard]] CLI::Validator not_empty();
+
 // A scene with what follows from it alone. Warnings go to standard error unless `quiet`.
 struct LoadedScene {
   scenes::Scene scene;

@@ -19,12 +19,13 @@
 namespace earthshine::app {
 namespace {
 
+constexpr std::uint64_t default_target_resels = 5;
 constexpr std::uint64_t most_frames = 1'000'000'000;
 
 struct DegradeCall {
   TapeCall tape;
   std::string output, twin, stages, scene, camera, preset, cctv, describe;
-  std::uint64_t target_resels = 5;
+  std::uint64_t target_resels = default_target_resels;
   std::optional<double> fov_deg, f_number;
   std::vector<std::string> off;
   bool list = false, json = false;
@@ -51,6 +52,9 @@ void check_call(const DegradeCall& call) {
   }
   if (!call.twin.empty() && call.tape.fields) {
     refuse("--twin", "stands beside --fields", "A twin belongs to a scene that stands still");
+  }
+  if (call.twin.empty() && call.target_resels != default_target_resels) {
+    refuse("--target-resels", "has no effect without --twin", "Add --twin FILE.exr");
   }
   if (call.target_resels % 2 == 0) {
     refuse("--target-resels", "is even", "Give an odd number, so that a target has a middle");
@@ -155,6 +159,10 @@ void run(const DegradeCall& call, const Common& common) {
   degrade::Options& options = setup.chain.options;
   options.off = call.off;
   options.fov_deg = field_of_view(call, options.fov_deg, header);
+  if (call.f_number && setup.chain.camera.iris_rate == 1.0 && setup.chain.camera.iris_slew == 0.0) {
+    refuse("--f-number", "has no effect: the iris of \"" + setup.name + "\" moves at once",
+           "Leave it out, or give the camera an iris_rate or iris_slew");
+  }
   degrade::Memory memory, twin_memory;
   memory.f_number = twin_memory.f_number = call.f_number;
   Json reports = Json::array();
@@ -216,8 +224,10 @@ std::vector<Command> add_degrade(CLI::App& program) {
   parser
       ->add_option("--cctv", call->cctv,
                    "CCTV camera: one that ships, FILE.toml with a [[cctv]], or FILE.toml:NAME")
+      ->check(not_empty())
       ->type_name("CAMERA");
   parser->add_option("--preset", call->preset, "CCTV camera that ships (see --list)")
+      ->check(not_empty())
       ->type_name("NAME");
   add_whole_number(*parser, "--frame", call->tape.first, 0, most_frames,
                    "Number of the (first) television frame: other noise (default 0)");
@@ -225,24 +235,18 @@ std::vector<Command> add_degrade(CLI::App& program) {
                    "How many frames one picture is shown (default 1)");
   parser->add_flag("--fields", call->tape.fields,
                    "The pictures are fields: two make a frame of an interlaced camera");
-  parser
-      ->add_option("--f-number", call->f_number,
-                   "Where the iris stood before the first frame (default: where it ends)")
-      ->check(CLI::Range(0.5, 1e6))
-      ->type_name("N");
-  parser
-      ->add_option("--fov", call->fov_deg,
-                   "Vertical field of view in degrees, for fall_off (default: what the scene or "
-                   "the picture says)")
-      ->check(CLI::Range(0.001, 179.0))
-      ->type_name("DEG");
+  add_number(*parser, "--f-number", call->f_number, 0.5, 1e6,
+             "Where the iris stood before the first frame (default: where it ends)");
+  add_number(*parser, "--fov", call->fov_deg, 0.001, 179.0,
+             "Vertical field of view in degrees, for fall_off (default: what the scene or the "
+             "picture says)");
   parser
       ->add_option("--twin", call->twin,
                    "The picture's analytic twin: noise-free, mean, variance, SNR, probability of "
                    "detection, masks (EXR)")
       ->type_name("FILE.exr");
   add_whole_number(*parser, "--target-resels", call->target_resels, 1, 199,
-                   "Size of the target whose detection --twin maps, odd (default 5)");
+                   "Size of the details whose detection --twin maps, odd (default 5)");
   parser
       ->add_option("--stages", call->stages,
                    "Folder for the picture after each stage (EXR, in the stage's unit)")

@@ -50,6 +50,17 @@ std::string_view form_of(std::string_view key) {
   return {};
 }
 
+// What a setting that may have no effect needs beside it.
+std::string company_of(std::string_view key) {
+  if (const std::string_view form = form_of(key); !form.empty()) {
+    return "noise = " + std::string(form);
+  }
+  if (key == "bloom") return "saturation above 0";
+  if (key == "bloom_radius") return "saturation and bloom above 0";
+  if (key == "f_number" || key == "gain_db") return "iris = \"fixed\"";
+  return key == "iris_centre" ? "iris = \"normal\"" : "an iris that is not \"fixed\"";
+}
+
 void check_one_form_of_noise(const SettingTable& table) {
   const Setting* first = nullptr;
   for (const Setting& setting : table.settings) {
@@ -69,13 +80,12 @@ void check_one_form_of_noise(const SettingTable& table) {
 void check_used(const SettingTable& table, const CctvCamera& camera) {
   for (const Setting& setting : table.settings) {
     if (setting.key == "preset" || is_used(camera, setting.key)) continue;
-    const std::string_view form = form_of(setting.key);
     throw Error(Blame::Input, setting.where,
                 in_quotes(setting.key) +
                     " has no effect with iris = " + in_quotes(word_of(camera.iris)) +
-                    " and noise = " + in_quotes(word_of(camera.noise)),
-                form.empty() ? std::string() : "it goes with noise = " + std::string(form),
-                "Leave it out or choose another iris or noise");
+                    ", noise = " + in_quotes(word_of(camera.noise)) +
+                    " and saturation = " + number(camera.saturation),
+                "it goes with " + company_of(setting.key), "Leave it out, or set that");
   }
 }
 

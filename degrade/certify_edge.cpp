@@ -74,8 +74,8 @@ struct Laws {
 // and its scatter.
 CertificateRow with_noise(const Bench& bench, const base::Image& chart, const Laws& law,
                           double reach, double most, std::string_view name) {
+  if (!bench.noise().shows(high)) return absent(name, "1", "the camera has no noise that shows");
   const double sigma = std::sqrt(bench.noise().total(high));
-  if (sigma == 0.0) return absent(name, "1", "the camera has no noise");
   // The noise of a line's end moves its centroid by sigma sqrt 2 reach / step.
   const int lines = (law.axis == Axis::Along ? bench.rows() : bench.columns()) - 2 * bench.margin();
   const double shift = sigma * std::sqrt(2.0) * reach / (high - low) / std::sqrt(lines);

@@ -102,6 +102,8 @@ double luminance_at(double from, double to, Flag flag) {
 }
 
 CertificateRow fixed_point(const Bench& bench, const Scene& scene, const Reach& reach) {
+  constexpr std::string_view name = "metered signal over its target, less 1: worst of its range";
+  if (reach.bright < 1.1 * reach.dark) return absent(name, "1", "neither iris nor gain can move");
   double worst = 0.0;
   const CctvCamera& camera = bench.camera();
   const double unit = meter(camera, camera.iris, to_picture(scene.chart(1.0)));
@@ -111,8 +113,8 @@ CertificateRow fixed_point(const Bench& bench, const Scene& scene, const Reach& 
     const double miss = meter(camera, camera.iris, signal) / reach.target - 1.0;
     worst = farther(worst, miss);
   }
-  return within("metered signal over its target, less 1: worst of its range", "1", worst, 0.0,
-                rounding, "M(E(N)) = t E_white wherever neither end is reached");
+  return within(name, "1", worst, 0.0, rounding,
+                "M(E(N)) = t E_white wherever neither end is reached");
 }
 
 Rows range_rows(const Bench& bench, const Scene& scene, const Reach& reach) {

@@ -89,24 +89,25 @@ Rows mean_rows(const std::vector<FlatField>& fields) {
 
 Rows ratio_rows(const Bench& bench, const std::vector<FlatField>& fields, const LineNoise& line) {
   Rows rows;
-  constexpr std::pair<double, std::string_view> at_levels[] = {
-      {1.0, "SNR at white"}, {0.5, "SNR at 50 %"}, {0.05, "SNR at 5 %"}};
+  constexpr std::pair<double, std::string_view> at_levels[] = {{1.0, "SNR on the line, at white"},
+                                                               {0.5, "SNR on the line, at 50 %"},
+                                                               {0.05, "SNR on the line, at 5 %"}};
   for (const auto& [signal, name] : at_levels) {
-    const double variance = line.total(signal);
-    if (variance == 0.0) {
-      rows.push_back(absent(name, "dB", "the camera has no noise there"));
+    if (!line.shows(signal)) {
+      rows.push_back(absent(name, "dB", "the camera has no noise there that shows"));
       continue;
     }
+    const double variance = line.total(signal);
     rows.push_back(within_errors(
         name, "dB", decibel(signal, total_variance(at(fields, signal))),
         20.0 * std::log10(signal / std::sqrt(variance)),
         "20 lg(S / sigma) on the line before gamma: a + b S + c S^2 through the filters"));
   }
-  const double black = line.total(0.0);
-  if (black == 0.0) {
-    rows.push_back(absent("dynamic range", "dB", "black has no noise"));
+  if (!line.shows(0.0)) {
+    rows.push_back(absent("dynamic range on the line", "dB", "black has no noise that shows"));
     return rows;
   }
+  const double black = line.total(0.0);
   const CctvCamera& camera = bench.camera();
   double law_top = std::min(camera.white_clip > 0.0 ? camera.white_clip : 1e6,
                             camera.saturation > 0.0 ? camera.saturation : 1e6);
@@ -116,7 +117,8 @@ Rows ratio_rows(const Bench& bench, const std::vector<FlatField>& fields, const 
       bench.options(stage::noise + stage::uneven + Names{"bloom"} + stage::coding + stage::screen));
   const bool limited = camera.white_clip > 0.0 || camera.saturation > 0.0;
   const double top = limited ? static_cast<double>(overload.signal.channels[0].values[0]) : law_top;
-  rows.push_back(within_errors("dynamic range", "dB", decibel(top, total_variance(at(fields, 0.0))),
+  rows.push_back(within_errors("dynamic range on the line", "dB",
+                               decibel(top, total_variance(at(fields, 0.0))),
                                20.0 * std::log10(law_top / std::sqrt(black)),
                                "20 lg(largest signal, or white / rms noise of black)"));
   return rows;

@@ -20,10 +20,16 @@ double LineNoise::fixed(double signal, int dx, int dy) const {
 
 double LineNoise::light_cumulant(double signal, int order) const {
   if (light == 0.0) return 0.0;
+  // A still picture is (1 - k) of its own field and k of the one before, whose deviation has shrunk
+  // by the root of the lag's factor.
+  const double k = field_to_field;
+  const double fresh = std::pow(1.0 - k, order), old = std::pow(k, order);
+  double kept = fresh + old * std::pow(lag, order / 2.0);
+  if (two_fields) kept = 0.5 * (kept + fresh + old * kept);  // the second one follows the first
   // Counts of mean S / b + dark / b^2, each worth b.
-  double counts = std::pow(light, order) * (signal / light + dark / (light * light));
+  double counts = kept * std::pow(light, order) * (signal / light + dark / (light * light));
   // Where the fixed pattern makes a resel brighter, its counts scatter more.
-  if (order == 3) counts += 3.0 * fixed_share * signal * signal * light;
+  if (order == 3) counts += 3.0 * fixed_share * signal * signal * light * lag;
   return counts * light_filter.power_sum(order);
 }
 

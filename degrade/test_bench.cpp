@@ -50,6 +50,12 @@ Bench::Bench(const CctvCamera& camera, const Monitor& monitor, const CertifyOpti
   const int radius =
       std::max(noise_.light_filter.radius(), filter_of(camera, monitor, Travels::Picture).radius());
   const int smallest = std::min(columns(), rows());
+  if (radius > smallest / 4) {
+    throw base::Error(base::Blame::Input, "camera",
+                      "it spreads a point over " + std::to_string(radius) + " resels to each side",
+                      "a quarter of the monitor's " + std::to_string(smallest) + " can be measured",
+                      "Give it less blur, more bandwidth or a monitor with more resels");
+  }
   margin_ = std::min(radius + 2, smallest / 6);
   blocks_ =
       cut_blocks(columns(), rows(), margin_, std::min(std::max(2 * radius, 12), smallest / 6));

@@ -111,8 +111,11 @@ std::vector<double> taps(const CctvCamera& camera, const Monitor& monitor, Trave
 }
 
 double gaussian_tap(double sigma, int n) {
-  // Fourier coefficient of the transfer, by the trapezium rule over its period.
-  constexpr int points = 512;
+  const int reach = static_cast<int>(std::ceil(12.0 * sigma)) + 12;
+  if (std::abs(n) > reach) return 0.0;
+  // Fourier coefficient of the transfer, by the trapezium rule over its period. With fewer points
+  // than twice the reach a far tap would be taken for a near one.
+  const int points = 4 * reach;
   double sum = 0.0;
   for (int k = 0; k < points; ++k) {
     const double f = static_cast<double>(k) / points;

@@ -81,6 +81,8 @@ struct LineNoise {
   // Covariance of two resels (dx, dy) apart in a flat field of signal S; (0, 0) is the variance.
   [[nodiscard]] double in_time(double signal, int dx = 0, int dy = 0) const;
   [[nodiscard]] double fixed(double signal, int dx = 0, int dy = 0) const;
+  // Whether there is noise that signals of single precision near 1 can show.
+  [[nodiscard]] bool shows(double signal) const { return total(signal) > 1e-13; }
   [[nodiscard]] double total(double signal, int dx = 0, int dy = 0) const {
     return in_time(signal, dx, dy) + fixed(signal, dx, dy);
   }
@@ -88,8 +90,8 @@ struct LineNoise {
   [[nodiscard]] double light_factor() const { return light_filter.power_sum(2); }
   [[nodiscard]] double amplifier_factor() const { return amplifier_filter.power_sum(2); }
   // Third or fourth cumulant of the counts of light and dark: a count has all its cumulants equal
-  // to its mean, and a filter multiplies the p-th by sum h^p. Without lag. The pattern's share in
-  // the fourth is left out.
+  // to its mean, and a filter multiplies the p-th by sum h^p. Of a still picture, whose lag is that
+  // of degrade::settled_charge. The pattern's share in the fourth is left out.
   [[nodiscard]] double light_cumulant(double signal, int order) const;
 };
 [[nodiscard]] LineNoise line_noise(const CctvCamera& camera, const Monitor& monitor);
