@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/random.h"
+#include "radiosity/covered_patches.h"
 #include "scenes/shapes.h"
 #include "tests/support/boxes.h"
 
@@ -224,6 +225,27 @@ TEST(CoveredParts, AWhollyCoveredPatchHasNoRowAndNoColumn) {
     EXPECT_EQ(f.lost[i], 1.0);
   }
   EXPECT_NEAR(closed_m2, 0.25, 1e-12);  // cells of 1/8 m end where the box does
+}
+
+TEST(CoveredParts, AHitOnAPatchThatTakesNoPartIsLostAndTheRowStaysClosed) {
+  // A room of six patches, of which the last is said to be covered: 0.2 of what each other sends
+  // goes to black backs instead.
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(grey(0.5));
+  builder.room({m, m, m, m, m, m});
+  const scenes::RayQuery query(builder.scene);
+  FormFactors f = cast_form_factors(builder.scene, query, subdivide(builder.scene, 1.0), {1024, 1});
+  f.open.share = {1, 1, 1, 1, 1, 0};
+  lose_hits_on_covered(f);
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    double sum = f.black[i];
+    for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
+      sum += f.row_scale[i] * double(f.hits[e]);
+    }
+    EXPECT_NEAR(sum, 1.0, 1e-14);
+    EXPECT_NEAR(f.black[i], 0.2, 4.0 * std::sqrt(0.16 / 1024));
+    EXPECT_EQ(f.lost[i], f.black[i]);
+  }
 }
 
 // The floor [0,1]^2 under a Sun overhead, a box of 0.3 x 0.4 m sunk in it.
