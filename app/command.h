@@ -41,7 +41,9 @@ struct Command {
 [[nodiscard]] Command add_form_factors(CLI::App& program);
 [[nodiscard]] Command add_plan(CLI::App& program);
 [[nodiscard]] Command add_inspect(CLI::App& program);
-[[nodiscard]] Command add_degrade(CLI::App& program);
+// `degrade` itself, and `degrade certify`.
+[[nodiscard]] std::vector<Command> add_degrade(CLI::App& program);
+[[nodiscard]] Command add_certify(CLI::App& degrade);
 [[nodiscard]] Command add_fit_phong(CLI::App& program);
 // `study` itself, which runs nothing, and one command of it per study.
 [[nodiscard]] std::vector<Command> add_study(CLI::App& program);

@@ -33,8 +33,9 @@ Json effects_of(const LoadedScene& loaded) {
 Json cctv_stages(const scenes::Scene& scene, const scenes::Camera& camera) {
   Json names = Json::array();
   if (camera.cctv.empty()) return names;
-  for (const degrade::StagePlan& planned : degrade::plan(
-           degrade::resolve_camera(scene, camera.cctv), degrade::resolve_monitor(scene))) {
+  for (const degrade::StagePlan& planned :
+       degrade::plan(degrade::resolve_camera(scene, camera.cctv),
+                     degrade::resolve_monitor(scene, camera.cctv))) {
     if (planned.runs) names.push_back(planned.stage->name);
   }
   return names;

@@ -72,13 +72,10 @@ Moments settled(Moments m) {
   if (!m.is_pending) return m;
   for (std::size_t p = 0; p < m.mean.planes.size(); ++p) {
     MomentPlanes after = through(m.pending, m.mean.planes[p], variance(m, p));
-    m.pattern[p] = scaled(m.pattern[p], after.slope);
-    // What the curve adds to the variance beyond the first order goes with the grain.
-    const Plane& fixed = m.pattern[p].variance();
-    std::transform(after.variance.begin(), after.variance.end(), fixed.begin(),
-                   after.variance.begin(),
-                   [](float all, float part) { return std::max(all - part, 0.0F); });
-    m.grain[p] = scaled(m.grain[p], after.slope, std::move(after.variance));
+    const Covariance all = mapped(plus(m.grain[p], m.pattern[p]), after);
+    // What two frames share; the rest differs from frame to frame.
+    m.pattern[p] = shared(m.pattern[p], after);
+    m.grain[p] = plus(all, times(m.pattern[p], -1.0));
     m.mean.planes[p] = std::move(after.mean);
   }
   m.pending = PointMap();

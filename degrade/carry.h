@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the chain's stages change the first two moments of a picture with noise: the analytic twin's
 // side of the table in stages.cpp. Linear stages are exact. Point by point maps are exact for each
-// pixel's own mean and variance as far as its noise is Gaussian, and of first order for the
+// pixel's own mean and variance as far as its noise is Gaussian, and of second order for the
 // covariance of neighbours.
 #pragma once
 

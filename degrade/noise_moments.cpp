@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -84,9 +85,9 @@ std::vector<Plane> turned_planes(const Covariance& noise) {
   return turned;
 }
 
-// C_d(z) times factor(z, z + d), for the pairs inside the picture.
+// C_d(z) <- f(C_d(z), z, z + d), for the pairs inside the picture.
 template <class F>
-Covariance multiplied(Covariance noise, F factor) {
+Covariance for_pairs(Covariance noise, F f) {
   const std::ptrdiff_t columns = noise.columns, rows = noise.rows;
   for (std::size_t k = 0; k < noise.planes.size(); ++k) {
     Plane& plane = noise.planes[k];
@@ -98,8 +99,8 @@ Covariance multiplied(Covariance noise, F factor) {
       for (std::ptrdiff_t y = static_cast<std::ptrdiff_t>(begin); y < last; ++y) {
         for (std::ptrdiff_t x = left; x < right; ++x) {
           const std::ptrdiff_t z = y * columns + x;
-          plane[static_cast<std::size_t>(z)] *=
-              factor(static_cast<std::size_t>(z), static_cast<std::size_t>(z + step));
+          float& value = plane[static_cast<std::size_t>(z)];
+          value = f(value, static_cast<std::size_t>(z), static_cast<std::size_t>(z + step));
         }
       }
     });
@@ -124,14 +125,22 @@ Covariance filtered(const Covariance& noise, const AxisMap& along, const AxisMap
   return transposed(filtered_across(transposed(mixed), along));
 }
 
-Covariance scaled(const Covariance& noise, const Plane& slope) {
-  return multiplied(noise,
-                    [&](std::size_t z, std::size_t partner) { return slope[z] * slope[partner]; });
+Covariance scaled(const Covariance& noise, const Plane& gain) {
+  return for_pairs(noise, [&](float c, std::size_t z, std::size_t partner) {
+    return c * gain[z] * gain[partner];
+  });
 }
 
-Covariance scaled(const Covariance& noise, const Plane& slope, Plane variance) {
-  Covariance result = scaled(noise, slope);
-  result.planes.front() = std::move(variance);
+Covariance shared(const Covariance& noise, const MomentPlanes& moments) {
+  const Plane &slope = moments.slope, &curvature = moments.curvature;
+  return for_pairs(noise, [&](float c, std::size_t z, std::size_t partner) {
+    return c * slope[z] * slope[partner] + 0.5F * (c * curvature[z]) * (c * curvature[partner]);
+  });
+}
+
+Covariance mapped(const Covariance& noise, const MomentPlanes& moments) {
+  Covariance result = shared(noise, moments);
+  result.planes.front() = moments.variance;
   return result;
 }
 

@@ -6,11 +6,11 @@
 // Exact up to the rounding of floats, mirrored borders included, unless a function says otherwise.
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "degrade/axis_map.h"
 #include "degrade/picture.h"
+#include "degrade/point_moments.h"
 
 namespace earthshine::degrade {
 
@@ -41,13 +41,19 @@ struct Covariance {
 [[nodiscard]] Covariance filtered(const Covariance& noise, const AxisMap& along,
                                   const AxisMap& across);
 
-// After a map point by point of the slope g(z) = E f'(S(z)) (degrade/point_moments.h):
-// C_d(z) g(z) g(z + d), which is exact for a gain that differs from pixel to pixel and the first
-// order for anything curved.
-[[nodiscard]] Covariance scaled(const Covariance& noise, const Plane& slope);
-// The same with the variance known exactly. It is at least slope^2 times the variance before
-// (Cauchy and Schwarz on E f' = Cov(f, S) / sigma^2), so this stays a covariance.
-[[nodiscard]] Covariance scaled(const Covariance& noise, const Plane& slope, Plane variance);
+// After a gain g(z) that may differ from pixel to pixel: C_d(z) g(z) g(z + d).
+[[nodiscard]] Covariance scaled(const Covariance& noise, const Plane& gain);
+
+// After a curved map point by point, of which the moments are known (degrade/point_moments.h): two
+// jointly Gaussian signals of covariance C_d keep
+//   slope(z) slope(z + d) C_d + curvature(z) curvature(z + d) C_d^2 / 2,
+// the first two terms of Mehler's series (1866). The next terms go with the third power of their
+// correlation; for a clamp in the middle of its noise they are below 4 % of the variance. shared:
+// of two signals that have no more than this noise in common, as two frames have a fixed pattern.
+// mapped: of one signal whose noise this is, with the variance from the moments; it holds all
+// terms, so this stays a covariance.
+[[nodiscard]] Covariance shared(const Covariance& noise, const MomentPlanes& moments);
+[[nodiscard]] Covariance mapped(const Covariance& noise, const MomentPlanes& moments);
 
 // Odd and even rows come from two fields: C_d with odd dy times `across_fields`, the correlation
 // from one field to the next (0 without lag).

@@ -17,20 +17,21 @@ namespace {
 
 constexpr double reach = 8.5;  // sigma; beyond lie 2e-17 of all signals
 
-// Sums of g = f - reference, g^2 and g z over the normal distribution of z. The reference is near
-// the mean, so that the variance is no difference of large numbers.
+// Sums of g = f - reference, g^2, g z and g (z^2 - 1) over the normal distribution of z. The
+// reference is near the mean, so that the variance is no difference of large numbers.
 struct Sums {
-  double g = 0.0, g2 = 0.0, gz = 0.0;
+  double g = 0.0, g2 = 0.0, gz = 0.0, gzz = 0.0;
 
   void add(double value, double z, double weight) {
     g += weight * value;
     g2 += weight * value * value;
     gz += weight * value * z;
+    gzz += weight * value * (z * z - 1.0);
   }
   [[nodiscard]] PointMoments moments(double reference, double sigma) const {
-    const double slope = gz / sigma;
-    // Var f >= Cov(f, S)^2 / sigma^2, whatever the rounding.
-    return {reference + g, std::max(g2 - g * g, gz * gz), slope};
+    // The variance holds at least the first two orders, whatever the rounding.
+    return {reference + g, std::max(g2 - g * g, gz * gz + 0.5 * gzz * gzz), gz / sigma,
+            gzz / (sigma * sigma)};
   }
 };
 
@@ -163,11 +164,13 @@ class Table {
         sum.mean += weight * at[k].mean;
         sum.variance += weight * at[k].variance;
         sum.slope += weight * at[k].slope;
+        sum.curvature += weight * at[k].curvature;
       }
     }
     // A polynomial may overshoot where the variance dies away.
     sum.slope = std::max(sum.slope, 0.0);
-    sum.variance = std::max(sum.variance, sum.slope * sum.slope * sigma * sigma);
+    const double first = sum.slope * sigma, second = sum.curvature * sigma * sigma;
+    sum.variance = std::max(sum.variance, first * first + 0.5 * second * second);
     return sum;
   }
 
@@ -185,7 +188,7 @@ double normal_density(double z) {
 }
 
 PointMoments clamped(double mean, double sigma, double low, double high) {
-  if (!(sigma > 0.0)) return {std::clamp(mean, low, high), 0.0, 0.0};
+  if (!(sigma > 0.0)) return {std::clamp(mean, low, high), 0.0, 0.0, 0.0};
   const double reference = std::clamp(mean, low, high);
   const double a = (low - mean) / sigma, b = (high - mean) / sigma;
   const double r = (reference - mean) / sigma;
@@ -206,12 +209,13 @@ PointMoments clamped(double mean, double sigma, double low, double high) {
     first += (b - r) * normal_probability(-b);
     second += (b - r) * (b - r) * normal_probability(-b);
   }
-  return {reference + sigma * first, sigma * sigma * std::max(0.0, second - first * first), inside};
+  return {reference + sigma * first, sigma * sigma * std::max(0.0, second - first * first), inside,
+          (pa - pb) / sigma};
 }
 
 PointMoments through(const PointMap& map, double mean, double sigma) {
   const double reference = map(mean);
-  if (!(sigma > 0.0)) return {reference, 0.0, 0.0};
+  if (!(sigma > 0.0)) return {reference, 0.0, 0.0, 0.0};
   const std::vector<double>& kinks = map.kinks();
   const auto in_reach = [&](double z) {
     return static_cast<std::size_t>(std::lower_bound(kinks.begin(), kinks.end(), mean + z * sigma) -
@@ -219,7 +223,7 @@ PointMoments through(const PointMap& map, double mean, double sigma) {
   };
   const std::size_t first = in_reach(-reach), last = in_reach(reach);
   if (first == last) {
-    if (map.stretches()[first].level) return {reference, 0.0, 0.0};
+    if (map.stretches()[first].level) return {reference, 0.0, 0.0, 0.0};
     return far_from_kinks(map, mean, sigma, reference);
   }
   Sums sums;
@@ -233,6 +237,7 @@ PointMoments through(const PointMap& map, double mean, double sigma) {
       sums.g += value * (below_b - below);
       sums.g2 += value * value * (below_b - below);
       sums.gz += value * (density - density_b);
+      sums.gzz += value * (a * density - b * density_b);
     } else {
       add_smooth(sums, a, b, k > first,
                  [&](double z) { return map(mean + sigma * z) - reference; });
@@ -246,7 +251,7 @@ PointMoments through(const PointMap& map, double mean, double sigma) {
 
 MomentPlanes through(const PointMap& map, const Plane& mean, const Plane& variance) {
   const Table table(map, mean, variance);
-  MomentPlanes out{Plane(mean.size()), Plane(mean.size()), Plane(mean.size())};
+  MomentPlanes out{Plane(mean.size()), Plane(mean.size()), Plane(mean.size()), Plane(mean.size())};
   base::parallel_chunks(mean.size(), 2048, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const double mu = static_cast<double>(mean[i]);
@@ -257,6 +262,7 @@ MomentPlanes through(const PointMap& map, const Plane& mean, const Plane& varian
       out.mean[i] = static_cast<float>(m->mean);
       out.variance[i] = static_cast<float>(m->variance);
       out.slope[i] = static_cast<float>(m->slope);
+      out.curvature[i] = static_cast<float>(m->curvature);
     }
   });
   return out;

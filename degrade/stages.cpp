@@ -79,7 +79,9 @@ Picture levels(Picture p, const Passing& at) {
 
 Picture saturate(Picture p, const Passing& at) {
   const double most = at.setup.camera.saturation;
-  at.report.lost_share += share_above(p, most) / static_cast<double>(at.fields);
+  // Of the signal before bloom, as all shares are.
+  const double left = 1.0 - (1.0 - at.setup.camera.bloom) * at.report.excess_share;
+  at.report.lost_share += left * share_above(p, most) / static_cast<double>(at.fields);
   return limit_above(std::move(p), most);
 }
 

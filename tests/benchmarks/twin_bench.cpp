@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "degrade/detection.h"
 #include "degrade/monitor.h"
@@ -99,8 +98,8 @@ void whole(benchmark::State& state) {
   const Plane mean = signal();
   measure(state, [&] {
     Covariance noise = grain();
-    MomentPlanes line = through(camera_and_screen(0), mean, noise.variance());
-    noise = scaled(noise, line.slope, std::move(line.variance));
+    const MomentPlanes line = through(camera_and_screen(0), mean, noise.variance());
+    noise = mapped(noise, line);
     const Plane seen = variance_after(noise, spread(columns), spread(rows));
     return detection(line.mean, noise).probability.front() + seen.front();
   });

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "base/units.h"
@@ -119,27 +120,60 @@ TEST(NoiseMoments, OnlyOffsetsThatMatterAreKept) {
   EXPECT_EQ(c.planes.size(), 25U);
 }
 
-TEST(NoiseMoments, SlopesScaleEachPairByBothEnds) {
+TEST(NoiseMoments, GainsScaleEachPairByBothEnds) {
   const int columns = 9, rows = 6;
   const Covariance c = filtered(white(columns, rows, ramp(columns, rows)),
                                 gaussian_blur(columns, 0.7), lopsided(rows));
-  Plane slope;
-  for (std::size_t i = 0; i < 54; ++i) slope.push_back(0.1F * static_cast<float>((i * 7) % 11));
-  const Covariance scaled_noise = scaled(c, slope);
-  const Covariance exact = scaled(c, slope, Plane(54, 3.0F));
+  Plane gain;
+  for (std::size_t i = 0; i < 54; ++i) gain.push_back(0.1F * static_cast<float>((i * 7) % 11));
+  const Covariance after = scaled(c, gain);
   for (int y = 0; y < rows; ++y) {
     for (int x = 0; x < columns; ++x) {
       for (int v = 0; v < rows; ++v) {
         for (int u = 0; u < columns; ++u) {
-          const double both = static_cast<double>(slope[at(x, y, columns)]) *
-                              static_cast<double>(slope[at(u, v, columns)]);
-          ASSERT_NEAR(entry(scaled_noise, x, y, u, v), both * entry(c, x, y, u, v), 1e-7);
-          const bool same = x == u && y == v;
-          ASSERT_NEAR(entry(exact, x, y, u, v), same ? 3.0 : both * entry(c, x, y, u, v), 1e-7);
+          const double both = static_cast<double>(gain[at(x, y, columns)]) *
+                              static_cast<double>(gain[at(u, v, columns)]);
+          ASSERT_NEAR(entry(after, x, y, u, v), both * entry(c, x, y, u, v), 1e-7);
         }
       }
     }
   }
+}
+
+// Noise about black, half of it clamped: for zero means, equal sigmas and the correlation rho
+//   E max(X, 0) max(Y, 0) = sigma^2 (sqrt(1 - rho^2) + rho (pi - arccos rho)) / 2 pi,
+// and each mean is sigma / sqrt(2 pi). The series of the covariance is rho / 4 + rho^2 / 4 pi +
+// rho^4 / 48 pi + ..., all terms positive and ever smaller, so the first two leave between rho^4 /
+// 48 pi and 3 rho^4 / 48 pi. found, in units of sigma^2.
+void expect_two_terms(double found, double rho) {
+  const double exact =
+      (std::sqrt(1.0 - rho * rho) + rho * (base::pi - std::acos(rho)) - 1.0) / (2.0 * base::pi);
+  const double third = std::pow(rho, 4) / (48.0 * base::pi);
+  EXPECT_GT(exact - found, third - 1e-6) << rho;
+  EXPECT_LT(exact - found, 3.0 * third + 1e-6) << rho;
+}
+
+TEST(NoiseMoments, ClampedNeighboursShareTheFirstTwoTermsOfTheClosedForm) {
+  const Covariance c =
+      filtered(white(30, 30, Plane(900, 0.04F)), gaussian_blur(30, 0.8), gaussian_blur(30, 0.6));
+  PointMap clamp;
+  clamp.limit_below(0.0);
+  const Covariance after = mapped(c, through(clamp, Plane(900, 0.0F), c.variance()));
+  const double variance = entry(c, 15, 15, 15, 15);
+  EXPECT_NEAR(entry(after, 15, 15, 15, 15), variance * (0.5 - 0.5 / base::pi), 1e-6 * variance);
+  for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {1, 1}, {-1, 1}, {2, 0}}) {
+    expect_two_terms(entry(after, 15, 15, 15 + dx, 15 + dy) / variance,
+                     entry(c, 15, 15, 15 + dx, 15 + dy) / variance);
+  }
+}
+
+// Two frames with 0.3 of their variance in common.
+TEST(NoiseMoments, ClampedFramesShareTheFirstTwoTermsOfTheirPattern) {
+  const Covariance pattern = white(4, 3, Plane(12, 0.3F));
+  PointMap clamp;
+  clamp.limit_below(0.0);
+  const Covariance after = shared(pattern, through(clamp, Plane(12, 0.0F), Plane(12, 1.0F)));
+  expect_two_terms(entry(after, 2, 1, 2, 1), 0.3);
 }
 
 // Rows of the two fields woven: n(y) from field y mod 2, each with the covariance C within a field

@@ -49,7 +49,9 @@ PointMoments by_fine_sum(double mu, double sigma, double white, double gamma) {
     const double u = low + (k + 0.5) * du, s = std::pow(u, exponent), v = std::pow(s, 1.0 / gamma);
     const double p = normal_density((s - mu) / sigma) / sigma * du;
     add(v, p * exponent * s / u);
-    m.slope += p * exponent / gamma * v / u;
+    const double rise = p * exponent / gamma * v / u;  // f'(S) p(S) dS
+    m.slope += rise;
+    m.curvature += rise * (s - mu) / (sigma * sigma);
   }
   for (std::size_t k = 0; k < value.size(); ++k) m.mean += share[k] * value[k];
   for (std::size_t k = 0; k < value.size(); ++k) {
@@ -65,6 +67,8 @@ void expect_near(const PointMoments& found, const PointMoments& expected, double
   EXPECT_NEAR(std::sqrt(found.variance), deviation, tolerance * deviation + 1e-10 * sigma);
   // |slope| sigma is at most the standard deviation.
   EXPECT_NEAR(found.slope * sigma, expected.slope * sigma, tolerance * deviation + 1e-10 * sigma);
+  EXPECT_NEAR(found.curvature * sigma * sigma, expected.curvature * sigma * sigma,
+              2.0 * tolerance * deviation + 1e-10 * sigma);
 }
 
 // V29: z = (W - mu) / sigma; E = mu P + W (1 - P) - sigma p, E2 = (mu^2 + sigma^2) P
@@ -81,6 +85,7 @@ TEST(PointMoments, ClipAtWhiteIsTheClosedForm) {
       EXPECT_NEAR(m.mean, mean, 1e-12);
       EXPECT_NEAR(m.variance, square - mean * mean, 1e-12);
       EXPECT_NEAR(m.slope, P, 1e-15);
+      EXPECT_NEAR(m.curvature, -p / sigma, 1e-12);
     }
   }
 }
@@ -126,10 +131,11 @@ TEST(PointMoments, WithoutNoiseAMapGivesItsValue) {
     EXPECT_EQ(m.mean, map(s));
     EXPECT_EQ(m.variance, 0.0);
     EXPECT_EQ(m.slope, 0.0);
+    EXPECT_EQ(m.curvature, 0.0);
   }
 }
 
-// One bit: 1 above one half. Mean P, variance P (1 - P), slope p / sigma.
+// One bit: 1 above one half. Mean P, variance P (1 - P), slope p / sigma, curvature dp / dmu.
 TEST(PointMoments, OneBitIsACoin) {
   PointMap map;
   map.quantise(1);
@@ -139,6 +145,7 @@ TEST(PointMoments, OneBitIsACoin) {
     EXPECT_NEAR(m.mean, P, 1e-12);
     EXPECT_NEAR(m.variance, P * (1.0 - P), 1e-12);
     EXPECT_NEAR(m.slope, normal_density(z) / 0.1, 1e-12);
+    EXPECT_NEAR(m.curvature, -z * normal_density(z) / 0.01, 1e-10);
   }
 }
 
@@ -193,6 +200,14 @@ TEST(PointMap, KinksAreTracedBackToTheSignal) {
   EXPECT_NEAR(map.stretches()[4].value, 1.0, 1e-15);
 }
 
+// Between 0.2 and 0.4 two bits know one level only, 1/3; their thresholds are out of reach.
+TEST(PointMap, KinksOutOfReachAreNone) {
+  PointMap map;
+  map.limit_below(0.2).limit_above(0.4).quantise(2);
+  EXPECT_EQ(map.kinks(), (std::vector<double>{0.2, 0.4}));
+  EXPECT_EQ(through(map, 0.3, 0.2).variance, 0.0);
+}
+
 struct Pixels {
   Plane mean, variance;
 };
@@ -220,6 +235,7 @@ void expect_each_on_its_own(const PointMap& map, const Pixels& pixels) {
     SCOPED_TRACE(std::to_string(mu) + " +- " + std::to_string(sigma));
     ASSERT_NEAR(planes.mean[i], one.mean, tolerance + 1e-7 * one.mean);
     ASSERT_NEAR(planes.slope[i] * sigma, one.slope * sigma, tolerance);
+    ASSERT_NEAR(planes.curvature[i] * sigma * sigma, one.curvature * sigma * sigma, tolerance);
     ASSERT_NEAR(planes.variance[i], one.variance, 1e-4 * one.variance + 1e-6 * rise * rise);
   }
 }
@@ -241,7 +257,7 @@ TEST(PointMoments, SameBitsOnAnyNumberOfThreads) {
     const base::ThreadLimit limit(threads);
     const Pixels pixels = many(-0.1, 1.2, 1e-4, 0.2);
     const MomentPlanes planes = through(clamp_and_gamma(1.1, 2.2), pixels.mean, pixels.variance);
-    return std::vector<Plane>{planes.mean, planes.variance, planes.slope};
+    return std::vector<Plane>{planes.mean, planes.variance, planes.slope, planes.curvature};
   };
   EXPECT_EQ(run(1), run(16));
 }

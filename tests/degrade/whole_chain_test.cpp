@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// The chain with every stage on: the corner of a picture, and what another machine must get too.
+#include <gtest/gtest.h>
+
+#include "degrade/chain.h"
+#include "degrade/presets.h"
+#include "tests/degrade/fields.h"
+
+namespace earthshine::degrade {
+namespace {
+
+using test::painted;
+
+double slope(double x, double y) { return 0.3 + 0.5 * x + 0.2 * y; }
+
+// Linear, fixed exposure: the signal is the radiance.
+CctvCamera plain() {
+  CctvCamera camera;
+  camera.iris = IrisMode::Fixed;
+  camera.f_number = 1.0;
+  camera.transmittance = 1.0;
+  camera.white_lux = 3.14159265358979323846 / 4.0;
+  camera.gamma = 1.0;
+  camera.white_clip = 0.0;
+  return camera;
+}
+
+// A corner of the scene seen on a corner of the grid is that corner of the picture, as far as the
+// blur does not reach: noise is keyed by place, and what looks at the whole (meter, glare) is
+// fixed.
+TEST(WholeChain, CornerOfThePictureIsThePictureOfTheCorner) {
+  CctvCamera camera = plain();
+  camera.blur_h = camera.blur_v = 0.35;
+  camera.noise = NoiseMode::Photon;
+  camera.lag = 0.3;
+  camera.interlace = true;
+  camera.bandwidth_mhz = 3.0;
+  Monitor whole, corner;
+  whole.rows = 80;
+  whole.columns = 100;
+  corner.rows = 40;
+  corner.columns = 100;  // the line's time is that of the whole screen
+  const base::Image in = painted(100, 80, slope);
+  base::Image part = test::grey(50, 40, 0.0F);
+  for (std::size_t i = 0; i < part.pixel_count(); ++i) {
+    part.channels[0].values[i] = in.channels[0].values[i / 50 * 100 + i % 50];
+  }
+  const Result all = degrade(in, camera, whole), some = degrade(part, camera, corner);
+  ASSERT_EQ(some.report.sensor.columns, 50);
+  constexpr std::size_t reach = 12;
+  for (std::size_t y = 0; y < 40 - reach; ++y) {
+    for (std::size_t x = 0; x < 50 - reach; ++x) {
+      ASSERT_NEAR(some.signal.channels[0].values[y * 50 + x],
+                  all.signal.channels[0].values[y * 100 + x], 2e-6)
+          << x << ' ' << y;
+    }
+  }
+}
+
+// What one machine and compiler made, another must make: moments of a picture through every stage.
+// A power or a logarithm rounded otherwise moves single values by 1e-7 of themselves.
+TEST(WholeChain, EveryStageTogetherGivesTheRecordedMoments) {
+  CctvCamera camera = find_preset("sit-monochrome")->camera;
+  camera.fall_off = 4.0;
+  camera.glare = 0.02;
+  camera.lens_blur = 0.3;
+  camera.shading_percent = 20.0;
+  camera.lag = 0.42;
+  camera.smear_db = 90.0;
+  camera.saturation = 0.5;
+  camera.bloom = 0.5;
+  camera.noise = NoiseMode::Photon;
+  camera.dark_electrons = 5.0;
+  camera.dsnu_percent = 0.1;
+  camera.bandwidth_mhz = 4.2;
+  camera.aperture_correction = 0.3;
+  camera.bits = 8;
+  camera.interlace = true;
+  Options options;
+  options.fov_deg = 40.0;
+  const Result result = degrade(painted(400, 300, slope), camera, {}, options);
+  const test::Moments m = test::moments(result.viewed.channels[0].values);
+  EXPECT_NEAR(m.mean, 36.82393, 1e-4);
+  EXPECT_NEAR(m.variance, 92.1467, 1e-2);
+}
+
+}  // namespace
+}  // namespace earthshine::degrade
