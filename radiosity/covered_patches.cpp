@@ -11,6 +11,18 @@ std::vector<double> open_areas(const OpenParts& open, std::span<const double> ar
   return areas;
 }
 
+void lose_hits_on_covered(FormFactors& factors) {
+  for (std::size_t i = 0; i < factors.count(); ++i) {
+    for (std::uint64_t e = factors.row_start[i]; e < factors.row_start[i + 1]; ++e) {
+      const std::uint32_t j = factors.column[e];
+      if (factors.open.share[j] > 0.0) continue;
+      factors.black[i] += factors.row_scale[i] * double(factors.hits[e]) * factors.kept[j];
+      factors.lost[i] = factors.black[i];
+      factors.hits[e] = 0.0F;
+    }
+  }
+}
+
 CoveredPatches::CoveredPatches(const Patches& patches, const OpenParts& open) {
   constexpr double step = 0x1p-23;  // less than half of the smallest cell (radiosity/split.h)
   for (std::uint32_t i = 0; i < open.share.size(); ++i) {

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// What patches show that a body covers wholly. Nobody sees them, but who reads the radiosity
-// between the cells of a facet (raytrace/radiance_table.h, viewers) mixes in neighbours of what is
-// seen.
+// Patches that a body covers wholly: they take no part, and what they show. Nobody sees them, but
+// who reads the radiosity between the cells of a facet (raytrace/radiance_table.h, viewers) mixes
+// in neighbours of what is seen.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "radiosity/form_factors.h"
 #include "radiosity/open_parts.h"
 #include "radiosity/patches.h"
 
 namespace earthshine::radiosity {
+
+// A ray that slipped through the seam between two bodies, or met a cell's edge where a body stands
+// on it, may name a patch that takes no part: it is lost, as if it had met the body's back. Rows
+// stay closed. factors.open has a share for every patch.
+void lose_hits_on_covered(FormFactors& factors);
 
 class CoveredPatches {
  public:

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "radiosity/covered_patches.h"
 #include "radiosity/row_caster.h"
 
 namespace earthshine::radiosity {
@@ -66,20 +67,6 @@ void close_row(FormFactors& factors, std::size_t i, double sky_rays, double blac
   factors.row_scale[i] = 1.0 / all;
   factors.sky[i] = factors.escape[i] = sky_rays / all;
   factors.black[i] = factors.lost[i] = black_rays / all;
-}
-
-// A ray that slipped through the seam between two bodies meets patches that take no part: it is
-// lost, as if it had met the body's back.
-void lose_hits_on_covered(FormFactors& factors) {
-  for (std::size_t i = 0; i < factors.count(); ++i) {
-    for (std::uint64_t e = factors.row_start[i]; e < factors.row_start[i + 1]; ++e) {
-      const std::uint32_t j = factors.column[e];
-      if (factors.open.share[j] > 0.0) continue;
-      factors.black[i] += factors.row_scale[i] * double(factors.hits[e]) * factors.kept[j];
-      factors.lost[i] = factors.black[i];
-      factors.hits[e] = 0.0F;
-    }
-  }
 }
 
 }  // namespace
