@@ -20,7 +20,9 @@ bool has_all(const Names& channels, const Names& wanted) {
 
 Names within(const std::string& layer, const Names& words) {
   Names names;
-  for (const std::string& word : words) names.push_back(layer.empty() ? word : layer + "." + word);
+  names.reserve(words.size());
+  const std::string prefix = layer.empty() ? layer : layer + ".";
+  for (const std::string& word : words) names.push_back(prefix + word);
   return names;
 }
 
@@ -59,7 +61,7 @@ bool is_combined(const std::string& layer) {
 }  // namespace
 
 ExrPicture find_picture(const Names& channels) {
-  if (const ExrPicture whole = in_layer(channels, ""); whole.kind != ExrPicture::Kind::None) {
+  if (ExrPicture whole = in_layer(channels, ""); whole.kind != ExrPicture::Kind::None) {
     return whole;
   }
   Names with_picture, combined;

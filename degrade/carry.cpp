@@ -107,16 +107,16 @@ Moments carry_lag(Moments m, const Passing& at) {
 }
 
 Moments carry_blur(Moments m, const Passing& at) {
-  const AxisMap along = gaussian_blur(m.mean.columns, at.setup.camera.blur_h);
-  return filter(std::move(m), along, gaussian_blur(m.mean.rows, at.setup.camera.blur_v));
+  const AxisMap along = gaussian_blur(m.mean.columns, at.setup.camera.blur_h),
+                across = gaussian_blur(m.mean.rows, at.setup.camera.blur_v);
+  return filter(std::move(m), along, across);
 }
 
 Moments carry_bloom(Moments m, const Passing& at) {
   const CctvCamera& camera = at.setup.camera;
-  Moments cut = carry_saturation(m, at);
-  cut = settled(std::move(cut));
   // Mean of what lies above: S - min(S, S_most).
   Picture excess = m.mean;
+  Moments cut = carry_saturation(std::move(m), at);
   for (std::size_t p = 0; p < excess.planes.size(); ++p) {
     std::transform(excess.planes[p].begin(), excess.planes[p].end(), cut.mean.planes[p].begin(),
                    excess.planes[p].begin(), [&](float all, float kept) {
@@ -149,8 +149,9 @@ Moments carry_read_noise(Moments m, const Passing& at) {
 Moments carry_bandwidth(Moments m, const Passing& at) {
   const CctvCamera& camera = at.setup.camera;
   const AxisMap along = line_filter(m.mean.columns, camera.bandwidth_mhz,
-                                    camera.aperture_correction, at.setup.monitor.columns);
-  return filter(std::move(m), along, gaussian_blur(m.mean.rows, 0.0));
+                                    camera.aperture_correction, at.setup.monitor.columns),
+                across = gaussian_blur(m.mean.rows, 0.0);
+  return filter(std::move(m), along, across);
 }
 
 Moments carry_black_clamp(Moments m, const Passing&) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <string>
 
 #include "base/error.h"
@@ -69,7 +70,8 @@ std::vector<std::uint8_t> screen_bytes(const Picture& viewed, double white) {
 }
 
 // fields: one picture, or two that differ.
-Result run_chain(std::vector<const base::Image*> seen, const Setup& setup, const Memory& before) {
+Result run_chain(std::initializer_list<const base::Image*> seen, const Setup& setup,
+                 const Memory& before) {
   const CctvCamera& camera = setup.camera;
   const Options& options = setup.options;
   check_names(options.off);

@@ -89,7 +89,7 @@ struct Stage {
   std::string_view law;
   // Report: what earlier stages found, nullptr while there is no picture yet.
   bool (*runs)(const Setup&, const Report*);
-  Picture (*apply)(Picture, const Passing&);
+  Picture (*apply)(Picture&&, const Passing&);
   // What the stage does to the moments of a picture with noise; without it noise passes unchanged
   // and the mean goes through apply. Stages of the lens come before any noise.
   Moments (*carry)(Moments, const Passing&) = nullptr;

@@ -16,8 +16,9 @@ Picture times_radial(Picture picture, F factor) {
   const std::size_t width = static_cast<std::size_t>(picture.columns);
   for_each_run(picture, [&](std::size_t plane, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      const double u = (static_cast<double>(i % width) + 0.5 - picture.columns / 2.0) / half;
-      const double v = (static_cast<double>(i / width) + 0.5 - half) / half;
+      const std::size_t x = i % width, y = i / width;
+      const double u = (static_cast<double>(x) + 0.5 - picture.columns / 2.0) / half;
+      const double v = (static_cast<double>(y) + 0.5 - half) / half;
       float& value = picture.planes[plane][i];
       value = static_cast<float>(static_cast<double>(value) * factor(u * u + v * v));
     }

@@ -105,6 +105,7 @@ PhotonTransfer fit_photon_transfer(std::span<const FlatField> fields) {
   const double least =
       std::max(1e-6 * *std::max_element(variances.begin(), variances.end()), 1e-20);
   std::vector<double> weights;
+  weights.reserve(variances.size());
   for (const double variance : variances) {
     weights.push_back(1.0 / std::pow(std::max(variance, least), 2.0));
   }

@@ -90,6 +90,7 @@ std::vector<double> taps(const CctvCamera& camera, const Monitor& monitor, Trave
   // but for those beyond `points`, far more than any blur here reaches.
   constexpr int points = 512;
   std::vector<double> spectrum;
+  spectrum.reserve(points);
   for (int k = 0; k < points; ++k) {
     spectrum.push_back(transfer(camera, monitor, what, axis, static_cast<double>(k) / points));
   }
@@ -182,7 +183,8 @@ double edge_profile(const Filter& picture, Axis axis, double angle, double x) {
   const std::vector<double>&main = along ? picture.along : picture.across,
         &other = along ? picture.across : picture.along;
   const auto middle = [](const std::vector<double>& h) {
-    return static_cast<double>(h.size() / 2);
+    const std::size_t half = h.size() / 2;
+    return static_cast<double>(half);
   };
   double sum = 0.0;
   for (std::size_t n = 0; n < main.size(); ++n) {
