@@ -16,21 +16,9 @@
 namespace earthshine::degrade {
 namespace {
 
+using test::linear_camera;
 using test::painted;
-
-double slope(double x, double y) { return 0.3 + 0.5 * x + 0.2 * y; }
-
-// Linear, fixed exposure: the signal is the radiance (pi tau / (4 N^2 E_white) = 1).
-CctvCamera plain() {
-  CctvCamera camera;
-  camera.iris = IrisMode::Fixed;
-  camera.f_number = 1.0;
-  camera.transmittance = 1.0;
-  camera.white_lux = 3.14159265358979323846 / 4.0;
-  camera.gamma = 1.0;
-  camera.white_clip = 0.0;
-  return camera;
-}
+using test::slope;
 
 std::vector<std::string> names_run(const CctvCamera& camera, const Monitor& monitor) {
   std::vector<std::string> names;
@@ -57,7 +45,7 @@ TEST(Chain, OnlyWhatTheSettingsAskForRuns) {
   bare.spread = Spread::None;
   bare.pixels_per_resel = 1;
   bare.room_illuminance = 0.0;
-  CctvCamera camera = plain();
+  CctvCamera camera = linear_camera();
   camera.black_clamp = false;
   using Names = std::vector<std::string>;
   EXPECT_EQ(names_run(camera, bare),
@@ -99,7 +87,7 @@ TEST(Chain, FlatSceneStaysFlatFromTheLensToTheScreen) {
 }
 
 TEST(Chain, WithoutNoiseEveryParameterOfTheNoiseIsWithoutEffect) {
-  CctvCamera camera = plain();
+  CctvCamera camera = linear_camera();
   camera.noise = NoiseMode::Law;  // a = b = c = 0
   const base::Image in = painted(64, 48, slope);
   Options other;
@@ -127,7 +115,7 @@ TEST(Chain, NoiseFreeTwinHasTheSameExposure) {
 // if signal and noise law are what they should be: mean z within 4 / sqrt(N), mean z^2 within 4
 // sqrt(2 / N) of 1.
 TEST(Chain, MeanOfManyFramesIsTheTwinWithTheVarianceOfTheLaw) {
-  CctvCamera camera = plain();
+  CctvCamera camera = linear_camera();
   camera.noise = NoiseMode::Law;
   camera.noise_a = 4e-4;
   camera.noise_b = 2e-4;
@@ -165,7 +153,7 @@ TEST(Chain, MeanOfManyFramesIsTheTwinWithTheVarianceOfTheLaw) {
 // The blur comes after the noise of the light: grain, neighbours alike. The amplifier's noise comes
 // after the blur.
 TEST(Chain, LightNoiseIsBlurredAmplifierNoiseIsNot) {
-  CctvCamera camera = plain();
+  CctvCamera camera = linear_camera();
   camera.blur_h = camera.blur_v = 1.0;
   camera.noise = NoiseMode::Law;
   Options options;
@@ -223,7 +211,7 @@ TEST(Chain, SquarePictureIsWrittenSquareAtThreePixelsPerResel) {
 // White on the screen is white in the file; black is the screen's black and the room's light:
 // (1 + 0.796) / (100 + 0.796) = 0.01782, sRGB 0.1422, times 255 = 36.
 TEST(Chain, FileShowsTheScreenUnderTheRoomsLight) {
-  CctvCamera camera = plain();
+  CctvCamera camera = linear_camera();
   EXPECT_EQ(degrade(test::grey(4, 3, 1.0F), camera, {}).pixels[0], 255);
   EXPECT_EQ(degrade(test::grey(4, 3, 0.0F), camera, {}).pixels[0], 36);
 }
@@ -231,7 +219,7 @@ TEST(Chain, FileShowsTheScreenUnderTheRoomsLight) {
 TEST(Chain, SinglePointOfLightStaysInItsPlace) {
   base::Image in = test::grey(300, 300, 0.0F);
   in.channels[0].values[100 * 300 + 200] = 1.0F;
-  const Result result = degrade(in, plain(), {});
+  const Result result = degrade(in, linear_camera(), {});
   const auto& viewed = result.viewed.channels[0].values;
   const auto brightest = std::max_element(viewed.begin(), viewed.end()) - viewed.begin();
   EXPECT_EQ(brightest / 900, 301);  // middle pixel of resel row 100

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "base/image.h"
+#include "degrade/camera.h"
 #include "degrade/picture.h"
 
 namespace earthshine::test {
@@ -21,6 +22,20 @@ inline base::Image grey(int width, int height, float value) {
   image.add("Y").assign(image.pixel_count(), value);
   return image;
 }
+
+// Linear, fixed exposure: the signal is the radiance (pi tau / (4 N^2 E_white) = 1).
+inline degrade::CctvCamera linear_camera() {
+  degrade::CctvCamera camera;
+  camera.iris = degrade::IrisMode::Fixed;
+  camera.f_number = 1.0;
+  camera.transmittance = 1.0;
+  camera.white_lux = 3.14159265358979323846 / 4.0;
+  camera.gamma = 1.0;
+  camera.white_clip = 0.0;
+  return camera;
+}
+
+inline double slope(double x, double y) { return 0.3 + 0.5 * x + 0.2 * y; }
 
 // f(x, y) with x and y from 0 to 1 across the picture.
 template <class F>

@@ -15,14 +15,8 @@ using test::grey;
 
 // 1 cd/m^2 is white; linear and without limits.
 CctvCamera linear() {
-  CctvCamera camera;
-  camera.iris = IrisMode::Fixed;
-  camera.f_number = 1.0;
-  camera.transmittance = 1.0;
-  camera.white_lux = base::pi / 4.0;
-  camera.gamma = 1.0;
+  CctvCamera camera = test::linear_camera();
   camera.black_clamp = false;
-  camera.white_clip = 0.0;
   return camera;
 }
 

@@ -9,27 +9,15 @@
 namespace earthshine::degrade {
 namespace {
 
+using test::linear_camera;
 using test::painted;
-
-double slope(double x, double y) { return 0.3 + 0.5 * x + 0.2 * y; }
-
-// Linear, fixed exposure: the signal is the radiance.
-CctvCamera plain() {
-  CctvCamera camera;
-  camera.iris = IrisMode::Fixed;
-  camera.f_number = 1.0;
-  camera.transmittance = 1.0;
-  camera.white_lux = 3.14159265358979323846 / 4.0;
-  camera.gamma = 1.0;
-  camera.white_clip = 0.0;
-  return camera;
-}
+using test::slope;
 
 // A corner of the scene seen on a corner of the grid is that corner of the picture, as far as the
 // blur does not reach: noise is keyed by place, and what looks at the whole (meter, glare) is
 // fixed.
 TEST(WholeChain, CornerOfThePictureIsThePictureOfTheCorner) {
-  CctvCamera camera = plain();
+  CctvCamera camera = linear_camera();
   camera.blur_h = camera.blur_v = 0.35;
   camera.noise = NoiseMode::Photon;
   camera.lag = 0.3;
