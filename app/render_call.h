@@ -38,8 +38,19 @@ struct RenderCall {
 
 // --crop, --only-pixel, --time-limit.
 void add_window_options(CLI::App& parser, RenderCall& call);
-// --indirect and what belongs to its ways.
-void add_indirect_options(CLI::App& parser, RenderCall& call);
+// --camera, --size, --aov, --per-light, --indirect and what belongs to its ways: what a picture's
+// cost depends on.
+void add_picture_options(CLI::App& parser, RenderCall& call);
+// Throws base::Error (Input) for a layer that is not known.
+void check_aovs(const RenderCall& call);
+
+// Names, lists of names with commas between, or "all"; the first of the scene if there are none.
+[[nodiscard]] std::vector<const scenes::Camera*> wanted_cameras(
+    const std::vector<std::string>& texts, const scenes::Scene& scene);
+
+// What the call asks of the scene, which decides with it about the effects.
+[[nodiscard]] scenes::Asked asked_of(const RenderCall& call,
+                                     std::vector<const scenes::Camera*> cameras);
 
 // The light of the scene, for all of its cameras.
 struct Solved {
