@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // earthshine plan: which effects will run and why, how many rays and how much memory that is.
-// Traces nothing but a few rows of form factors, for the memory.
+// Traces a few rows of form factors for the memory, and a small run of the whole for the seconds.
 #include <fmt/format.h>
 
 #include <bit>
@@ -51,9 +51,8 @@ Json images_of(const scenes::Scene& scene, const RenderCall& call, const scenes:
 
 // Of the solution alone, and of each camera's picture of its own size, the solution included.
 void add_memory(Json& report, const LoadedScene& loaded, const RenderCall& call,
-                const Common& common, const scenes::Asked& asked) {
+                const Common& common, const scenes::Asked& asked, const scenes::RayQuery& query) {
   const radiosity::SolveOptions solver = solve_options(loaded.scene, common);
-  const scenes::RayQuery query(loaded.scene);
   studies::MemoryCase sizes =
       studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
   if (!loaded.effects.solution) {
@@ -68,6 +67,23 @@ void add_memory(Json& report, const LoadedScene& loaded, const RenderCall& call,
                          picture_options(call, common, loaded, *asked.cameras[k]));
     report["images"][k]["memory"] = memory_json(studies::memory_needed(with_picture));
   }
+}
+
+void add_seconds(Json& report, const LoadedScene& loaded, const RenderCall& call,
+                 const Common& common, const scenes::Asked& asked, const scenes::RayQuery& query) {
+  const Expectation expected = expect(loaded, call, common, asked, query);
+  add_expectation(report["effects"], expected);
+  const studies::Bill& bill = expected.pilot.bill;
+  double pictures = 0.0;
+  for (std::size_t k = 0; k < bill.pictures.size(); ++k) {
+    report["images"][k]["rays"] = bill.pictures[k].rays.total();
+    report["images"][k]["seconds"] = bill.pictures[k].seconds;
+    pictures += bill.pictures[k].seconds;
+  }
+  report["expected"] = {{"seconds", studies::total_seconds(bill)},
+                        {"solve_seconds", studies::total_seconds(bill) - pictures},
+                        {"patches", bill.solve.patches},
+                        {"pilot_seconds", expected.pilot.seconds}};
 }
 
 Json report_of(const RenderCall& call, const Common& common) {
@@ -97,7 +113,9 @@ Json report_of(const RenderCall& call, const Common& common) {
   report["right_hand_sides"] = 3 * loaded.groups.count();
   report["images"] = images_of(loaded.scene, call, asked,
                                solves ? static_cast<std::uint64_t>(knobs.gather_rays) : 0);
-  add_memory(report, loaded, call, common, asked);
+  const scenes::RayQuery query(loaded.scene);
+  add_memory(report, loaded, call, common, asked, query);
+  add_seconds(report, loaded, call, common, asked, query);
   return report;
 }
 
@@ -118,12 +136,16 @@ std::string text_of(const Json& report) {
                       quality["solver_tolerance"].get<double>());
   text += std::string("memory of the solution: ") + (refines ? "at most " : "") +
           memory_text(report["memory"]) + "\n";
+  text += fmt::format("expected on this machine: {}, of them {} for the solution of {} patches\n",
+                      duration(report["expected"]["seconds"].get<double>()),
+                      duration(report["expected"]["solve_seconds"].get<double>()),
+                      report["expected"]["patches"].get<std::size_t>());
   for (const Json& image : report["images"]) {
-    text += fmt::format("camera {}: {} x {} pixels, {} gather rays, {:.0f} MiB in all\n",
-                        image["camera"].get<std::string>(), image["resolution"][0].get<int>(),
-                        image["resolution"][1].get<int>(),
-                        short_count(image["gather_rays"].get<double>()),
-                        image["memory"]["total_mib"].get<double>());
+    text += fmt::format(
+        "camera {}: {} x {} pixels, {} gather rays, {}, {:.0f} MiB in all\n",
+        image["camera"].get<std::string>(), image["resolution"][0].get<int>(),
+        image["resolution"][1].get<int>(), short_count(image["gather_rays"].get<double>()),
+        duration(image["seconds"].get<double>()), image["memory"]["total_mib"].get<double>());
     const auto stages = image["cctv_stages"].get<std::vector<std::string>>();
     if (!stages.empty()) text += fmt::format("  cctv: {}\n", fmt::join(stages, ", "));
   }

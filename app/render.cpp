@@ -9,6 +9,7 @@
 
 #include "app/cctv.h"
 #include "app/console.h"
+#include "app/effect_table.h"
 #include "app/interrupt.h"
 #include "app/memory.h"
 #include "app/provenance.h"
@@ -17,6 +18,7 @@
 #include "app/solution.h"
 #include "app/study.h"
 #include "base/error.h"
+#include "base/output_file.h"
 #include "base/png_file.h"
 #include "raytrace/camera_check.h"
 
@@ -38,6 +40,7 @@ void check_call(const RenderCall& call) {
   check_ending(call.png, "--png", ".png");
   check_ending(call.cctv, "--cctv", ".png");
   check_ending(call.range, "--range", ".exr");
+  check_ending(call.report, "--report", ".json");
   check_over(call);
   const bool range_alone = !call.range.empty() && call.png.empty() && call.cctv.empty();
   if (call.output.empty() && !call.only_pixel && !call.over.asked() && !range_alone) {
@@ -105,6 +108,7 @@ std::vector<Wanted> wanted_pictures(const RenderCall& call, const scenes::Scene&
                                    picture.files.range});
     wanted.push_back(std::move(picture));
   }
+  outputs.push_back(call.report);
   check_outputs(outputs, {scene.path.string(), call.solution, call.over.photo});
   return wanted;
 }
@@ -195,9 +199,14 @@ void run(RenderCall call, const Common& common) {
     check_memory(loaded, query, solve_options(loaded.scene, common), &options,
                  call.solution.empty());
   }
+  std::optional<Expectation> expected;
+  if (!call.report.empty()) {
+    expected = times.measure("pilot", [&] { return expect(loaded, call, common, asked, query); });
+  }
   const Solved light = find_light(call, common, loaded, query, times);
   Studio studio{call, common, loaded, query, light};
   Json reports = Json::array();
+  std::vector<Picture> taken;
   bool whole = true;
   {
     const Interrupt interrupt;
@@ -210,8 +219,13 @@ void run(RenderCall call, const Common& common) {
       times.add({{"pictures", picture.report["seconds"]["render"].get<double>()}});
       whole = picture.whole;
       if (!call.range.empty()) picture.report["range"] = ranges[k]["range"];
-      reports.push_back(std::move(picture.report));
+      reports.push_back(picture.report);
+      taken.push_back(std::move(picture));
     }
+  }
+  if (expected) {
+    base::write_text(call.report, dump(report_json(loaded, call, asked, *expected,
+                                                   light.solution.report, taken, times)));
   }
   if (call.json) print(dump(reports.size() == 1 ? reports.front() : reports));
   if (whole) return;
@@ -234,6 +248,8 @@ Command add_render(CLI::App& program) {
   file_option("--cctv", call->cctv, "Also the picture on the camera's CCTV monitor (PNG)");
   file_option("--range", call->range,
               "Also, or alone, what the camera's range sensor reports (OpenEXR)");
+  file_option("--report", call->report,
+              "Also the plan's table with what each effect really took, as JSON");
   add_over_options(*parser, call->over);
   add_window_options(*parser, *call);
   add_solution_option(*parser, call->solution);

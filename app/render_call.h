@@ -16,7 +16,7 @@ namespace earthshine::app {
 
 struct RenderCall {
   SceneInput scene;
-  std::string output, png, cctv, range, solution;
+  std::string output, png, cctv, range, solution, report;
   std::vector<std::string> cameras;  // empty: the scene's first
   std::optional<Size> size;
   std::optional<raytrace::Window> crop;  // one pixel with only_pixel
@@ -83,6 +83,8 @@ struct PictureFiles {
 struct Picture {
   Json report;
   bool whole = true;
+  raytrace::RenderReport rendered;
+  StageTimes times;  // of the whole call so far and of this picture
 };
 [[nodiscard]] Picture take_picture(const Studio& studio, const scenes::Camera& camera,
                                    const PictureFiles& files, StageTimes times);

@@ -132,7 +132,7 @@ class Rows {
       if (groups_.lamp[k] != no_group) ++lit;
     }
     const std::string_view type = type_of_kind[kind];
-    row(std::string(effect_of(static_cast<LampKind>(kind))), e_.lamp_kind[kind],
+    row(std::string(effect_of(kind_of(static_cast<LampKind>(kind)))), e_.lamp_kind[kind],
         all == 0 ? fmt::format("the scene has no [[light]] with type = \"{}\"", type)
                  : fmt::format("{} of {} with type = \"{}\" are lit", lit, all, type));
   }
@@ -183,9 +183,10 @@ class Rows {
 
 }  // namespace
 
-std::string_view effect_of(LampKind kind) {
-  constexpr std::array<std::string_view, lamp_kinds> names = {
-      "point lamps", "spot lamps", "rectangle lamps", "disk lamps", "measured lamps"};
+std::string_view effect_of(LightKind kind) {
+  constexpr std::array<std::string_view, light_kinds> names = {
+      "sun",        "earth",          "point lamps",      "spot lamps", "rectangle lamps",
+      "disk lamps", "measured lamps", "emitting surfaces"};
   return names[static_cast<std::size_t>(kind)];
 }
 

@@ -29,9 +29,23 @@ struct Asked {
   std::vector<std::string> layers;
 };
 
-inline constexpr std::size_t lamp_kinds = 5;  // LampKind
-// As a row of the plan names it: "point lamps".
-[[nodiscard]] std::string_view effect_of(LampKind kind);
+// What shadow rays are aimed at; each kind of lamp is one of its own, in LampKind's order.
+enum class LightKind {
+  Sun,
+  Earth,
+  PointLamp,
+  SpotLamp,
+  RectangleLamp,
+  DiskLamp,
+  MeasuredLamp,
+  Emitter
+};
+inline constexpr std::size_t light_kinds = 8, lamp_kinds = 5;
+[[nodiscard]] constexpr LightKind kind_of(LampKind kind) {
+  return static_cast<LightKind>(static_cast<int>(LightKind::PointLamp) + static_cast<int>(kind));
+}
+// Its row of the plan: "point lamps".
+[[nodiscard]] std::string_view effect_of(LightKind kind);
 
 struct Effects {
   bool interreflection = false;
