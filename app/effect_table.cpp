@@ -36,10 +36,25 @@ void add_cctv_rows(Json& rows, const LoadedScene& loaded, const RenderCall& call
 
 }  // namespace
 
-Json effect_rows(const LoadedScene& loaded, const RenderCall& call, const scenes::Asked& asked) {
+Json effect_rows(const LoadedScene& loaded, const RenderCall& call, const scenes::Asked& asked,
+                 const std::vector<scenes::Idle>& idle) {
   Json rows = Json::array();
   for (const auto& row : scenes::describe_effects(loaded.scene, loaded.groups, asked)) {
     rows.push_back({{"effect", row.effect}, {"runs", row.runs}, {"why", row.reason}});
+  }
+  for (const scenes::Idle& off : idle) {
+    const auto row = std::find_if(rows.begin(), rows.end(),
+                                  [&](const Json& r) { return r["effect"] == off.effect; });
+    // Other lamps of the kind may be on.
+    const auto kinds = scenes::lamp_kinds;
+    bool still = false;
+    for (std::size_t kind = 0; kind < kinds; ++kind) {
+      const auto light = scenes::kind_of(static_cast<scenes::LampKind>(kind));
+      still |= loaded.effects.lamp_kind[kind] && scenes::effect_of(light) == off.effect;
+    }
+    (*row)["runs"] = still;
+    (*row)["why"] = still ? (*row)["why"].get<std::string>() + "; " + off.why : off.why;
+    (*row)["skipped_error"] = off.error;
   }
   add_cctv_rows(rows, loaded, call, asked);
   return rows;
@@ -133,8 +148,9 @@ void add_expectation(Json& rows, const Expectation& expected) {
 }
 
 Json report_json(const LoadedScene& loaded, const RenderCall& call, const scenes::Asked& asked,
-                 const Expectation& expected, const radiosity::SolveReport& solved,
-                 const std::vector<Picture>& pictures, const StageTimes& times) {
+                 const std::vector<scenes::Idle>& idle, const Expectation& expected,
+                 const radiosity::SolveReport& solved, const std::vector<Picture>& pictures,
+                 const StageTimes& times) {
   studies::Bill bill;
   bill.solve = solved;
   studies::EffectCost cctv{"cctv"};
@@ -146,7 +162,7 @@ Json report_json(const LoadedScene& loaded, const RenderCall& call, const scenes
   }
   std::vector<studies::EffectCost> taken = studies::effect_costs(bill, loaded.effects);
   taken.push_back(cctv);
-  Json rows = effect_rows(loaded, call, asked);
+  Json rows = effect_rows(loaded, call, asked, idle);
   rows.push_back(camera_row());
   for (Json& row : rows) {
     row["expected"] = expectation_json(expected, row);

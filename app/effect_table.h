@@ -12,9 +12,10 @@
 
 namespace earthshine::app {
 
-// {"effect", "runs", "why"} per effect, the stages of the CCTV cameras among them as "cctv: glare".
+// {"effect", "runs", "why", "skipped_error"} per effect (the last of those that cannot matter), the
+// stages of the CCTV cameras among them as "cctv: glare".
 [[nodiscard]] Json effect_rows(const LoadedScene& loaded, const RenderCall& call,
-                               const scenes::Asked& asked);
+                               const scenes::Asked& asked, const std::vector<scenes::Idle>& idle);
 
 // What each effect is expected to take.
 struct Expectation {
@@ -33,8 +34,8 @@ void add_expectation(Json& rows, const Expectation& expected);
 
 // The table once more with what each effect really took, in `taken` beside `expected`.
 [[nodiscard]] Json report_json(const LoadedScene& loaded, const RenderCall& call,
-                               const scenes::Asked& asked, const Expectation& expected,
-                               const radiosity::SolveReport& solved,
+                               const scenes::Asked& asked, const std::vector<scenes::Idle>& idle,
+                               const Expectation& expected, const radiosity::SolveReport& solved,
                                const std::vector<Picture>& pictures, const StageTimes& times);
 
 // As columns; cells that a row has no value for stay empty.

@@ -10,6 +10,7 @@
 #include "app/over.h"
 #include "radiosity/solution.h"
 #include "raytrace/render.h"
+#include "scenes/idle.h"
 #include "scenes/ray_query.h"
 
 namespace earthshine::app {
@@ -27,6 +28,7 @@ struct RenderCall {
   std::string distributed_over;  // [[area]] of the scene; empty: none
   std::vector<std::string> aovs;
   bool per_light = false, timings = false, json = false;
+  bool all_effects = false;  // also those that cannot matter
   OverCall over;
   std::optional<base::Picture8> photo;  // of --over, once it is read
 
@@ -47,6 +49,11 @@ void check_aovs(const RenderCall& call);
 // Names, lists of names with commas between, or "all"; the first of the scene if there are none.
 [[nodiscard]] std::vector<const scenes::Camera*> wanted_cameras(
     const std::vector<std::string>& texts, const scenes::Scene& scene);
+
+// Decides about the effects for the call; those that cannot matter are switched off and returned,
+// unless the call wants all of them, paths as a reference, or a solution that is there already.
+[[nodiscard]] std::vector<scenes::Idle> decide_effects(LoadedScene& loaded, const RenderCall& call,
+                                                       const scenes::Asked& asked);
 
 // What the call asks of the scene, which decides with it about the effects.
 [[nodiscard]] scenes::Asked asked_of(const RenderCall& call,

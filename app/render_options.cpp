@@ -150,6 +150,8 @@ void add_picture_options(CLI::App& parser, RenderCall& call) {
           "--aov", [&call](const std::string& text) { call.aovs = split_at_commas(text); },
           fmt::format("Further layers, of {}", fmt::join(raytrace::aov_names(), ",")))
       ->type_name("LIST");
+  parser.add_flag("--all-effects", call.all_effects,
+                  "Also those that cannot matter (plan says which they are)");
   parser.add_flag("--per-light", call.per_light,
                   "One layer per light group: light_<group>.R, .G, .B");
 }
@@ -161,6 +163,17 @@ void check_aovs(const RenderCall& call) {
     throw base::Error(base::Blame::Input, "--aov", "there is no layer \"" + name + "\"",
                       fmt::format("the layers are {}", fmt::join(known, ", ")));
   }
+}
+
+std::vector<scenes::Idle> decide_effects(LoadedScene& loaded, const RenderCall& call,
+                                         const scenes::Asked& asked) {
+  loaded.effects = scenes::find_effects(loaded.scene, loaded.groups, asked);
+  const bool reference = call.indirect == raytrace::Indirect::Paths;
+  if (call.all_effects || reference || !call.solution.empty()) return {};
+  constexpr double default_error = 0.02;
+  return scenes::switch_off_idle(loaded.scene, asked,
+                                 loaded.scene.quality.error.value_or(default_error), loaded.groups,
+                                 loaded.effects);
 }
 
 scenes::Asked asked_of(const RenderCall& call, std::vector<const scenes::Camera*> cameras) {

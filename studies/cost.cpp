@@ -103,6 +103,12 @@ class PictureDrawer {
     const double scale = std::min(1.0, std::sqrt(pixels / wanted));
     options.columns = std::max(1, static_cast<int>(std::lround(scale * options.columns)));
     options.rows = std::max(1, static_cast<int>(std::lround(scale * options.rows)));
+    // Samples and rays gathered again go to edges, whose share of the pixels grows as the picture
+    // shrinks, as 1 / noise^2: with the noise so much larger a pixel costs what it does in the
+    // whole.
+    const double coarser = 1.0 / std::sqrt(scale);
+    options.shared.noise *= coarser;
+    options.shared.gather_noise *= coarser;
     options.crop = {};
     options.time_limit_s = 0.0;
     if (options.indirect == raytrace::Indirect::Paths) {
@@ -145,18 +151,7 @@ raytrace::RenderReport expect_picture(const PictureDrawer& drawer, const scenes:
                                                  : double(options.columns) * options.rows;
   const double drawn = static_cast<double>(frame.image.pixel_count());
   double samples = report.camera_samples;
-  if (options.indirect == raytrace::Indirect::Paths) {
-    samples = options.gather_rays;
-  } else if (options.shared.on && drawn < pixels) {
-    // n = a + b / edge length, from two sizes.
-    const raytrace::Frame half = drawer.draw(camera, options, pilot_pixels / 4.0);
-    const double h0 = std::sqrt(static_cast<double>(half.image.pixel_count())),
-                 h1 = std::sqrt(drawn);
-    const double whole = std::sqrt(double(options.columns) * options.rows);
-    const double b = std::max(0.0, (half.report.camera_samples - samples) / (1.0 / h0 - 1.0 / h1));
-    samples =
-        std::max(double(options.shared.least_samples), samples - b * (1.0 / h1 - 1.0 / whole));
-  }
+  if (options.indirect == raytrace::Indirect::Paths) samples = options.gather_rays;
   const double more = pixels / drawn;
   const double per_sample = more * samples / std::max(1e-9, report.camera_samples);
   const double shading = std::max(0.0, report.seconds - report.gather_seconds);

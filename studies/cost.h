@@ -35,10 +35,10 @@ struct PilotCall {
 //   form factors  seconds per ray; linear solve and balance: seconds per entry and column
 //   picture       rays of each kind and seconds per pixel. Camera samples beyond the least are
 //   spent
-//                 on edges, whose share of the pixels falls with the picture's size; the part of
-//                 them that is not edges is told apart by a second, smaller picture.
-// Takes a few tenths of a second. Paths are as many as the call says: their rays are counted in a
-// small picture. pictures: with their wanted sizes.
+//                 on edges, whose share of the pixels falls with the picture's size; the small one
+//                 is drawn to as much more noise
+// Takes a few tenths of a second. Of paths a few per pixel are traced. pictures: of the wanted
+// size.
 struct Pilot {
   Bill bill;
   std::vector<base::Image> pictures;  // the small ones
