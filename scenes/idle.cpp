@@ -99,11 +99,12 @@ class IdleFinder {
       reach = lamp.radius_m;
     }
     if (!face.both_sides && along(face, lamp.position) + reach <= -slack()) return false;
-    if (lamp.kind == LampKind::Rectangle || lamp.kind == LampKind::Disk) {
-      return std::any_of(face.corner.begin(), face.corner.end(), [&](const Vec3& p) {
-        return glm::dot(lamp.axis, p - lamp.position) > -slack();
-      });
-    }
+    const bool half_space = lamp.kind == LampKind::Rectangle || lamp.kind == LampKind::Disk ||
+                            (lamp.kind == LampKind::Spot && lamp.field_deg <= 180.0);
+    const bool in_front = std::any_of(face.corner.begin(), face.corner.end(), [&](const Vec3& p) {
+      return glm::dot(lamp.axis, p - lamp.position) > -slack();
+    });
+    if (half_space && !in_front) return false;
     return lamp.kind != LampKind::Spot || meets_cone(lamp, face);
   }
 

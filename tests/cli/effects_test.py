@@ -42,6 +42,35 @@ IDLE = {
     "ambient 0": ("[ambient]\nradiance = 0\n", []),
 } | {f"a dark lamp of the {kind}": (lamp, []) for kind, lamp in DARK_LAMPS.items()}
 
+# A floor under the Sun alone: nothing is in front of anything.
+FLOOR = PLAIN.replace(PLAIN[PLAIN.index('[[object]]\nname = "ball"'):PLAIN.index("[[light]]")], "").replace(
+    PLAIN[PLAIN.index("[[light]]"):PLAIN.index("[sun]")], "")
+SPOT = DARK_LAMP.format("spot", "position = [0, 0, 1]\naim = [0, 0, {}]\nintensity = 100\nbeam_deg = 20\nfield_deg = {}")
+FLAT = DARK_LAMP.format("rectangle", "center = [0, 0, 1]\nedge_u = [1, 0, 0]\nedge_v = [0, {}, 0]\nexitance = 9")
+BELOW = EARTH.replace("[0, -0.8, 0.6]", "[0, 0, -1]")
+FACING = "diffuse = 0.5\n[[object]]\nname = \"lid\"\nshape = \"quad\"\ncorners = [[-1, -1, 3], [-1, 1, 3], [1, 1, 3], [1, -1, 3]]\nmaterial = \"lid\"\n"
+LID = '[[material]]\nname = "lid"\n' + FACING
+# More than the floor has, the row, whether it is found not to matter, and what it says.
+MATTERS = [
+    ("", [], "interreflection", True, "no surface is in front of another"),
+    (LID, [], "interreflection", False, ""),
+    (LID, ["--set", "material.lid.diffuse=1e-6", "--set", "material.floor.diffuse=1e-5"], "interreflection", True, "wanted error is 0.02"),
+    (LID, ["--set", "material.lid.diffuse=1e-6", "--set", "material.floor.diffuse=3e-5"], "interreflection", False, ""),
+    (LID, ["--set", "material.lid.diffuse=1e-6", "--set", "material.floor.diffuse=3e-5", "--error", "0.1"], "interreflection", True, "error is 0.1"),
+    (BELOW.format(60, 100), [], "earth", True, "below the horizon"),
+    (BELOW.format(60, 100) + LID, [], "earth", False, ""),
+    (BELOW.format(60, 100), ["--set", "material.floor.two_sided=true"], "earth", False, ""),
+    (EARTH.format(60, 100), [], "earth", False, ""),
+    ("", ["--set", "sun.direction=[0.1, 0, -1]"], "sun", True, "below the horizon"),
+    ("", ["--set", "sun.direction=[1, 0, -0.001]"], "sun", False, ""),  # half its disc is up
+    (SPOT.format(5, 40), [], "spot lamps", True, "in reach of lamp \"dark\""),
+    (SPOT.format(5, 179), [], "spot lamps", True, "in reach"),
+    (SPOT.format(0, 40), [], "spot lamps", False, ""),
+    (FLAT.format(1), ["--camera", "A", "--set", "camera.A.position=[3, -3, 0.5]"], "rectangle lamps", True, "in reach"),
+    (FLAT.format(1), ["--camera", "A"], "rectangle lamps", False, ""),  # the camera looks down on it
+    (FLAT.format(-1), ["--camera", "A", "--set", "camera.A.position=[3, -3, 0.5]"], "rectangle lamps", False, ""),
+]
+
 
 def with_more(scene, more):
     """After the head, before the scene's own tables."""
@@ -157,6 +186,37 @@ class Effects(program.Case):
             ratio = rows[name]["expected"]["rays"] / rows[name]["taken"]["rays"]
             self.assertTrue(0.5 < ratio < 2, (name, ratio))
         self.says(self.refused("render", "scene.toml", "-o", "a.exr", "--report", "r.txt"), "--report", ".json")
+
+    def test_what_cannot_matter_is_found_and_nothing_else(self):
+        for more, call, effect, found, why in MATTERS:
+            with self.subTest(effect=effect, more=more, call=call):
+                self.write("scene.toml", with_more(FLOOR, more))
+                rows = {row["effect"]: row for row in self.json("plan", "scene.toml", *call)["effects"]}
+                self.assertIs(rows[effect]["runs"], not found, rows[effect]["why"])
+                self.assertEqual("cannot matter" in rows[effect]["why"], found)
+                self.assertIn(why, rows[effect]["why"])
+                self.assertEqual("skipped_error" in rows[effect], found)
+                if found:
+                    self.assertLessEqual(rows[effect]["skipped_error"], 1e-3 * 0.1 * 1.0001)
+                    rows = {r["effect"]: r for r in self.json("plan", "scene.toml", "--all-effects", *call)["effects"]}
+                    self.assertTrue(rows[effect]["runs"])
+
+    def test_what_is_skipped_was_not_in_the_picture(self):
+        away = ["--set", "camera.A.position=[3, -3, 0.5]"]
+        for more, sets in [("", []), (BELOW.format(60, 100), []), (SPOT.format(5, 40), []), (FLAT.format(1), away)]:
+            with self.subTest(more=more):
+                skipped, cost = self.render(with_more(FLOOR, more), *sets)
+                whole, price = self.render(with_more(FLOOR, more), "--all-effects", *sets)
+                for channel in "RGB":
+                    a, b = skipped[3][channel], whole[3][channel]
+                    self.assertAlmostEqual(sum(a) / sum(b), 1, delta=0.01)
+                    lit = max(b)
+                    self.assertLess(max(abs(x - y) for x, y in zip(a, b)), 0.25 * lit)  # edges alone
+                rays, paid = cost["rays"], price["rays"]
+                self.assertEqual((rays["form_factors"], rays["gather"]), (0, 0))
+                self.assertGreater(paid["form_factors"], 0)
+                for kind in ("earth", "spot lamps", "rectangle lamps"):
+                    self.assertEqual((rays["shadow_by"][kind], rays["direct_by"][kind]), (0, 0))
 
 
 if __name__ == "__main__":
