@@ -7,26 +7,16 @@
 #include "base/error.h"
 #include "base/exr_file.h"
 #include "base/png_file.h"
-#include "degrade/camera_file.h"
 #include "degrade/presets.h"
+#include "degrade/read_setting.h"
 
 namespace earthshine::app {
 namespace {
 
-// An enumerator as its word.
-template <class Value>
-Json plain(const Value& value) {
-  if constexpr (std::is_enum_v<Value>) {
-    return degrade::word_of(value);
-  } else {
-    return value;
-  }
-}
-
 Json monitor_json(const degrade::Monitor& monitor) {
   Json settings;
   degrade::visit_monitor_fields(monitor, [&](const char* name, const auto& value, auto&&...) {
-    settings[name] = plain(value);
+    settings[name] = setting_json(value);
   });
   return settings;
 }
@@ -36,7 +26,7 @@ Json monitor_json(const degrade::Monitor& monitor) {
 Json settings_json(const degrade::CctvCamera& camera) {
   Json settings;
   degrade::visit_camera_fields(camera, [&](const char* name, const auto& value, auto&&...) {
-    if (degrade::is_used(camera, name)) settings[name] = plain(value);
+    if (degrade::is_used(camera, name)) settings[name] = setting_json(value);
   });
   return settings;
 }
@@ -53,24 +43,27 @@ CctvSetup cctv_of_camera(const scenes::Scene& scene, const scenes::Camera& camer
     }
   }
   setup.chain.camera = degrade::resolve_camera(scene, setup.name);
-  setup.chain.monitor = degrade::resolve_monitor(scene);
+  setup.chain.monitor = degrade::resolve_monitor(scene, setup.name);
   setup.chain.options.seed = common.seed;
   setup.chain.options.fov_deg = camera.fov_deg;
   setup.chain.options.view = static_cast<std::uint64_t>(&camera - scene.cameras.data());
   return setup;
 }
 
-CctvSetup cctv_of_preset(const std::string& name, const Common& common) {
-  const degrade::Preset* preset = degrade::find_preset(name);
-  if (preset == nullptr) {
-    std::vector<std::string> names;
-    for (const degrade::Preset& known : degrade::presets()) names.emplace_back(known.name);
-    throw base::Error(base::Blame::Input, "--preset", "there is no preset \"" + name + "\"",
-                      fmt::format("the presets are {}", fmt::join(names, ", ")));
-  }
-  CctvSetup setup{name, {preset->camera, {}, {}}};
+CctvSetup cctv_of(const degrade::ResolvedCamera& camera, const Common& common) {
+  CctvSetup setup{camera.name, {camera.camera, camera.monitor, {}}};
   setup.chain.options.seed = common.seed;
   return setup;
+}
+
+CctvSetup cctv_of_preset(const std::string& name, const Common& common) {
+  if (const degrade::Preset* preset = degrade::find_preset(name)) {
+    return cctv_of(degrade::resolve(*preset), common);
+  }
+  const std::vector<std::string> names = degrade::preset_names();
+  throw base::Error(base::Blame::Input, "--preset", "there is no preset \"" + name + "\"",
+                    fmt::format("the presets are {}", fmt::join(names, ", ")),
+                    degrade::did_you_mean(name, names));
 }
 
 degrade::Result run_chain(const CctvSetup& setup, const base::Image& radiance) {
@@ -131,6 +124,7 @@ Json cctv_json(const CctvSetup& setup, const degrade::Result& result) {
           {"metered_cd_m2", report.exposure.metered},
           {"underexposed", report.exposure.underexposed},
           {"blown", report.exposure.blown},
+          {"iris_moving", report.exposure.moving},
           {"noise", {{"a", report.noise.at_black()}, {"b", report.noise.b}, {"c", report.noise.c}}},
           {"saturated_share", report.levels.saturated_share},
           {"crushed_share", report.levels.crushed_share},
@@ -151,6 +145,7 @@ std::string cctv_summary(const CctvSetup& setup, const degrade::Result& result) 
       fmt::format("{}: f/{:.3g}, gain {:.3g}, {:.1f} % at white, {:.1f} % lost in black",
                   setup.name, report.exposure.f_number, report.exposure.gain,
                   100.0 * report.levels.saturated_share, 100.0 * report.levels.crushed_share);
+  if (report.exposure.moving) text += "; its iris is on the way";
   if (report.exposure.underexposed) text += "; too dark for it, wide open";
   if (report.exposure.blown) text += "; too bright for it, closed";
   if (report.negative_pixels > 0) {

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <string>
+#include <type_traits>
 
 #include "app/command.h"
 #include "base/image.h"
+#include "degrade/camera_file.h"
 #include "degrade/chain.h"
 #include "degrade/twin.h"
 #include "scenes/scene.h"
@@ -24,11 +26,21 @@ struct CctvSetup {
 // `quiet`. The scene's [monitor]; each camera of a scene has noise of its own.
 [[nodiscard]] CctvSetup cctv_of_camera(const scenes::Scene& scene, const scenes::Camera& camera,
                                        const Common& common);
-// A camera that ships, with the default monitor. Throws base::Error (Input) for an unknown name.
+[[nodiscard]] CctvSetup cctv_of(const degrade::ResolvedCamera& camera, const Common& common);
+// A camera that ships, with its monitor. Throws base::Error (Input) for an unknown name.
 [[nodiscard]] CctvSetup cctv_of_preset(const std::string& name, const Common& common);
 
 [[nodiscard]] degrade::Result run_chain(const CctvSetup& setup, const base::Image& radiance);
 
+// The value of a setting; an enumerator as its word.
+template <class Value>
+[[nodiscard]] Json setting_json(const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    return degrade::word_of(value);
+  } else {
+    return value;
+  }
+}
 // Every setting in use.
 [[nodiscard]] Json settings_json(const degrade::CctvCamera& camera);
 

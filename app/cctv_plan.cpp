@@ -71,7 +71,7 @@ Json plan_cctv(const scenes::Scene& scene, const scenes::Camera& camera, bool as
   if (camera.cctv.empty() && !asked) return rows;
   const std::string model = camera.cctv.empty() ? std::string(default_preset) : camera.cctv;
   const degrade::CctvCamera settings = degrade::resolve_camera(scene, model);
-  const degrade::Monitor monitor = degrade::resolve_monitor(scene);
+  const degrade::Monitor monitor = degrade::resolve_monitor(scene, model);
   const auto values = settings_of(settings, monitor);
   for (const degrade::StagePlan& planned : degrade::plan(settings, monitor)) {
     std::vector<std::string> why;

@@ -103,6 +103,25 @@ void add_whole_number(CLI::App& command, const std::string& flags, std::uint64_t
   command.add_option_function<std::string>(flags, read, help)->type_name("N");
 }
 
+void add_number(CLI::App& command, const std::string& flags, std::optional<double>& value,
+                double least, double most, const std::string& help) {
+  const auto read = [&value, least, most, flags](const std::string& text) {
+    double number = 0.0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, problem] = std::from_chars(text.data(), end, number);
+    if (problem != std::errc() || stop != end || !(number >= least && number <= most)) {
+      throw CLI::ValidationError(
+          flags, fmt::format("\"{}\" is not a number from {} to {}", text, least, most));
+    }
+    value = number;
+  };
+  command.add_option_function<std::string>(flags, read, help)->type_name("X");
+}
+
+CLI::Validator not_empty() {
+  return {[](const std::string& word) { return word.empty() ? "is an empty word" : ""; }, ""};
+}
+
 LoadedScene load(const SceneInput& input, bool quiet) {
   LoadedScene loaded;
   loaded.scene = scenes::read_scene(input.path, input.overrides);

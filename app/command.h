@@ -41,7 +41,9 @@ struct Command {
 [[nodiscard]] Command add_form_factors(CLI::App& program);
 [[nodiscard]] Command add_plan(CLI::App& program);
 [[nodiscard]] Command add_inspect(CLI::App& program);
-[[nodiscard]] Command add_degrade(CLI::App& program);
+// `degrade` itself, and `degrade certify`.
+[[nodiscard]] std::vector<Command> add_degrade(CLI::App& program);
+[[nodiscard]] Command add_certify(CLI::App& degrade);
 [[nodiscard]] Command add_fit_phong(CLI::App& program);
 // `study` itself, which runs nothing, and one command of it per study.
 [[nodiscard]] std::vector<Command> add_study(CLI::App& program);
@@ -70,6 +72,13 @@ void add_size_option(CLI::App& command, std::optional<Size>& size);
 // An option that takes such a number.
 void add_whole_number(CLI::App& command, const std::string& flags, std::uint64_t& value,
                       std::uint64_t least, std::uint64_t most, const std::string& help);
+
+// An option that takes a finite number within [least, most].
+void add_number(CLI::App& command, const std::string& flags, std::optional<double>& value,
+                double least, double most, const std::string& help);
+
+// Refuses an empty word, such as that of a variable that the shell does not know.
+[[nodiscard]] CLI::Validator not_empty();
 
 // A scene with what follows from it alone. Warnings go to standard error unless `quiet`.
 struct LoadedScene {

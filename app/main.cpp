@@ -3,6 +3,7 @@
 // 0 done, 1 the work failed, 2 the call or the scene is wrong.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <csignal>
 #include <exception>
 #include <new>
@@ -62,7 +63,10 @@ std::string unknown_word(const CLI::App& program) {
   }
   std::vector<std::string> known;
   for (const CLI::App* command : parser.get_subcommands({})) known.push_back(command->get_name());
-  if (known.empty()) return fmt::format("unexpected argument \"{}\"", word);
+  const std::vector<const CLI::Option*> options = parser.get_options();
+  const bool takes_files = std::any_of(options.begin(), options.end(),
+                                       [](const CLI::Option* o) { return o->get_positional(); });
+  if (known.empty() || takes_files) return fmt::format("unexpected argument \"{}\"", word);
   const std::string nearest = did_you_mean(word, known);
   const bool top = parser.get_parent() == nullptr;
   return fmt::format("unknown {} \"{}\"{} {}: {}", top ? "command" : parser.get_name(), word,
@@ -92,9 +96,11 @@ int run(int argc, char** argv) {
   program.get_formatter()->label("Subcommands", "Commands");
   Common common;
   std::uint64_t threads = 0;
-  std::vector<Command> commands = {
-      add_render(program),  add_solve(program),   add_form_factors(program), add_plan(program),
-      add_inspect(program), add_degrade(program), add_fit_phong(program)};
+  std::vector<Command> commands = {add_render(program), add_solve(program),
+                                   add_form_factors(program), add_plan(program),
+                                   add_inspect(program)};
+  for (Command& part : add_degrade(program)) commands.push_back(std::move(part));
+  commands.push_back(add_fit_phong(program));
   for (Command& part : add_study(program)) commands.push_back(std::move(part));
   add_common_options(program, common, threads);
   for (const Command& command : commands) add_common_options(*command.parser, common, threads);

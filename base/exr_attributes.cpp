@@ -11,7 +11,10 @@
 #include <ImfStringAttribute.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
+
+#include "base/error.h"
 
 namespace earthshine::base {
 namespace {
@@ -67,6 +70,32 @@ ExrHeader exr_attributes(const Imf::Header& header) {
     }
   }
   return result;
+}
+
+float white_luminance(const std::filesystem::path& path, const Imf::Header& header) {
+  if (!Imf::hasWhiteLuminance(header)) return 1.0F;
+  const float white = Imf::whiteLuminance(header);
+  if (std::isfinite(white) && white > 0.0F) return white;
+  throw Error(Blame::Input, path.string(), "has whiteLuminance = " + std::to_string(white),
+              "it is the luminance of (1, 1, 1) in cd/m^2 and must be positive");
+}
+
+Imath::Box2i picture_window(const Imf::Header& header) {
+  const Imath::Box2i& data = header.dataWindow();
+  const Imath::Box2i& display = header.displayWindow();
+  const bool overscan = !display.isEmpty() && data.min.x < display.min.x &&
+                        data.min.y < display.min.y && data.max.x > display.max.x &&
+                        data.max.y > display.max.y;
+  return overscan ? display : data;
+}
+
+void tell_crop(ExrHeader& header, const Imath::Box2i& window, const Imath::Box2i& display) {
+  if (window == display || display.isEmpty() || !display.intersects(window.min) ||
+      !display.intersects(window.max)) {
+    return;
+  }
+  header.whole = {display.max.x - display.min.x + 1, display.max.y - display.min.y + 1,
+                  window.min.x - display.min.x, window.min.y - display.min.y};
 }
 
 }  // namespace earthshine::base

@@ -206,14 +206,6 @@ void check_and_scale_colour(const std::filesystem::path& path, Image& image, flo
   }
 }
 
-float white_luminance(const std::filesystem::path& path, const Imf::Header& header) {
-  if (!Imf::hasWhiteLuminance(header)) return 1.0F;
-  const float white = Imf::whiteLuminance(header);
-  if (std::isfinite(white) && white > 0.0F) return white;
-  refuse_reading(path, "has whiteLuminance = " + std::to_string(white),
-                 "it is the luminance of (1, 1, 1) in cd/m^2 and must be positive");
-}
-
 }  // namespace
 
 ExrFile read_exr(const std::filesystem::path& path) {

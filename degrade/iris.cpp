@@ -107,8 +107,10 @@ Exposure expose(const CctvCamera& camera, double metered, std::optional<double> 
   // A relative margin, because an iris inside its range meets the target only to rounding.
   const bool too_dark = reached_lux < wanted_lux * (1.0 - 1e-9);
   exposure.gain = too_dark ? std::min(wanted_lux / reached_lux, most) : 1.0;
-  exposure.underexposed = reached_lux * exposure.gain < wanted_lux * (1.0 - 1e-9);
-  exposure.blown = reached_lux > wanted_lux * (1.0 + 1e-9);
+  exposure.moving = std::abs(exposure.f_number / goal - 1.0) > 0.01;
+  exposure.underexposed =
+      !exposure.moving && reached_lux * exposure.gain < wanted_lux * (1.0 - 1e-9);
+  exposure.blown = !exposure.moving && reached_lux > wanted_lux * (1.0 + 1e-9);
   return exposure;
 }
 

@@ -29,6 +29,7 @@ struct Exposure {
   double target = 1.0;        // signal that the metered value should have
   bool underexposed = false;  // wide open, gain at its most, and still too dark
   bool blown = false;         // closed, and still too bright
+  bool moving = false;        // on its way: more than 1 % from where it will stand
 };
 
 // N* = clamp(sqrt(pi tau M / (4 t E_white (1 + m)^2)), N_min, N_max), then gain = clamp(t E_white /

@@ -43,6 +43,10 @@ double reach(Spread spread, double width) {
 
 }  // namespace
 
+bool is_used(const Monitor& monitor, std::string_view field) {
+  return field != "spread_width" || monitor.spread != Spread::None;
+}
+
 Grid picture_grid(int width, int height, const Monitor& monitor) {
   const double aspect = static_cast<double>(width) / height;
   const auto rounded = [](double x, int most) {

@@ -49,6 +49,9 @@ void visit_monitor_fields(AnyMonitor& m, Visitor&& field) {
   field("reflectance", m.reflectance, Limits{0.0, 1.0}, "1", "of the screen");
 }
 
+// Whether a field does anything on this monitor.
+[[nodiscard]] bool is_used(const Monitor& monitor, std::string_view field);
+
 // The part of the screen that a picture of width x height takes: the whole height if it is no wider
 // than the screen (columns = rows * width / height), else the whole width. Resels stay square;
 // nothing is cropped.

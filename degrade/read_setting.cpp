@@ -21,6 +21,13 @@ std::string number(double value) {
   return text.str();
 }
 
+std::string as_written(const Setting& setting) {
+  if (const bool* const yes = std::get_if<bool>(&setting.value)) return *yes ? "true" : "false";
+  if (const double* const value = std::get_if<double>(&setting.value)) return number(*value);
+  if (const auto* const word = std::get_if<std::string>(&setting.value)) return in_quotes(*word);
+  return "a list";
+}
+
 const base::Location& place_of(const SettingTable& table, std::string_view key) {
   for (const Setting& setting : table.settings) {
     if (setting.key == key) return setting.where;

@@ -18,6 +18,9 @@ namespace earthshine::degrade {
 // As people write it: no trailing zeros, a point whatever the locale.
 [[nodiscard]] std::string number(double value);
 
+// The value of a setting, words in quotes.
+[[nodiscard]] std::string as_written(const scenes::Setting& setting);
+
 // The place of the key, or of the table when it has no such key.
 [[nodiscard]] const base::Location& place_of(const scenes::SettingTable& table,
                                              std::string_view key);
@@ -46,9 +49,10 @@ T value_of(const scenes::Setting& setting) {
   const char* const wanted = std::is_same_v<T, bool>     ? "true or false"
                              : std::is_same_v<T, double> ? "a number"
                                                          : "a word in quotes";
-  throw base::Error(base::Blame::Input, setting.where,
-                    in_quotes(setting.key) + " has a value of the wrong kind",
-                    std::string("it must be ") + wanted);
+  throw base::Error(
+      base::Blame::Input, setting.where,
+      in_quotes(setting.key) + " is " + as_written(setting) + ", a value of the wrong kind",
+      std::string("it must be ") + wanted);
 }
 
 void read_value(const scenes::Setting& setting, bool& field, Limits limits);

@@ -62,8 +62,11 @@ Picture lag(Picture p, const Passing& at) {
   if (charge.planes.empty()) charge = p;  // no noise, nothing moved
   if (charge.columns != p.columns || charge.rows != p.rows ||
       charge.planes.size() != p.planes.size()) {
-    throw base::Error(base::Blame::Input, "sequence",
-                      "a frame differs in shape from the one before",
+    const auto shape = [](const Picture& of) {
+      return std::to_string(of.columns) + " x " + std::to_string(of.rows) + " resels";
+    };
+    throw base::Error(base::Blame::Input, "frame " + std::to_string(at.setup.options.frame),
+                      "has " + shape(p) + ", the one before had " + shape(charge),
                       "all frames of a sequence have the same shape and colours");
   }
   p = after_lag(std::move(p), charge, lag_of(at));
@@ -79,7 +82,9 @@ Picture levels(Picture p, const Passing& at) {
 
 Picture saturate(Picture p, const Passing& at) {
   const double most = at.setup.camera.saturation;
-  at.report.lost_share += share_above(p, most) / static_cast<double>(at.fields);
+  // Of the signal before bloom, as all shares are.
+  const double left = 1.0 - (1.0 - at.setup.camera.bloom) * at.report.excess_share;
+  at.report.lost_share += left * share_above(p, most) / static_cast<double>(at.fields);
   return limit_above(std::move(p), most);
 }
 

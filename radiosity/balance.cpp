@@ -60,6 +60,7 @@ std::size_t fill_empty_columns(FormFactors& f, std::span<const double> area_m2) 
     ++patches;
     for (std::uint64_t e = f.row_start[j]; e < f.row_start[j + 1]; ++e) {
       const std::uint32_t i = f.column[e];
+      if (area_m2[i] <= 0.0) continue;
       const double hits = double(f.hits[e]) * area_m2[j] / area_m2[i];
       borrowed[i].emplace_back(static_cast<std::uint32_t>(j), static_cast<float>(hits));
     }

@@ -17,11 +17,12 @@ namespace {
 // What lands is known twice: from the patches' samples, and as the flux less what was found to
 // escape. The mean of the two, weighted by inverse variance, sets the scale: in a closed room
 // nothing escapes and the flux rules exactly; on a small plate under an open sky the samples do.
-double landing_scale(const Sampled& sampled, const Patches& patches, const SourceFlux& flux) {
+double landing_scale(const Sampled& sampled, const std::vector<double>& area_m2,
+                     const SourceFlux& flux) {
   double landed = 0.0, landed_variance = 0.0;
-  for (std::size_t i = 0; i < patches.count(); ++i) {
-    landed += patches.area_m2[i] * base::luminance(sampled.illuminance_lx[i]);
-    landed_variance += patches.area_m2[i] * patches.area_m2[i] * sampled.variance[i];
+  for (std::size_t i = 0; i < area_m2.size(); ++i) {
+    landed += area_m2[i] * base::luminance(sampled.illuminance_lx[i]);
+    landed_variance += area_m2[i] * area_m2[i] * sampled.variance[i];
   }
   const double all = base::luminance(flux.emitted_lm);
   const double expected = all * (1.0 - flux.escaped_share - flux.black_share);
@@ -74,22 +75,28 @@ void find_shares(const scenes::Scene& scene, const scenes::RayQuery& query, cons
 class DirectStage {
  public:
   DirectStage(const scenes::Scene& scene, const scenes::RayQuery& query, const Patches& patches,
-              const DirectOptions& options, DirectLight& light)
-      : scene_(scene), query_(query), patches_(patches), options_(options), light_(light) {}
+              const OpenParts& open, const DirectOptions& options, DirectLight& light)
+      : scene_(scene),
+        query_(query),
+        patches_(patches),
+        open_(open),
+        area_m2_(open_areas(open, patches.area_m2)),
+        options_(options),
+        light_(light) {}
 
   // A source whose flux is not known (the sky): taken as sampled.
   void add(const Source& source) {
     const Sampled sampled =
-        sample_patches(query_, patches_, source, options_.seed, light_.shadow_rays);
+        sample_patches(query_, patches_, open_, source, options_.seed, light_.shadow_rays);
     store(sampled.illuminance_lx, source.group, 1.0);
   }
 
   void add(const Source& source, SourceFlux flux, const Emit& emit) {
     const Sampled sampled =
-        sample_patches(query_, patches_, source, options_.seed, light_.shadow_rays);
+        sample_patches(query_, patches_, open_, source, options_.seed, light_.shadow_rays);
     find_shares(scene_, query_, emit, source.key, options_.flux_rays, options_.seed, flux);
     light_.shadow_rays += static_cast<std::uint64_t>(options_.flux_rays);
-    flux.scale = landing_scale(sampled, patches_, flux);
+    flux.scale = landing_scale(sampled, area_m2_, flux);
     store(sampled.illuminance_lx, source.group, flux.scale);
     light_.sources.push_back(std::move(flux));
   }
@@ -107,6 +114,8 @@ class DirectStage {
   const scenes::Scene& scene_;
   const scenes::RayQuery& query_;
   const Patches& patches_;
+  const OpenParts& open_;
+  std::vector<double> area_m2_;
   const DirectOptions& options_;
   DirectLight& light_;
 };
@@ -120,7 +129,7 @@ DirectLight direct_light(const scenes::Scene& scene, const scenes::LightGroups& 
   DirectLight light;
   light.columns = 3 * groups.count();
   light.illuminance_lx.assign(patches.count() * light.columns, 0.0);
-  DirectStage stage(scene, query, patches, options, light);
+  DirectStage stage(scene, query, patches, factors.open, options, light);
   if (effects.earth_by_gather) stage.store(factors.sky_illuminance, groups.earth, 1.0);
   for (LightSource& light_source : find_sources(scene, groups, effects, options.points_per_patch)) {
     const auto start = std::chrono::steady_clock::now();

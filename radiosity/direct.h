@@ -48,7 +48,8 @@ struct DirectOptions {
   std::uint64_t seed = 1;
 };
 
-// factors.sky_illuminance is taken for the Earth where it is wide (Effects::earth_by_gather).
+// Per patch the mean over factors.open, what no body covers. factors.sky_illuminance is taken for
+// the Earth where it is wide (Effects::earth_by_gather).
 [[nodiscard]] DirectLight direct_light(const scenes::Scene& scene,
                                        const scenes::LightGroups& groups,
                                        const scenes::Effects& effects,

@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "radiosity/open_parts.h"
 #include "radiosity/patches.h"
 #include "scenes/ray_query.h"
 
@@ -23,6 +24,9 @@ struct FormFactorOptions {
   int rays_per_patch = 1024;  // rounded up to a power of two, 8 or more
   std::uint64_t seed = 1;
   std::uint32_t replicate = 0;  // each number is an independent set of samples of the same seed
+  // Points of a patch that lie in a body (closed_bodies.h) send nothing: its row is the mean over
+  // the others, FormFactors::open says how many they are. Else they are as good as any.
+  bool leave_out_covered = false;
 };
 
 struct FormFactors {
@@ -39,6 +43,8 @@ struct FormFactors {
       back_hits;  // per object of the scene: rays of exposed patches that met its back
   std::vector<Rgb>
       sky_illuminance;  // per patch, lx: pi times the mean over all rays of the sky's radiance
+  // A row of a wholly covered patch has no entries; black = lost = 1.
+  OpenParts open;
 
   [[nodiscard]] std::size_t count() const { return sky.size(); }
 };
@@ -67,7 +73,8 @@ using SkyRadiance = std::function<Rgb(const Vec3& direction)>;
 // The sky and the black backs take part: escape_j is F_j,sky by reciprocity, but keeping one
 // estimate of it per row and one per column makes the two sets of sums agree in open scenes too,
 // whatever the rays' noise. Energy is then neither made nor lost. Patches that no ray reaches
-// borrow the transposed entries of their own row.
+// borrow the transposed entries of their own row. area_m2 is what takes part of each patch: the
+// open part where points were left out, 0 for those that take none.
 struct BalanceReport {
   int sweeps = 0;
   double before = 0.0;  // sum_j |column defect| / sum_j A_j

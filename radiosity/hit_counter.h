@@ -34,6 +34,15 @@ class HitCounter {
     }
   }
 
+  void clear() {
+    for (std::size_t word = 0; word < touched_.size(); ++word) {
+      for (std::uint64_t bits = touched_[word]; bits != 0; bits &= bits - 1) {
+        count_[64 * word + static_cast<std::size_t>(std::countr_zero(bits))] = 0.0F;
+      }
+      touched_[word] = 0;
+    }
+  }
+
  private:
   std::vector<float> count_;
   std::vector<std::uint64_t> touched_;

@@ -18,7 +18,7 @@ namespace earthshine::radiosity {
 
 struct LedgerInput {
   const FormFactors& factors;
-  std::span<const double> area_m2;
+  std::span<const double> area_m2;  // what is open of each patch
   std::size_t columns = 0;
   std::span<const double> reflectance;  // all below: count x columns
   std::span<const double> emitted;      // M through F

@@ -7,12 +7,17 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "radiosity/closed_bodies.h"
 
 namespace earthshine::radiosity {
 namespace {
 
 using scenes::LightSample;
 using scenes::RayPacket;
+
+// Per point wanted of a patch that a body covers in part: a sliver left open is not looked for
+// longer.
+constexpr int most_draws = 64;
 
 // Adds up shadowed samples eight at a time.
 class Receiver {
@@ -87,8 +92,8 @@ void take_samples(const Source& source, const Vec3& point, const Vec3& normal, d
   }
 }
 
-Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, const Source& source,
-                       std::uint64_t seed, std::uint64_t& rays) {
+Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, const OpenParts& open,
+                       const Source& source, std::uint64_t seed, std::uint64_t& rays) {
   Sampled sampled{std::vector<Rgb>(patches.count(), Rgb(0.0)),
                   std::vector<double>(patches.count(), 0.0)};
   std::atomic<std::uint64_t> ray_count{0};
@@ -97,19 +102,27 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
     std::vector<LightSample> samples;
     for (std::size_t i = begin; i < end; ++i) {
       const auto patch = static_cast<std::uint32_t>(i);
+      const double share = open.share.empty() ? 1.0 : open.share[i];
+      if (share <= 0.0) continue;
+      std::vector<std::uint32_t> near;
+      if (share < 1.0) near = open.bodies->near(patches, patch, 2.0 * query.surface_offset_m());
       const Vec3 normal = patches.normal(patch);
       const Vec3 lift = normal * query.surface_offset_m();
       const base::SobolOwen4 sobol(base::Key(seed, base::Stream::DirectLight, i).with(source.key));
       const int points = points_for(source, patches, patch);
       Receiver receiver(query, normal, points);
-      for (int k = 0; k < points; ++k) {
+      int taken = 0;
+      for (int k = 0; taken < points && k < most_draws * points; ++k) {
         const auto p = sobol.point(static_cast<std::uint32_t>(k));
         const Vec3 at = patches.point(patch, p[0], p[1]);
+        if (!near.empty() && open.bodies->cover(at + lift - open.bodies->centre(), near)) continue;
         take_samples(source, at, normal, p[2], p[3], samples);
-        for (const LightSample& sample : samples) receiver.add(k, at + lift, sample);
+        for (const LightSample& sample : samples) receiver.add(taken, at + lift, sample);
+        ++taken;
       }
       receiver.finish();
-      const double n = points, y = base::luminance(receiver.sum());
+      if (taken == 0) continue;
+      const double n = taken, y = base::luminance(receiver.sum());
       sampled.illuminance_lx[i] = receiver.sum() / n;
       sampled.variance[i] =
           std::max(0.0, receiver.sum_of_squares() - y * y / n) / (n * std::max(1.0, n - 1.0));

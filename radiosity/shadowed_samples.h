@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "radiosity/open_parts.h"
 #include "radiosity/patches.h"
 #include "scenes/lamp_light.h"
 #include "scenes/ray_query.h"
@@ -37,8 +38,10 @@ void take_samples(const Source& source, const Vec3& point, const Vec3& normal, d
                   std::vector<scenes::LightSample>& samples);
 
 // Owen-Sobol in four dimensions (point of the patch, point of the source), keyed by patch and
-// source. Adds the rays cast to `rays`.
+// source. Points that bodies cover are left out, and the next of the sequence taken; a wholly
+// covered patch gets nothing. Adds the rays cast to `rays`.
 [[nodiscard]] Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches,
-                                     const Source& source, std::uint64_t seed, std::uint64_t& rays);
+                                     const OpenParts& open, const Source& source,
+                                     std::uint64_t seed, std::uint64_t& rays);
 
 }  // namespace earthshine::radiosity

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <numeric>
 
+#include "radiosity/covered_patches.h"
 #include "radiosity/ledger.h"
 #include "radiosity/light_ends.h"
 #include "radiosity/linear_solve.h"
@@ -61,17 +62,23 @@ std::vector<double> exitances(const scenes::Scene& scene, const scenes::LightGro
   return values;
 }
 
+// Means over what is open of each object; over all of it where nothing is.
 std::vector<ObjectLight> object_means(const scenes::Scene& scene, const Patches& patches,
-                                      std::size_t columns, const std::vector<bool>& is_explicit,
+                                      const std::vector<double>& open_m2, std::size_t columns,
+                                      const std::vector<bool>& is_explicit,
                                       const std::vector<double>& direct,
                                       const std::vector<double>& indirect,
                                       const std::vector<double>& radiosity) {
   std::vector<ObjectLight> means(scene.objects.size());
+  std::vector<double> open(means.size(), 0.0), weight(means.size(), 0.0);
+  for (std::uint32_t i = 0; i < patches.count(); ++i) open[patches.object(i)] += open_m2[i];
   for (std::size_t i = 0; i < patches.count(); ++i) {
     const auto patch = static_cast<std::uint32_t>(i);
-    ObjectLight& mean = means[patches.object(patch)];
-    const double area = patches.area_m2[i];
-    mean.area_m2 += area;
+    const std::uint32_t object = patches.object(patch);
+    ObjectLight& mean = means[object];
+    const double area = open[object] > 0.0 ? open_m2[i] : patches.area_m2[i];
+    mean.area_m2 += patches.area_m2[i];
+    weight[object] += area;
     for (std::size_t k = 0; k < columns; ++k) {
       const auto c = static_cast<int>(k % 3);
       mean.illuminance_lx[c] += area * (direct[i * columns + k] + indirect[i * columns + k]);
@@ -82,9 +89,9 @@ std::vector<ObjectLight> object_means(const scenes::Scene& scene, const Patches&
   }
   for (std::size_t o = 0; o < means.size(); ++o) {
     means[o].name = scene.objects[o].name;
-    if (means[o].area_m2 > 0.0) {
-      means[o].illuminance_lx /= means[o].area_m2;
-      means[o].radiosity_lm_m2 /= means[o].area_m2;
+    if (weight[o] > 0.0) {
+      means[o].illuminance_lx /= weight[o];
+      means[o].radiosity_lm_m2 /= weight[o];
     }
   }
   return means;
@@ -169,14 +176,16 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   if (effects.earth_by_gather) {
     sky = [&scene](const Vec3& direction) { return scenes::earth_radiance(scene, direction); };
   }
-  FormFactors factors =
-      cast_form_factors(scene, query, patches, {options.form_factor_rays, options.seed}, sky);
+  FormFactorOptions rays{options.form_factor_rays, options.seed};
+  rays.leave_out_covered = true;
+  FormFactors factors = cast_form_factors(scene, query, patches, rays, sky);
+  const std::vector<double> open_m2 = open_areas(factors.open, patches.area_m2);
   report.form_factor_rays = factors.ray_count;
   report.nonzeros = factors.hits.size();
   const std::vector<double> object_backs = back_shares(scene, patches, factors);
   report.back_share = back_share(factors);
   watch.lap("form factors");
-  report.balance = balance(factors, patches.area_m2);
+  report.balance = balance(factors, open_m2);
   watch.lap("balance");
 
   DirectOptions direct_options;
@@ -202,16 +211,15 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   report.solver_error = linear.error;
   std::vector<double> indirect(source.size());
   multiply(factors, linear.x, indirect, columns);
-  close_energy(
-      {factors, patches.area_m2, columns, rho, emitted, light.illuminance_lx, indirect, linear.x},
-      report.balance.balanced, linear.x, indirect);
+  close_energy({factors, open_m2, columns, rho, emitted, light.illuminance_lx, indirect, linear.x},
+               report.balance.balanced, linear.x, indirect);
   watch.lap("linear solve");
 
   report.groups = energy_ledger(
-      {factors, patches.area_m2, columns, rho, emitted, light.illuminance_lx, indirect, linear.x},
+      {factors, open_m2, columns, rho, emitted, light.illuminance_lx, indirect, linear.x},
       groups.names);
-  report.objects =
-      object_means(scene, patches, columns, is_explicit, light.illuminance_lx, indirect, linear.x);
+  report.objects = object_means(scene, patches, open_m2, columns, is_explicit, light.illuminance_lx,
+                                indirect, linear.x);
   for (std::size_t o = 0; o < object_backs.size(); ++o) {
     report.objects[o].back_share = object_backs[o];
   }
@@ -226,6 +234,11 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
       soft += rho[k] * factors.sky_illuminance[k / columns][static_cast<int>(column % 3)];
     }
     solution.soft_radiosity[k] = static_cast<float>(soft);
+  }
+  const CoveredPatches covered(patches, factors.open);
+  for (std::vector<float>* values : {&solution.radiosity, &solution.soft_radiosity,
+                                     &solution.direct_lx, &solution.indirect_lx}) {
+    covered.show_neighbours(*values, columns);
   }
   watch.lap("ledger");
   return solution;

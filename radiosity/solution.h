@@ -54,8 +54,8 @@ struct GroupLedger {
 
 struct ObjectLight {
   std::string name;
-  double area_m2 = 0.0;     // both sides of sheets
-  Rgb illuminance_lx{0.0};  // area means, all groups together
+  double area_m2 = 0.0;     // both sides of sheets, with what bodies cover of it
+  Rgb illuminance_lx{0.0};  // means over the area left open, all groups together
   Rgb radiosity_lm_m2{0.0};
   double back_share = 0.0;  // of the rays that met it from exposed patches, those that met its
                             // black back: near 1 where its winding is wrong

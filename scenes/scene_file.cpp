@@ -14,6 +14,7 @@ namespace {
 constexpr std::string_view root_keys[] = {
     "format", "name",  "unit",    "material", "object", "light",   "area",         "sun",
     "earth",  "orbit", "ambient", "camera",   "cctv",   "monitor", "range_sensor", "quality"};
+constexpr std::string_view camera_file_keys[] = {"cctv", "monitor"};
 constexpr std::string_view ambient_keys[] = {"radiance"};
 constexpr std::string_view units[] = {"m", "cm", "mm", "ft", "in"};
 constexpr double metres_per_unit[] = {1.0, 0.01, 0.001, 0.3048, 0.0254};
@@ -57,7 +58,30 @@ void read_named(const TableReader& root, std::string_view key, Read read) {
   check_unique(names, entries, fmt::format("[[{}]]", key));
 }
 
+void read_cctv(Scene& scene, const TableReader& root) {
+  read_named(root, "cctv", [&](const TomlNode& node) {
+    return scene.cctv.emplace_back(read_settings(node, "[[cctv]]", true)).name;
+  });
+  if (const TomlNode* node = plain_table(root, "monitor")) {
+    scene.monitor = read_settings(*node, "[monitor]", false);
+  }
+}
+
 }  // namespace
+
+Scene read_camera_file(const std::filesystem::path& path) {
+  const std::string text = read_input_file(path, max_toml_bytes, base::Location{path.string()});
+  const TomlNode tree = parse_toml(text, path.string());
+  const bool whole_scene = find_entry(std::get<TomlTable>(tree.value), "format") != nullptr;
+  const TableReader root(tree, whole_scene ? "the scene" : "a camera file",
+                         whole_scene ? KeyList(root_keys) : KeyList(camera_file_keys));
+  if (whole_scene) check_format(root);
+  Scene scene;
+  scene.path = path;
+  scene.name = path.stem().string();
+  read_cctv(scene, root);
+  return scene;
+}
 
 Scene read_scene(const std::filesystem::path& path, std::span<const std::string> overrides) {
   const std::string text = read_input_file(path, max_toml_bytes, base::Location{path.string()});
@@ -89,15 +113,10 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   read_named(root, "camera", [&](const TomlNode& node) {
     return scene.cameras.emplace_back(read_camera(node, unit_m)).name;
   });
-  read_named(root, "cctv", [&](const TomlNode& node) {
-    return scene.cctv.emplace_back(read_settings(node, "[[cctv]]", true)).name;
-  });
+  read_cctv(scene, root);
   read_named(root, "range_sensor", [&](const TomlNode& node) {
     return scene.range_sensors.emplace_back(read_settings(node, "[[range_sensor]]", true)).name;
   });
-  if (const TomlNode* node = plain_table(root, "monitor")) {
-    scene.monitor = read_settings(*node, "[monitor]", false);
-  }
   if (const TomlNode* node = plain_table(root, "quality")) scene.quality = read_quality(*node);
 
   // Objects last: their meshes take the longest to read, and a slip elsewhere shows at once.

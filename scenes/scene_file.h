@@ -19,4 +19,9 @@ namespace earthshine::scenes {
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path,
                                std::span<const std::string> overrides = {});
 
+// A Scene with nothing but the [[cctv]] tables and the [monitor] of the file, which holds nothing
+// else or is a whole scene (it has "format"), whose other tables are neither read nor checked.
+// Throws as above.
+[[nodiscard]] Scene read_camera_file(const std::filesystem::path& path);
+
 }  // namespace earthshine::scenes

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace earthshine::studies {
 namespace {
@@ -19,6 +20,17 @@ double mean(const std::vector<float>& values, const std::vector<std::uint32_t>& 
   double sum = 0.0;
   for (const std::uint32_t pixel : pixels) sum += double(values[pixel]);
   return sum / static_cast<double>(pixels.size());
+}
+
+// The resel in which the centre of the pixel lies.
+std::size_t resel_of(std::size_t pixel, const base::Image& image, const ClippedResels& resels) {
+  const auto along = [](std::size_t at, int of, int onto) {
+    return static_cast<std::size_t>((static_cast<double>(at) + 0.5) * onto / of);
+  };
+  const std::size_t width = static_cast<std::size_t>(image.width);
+  return along(pixel / width, image.height, resels.rows) *
+             static_cast<std::size_t>(resels.columns) +
+         along(pixel % width, image.width, resels.columns);
 }
 
 }  // namespace
@@ -52,7 +64,7 @@ ShownRange shown_range(const degrade::CctvCamera& camera, const degrade::Report&
 
 std::vector<TargetMetrics> target_metrics(const scenes::Scene& scene, const scenes::Camera& camera,
                                           const base::Image& image,
-                                          const std::optional<ShownRange>& cctv) {
+                                          const std::optional<ClippedResels>& cctv) {
   const ObjectMap map = object_map(image);
   const std::vector<float> luminance = base::luminance_of(image);
   std::vector<TargetMetrics> metrics;
@@ -67,8 +79,9 @@ std::vector<TargetMetrics> target_metrics(const scenes::Scene& scene, const scen
       std::size_t saturated = 0, crushed = 0;
       for (std::size_t i = 0; i < luminance.size(); ++i) {
         if (map.object[i] != static_cast<std::int32_t>(view.object)) continue;
-        if (double(luminance[i]) >= cctv->white) ++saturated;
-        if (double(luminance[i]) <= cctv->black) ++crushed;
+        const std::size_t resel = resel_of(i, image, *cctv);
+        if (cctv->saturated[resel] > 0.0F) ++saturated;
+        if (cctv->crushed[resel] > 0.0F) ++crushed;
       }
       target.saturated_share = static_cast<double>(saturated) / seen;
       target.crushed_share = static_cast<double>(crushed) / seen;
@@ -93,13 +106,18 @@ View look(const StudyScene& study, const radiosity::Solution& solution,
   view.frame = raytrace::render(study.scene, study.groups, study.effects, study.query, solution,
                                 camera, render, progress);
   const base::Image& image = view.frame.image;
+  std::optional<ClippedResels> clipped;
   if (options.cctv) {
     view.cctv =
         degrade::degrade(image, options.cctv->camera, options.cctv->monitor, options.cctv->options);
     view.shown =
         shown_range(options.cctv->camera, view.cctv->report, mean(base::luminance_of(image)));
+    degrade::Twin twin =
+        degrade::twin(image, options.cctv->camera, options.cctv->monitor, options.cctv->options);
+    clipped = {twin.signal.columns, twin.signal.rows, std::move(twin.saturated),
+               std::move(twin.crushed)};
   }
-  view.targets = target_metrics(study.scene, camera, image, view.shown);
+  view.targets = target_metrics(study.scene, camera, image, clipped);
   return view;
 }
 

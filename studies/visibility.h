@@ -8,7 +8,7 @@
 
 #include "base/image.h"
 #include "degrade/camera.h"
-#include "degrade/chain.h"
+#include "degrade/twin.h"
 #include "studies/study.h"
 #include "studies/target_view.h"
 
@@ -36,21 +36,28 @@ struct ShownRange {
 [[nodiscard]] ShownRange shown_range(const degrade::CctvCamera& camera,
                                      const degrade::Report& report, double mean_luminance);
 
+// What a camera's picture loses: 1 or 0 for each resel (degrade::Twin).
+struct ClippedResels {
+  int columns = 0;
+  int rows = 0;
+  degrade::Plane saturated, crushed;
+};
+
 struct TargetMetrics {
   TargetView view;
   std::optional<double> visible_fraction;  // seen / alone; none where it would not even show alone
   std::optional<TargetLight> light;        // in the clean picture; none where it is not in view
-  // Shares of the seen pixels that the CCTV clips at white or loses in black; none without a CCTV
-  // camera or out of view.
+  // Shares of the seen pixels whose resel the CCTV clips at white or loses in the noise of black;
+  // none without a CCTV camera or out of view.
   std::optional<double> saturated_share, crushed_share;
 };
 
 // One entry per target of the scene, in its order. image: of `camera`, with the layer "object".
-// A pixel counts as the target's by its centre, and light is judged before blur and noise.
+// A pixel counts as the target's by its centre, and its resel is the one in which its centre lies.
 [[nodiscard]] std::vector<TargetMetrics> target_metrics(const scenes::Scene& scene,
                                                         const scenes::Camera& camera,
                                                         const base::Image& image,
-                                                        const std::optional<ShownRange>& cctv);
+                                                        const std::optional<ClippedResels>& cctv);
 
 // One camera's view, with all that was found in it.
 struct ViewOptions {

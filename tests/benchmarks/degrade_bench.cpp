@@ -29,13 +29,14 @@ base::Image noise_picture(int edge_px) {
 // A monochrome camera with everything that a camera can have.
 CctvCamera everything() {
   CctvCamera camera = degrade::find_preset("sit-monochrome")->camera;
+  camera.f_number_min = 250.0;  // so that the gain has to help
   camera.fall_off = 4.0;
   camera.glare = 0.02;
   camera.lens_blur = 0.3;
   camera.shading_percent = 20.0;
   camera.lag = 0.42;
   camera.smear_db = 90.0;
-  camera.saturation = 0.5;
+  camera.saturation = 0.2;
   camera.bloom = 0.5;
   camera.dark_electrons = 5.0;
   camera.dsnu_percent = 0.1;

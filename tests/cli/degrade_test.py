@@ -163,6 +163,19 @@ class Degrade(program.Case):
         self.write("cut.exr", self.picture("a.exr")[:-100])
         self.says(self.refused("degrade", "cut.exr", "-o", "c.png"), "cut.exr")
 
+    def test_options_without_effect_or_number(self):
+        self.done("render", "ball.toml", "-o", "a.exr")
+        for wrong, said in ((["--f-number", "nan"], "0.5"), (["--fov", "inf"], "179"), (["--cctv", ""], "--cctv"),
+                            (["--preset", "ideal", "--f-number", 8], "iris_rate"),
+                            (["--target-resels", 7], "--twin")):
+            self.says(self.refused("degrade", "a.exr", "-o", "c.png", *wrong), said)
+
+    def test_iris_on_its_way_is_no_failure_of_its_range(self):
+        self.done("render", "ball.toml", "-o", "a.exr")
+        report = self.json("degrade", "a.exr", "-o", "c.png", "--preset", "sit-monochrome", "--f-number", 900)
+        self.assertTrue(report["iris_moving"])
+        self.assertFalse(report["underexposed"] or report["blown"])
+
     def test_wrong_settings_are_refused_by_every_command(self):
         table = '\n[[cctv]]\nname = "mine"\ngama = 2\n'
         self.write("ball.toml", program.BALL + table)

@@ -72,3 +72,47 @@ def read(path):
                     row.byteswap()
                 channels[name].extend(row)
     return header, width, height, channels
+
+
+# A channel's number type in the file, and how struct packs it.
+TYPES = {"uint": (0, "I"), "half": (1, "e"), "float": (2, "f")}
+
+
+def _attribute(name, kind, value):
+    return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+
+
+def pack(width, height, channels, kind="float", corner=(0, 0), display=None, more=(), sampling=1, pixels=True):
+    """The bytes of an uncompressed scan-line file. channels: names to one value or to a list of all; display: the window
+    (x0, y0, x1, y1), else that of the data; more: (name, type, bytes) of further attributes; pixels=False: header and
+    offset table alone."""
+    number, letter = TYPES[kind]
+    x0, y0 = corner
+    data = (x0, y0, x0 + width - 1, y0 + height - 1)
+    names = sorted(channels)
+    listed = b"".join(name.encode() + b"\0" + struct.pack("<iBxxxii", number, 0, sampling, sampling) for name in names)
+    head = struct.pack("<ii", 20000630, 2)
+    for name, type_name, value in (
+            ("channels", "chlist", listed + b"\0"), ("compression", "compression", b"\0"),
+            ("dataWindow", "box2i", struct.pack("<iiii", *data)),
+            ("displayWindow", "box2i", struct.pack("<iiii", *(display or data))),
+            ("lineOrder", "lineOrder", b"\0"), ("screenWindowCenter", "v2f", struct.pack("<ff", 0, 0)),
+            ("screenWindowWidth", "float", struct.pack("<f", 1)), *more,
+            *([] if any(name == "pixelAspectRatio" for name, _, _ in more)
+              else [("pixelAspectRatio", "float", struct.pack("<f", 1))])):
+        head += _attribute(name, type_name, value)
+    head += b"\0"
+    if not pixels:
+        return head + struct.pack("<Q", 0) * min(height, 1 << 17)
+    size = struct.calcsize(letter) * width * len(names)
+    start = len(head) + 8 * height
+    lines = []
+    for y in range(height):
+        line = struct.pack("<ii", y0 + y, size)
+        for name in names:
+            values = channels[name]
+            row = values[y * width:(y + 1) * width] if isinstance(values, list) else [values] * width
+            line += struct.pack(f"<{width}{letter}", *row)
+        lines.append(line)
+    table = b"".join(struct.pack("<Q", start + y * (8 + size)) for y in range(height))
+    return head + table + b"".join(lines)

@@ -107,6 +107,63 @@ TEST(CameraFile, SettingWithoutEffectIsRefused) {
   EXPECT_EQ(refusal(scene_with({{"noise_a", 0.01}, {"noise", std::string("law")}})), "accepted");
 }
 
+// The words of one form of the noise beside those of another: the reader cannot know which is
+// meant.
+TEST(CameraFile, NoiseInTwoFormsIsRefused) {
+  const std::string message = refusal(
+      scene_with({{"noise", std::string("spec")}, {"snr_db", 40.0}, {"read_electrons", 5.0}}));
+  EXPECT_TRUE(holds(message, "bay.toml:13:1: \"read_electrons\" stands beside \"snr_db\""))
+      << message;
+  EXPECT_TRUE(holds(message, "\"snr_db\" goes with noise = \"report\" or \"spec\"")) << message;
+  EXPECT_TRUE(holds(message, "\"read_electrons\" with noise = \"photon\"")) << message;
+  EXPECT_TRUE(holds(refusal(scene_with(
+                        {{"noise", std::string("law")}, {"noise_b", 1e-3}, {"prnu_percent", 1.0}})),
+                    "two forms"));
+  EXPECT_TRUE(holds(refusal(scene_with({{"noise", std::string("law")}, {"snr_db", 40.0}})),
+                    "it goes with noise = \"report\" or \"spec\""));
+}
+
+std::string source_of(const std::vector<SettingSource>& sources, std::string_view key) {
+  for (const SettingSource& source : sources) {
+    if (source.key == key) return source.source;
+  }
+  return "none";
+}
+
+TEST(CameraFile, EachSettingKnowsWhereItComesFrom) {
+  const Preset& tube = *find_preset("sit-monochrome");
+  const auto scene = scene_with({{"preset", std::string("sit-monochrome")},
+                                 {"noise", std::string("spec")},
+                                 {"snr_db", 32.0}});
+  const ResolvedCamera camera = resolve(scene, "mine");
+  EXPECT_EQ(source_of(camera.sources, "snr_db"), "bay.toml:13:1");
+  EXPECT_EQ(source_of(camera.sources, "gamma"), source_of(tube.sources, "gamma"));
+  EXPECT_EQ(source_of(camera.sources, "prnu_percent"), "none");  // no longer in use
+  EXPECT_EQ(camera.monitor_sources.size(), tube.monitor_sources.size());
+  EXPECT_TRUE(holds(camera.about, "starts from sit-monochrome")) << camera.about;
+  EXPECT_EQ(source_of(resolve(scene_with({}), "mine").sources, "gamma"), "default");
+  EXPECT_EQ(source_of(resolve(scene_with({}), "mine").monitor_sources, "gamma"), "default");
+}
+
+TEST(CameraFile, PresetBringsItsMonitorUnlessTheSceneHasOne) {
+  const double shipped = find_preset("report-1990")->monitor.black_luminance;
+  ASSERT_NE(shipped, Monitor{}.black_luminance);
+  EXPECT_EQ(resolve_monitor(scenes::Scene{}, "report-1990").black_luminance, shipped);
+  auto scene = scene_with({{"preset", std::string("report-1990")}});
+  EXPECT_EQ(resolve_monitor(scene, "mine").black_luminance, shipped);
+  EXPECT_EQ(resolve_monitor(scene, "ccd-colour").black_luminance, 1.0);
+  EXPECT_EQ(resolve_monitor(scene, "").black_luminance, 1.0);
+  scene.monitor = table("", {{"rows", 240.0}});
+  EXPECT_EQ(resolve_monitor(scene, "mine").black_luminance, 1.0);
+  scene.monitor = table("", {{"rows", 240.0}, {"preset", std::string("report-1990")}});
+  EXPECT_EQ(resolve_monitor(scene, "ccd-colour").black_luminance, shipped);
+  EXPECT_EQ(resolve_monitor(scene, "ccd-colour").rows, 240);
+  EXPECT_EQ(source_of(resolve(scene, "mine").monitor_sources, "rows"), "bay.toml:11:1");
+  EXPECT_TRUE(holds(source_of(resolve(scene, "mine").monitor_sources, "columns"), "[1990]"));
+  scene.monitor = table("", {{"preset", std::string("report-199")}});
+  EXPECT_TRUE(holds(refusal(scene), "Did you mean \"report-1990\"?")) << refusal(scene);
+}
+
 TEST(CameraFile, ContradictingLimitsAreRefused) {
   EXPECT_TRUE(holds(refusal(scene_with({{"f_number_min", 8.0}, {"f_number_max", 4.0}})),
                     "above f_number_max"));
@@ -128,11 +185,11 @@ TEST(CameraFile, CameraWithAnUnknownCctvNamesTheNearest) {
 
 TEST(CameraFile, MonitorIsReadAndCheckedTheSameWay) {
   scenes::Scene scene;
-  EXPECT_EQ(resolve_monitor(scene).rows, 300);
+  EXPECT_EQ(resolve_monitor(scene, "mine").rows, 300);
   scene.monitor =
       table("", {{"rows", 485.0}, {"columns", 640.0}, {"spread", std::string("triangle")}});
-  EXPECT_EQ(resolve_monitor(scene).rows, 485);
-  EXPECT_EQ(resolve_monitor(scene).spread, Spread::Triangle);
+  EXPECT_EQ(resolve_monitor(scene, "mine").rows, 485);
+  EXPECT_EQ(resolve_monitor(scene, "mine").spread, Spread::Triangle);
   scene.monitor = table("", {{"row", 300.0}});
   EXPECT_TRUE(holds(refusal(scene), "Did you mean \"rows\"?")) << refusal(scene);
   scene.monitor = table("", {{"rows", 0.0}});

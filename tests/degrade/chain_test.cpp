@@ -90,7 +90,7 @@ TEST(Chain, EveryStageOffIsTheIdentity) {
 TEST(Chain, FlatSceneStaysFlatFromTheLensToTheScreen) {
   for (const char* name : {"ideal", "ccd-colour"}) {
     Options twin;
-    twin.off = {"signal-noise", "read-noise"};
+    twin.off = {"signal-noise", "read-noise", "shading"};
     const Result result = degrade(test::grey(50, 40, 7.0F), find_preset(name)->camera, {}, twin);
     for (const base::Channel& channel : result.viewed.channels) {
       for (float value : channel.values) ASSERT_NEAR(value, channel.values[0], 1e-4F) << name;

@@ -137,5 +137,22 @@ TEST(Interlace, FieldsOfTheirOwnPicturesAreWoven) {
   EXPECT_THROW(static_cast<void>(degrade_fields(bar(0.5), bar(0.5), camera, {})), base::Error);
 }
 
+// One iris for a frame: the second field, twice as bright, is exposed as the first one was, and
+// what is counted over the frame is the mean of its fields.
+TEST(Interlace, IrisFollowsTheFirstFieldAndSharesAreOfTheFrame) {
+  CctvCamera camera;
+  camera.gamma = 1.0;
+  camera.interlace = true;
+  camera.iris = IrisMode::Average;
+  camera.iris_target = 0.6;
+  const Result frame =
+      degrade_fields(test::grey(400, 300, 10.0F), test::grey(400, 300, 20.0F), camera, {});
+  const auto& signal = frame.signal.channels[0].values;
+  EXPECT_NEAR(signal[0], 0.6F, 1e-5F);
+  EXPECT_NEAR(signal[400], 1.1F, 1e-5F);  // 1.2 before the white clip
+  EXPECT_DOUBLE_EQ(frame.report.levels.saturated_share, 0.5);
+  EXPECT_NEAR(frame.report.exposure.metered, 10.0, 1e-4);
+}
+
 }  // namespace
 }  // namespace earthshine::degrade

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "degrade/chain.h"
 #include "tests/degrade/fields.h"
 
 namespace earthshine::degrade {
@@ -106,6 +107,34 @@ TEST(Bloom, BelowSaturationNothingChanges) {
   EXPECT_EQ(limit_above(in, 4.0).planes[0], in.planes[0]);
   EXPECT_EQ(share_above(in, 4.0), 0.0);
   EXPECT_EQ(share_above(flat(3, 3, 0.0F), 4.0), 0.0);
+}
+
+// A quarter of the picture at S = 3, the rest at 0.2: of the sum 0.75 + 0.15 lie 0.25 x 2 above 1.
+// Without bloom all of that is lost; with half of it blooming, the drained half and what is cut
+// again.
+TEST(Bloom, ReportTellsWhatLayAboveSaturationAndWhatWasLost) {
+  CctvCamera camera;
+  camera.iris = IrisMode::Fixed;
+  camera.transmittance = 1.0;
+  camera.f_number = 1.0;
+  camera.white_lux = 3.14159265358979 / 4.0;
+  camera.saturation = 1.0;
+  const base::Image scene =
+      test::painted(400, 300, [](double x, double) { return x < 0.25 ? 3.0 : 0.2; });
+  for (const bool interlace : {false, true}) {
+    camera.interlace = interlace;
+    camera.bloom = 0.0;
+    const Report cut = degrade(scene, camera, {}).report;
+    EXPECT_NEAR(cut.lost_share, 0.5 / 0.9, 1e-5);
+    EXPECT_EQ(cut.excess_share, 0.0);
+    camera.bloom = 0.5;
+    const Result bloomed = degrade(scene, camera, {});
+    EXPECT_NEAR(bloomed.report.excess_share, 0.5 / 0.9, 1e-5);
+    double sum = 0.0;
+    for (float v : bloomed.signal.channels[0].values) sum += std::pow(static_cast<double>(v), 2.2);
+    // Kept plus lost is all.
+    EXPECT_NEAR(sum / (400.0 * 300.0) / 0.9 + bloomed.report.lost_share, 1.0, 1e-4);
+  }
 }
 
 }  // namespace

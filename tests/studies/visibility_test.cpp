@@ -12,8 +12,16 @@ namespace earthshine::studies {
 namespace {
 
 TargetMetrics only_metrics(const scenes::Scene& scene, const scenes::Camera& camera, int size,
-                           const std::optional<ShownRange>& cctv = {}) {
+                           const std::optional<ShownRange>& range = {}) {
   const auto frame = tests::direct_picture(scene, camera, size);
+  std::optional<ClippedResels> cctv;
+  if (range) {  // a resel for each pixel
+    cctv = ClippedResels{size, size, {}, {}};
+    for (const float y : base::luminance_of(frame.image)) {
+      cctv->saturated.push_back(double(y) >= range->white ? 1.0F : 0.0F);
+      cctv->crushed.push_back(double(y) <= range->black ? 1.0F : 0.0F);
+    }
+  }
   const auto metrics = target_metrics(scene, camera, frame.image, cctv);
   EXPECT_EQ(metrics.size(), 1U);
   return metrics.front();
@@ -72,7 +80,8 @@ TEST(Visibility, SharesBeyondTheShownRangeCountTheTargetsPixels) {
 }
 
 // The chain's own counts, taken from the signal, are those of the range carried back to the scene:
-// on a picture of one pixel per resel, with blur and noise off, pixel by pixel.
+// on a picture of one pixel per resel, pixel by pixel, with all off that is not the same everywhere
+// or that mixes them.
 TEST(Visibility, ShownRangeAgreesWithTheChainsLevels) {
   constexpr int edge = 300;
   base::Image image = base::make_rgb_image(edge, edge);
@@ -90,7 +99,8 @@ TEST(Visibility, ShownRangeAgreesWithTheChainsLevels) {
       degrade::CctvCamera camera = preset.camera;
       camera.glare = glare;
       degrade::Options options;
-      options.off = {"signal-noise", "read-noise", "blur"};
+      options.off = {"signal-noise", "read-noise", "shading",  "blur",
+                     "smear",        "bloom",      "bandwidth"};
       const degrade::Result result = degrade::degrade(image, camera, {}, options);
       const ShownRange shown = shown_range(camera, result.report, mean);
       double saturated = 0.0, crushed = 0.0;
@@ -105,6 +115,20 @@ TEST(Visibility, ShownRangeAgreesWithTheChainsLevels) {
       EXPECT_NEAR(crushed / count, result.report.levels.crushed_share, 3.0 / count) << preset.name;
     }
   }
+}
+
+// Pixels are judged by the resel in which their centre lies, here four by four pixels to one: only
+// the resels of the lower half are white.
+TEST(Visibility, PixelsBelongToTheReselOfTheirCentre) {
+  auto builder = tests::plate_on_ground(0.4, 0.6);
+  builder.scene.sun = tests::overhead_sun(1000.0);
+  const scenes::Camera camera = tests::above(2.0, 2.0);
+  const auto frame = tests::direct_picture(builder.scene, camera, 32);
+  ClippedResels resels{8, 8, degrade::Plane(64, 0.0F), degrade::Plane(64, 1.0F)};
+  for (std::size_t i = 32; i < 64; ++i) resels.saturated[i] = 1.0F;
+  const auto metrics = target_metrics(builder.scene, camera, frame.image, resels);
+  EXPECT_EQ(metrics.front().saturated_share, 0.5);
+  EXPECT_EQ(metrics.front().crushed_share, 1.0);
 }
 
 TEST(Visibility, LookGivesThePictureTheMonitorAndTheTargets) {
