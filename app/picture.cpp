@@ -16,6 +16,22 @@
 namespace earthshine::app {
 namespace {
 
+std::string name_of(std::size_t light_kind) {
+  return std::string(scenes::effect_of(static_cast<scenes::LightKind>(light_kind)));
+}
+Json rays_by_light(const raytrace::RayCounts& rays) {
+  Json counts = Json::object();
+  for (std::size_t k = 0; k < scenes::light_kinds; ++k) counts[name_of(k)] = rays.to_light[k];
+  return counts;
+}
+Json rays_by_light(const radiosity::SolveReport& solved) {
+  Json counts = Json::object();
+  for (std::size_t k = 0; k < scenes::light_kinds; ++k) {
+    counts[name_of(k)] = solved.sources_cost[k].rays;
+  }
+  return counts;
+}
+
 Json json_of(const Studio& studio, const scenes::Camera& camera, const raytrace::Frame& frame,
              const StageTimes& times) {
   const raytrace::RenderReport& report = frame.report;
@@ -32,11 +48,16 @@ Json json_of(const Studio& studio, const scenes::Camera& camera, const raytrace:
           {"rays",
            {{"form_factors", solved.form_factor_rays},
             {"direct", solved.shadow_rays},
+            {"direct_by", rays_by_light(solved)},
             {"camera", rays.camera},
             {"shadow", rays.shadow},
             {"gather", rays.gather},
             {"lobe", rays.lobe},
-            {"mirror", rays.mirror}}},
+            {"mirror", rays.mirror},
+            {"refraction", rays.refraction},
+            {"planning", rays.planning},
+            {"layers", rays.layers},
+            {"shadow_by", rays_by_light(rays)}}},
           {"gather_rays", report.gather_rays},
           {"camera_samples", report.camera_samples},
           {"relative_noise", report.relative_noise},
@@ -180,7 +201,8 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
     if (screen) write_cctv(files.cctv, *cctv, *screen);
     if (!files.output.empty()) base::write_exr(files.output, frame.image, header);
   });
-  Picture picture{json_of(studio, camera, frame, times), !frame.report.stopped};
+  Picture picture{json_of(studio, camera, frame, times), !frame.report.stopped, frame.report, {}};
+  picture.times = times;
   if (screen) picture.report["cctv"] = cctv_json(*cctv, *screen);
   if (call.only_pixel) {
     picture.report["pixel"] = pixel_json(studio.loaded.scene, frame);

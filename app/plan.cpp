@@ -1,91 +1,106 @@
 // SPDX-License-Identifier: Apache-2.0
 // earthshine plan: which effects will run and why, how many rays and how much memory that is.
-// Traces nothing but a few rows of form factors, for the memory.
+// Traces a few rows of form factors for the memory, and a small run of the whole for the seconds.
 #include <fmt/format.h>
 
 #include <bit>
 #include <memory>
 
-#include "app/command.h"
+#include "app/cctv_plan.h"
 #include "app/console.h"
+#include "app/effect_table.h"
 #include "app/memory.h"
-#include "degrade/camera_file.h"
-#include "degrade/chain.h"
+#include "app/render_call.h"
 #include "radiosity/refine.h"
 #include "scenes/quality.h"
 
 namespace earthshine::app {
 namespace {
 
-struct PlanCall {
-  SceneInput scene;
-  bool json = false;
-};
-
-Json effects_of(const LoadedScene& loaded) {
-  Json rows = Json::array();
-  for (const auto& row : scenes::describe_effects(loaded.scene, loaded.groups)) {
-    rows.push_back({{"effect", row.effect}, {"runs", row.runs}, {"why", row.reason}});
-  }
-  return rows;
+std::vector<const scenes::Camera*> planned_cameras(const RenderCall& call,
+                                                   const scenes::Scene& scene) {
+  if (!call.cameras.empty()) return wanted_cameras(call.cameras, scene);
+  std::vector<const scenes::Camera*> all;
+  for (const scenes::Camera& camera : scene.cameras) all.push_back(&camera);
+  return all;
 }
 
-Json cctv_stages(const scenes::Scene& scene, const scenes::Camera& camera) {
+Json stages_that_run(const Json& planned) {
   Json names = Json::array();
-  if (camera.cctv.empty()) return names;
-  for (const degrade::StagePlan& planned :
-       degrade::plan(degrade::resolve_camera(scene, camera.cctv),
-                     degrade::resolve_monitor(scene, camera.cctv))) {
-    if (planned.runs) names.push_back(planned.stage->name);
+  for (const Json& stage : planned) {
+    if (stage["runs"].get<bool>()) names.push_back(stage["stage"]);
   }
   return names;
 }
 
-Json images_of(const scenes::Scene& scene, std::uint64_t gather_rays) {
+Json images_of(const scenes::Scene& scene, const RenderCall& call, const scenes::Asked& asked,
+               std::uint64_t gather_rays) {
   Json images = Json::array();
-  for (const scenes::Camera& camera : scene.cameras) {
+  for (const scenes::Camera* camera : asked.cameras) {
+    const Size size = call.size.value_or(Size{camera->columns, camera->rows});
     const auto pixels =
-        static_cast<std::uint64_t>(camera.columns) * static_cast<std::uint64_t>(camera.rows);
-    images.push_back({{"camera", camera.name},
-                      {"resolution", {camera.columns, camera.rows}},
-                      {"gather_rays", pixels * gather_rays},
-                      {"cctv_stages", cctv_stages(scene, camera)}});
+        static_cast<std::uint64_t>(size.columns) * static_cast<std::uint64_t>(size.rows);
+    images.push_back(
+        {{"camera", camera->name},
+         {"resolution", {size.columns, size.rows}},
+         {"gather_rays", pixels * gather_rays},
+         {"cctv_stages", stages_that_run(plan_cctv(scene, *camera, !call.cctv.empty()))}});
   }
   return images;
 }
 
 // Of the solution alone, and of each camera's picture of its own size, the solution included.
-void add_memory(Json& report, const LoadedScene& loaded) {
-  const radiosity::SolveOptions solver = solve_options(loaded.scene, {});
-  const scenes::RayQuery query(loaded.scene);
+void add_memory(Json& report, const LoadedScene& loaded, const RenderCall& call,
+                const Common& common, const scenes::Asked& asked, const scenes::RayQuery& query) {
+  const radiosity::SolveOptions solver = solve_options(loaded.scene, common);
   studies::MemoryCase sizes =
       studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
+  if (!loaded.effects.solution) {
+    sizes.solves = false;
+    sizes.columns = 0;
+  }
   studies::expect_rows(sizes, loaded.scene, query, solver);
   report["memory"] = memory_json(studies::memory_needed(sizes));
-  for (std::size_t k = 0; k < loaded.scene.cameras.size(); ++k) {
-    raytrace::RenderOptions picture =
-        raytrace::render_options(scenes::resolve_quality(loaded.scene));
-    picture.columns = loaded.scene.cameras[k].columns;
-    picture.rows = loaded.scene.cameras[k].rows;
+  for (std::size_t k = 0; k < asked.cameras.size(); ++k) {
     studies::MemoryCase with_picture = sizes;
-    studies::add_picture(with_picture, loaded.groups, loaded.effects, picture);
+    studies::add_picture(with_picture, loaded.groups, loaded.effects,
+                         picture_options(call, common, loaded, *asked.cameras[k]));
     report["images"][k]["memory"] = memory_json(studies::memory_needed(with_picture));
   }
 }
 
-Json report_of(const LoadedScene& loaded) {
+void add_seconds(Json& report, const LoadedScene& loaded, const RenderCall& call,
+                 const Common& common, const scenes::Asked& asked, const scenes::RayQuery& query) {
+  const Expectation expected = expect(loaded, call, common, asked, query);
+  add_expectation(report["effects"], expected);
+  const studies::Bill& bill = expected.pilot.bill;
+  double pictures = 0.0;
+  for (std::size_t k = 0; k < bill.pictures.size(); ++k) {
+    report["images"][k]["rays"] = bill.pictures[k].rays.total();
+    report["images"][k]["seconds"] = bill.pictures[k].seconds;
+    pictures += bill.pictures[k].seconds;
+  }
+  report["expected"] = {{"seconds", studies::total_seconds(bill)},
+                        {"solve_seconds", studies::total_seconds(bill) - pictures},
+                        {"patches", bill.solve.patches},
+                        {"pilot_seconds", expected.pilot.seconds}};
+}
+
+Json report_of(const RenderCall& call, const Common& common) {
+  LoadedScene loaded = load(call.scene, common.quiet);
+  const scenes::Asked asked = asked_of(call, planned_cameras(call, loaded.scene));
+  const std::vector<scenes::Idle> idle = decide_effects(loaded, call, asked);
   const scenes::QualityKnobs knobs = scenes::resolve_quality(loaded.scene);
   const auto rays_per_patch = std::bit_ceil(static_cast<std::uint64_t>(knobs.form_factor_rays));
-  const bool lit = loaded.groups.count() > 0;
   const bool refines = knobs.refine && radiosity::is_lit(loaded.effects);
   const std::size_t patches =
       refines ? radiosity::most_refined_patches(loaded.scene, solve_options(loaded.scene, {}))
               : radiosity::count_patches(loaded.scene, knobs.patch_edge_m);
-  const bool solves = lit && loaded.effects.interreflection;
+  const bool solves = loaded.effects.solution;
   Json report;
   report["scene"] = loaded.scene.path.string();
   report["name"] = loaded.scene.name;
-  report["effects"] = effects_of(loaded);
+  report["effects"] = effect_rows(loaded, call, asked, idle);
   report["light_groups"] = loaded.groups.names;
   report["quality"] = {{"patch_edge_m", knobs.patch_edge_m},
                        {"refine", knobs.refine},
@@ -96,19 +111,18 @@ Json report_of(const LoadedScene& loaded) {
   report["patches_at_most"] = refines;
   report["rays"] = solves ? patches * rays_per_patch : 0;
   report["right_hand_sides"] = 3 * loaded.groups.count();
-  report["images"] =
-      images_of(loaded.scene, solves ? static_cast<std::uint64_t>(knobs.gather_rays) : 0);
-  add_memory(report, loaded);
+  report["images"] = images_of(loaded.scene, call, asked,
+                               solves ? static_cast<std::uint64_t>(knobs.gather_rays) : 0);
+  const scenes::RayQuery query(loaded.scene);
+  add_memory(report, loaded, call, common, asked, query);
+  add_seconds(report, loaded, call, common, asked, query);
   return report;
 }
 
 std::string text_of(const Json& report) {
   std::string text = fmt::format("{} ({})\n\n", report["name"].get<std::string>(),
                                  report["scene"].get<std::string>());
-  for (const Json& row : report["effects"]) {
-    text += fmt::format("  {:<4} {:<18} {}\n", row["runs"].get<bool>() ? "yes" : "no",
-                        row["effect"].get<std::string>(), row["why"].get<std::string>());
-  }
+  text += effect_text(report["effects"]);
   const Json& quality = report["quality"];
   const bool refines = report["patches_at_most"].get<bool>();
   text += fmt::format(
@@ -122,12 +136,16 @@ std::string text_of(const Json& report) {
                       quality["solver_tolerance"].get<double>());
   text += std::string("memory of the solution: ") + (refines ? "at most " : "") +
           memory_text(report["memory"]) + "\n";
+  text += fmt::format("expected on this machine: {}, of them {} for the solution of {} patches\n",
+                      duration(report["expected"]["seconds"].get<double>()),
+                      duration(report["expected"]["solve_seconds"].get<double>()),
+                      report["expected"]["patches"].get<std::size_t>());
   for (const Json& image : report["images"]) {
-    text += fmt::format("camera {}: {} x {} pixels, {} gather rays, {:.0f} MiB in all\n",
-                        image["camera"].get<std::string>(), image["resolution"][0].get<int>(),
-                        image["resolution"][1].get<int>(),
-                        short_count(image["gather_rays"].get<double>()),
-                        image["memory"]["total_mib"].get<double>());
+    text += fmt::format(
+        "camera {}: {} x {} pixels, {} gather rays, {}, {:.0f} MiB in all\n",
+        image["camera"].get<std::string>(), image["resolution"][0].get<int>(),
+        image["resolution"][1].get<int>(), short_count(image["gather_rays"].get<double>()),
+        duration(image["seconds"].get<double>()), image["memory"]["total_mib"].get<double>());
     const auto stages = image["cctv_stages"].get<std::vector<std::string>>();
     if (!stages.empty()) text += fmt::format("  cctv: {}\n", fmt::join(stages, ", "));
   }
@@ -139,11 +157,16 @@ std::string text_of(const Json& report) {
 Command add_plan(CLI::App& program) {
   CLI::App* parser = program.add_subcommand(
       "plan", "Which effects will run, which not and why, and how many rays");
-  const auto call = std::make_shared<PlanCall>();
+  const auto call = std::make_shared<RenderCall>();
   add_scene_options(*parser, call->scene);
+  add_picture_options(*parser, *call);
+  parser->add_flag_callback(
+      "--cctv", [call] { call->cctv = "asked"; },
+      "As if the pictures on the CCTV monitors were asked for");
   parser->add_flag("--json", call->json, "JSON on standard output");
   return {parser, [call](const Common& common) {
-            const Json report = report_of(load(call->scene, common.quiet));
+            check_aovs(*call);
+            const Json report = report_of(*call, common);
             print(call->json ? dump(report) : text_of(report));
           }};
 }

@@ -9,6 +9,7 @@
 
 #include "app/cctv.h"
 #include "app/console.h"
+#include "app/effect_table.h"
 #include "app/interrupt.h"
 #include "app/memory.h"
 #include "app/provenance.h"
@@ -17,6 +18,7 @@
 #include "app/solution.h"
 #include "app/study.h"
 #include "base/error.h"
+#include "base/output_file.h"
 #include "base/png_file.h"
 #include "raytrace/camera_check.h"
 
@@ -27,12 +29,7 @@ using base::Blame;
 using base::Error;
 
 void check_call(const RenderCall& call) {
-  for (const std::string& name : call.aovs) {
-    const std::vector<std::string>& known = raytrace::aov_names();
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    throw Error(Blame::Input, "--aov", "there is no layer \"" + name + "\"",
-                fmt::format("the layers are {}", fmt::join(known, ", ")));
-  }
+  check_aovs(call);
   const auto check_ending = [](const std::string& path, std::string_view option,
                                std::string_view ending) {
     if (path.empty() || path.ends_with(ending) || path.starts_with("/dev/")) return;
@@ -43,6 +40,7 @@ void check_call(const RenderCall& call) {
   check_ending(call.png, "--png", ".png");
   check_ending(call.cctv, "--cctv", ".png");
   check_ending(call.range, "--range", ".exr");
+  check_ending(call.report, "--report", ".json");
   check_over(call);
   const bool range_alone = !call.range.empty() && call.png.empty() && call.cctv.empty();
   if (call.output.empty() && !call.only_pixel && !call.over.asked() && !range_alone) {
@@ -81,28 +79,6 @@ std::string with_camera(const std::string& path, const std::string& camera) {
       .string();
 }
 
-// Names, lists of names with commas between, or "all".
-std::vector<const scenes::Camera*> wanted_cameras(const std::vector<std::string>& texts,
-                                                  const scenes::Scene& scene) {
-  std::vector<const scenes::Camera*> cameras;
-  const auto is_name = [&scene](const std::string& text) {
-    return std::any_of(scene.cameras.begin(), scene.cameras.end(),
-                       [&text](const scenes::Camera& camera) { return camera.name == text; });
-  };
-  for (const std::string& text : texts) {
-    if (text == "all" && !is_name(text)) {
-      for (const scenes::Camera& camera : scene.cameras) cameras.push_back(&camera);
-      continue;
-    }
-    for (const std::string& name :
-         is_name(text) ? std::vector<std::string>{text} : split_at_commas(text)) {
-      cameras.push_back(&choose_camera(scene, name));
-    }
-  }
-  if (cameras.empty()) cameras.push_back(&choose_camera(scene, ""));
-  return cameras;
-}
-
 struct Wanted {
   const scenes::Camera* camera;
   PictureFiles files;
@@ -132,8 +108,15 @@ std::vector<Wanted> wanted_pictures(const RenderCall& call, const scenes::Scene&
                                    picture.files.range});
     wanted.push_back(std::move(picture));
   }
+  outputs.push_back(call.report);
   check_outputs(outputs, {scene.path.string(), call.solution, call.over.photo});
   return wanted;
+}
+
+std::vector<const scenes::Camera*> cameras_of(const std::vector<Wanted>& pictures) {
+  std::vector<const scenes::Camera*> cameras;
+  for (const Wanted& picture : pictures) cameras.push_back(picture.camera);
+  return cameras;
 }
 
 // With a time limit and no word on accuracy the solve gets about a third of the time: a coarse one
@@ -165,7 +148,10 @@ Solved find_light(const RenderCall& call, const Common& common, const LoadedScen
   Solved light;
   light.solver = solve_options(loaded.scene, common);
   if (call.indirect != raytrace::Indirect::Radiosity) return light;
-  if (loaded.groups.count() == 0) note("note: nothing gives light, the picture is black");
+  if (!loaded.effects.solution && call.solution.empty()) {
+    if (loaded.groups.count() == 0) note("note: nothing gives light, the picture is black");
+    return light;
+  }
   if (call.time_limit_s > 0.0 && call.solution.empty() && !says_how_exact(loaded.scene.quality)) {
     light = solve_within(loaded, query, common, call.time_limit_s, times);
   } else {
@@ -179,8 +165,10 @@ Solved find_light(const RenderCall& call, const Common& common, const LoadedScen
 void run(RenderCall call, const Common& common) {
   check_call(call);
   StageTimes times;
-  const LoadedScene loaded = times.measure("read", [&] { return load(call.scene, common.quiet); });
+  LoadedScene loaded = times.measure("read", [&] { return load(call.scene, common.quiet); });
   const std::vector<Wanted> pictures = wanted_pictures(call, loaded.scene, common.quiet);
+  const scenes::Asked asked = asked_of(call, cameras_of(pictures));
+  const std::vector<scenes::Idle> idle = decide_effects(loaded, call, asked);
   const scenes::RayQuery query =
       times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
   for (const Wanted& picture : pictures) {
@@ -211,9 +199,14 @@ void run(RenderCall call, const Common& common) {
     check_memory(loaded, query, solve_options(loaded.scene, common), &options,
                  call.solution.empty());
   }
+  std::optional<Expectation> expected;
+  if (!call.report.empty()) {
+    expected = times.measure("pilot", [&] { return expect(loaded, call, common, asked, query); });
+  }
   const Solved light = find_light(call, common, loaded, query, times);
   Studio studio{call, common, loaded, query, light};
   Json reports = Json::array();
+  std::vector<Picture> taken;
   bool whole = true;
   {
     const Interrupt interrupt;
@@ -226,8 +219,13 @@ void run(RenderCall call, const Common& common) {
       times.add({{"pictures", picture.report["seconds"]["render"].get<double>()}});
       whole = picture.whole;
       if (!call.range.empty()) picture.report["range"] = ranges[k]["range"];
-      reports.push_back(std::move(picture.report));
+      reports.push_back(picture.report);
+      taken.push_back(std::move(picture));
     }
+  }
+  if (expected) {
+    base::write_text(call.report, dump(report_json(loaded, call, asked, idle, *expected,
+                                                   light.solution.report, taken, times)));
   }
   if (call.json) print(dump(reports.size() == 1 ? reports.front() : reports));
   if (whole) return;
@@ -250,22 +248,12 @@ Command add_render(CLI::App& program) {
   file_option("--cctv", call->cctv, "Also the picture on the camera's CCTV monitor (PNG)");
   file_option("--range", call->range,
               "Also, or alone, what the camera's range sensor reports (OpenEXR)");
-  parser
-      ->add_option("--camera", call->cameras,
-                   "Cameras of the scene (default: its first): A or A,B or all; with several, "
-                   "files are called FILE-A, FILE-B")
-      ->type_name("NAME");
-  add_size_option(*parser, call->size);
+  file_option("--report", call->report,
+              "Also the plan's table with what each effect really took, as JSON");
   add_over_options(*parser, call->over);
   add_window_options(*parser, *call);
   add_solution_option(*parser, call->solution);
-  add_indirect_options(*parser, *call);
-  parser
-      ->add_option_function<std::string>(
-          "--aov", [call](const std::string& text) { call->aovs = split_at_commas(text); },
-          fmt::format("Further layers, of {}", fmt::join(raytrace::aov_names(), ",")))
-      ->type_name("LIST");
-  parser->add_flag("--per-light", call->per_light, "One layer per light group: light_<group>.R …");
+  add_picture_options(*parser, *call);
   parser->add_flag("--timings", call->timings,
                    "Write seconds per stage into the EXR header (bytes then differ between runs)");
   parser->add_flag("--json", call->json, "Report as JSON on standard output");

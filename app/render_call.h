@@ -10,13 +10,14 @@
 #include "app/over.h"
 #include "radiosity/solution.h"
 #include "raytrace/render.h"
+#include "scenes/idle.h"
 #include "scenes/ray_query.h"
 
 namespace earthshine::app {
 
 struct RenderCall {
   SceneInput scene;
-  std::string output, png, cctv, range, solution;
+  std::string output, png, cctv, range, solution, report;
   std::vector<std::string> cameras;  // empty: the scene's first
   std::optional<Size> size;
   std::optional<raytrace::Window> crop;  // one pixel with only_pixel
@@ -27,6 +28,7 @@ struct RenderCall {
   std::string distributed_over;  // [[area]] of the scene; empty: none
   std::vector<std::string> aovs;
   bool per_light = false, timings = false, json = false;
+  bool all_effects = false;  // also those that cannot matter
   OverCall over;
   std::optional<base::Picture8> photo;  // of --over, once it is read
 
@@ -38,8 +40,24 @@ struct RenderCall {
 
 // --crop, --only-pixel, --time-limit.
 void add_window_options(CLI::App& parser, RenderCall& call);
-// --indirect and what belongs to its ways.
-void add_indirect_options(CLI::App& parser, RenderCall& call);
+// --camera, --size, --aov, --per-light, --indirect and what belongs to its ways: what a picture's
+// cost depends on.
+void add_picture_options(CLI::App& parser, RenderCall& call);
+// Throws base::Error (Input) for a layer that is not known.
+void check_aovs(const RenderCall& call);
+
+// Names, lists of names with commas between, or "all"; the first of the scene if there are none.
+[[nodiscard]] std::vector<const scenes::Camera*> wanted_cameras(
+    const std::vector<std::string>& texts, const scenes::Scene& scene);
+
+// Decides about the effects for the call; those that cannot matter are switched off and returned,
+// unless the call wants all of them, paths as a reference, or a solution that is there already.
+[[nodiscard]] std::vector<scenes::Idle> decide_effects(LoadedScene& loaded, const RenderCall& call,
+                                                       const scenes::Asked& asked);
+
+// What the call asks of the scene, which decides with it about the effects.
+[[nodiscard]] scenes::Asked asked_of(const RenderCall& call,
+                                     std::vector<const scenes::Camera*> cameras);
 
 // The light of the scene, for all of its cameras.
 struct Solved {
@@ -72,6 +90,8 @@ struct PictureFiles {
 struct Picture {
   Json report;
   bool whole = true;
+  raytrace::RenderReport rendered;
+  StageTimes times;  // of the whole call so far and of this picture
 };
 [[nodiscard]] Picture take_picture(const Studio& studio, const scenes::Camera& camera,
                                    const PictureFiles& files, StageTimes times);

@@ -2,6 +2,7 @@
 #include "radiosity/direct.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -131,15 +132,20 @@ DirectLight direct_light(const scenes::Scene& scene, const scenes::LightGroups& 
   DirectStage stage(scene, query, patches, factors.open, options, light);
   if (effects.earth_by_gather) stage.store(factors.sky_illuminance, groups.earth, 1.0);
   for (LightSource& light_source : find_sources(scene, groups, effects, options.points_per_patch)) {
-    if (!light_source.emit) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::uint64_t before = light.shadow_rays;
+    if (light_source.emit) {
+      SourceFlux flux;
+      flux.name = std::move(light_source.name);
+      flux.group = light_source.source.group;
+      flux.emitted_lm = light_source.flux_lm;
+      stage.add(light_source.source, std::move(flux), light_source.emit);
+    } else {
       stage.add(light_source.source);
-      continue;
     }
-    SourceFlux flux;
-    flux.name = std::move(light_source.name);
-    flux.group = light_source.source.group;
-    flux.emitted_lm = light_source.flux_lm;
-    stage.add(light_source.source, std::move(flux), light_source.emit);
+    SourceCost& cost = light.cost[static_cast<std::size_t>(light_source.kind)];
+    cost.rays += light.shadow_rays - before;
+    cost.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
   return light;
 }

@@ -4,6 +4,7 @@
 // channel).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -27,11 +28,18 @@ struct SourceFlux {
   double scale = 1.0;            // applied to the patches' sampled illuminance
 };
 
+// What finding the light of one kind of source took.
+struct SourceCost {
+  std::uint64_t rays = 0;
+  double seconds = 0.0;  // wall
+};
+
 struct DirectLight {
   std::size_t columns = 0;             // 3 * groups
   std::vector<double> illuminance_lx;  // patch * columns + 3 * group + channel
   std::vector<SourceFlux> sources;
   std::uint64_t shadow_rays = 0;
+  std::array<SourceCost, scenes::light_kinds> cost{};  // by LightKind
 };
 
 struct DirectOptions {

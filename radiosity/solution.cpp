@@ -192,6 +192,7 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   direct_options.seed = options.seed;
   DirectLight light = direct_light(scene, groups, effects, query, patches, factors, direct_options);
   report.shadow_rays = light.shadow_rays;
+  report.sources_cost = light.cost;
   report.sources = std::move(light.sources);
   watch.lap("direct light");
 

@@ -3,6 +3,7 @@
 //   B = M + rho (E0 + F B)      (docs/theory.md; symbols of the project's physics)
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -66,6 +67,7 @@ struct SolveReport {
   std::uint64_t refinement_rays = 0;
   std::uint64_t form_factor_rays = 0;
   std::uint64_t shadow_rays = 0;
+  std::array<SourceCost, scenes::light_kinds> sources_cost{};  // by LightKind; not of a read file
   std::size_t nonzeros = 0;
   int iterations = 0;
   double residual = 0.0;      // worst relative residual over the right-hand sides

@@ -59,11 +59,11 @@ LightSource lamp_source(const scenes::Lamp& lamp, std::uint64_t key, std::size_t
           }};
 }
 
-LightSource emitter_source(const scenes::Scene& scene, std::size_t material, std::size_t group,
-                           int points) {
+LightSource emitter_source(const scenes::Scene& scene, std::size_t material, std::uint64_t key,
+                           std::size_t group, int points) {
   const auto emitters = std::make_shared<const scenes::EmitterSet>(scene, material);
   Source source;
-  source.key = (std::uint64_t{1} << 32) + material;
+  source.key = key;
   source.group = group;
   source.points = 4 * points;
   source.sample = [emitters](const Vec3& point, double u, double v) {
@@ -79,27 +79,41 @@ LightSource emitter_source(const scenes::Scene& scene, std::size_t material, std
 std::vector<LightSource> find_sources(const scenes::Scene& scene, const scenes::LightGroups& groups,
                                       const scenes::Effects& effects, int points) {
   std::vector<LightSource> sources;
-  if (effects.sun) sources.push_back(sun_source(scene, groups.sun, points));
+  const auto add = [&sources](LightSource source, scenes::LightKind kind) {
+    source.kind = kind;
+    sources.push_back(std::move(source));
+  };
+  if (effects.sun) add(sun_source(scene, groups.sun, points), scenes::LightKind::Sun);
   if (effects.earth && !effects.earth_by_gather) {
-    sources.push_back(earth_source(scene, groups.earth, points));
+    add(earth_source(scene, groups.earth, points), scenes::LightKind::Earth);
   }
+  // Keys count what shines: one that is off does not change the others' samples.
   std::vector<std::vector<std::size_t>> lamps(groups.count());
+  std::vector<std::uint64_t> key(scene.lamps.size(), 0);
+  std::uint64_t next_key = 16;
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
-    if (groups.lamp[k] != scenes::no_group) lamps[groups.lamp[k]].push_back(k);
+    if (groups.lamp[k] == scenes::no_group) continue;
+    lamps[groups.lamp[k]].push_back(k);
+    key[k] = next_key++;
   }
   for (std::size_t g = 0; g < lamps.size(); ++g) {
     if (lamps[g].size() < fewest_in_crowd) continue;
-    sources.push_back(crowd_source(scene, lamps[g], 16 + lamps[g][0], g, points));
+    const std::size_t first = lamps[g][0];
+    add(crowd_source(scene, lamps[g], key[first], g, points),
+        scenes::kind_of(scene.lamps[first].kind));
   }
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
     if (groups.lamp[k] == scenes::no_group) continue;
     if (lamps[groups.lamp[k]].size() >= fewest_in_crowd) continue;
-    sources.push_back(lamp_source(scene.lamps[k], 16 + k, groups.lamp[k], points));
+    add(lamp_source(scene.lamps[k], key[k], groups.lamp[k], points),
+        scenes::kind_of(scene.lamps[k].kind));
   }
   const std::vector<bool> is_explicit = emitter_is_explicit(scene);
+  std::uint64_t emitter_key = std::uint64_t{1} << 32;
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     if (!is_explicit[m] || groups.material[m] == scenes::no_group) continue;
-    sources.push_back(emitter_source(scene, m, groups.material[m], points));
+    add(emitter_source(scene, m, emitter_key++, groups.material[m], points),
+        scenes::LightKind::Emitter);
   }
   return sources;
 }

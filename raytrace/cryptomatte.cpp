@@ -2,6 +2,7 @@
 #include "raytrace/cryptomatte.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 
 #include "base/parallel.h"
@@ -177,11 +178,12 @@ void cover(const scenes::RayQuery& query, const CameraModel& camera, const Pixel
 
 }  // namespace
 
-void fill_cryptomatte(const scenes::Scene& scene, const scenes::RayQuery& query,
-                      const CameraModel& camera, const CoverageSamples& samples,
-                      base::Image& image) {
+std::uint64_t fill_cryptomatte(const scenes::Scene& scene, const scenes::RayQuery& query,
+                               const CameraModel& camera, const CoverageSamples& samples,
+                               base::Image& image) {
   const CryptomatteLayers layers(scene, image);
-  if (layers.empty()) return;
+  if (layers.empty()) return 0;
+  std::atomic<std::uint64_t> rays = 0;
   const Window& window = samples.wanted;
   base::parallel_chunks(
       static_cast<std::size_t>(window.rows), 8, [&](std::size_t begin, std::size_t end) {
@@ -195,12 +197,14 @@ void fill_cryptomatte(const scenes::Scene& scene, const scenes::RayQuery& query,
                 static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(camera.columns) +
                 static_cast<std::uint64_t>(x);
             const base::SobolOwen4 points(base::Key(samples.seed, base::Stream::Pixel, number));
+            rays += std::max(count, least_samples);
             cover(query, camera, samples.filter, points, x, y, std::max(count, least_samples),
                   writer);
             writer.store(window.index(x, y));
           }
         }
       });
+  return rays;
 }
 
 }  // namespace earthshine::raytrace

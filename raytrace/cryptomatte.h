@@ -113,9 +113,9 @@ struct CoverageSamples {
 
 // Fills the Cryptomatte channels that `image`, the wanted window, has, by casting the picture's own
 // camera samples once more, at least sixteen for each finished pixel. (How many a pixel has is
-// known only in the end, and rays without light are cheap.)
-void fill_cryptomatte(const scenes::Scene& scene, const scenes::RayQuery& query,
-                      const CameraModel& camera, const CoverageSamples& samples,
-                      base::Image& image);
+// known only in the end, and rays without light are cheap.) Returns the rays cast.
+std::uint64_t fill_cryptomatte(const scenes::Scene& scene, const scenes::RayQuery& query,
+                               const CameraModel& camera, const CoverageSamples& samples,
+                               base::Image& image);
 
 }  // namespace earthshine::raytrace

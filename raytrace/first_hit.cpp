@@ -119,10 +119,10 @@ const std::vector<FirstHitLayer>& first_hit_layers() {
   return table;
 }
 
-void fill_first_hit(const scenes::Scene& scene, const scenes::RayQuery& query,
-                    const CameraModel& camera, const Window& window, base::Image& image) {
+std::uint64_t fill_first_hit(const scenes::Scene& scene, const scenes::RayQuery& query,
+                             const CameraModel& camera, const Window& window, base::Image& image) {
   const std::vector<Filled> filled = channels_to_fill(image);
-  if (filled.empty()) return;
+  if (filled.empty()) return 0;
   base::parallel_chunks(
       static_cast<std::size_t>(window.rows), 8, [&](std::size_t begin, std::size_t end) {
         for (int y = window.y + static_cast<int>(begin); y < window.y + static_cast<int>(end);
@@ -137,6 +137,7 @@ void fill_first_hit(const scenes::Scene& scene, const scenes::RayQuery& query,
           }
         }
       });
+  return window.pixel_count();
 }
 
 }  // namespace earthshine::raytrace

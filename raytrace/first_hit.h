@@ -27,8 +27,8 @@ struct FirstHitLayer {
 [[nodiscard]] const std::vector<FirstHitLayer>& first_hit_layers();
 
 // Fills those channels that `image`, `window` of the camera's picture, has. Places are worked out
-// in double precision and rounded once.
-void fill_first_hit(const scenes::Scene& scene, const scenes::RayQuery& query,
-                    const CameraModel& camera, const Window& window, base::Image& image);
+// in double precision and rounded once. Returns the rays cast.
+std::uint64_t fill_first_hit(const scenes::Scene& scene, const scenes::RayQuery& query,
+                             const CameraModel& camera, const Window& window, base::Image& image);
 
 }  // namespace earthshine::raytrace

@@ -2,26 +2,49 @@
 // What a render gives: named layers and a report.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "base/image.h"
 #include "raytrace/camera.h"
+#include "scenes/effects.h"
 
 namespace earthshine::raytrace {
 
+// Each ray counts once, as what it was cast for. A lens has no rays of its own: camera rays start
+// on it.
 struct RayCounts {
-  std::uint64_t camera = 0, shadow = 0, gather = 0, lobe = 0, mirror = 0;
+  std::uint64_t camera = 0;
+  std::uint64_t shadow = 0;                                   // all of them
+  std::array<std::uint64_t, scenes::light_kinds> to_light{};  // shadow by LightKind
+  std::uint64_t gather = 0;      // over the hemisphere of diffuse surfaces
+  std::uint64_t lobe = 0;        // over the lobe of glossy ones
+  std::uint64_t mirror = 0;      // on from mirrors, whatever ray met them
+  std::uint64_t refraction = 0;  // on from glass
+  std::uint64_t planning = 0;    // of the look ahead, all kinds together
+  std::uint64_t layers = 0;      // for layers alone
+
+  void add_shadow(scenes::LightKind kind, std::uint64_t count = 1) {
+    shadow += count;
+    to_light[static_cast<std::size_t>(kind)] += count;
+  }
   RayCounts& operator+=(const RayCounts& other) {
     camera += other.camera;
     shadow += other.shadow;
     gather += other.gather;
     lobe += other.lobe;
     mirror += other.mirror;
+    refraction += other.refraction;
+    planning += other.planning;
+    layers += other.layers;
+    for (std::size_t k = 0; k < to_light.size(); ++k) to_light[k] += other.to_light[k];
     return *this;
   }
-  [[nodiscard]] std::uint64_t total() const { return camera + shadow + gather + lobe + mirror; }
+  [[nodiscard]] std::uint64_t total() const {
+    return camera + shadow + gather + lobe + mirror + refraction + planning + layers;
+  }
 };
 
 struct RenderReport {

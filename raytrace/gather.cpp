@@ -109,6 +109,7 @@ void PixelShader::flush_shadow() {
   if (shadow_count_ == 0) return;
   const std::uint32_t hidden = shared_.query.occluded(shadow_packet_, shadow_count_);
   for (std::size_t k = 0; k < shadow_count_; ++k) {
+    rays_.add_shadow(shadow_rays_[k].kind);
     if (((hidden >> k) & 1U) != 0) continue;
     const ShadowRay& ray = shadow_rays_[k];
     add(ray.layer, ray.sample, ray.by_camera ? Part::Direct : Part::Specular, ray.value);
@@ -117,7 +118,6 @@ void PixelShader::flush_shadow() {
       sums_[shared_.layers + static_cast<std::size_t>(Part::Specular)] += ray.specular;
     }
   }
-  rays_.shadow += shadow_count_;
   shadow_count_ = 0;
 }
 
@@ -135,7 +135,7 @@ void PixelShader::flush_gather() {
     const GatherRay& ray = gather_rays_[k];
     std::fill(scratch_.begin(), scratch_.end(), Rgb(0.0));
     const scenes::Hit hit{hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0};
-    shared_.incoming.add(hit, ray.direction, ray.share, ray.weight, scratch_, rays_.mirror);
+    shared_.incoming.add(hit, ray.direction, ray.share, ray.weight, scratch_, rays_);
     // What came straight from the sky reached the surface directly.
     const Part part = ray.part == Part::Indirect && hit.missed() ? Part::Direct : ray.part;
     for (std::size_t layer = 0; layer < shared_.layers; ++layer) {

@@ -20,7 +20,8 @@ constexpr std::size_t width = RayPacket::width;
 struct TileSums {
   std::vector<Rgb> radiance;  // point * layers
   std::array<double, most_tile_points> inverse_length{}, luminance{}, luminance2{};
-  std::uint64_t rays = 0, mirror_rays = 0;
+  std::uint64_t rays = 0;
+  RayCounts onward;
 };
 
 class Gatherer {
@@ -93,7 +94,7 @@ class Gatherer {
              double weight) {
     const std::span<Rgb> out(&sums_.radiance[k * layers_], layers_);
     const double before = luminance_of(out);
-    incoming_.add(hit, direction, share, Rgb(weight), out, sums_.mirror_rays);
+    incoming_.add(hit, direction, share, Rgb(weight), out, sums_.onward);
     const double brought = luminance_of(out) - before;
     sums_.luminance[k] += brought;
     sums_.luminance2[k] += brought * brought;
@@ -192,7 +193,7 @@ void cast_tiles(GatherField& field, const std::vector<std::uint8_t>* marks,
     }
     const std::lock_guard lock(mutex);
     field.gather_rays += sums.rays;
-    field.mirror_rays += sums.mirror_rays;
+    field.onward += sums.onward;
     field.camera_rays += tile.pixel_count();
     if (options.progress) options.progress(++done, tiles);
   });

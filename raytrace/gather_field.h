@@ -34,7 +34,8 @@ struct GatherField {
   std::vector<GatherPoint> points;   // row by row
   std::vector<glm::vec3> radiance;   // points * layers, cd/m^2
   std::vector<float> squared_error;  // per point, of the luminance of all image layers together
-  std::uint64_t gather_rays = 0, mirror_rays = 0, camera_rays = 0;
+  std::uint64_t gather_rays = 0, camera_rays = 0;
+  RayCounts onward;  // from mirrors and glass
 
   // A point whose irradiance may stand for the surface point that pixel (x, y) meets: the pixel's
   // own, or the nearest that lies on the same surface within two pixels; no_point if there is none.

@@ -24,7 +24,7 @@ void IncomingLight::see_sky(const Vec3& direction, const Rgb& weight, std::span<
 }
 
 void IncomingLight::follow_specular(scenes::Hit hit, Vec3 direction, Rgb weight, std::span<Rgb> out,
-                                    std::uint64_t& specular_rays) const {
+                                    RayCounts& rays) const {
   for (int step = 0; step < most_specular_steps; ++step) {
     const scenes::Material& material = scene_.materials[scene_.triangles[hit.triangle].material];
     const bool glass = base::max_component(material.transmit) > 0.0;
@@ -34,7 +34,7 @@ void IncomingLight::follow_specular(scenes::Hit hit, Vec3 direction, Rgb weight,
         scenes::specular_step(scene_, hit, direction, query_.surface_offset_m());
     direction = on.direction;
     hit = query_.closest(on.origin, direction);
-    ++specular_rays;
+    ++(glass ? rays.refraction : rays.mirror);
     if (hit.missed()) return see_sky(direction, weight, out, false);
     if (!table_.empty()) table_.add(hit, weight, out);
   }
@@ -54,7 +54,7 @@ double IncomingLight::kept_part(const scenes::Hit& hit, const Vec3& direction,
 }
 
 void IncomingLight::add(const scenes::Hit& hit, const Vec3& direction, const RayShare& share,
-                        const Rgb& weight, std::span<Rgb> out, std::uint64_t& specular_rays) const {
+                        const Rgb& weight, std::span<Rgb> out, RayCounts& rays) const {
   const bool aimed = share.aimed_at != radiosity::no_patch;
   if (hit.missed()) {
     if (!aimed) see_sky(direction, weight, out, true);
@@ -62,7 +62,7 @@ void IncomingLight::add(const scenes::Hit& hit, const Vec3& direction, const Ray
   }
   if (!table_.empty()) table_.add(hit, weight * kept_part(hit, direction, share), out);
   // Rays aimed at a patch are for what the patch itself sends.
-  if (follows_specular_ && !aimed) follow_specular(hit, direction, weight, out, specular_rays);
+  if (follows_specular_ && !aimed) follow_specular(hit, direction, weight, out, rays);
 }
 
 IncomingLight::Aimed IncomingLight::aim(const Vec3& origin, const Vec3& normal, double choice,

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "raytrace/bright_patches.h"
+#include "raytrace/frame.h"
 #include "raytrace/radiance_table.h"
 #include "scenes/effects.h"
 #include "scenes/light_groups.h"
@@ -39,9 +40,9 @@ class IncomingLight {
 
   // Adds weight * radiance along the ray to out[0 .. layers); if out is one longer, what came
   // straight from the sky is added to its last entry as well.
-  // specular_rays counts the rays beyond mirrors and glass.
+  // Rays that go on from mirrors and glass are counted in `rays`.
   void add(const scenes::Hit& hit, const Vec3& direction, const RayShare& share, const Rgb& weight,
-           std::span<Rgb> out, std::uint64_t& specular_rays) const;
+           std::span<Rgb> out, RayCounts& rays) const;
 
   [[nodiscard]] const BrightPatches& bright() const { return bright_; }
 
@@ -59,7 +60,7 @@ class IncomingLight {
  private:
   void see_sky(const Vec3& direction, const Rgb& weight, std::span<Rgb> out, bool straight) const;
   void follow_specular(scenes::Hit hit, Vec3 direction, Rgb weight, std::span<Rgb> out,
-                       std::uint64_t& specular_rays) const;
+                       RayCounts& rays) const;
   [[nodiscard]] double kept_part(const scenes::Hit& hit, const Vec3& direction,
                                  const RayShare& share) const;
 

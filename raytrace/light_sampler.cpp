@@ -86,6 +86,22 @@ scenes::LightTree LightSampler::tree_of(const std::vector<std::size_t>& lamps) c
   return scenes::LightTree(bounds);
 }
 
+scenes::LightKind LightSampler::kind(std::size_t index) const {
+  const Light& light = lights_[index];
+  switch (light.kind) {
+    case Kind::Sun:
+      return scenes::LightKind::Sun;
+    case Kind::Earth:
+    case Kind::EarthArea:
+      return scenes::LightKind::Earth;
+    case Kind::Lamp:
+      return scenes::kind_of(scene_.lamps[light.index].kind);
+    case Kind::Emitters:
+      break;
+  }
+  return scenes::LightKind::Emitter;
+}
+
 std::optional<LightSampler::SeenLamp> LightSampler::seen_lamp(const Vec3& origin,
                                                               const Vec3& direction,
                                                               double nearer_than_m) const {

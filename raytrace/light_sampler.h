@@ -41,6 +41,7 @@ class LightSampler {
 
   [[nodiscard]] std::size_t count() const { return lights_.size(); }
   [[nodiscard]] std::size_t group(std::size_t light) const { return lights_[light].group; }
+  [[nodiscard]] scenes::LightKind kind(std::size_t light) const;
   [[nodiscard]] scenes::LightSample sample(std::size_t light, const Vec3& point, double u,
                                            double v) const;
 

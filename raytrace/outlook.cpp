@@ -2,6 +2,7 @@
 #include "raytrace/outlook.h"
 
 #include <algorithm>
+#include <mutex>
 
 #include "base/parallel.h"
 
@@ -19,6 +20,8 @@ Outlook look_ahead(ShadingScene shared, const CameraModel& camera, int samples) 
   const int columns = (camera.columns + step - 1) / step, rows = (camera.rows + step - 1) / step;
   const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   std::vector<PixelSums> looks(count, PixelSums({0, 0, 1, 1}, shared.layers));
+  Outlook outlook;
+  std::mutex mutex;
   base::parallel_chunks(count, 16, [&](std::size_t begin, std::size_t end) {
     RayCounts rays;
     for (std::size_t k = begin; k < end; ++k) {
@@ -27,8 +30,9 @@ Outlook look_ahead(ShadingScene shared, const CameraModel& camera, int samples) 
       looks[k].window.y = std::min(camera.rows - 1, row * step + step / 2);
       shade_samples(shared, camera, {static_cast<std::uint32_t>(samples)}, looks[k], rays, {}, {});
     }
+    const std::lock_guard lock(mutex);
+    outlook.rays += rays;
   });
-  Outlook outlook;
   double pixels = 0.0;
   for (const PixelSums& look : looks) {
     if (look.source_samples[0] > 0) continue;

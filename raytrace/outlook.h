@@ -11,6 +11,7 @@ namespace earthshine::raytrace {
 // themselves are left out of the former.
 struct Outlook {
   double luminance = 0.0, deviation = 0.0;
+  RayCounts rays;  // that it took
   // From here on pixels count as bright (PixelSums::deviation).
   [[nodiscard]] double bright() const { return 4.0 * luminance; }
 };

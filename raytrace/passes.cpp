@@ -80,6 +80,7 @@ class Passes {
   PixelSums run_shared(RenderReport& report) {
     const SharedGather& how = options_.shared;
     const Outlook outlook = look_ahead(shared_, camera_, how.least_samples);
+    report.rays.planning += outlook.rays.total();
     // n = deviation / c gives a mean squared error of c times the mean deviation.
     const double wanted_error = how.noise * outlook.luminance;
     double per_deviation =
@@ -163,7 +164,7 @@ class Passes {
     shared_.diffuse = DiffuseSource::Field;
     shared_.field = &field_;
     report.rays.gather += field_.gather_rays;
-    report.rays.mirror += field_.mirror_rays;
+    report.rays += field_.onward;
     report.rays.camera += field_.camera_rays;
     report.gather_seconds = seconds_since(start);
   }

@@ -126,13 +126,14 @@ void PathWalker::light_directly(const Surface& surface) {
   scenes::RayPacket packet;
   std::array<Rgb, width> value;
   std::array<std::size_t, width> group{};
+  std::array<scenes::LightKind, width> kind{};
   std::size_t count = 0;
   const auto trace = [&] {
     const std::uint32_t hidden = count > 0 ? world_.query.occluded(packet, count) : 0;
     for (std::size_t k = 0; k < count; ++k) {
+      rays_.add_shadow(kind[k]);
       if (((hidden >> k) & 1U) == 0) add(group[k], value[k]);
     }
-    rays_.shadow += count;
     count = 0;
   };
   for (std::size_t k = 0; k < world_.lights.count(); ++k) {
@@ -151,6 +152,7 @@ void PathWalker::light_directly(const Surface& surface) {
     if (reach <= 0.0) continue;
     value[count] = reflectance * light.normal_illuminance_lx * (cosine / pi);
     group[count] = world_.lights.group(k);
+    kind[count] = world_.lights.kind(k);
     world_.query.set(packet, count, origin, light.direction, reach);
     if (++count == width) trace();
   }
@@ -194,7 +196,7 @@ void PathWalker::pass_on(const Surface& surface, bool through) {
   }
   ray_ = {surface.position + lift, direction};
   if (world_.paths == PathSet::All) sees_sampled_ = true;
-  ++rays_.mirror;
+  ++(through ? rays_.refraction : rays_.mirror);
 }
 
 void PathWalker::scatter(const Surface& surface, bool by_lobe) {

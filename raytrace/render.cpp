@@ -131,9 +131,10 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
 
   const PixelSums sums = sample_picture(shared, model, options, progress, frame.report);
   fill_layers(sums, layout, layers, window, frame.image);
-  fill_first_hit(scene, query, model, window, frame.image);
-  fill_cryptomatte(scene, query, model,
-                   {options.seed, window, sums.window, sums.samples, shared.filter}, frame.image);
+  frame.report.rays.layers += fill_first_hit(scene, query, model, window, frame.image);
+  frame.report.rays.layers += fill_cryptomatte(
+      scene, query, model, {options.seed, window, sums.window, sums.samples, shared.filter},
+      frame.image);
   summarise(sums, window, frame.report);
   frame.report.stopped = options.stop && options.stop();
   frame.report.seconds = std::chrono::duration<double>(Clock::now() - start).count();

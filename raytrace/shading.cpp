@@ -66,14 +66,15 @@ void PixelShader::add(std::size_t layer, std::size_t sample, Part part, const Rg
   sample_luminance_[sample - first_sample_] += base::luminance(radiance);
 }
 
-void PixelShader::trace(const Ray& ray, const Rgb& weight, int depth, Seen seen) {
+void PixelShader::trace(const Ray& ray, const Rgb& weight, int depth, Seen seen,
+                        std::uint64_t& counter) {
   Rgb kept = weight;
   if (depth >= roulette_depth) {
     const double survival = std::min(most_survival, base::max_component(weight));
     if (rng_.next() >= survival) return;
     kept /= survival;
   }
-  ++(seen == Seen::ByLobe ? rays_.lobe : rays_.mirror);
+  ++counter;
   shade(ray, shared_.query.closest(ray.origin, ray.direction), kept, depth, seen);
 }
 
@@ -170,9 +171,9 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
     if (!lit(value)) continue;
     const double reach = light.distance_m * (1.0 - 1e-5) - 2.0 * offset;
     if (reach <= 0.0) continue;
-    queue_shadow(
-        origin, light.direction, reach,
-        {value, incident * highlight, shared_.layer[shared_.lights.group(k)], sample_, depth == 0});
+    queue_shadow(origin, light.direction, reach,
+                 {value, incident * highlight, shared_.layer[shared_.lights.group(k)], sample_,
+                  depth == 0, shared_.lights.kind(k)});
   }
 }
 
@@ -193,7 +194,7 @@ void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
     if (cosine <= 0.0) continue;
     const Rgb value = weight * surface.material.specular * (2.0 * cosine / ((n + 1.0) * count));
     if (n >= sharp_lobe) {
-      trace({origin, direction}, value, depth + 1, Seen::ByLobe);
+      trace({origin, direction}, value, depth + 1, Seen::ByLobe, rays_.lobe);
     } else {
       ++rays_.lobe;
       queue_gather(origin, {direction, value, {}, Part::Specular, sample_});
@@ -224,10 +225,11 @@ void PixelShader::mirror_and_glass(const Ray& ray, const Surface& surface, const
     reflected *= goes_back ? 1.0 / share : 0.0;
     through *= goes_back ? 0.0 : 1.0 / (1.0 - share);
   }
-  if (lit(through)) trace({surface.position - lift, bent}, through, depth + 1, seen);
+  if (lit(through))
+    trace({surface.position - lift, bent}, through, depth + 1, seen, rays_.refraction);
   if (lit(reflected)) {
     trace({surface.position + lift, glm::reflect(ray.direction, surface.normal)}, reflected,
-          depth + 1, seen);
+          depth + 1, seen, rays_.mirror);
   }
 }
 

@@ -94,7 +94,8 @@ class PixelShader {
     Vec3 view;     // unit, toward the viewer
   };
 
-  void trace(const Ray& ray, const Rgb& weight, int depth, Seen seen);
+  // counter: the kind of ray it is.
+  void trace(const Ray& ray, const Rgb& weight, int depth, Seen seen, std::uint64_t& counter);
   void shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weight, int depth, Seen seen);
   void see_source(std::size_t group, const Rgb& radiance, int depth);
   void see_sky(const Vec3& direction, const Rgb& weight, int depth, Seen seen);
@@ -113,6 +114,7 @@ class PixelShader {
     Rgb specular{0.0};  // the part of it by a highlight
     std::size_t layer = 0, sample = 0;
     bool by_camera = true;  // at a surface that the camera sees itself
+    scenes::LightKind kind = scenes::LightKind::Sun;
   };
   void queue_shadow(const Vec3& origin, const Vec3& direction, double reach_m,
                     const ShadowRay& ray);

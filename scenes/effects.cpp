@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "scenes/sky.h"
-
 namespace earthshine::scenes {
 namespace {
 
@@ -19,98 +17,45 @@ bool worn_by_something(const Scene& scene, Value value) {
   });
 }
 
-bool any_lamp(const LightGroups& groups) {
-  return std::any_of(groups.lamp.begin(), groups.lamp.end(),
-                     [](std::size_t group) { return group != no_group; });
-}
-
-bool any_emitter(const LightGroups& groups) {
-  return std::any_of(groups.material.begin(), groups.material.end(),
-                     [](std::size_t group) { return group != no_group; });
-}
-
-std::string sun_reason(const Scene& scene, bool runs) {
-  if (!scene.sun) return "the scene has no [sun] and no [orbit]";
-  if (runs) return "the Sun is up";
-  if (visible_sun_share(scene) <= 0.0) return "the Sun is behind the Earth";
-  return "sun.illuminance is 0";
-}
-
-std::string earth_reason(const Scene& scene, bool runs) {
-  if (!scene.earth) return "the scene has no [earth] and no [orbit]";
-  if (runs) return "part of the Earth's disc shines";
-  return "the part of the Earth in view is dark";
-}
-
 }  // namespace
 
-Effects find_effects(const Scene& scene, const LightGroups& groups) {
+Effects find_effects(const Scene& scene, const LightGroups& groups, const Asked& asked) {
   Effects effects;
   effects.sun = groups.sun != no_group;
-  effects.penumbra = effects.sun && scene.sun->angular_radius_deg > 0.0;
+  // The report's lights have no extent.
+  effects.penumbra =
+      effects.sun && scene.sun->angular_radius_deg > 0.0 && asked.paths != LightPaths::Distributed;
   effects.earth = groups.earth != no_group;
-  effects.earth_by_gather = effects.earth && scene.earth->half_angle_deg >= wide_earth_deg;
-  effects.lamps = any_lamp(groups);
-  effects.emitters = any_emitter(groups);
+  effects.earth_by_gather = effects.earth && scene.earth->half_angle_deg >= wide_earth_deg &&
+                            asked.paths != LightPaths::Distributed;
+  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
+    if (groups.lamp[k] == no_group) continue;
+    effects.lamps = effects.lamp_kind[static_cast<std::size_t>(scene.lamps[k].kind)] = true;
+  }
+  effects.emitters = std::any_of(groups.material.begin(), groups.material.end(),
+                                 [](std::size_t group) { return group != no_group; });
   effects.ambient = groups.ambient != no_group;
   const bool lit = effects.sun || effects.earth || effects.lamps || effects.emitters;
+  const bool goes_on = asked.paths == LightPaths::All || asked.paths == LightPaths::Traced;
   effects.interreflection =
-      lit && worn_by_something(scene, [](const Material& m) { return m.diffuse; });
+      lit && goes_on && worn_by_something(scene, [](const Material& m) { return m.diffuse; });
   effects.phong = lit && worn_by_something(scene, [](const Material& m) { return m.specular; });
+  const bool lobe_meets_light = effects.interreflection || (effects.emitters && goes_on);
+  effects.glossy = effects.phong && (effects.earth_by_gather || lobe_meets_light);
+  effects.solution = asked.paths == LightPaths::All &&
+                     (effects.interreflection || (effects.phong && effects.emitters));
   effects.mirror = worn_by_something(scene, [](const Material& m) { return m.mirror; });
   effects.refraction = worn_by_something(scene, [](const Material& m) { return m.transmit; });
-  for (const Camera& camera : scene.cameras) {
+  const auto look_at = [&effects](const Camera& camera) {
     effects.depth_of_field |= camera.aperture_m > 0.0 && camera.focus_m > 0.0;
     effects.cctv |= !camera.cctv.empty();
     effects.range_sensor |= !camera.range_sensor.empty();
+  };
+  for (const Camera* camera : asked.cameras) look_at(*camera);
+  for (const Camera& camera : scene.cameras) {
+    if (asked.cameras.empty()) look_at(camera);
   }
   return effects;
-}
-
-std::vector<EffectRow> describe_effects(const Scene& scene, const LightGroups& groups) {
-  const Effects e = find_effects(scene, groups);
-  const bool lit = groups.count() > 0;
-  const auto pick = [](bool runs, const char* yes, const char* no) {
-    return std::string(runs ? yes : no);
-  };
-  std::vector<EffectRow> rows;
-  rows.push_back({"interreflection", e.interreflection,
-                  lit ? pick(e.interreflection, "light falls on diffuse surfaces",
-                             "no material in use has diffuse > 0")
-                      : "no source gives light"});
-  rows.push_back({"sun", e.sun, sun_reason(scene, e.sun)});
-  rows.push_back(
-      {"penumbra", e.penumbra,
-       e.sun ? pick(e.penumbra, "sun.angular_radius_deg is above 0", "sun.angular_radius_deg is 0")
-             : "no sunlight"});
-  rows.push_back({"earth", e.earth, earth_reason(scene, e.earth)});
-  rows.push_back({"lamps", e.lamps,
-                  scene.lamps.empty() ? "the scene has no [[light]]"
-                                      : pick(e.lamps, "a lamp is lit", "every lamp is off")});
-  rows.push_back(
-      {"emitting surfaces", e.emitters,
-       pick(e.emitters, "a material in use has emit > 0", "no material in use has emit > 0")});
-  rows.push_back({"ambient", e.ambient,
-                  pick(e.ambient, "ambient.radiance is above 0", "no [ambient] radiance")});
-  rows.push_back({"phong lobe", e.phong,
-                  pick(e.phong, "a material in use has specular > 0",
-                       "no lit material in use has specular > 0")});
-  rows.push_back(
-      {"mirror", e.mirror,
-       pick(e.mirror, "a material in use has mirror > 0", "no material in use has mirror > 0")});
-  rows.push_back({"refraction", e.refraction,
-                  pick(e.refraction, "a material in use has transmit > 0",
-                       "no material in use has transmit > 0")});
-  rows.push_back({"depth of field", e.depth_of_field,
-                  pick(e.depth_of_field, "a camera has an aperture", "no camera has an aperture")});
-  rows.push_back({"light groups", groups.count() > 1,
-                  std::to_string(groups.count()) + " group(s) give light"});
-  rows.push_back({"cctv", e.cctv,
-                  pick(e.cctv, "a camera names a cctv model", "no camera names a cctv model")});
-  rows.push_back({"range sensor", e.range_sensor,
-                  pick(e.range_sensor, "a camera names a range_sensor; render --range shows it",
-                       "no camera names a range_sensor")});
-  return rows;
 }
 
 }  // namespace earthshine::scenes

@@ -140,7 +140,7 @@ void add_picture(MemoryCase& m, const scenes::LightGroups& groups, const scenes:
   };
   m.splits_parts = std::any_of(options.aovs.begin(), options.aovs.end(), is_part);
   m.shares_gather = options.shared.on;
-  if (options.indirect != raytrace::Indirect::Radiosity) {
+  if (options.indirect != raytrace::Indirect::Radiosity || !effects.solution) {
     m.solves = false;
     m.columns = 0;
   }
