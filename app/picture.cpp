@@ -37,32 +37,35 @@ Json json_of(const Studio& studio, const scenes::Camera& camera, const raytrace:
   const raytrace::RenderReport& report = frame.report;
   const raytrace::RayCounts& rays = report.rays;
   const radiosity::SolveReport& solved = studio.light.solution.report;
-  return {{"camera", camera.name},
-          {"columns", frame.image.width},
-          {"rows", frame.image.height},
-          {"seconds", times.json()},
-          {"peak_memory_mib", peak_memory_mib()},
-          {"patches", solved.patches},
-          {"iterations", solved.iterations},
-          {"residual", solved.residual},
-          {"rays",
-           {{"form_factors", solved.form_factor_rays},
-            {"direct", solved.shadow_rays},
-            {"direct_by", rays_by_light(solved)},
-            {"camera", rays.camera},
-            {"shadow", rays.shadow},
-            {"gather", rays.gather},
-            {"lobe", rays.lobe},
-            {"mirror", rays.mirror},
-            {"refraction", rays.refraction},
-            {"planning", rays.planning},
-            {"layers", rays.layers},
-            {"shadow_by", rays_by_light(rays)}}},
-          {"gather_rays", report.gather_rays},
-          {"camera_samples", report.camera_samples},
-          {"relative_noise", report.relative_noise},
-          {"finished_share", report.finished_share},
-          {"partial", report.stopped}};
+  Json json = {{"camera", camera.name},
+               {"columns", frame.image.width},
+               {"rows", frame.image.height},
+               {"seconds", times.json()},
+               {"peak_memory_mib", peak_memory_mib()},
+               {"patches", solved.patches},
+               {"iterations", solved.iterations},
+               {"residual", solved.residual},
+               {"rays",
+                {{"form_factors", solved.form_factor_rays},
+                 {"direct", solved.shadow_rays},
+                 {"direct_by", rays_by_light(solved)},
+                 {"camera", rays.camera},
+                 {"shadow", rays.shadow},
+                 {"gather", rays.gather},
+                 {"lobe", rays.lobe},
+                 {"mirror", rays.mirror},
+                 {"refraction", rays.refraction},
+                 {"planning", rays.planning},
+                 {"layers", rays.layers},
+                 {"shadow_by", rays_by_light(rays)}}},
+               {"gather_rays", report.gather_rays},
+               {"camera_samples", report.camera_samples},
+               {"relative_noise", report.relative_noise},
+               {"finished_share", report.finished_share},
+               {"partial", report.stopped}};
+  // What a solution cost by kind of light is not kept in its file.
+  if (!studio.light.solved) json["rays"].erase("direct_by");
+  return json;
 }
 
 // The single pixel of --only-pixel, layer by layer.

@@ -52,6 +52,7 @@ class Solution(program.Case):
         self.assertIn("read solution", read["seconds"])
         for report in (plain, read):
             del report["seconds"], report["peak_memory_mib"]
+        self.assertGreater(sum(plain["rays"].pop("direct_by").values()), 0)
         self.assertEqual(read, plain)
 
     def test_the_file_is_the_same_on_any_number_of_threads(self):
