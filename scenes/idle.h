@@ -19,8 +19,7 @@ struct Idle {
 // Switches them off in groups and effects and says which:
 //   sun, earth       the disc is below the horizon of every surface; seen itself it stays
 //   a lamp           every surface turns its black back to it or lies outside its beam, and no
-//   camera
-//                    can see its shining side
+//                    camera can see its shining side
 //   interreflection  no surface is in front of another; or all reflectances are so small that
 //                    |B - B0| <= r / (1 - r) |B0| is below a thousandth of the wanted error, r the
 //                    largest: by reciprocity F has norm 1 at most in the area-weighted square mean.
