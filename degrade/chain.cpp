@@ -12,36 +12,6 @@
 namespace earthshine::degrade {
 namespace {
 
-// The channels that the chain works on, checked; negative light counts as none.
-Picture take_in(const base::Image& radiance, bool colour, std::size_t& negative_pixels) {
-  Picture picture;
-  picture.columns = radiance.width;
-  picture.rows = radiance.height;
-  const bool has_rgb = radiance.find("R") != nullptr && radiance.find("G") != nullptr &&
-                       radiance.find("B") != nullptr;
-  if (colour && has_rgb) {
-    for (const char* name : {"R", "G", "B"}) picture.planes.push_back(radiance.find(name)->values);
-  } else {
-    picture.planes.assign(colour ? 3 : 1, base::luminance_of(radiance));
-  }
-  for (Plane& plane : picture.planes) {
-    for (std::size_t i = 0; i < plane.size(); ++i) {
-      if (!std::isfinite(plane[i])) {
-        const std::size_t width = static_cast<std::size_t>(radiance.width);
-        throw base::Error(base::Blame::Input, "picture",
-                          "pixel (" + std::to_string(i % width) + ", " + std::to_string(i / width) +
-                              ") is not a finite number",
-                          "radiance must be finite", "Render it again or repair the picture");
-      }
-      if (plane[i] < 0.0F) {
-        ++negative_pixels;
-        plane[i] = 0.0F;
-      }
-    }
-  }
-  return picture;
-}
-
 void check_names(const std::vector<std::string>& off) {
   std::vector<std::string_view> names;
   for (const Stage& stage : stages()) names.push_back(stage.name);
@@ -52,10 +22,6 @@ void check_names(const std::vector<std::string>& off) {
                       nearest.empty() ? "" : "the nearest name is \"" + nearest + "\"",
                       "earthshine degrade --list shows the stages");
   }
-}
-
-bool is_off(const Stage& stage, const Options& options) {
-  return std::find(options.off.begin(), options.off.end(), stage.name) != options.off.end();
 }
 
 std::vector<std::uint8_t> screen_bytes(const Picture& viewed, double white) {
@@ -90,13 +56,8 @@ Result run_chain(std::initializer_list<const base::Image*> seen, const Setup& se
   report.sensor = {fields.front().columns, fields.front().rows};
   report.exposure.f_number = camera.f_number;
 
-  const auto runs = [&](const Stage& stage) {
-    return !is_off(stage, options) && stage.runs(setup, &report);
-  };
   const std::span<const Stage> table = stages();
-  const bool interlaced = std::any_of(table.begin(), table.end(), [&](const Stage& stage) {
-    return stage.merge != nullptr && runs(stage);
-  });
+  const bool interlaced = has_fields(setup, report);
   double white = 1.0;
   bool exposed = false;
   for (const Stage& stage : table) {
@@ -107,7 +68,7 @@ Result run_chain(std::initializer_list<const base::Image*> seen, const Setup& se
     if (stage.part == Part::Monitor && result.signal.channels.empty()) {
       result.signal = to_image(fields.front());
     }
-    if (!runs(stage)) continue;
+    if (!runs(stage, setup, &report)) continue;
     if (stage.merge != nullptr) {
       fields = {stage.merge(std::move(fields[0]), fields[1])};
     } else {
@@ -132,13 +93,54 @@ Result run_chain(std::initializer_list<const base::Image*> seen, const Setup& se
 
 }  // namespace
 
+Picture take_in(const base::Image& radiance, bool colour, std::size_t& negative_pixels) {
+  Picture picture;
+  picture.columns = radiance.width;
+  picture.rows = radiance.height;
+  const bool has_rgb = radiance.find("R") != nullptr && radiance.find("G") != nullptr &&
+                       radiance.find("B") != nullptr;
+  if (colour && has_rgb) {
+    for (const char* name : {"R", "G", "B"}) picture.planes.push_back(radiance.find(name)->values);
+  } else {
+    picture.planes.assign(colour ? 3 : 1, base::luminance_of(radiance));
+  }
+  for (Plane& plane : picture.planes) {
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+      if (!std::isfinite(plane[i])) {
+        const std::size_t width = static_cast<std::size_t>(radiance.width);
+        throw base::Error(base::Blame::Input, "picture",
+                          "pixel (" + std::to_string(i % width) + ", " + std::to_string(i / width) +
+                              ") is not a finite number",
+                          "radiance must be finite", "Render it again or repair the picture");
+      }
+      if (plane[i] < 0.0F) {
+        ++negative_pixels;
+        plane[i] = 0.0F;
+      }
+    }
+  }
+  return picture;
+}
+
+bool runs(const Stage& stage, const Setup& setup, const Report* found) {
+  const std::vector<std::string>& off = setup.options.off;
+  return std::find(off.begin(), off.end(), stage.name) == off.end() && stage.runs(setup, found);
+}
+
+bool has_fields(const Setup& setup, const Report& found) {
+  const std::span<const Stage> table = stages();
+  return std::any_of(table.begin(), table.end(), [&](const Stage& stage) {
+    return stage.merge != nullptr && runs(stage, setup, &found);
+  });
+}
+
 std::vector<StagePlan> plan(const CctvCamera& camera, const Monitor& monitor,
                             const Options& options) {
   check_names(options.off);
   const Setup setup{camera, monitor, options};
   std::vector<StagePlan> rows;
   for (const Stage& stage : stages()) {
-    rows.push_back({&stage, !is_off(stage, options) && stage.runs(setup, nullptr)});
+    rows.push_back({&stage, runs(stage, setup, nullptr)});
   }
   return rows;
 }

@@ -100,6 +100,16 @@ struct Stage {
 // All stages in order.
 [[nodiscard]] std::span<const Stage> stages();
 
+// Whether the stage runs: its settings call for it, and it is not left out.
+[[nodiscard]] bool runs(const Stage& stage, const Setup& setup, const Report* found);
+// Whether the camera's two fields become a frame.
+[[nodiscard]] bool has_fields(const Setup& setup, const Report& found);
+
+// What the chain works on: luminance, or red, green and blue. Negative light counts as none and is
+// counted. Throws base::Error (Input) for a pixel that is NaN or infinite.
+[[nodiscard]] Picture take_in(const base::Image& radiance, bool colour,
+                              std::size_t& negative_pixels);
+
 // Share of the signal that is left when the next picture comes: after a field of an interlaced
 // camera, else after a frame, which lasts two fields.
 [[nodiscard]] double lag_of(const Passing& at);

@@ -40,7 +40,7 @@ Levels measure_levels(const Picture& signal, double black_noise) {
   const Plane luminance = luminance_plane(signal);
   std::size_t saturated = 0, crushed = 0;
   for (float value : luminance) {
-    if (value >= 0.995F) ++saturated;
+    if (static_cast<double>(value) >= white_signal) ++saturated;
     if (static_cast<double>(value) <= black_noise) ++crushed;
   }
   const double count = static_cast<double>(luminance.size());

@@ -15,7 +15,10 @@ namespace earthshine::degrade {
 // The nearest of 2^bits levels from 0 to 1.
 [[nodiscard]] Picture quantise(Picture line_signal, int bits);
 
-// Shares of resels at or above white (S >= 0.995) and within the noise of black (S <= gain
+// Signal from which on a resel counts as white.
+inline constexpr double white_signal = 0.995;
+
+// Shares of resels at or above white (S >= white_signal) and within the noise of black (S <= gain
 // sqrt(a)).
 struct Levels {
   double saturated_share = 0.0;

@@ -14,8 +14,6 @@
 namespace earthshine::degrade {
 namespace {
 
-constexpr double white_signal = 0.995;  // of degrade::measure_levels
-
 // What the noise-free camera shows: at the start of its noise, when amplified, at the end.
 struct StillRun {
   Result result;
@@ -25,6 +23,8 @@ struct StillRun {
 StillRun run_still(const base::Image& radiance, const CctvCamera& camera, const Monitor& monitor,
                    Options options, const Memory& before) {
   StillRun run;
+  std::size_t negative = 0;
+  run.exposed = take_in(radiance, camera.colour, negative);  // if no stage of the lens runs
   for (const char* noise : {"signal-noise", "read-noise"}) options.off.emplace_back(noise);
   options.watch = [&](std::string_view name, const Picture& picture) {
     for (const Stage& stage : stages()) {
@@ -82,23 +82,15 @@ Twin twin(const base::Image& radiance, const CctvCamera& camera, const Monitor& 
   StillRun run = run_still(radiance, camera, monitor, options, before);
   Report report = run.result.report;
   const Setup setup{camera, monitor, options};
-  const auto runs = [&](const Stage& stage) {
-    const bool off =
-        std::find(options.off.begin(), options.off.end(), stage.name) != options.off.end();
-    return !off && stage.runs(setup, &report);
-  };
-  const std::span<const Stage> table = stages();
-  const bool interlaced = std::any_of(table.begin(), table.end(), [&](const Stage& stage) {
-    return stage.merge != nullptr && runs(stage);
-  });
+  const std::uint64_t fields = has_fields(setup, report) ? 2 : 1;
   Memory scratch;
-  const Passing at{setup, report, scratch, 0, interlaced ? std::uint64_t{2} : std::uint64_t{1}};
-  Moments moments = still(run.exposed.planes.empty() ? picture_of(radiance) : run.exposed);
+  const Passing at{setup, report, scratch, 0, fields};
+  Moments moments = still(std::move(run.exposed));
   std::optional<Moments> line;
-  for (const Stage& stage : table) {
+  for (const Stage& stage : stages()) {
     if (stage.part == Part::Lens) continue;
     if (stage.part == Part::Monitor && !line) line = settled(moments);
-    if (!runs(stage)) continue;
+    if (!runs(stage, setup, &report)) continue;
     if (stage.carry != nullptr) {
       moments = stage.carry(std::move(moments), at);
     } else if (!moments.is_pending) {

@@ -8,8 +8,6 @@
 namespace earthshine::studies {
 namespace {
 
-constexpr double white_signal = 0.995;  // of degrade::Levels
-
 double mean(const std::vector<float>& values) {
   double sum = 0.0;
   for (const float value : values) sum += double(value);
@@ -57,7 +55,7 @@ ShownRange shown_range(const degrade::CctvCamera& camera, const degrade::Report&
   const auto luminance_of_signal = [&](double signal) {
     return (signal / per_luminance - veil) / (1.0 - camera.glare);
   };
-  double white = white_signal / report.exposure.gain;
+  double white = degrade::white_signal / report.exposure.gain;
   if (camera.saturation > 0.0) white = std::min(white, camera.saturation);
   return {luminance_of_signal(std::sqrt(report.noise.at_black())), luminance_of_signal(white)};
 }

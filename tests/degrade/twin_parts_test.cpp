@@ -110,5 +110,17 @@ TEST(TwinParts, FollowsTheIrisOfASequence) {
   }
 }
 
+// A luminance camera looks at a colour picture's luminance, also where no stage of the lens runs.
+TEST(TwinParts, WithoutALensThePictureIsStillTheCameras) {
+  base::Image grey_in_colour = base::make_rgb_image(40, 30);
+  for (base::Channel& channel : grey_in_colour.channels) channel.values.assign(1200, 0.5F);
+  Options options;
+  options.off = {"sensor-grid", "iris", "lens", "conversion"};
+  const Twin stated = twin(grey_in_colour, linear(), {}, options);
+  ASSERT_EQ(stated.mean.planes.size(), 1U);
+  EXPECT_EQ(stated.viewed_mean.planes.size(), 1U);
+  EXPECT_NEAR(stated.mean.planes[0][777], 0.5F, 1e-6F);
+}
+
 }  // namespace
 }  // namespace earthshine::degrade
