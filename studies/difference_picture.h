@@ -4,9 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "base/image.h"
+#include "studies/target_view.h"
 
 namespace earthshine::studies {
 
@@ -22,5 +24,12 @@ struct DifferencePicture {
 // same size.
 [[nodiscard]] DifferencePicture difference_picture(const base::Image& image,
                                                    const base::Image& reference);
+
+// The same with a caption below, a paragraph per entry; pixels that show no object, which are not
+// compared, are grey, and the scale says so ("sky"). A narrow picture gets paper beside it.
+[[nodiscard]] DifferencePicture difference_picture(const base::Image& image,
+                                                   const base::Image& reference,
+                                                   const ObjectMap& map,
+                                                   const std::vector<std::string>& caption);
 
 }  // namespace earthshine::studies
