@@ -38,12 +38,14 @@ class Compare(Study):
     METHODS = ["reference", "radiosity", "distributed-4", "distributed-16", "direct"]
 
     def test_folder_holds_tables_and_pictures(self):
-        text = self.done("study", "compare", "ball.toml", "-o", "new/folder", "--lights", "16,4")
+        text = self.done("study", "compare", "ball.toml", "-o", "new/folder", "--lights", "16,4", "--seconds", "9")
         self.assertEqual(self.files("new/folder"),
-                         sorted(["compare.csv", "compare-targets.csv", "compare.json"]
-                                + [f"{method}.png" for method in self.METHODS]
-                                + [f"difference-{method}.png" for method in self.METHODS[1:]]))
-        self.says(text, *self.METHODS, "factor 1.5", "ball: 16 distributed lights would")
+                         sorted(["compare.csv", "compare-targets.csv", "compare.json", "compare-equal-targets.csv",
+                                 "compare-curves.csv", "compare-lights.csv", "reference.png"]
+                                + [f"{difference}{basis}{method}.png" for method in self.METHODS[1:]
+                                   for difference in ("", "difference-")
+                                   for basis in ("", "equal-time-", "equal-error-")]))
+        self.says(text, *self.METHODS, "factor 1.5", "ball: 16 distributed lights would", "Equal time", "noise-floor")
         for method in self.METHODS:
             self.assertEqual(self.png_size("new/folder", f"{method}.png"), (32, 24))
         width, height = self.png_size("new/folder", "difference-direct.png")
@@ -55,8 +57,8 @@ class Compare(Study):
         self.assertEqual(printed, self.result("d", "compare.json"))
         self.assertEqual((printed["camera"], printed["columns"], printed["rows"]), ("A", 24, 18))
         methods = self.table("d", "compare.csv")
-        self.assertEqual([row["method"] for row in methods], self.METHODS)
-        self.assertEqual([row["lights"] for row in methods], ["", "", "4", "16", ""])
+        self.assertEqual([row["method"] for row in methods], self.METHODS + ["noise-floor"])
+        self.assertEqual([row["lights"] for row in methods], ["", "", "4", "16", "", ""])
         for row, record in zip(methods, printed["methods"]):
             self.assertEqual(float(row["relative_rmse"]), record["relative_rmse"])
         self.assertEqual([float(methods[0][key]) for key in ("relative_rmse", "bias", "off_share")], [0, 0, 0])
@@ -87,7 +89,9 @@ class Compare(Study):
     def test_same_bytes_on_any_number_of_threads(self):
         def pictures(threads):
             self.done("study", "compare", "ball.toml", "-o", threads, "--lights", "4", "-j", threads)
-            return [self.png(threads, name) for name in self.files(threads) if name.endswith(".png")]
+            # Which pictures stand at equal time follows from the seconds.
+            return [self.png(threads, name) for name in self.files(threads)
+                    if name.endswith(".png") and "equal-" not in name]
         self.assertEqual(pictures("1"), pictures("2"))
 
     def test_pictures_share_one_exposure(self):
