@@ -44,6 +44,7 @@ constexpr int scale_height = box_height * static_cast<int>(band_colours.size());
 constexpr int captioned_height =
     scale_height + gap + box_height;  // with the box of what is left out
 constexpr int least_captioned_width = 300;
+constexpr int magnified_to = 256;  // small pictures, so that they can be seen beside the scale
 constexpr Colour paper = {255, 255, 255}, ink = {0, 0, 0}, left_out = {160, 160, 160};
 
 void draw_scale(Canvas& canvas, int left) {
@@ -57,15 +58,16 @@ void draw_scale(Canvas& canvas, int left) {
   }
 }
 
+// Each pixel as a square of `edge` dots.
 void draw_picture(Canvas& canvas, const base::Image& image, const base::Image& reference,
-                  const ObjectMap* map) {
+                  const ObjectMap* map, int edge) {
   const std::vector<float> value = base::luminance_of(image);
   const std::vector<float> right = base::luminance_of(reference);
   std::size_t i = 0;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x, ++i) {
       const bool shown = map == nullptr || map->object[i] != no_object;
-      canvas.dot(x, y,
+      canvas.box(edge * x, edge * y, edge, edge,
                  shown ? band_colours[band_of(double(value[i]), double(right[i]))] : left_out);
     }
   }
@@ -79,7 +81,7 @@ DifferencePicture taken(const Canvas& canvas) {
 
 DifferencePicture difference_picture(const base::Image& image, const base::Image& reference) {
   Canvas canvas(image.width + scale_width, std::max(image.height, scale_height), paper);
-  draw_picture(canvas, image, reference, nullptr);
+  draw_picture(canvas, image, reference, nullptr, 1);
   draw_scale(canvas, image.width);
   return taken(canvas);
 }
@@ -87,18 +89,20 @@ DifferencePicture difference_picture(const base::Image& image, const base::Image
 DifferencePicture difference_picture(const base::Image& image, const base::Image& reference,
                                      const ObjectMap& map,
                                      const std::vector<std::string>& caption) {
-  const int columns = std::max(image.width + scale_width, least_captioned_width);
+  const int edge = std::clamp(magnified_to / std::max(image.width, image.height), 1, 16);
+  const int width = edge * image.width, height = edge * image.height;
+  const int columns = std::max(width + scale_width, least_captioned_width);
   std::vector<std::string> lines;
   for (const std::string& words : caption) {
     for (std::string& line : wrapped(words, columns - 2 * gap)) lines.push_back(std::move(line));
   }
-  const int top = std::max(image.height, captioned_height) + gap;
+  const int top = std::max(height, captioned_height) + gap;
   Canvas canvas(columns, top + line_step * static_cast<int>(lines.size()), paper);
-  draw_picture(canvas, image, reference, &map);
-  draw_scale(canvas, image.width);
-  canvas.box(image.width + gap, scale_height + gap, box_width, box_height, left_out);
-  canvas.text(image.width + gap + box_width + 3,
-              scale_height + gap + (box_height - letter_height) / 2, "sky", ink);
+  draw_picture(canvas, image, reference, &map, edge);
+  draw_scale(canvas, width);
+  canvas.box(width + gap, scale_height + gap, box_width, box_height, left_out);
+  canvas.text(width + gap + box_width + 3, scale_height + gap + (box_height - letter_height) / 2,
+              "sky", ink);
   for (std::size_t k = 0; k < lines.size(); ++k) {
     canvas.text(gap, top + line_step * static_cast<int>(k), lines[k], ink);
   }

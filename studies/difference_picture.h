@@ -26,7 +26,8 @@ struct DifferencePicture {
                                                    const base::Image& reference);
 
 // The same with a caption below, a paragraph per entry; pixels that show no object, which are not
-// compared, are grey, and the scale says so ("sky"). A narrow picture gets paper beside it.
+// compared, are grey, and the scale says so ("sky"). Pixels of a small picture are
+// drawn as squares; a narrow one gets paper beside it.
 [[nodiscard]] DifferencePicture difference_picture(const base::Image& image,
                                                    const base::Image& reference,
                                                    const ObjectMap& map,

@@ -15,6 +15,13 @@ std::string contrast_text(const TargetLight& light) {
   return fmt::format("{:+.2f}", rounded == 0.0 ? 0.0 : rounded);  // never "-0.00"
 }
 
+// Three digits, without an exponent where thousands will do.
+std::string luminance_text(double value) {
+  const bool is_large = value >= 1000.0 && value < 1e6;
+  return is_large ? fmt::format("{:.0f}", 10.0 * std::round(0.1 * value))
+                  : fmt::format("{:.3g}", value);
+}
+
 // "3.1 instead of 5.2 cd/m2 (x 0.60), contrast -0.20 instead of +0.10"
 std::string figures(const TargetDifference& found, const TargetLight& right) {
   if (right.luminance <= 0.0 && found.light.luminance <= 0.0) {
@@ -25,9 +32,9 @@ std::string figures(const TargetDifference& found, const TargetLight& right) {
                             : found.light.luminance <= 0.0
                                 ? "x 0, black"
                                 : fmt::format("x {:.2f}", found.luminance_ratio);
-  return fmt::format("{:.3g} instead of {:.3g} cd/m2 ({}), contrast {} instead of {}",
-                     found.light.luminance, right.luminance, ratio, contrast_text(found.light),
-                     contrast_text(right));
+  return fmt::format("{} instead of {} cd/m2 ({}), contrast {} instead of {}",
+                     luminance_text(found.light.luminance), luminance_text(right.luminance), ratio,
+                     contrast_text(found.light), contrast_text(right));
 }
 
 // The last of those over the disc: compare_methods lists them from 2 on by rising N.

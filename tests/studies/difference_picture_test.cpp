@@ -86,7 +86,7 @@ TEST(DifferencePicture, CaptionStandsBelowAndTheSkyIsGrey) {
     return difference_picture(grey(2, 2, flat), grey(2, 2, flat), map, caption);
   };
   const DifferencePicture bare = captioned({}), one = captioned({"radiosity"});
-  const Colour sky = at(one, 0, 1);
+  const Colour sky = at(one, 0, 16);  // a pixel is 16 dots wide
   EXPECT_EQ(sky[0], sky[2]);
   EXPECT_NE(sky, at(one, 0, 0));
   EXPECT_GT(one.rows, bare.rows);
