@@ -72,6 +72,8 @@ TEST(DifferencePicture, ScaleIsNeutralInTheMiddleAndMonotoneToItsEnds) {
   for (int x = 40; x > 0; --x) EXPECT_LE(lightness(x - 1), lightness(x)) << x;
   for (int x = 43; x <= 80; ++x) EXPECT_GT(at(picture, x, 0)[0], at(picture, x, 0)[2]) << x;
   for (int x = 0; x <= 37; ++x) EXPECT_GT(at(picture, x, 0)[2], at(picture, x, 0)[0]) << x;
+  // Too bright and too dark by as much are about as far from white: within 35 of 255.
+  for (int x = 0; x < 40; ++x) EXPECT_NEAR(lightness(x), lightness(80 - x), 35.0) << x;
   // The ends are the ends: 1.05^40 = 7 as infinity, its inverse as 0.
   const DifferencePicture ends =
       difference_picture(grey(2, 1, {1.0F, 0.0F}), grey(2, 1, {0.0F, 1.0F}));

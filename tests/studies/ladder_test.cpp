@@ -69,6 +69,12 @@ TEST(Ladder, FindsTheCheapestRungThatReachesTheError) {
   const Ladder down = climbed({}, limits(10.0, 0.3));
   EXPECT_EQ(down.reach, Reach::Reached);
   EXPECT_EQ(rung_at_error(down), -3);
+  // From rung 3 straight to 9, which 64 times the time allow; the rungs between are halved: 6,
+  // 4, 5.
+  LadderLimits far = limits(10.0, 0.02);
+  far.spend = 64.0;
+  const Ladder halved = climbed({}, far);
+  EXPECT_EQ(rung_at_error(halved), 5);
   // Reached at once and at every rung: the lowest.
   EXPECT_EQ(rung_at_error(climbed({0.0, 0.0, 0.0, 1.0}, limits(1.0, 0.0))),
             LadderLimits().least_rung);
