@@ -28,6 +28,7 @@ TOP = pathlib.Path(__file__).resolve().parents[2]
 PARTS = ("form_factor_noise", "patch_size", "solver_residual", "gather_noise", "lamp_sampling", "camera_samples")
 FINER = 10  # of the references, in patches
 REFERENCE_RAYS = 1024  # form-factor rays per patch of a reference, or as many as the settings have
+REFERENCE_GATHER = 4096  # gather rays per pixel of a reference: 64 from each of 64 camera samples
 SHARE, MEDIAN = 0.9, 3.0  # asked for
 # Of a true error: below, the references' own noise and rounding decide, and a ratio says nothing.
 LEAST = 1e-3
@@ -87,15 +88,14 @@ class Bench:
             for key in ("diffuse", "specular", "mirror", "transmit"):
                 black += ["--set", f"material.{material['name']}.{key}=0"]
         out = self.folder / f"{path.parent.name}-{path.stem}-black.exr"
-        # 64 camera samples a pixel.
         self.json("render", path, "-o", out, "--indirect", "none", *more, *black,
-                  *error_scenes.knobs(gather="per-sample", gather_rays=4096))
+                  *error_scenes.knobs(gather="per-sample", gather_rays=REFERENCE_GATHER))
         return [light > 0 for light in error_truth.picture(out)[0]]
 
     def references(self, path, text, more, patches, rays):
         """(folder, luminances of both references, pixels that count), from the cache if they are there."""
         fine = error_scenes.knobs(max_patches=rounded_up(FINER * patches), form_factor_rays=max(REFERENCE_RAYS, rays))
-        fine += error_scenes.knobs(refine="true", gather="per-sample", gather_rays=4096)
+        fine += error_scenes.knobs(refine="true", gather="per-sample", gather_rays=REFERENCE_GATHER)
         folder = self.cache / hash_of(text, *fine)[:16]
         if not (folder / "done").exists():
             shutil.rmtree(folder, ignore_errors=True)
