@@ -25,7 +25,6 @@ import error_scenes
 import error_truth
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
-PARTS = ("form_factor_noise", "patch_size", "solver_residual", "gather_noise", "lamp_sampling", "camera_samples")
 FINER = 10  # of the references, in patches
 REFERENCE_RAYS = 1024  # form-factor rays per patch of a reference, or as many as the settings have
 REFERENCE_GATHER = 4096  # gather rays per pixel of a reference: 64 from each of 64 camera samples
@@ -134,7 +133,7 @@ class Bench:
                       ("picture", rendered, error_truth.compare(light, first, second, counts)))
             for kind, report, truth in truths:
                 error = report["error"]
-                parts = {key: value for key, value in error["parts"].items() if value}
+                parts = {key: part["estimate"] for key, part in error["parts"].items()}
                 found.append(Row(kind, name, setting, solved["patches"], error["estimate"], error["bound_95"], parts, truth))
         return found
 
@@ -169,7 +168,8 @@ def table(rows):
     print("| scene | asked for | patches | estimate | bound 95 % | its parts | true error | bound / true |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     for row in rows:
-        parts = ", ".join(f"{key.replace('_', ' ')} {percent(value)}" for key, value in row.parts.items())
+        parts = ", ".join(f"{key.replace('_', ' ')} {percent(value)}" for key, value in row.parts.items()
+                          if value > 0.2 * row.estimate)  # those that make up 96 % of the square and more
         mark = "" if row.within else " **outside**"
         ratio = f"{row.ratio:.2f}" if row.truth.error >= LEAST else ""
         print(f"| {row.scene} | {row.asked} | {row.patches} | {percent(row.estimate)} | {percent(row.bound)} | {parts} | "

@@ -24,21 +24,25 @@ def picture(path, layer=None):
 
 
 class Truth:
-    """error: relative to `mean`; doubt: standard error of its square; bias: of the mean."""
+    """error and bias: relative to `mean`; doubt: standard error of the error's square."""
 
     def __init__(self, error, doubt, bias, mean):
         self.error, self.doubt, self.bias, self.mean = error, doubt, bias, mean
 
 
-def compare(values, first, second, weights=None):
-    """The error of values, where first and second are two references of the same; weights sum to any number."""
+def compare(values, first, second, weights=None, over="mean"):
+    """The error of values, where first and second are two references of the same; weights sum to any number. over: what the
+    error is relative to, their "mean" or "root mean square"."""
     if weights is None:
         weights = [1.0] * len(values)
     whole = sum(weights)
     if whole <= 0:
         return Truth(0.0, 0.0, 0.0, 0.0)
     rows = list(zip(values, first, second, weights))
-    mean = sum(w * (a + b) / 2 for _, a, b, w in rows) / whole
+    if over == "mean":
+        mean = sum(w * (a + b) / 2 for _, a, b, w in rows) / whole
+    else:
+        mean = math.sqrt(max(0.0, sum(w * a * b for _, a, b, w in rows) / whole))
     if mean <= 0:
         return Truth(0.0, 0.0, 0.0, 0.0)
     products = [(v - a) * (v - b) / mean**2 for v, a, b, _ in rows]
@@ -123,10 +127,10 @@ def inside(np, quads, spot):
 
 
 def compare_solutions(path, first, second, points=20000):
-    """The error of the radiosity as a function of position, root mean square over all surface."""
+    """The error of the radiosity as a function of position: root mean square over all surface, over the root mean square."""
     solutions = [Solution(p) for p in (path, first, second)]
     where = solutions[1].points(points, 7)
     values = [s.at(where) for s in solutions]
     np = solutions[0].np
     good = ~np.isnan(values[0]) & ~np.isnan(values[1]) & ~np.isnan(values[2])
-    return compare(*[v[good].tolist() for v in values])
+    return compare(*[v[good].tolist() for v in values], over="root mean square")
