@@ -133,8 +133,11 @@ class Bench:
                       ("picture", rendered, error_truth.compare(light, first, second, counts)))
             for kind, report, truth in truths:
                 error = report["error"]
+                if error["estimate"] is None and truth.mean == 0:
+                    continue  # no pixel that counts, and the program says so
                 parts = {key: part["estimate"] for key, part in error["parts"].items()}
-                found.append(Row(kind, name, setting, solved["patches"], error["estimate"], error["bound_95"], parts, truth))
+                found.append(Row(kind, name, setting, solved["patches"], error["estimate"] or 0.0,
+                                 error["bound_95"] or 0.0, parts, truth))
         return found
 
 
