@@ -11,7 +11,7 @@ class Hard:
     name: str
     why: str  # what makes it hard
     text: str
-    # Mean radiosity (lm/m2) over all surface, where it is known: per closed room of even reflectance, by conservation.
+    # Mean illuminance (lx) of all surface, where it is known: in closed rooms of even reflectance, by conservation.
     mean: float | None = None
     light: float | None = None  # of every pixel, cd/m2
     target: str | None = None
@@ -32,12 +32,12 @@ def quad(axis, at, low, high, turned=False):
 def small_emitter():
     """A room of 4 x 4 x 3 m, 80 m2, of reflectance 0.5, and 4 cm2 that shine with 400 lm: one ray of a patch in some 200 000.
     Shadow rays find it. Its own 4 cm2 of another reflectance are 5e-6 of the surface.
-    Conservation: E of the mean = flux / (area (1 - rho)), B = rho E."""
+    Conservation: what lands, area E, is flux + rho area E: E = flux / (area (1 - rho)) in the mean."""
     text = Text("small emitter")
     closed(text, (0, 0, 0), (4, 4, 3), text.material(diffuse=0.5))
     text.thing(text.material(diffuse=0.5, emit=1e6), **quad(2, 2.9, (1, 1, 0), (1.02, 1.02, 0), True))
     look(text, (0.4, 0.4, 1.5), (3, 3, 1.2))
-    return Hard("small emitter", "400 lm from 4 cm2", str(text), mean=0.5 * 400 / (80 * 0.5))
+    return Hard("small emitter", "400 lm from 4 cm2", str(text), mean=400 / (80 * 0.5))
 
 
 def sun_spot():
@@ -115,7 +115,7 @@ def caustic():
 
 
 def white_room():
-    """Everything in a closed room of reflectance 0.99 that emits M = 1 has B = M / (1 - rho) = 100."""
+    """Everything in a closed room of reflectance 0.99 that emits M = 1 has E = B = M / (1 - rho) = 100."""
     text = Text("white room")
     closed(text, (0, 0, 0), (2, 2, 2), text.material(diffuse=0.99, emit=1.0))
     look(text, (0.3, 0.3, 1.0), (1.5, 1.8, 0.8))
@@ -123,12 +123,12 @@ def white_room():
 
 
 def lit_white_room():
-    """The same with a lamp of 100 lm in place of the exitance: 24 m2, so that B = rho flux / (area (1 - rho)) in the mean."""
+    """The same with a lamp of 100 lm in place of the exitance: 24 m2, so that E = flux / (area (1 - rho)) in the mean."""
     text = Text("lit white room")
     closed(text, (0, 0, 0), (2, 2, 2), text.material(diffuse=0.99))
     text.light(type="point", position=[1.2, 1.2, 1.5], flux=100.0)
     look(text, (0.3, 0.3, 1.0), (1.5, 1.8, 0.8))
-    return Hard("lit white room", "a hundred reflections of a lamp", str(text), mean=0.99 * 100 / (24 * 0.01))
+    return Hard("lit white room", "a hundred reflections of a lamp", str(text), mean=100 / (24 * 0.01))
 
 
 def black_picture():
