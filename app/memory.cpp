@@ -31,7 +31,9 @@ void refuse_too_much(const LoadedScene& loaded, const scenes::RayQuery& query,
   }
   if (need.total() <= free) return;
   throw base::Error(base::Blame::Work, loaded.scene.path.string(),
-                    "needs " + memory_text(memory_json(need)), size_text(free / mib) + " are free",
+                    "needs " + memory_text(memory_json(need)),
+                    size_text(free / mib) +
+                        (base::memory_is_limited() ? " are allowed by --max-memory" : " are free"),
                     studies::memory_remedy(need));
 }
 

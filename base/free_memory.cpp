@@ -99,6 +99,8 @@ std::atomic<std::uint64_t> most_bytes{0};  // 0: no cap
 MemoryLimit::MemoryLimit(std::uint64_t bytes) { most_bytes = bytes; }
 MemoryLimit::~MemoryLimit() { most_bytes = 0; }
 
+bool memory_is_limited() { return most_bytes != 0; }
+
 std::optional<std::uint64_t> free_memory_bytes(const fs::path& root) {
   Bytes least;
   if (const Bytes kib = number_after(root / "proc/meminfo", "MemAvailable:")) least = *kib * 1024;
