@@ -38,8 +38,9 @@ struct Looks {
 // their noise left out.
 //
 // Read as it is, constant over each patch, the mean over a patch is the best there is: then the
-// errors of nested cuts differ in squares, and the share of the difference is 1 / sqrt(1 - r^2) or
-// r / sqrt(1 - r^2).
+// errors of nested cuts differ in squares. Those fall with q = r^2 where light varies smoothly and
+// with q = r where shadows have edges; the share of the difference is sqrt(1 / (1 - q)) or
+// sqrt(q / (1 - q)).
 enum class Reading { Interpolated, Constant };
 struct Measure {
   double scale = 0.0;  // errors are relative to it
