@@ -133,6 +133,16 @@ void refuse_stale(const Hdf5Reader& file, const SolutionOrigin& origin) {
          origin);
 }
 
+// A cut that is called coarser and is not would make nonsense of the estimates made from it.
+void refuse_finer(const Hdf5Reader& file, const Solution& solution) {
+  const double coarser = solution.coarser.error;
+  if (coarser == 0.0) return;
+  const auto& rounds = solution.report.rounds;
+  if (std::isfinite(coarser) && !rounds.empty() && coarser > rounds.back().error) return;
+  file.fail(
+      fmt::format("\"coarser_error\" is {}, which no round before the last one had", coarser));
+}
+
 }  // namespace
 
 Solution read_solution(const std::filesystem::path& path, const SolutionOrigin& origin) {
@@ -171,7 +181,7 @@ Solution read_solution(const std::filesystem::path& path, const SolutionOrigin& 
   Solution solution;
   solution.patches = read_patches("facets/", "area", store);
   solution.coarser.error = file.number_attribute("coarser_error");
-  if (solution.coarser.error > 0.0) {
+  if (solution.coarser.error != 0.0) {
     Reading apart{file, 0, 0, 0, 0};
     solution.coarser.patches = read_patches("coarser/", "coarser/area", apart);
   }
@@ -179,6 +189,7 @@ Solution read_solution(const std::filesystem::path& path, const SolutionOrigin& 
   visit_light(store, solution);
   visit_report(store, solution.report);
   solution.report.patches = solution.patches.count();
+  refuse_finer(file, solution);
   return solution;
 }
 

@@ -98,7 +98,7 @@ struct Solution {
   std::vector<float> soft_radiosity;  // the part of it not due to explicit sources: rho (E - E0
                                       // explicit) + M through F
   std::vector<float> direct_lx, indirect_lx;  // E0 and F B
-  Coarser coarser;                            // of a refined solution, unless it was read
+  Coarser coarser;                            // of a refined solution
   SolveReport report;
 };
 
