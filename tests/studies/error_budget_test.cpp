@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "studies/measured_noise.h"
 #include "studies/pixel_choice.h"
 #include "tests/studies/room.h"
 
@@ -93,6 +94,45 @@ TEST(ErrorBudget, OfAPictureLiesWithinItsBound) {
             block.error.bound_95);
 }
 
+TEST(ErrorBudget, TakesEachPartFromWhereItWasMeasured) {
+  const tests::SmallRoom& room = tests::small_room();
+  const raytrace::RenderOptions options = small_picture();
+  const raytrace::Frame frame = room.picture(options);
+  const Budgeted made = budget_of(room, options, frame);
+  const SolutionError& owed = made.opinion.pictures.front().whole;
+  const MeasuredNoise noise =
+      measure_noise(room.study(), room.solution, {&room.camera, options}, frame,
+                    SurfacePixels(room.study(), room.camera, options));
+  const ErrorParts& parts = made.budget.parts;
+  const auto expect_same = [](const Doubt& a, const Doubt& b) {
+    EXPECT_DOUBLE_EQ(a.estimate, b.estimate);
+    EXPECT_DOUBLE_EQ(a.bound_95, b.bound_95);
+    EXPECT_GT(a.estimate, 0.0);
+  };
+  expect_same(parts.form_factor_noise, owed.form_factors);
+  expect_same(parts.patch_size, owed.patches);
+  expect_same(parts.solver_residual, owed.solver);
+  expect_same(parts.gather_noise, noise.gather);
+  expect_same(parts.camera_samples, noise.camera);
+  EXPECT_GT(noise.lamps.estimate, 0.0);
+  EXPECT_GT(owed.lamps.estimate, 0.0);
+  EXPECT_DOUBLE_EQ(parts.lamp_sampling.estimate,
+                   std::hypot(noise.lamps.estimate, owed.lamps.estimate));
+  EXPECT_GT(parts.lamp_sampling.estimate, noise.lamps.estimate);
+  // A target: its own share of the solution's error beside its noise.
+  const TargetError& block = made.budget.targets.front();
+  EXPECT_GT(block.error.estimate, made.opinion.pictures.front().targets.at(6).total().estimate);
+  EXPECT_GT(made.opinion.pictures.front().targets.at(6).total().estimate, 0.0);
+  const PixelMeans means =
+      pixel_means(frame, SurfacePixels(room.study(), room.camera, options),
+                  SurfacePixels(room.study(), room.camera, options).of_object(6));
+  EXPECT_NEAR(
+      block.error.estimate,
+      std::hypot(noise.correction.estimate * std::sqrt(means.squared_error) / means.luminance,
+                 made.opinion.pictures.front().targets.at(6).total().estimate),
+      1e-9);
+}
+
 TEST(ErrorBudget, ChangesNeitherPictureNorSolution) {
   const tests::SmallRoom& room = tests::small_room();
   const raytrace::RenderOptions options = small_picture();
@@ -127,6 +167,19 @@ TEST(ErrorBudget, OfAPictureDoesNotDependOnTheOthersOrOnThreads) {
   EXPECT_NE(alone.pictures[0].targets.at(6).total().estimate,
             alone.pictures[0].whole.total().estimate);
   EXPECT_GT(alone.rays, alone.looks.rays);
+}
+
+TEST(ErrorBudget, OfATargetIsOverItsOwnPixels) {
+  // The bright wall's light is its own more than reflected: of its mean the solution's error is a
+  // smaller share than of the picture's.
+  scenes::Scene scene = tests::SmallRoom::made();
+  scene.objects[0].target = true;
+  const tests::SmallRoom room{scene};
+  const WatchedErrors errors =
+      second_opinion(room.study(), room.solution, room.solver, {{&room.camera, small_picture()}})
+          .pictures.front();
+  EXPECT_LT(errors.targets.at(0).total().estimate, 0.6 * errors.whole.total().estimate);
+  EXPECT_GT(errors.targets.at(0).total().estimate, 0.0);
 }
 
 TEST(ErrorBudget, WithoutASolutionNothingIsOwedToIt) {

@@ -46,9 +46,11 @@ SurfaceError error_of(const tests::Prepared& prepared, const radiosity::Solution
 struct LitPlate {
   scenes::Scene scene;
   static constexpr double height_m = 0.6;
-  LitPlate() {
+  explicit LitPlate(bool sheet_from_behind = false) {
     tests::SceneBuilder builder;
-    builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
+    scenes::Material material = tests::grey(0.5);
+    material.two_sided = sheet_from_behind;
+    builder.plate(builder.material(material), 1.0, 0.0, !sheet_from_behind);
     scenes::Lamp lamp;
     lamp.name = lamp.group = "lamp";
     lamp.position = Vec3(0, 0, height_m);
@@ -78,6 +80,17 @@ TEST(SurfaceError, OfASmoothGradientIsThePatchesOwn) {
     // Nothing is reflected to anything; what is left is chance of the lamp's light.
     EXPECT_LT(error.parts.form_factors.estimate, 0.03 * truth);
   }
+}
+
+TEST(SurfaceError, CountsBothSidesOfASheet) {
+  // A sheet that is lit from behind alone: its dark side adds to neither mean square, and the error
+  // is that of the plate. Where points fall differs.
+  const LitPlate plate, sheet(true);
+  const tests::Prepared one(plate.scene), two(sheet.scene);
+  const double error = error_of(one, one.solve(even(0.125)), even(0.125)).parts.patches.estimate;
+  const SurfaceError behind = error_of(two, two.solve(even(0.125)), even(0.125));
+  ASSERT_TRUE(behind.known);
+  EXPECT_NEAR(behind.parts.patches.estimate / error, 1.0, 0.1);
 }
 
 TEST(SurfaceError, IsMadeOutByAFinerCutWhereThereIsNoCoarser) {
