@@ -133,6 +133,14 @@ void refuse_stale(const Hdf5Reader& file, const SolutionOrigin& origin) {
          origin);
 }
 
+// An error that no round can have would make nonsense of the estimates made from it.
+void check_other_cut(const Hdf5Reader& file, const Solution& solution) {
+  const double error = solution.other.error;
+  if (error == 0.0) return;
+  if (std::isfinite(error) && error > 0.0 && !solution.report.rounds.empty()) return;
+  file.fail(fmt::format("\"other_cut_error\" is {}, which no round of refinement has", error));
+}
+
 }  // namespace
 
 Solution read_solution(const std::filesystem::path& path, const SolutionOrigin& origin) {
@@ -171,7 +179,7 @@ Solution read_solution(const std::filesystem::path& path, const SolutionOrigin& 
   Solution solution;
   solution.patches = read_patches("facets/", "area", store);
   solution.other.error = file.number_attribute("other_cut_error");
-  if (solution.other.error > 0.0) {
+  if (solution.other.error != 0.0) {
     Reading apart{file, 0, 0, 0, 0};
     solution.other.patches = read_patches("other_cut/", "other_cut/area", apart);
   }
@@ -179,6 +187,7 @@ Solution read_solution(const std::filesystem::path& path, const SolutionOrigin& 
   visit_light(store, solution);
   visit_report(store, solution.report);
   solution.report.patches = solution.patches.count();
+  check_other_cut(file, solution);
   return solution;
 }
 

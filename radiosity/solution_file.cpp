@@ -122,7 +122,7 @@ void write_solution(const std::filesystem::path& path, const Solution& solution,
                 solution.columns / 3};
   visit_layout(store, layout, "facets/", "area");
   file.attribute("other_cut_error", solution.other.error);
-  if (solution.other.error > 0.0) {
+  if (solution.other.error != 0.0) {
     const PatchLayout other = layout_of(solution.other.patches);
     Writing apart{file, other.s_count.size(), other.tree.size(), other.area_m2.size(), 0};
     visit_layout(apart, other, "other_cut/", "other_cut/area");

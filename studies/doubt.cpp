@@ -7,7 +7,7 @@
 namespace earthshine::studies {
 namespace {
 
-constexpr double most_modes = 100.0;  // the bound is within a sixth of the estimate there
+constexpr double most_modes = 100.0;
 
 }  // namespace
 
@@ -46,7 +46,7 @@ Spread spread_of(const std::vector<std::vector<double>>& tries) {
   }
   const double free = static_cast<double>(count) - 1.0;
   spread.variance = trace / static_cast<double>(values) / free;
-  if (squares <= 0.0) return spread;
+  if (squares <= 0.0 || count == 2) return spread;
   const double ratio = trace * trace / squares;
   const double most = std::min(most_modes, static_cast<double>(values));
   const double modes = (ratio * (free + 1.0) - 2.0) / std::max(1e-6, free - ratio);
@@ -54,11 +54,13 @@ Spread spread_of(const std::vector<std::vector<double>>& tries) {
   return spread;
 }
 
+double sure_modes(const Spread& spread) { return std::sqrt(spread.modes); }
+
 Doubt doubt_of(const Spread& spread, std::size_t tries, double share, double mean) {
   if (mean <= 0.0) return {};
   const double estimate = std::sqrt(spread.variance * share) / mean;
-  const double free = static_cast<double>(tries) - 1.0;
-  return {estimate, estimate * std::sqrt(f_quantile_95(spread.modes, free * spread.modes))};
+  const double free = static_cast<double>(tries) - 1.0, modes = sure_modes(spread);
+  return {estimate, estimate * std::sqrt(f_quantile_95(modes, free * modes))};
 }
 
 }  // namespace earthshine::studies

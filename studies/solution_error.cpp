@@ -37,18 +37,20 @@ double mean_product(const std::vector<double>& a, const std::vector<double>& b,
 double patch_share(bool other_is_finer, double q) { return (other_is_finer ? 1.0 : q) / (1.0 - q); }
 
 // Rays that lead through a small opening may be found by none of the few-ray solutions, which then
-// agree with each other and not with the solution: the larger of the two variances counts.
-Spread form_factor_spread(const std::vector<double>& own,
-                          const std::vector<std::vector<double>>& few, double share) {
-  Spread spread = spread_of(few);
-  const auto tries = static_cast<double>(few.size());
-  std::vector<double> mean(own.size(), 0.0);
-  for (const auto& one : few) {
+// agree with each other and not with the solution: the larger of the two variances counts, each
+// without what lamps add to it.
+Spread form_factor_spread(const Looks& looks, const radiosity::SecondLooks& made, double lamps) {
+  Spread spread = spread_of(looks.few_rays);
+  const auto tries = static_cast<double>(looks.few_rays.size());
+  std::vector<double> mean(looks.own.size(), 0.0);
+  for (const auto& one : looks.few_rays) {
     for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += one[i] / tries;
   }
-  // E (own - mean)^2 = variance (share + 1 / tries)
-  const double apart = mean_product(own, mean, mean) / (share + 1.0 / tries);
-  if (apart > spread.variance) spread.variance = apart;
+  // E (own - mean)^2 = variance (ray_share + 1 / tries) + lamps (point_share + 1 / tries)
+  const double apart =
+      (mean_product(looks.own, mean, mean) - lamps * (made.point_share + 1.0 / tries)) /
+      (made.ray_share + 1.0 / tries);
+  spread.variance = std::max({0.0, spread.variance - lamps, apart});
   return spread;
 }
 
@@ -81,16 +83,15 @@ SolutionError solution_error(const Looks& looks, const radiosity::SecondLooks& m
 
   const Spread lamps = spread_of(looks.other_direct);
   error.lamps = doubt_of(lamps, looks.other_direct.size(), made.point_share, scale);
-  Spread chance = form_factor_spread(looks.own, looks.few_rays, made.ray_share);
-  chance.variance = std::max(0.0, chance.variance - lamps.variance);
+  const Spread chance = form_factor_spread(looks, made, lamps.variance);
   error.form_factors = doubt_of(chance, looks.few_rays.size(), made.ray_share, scale);
 
   const auto& others = looks.other_patches;
   const double own_noise = chance.variance * made.ray_share + lamps.variance * made.point_share;
   const double apart =
       std::max(0.0, mean_product(looks.own, others.front(), others.back()) - own_noise);
-  const Spread noise = spread_of(others);
-  const double above = 1.645 * noise.variance / std::sqrt(noise.modes);
+  // Their noise has the modes of the few-ray solutions', which is told by more tries.
+  const double above = 1.645 * spread_of(others).variance / std::sqrt(sure_modes(chance));
   const double r = made.error_ratio;
   error.patches = {patch_share(made.finer, r * r) * std::sqrt(apart) / scale,
                    patch_share(made.finer, r) * std::sqrt(apart + above) / scale};
