@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/accuracy.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+
+#include "base/random.h"
+#include "raytrace/path_tracer.h"
+#include "scenes/idle.h"
+#include "scenes/quality.h"
+#include "studies/memory.h"
+
+namespace earthshine::studies {
+namespace {
+
+using raytrace::Indirect;
+
+class Clock {
+ public:
+  [[nodiscard]] double wall() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
+  }
+  [[nodiscard]] double cpu() const { return cpu_now() - cpu_; }
+
+ private:
+  static double cpu_now() {
+    timespec now{};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  }
+  std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
+  double cpu_ = cpu_now();
+};
+
+scenes::LightPaths paths_of(Indirect indirect) {
+  switch (indirect) {
+    case Indirect::Paths:
+      return scenes::LightPaths::Traced;
+    case Indirect::None:
+      return scenes::LightPaths::Straight;
+    case Indirect::Distributed:
+      return scenes::LightPaths::Distributed;
+    case Indirect::Radiosity:
+      break;
+  }
+  return scenes::LightPaths::All;
+}
+
+scenes::QualityKnobs knobs_of(const scenes::Scene& scene, const Step& step) {
+  scenes::Scene changed = scene;
+  changed.quality = step.quality;
+  return scenes::resolve_quality(changed);
+}
+
+// Light groups and effects as `render` has them for the step.
+struct Asked {
+  scenes::LightGroups groups;
+  scenes::Effects effects;
+
+  Asked(const StudyScene& study, const AccuracyView& view, const Step& step)
+      : groups(study.groups) {
+    constexpr double default_error = 0.02;
+    scenes::Asked asked;
+    asked.cameras = {&view.camera};
+    asked.paths = paths_of(step.indirect);
+    effects = scenes::find_effects(study.scene, groups, asked);
+    if (step.indirect == Indirect::Paths) return;
+    (void)scenes::switch_off_idle(study.scene, asked, step.quality.error.value_or(default_error),
+                                  groups, effects);
+  }
+};
+
+void fill_shelf(SolutionShelf& shelf, const StudyScene& study, const Asked& asked,
+                const radiosity::SolveOptions& solver) {
+  if (shelf.key && same_solver(*shelf.key, solver)) return;
+  shelf = {};
+  const Clock clock;
+  shelf.solution = radiosity::solve(study.scene, asked.groups, asked.effects, study.query, solver);
+  shelf.wall_seconds = clock.wall();
+  shelf.cpu_seconds = clock.cpu();
+  shelf.key = solver;
+}
+
+double memory_of(const StudyScene& study, const Asked& asked, const radiosity::SolveOptions& solver,
+                 const raytrace::RenderOptions& picture, const radiosity::Solution* solution) {
+  MemoryCase sizes = memory_case(study.scene, asked.groups, asked.effects, solver);
+  if (solution != nullptr) {
+    set_patches(sizes, solution->report.patches, solver);
+    expect_rows(sizes, study.scene, study.query, solver);
+  } else {
+    sizes.solves = false;
+    sizes.columns = 0;
+    sizes.patches = 0;
+  }
+  add_picture(sizes, asked.groups, asked.effects, picture);
+  return memory_needed(sizes).total();
+}
+
+std::uint64_t solve_rays(const radiosity::SolveReport& report) {
+  return report.refinement_rays + report.form_factor_rays + report.shadow_rays;
+}
+
+}  // namespace
+
+bool same_solver(const radiosity::SolveOptions& a, const radiosity::SolveOptions& b) {
+  return a.patch_edge_m == b.patch_edge_m && a.form_factor_rays == b.form_factor_rays &&
+         a.tolerance == b.tolerance && a.seed == b.seed && a.refine.on == b.refine.on &&
+         a.refine.start_edge_m == b.refine.start_edge_m &&
+         a.refine.max_patches == b.refine.max_patches && a.refine.error == b.refine.error;
+}
+
+AccuracyView accuracy_view(const scenes::Camera& camera, int columns, int rows,
+                           std::uint64_t seed) {
+  AccuracyView view{camera, columns, rows, seed, {}};
+  view.camera.filter = scenes::FilterShape::Box;
+  view.camera.filter_width_px = 1.0;
+  return view;
+}
+
+radiosity::SolveOptions solver_of(const StudyScene& study, const Step& step, std::uint64_t seed) {
+  const scenes::QualityKnobs knobs = knobs_of(study.scene, step);
+  return {knobs.patch_edge_m,
+          knobs.form_factor_rays,
+          knobs.solver_tolerance,
+          seed,
+          {knobs.refine, knobs.start_edge_m, static_cast<std::size_t>(knobs.max_patches),
+           knobs.refine_error}};
+}
+
+raytrace::RenderOptions picture_of(const StudyScene& study, const AccuracyView& view,
+                                   const Step& step) {
+  raytrace::RenderOptions options = raytrace::render_options(knobs_of(study.scene, step));
+  options.columns = view.columns;
+  options.rows = view.rows;
+  options.indirect = step.indirect;
+  if (step.lights > 0) options.distributed_lights = step.lights;
+  options.seed = view.seed;
+  options.stop = view.stop;
+  return options;
+}
+
+std::optional<StepResult> run_step(const StudyScene& study, const AccuracyView& view,
+                                   const Step& step, SolutionShelf& shelf,
+                                   const raytrace::Progress& progress) {
+  const Asked asked(study, view, step);
+  const radiosity::SolveOptions solver = solver_of(study, step, view.seed);
+  const raytrace::RenderOptions options = picture_of(study, view, step);
+  const bool solves = step.indirect == Indirect::Radiosity && asked.effects.solution;
+  const radiosity::Solution none;
+  if (solves) fill_shelf(shelf, study, asked, solver);
+  const radiosity::Solution& solution = solves ? shelf.solution : none;
+
+  StepResult result;
+  StepCost& cost = result.cost;
+  const Clock clock;
+  const raytrace::Frame frame =
+      step.indirect == Indirect::Paths
+          ? raytrace::trace_paths(study.scene, asked.groups, asked.effects, study.query,
+                                  view.camera,
+                                  {options.columns, options.rows, options.gather_rays, false,
+                                   raytrace::PathSet::All, options.seed, options.stop},
+                                  progress)
+          : raytrace::render(study.scene, asked.groups, asked.effects, study.query, solution,
+                             view.camera, options, progress);
+  cost.wall_seconds = clock.wall();
+  cost.cpu_seconds = clock.cpu();
+  if (frame.report.stopped) return std::nullopt;
+  result.luminance = base::luminance_of(frame.image);
+  if (solves) {
+    cost.solve_wall_seconds = shelf.wall_seconds;
+    cost.solve_cpu_seconds = shelf.cpu_seconds;
+    cost.wall_seconds += shelf.wall_seconds;
+    cost.cpu_seconds += shelf.cpu_seconds;
+    cost.patches = solution.report.patches;
+    cost.solve_rays = solve_rays(solution.report);
+    cost.form_factor_rays = solver.form_factor_rays;
+  }
+  cost.picture_rays = frame.report.rays.total();
+  cost.gather_rays = frame.report.gather_rays;
+  cost.camera_samples = frame.report.camera_samples;
+  cost.stated_noise = frame.report.relative_noise;
+  cost.memory_bytes = memory_of(study, asked, solver, options, solves ? &solution : nullptr);
+  return result;
+}
+
+std::uint64_t reference_seed(std::uint64_t seed, int side, int index) {
+  // Far from the seeds that a user may give for other runs.
+  constexpr std::uint64_t mark = 0x7265666572656e63ULL;
+  return base::mix64(base::mix64(seed ^ mark) + 2 * static_cast<std::uint64_t>(index) +
+                     static_cast<std::uint64_t>(side));
+}
+
+std::optional<base::Image> trace_batch(const StudyScene& study, const AccuracyView& view,
+                                       const Batch& batch, const raytrace::Progress& progress) {
+  scenes::Asked asked;
+  asked.cameras = {&view.camera};
+  asked.paths = scenes::LightPaths::Traced;
+  const scenes::Effects effects = scenes::find_effects(study.scene, study.groups, asked);
+  const raytrace::Frame frame =
+      raytrace::trace_paths(study.scene, study.groups, effects, study.query, view.camera,
+                            {view.columns, view.rows, batch.paths_per_pixel, false, batch.paths,
+                             reference_seed(view.seed, batch.side, batch.index), view.stop},
+                            progress);
+  if (frame.report.stopped) return std::nullopt;
+  base::Image kept{frame.image.width, frame.image.height, {}};
+  kept.channels.push_back({"Y", base::luminance_of(frame.image)});
+  kept.channels.push_back({"variance", frame.image.find("variance")->values});
+  return kept;
+}
+
+NoisyPicture mean_of_batches(const std::vector<Batch>& batches,
+                             const std::vector<base::Image>& pictures) {
+  double paths = 0.0;
+  for (const Batch& batch : batches) paths += batch.paths_per_pixel;
+  const std::size_t pixels = pictures.front().pixel_count();
+  NoisyPicture mean{std::vector<double>(pixels), std::vector<double>(pixels)};
+  for (std::size_t k = 0; k < batches.size(); ++k) {
+    const double weight = batches[k].paths_per_pixel / paths;
+    const std::vector<float>& luminance = pictures[k].find("Y")->values;
+    const std::vector<float>& variance = pictures[k].find("variance")->values;
+    for (std::size_t p = 0; p < pixels; ++p) {
+      mean.luminance[p] += weight * double(luminance[p]);
+      mean.variance[p] += weight * weight * double(variance[p]);
+    }
+  }
+  return mean;
+}
+
+std::vector<int> further_batches(int first_paths, double found, double wanted, int most) {
+  constexpr int largest = 64;  // what a kill may cost
+  std::vector<int> batches;
+  if (!(found > wanted) || !(wanted > 0.0)) return batches;
+  const double ratio = found / wanted;
+  const double needed = std::min(double(most), std::ceil(first_paths * ratio * ratio));
+  for (int left = static_cast<int>(needed) - first_paths; left > 0; left -= largest) {
+    batches.push_back(std::max(2, std::min(largest, left)));
+  }
+  return batches;
+}
+
+bool leaves_paths_out(const scenes::Effects& effects) {
+  return effects.phong || effects.glossy || effects.mirror || effects.refraction;
+}
+
+Step straight_step(const scenes::Scene& scene, double error) {
+  Step step;
+  step.method = "direct";
+  step.series = series::error;
+  step.setting = error;
+  step.indirect = Indirect::None;
+  step.quality.share_gather = scene.quality.share_gather;
+  step.quality.error = error;
+  return step;
+}
+
+}  // namespace earthshine::studies

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The settings that `study accuracy` runs through: cheap and coarse ones first, for each method.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "raytrace/render.h"
+#include "scenes/effects.h"
+#include "scenes/scene.h"
+
+namespace earthshine::studies {
+
+// What a series varies. All else is as `quality.error = base_error` has it.
+namespace series {
+inline constexpr const char* error = "error";  // all together
+inline constexpr const char* patches = "max_patches";
+inline constexpr const char* form_factor_rays = "form_factor_rays";
+inline constexpr const char* gather_rays = "gather_rays";
+inline constexpr const char* picture_noise = "picture_noise";
+inline constexpr const char* lights = "distributed_lights";
+inline constexpr const char* samples = "samples";
+}  // namespace series
+
+struct Step {
+  std::string method;  // "radiosity", "direct", "distributed" or "paths"
+  std::string series;
+  double setting = 0.0;  // of what is varied
+  raytrace::Indirect indirect = raytrace::Indirect::Radiosity;
+  scenes::Quality quality;  // what the scene's keys are replaced by
+  int lights = 0;           // of Indirect::Distributed
+  double work = 1.0;        // what it is expected to cost, against others of its series
+
+  [[nodiscard]] std::string name() const;  // "radiosity error=0.05"
+  // The words that make `earthshine render` draw it.
+  [[nodiscard]] std::vector<std::string> options() const;
+};
+
+struct LadderOptions {
+  double finest = 0.01;      // the least wanted error; the ladder goes a little below it
+  double base_error = 0.02;  // of what is not varied
+  std::vector<int> lights = {4, 16, 64, 256, 1024};
+  std::vector<int> samples = {4, 16, 64, 256};
+};
+
+// In the order in which they are run: the first of every series, the second ... `effects`: of the
+// scene with all light. Series that have nothing to vary are left out: patches and form factors
+// where nothing is solved for, gather rays where there are none, distributed lights where no source
+// is wide. What else the scene says of quality stays: gather, smooth, solver_tolerance.
+[[nodiscard]] std::vector<Step> accuracy_ladder(const scenes::Scene& scene,
+                                                const scenes::Effects& effects,
+                                                const LadderOptions& options);
+
+// The keys of the scene's [quality] that the ladder replaces, but for `error`.
+[[nodiscard]] std::vector<std::string> replaced_keys(const scenes::Quality& quality);
+
+// Seconds that `step` will take, from those of its series that were run: the last one's times the
+// ratio of the work, or of all steps of the ladder where its series has none. 0 where there are
+// none at all.
+struct Taken {
+  Step step;
+  double seconds = 0.0;
+};
+[[nodiscard]] double expected_seconds(const Step& step, const std::vector<Taken>& taken);
+
+}  // namespace earthshine::studies
