@@ -46,7 +46,7 @@ bool usable(const StoredPart& part, bool step) {
 }  // namespace
 
 AccuracyParts::AccuracyParts(const AccuracyTask& task, const studies::StudyScene& scene)
-    : task_(task), scene_(scene) {
+    : task_(task), scene_(scene), cpu_start_(cpu_seconds()) {
   common_marks_ = {{"study", "accuracy"},
                    {"version", EARTHSHINE_VERSION},
                    {"scene", scene_marks(task.loaded)},
@@ -190,6 +190,11 @@ std::string AccuracyParts::does_not_fit(const studies::Step& step) const {
 
 double AccuracyParts::seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+double AccuracyParts::wall_per_cpu() const {
+  // Reading what is stored takes little of either.
+  return std::max(1e-3, seconds()) / std::max(1e-3, cpu_seconds() - cpu_start_);
 }
 
 void AccuracyParts::tell(const std::string& what, double seconds_left,

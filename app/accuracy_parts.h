@@ -29,6 +29,8 @@ class AccuracyParts {
   [[nodiscard]] std::string does_not_fit(const studies::Step& step) const;
 
   [[nodiscard]] double seconds() const;  // wall, since the beginning
+  // How the machine turns CPU seconds into wall seconds just now, for what is still to come.
+  [[nodiscard]] double wall_per_cpu() const;
   void tell(const std::string& what, double seconds_left, const std::string& found) const;
 
  private:
@@ -43,6 +45,7 @@ class AccuracyParts {
   std::vector<radiosity::SolveOptions> expected_;
   studies::SolutionShelf shared_, single_;
   std::size_t finished_ = 0;
+  double cpu_start_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

@@ -169,11 +169,11 @@ class Study {
     for (std::size_t k = 0; k < ladder.size(); ++k) {
       const studies::Step& step = ladder[k];
       if (!parts_.has(step, task_.view.seed)) {
-        const double expected = studies::expected_seconds(step, taken);
-        if (expected > time_left()) {
+        const double expected = parts_.wall_per_cpu() * studies::expected_seconds(step, taken);
+        if (expected > time_left() || time_left() <= 0.0) {
           result_.not_run.push_back(
-              {step.name(), fmt::format("would take about {}, more than the time limit leaves",
-                                        duration(expected))});
+              {step.name(), fmt::format("would take about {}, and the time limit leaves {}",
+                                        duration(expected), duration(std::max(0.0, time_left())))});
           continue;
         }
         const std::string unfit = parts_.does_not_fit(step);
@@ -187,11 +187,11 @@ class Study {
       const std::vector<float>& luminance = part.image.find("Y")->values;
       result_.points.push_back({step, cost, studies::picture_error(luminance, full_, counted_),
                                 studies::picture_error(luminance, limit_of(step), counted_)});
-      taken.push_back({step, cost.wall_seconds});
+      taken.push_back({step, cost.cpu_seconds});
       double left = 0.0;
       for (std::size_t j = k + 1; j < ladder.size(); ++j) {
         if (!parts_.has(ladder[j], task_.view.seed)) {
-          left += studies::expected_seconds(ladder[j], taken);
+          left += parts_.wall_per_cpu() * studies::expected_seconds(ladder[j], taken);
         }
       }
       parts_.tell(fmt::format("{} of {}: {}", k + 1, ladder.size(), step.name()), left,

@@ -16,7 +16,7 @@ namespace earthshine::app {
 
 struct AccuracyCall : StudyCall {
   std::vector<double> wanted = {0.05, 0.02, 0.01};
-  double reference_factor = 3.0;  // how much finer the reference than the least wanted error
+  double reference_factor = 2.0;  // how much finer the reference than the least wanted error
   double time_limit_s = 0.0;      // 0: none
   studies::LadderOptions ladder;  // its errors follow from `wanted` and the scene
 };

@@ -71,11 +71,13 @@ void add_radiosity(Ladder& ladder, const scenes::Effects& effects, const LadderO
   constexpr auto how = Indirect::Radiosity;
   for (const double times : error_steps) {
     const double error = tidy(std::min(1.0, times * options.finest));
-    ladder.add(method, series::error, how, error, 1.0 / (error * error)).quality.error = error;
+    // What does not depend on the error costs about what an error of 0.03 does.
+    ladder.add(method, series::error, how, error, 1e3 + 1.0 / (error * error)).quality.error =
+        error;
   }
   if (effects.solution) {
     for (const int count : patch_steps) {
-      ladder.add(method, series::patches, how, count, count).quality.max_patches = count;
+      ladder.add(method, series::patches, how, count, count + 2000.0).quality.max_patches = count;
     }
     for (const int rays : form_factor_steps) {
       // A solve of few rays costs what the rest of it costs.
@@ -157,9 +159,9 @@ std::vector<std::string> replaced_keys(const scenes::Quality& quality) {
 double expected_seconds(const Step& step, const std::vector<Taken>& taken) {
   double seconds = 0.0, all = 0.0;
   for (const Taken& earlier : taken) {
-    all += earlier.seconds / static_cast<double>(taken.size());
+    all += earlier.cpu_seconds / static_cast<double>(taken.size());
     const bool same = earlier.step.series == step.series && earlier.step.method == step.method;
-    if (same) seconds = earlier.seconds * step.work / earlier.step.work;
+    if (same) seconds = earlier.cpu_seconds * step.work / earlier.step.work;
   }
   return seconds > 0.0 ? seconds : all;
 }

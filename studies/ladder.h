@@ -54,12 +54,11 @@ struct LadderOptions {
 // The keys of the scene's [quality] that the ladder replaces, but for `error`.
 [[nodiscard]] std::vector<std::string> replaced_keys(const scenes::Quality& quality);
 
-// Seconds that `step` will take, from those of its series that were run: the last one's times the
-// ratio of the work, or of all steps of the ladder where its series has none. 0 where there are
-// none at all.
+// CPU seconds that `step` will take, from those of its series that were run: the last one's times
+// the ratio of the work; where its series has none, the mean of all. 0 where there are none at all.
 struct Taken {
   Step step;
-  double seconds = 0.0;
+  double cpu_seconds = 0.0;
 };
 [[nodiscard]] double expected_seconds(const Step& step, const std::vector<Taken>& taken);
 
