@@ -31,7 +31,9 @@ Json facts_of(const studies::StepCost& cost) {
           {"gather_rays", cost.gather_rays},
           {"camera_samples", cost.camera_samples},
           {"memory_bytes", cost.memory_bytes},
-          {"stated_noise", cost.stated_noise}};
+          {"estimate", cost.stated.estimate},
+          {"bound_95", cost.stated.bound_95},
+          {"estimate_cpu_seconds", cost.statement_cpu_seconds}};
 }
 
 bool usable(const StoredPart& part, bool step) {
@@ -104,7 +106,9 @@ studies::StepCost AccuracyParts::cost_of(const Json& facts) {
   facts.at("gather_rays").get_to(cost.gather_rays);
   facts.at("camera_samples").get_to(cost.camera_samples);
   facts.at("memory_bytes").get_to(cost.memory_bytes);
-  facts.at("stated_noise").get_to(cost.stated_noise);
+  facts.at("estimate").get_to(cost.stated.estimate);
+  facts.at("bound_95").get_to(cost.stated.bound_95);
+  facts.at("estimate_cpu_seconds").get_to(cost.statement_cpu_seconds);
   return cost;
 }
 

@@ -48,7 +48,9 @@ Json row_of(const AccuracyTask& task, const AccuracyResult& result, std::size_t 
           {"setting_error", point.setting_error.error},
           {"setting_error_low", point.setting_error.low},
           {"setting_error_high", point.setting_error.high},
-          {"stated_noise", cost.stated_noise},
+          {"estimate", cost.stated.estimate},
+          {"bound_95", cost.stated.bound_95},
+          {"estimate_cpu_seconds", cost.statement_cpu_seconds},
           {"wall_seconds", cost.wall_seconds},
           {"cpu_seconds", cost.cpu_seconds},
           {"solve_wall_seconds", solved ? Json(cost.solve_wall_seconds) : Json()},
@@ -211,14 +213,15 @@ Json accuracy_json(const AccuracyTask& task, const AccuracyResult& result) {
 
 std::string accuracy_text(const AccuracyTask& task, const AccuracyResult& result) {
   if (!result.nothing.empty()) return "Nothing was measured: " + result.nothing + ".\n";
-  std::string text = fmt::format("{:<34} {:>8} {:>9} {:>9} {:>9} {:>9} {:>8}\n", "setting", "error",
-                                 "setting's", "CPU s", "wall s", "MiB", "front");
+  std::string text = fmt::format("{:<34} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9} {:>6}\n", "setting",
+                                 "error", "setting's", "bound", "CPU s", "wall s", "MiB", "front");
   for (std::size_t k = 0; k < result.points.size(); ++k) {
     const studies::MeasuredStep& point = result.points[k];
     const std::vector<std::size_t>& front = result.findings.front;
     const bool first = std::find(front.begin(), front.end(), k) != front.end();
-    text += fmt::format("{:<34} {:>8} {:>9} {:>9.2f} {:>9.2f} {:>9.1f} {:>8}\n", point.step.name(),
-                        percent(point.error.error), percent(point.setting_error.error),
+    text += fmt::format("{:<34} {:>8} {:>9} {:>9} {:>9.2f} {:>9.2f} {:>9.1f} {:>6}\n",
+                        point.step.name(), percent(point.error.error),
+                        percent(point.setting_error.error), percent(point.cost.stated.bound_95),
                         point.cost.cpu_seconds, point.cost.wall_seconds,
                         point.cost.memory_bytes / mib, first ? "*" : "");
   }

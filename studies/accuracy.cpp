@@ -10,6 +10,7 @@
 #include "raytrace/path_tracer.h"
 #include "scenes/idle.h"
 #include "scenes/quality.h"
+#include "studies/error_budget.h"
 #include "studies/memory.h"
 
 namespace earthshine::studies {
@@ -98,6 +99,18 @@ double memory_of(const StudyScene& study, const Asked& asked, const radiosity::S
   return memory_needed(sizes).total();
 }
 
+void state_error(const StudyScene& study, const AccuracyView& view,
+                 const radiosity::Solution& solution, const radiosity::SolveOptions& solver,
+                 const raytrace::RenderOptions& options, const raytrace::Frame& frame,
+                 StepCost& cost) {
+  const Clock clock;
+  const WatchedPicture picture{&view.camera, options};
+  const SecondOpinion opinion = second_opinion(study, solution, solver, {picture});
+  cost.stated =
+      error_budget(study, opinion.pictures.front(), solution, picture, frame).parts.total();
+  cost.statement_cpu_seconds = clock.cpu();
+}
+
 std::uint64_t solve_rays(const radiosity::SolveReport& report) {
   return report.refinement_rays + report.form_factor_rays + report.shadow_rays;
 }
@@ -180,8 +193,9 @@ std::optional<StepResult> run_step(const StudyScene& study, const AccuracyView& 
   cost.picture_rays = frame.report.rays.total();
   cost.gather_rays = frame.report.gather_rays;
   cost.camera_samples = frame.report.camera_samples;
-  cost.stated_noise = frame.report.relative_noise;
   cost.memory_bytes = memory_of(study, asked, solver, options, solves ? &solution : nullptr);
+  state_error({study.scene, asked.groups, asked.effects, study.query}, view, solution, solver,
+              options, frame, cost);
   return result;
 }
 

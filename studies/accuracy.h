@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "raytrace/path_tracer.h"
+#include "studies/doubt.h"
 #include "studies/ladder.h"
 #include "studies/picture_error.h"
 #include "studies/study.h"
@@ -45,7 +46,8 @@ struct StepCost {
   int form_factor_rays = 0, gather_rays = 0;  // per patch, per pixel
   double camera_samples = 0.0;                // per pixel, mean
   double memory_bytes = 0.0;                  // memory.h, for the patches and rows it had
-  double stated_noise = 0.0;                  // RenderReport::relative_noise
+  Doubt stated;                        // the error as the picture itself states it (error_budget.h)
+  double statement_cpu_seconds = 0.0;  // that this took, not in the above
 };
 struct StepResult {
   std::vector<float> luminance;
