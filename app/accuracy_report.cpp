@@ -88,6 +88,7 @@ Json answer_json(const AccuracyTask& task, const AccuracyResult& result,
     const studies::MeasuredStep& point = result.points[*index];
     return {{"method", point.step.method},
             {"error", point.error.error},
+            {"setting_error", point.setting_error.error},
             {"cpu_seconds", point.cost.cpu_seconds},
             {"wall_seconds", point.cost.wall_seconds},
             {"memory_mib", point.cost.memory_bytes / mib},
@@ -96,7 +97,8 @@ Json answer_json(const AccuracyTask& task, const AccuracyResult& result,
   Json methods = Json::object();
   for (const studies::Answer::OfMethod& method : answer.methods) {
     Json json = {{"reached", answer.told && method.point.has_value()},
-                 {"setting", point_json(method.point)}};
+                 {"setting", point_json(method.point)},
+                 {"setting_apart_from_limit", point_json(method.setting)}};
     if (method.expected_seconds) json["expected_cpu_seconds"] = *method.expected_seconds;
     methods[method.method] = json;
   }
@@ -115,27 +117,35 @@ std::string worth_sentence(const studies::Worth& worth) {
   return fmt::format("{}; below that {} is cheaper.", first, worth.then);
 }
 
+std::string point_text(const AccuracyTask& task, const studies::MeasuredStep& point) {
+  return fmt::format("{}\n          {:.3g} CPU s, {:.0f} MiB; error {}, the setting's {}\n",
+                     command_of(task, point.step), point.cost.cpu_seconds,
+                     point.cost.memory_bytes / mib, percent(point.error.error),
+                     percent(point.setting_error.error));
+}
+
 std::string answer_text(const AccuracyTask& task, const AccuracyResult& result,
                         const studies::Answer& answer) {
-  const std::string wanted = fmt::format("{:>6}: ", percent(answer.wanted));
+  std::string text = fmt::format("{:>6}: ", percent(answer.wanted));
   if (!answer.told) {
-    return fmt::format("{}the reference tells errors from {} on only; give it more time\n", wanted,
-                       percent(result.resolution));
+    return text + fmt::format("the reference tells errors from {} on only; give it more time\n",
+                              percent(result.resolution));
   }
-  if (answer.best) {
-    const studies::MeasuredStep& point = result.points[*answer.best];
-    return fmt::format("{}{}\n        {} in {} CPU s, {:.0f} MiB\n", wanted,
-                       command_of(task, point.step), percent(point.error.error),
-                       fmt::format("{:.3g}", point.cost.cpu_seconds),
-                       point.cost.memory_bytes / mib);
-  }
-  std::string text = wanted + "not reached by any setting measured";
+  if (answer.best) return text + point_text(task, result.points[*answer.best]);
+  text += "reached by no setting measured";
   for (const studies::Answer::OfMethod& method : answer.methods) {
     if (!method.expected_seconds) continue;
     text +=
         fmt::format("; paths would take about {} of CPU time", duration(*method.expected_seconds));
   }
-  return text + "\n";
+  text += "\n";
+  for (const studies::Answer::OfMethod& method : answer.methods) {
+    // What the method leaves out aside.
+    if (!method.setting || method.method != "radiosity") continue;
+    text += "        but for its limit radiosity is there: " +
+            point_text(task, result.points[*method.setting]);
+  }
+  return text;
 }
 
 }  // namespace

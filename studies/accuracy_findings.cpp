@@ -48,23 +48,32 @@ std::optional<double> seconds_of_paths(const std::vector<Trade>& trades, double 
   return finest->seconds * std::pow(finest->error / wanted, 2);
 }
 
-Answer answer(const std::vector<Trade>& trades, const std::vector<Worth>& worth, double wanted,
-              double resolution) {
+// Of one method's points.
+std::optional<std::size_t> cheapest_of(const std::vector<Trade>& trades, const std::string& method,
+                                       double wanted) {
+  std::vector<Trade> own;
+  std::vector<std::size_t> place;
+  for (std::size_t k = 0; k < trades.size(); ++k) {
+    if (trades[k].method != method) continue;
+    own.push_back(trades[k]);
+    place.push_back(k);
+  }
+  const auto found = cheapest_within(own, wanted);
+  return found ? std::optional(place[*found]) : std::nullopt;
+}
+
+Answer answer(const std::vector<Trade>& trades, const std::vector<Trade>& settings,
+              const std::vector<Worth>& worth, double wanted, double resolution) {
   Answer result;
   result.wanted = wanted;
   result.told = resolution <= wanted;
   result.best = cheapest_within(trades, wanted);
   for (const Worth& method : worth) {
-    std::vector<Trade> own;
-    std::vector<std::size_t> place;
-    for (std::size_t k = 0; k < trades.size(); ++k) {
-      if (trades[k].method != method.method) continue;
-      own.push_back(trades[k]);
-      place.push_back(k);
+    Answer::OfMethod of{method.method, cheapest_of(trades, method.method, wanted),
+                        cheapest_of(settings, method.method, wanted), std::nullopt};
+    if (!of.point && method.method == "paths") {
+      of.expected_seconds = seconds_of_paths(trades, wanted);
     }
-    Answer::OfMethod of{method.method, std::nullopt, std::nullopt};
-    if (const auto found = cheapest_within(own, wanted)) of.point = place[*found];
-    if (!of.point && method.method == "paths") of.expected_seconds = seconds_of_paths(own, wanted);
     result.methods.push_back(std::move(of));
   }
   return result;
@@ -87,13 +96,14 @@ Spent spent_on(const MeasuredStep& point) {
 
 Findings find_accuracy(const std::vector<MeasuredStep>& points, const std::vector<double>& wanted,
                        double resolution) {
-  const std::vector<Trade> trades = trades_of(points, resolution);
+  const std::vector<Trade> trades = trades_of(points, resolution, &MeasuredStep::error);
+  const std::vector<Trade> settings = trades_of(points, resolution, &MeasuredStep::setting_error);
   Findings findings;
   findings.front = pareto_front(trades);
   findings.worth = worth_of_methods(trades);
   findings.laws = laws_of(points, resolution);
   for (const double error : wanted) {
-    findings.answers.push_back(answer(trades, findings.worth, error, resolution));
+    findings.answers.push_back(answer(trades, settings, findings.worth, error, resolution));
   }
   return findings;
 }

@@ -35,7 +35,9 @@ struct Answer {
   std::optional<std::size_t> best;  // of the measured points; none: not reached
   struct OfMethod {
     std::string method;
-    std::optional<std::size_t> point;
+    std::optional<std::size_t> point;  // its picture is that exact
+    // Its setting is: what is left is the method's own limit, which no setting takes away.
+    std::optional<std::size_t> setting;
     // Not reached by paths: CPU seconds that they would take, error falling with their root.
     std::optional<double> expected_seconds;
   };

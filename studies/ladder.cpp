@@ -69,8 +69,11 @@ class Ladder {
 void add_radiosity(Ladder& ladder, const scenes::Effects& effects, const LadderOptions& options) {
   constexpr const char* method = "radiosity";
   constexpr auto how = Indirect::Radiosity;
+  double before = 0.0;
   for (const double times : error_steps) {
     const double error = tidy(std::min(1.0, times * options.finest));
+    if (error == before) continue;
+    before = error;
     // What does not depend on the error costs about what an error of 0.03 does.
     ladder.add(method, series::error, how, error, 1e3 + 1.0 / (error * error)).quality.error =
         error;

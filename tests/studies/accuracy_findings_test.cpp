@@ -106,6 +106,18 @@ TEST(Findings, AnswersAreTheCheapestReachedOrSayWhatPathsWouldTake) {
   EXPECT_EQ(found.front, (std::vector<std::size_t>{0, 1}));
 }
 
+// A method that leaves out 9 % has no picture within 5 %, but settings that are.
+TEST(Findings, TheLimitIsKeptApartFromTheSetting) {
+  const std::vector<MeasuredStep> points = {
+      measured("radiosity", series::error, 0.1, 1.0, 0.12, 0.08),
+      measured("radiosity", series::error, 0.02, 3.0, 0.098, 0.04),
+      measured("radiosity", series::error, 0.01, 9.0, 0.091, 0.01)};
+  const Findings found = find_accuracy(points, {0.05}, 0.002);
+  EXPECT_FALSE(found.answers[0].best);
+  EXPECT_FALSE(found.answers[0].methods[0].point);
+  EXPECT_EQ(found.answers[0].methods[0].setting, 1U);
+}
+
 // Errors below what the reference resolves are no better than that.
 TEST(Findings, TheReferenceLimitsWhatIsSaid) {
   const std::vector<MeasuredStep> points = {
