@@ -110,7 +110,8 @@ std::vector<AccuracyPlot> accuracy_plots(const AccuracyTask& task, const Accurac
   seconds.panels.push_back(
       error_panel(result, "memory of the same", "MiB, solve and picture",
                   [](const studies::MeasuredStep& p) { return p.cost.memory_bytes / mib; }));
-  // The front is one of seconds, not of memory.
+  // The front is one of seconds, not of memory; the legend is the same.
+  seconds.panels.back().legend = false;
   seconds.panels.back().curves.erase(seconds.panels.back().curves.begin());
   AccuracyPlot settings{accuracy_plot_stems[1], {}, 3};
   for (const Look& look : looks) {

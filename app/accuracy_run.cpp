@@ -63,6 +63,11 @@ class Study {
     draw_straight();
     find_limits();
     climb();
+    // Of what was not in the ladder nothing is said.
+    std::erase_if(result_.limits, [this](const MethodLimit& limit) {
+      return std::none_of(ladder_.begin(), ladder_.end(),
+                          [&](const studies::Step& step) { return step.method == limit.method; });
+    });
     result_.findings =
         studies::find_accuracy(result_.points, task_.call.wanted, result_.resolution);
     return std::move(result_);
@@ -162,8 +167,8 @@ class Study {
     studies::LadderOptions options = task_.call.ladder;
     options.finest = *std::min_element(task_.call.wanted.begin(), task_.call.wanted.end());
     options.base_error = task_.loaded.scene.quality.error.value_or(options.base_error);
-    const std::vector<studies::Step> ladder =
-        studies::accuracy_ladder(task_.loaded.scene, task_.loaded.effects, options);
+    ladder_ = studies::accuracy_ladder(task_.loaded.scene, task_.loaded.effects, options);
+    const std::vector<studies::Step>& ladder = ladder_;
     parts_.expect(ladder);
     std::vector<studies::Taken> taken;
     for (std::size_t k = 0; k < ladder.size(); ++k) {
@@ -207,6 +212,7 @@ class Study {
   std::vector<bool> counted_;
   ReferencePair full_, gathered_, straight_;
   bool differs_ = false;
+  std::vector<studies::Step> ladder_;
 };
 
 }  // namespace

@@ -15,7 +15,7 @@
 namespace earthshine::app {
 namespace {
 
-constexpr int panel_width_px = 560, panel_height_px = 420;
+constexpr int panel_width_px = 640, panel_height_px = 420;
 
 // How many bytes the character at `at` has; 0 where it is no UTF-8.
 std::size_t character_bytes(std::string_view text, std::size_t at) {
@@ -40,6 +40,26 @@ std::string data_block(const std::string& name, const std::vector<PlotPoint>& po
     text += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g}\n", p.x, p.y, p.low, p.high);
   }
   return text + "EOD\n";
+}
+
+// Numbers beside a logarithmic axis: gnuplot itself has them at powers of ten alone, of which a
+// short axis may show none.
+std::string tics(double low, double high) {
+  const std::vector<std::vector<double>> steps = {
+      {1}, {1, 3}, {1, 2, 5}, {1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9}};
+  constexpr std::size_t enough = 4;
+  std::vector<std::string> words;
+  for (const std::vector<double>& mantissas : steps) {
+    words.clear();
+    for (double decade = std::floor(std::log10(low)); decade <= std::log10(high); ++decade) {
+      for (const double mantissa : mantissas) {
+        const double value = mantissa * std::pow(10.0, decade);
+        if (value >= low && value <= high) words.push_back(fmt::format("{:.6g}", value));
+      }
+    }
+    if (words.size() >= enough) break;
+  }
+  return fmt::format("({})", fmt::join(words, ", "));
 }
 
 std::string panel_script(const PlotPanel& panel, std::size_t index) {
@@ -67,7 +87,7 @@ std::string panel_script(const PlotPanel& panel, std::size_t index) {
   std::string text =
       fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", plot_text(panel.title),
                   plot_text(panel.x_label), plot_text(panel.y_label));
-  text += panel.legend ? "set key outside bottom center horizontal\n" : "unset key\n";
+  text += panel.legend ? "set key outside right center vertical samplen 2\n" : "unset key\n";
   if (plots.empty()) {
     return text +
            "unset logscale\nset label 1 'no points' at graph 0.5, 0.5 center\n"
@@ -75,8 +95,10 @@ std::string panel_script(const PlotPanel& panel, std::size_t index) {
   }
   // Room around the points, also where all are alike.
   return text + data +
-         fmt::format("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\nplot {}\n",
-                     low_x / 1.3, high_x * 1.3, low_y / 1.3, high_y * 1.3, plots);
+         fmt::format("set xrange [{:.6g}:{:.6g}]\nset xtics {}\n", low_x / 1.3, high_x * 1.3,
+                     tics(low_x / 1.3, high_x * 1.3)) +
+         fmt::format("set yrange [{:.6g}:{:.6g}]\nset ytics {}\nplot {}\n", low_y / 1.3,
+                     high_y * 1.3, tics(low_y / 1.3, high_y * 1.3), plots);
 }
 
 // What the process wrote, its first line.

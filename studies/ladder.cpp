@@ -7,6 +7,8 @@
 #include <cmath>
 #include <map>
 
+#include "scenes/quality.h"
+
 namespace earthshine::studies {
 namespace {
 
@@ -14,9 +16,9 @@ using raytrace::Indirect;
 
 // What is measured for a wanted error: from twenty times as much down to a little less.
 constexpr double error_steps[] = {20.0, 10.0, 5.0, 3.0, 2.0, 1.4, 1.0, 0.7};
-constexpr int patch_steps[] = {500, 2000, 8000, 32000};
+constexpr double edge_steps[] = {8.0, 4.0, 2.0, 1.0, 0.5};  // of the edge for an error of 0.02
 constexpr int form_factor_steps[] = {16, 64, 256, 1024, 4096};
-constexpr int gather_steps[] = {2, 8, 32, 128};
+constexpr int gather_steps[] = {8, 16, 32, 64, 128};  // it casts 8 at least
 constexpr double noise_steps[] = {0.5, 0.15, 0.05, 0.015};
 
 // 0.05 and not 0.050000000000000003.
@@ -28,6 +30,9 @@ class Ladder {
     kept_.share_gather = scene.quality.share_gather;
     kept_.smooth_share = scene.quality.smooth_share;
     kept_.solver_tolerance = scene.quality.solver_tolerance;
+    scenes::Scene plain = scene;
+    plain.quality = {};
+    usual_edge_m_ = scenes::resolve_quality(plain).patch_edge_m;
   }
 
   Step& add(const char* method, const char* series, Indirect indirect, double setting,
@@ -44,6 +49,8 @@ class Ladder {
     steps_.push_back(std::move(step));
     return steps_.back();
   }
+
+  [[nodiscard]] double usual_edge_m() const { return usual_edge_m_; }
 
   // The n-th of every series before the n+1-th of any.
   [[nodiscard]] std::vector<Step> in_order() const {
@@ -62,6 +69,7 @@ class Ladder {
  private:
   const LadderOptions& options_;
   scenes::Quality kept_;
+  double usual_edge_m_ = 0.0;
   std::vector<Step> steps_;
   std::map<std::string, std::vector<std::size_t>> series_;
 };
@@ -79,8 +87,11 @@ void add_radiosity(Ladder& ladder, const scenes::Effects& effects, const LadderO
         error;
   }
   if (effects.solution) {
-    for (const int count : patch_steps) {
-      ladder.add(method, series::patches, how, count, count + 2000.0).quality.max_patches = count;
+    for (const double times : edge_steps) {
+      const double edge_m = tidy(times * ladder.usual_edge_m());
+      // The number of patches goes with 1 / edge^2, but every facet is one at least.
+      ladder.add(method, series::patches, how, edge_m, 1.0 + 0.5 / (times * times))
+          .quality.patch_edge_m = edge_m;
     }
     for (const int rays : form_factor_steps) {
       // A solve of few rays costs what the rest of it costs.
@@ -117,7 +128,7 @@ std::vector<std::string> Step::options() const {
     words = {"--indirect", "distributed", "--distributed-lights", std::to_string(lights)};
   }
   if (quality.error) words.insert(words.end(), {"--error", fmt::format("{}", *quality.error)});
-  set(series::patches, quality.max_patches);
+  set(series::patches, quality.patch_edge_m);
   set(series::form_factor_rays, quality.form_factor_rays);
   set(series::gather_rays, quality.gather_rays);
   set(series::picture_noise, quality.picture_noise);

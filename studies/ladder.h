@@ -13,8 +13,8 @@ namespace earthshine::studies {
 
 // What a series varies. All else is as `quality.error = base_error` has it.
 namespace series {
-inline constexpr const char* error = "error";  // all together
-inline constexpr const char* patches = "max_patches";
+inline constexpr const char* error = "error";         // all together
+inline constexpr const char* patches = "patch_edge";  // even patches, m
 inline constexpr const char* form_factor_rays = "form_factor_rays";
 inline constexpr const char* gather_rays = "gather_rays";
 inline constexpr const char* picture_noise = "picture_noise";

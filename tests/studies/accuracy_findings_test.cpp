@@ -49,9 +49,9 @@ TEST(Ladder, StepsSayTheWordsThatDrawThem) {
   effects.solution = effects.earth = true;
   for (const Step& step : accuracy_ladder({}, effects, {})) {
     const std::vector<std::string> words = step.options();
-    if (step.series == series::patches && step.setting == 500) {
+    if (step.series == series::patches && step.setting == 0.25) {
       EXPECT_EQ(words,
-                (std::vector<std::string>{"--error", "0.02", "--set", "quality.max_patches=500"}));
+                (std::vector<std::string>{"--error", "0.02", "--set", "quality.patch_edge=0.25"}));
     }
     if (step.method == "paths" && step.setting == 16) {
       EXPECT_EQ(words, (std::vector<std::string>{"--indirect", "paths", "--set",
