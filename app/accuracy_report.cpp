@@ -154,8 +154,7 @@ std::string command_of(const AccuracyTask& task, const studies::Step& step) {
   std::vector<std::string> words = {"earthshine",
                                     "render",
                                     task.call.scene.path,
-                                    "--camera",
-                                    task.view.camera.name,
+                                    "--camera=" + task.view.camera.name,
                                     "--size",
                                     fmt::format("{}x{}", task.view.columns, task.view.rows)};
   for (const std::string& change : task.call.scene.overrides) {

@@ -7,12 +7,15 @@
 namespace earthshine::studies {
 namespace {
 
-std::vector<Trade> trades_of(const std::vector<MeasuredStep>& points, double resolution) {
+using WhichError = PictureError MeasuredStep::*;
+
+std::vector<Trade> trades_of(const std::vector<MeasuredStep>& points, double resolution,
+                             WhichError error) {
   std::vector<Trade> trades;
   trades.reserve(points.size());
   for (const MeasuredStep& point : points) {
     trades.push_back(
-        {point.step.method, point.cost.cpu_seconds, std::max(point.error.error, resolution)});
+        {point.step.method, point.cost.cpu_seconds, std::max((point.*error).error, resolution)});
   }
   return trades;
 }
