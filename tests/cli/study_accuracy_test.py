@@ -19,7 +19,7 @@ CALL = ("--size", "12x9", "--wanted", "0.5,0.3", "--reference-factor", "1", "--p
 class Accuracy(program.Case):
     def setUp(self):
         super().setUp()
-        self.write("ball.toml", program.BALL.replace("patch_edge = 0.5\nform_factor_rays = 64\ngather_rays = 16\n", ""))
+        self.write("ball.toml", program.BALL.replace("patch_edge = 0.5\nform_factor_rays = 64\ngather_rays = 16\n", "error = 0.3\n"))
 
     def study(self, *more, scene="ball.toml", folder="d"):
         return ("study", "accuracy", scene, "-o", folder, "--camera", "A", *CALL, *more)
