@@ -20,7 +20,7 @@
 
 #include "raytrace/path_tracer.h"
 #include "studies/doubt.h"
-#include "studies/ladder.h"
+#include "studies/accuracy_ladder.h"
 #include "studies/picture_error.h"
 #include "studies/study.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "studies/ladder.h"
+#include "studies/accuracy_ladder.h"
 
 #include <fmt/format.h>
 
