@@ -68,13 +68,14 @@ Json AccuracyParts::marks_of(const studies::Batch& batch) const {
 }
 
 // Every knob that the picture depends on, as resolved: a default that changes has other marks.
-Json AccuracyParts::marks_of(const studies::Step& step, std::uint64_t seed) const {
+Json AccuracyParts::marks_of(const studies::AccuracyStep& step, std::uint64_t seed) const {
   Json marks = common_marks_;
   const radiosity::SolveOptions solver = studies::solver_of(scene_, step, seed);
   const raytrace::RenderOptions picture = studies::picture_of(scene_, task_.view, step);
   marks["seed"] = seed;
   marks["step"] = {{"method", step.method},
                    {"lights", step.lights},
+                   {"steered", step.steered()},
                    {"wanted_error", step.quality.error.value_or(0.0)},
                    {"gather_rays", picture.gather_rays},
                    {"share_gather", picture.shared.on},
@@ -116,7 +117,7 @@ bool AccuracyParts::has(const studies::Batch& batch) const {
   return task_.store.has(marks_of(batch));
 }
 
-bool AccuracyParts::has(const studies::Step& step, std::uint64_t seed) const {
+bool AccuracyParts::has(const studies::AccuracyStep& step, std::uint64_t seed) const {
   return task_.store.has(marks_of(step, seed));
 }
 
@@ -152,7 +153,7 @@ StoredPart AccuracyParts::batch(const studies::Batch& batch) {
   return part;
 }
 
-StoredPart AccuracyParts::point(const studies::Step& step, std::uint64_t seed) {
+StoredPart AccuracyParts::point(const studies::AccuracyStep& step, std::uint64_t seed) {
   const Json marks = marks_of(step, seed);
   if (auto part = stored(marks, true)) return *part;
   if (task_.view.stop()) end_early();
@@ -174,14 +175,15 @@ StoredPart AccuracyParts::point(const studies::Step& step, std::uint64_t seed) {
   return part;
 }
 
-void AccuracyParts::expect(const std::vector<studies::Step>& steps) {
-  for (const studies::Step& step : steps) {
-    if (step.indirect != raytrace::Indirect::Radiosity) continue;
+void AccuracyParts::expect(const std::vector<studies::AccuracyStep>& steps) {
+  for (const studies::AccuracyStep& step : steps) {
+    // A steered one makes its own solutions.
+    if (step.indirect != raytrace::Indirect::Radiosity || step.steered()) continue;
     expected_.push_back(studies::solver_of(scene_, step, task_.view.seed));
   }
 }
 
-std::string AccuracyParts::does_not_fit(const studies::Step& step) const {
+std::string AccuracyParts::does_not_fit(const studies::AccuracyStep& step) const {
   const raytrace::RenderOptions picture = studies::picture_of(scene_, task_.view, step);
   try {
     check_memory(task_.loaded, task_.query, studies::solver_of(scene_, step, task_.view.seed),

@@ -18,15 +18,15 @@ class AccuracyParts {
   // Of a reference: channels Y and variance; fact: cpu_seconds.
   [[nodiscard]] StoredPart batch(const studies::Batch& batch);
   // A step's picture, channel Y, and its cost.
-  [[nodiscard]] StoredPart point(const studies::Step& step, std::uint64_t seed);
+  [[nodiscard]] StoredPart point(const studies::AccuracyStep& step, std::uint64_t seed);
   [[nodiscard]] bool has(const studies::Batch& batch) const;
-  [[nodiscard]] bool has(const studies::Step& step, std::uint64_t seed) const;
+  [[nodiscard]] bool has(const studies::AccuracyStep& step, std::uint64_t seed) const;
   [[nodiscard]] static studies::StepCost cost_of(const Json& facts);
 
   // Steps to come: a solution that several of them read is solved for once.
-  void expect(const std::vector<studies::Step>& steps);
+  void expect(const std::vector<studies::AccuracyStep>& steps);
   // Why the step's memory cannot be had; "" if it can.
-  [[nodiscard]] std::string does_not_fit(const studies::Step& step) const;
+  [[nodiscard]] std::string does_not_fit(const studies::AccuracyStep& step) const;
 
   [[nodiscard]] double seconds() const;  // wall, since the beginning
   // How the machine turns CPU seconds into wall seconds just now, for what is still to come.
@@ -35,7 +35,7 @@ class AccuracyParts {
 
  private:
   [[nodiscard]] Json marks_of(const studies::Batch& batch) const;
-  [[nodiscard]] Json marks_of(const studies::Step& step, std::uint64_t seed) const;
+  [[nodiscard]] Json marks_of(const studies::AccuracyStep& step, std::uint64_t seed) const;
   [[nodiscard]] std::optional<StoredPart> stored(const Json& marks, bool step);
   [[noreturn]] void end_early() const;
 

@@ -31,7 +31,7 @@ Json error_json(const studies::PictureError& error) {
 
 Json row_of(const AccuracyTask& task, const AccuracyResult& result, std::size_t k) {
   const studies::MeasuredStep& point = result.points[k];
-  const studies::Step& step = point.step;
+  const studies::AccuracyStep& step = point.step;
   const studies::StepCost& cost = point.cost;
   const std::vector<std::size_t>& front = result.findings.front;
   const bool solved = cost.patches > 0;
@@ -150,7 +150,7 @@ std::string answer_text(const AccuracyTask& task, const AccuracyResult& result,
 
 }  // namespace
 
-std::string command_of(const AccuracyTask& task, const studies::Step& step) {
+std::string command_of(const AccuracyTask& task, const studies::AccuracyStep& step) {
   std::vector<std::string> words = {"earthshine",
                                     "render",
                                     task.call.scene.path,

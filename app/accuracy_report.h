@@ -15,7 +15,7 @@ namespace earthshine::app {
 [[nodiscard]] std::string accuracy_text(const AccuracyTask& task, const AccuracyResult& result);
 
 // The call that draws a step, for a shell: "earthshine render 'my scene.toml' --camera B ...".
-[[nodiscard]] std::string command_of(const AccuracyTask& task, const studies::Step& step);
+[[nodiscard]] std::string command_of(const AccuracyTask& task, const studies::AccuracyStep& step);
 
 struct AccuracyPlot {
   std::string stem;  // of its script and its picture

@@ -65,8 +65,9 @@ class Study {
     climb();
     // Of what was not in the ladder nothing is said.
     std::erase_if(result_.limits, [this](const MethodLimit& limit) {
-      return std::none_of(ladder_.begin(), ladder_.end(),
-                          [&](const studies::Step& step) { return step.method == limit.method; });
+      return std::none_of(ladder_.begin(), ladder_.end(), [&](const studies::AccuracyStep& step) {
+        return step.method == limit.method;
+      });
     });
     result_.findings =
         studies::find_accuracy(result_.points, task_.call.wanted, result_.resolution);
@@ -132,7 +133,7 @@ class Study {
 
   void draw_straight() {
     const double finest = *std::min_element(task_.call.wanted.begin(), task_.call.wanted.end());
-    const studies::Step step = studies::straight_step(task_.loaded.scene, finest);
+    const studies::AccuracyStep step = studies::straight_step(task_.loaded.scene, finest);
     studies::NoisyPicture* sides[] = {&straight_.first, &straight_.second};
     for (int side = 0; side < 2; ++side) {
       const StoredPart part =
@@ -158,7 +159,7 @@ class Study {
     result_.limits.push_back({"paths", {}, "none: its only error is noise"});
   }
 
-  const ReferencePair& limit_of(const studies::Step& step) const {
+  const ReferencePair& limit_of(const studies::AccuracyStep& step) const {
     if (step.method == "radiosity") return gathered_;
     return step.method == "paths" ? full_ : straight_;
   }
@@ -166,13 +167,12 @@ class Study {
   void climb() {
     studies::LadderOptions options = task_.call.ladder;
     options.finest = *std::min_element(task_.call.wanted.begin(), task_.call.wanted.end());
-    options.base_error = task_.loaded.scene.quality.error.value_or(options.base_error);
     ladder_ = studies::accuracy_ladder(task_.loaded.scene, task_.loaded.effects, options);
-    const std::vector<studies::Step>& ladder = ladder_;
+    const std::vector<studies::AccuracyStep>& ladder = ladder_;
     parts_.expect(ladder);
     std::vector<studies::Taken> taken;
     for (std::size_t k = 0; k < ladder.size(); ++k) {
-      const studies::Step& step = ladder[k];
+      const studies::AccuracyStep& step = ladder[k];
       if (!parts_.has(step, task_.view.seed)) {
         const double expected = parts_.wall_per_cpu() * studies::expected_seconds(step, taken);
         if (expected > time_left() || time_left() <= 0.0) {
@@ -212,7 +212,7 @@ class Study {
   std::vector<bool> counted_;
   ReferencePair full_, gathered_, straight_;
   bool differs_ = false;
-  std::vector<studies::Step> ladder_;
+  std::vector<studies::AccuracyStep> ladder_;
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "app/accuracy_store.h"
 #include "app/console.h"
 #include "app/interrupt.h"
+#include "app/memory.h"
 #include "app/plot.h"
 #include "app/study.h"
 #include "base/output_file.h"
@@ -81,6 +82,11 @@ void run(const AccuracyCall& call, const Common& common) {
       studies::accuracy_view(camera, call.size ? call.size->columns : camera.columns,
                              call.size ? call.size->rows : camera.rows, common.seed);
   view.stop = Interrupt::asked;
+  view.fits = [&](double patches, int rays) {
+    radiosity::SolveOptions solver = solve_options(loaded.scene, common);
+    solver.form_factor_rays = rays;
+    return patches_fit(loaded, solver, static_cast<std::size_t>(patches));
+  };
   const AccuracyTask task{call, common, loaded, query, view, store};
   const AccuracyResult result = measure_accuracy(task);
   const Json json = accuracy_json(task, result);
@@ -147,15 +153,13 @@ Command add_study_accuracy(CLI::App& study) {
          call->ladder.samples = read_counts("--paths", text, 2, most_paths);
        });
   const auto factor = std::make_shared<std::optional<double>>();
-  const auto limit = std::make_shared<std::optional<double>>();
   add_number(*parser, "--reference-factor", *factor, 1.0, 100.0,
              fmt::format("How much finer than the least wanted error the reference is (default {})",
                          call->reference_factor));
-  add_number(*parser, "--time-limit", *limit, 1e-3, 1e9,
-             "Seconds for the whole study; what does not fit is left out and named");
-  return {parser, [call, factor, limit](const Common& common) {
+  add_time_limit(*parser, call->time_limit_s,
+                 "Seconds for the whole study; what does not fit is left out and named");
+  return {parser, [call, factor](const Common& common) {
             if (*factor) call->reference_factor = **factor;
-            if (*limit) call->time_limit_s = **limit;
             run(*call, common);
           }};
 }

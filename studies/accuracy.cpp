@@ -12,6 +12,7 @@
 #include "scenes/quality.h"
 #include "studies/error_budget.h"
 #include "studies/memory.h"
+#include "studies/wanted_error.h"
 
 namespace earthshine::studies {
 namespace {
@@ -49,10 +50,17 @@ scenes::LightPaths paths_of(Indirect indirect) {
   return scenes::LightPaths::All;
 }
 
-scenes::QualityKnobs knobs_of(const scenes::Scene& scene, const Step& step) {
-  scenes::Scene changed = scene;
-  changed.quality = step.quality;
-  return scenes::resolve_quality(changed);
+scenes::QualityKnobs knobs_of(const scenes::Scene& scene, const AccuracyStep& step) {
+  return scenes::resolve_quality(scene, step.quality);
+}
+
+radiosity::SolveOptions solver_of(const scenes::QualityKnobs& knobs, std::uint64_t seed) {
+  return {knobs.patch_edge_m,
+          knobs.form_factor_rays,
+          knobs.solver_tolerance,
+          seed,
+          {knobs.refine, knobs.start_edge_m, static_cast<std::size_t>(knobs.max_patches),
+           knobs.refine_error}};
 }
 
 // Light groups and effects as `render` has them for the step.
@@ -60,7 +68,7 @@ struct Asked {
   scenes::LightGroups groups;
   scenes::Effects effects;
 
-  Asked(const StudyScene& study, const AccuracyView& view, const Step& step)
+  Asked(const StudyScene& study, const AccuracyView& view, const AccuracyStep& step)
       : groups(study.groups) {
     constexpr double default_error = 0.02;
     scenes::Asked asked;
@@ -99,65 +107,28 @@ double memory_of(const StudyScene& study, const Asked& asked, const radiosity::S
   return memory_needed(sizes).total();
 }
 
-void state_error(const StudyScene& study, const AccuracyView& view,
-                 const radiosity::Solution& solution, const radiosity::SolveOptions& solver,
-                 const raytrace::RenderOptions& options, const raytrace::Frame& frame,
-                 StepCost& cost) {
-  const Clock clock;
-  const WatchedPicture picture{&view.camera, options};
-  const SecondOpinion opinion = second_opinion(study, solution, solver, {picture});
-  cost.stated =
-      error_budget(study, opinion.pictures.front(), solution, picture, frame).parts.total();
-  cost.statement_cpu_seconds = clock.cpu();
-}
-
 std::uint64_t solve_rays(const radiosity::SolveReport& report) {
   return report.refinement_rays + report.form_factor_rays + report.shadow_rays;
 }
 
-}  // namespace
+struct Work {
+  const StudyScene& study;
+  const AccuracyView& view;
+  const AccuracyStep& step;
+  const Asked& asked;
+  const raytrace::Progress& progress;
+};
 
-bool same_solver(const radiosity::SolveOptions& a, const radiosity::SolveOptions& b) {
-  return a.patch_edge_m == b.patch_edge_m && a.form_factor_rays == b.form_factor_rays &&
-         a.tolerance == b.tolerance && a.seed == b.seed && a.refine.on == b.refine.on &&
-         a.refine.start_edge_m == b.refine.start_edge_m &&
-         a.refine.max_patches == b.refine.max_patches && a.refine.error == b.refine.error;
+void add_picture_facts(StepCost& cost, const raytrace::RenderReport& report) {
+  cost.picture_rays = report.rays.total();
+  cost.gather_rays = report.gather_rays;
+  cost.camera_samples = report.camera_samples;
 }
 
-AccuracyView accuracy_view(const scenes::Camera& camera, int columns, int rows,
-                           std::uint64_t seed) {
-  AccuracyView view{camera, columns, rows, seed, {}};
-  view.camera.filter = scenes::FilterShape::Box;
-  view.camera.filter_width_px = 1.0;
-  return view;
-}
-
-radiosity::SolveOptions solver_of(const StudyScene& study, const Step& step, std::uint64_t seed) {
-  const scenes::QualityKnobs knobs = knobs_of(study.scene, step);
-  return {knobs.patch_edge_m,
-          knobs.form_factor_rays,
-          knobs.solver_tolerance,
-          seed,
-          {knobs.refine, knobs.start_edge_m, static_cast<std::size_t>(knobs.max_patches),
-           knobs.refine_error}};
-}
-
-raytrace::RenderOptions picture_of(const StudyScene& study, const AccuracyView& view,
-                                   const Step& step) {
-  raytrace::RenderOptions options = raytrace::render_options(knobs_of(study.scene, step));
-  options.columns = view.columns;
-  options.rows = view.rows;
-  options.indirect = step.indirect;
-  if (step.lights > 0) options.distributed_lights = step.lights;
-  options.seed = view.seed;
-  options.stop = view.stop;
-  return options;
-}
-
-std::optional<StepResult> run_step(const StudyScene& study, const AccuracyView& view,
-                                   const Step& step, SolutionShelf& shelf,
-                                   const raytrace::Progress& progress) {
-  const Asked asked(study, view, step);
+// As `render` does for the step's settings.
+std::optional<StepResult> run_plain(const Work& work, SolutionShelf& shelf) {
+  const auto& [study, view, step, asked, progress] = work;
+  const StudyScene scene{study.scene, asked.groups, asked.effects, study.query};
   const radiosity::SolveOptions solver = solver_of(study, step, view.seed);
   const raytrace::RenderOptions options = picture_of(study, view, step);
   const bool solves = step.indirect == Indirect::Radiosity && asked.effects.solution;
@@ -190,13 +161,100 @@ std::optional<StepResult> run_step(const StudyScene& study, const AccuracyView& 
     cost.solve_rays = solve_rays(solution.report);
     cost.form_factor_rays = solver.form_factor_rays;
   }
-  cost.picture_rays = frame.report.rays.total();
-  cost.gather_rays = frame.report.gather_rays;
-  cost.camera_samples = frame.report.camera_samples;
+  add_picture_facts(cost, frame.report);
   cost.memory_bytes = memory_of(study, asked, solver, options, solves ? &solution : nullptr);
-  state_error({study.scene, asked.groups, asked.effects, study.query}, view, solution, solver,
-              options, frame, cost);
+  const Clock statement;
+  const WatchedPicture picture{&view.camera, options};
+  const SecondOpinion opinion = second_opinion(scene, solution, solver, {picture});
+  cost.stated =
+      error_budget(scene, opinion.pictures.front(), solution, picture, frame).parts.total();
+  cost.statement_cpu_seconds = statement.cpu();
   return result;
+}
+
+// As `render --error` does: settings are chosen until the picture says that it is as exact as
+// wanted. The statements that decide about that are part of the cost.
+std::optional<StepResult> run_steered(const Work& work) {
+  const auto& [study, view, step, asked, progress] = work;
+  scenes::Scene wishes = study.scene;
+  wishes.quality = step.quality;
+  const StudyScene scene{wishes, asked.groups, asked.effects, study.query};
+  const Clock clock;
+  Wanted wanted;
+  wanted.error = *step.quality.error;
+  wanted.now = [&clock] { return clock.wall(); };
+  wanted.fits = view.fits;
+  const WatchedPicture watched{&view.camera, picture_of(study, view, step)};
+  StepResult result;
+  StepCost& cost = result.cost;
+  SteeredSolution found;
+  const bool solves = asked.effects.solution;
+  if (solves) {
+    found = reach_solution(
+        scene, wanted,
+        [&](const scenes::QualityKnobs& knobs) { return solver_of(knobs, view.seed); }, {watched},
+        [&cost](const radiosity::SolveReport& report) { cost.solve_rays += solve_rays(report); });
+    cost.solve_wall_seconds = clock.wall();
+    cost.solve_cpu_seconds = clock.cpu();
+    cost.patches = found.solution.report.patches;
+    cost.form_factor_rays = found.solver.form_factor_rays;
+  } else {
+    found.opinion = second_opinion(scene, found.solution, found.solver, {watched});
+  }
+  const Trial trial = found.trials.empty() ? Trial{} : found.trials.front();
+  const SteeredPicture picture = reach_picture(
+      scene, wanted, found.solution, found.opinion.pictures.front(), watched, trial, progress);
+  cost.wall_seconds = clock.wall();
+  cost.cpu_seconds = clock.cpu();
+  if (picture.frame.report.stopped) return std::nullopt;
+  result.luminance = base::luminance_of(picture.frame.image);
+  add_picture_facts(cost, picture.frame.report);
+  cost.stated = picture.budget.parts.total();
+  cost.memory_bytes =
+      memory_of(study, asked, found.solver, picture.options, solves ? &found.solution : nullptr);
+  return result;
+}
+
+}  // namespace
+
+bool same_solver(const radiosity::SolveOptions& a, const radiosity::SolveOptions& b) {
+  return a.patch_edge_m == b.patch_edge_m && a.form_factor_rays == b.form_factor_rays &&
+         a.tolerance == b.tolerance && a.seed == b.seed && a.refine.on == b.refine.on &&
+         a.refine.start_edge_m == b.refine.start_edge_m &&
+         a.refine.max_patches == b.refine.max_patches && a.refine.error == b.refine.error;
+}
+
+AccuracyView accuracy_view(const scenes::Camera& camera, int columns, int rows,
+                           std::uint64_t seed) {
+  AccuracyView view{camera, columns, rows, seed, {}};
+  view.camera.filter = scenes::FilterShape::Box;
+  view.camera.filter_width_px = 1.0;
+  return view;
+}
+
+radiosity::SolveOptions solver_of(const StudyScene& study, const AccuracyStep& step,
+                                  std::uint64_t seed) {
+  return solver_of(knobs_of(study.scene, step), seed);
+}
+
+raytrace::RenderOptions picture_of(const StudyScene& study, const AccuracyView& view,
+                                   const AccuracyStep& step) {
+  raytrace::RenderOptions options = raytrace::render_options(knobs_of(study.scene, step));
+  options.columns = view.columns;
+  options.rows = view.rows;
+  options.indirect = step.indirect;
+  if (step.lights > 0) options.distributed_lights = step.lights;
+  options.seed = view.seed;
+  options.stop = view.stop;
+  return options;
+}
+
+std::optional<StepResult> run_step(const StudyScene& study, const AccuracyView& view,
+                                   const AccuracyStep& step, SolutionShelf& shelf,
+                                   const raytrace::Progress& progress) {
+  const Asked asked(study, view, step);
+  return step.steered() ? run_steered({study, view, step, asked, progress})
+                        : run_plain({study, view, step, asked, progress}, shelf);
 }
 
 std::uint64_t reference_seed(std::uint64_t seed, int side, int index) {
@@ -258,8 +316,8 @@ bool leaves_paths_out(const scenes::Effects& effects) {
   return effects.phong || effects.glossy || effects.mirror || effects.refraction;
 }
 
-Step straight_step(const scenes::Scene& scene, double error) {
-  Step step;
+AccuracyStep straight_step(const scenes::Scene& scene, double error) {
+  AccuracyStep step;
   step.method = "direct";
   step.series = series::error;
   step.setting = error;

@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "raytrace/path_tracer.h"
-#include "studies/doubt.h"
 #include "studies/accuracy_ladder.h"
+#include "studies/doubt.h"
 #include "studies/picture_error.h"
 #include "studies/study.h"
 
@@ -31,6 +31,7 @@ struct AccuracyView {
   int columns = 0, rows = 0;
   std::uint64_t seed = 1;
   std::function<bool()> stop = {};
+  std::function<bool(double patches, int rays)> fits = {};  // into memory; empty: anything does
 };
 [[nodiscard]] AccuracyView accuracy_view(const scenes::Camera& camera, int columns, int rows,
                                          std::uint64_t seed);
@@ -46,8 +47,9 @@ struct StepCost {
   int form_factor_rays = 0, gather_rays = 0;  // per patch, per pixel
   double camera_samples = 0.0;                // per pixel, mean
   double memory_bytes = 0.0;                  // memory.h, for the patches and rows it had
-  Doubt stated;                        // the error as the picture itself states it (error_budget.h)
-  double statement_cpu_seconds = 0.0;  // that this took, not in the above
+  Doubt stated;  // the error as the picture itself states it (error_budget.h)
+  // CPU seconds that this took; not in the above, but of settings that were chosen by it.
+  double statement_cpu_seconds = 0.0;
 };
 struct StepResult {
   std::vector<float> luminance;
@@ -62,14 +64,14 @@ struct SolutionShelf {
 };
 
 [[nodiscard]] bool same_solver(const radiosity::SolveOptions& a, const radiosity::SolveOptions& b);
-[[nodiscard]] radiosity::SolveOptions solver_of(const StudyScene& study, const Step& step,
+[[nodiscard]] radiosity::SolveOptions solver_of(const StudyScene& study, const AccuracyStep& step,
                                                 std::uint64_t seed);
 [[nodiscard]] raytrace::RenderOptions picture_of(const StudyScene& study, const AccuracyView& view,
-                                                 const Step& step);
+                                                 const AccuracyStep& step);
 
 // None if view.stop said so meanwhile. Effects that cannot matter are left out as `render` does.
 [[nodiscard]] std::optional<StepResult> run_step(const StudyScene& study, const AccuracyView& view,
-                                                 const Step& step, SolutionShelf& shelf,
+                                                 const AccuracyStep& step, SolutionShelf& shelf,
                                                  const raytrace::Progress& progress = {});
 
 // A part of a reference: so many paths per pixel.
@@ -99,7 +101,7 @@ struct Batch {
 
 // The two pictures of the straight truth come from the finest step of that way, other random
 // numbers each.
-[[nodiscard]] Step straight_step(const scenes::Scene& scene, double error);
+[[nodiscard]] AccuracyStep straight_step(const scenes::Scene& scene, double error);
 [[nodiscard]] std::uint64_t reference_seed(std::uint64_t seed, int side, int index);
 
 }  // namespace earthshine::studies

@@ -85,7 +85,7 @@ Answer answer(const std::vector<Trade>& trades, const std::vector<Trade>& settin
 }  // namespace
 
 Spent spent_on(const MeasuredStep& point) {
-  const Step& step = point.step;
+  const AccuracyStep& step = point.step;
   if (step.series == series::patches) return {double(point.cost.patches), "patches"};
   if (step.series == series::form_factor_rays) return {step.setting, "form-factor rays a patch"};
   if (step.series == series::gather_rays) return {step.setting, "gather rays a pixel"};

@@ -14,7 +14,7 @@
 namespace earthshine::studies {
 
 struct MeasuredStep {
-  Step step;
+  AccuracyStep step;
   StepCost cost;
   PictureError error;          // against the full truth
   PictureError setting_error;  // against the method's own limit

@@ -26,24 +26,21 @@ double tidy(double value) { return std::stod(fmt::format("{:.3g}", value)); }
 
 class Ladder {
  public:
-  Ladder(const scenes::Scene& scene, const LadderOptions& options) : options_(options) {
+  explicit Ladder(const scenes::Scene& scene) {
     kept_.share_gather = scene.quality.share_gather;
     kept_.smooth_share = scene.quality.smooth_share;
     kept_.solver_tolerance = scene.quality.solver_tolerance;
-    scenes::Scene plain = scene;
-    plain.quality = {};
-    usual_edge_m_ = scenes::resolve_quality(plain).patch_edge_m;
+    usual_edge_m_ = scenes::resolve_quality(scene, {}).patch_edge_m;
   }
 
-  Step& add(const char* method, const char* series, Indirect indirect, double setting,
-            double work) {
-    Step step;
+  AccuracyStep& add(const char* method, const char* series, Indirect indirect, double setting,
+                    double work) {
+    AccuracyStep step;
     step.method = method;
     step.series = series;
     step.setting = setting;
     step.indirect = indirect;
     step.quality = kept_;
-    step.quality.error = options_.base_error;
     step.work = work;
     series_[series + std::string(method)].push_back(steps_.size());
     steps_.push_back(std::move(step));
@@ -53,7 +50,7 @@ class Ladder {
   [[nodiscard]] double usual_edge_m() const { return usual_edge_m_; }
 
   // The n-th of every series before the n+1-th of any.
-  [[nodiscard]] std::vector<Step> in_order() const {
+  [[nodiscard]] std::vector<AccuracyStep> in_order() const {
     std::vector<std::pair<std::size_t, std::size_t>> order;
     for (const auto& [name, members] : series_) {
       for (std::size_t level = 0; level < members.size(); ++level) {
@@ -61,16 +58,15 @@ class Ladder {
       }
     }
     std::sort(order.begin(), order.end());
-    std::vector<Step> steps;
+    std::vector<AccuracyStep> steps;
     for (const auto& [level, index] : order) steps.push_back(steps_[index]);
     return steps;
   }
 
  private:
-  const LadderOptions& options_;
   scenes::Quality kept_;
   double usual_edge_m_ = 0.0;
-  std::vector<Step> steps_;
+  std::vector<AccuracyStep> steps_;
   std::map<std::string, std::vector<std::size_t>> series_;
 };
 
@@ -112,12 +108,12 @@ void add_radiosity(Ladder& ladder, const scenes::Effects& effects, const LadderO
 
 }  // namespace
 
-std::string Step::name() const {
+std::string AccuracyStep::name() const {
   if (method == "direct") return method;
   return fmt::format("{} {}={:g}", method, series, setting);
 }
 
-std::vector<std::string> Step::options() const {
+std::vector<std::string> AccuracyStep::options() const {
   std::vector<std::string> words;
   const auto set = [&words](const char* key, const auto& value) {
     if (value) words.insert(words.end(), {"--set", fmt::format("quality.{}={}", key, *value)});
@@ -135,11 +131,12 @@ std::vector<std::string> Step::options() const {
   return words;
 }
 
-std::vector<Step> accuracy_ladder(const scenes::Scene& scene, const scenes::Effects& effects,
-                                  const LadderOptions& options) {
-  Ladder ladder(scene, options);
+std::vector<AccuracyStep> accuracy_ladder(const scenes::Scene& scene,
+                                          const scenes::Effects& effects,
+                                          const LadderOptions& options) {
+  Ladder ladder(scene);
   add_radiosity(ladder, effects, options);
-  ladder.add("direct", series::error, Indirect::None, options.base_error, 1.0);
+  ladder.add("direct", series::error, Indirect::None, 1.0, 1.0);
   const auto has = [&](scenes::LampKind kind) {
     return effects.lamp_kind[static_cast<std::size_t>(kind)];
   };
@@ -149,8 +146,7 @@ std::vector<Step> accuracy_ladder(const scenes::Scene& scene, const scenes::Effe
     }
   }
   for (const int n : options.samples) {
-    Step& step = ladder.add("paths", series::samples, Indirect::Paths, n, n);
-    step.quality.error.reset();
+    AccuracyStep& step = ladder.add("paths", series::samples, Indirect::Paths, n, n);
     step.quality.gather_rays = n;
   }
   return ladder.in_order();
@@ -161,6 +157,7 @@ std::vector<std::string> replaced_keys(const scenes::Quality& quality) {
   const auto look = [&keys](const char* key, bool set) {
     if (set) keys.emplace_back(key);
   };
+  look("error", quality.error.has_value());
   look("patch_edge", quality.patch_edge_m.has_value());
   look("max_patches", quality.max_patches.has_value());
   look("refine", quality.refine.has_value());
@@ -170,14 +167,14 @@ std::vector<std::string> replaced_keys(const scenes::Quality& quality) {
   return keys;
 }
 
-double expected_seconds(const Step& step, const std::vector<Taken>& taken) {
-  double seconds = 0.0, all = 0.0;
+double expected_seconds(const AccuracyStep& step, const std::vector<Taken>& taken) {
+  double seconds = 0.0, least = taken.empty() ? 0.0 : taken.front().cpu_seconds;
   for (const Taken& earlier : taken) {
-    all += earlier.cpu_seconds / static_cast<double>(taken.size());
+    least = std::min(least, earlier.cpu_seconds);
     const bool same = earlier.step.series == step.series && earlier.step.method == step.method;
     if (same) seconds = earlier.cpu_seconds * step.work / earlier.step.work;
   }
-  return seconds > 0.0 ? seconds : all;
+  return seconds > 0.0 ? seconds : least;
 }
 
 }  // namespace earthshine::studies

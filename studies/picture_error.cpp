@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "raytrace/light_sampler.h"
 #include "scenes/sky.h"
+#include "studies/pixel_choice.h"
 
 namespace earthshine::studies {
 namespace {
@@ -17,11 +18,16 @@ struct Sums {
   std::size_t pixels = 0;
   double product = 0.0, variance = 0.0, difference = 0.0, right = 0.0;
 
+  double whole_mean = 0.0;  // of the truth, for the weights
+
   // d1, d2: two looks at one difference, of variances v1 and v2.
   void add(double d1, double v1, double d2, double v2, double truth) {
     ++pixels;
-    product += d1 * d2;
-    variance += d1 * d2 * (v1 + v2) + v1 * v2;
+    const double weight = std::pow(error_weight(truth, whole_mean), 2);
+    v1 *= weight;
+    v2 *= weight;
+    product += weight * d1 * d2;
+    variance += weight * d1 * d2 * (v1 + v2) + v1 * v2;
     // The square of the difference is known from the product alone, which may come out negative.
     least += v1 * v2;
     difference += (d1 + d2) / 2.0;
@@ -84,6 +90,7 @@ struct Look {
 PictureError picture_error(const std::vector<float>& luminance, const ReferencePair& truth,
                            const std::vector<bool>& counted) {
   Sums sums;
+  sums.whole_mean = mean_luminance(truth, counted);
   for (std::size_t p = 0; p < counted.size(); ++p) {
     if (!counted[p]) continue;
     const auto value = double(luminance[p]);
@@ -96,6 +103,7 @@ PictureError picture_error(const std::vector<float>& luminance, const ReferenceP
 PictureError limit_error(const ReferencePair& limit, const ReferencePair& truth,
                          const std::vector<bool>& counted) {
   Sums sums;
+  sums.whole_mean = mean_luminance(truth, counted);
   for (std::size_t p = 0; p < counted.size(); ++p) {
     if (!counted[p]) continue;
     sums.add(limit.first.luminance[p] - truth.first.luminance[p],
@@ -117,13 +125,14 @@ double mean_luminance(const ReferencePair& truth, const std::vector<bool>& count
 }
 
 double resolution(const ReferencePair& truth, const std::vector<bool>& counted) {
+  const double mean = mean_luminance(truth, counted);
   double squares = 0.0, pixels = 0.0;
   for (std::size_t p = 0; p < counted.size(); ++p) {
     if (!counted[p]) continue;
-    squares += truth.first.variance[p] * truth.second.variance[p];
+    const double weight = std::pow(error_weight(middle(truth, p), mean), 4);
+    squares += weight * truth.first.variance[p] * truth.second.variance[p];
     pixels += 1.0;
   }
-  const double mean = mean_luminance(truth, counted);
   if (!(mean > 0.0)) return 0.0;
   return std::sqrt(2.0 * std::sqrt(squares) / pixels) / mean;
 }

@@ -12,10 +12,11 @@ namespace {
 TEST(Ladder, LeavesOutWhatHasNothingToVary) {
   scenes::Scene scene;
   scenes::Effects effects;
-  const auto has = [](const std::vector<Step>& steps, const std::string& name) {
-    return std::any_of(steps.begin(), steps.end(), [&](const Step& s) { return s.series == name; });
+  const auto has = [](const std::vector<AccuracyStep>& steps, const std::string& name) {
+    return std::any_of(steps.begin(), steps.end(),
+                       [&](const AccuracyStep& s) { return s.series == name; });
   };
-  std::vector<Step> steps = accuracy_ladder(scene, effects, {});
+  std::vector<AccuracyStep> steps = accuracy_ladder(scene, effects, {});
   for (const char* name :
        {series::patches, series::form_factor_rays, series::gather_rays, series::lights}) {
     EXPECT_FALSE(has(steps, name)) << name;
@@ -32,12 +33,12 @@ TEST(Ladder, LeavesOutWhatHasNothingToVary) {
 TEST(Ladder, StartsWithTheCheapestOfEverySeries) {
   scenes::Effects effects;
   effects.solution = effects.earth = true;
-  const std::vector<Step> steps = accuracy_ladder({}, effects, {});
+  const std::vector<AccuracyStep> steps = accuracy_ladder({}, effects, {});
   std::set<std::string> seen;
   for (std::size_t k = 0; k < 8; ++k) seen.insert(steps[k].series + steps[k].method);
   EXPECT_EQ(seen.size(), 8U);
-  for (const Step& a : steps) {
-    for (const Step& b : steps) {
+  for (const AccuracyStep& a : steps) {
+    for (const AccuracyStep& b : steps) {
       const bool later = &a < &b && a.series == b.series && a.method == b.method;
       EXPECT_TRUE(!later || a.work < b.work) << b.name();
     }
@@ -47,11 +48,10 @@ TEST(Ladder, StartsWithTheCheapestOfEverySeries) {
 TEST(Ladder, StepsSayTheWordsThatDrawThem) {
   scenes::Effects effects;
   effects.solution = effects.earth = true;
-  for (const Step& step : accuracy_ladder({}, effects, {})) {
+  for (const AccuracyStep& step : accuracy_ladder({}, effects, {})) {
     const std::vector<std::string> words = step.options();
     if (step.series == series::patches && step.setting == 0.25) {
-      EXPECT_EQ(words,
-                (std::vector<std::string>{"--error", "0.02", "--set", "quality.patch_edge=0.25"}));
+      EXPECT_EQ(words, (std::vector<std::string>{"--set", "quality.patch_edge=0.25"}));
     }
     if (step.method == "paths" && step.setting == 16) {
       EXPECT_EQ(words, (std::vector<std::string>{"--indirect", "paths", "--set",
@@ -65,11 +65,11 @@ TEST(Ladder, StepsSayTheWordsThatDrawThem) {
 }
 
 TEST(Ladder, ExpectationFollowsTheSeriesThenTheMean) {
-  Step a, b;
+  AccuracyStep a, b;
   a.series = "one";
   a.work = 2.0;
   b.series = "two";
-  Step next = a;
+  AccuracyStep next = a;
   next.work = 6.0;
   EXPECT_EQ(expected_seconds(next, {}), 0.0);
   EXPECT_EQ(expected_seconds(next, {{b, 4.0}}), 4.0);

@@ -164,7 +164,7 @@ TEST(Accuracy, PathsErrorFallsWithTheirRoot) {
   const ReferencePair truth{side(0), side(1)};
   double errors[2];
   for (const int k : {0, 1}) {
-    Step step;
+    AccuracyStep step;
     step.method = "paths";
     step.series = series::samples;
     step.indirect = raytrace::Indirect::Paths;
