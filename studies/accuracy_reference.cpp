@@ -72,7 +72,7 @@ AccuracyStep straight_step(const scenes::Scene& scene, double error) {
   step.method = "direct";
   step.series = series::error;
   step.setting = error;
-  step.indirect = Indirect::None;
+  step.indirect = raytrace::Indirect::None;
   step.quality.share_gather = scene.quality.share_gather;
   step.quality.error = error;
   return step;
