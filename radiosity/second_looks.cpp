@@ -134,7 +134,7 @@ SecondLooks look_again(const scenes::Scene& scene, const scenes::LightGroups& gr
     return other;
   };
 
-  const int rays = options.form_factor_rays;
+  const int rays = std::max(fewest_rays, solution.report.rays_per_patch);
   std::vector<Solution> few;
   for (std::uint32_t k = 0; k < few_rays_looks; ++k) {
     few.push_back(look(solution.patches, rays, 32, usual.points_per_patch / 4));

@@ -182,6 +182,7 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   FormFactors factors = cast_form_factors(scene, query, patches, rays, sky);
   const std::vector<double> open_m2 = open_areas(factors.open, patches.area_m2);
   report.form_factor_rays = factors.ray_count;
+  report.rays_per_patch = factors.rays_per_patch;
   report.nonzeros = factors.hits.size();
   const std::vector<double> object_backs = back_shares(scene, patches, factors);
   report.back_share = back_share(factors);

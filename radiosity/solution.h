@@ -74,6 +74,7 @@ struct SolveReport {
   std::vector<RefineRound> rounds;  // of refinement, the last one for the patches solved
   std::uint64_t refinement_rays = 0;
   std::uint64_t form_factor_rays = 0;
+  int rays_per_patch = 0;  // of them, continuations beyond mirrors left out
   std::uint64_t shadow_rays = 0;
   std::array<SourceCost, scenes::light_kinds> sources_cost{};  // by LightKind; not of a read file
   std::size_t nonzeros = 0;

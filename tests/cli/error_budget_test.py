@@ -36,7 +36,7 @@ class ErrorBudget(program.Case):
 
     def test_a_picture_states_its_error(self):
         error = self.check(self.render("--set", "quality.patch_edge=0.25")["error"])
-        self.assertEqual(sorted(error), ["bound_95", "estimate", "not_captured", "parts", "targets", "wanted"])
+        self.assertEqual(sorted(error), ["bound_95", "estimate", "limit", "not_captured", "parts", "steps", "targets", "wanted"])
         self.assertIsNone(error["wanted"])
         self.assertLess(error["estimate"], 0.5)
         for part in ("form_factor_noise", "patch_size", "gather_noise", "camera_samples"):
@@ -75,7 +75,7 @@ class ErrorBudget(program.Case):
 
     def test_a_solve_states_its_error(self):
         error = self.check(self.json("solve", "ball.toml")["error"], SURFACE_PARTS)
-        self.assertEqual(sorted(error), ["bound_95", "estimate", "not_captured", "parts", "wanted"])
+        self.assertEqual(sorted(error), ["bound_95", "estimate", "limit", "not_captured", "parts", "steps", "wanted"])
         self.says(self.done("solve", "ball.toml"), "error ", "95 % sure below", "patches")
         self.done("solve", "ball.toml", "-o", "ball.h5")
         self.assertEqual(self.json("solve", "ball.toml", "--solution", "ball.h5")["error"], error)

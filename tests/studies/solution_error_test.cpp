@@ -79,9 +79,8 @@ class Maker {
   std::vector<double> pattern_;
 };
 
-SolutionError error_of(const Truth& truth, const Looks& looks, double solver_error = 0.0,
-                       Reading reading = Reading::Interpolated) {
-  return solution_error(looks, truth.made, solver_error, {mean_value, reading});
+SolutionError error_of(const Truth& truth, const Looks& looks, double solver_error = 0.0) {
+  return solution_error(looks, truth.made, solver_error, mean_value);
 }
 
 TEST(SolutionError, GivesTheNoiseOfEachCauseBack) {
@@ -119,29 +118,6 @@ TEST(SolutionError, GivesThePatchesOfACoarserAndAFinerCutBack) {
       EXPECT_LT(first.patches.estimate, 0.2 / mean_value);
       EXPECT_NEAR(first.patches.bound_95, 0.2 / mean_value, 1e-9);
     }
-  }
-}
-
-TEST(SolutionError, ConstantPatchesErrorsDifferInSquares) {
-  // B = x on [0, 1] in n cells: RMS error 1 / (n sqrt 12). In 8 and in 4 cells, ratio 1/2.
-  constexpr int cells = 8, fine = 4096;
-  const auto read = [](int n, double x) { return (std::floor(x * n) + 0.5) / n; };
-  for (const bool finer : {false, true}) {
-    Looks looks;
-    for (int i = 0; i < fine; ++i) {
-      looks.own.push_back(read(cells, (i + 0.5) / fine));
-    }
-    std::vector<double> other;
-    for (int i = 0; i < fine; ++i) {
-      other.push_back(read(finer ? 2 * cells : cells / 2, (i + 0.5) / fine));
-    }
-    looks.few_rays.assign(4, looks.own);
-    looks.other_direct.assign(4, looks.own);
-    looks.other_patches.assign(2, other);
-    const SolutionError error =
-        solution_error(looks, {.ray_share = 0.1, .error_ratio = 0.5, .finer = finer}, 0.0,
-                       {1.0, Reading::Constant});
-    EXPECT_NEAR(error.patches.estimate / (1.0 / (cells * std::sqrt(12.0))), 1.0, 1e-3) << finer;
   }
 }
 
@@ -205,7 +181,7 @@ TEST(SolutionError, LightThatTheFewRaysAllMissIsDoubted) {
   looks.few_rays.assign(4, std::vector<double>(50, 0.0));
   looks.other_direct.assign(4, looks.own);
   looks.other_patches.assign(2, looks.own);
-  const SolutionError error = solution_error(looks, truth.made, 0.0, {1.0, Reading::Interpolated});
+  const SolutionError error = solution_error(looks, truth.made, 0.0, 1.0);
   EXPECT_NEAR(error.form_factors.estimate, 1.0 / 3.0, 1e-12);
   EXPECT_GT(error.form_factors.bound_95, 1.0);
   EXPECT_EQ(error.lamps.estimate, 0.0);
@@ -214,9 +190,29 @@ TEST(SolutionError, LightThatTheFewRaysAllMissIsDoubted) {
 TEST(SolutionError, NothingSeenOrBlackHasNone) {
   Truth truth;
   Looks looks = Maker(truth, 1).make().looks;
-  EXPECT_EQ(solution_error(looks, truth.made, 1.0, {0.0, Reading::Constant}).total().bound_95, 0.0);
+  EXPECT_EQ(solution_error(looks, truth.made, 1.0, 0.0).total().bound_95, 0.0);
   looks = some_of(looks, {});
   EXPECT_EQ(error_of(truth, looks, 1.0).total().bound_95, 0.0);
+}
+
+TEST(WeighedError, CountsWhatIsBrightInProportion) {
+  // Nine values of 1 and one of 31: mean 4, so that the tenth counts with 16 / 31 of its error.
+  // Tries that are off by +-1 at the one value alone: variance over all 4/3 / 10 or that times
+  // (16/31)^2, of which the solution has a 32nd.
+  const auto error_at = [](std::size_t where) {
+    Looks looks;
+    looks.own.assign(10, 1.0);
+    looks.own[9] = 31.0;
+    looks.few_rays.assign(4, looks.own);
+    for (std::size_t k = 0; k < 4; ++k) looks.few_rays[k][where] += k % 2 == 0 ? 1.0 : -1.0;
+    looks.other_direct.assign(4, looks.own);
+    looks.other_patches.assign(2, looks.own);
+    return weighed_error(looks, {.ray_share = 1.0 / 32.0}, 0.0).form_factors.estimate;
+  };
+  const double plain = std::sqrt(4.0 / 3.0 / 10.0 / 32.0) / 4.0;
+  EXPECT_NEAR(error_at(0), plain, 1e-12);
+  EXPECT_NEAR(error_at(9), plain * 16.0 / 31.0, 1e-12);
+  EXPECT_EQ(weighed_error({}, {}, 1.0).total().bound_95, 0.0);
 }
 
 TEST(SolutionError, SomeOfTheLooksAreThoseAskedFor) {
