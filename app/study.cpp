@@ -95,10 +95,13 @@ std::string csv_of(const Json& rows) {
 }
 
 std::vector<Command> add_study(CLI::App& program) {
-  CLI::App* study =
-      program.add_subcommand("study", "Questions answered about a scene: visibility, compare");
+  CLI::App* study = program.add_subcommand(
+      "study", "Questions answered about a scene: visibility, compare, accuracy");
   study->require_subcommand(1);
-  return {{study, {}}, add_study_visibility(*study), add_study_compare(*study)};
+  return {{study, {}},
+          add_study_visibility(*study),
+          add_study_compare(*study),
+          add_study_accuracy(*study)};
 }
 
 }  // namespace earthshine::app

@@ -22,6 +22,7 @@ struct StudyCall {
 // -o, --size, --json and what add_scene_options adds.
 void add_study_options(CLI::App& command, StudyCall& call);
 
+[[nodiscard]] Command add_study_accuracy(CLI::App& study);
 [[nodiscard]] Command add_study_compare(CLI::App& study);
 [[nodiscard]] Command add_study_visibility(CLI::App& study);
 

@@ -133,14 +133,12 @@ void refuse_stale(const Hdf5Reader& file, const SolutionOrigin& origin) {
          origin);
 }
 
-// A cut that is called coarser and is not would make nonsense of the estimates made from it.
-void refuse_finer(const Hdf5Reader& file, const Solution& solution) {
-  const double coarser = solution.coarser.error;
-  if (coarser == 0.0) return;
-  const auto& rounds = solution.report.rounds;
-  if (std::isfinite(coarser) && !rounds.empty() && coarser > rounds.back().error) return;
-  file.fail(
-      fmt::format("\"coarser_error\" is {}, which no round before the last one had", coarser));
+// An error that no round can have would make nonsense of the estimates made from it.
+void check_other_cut(const Hdf5Reader& file, const Solution& solution) {
+  const double error = solution.other.error;
+  if (error == 0.0) return;
+  if (std::isfinite(error) && error > 0.0 && !solution.report.rounds.empty()) return;
+  file.fail(fmt::format("\"other_cut_error\" is {}, which no round of refinement has", error));
 }
 
 }  // namespace
@@ -180,16 +178,16 @@ Solution read_solution(const std::filesystem::path& path, const SolutionOrigin& 
   Reading store{file, 0, 0, 0, groups};
   Solution solution;
   solution.patches = read_patches("facets/", "area", store);
-  solution.coarser.error = file.number_attribute("coarser_error");
-  if (solution.coarser.error != 0.0) {
+  solution.other.error = file.number_attribute("other_cut_error");
+  if (solution.other.error != 0.0) {
     Reading apart{file, 0, 0, 0, 0};
-    solution.coarser.patches = read_patches("coarser/", "coarser/area", apart);
+    solution.other.patches = read_patches("other_cut/", "other_cut/area", apart);
   }
   solution.columns = 3 * groups;
   visit_light(store, solution);
   visit_report(store, solution.report);
   solution.report.patches = solution.patches.count();
-  refuse_finer(file, solution);
+  check_other_cut(file, solution);
   return solution;
 }
 

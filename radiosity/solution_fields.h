@@ -12,7 +12,7 @@
 
 namespace earthshine::radiosity {
 
-// prefix: "facets/", or "coarser/" for the cut of an earlier round.
+// prefix: "facets/", or "other_cut/" for that of another round.
 template <class Store, class Layout>
 void visit_layout(Store& store, Layout& layout, const std::string& prefix, const char* area) {
   const auto per_facet = [&](const char* name, auto& values, const char* meaning) {

@@ -169,6 +169,19 @@ TEST(ErrorBudget, OfAPictureDoesNotDependOnTheOthersOrOnThreads) {
   EXPECT_GT(alone.rays, alone.looks.rays);
 }
 
+TEST(ErrorBudget, OfATargetIsOverItsOwnPixels) {
+  // The bright wall's light is its own more than reflected: of its mean the solution's error is a
+  // smaller share than of the picture's.
+  scenes::Scene scene = tests::SmallRoom::made();
+  scene.objects[0].target = true;
+  const tests::SmallRoom room{scene};
+  const WatchedErrors errors =
+      second_opinion(room.study(), room.solution, room.solver, {{&room.camera, small_picture()}})
+          .pictures.front();
+  EXPECT_LT(errors.targets.at(0).total().estimate, errors.whole.total().estimate);
+  EXPECT_GT(errors.targets.at(0).total().estimate, 0.0);
+}
+
 TEST(ErrorBudget, WithoutASolutionNothingIsOwedToIt) {
   const tests::SmallRoom& room = tests::small_room();
   const SecondOpinion none =

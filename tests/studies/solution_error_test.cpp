@@ -121,6 +121,23 @@ TEST(SolutionError, GivesThePatchesOfACoarserAndAFinerCutBack) {
   }
 }
 
+// One of 100 among 19 of 0: mean 5, it counts as 4 times 5. An error of a tenth of it is one of 2
+// there: RMS 2 / sqrt(20) over 5.
+TEST(SolutionError, BrightValuesCountInProportion) {
+  Looks looks;
+  looks.own.assign(20, 0.0);
+  looks.own[7] = 100.0;
+  looks.few_rays.assign(4, looks.own);
+  looks.other_direct.assign(4, looks.own);
+  std::vector<double> other = looks.own;
+  other[7] = 90.0;
+  looks.other_patches.assign(2, other);
+  const SolutionError error =
+      weighed_error(looks, {.error_ratio = std::sqrt(0.5), .finer = false}, 0.0);
+  // q = r^2 = 1/2: q / (1 - q) = 1.
+  EXPECT_NEAR(error.patches.estimate, 2.0 / std::sqrt(20.0) / 5.0, 1e-12);
+}
+
 TEST(SolutionError, PatchesAreFreeOfNoiseOnAverage) {
   // The square of what is found, before the root: mean over many draws within four standard errors.
   // A difference of 3 * 0.05 with noise well above it.
@@ -193,26 +210,6 @@ TEST(SolutionError, NothingSeenOrBlackHasNone) {
   EXPECT_EQ(solution_error(looks, truth.made, 1.0, 0.0).total().bound_95, 0.0);
   looks = some_of(looks, {});
   EXPECT_EQ(error_of(truth, looks, 1.0).total().bound_95, 0.0);
-}
-
-TEST(WeighedError, CountsWhatIsBrightInProportion) {
-  // Nine values of 1 and one of 31: mean 4, so that the tenth counts with 16 / 31 of its error.
-  // Tries that are off by +-1 at the one value alone: variance over all 4/3 / 10 or that times
-  // (16/31)^2, of which the solution has a 32nd.
-  const auto error_at = [](std::size_t where) {
-    Looks looks;
-    looks.own.assign(10, 1.0);
-    looks.own[9] = 31.0;
-    looks.few_rays.assign(4, looks.own);
-    for (std::size_t k = 0; k < 4; ++k) looks.few_rays[k][where] += k % 2 == 0 ? 1.0 : -1.0;
-    looks.other_direct.assign(4, looks.own);
-    looks.other_patches.assign(2, looks.own);
-    return weighed_error(looks, {.ray_share = 1.0 / 32.0}, 0.0).form_factors.estimate;
-  };
-  const double plain = std::sqrt(4.0 / 3.0 / 10.0 / 32.0) / 4.0;
-  EXPECT_NEAR(error_at(0), plain, 1e-12);
-  EXPECT_NEAR(error_at(9), plain * 16.0 / 31.0, 1e-12);
-  EXPECT_EQ(weighed_error({}, {}, 1.0).total().bound_95, 0.0);
 }
 
 TEST(SolutionError, SomeOfTheLooksAreThoseAskedFor) {

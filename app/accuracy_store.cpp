@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/accuracy_store.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <fstream>
+#include <iterator>
+
+#include "base/digest.h"
+#include "base/error.h"
+#include "base/exr_file.h"
+#include "base/output_file.h"
+#include "radiosity/solution_key.h"
+
+namespace earthshine::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string stem_of(const Json& marks) {
+  base::Digest digest;
+  digest.add(std::string_view(dump(marks)));
+  return digest.text();
+}
+
+std::string digest_of(const base::Image& image) {
+  base::Digest digest;
+  digest.add(std::uint64_t{image.pixel_count()});
+  for (const base::Channel& channel : image.channels) {
+    digest.add(std::string_view(channel.name));
+    for (const float value : channel.values) {
+      digest.add(std::uint64_t{std::bit_cast<std::uint32_t>(value)});
+    }
+  }
+  return digest.text();
+}
+
+std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
+
+}  // namespace
+
+Json scene_marks(const LoadedScene& loaded) {
+  Json marks = Json::object();
+  for (const radiosity::ScenePart& part : radiosity::scene_parts(loaded.scene, loaded.groups)) {
+    marks[part.key] = hex(part.digest);
+  }
+  // What a picture reads besides; taken apart whole, so that another member does not compile until
+  // it is decided about.
+  base::Digest lobes;
+  for (const scenes::Triangle& triangle : loaded.scene.triangles) {
+    const auto& [name, diffuse, specular, shininess, mirror, transmit, ior, emit, group, sheet] =
+        loaded.scene.materials[triangle.material];
+    lobes.add(specular);
+    lobes.add(shininess);
+  }
+  lobes.add(loaded.scene.ambient_radiance);
+  marks["lobes"] = lobes.text();
+  return marks;
+}
+
+Json camera_marks(const scenes::Camera& camera) {
+  base::Digest digest;
+  for (const Vec3& v : {camera.position, camera.look_at, camera.up}) digest.add(v);
+  for (const double x : {camera.fov_deg, camera.focus_m, camera.aperture_m}) digest.add(x);
+  return digest.text();
+}
+
+PartStore::PartStore(const fs::path& folder) : folder_(folder) {
+  std::error_code problem;
+  fs::create_directories(folder, problem);
+  if (!fs::is_directory(folder)) {
+    throw base::Error(base::Blame::Input, folder.string(),
+                      "cannot be made a folder" + (problem ? ": " + problem.message() : ""), {},
+                      "Name another folder");
+  }
+  const base::OutputFile writable(folder / "points.json");
+}
+
+std::optional<StoredPart> PartStore::find(const Json& marks, std::string& said) const {
+  const fs::path json_path = folder_ / (stem_of(marks) + ".json");
+  const fs::path image_path = folder_ / (stem_of(marks) + ".exr");
+  std::error_code ignored;
+  if (!fs::exists(json_path, ignored)) return std::nullopt;
+  const auto again = [&](const std::string& why) {
+    said = fmt::format("{} {}; it is done again", json_path.string(), why);
+    return std::nullopt;
+  };
+  std::ifstream file(json_path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains("marks") || !json.contains("facts") ||
+      !json["facts"].is_object() || !json.contains("picture")) {
+    return again("is broken");
+  }
+  if (json["marks"] != marks) return again("belongs to something else");
+  StoredPart part{json["facts"], {}};
+  try {
+    part.image = base::read_exr(image_path).image;
+  } catch (const base::Error& error) {
+    return again(fmt::format("has lost its picture ({})", error.what()));
+  }
+  if (json["picture"] != digest_of(part.image)) return again("has another picture beside it");
+  return part;
+}
+
+bool PartStore::has(const Json& marks) const {
+  std::error_code ignored;
+  return fs::exists(folder_ / (stem_of(marks) + ".json"), ignored);
+}
+
+void PartStore::keep(const Json& marks, const StoredPart& part) const {
+  base::write_exr(folder_ / (stem_of(marks) + ".exr"), part.image);
+  base::write_text(
+      folder_ / (stem_of(marks) + ".json"),
+      dump({{"marks", marks}, {"facts", part.facts}, {"picture", digest_of(part.image)}}));
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The finished parts of `study accuracy`, so that a run that was ended goes on from them.
+//
+// Each is two files in DIR/points: KEY.exr, its luminance (of a reference also the variance), and
+// KEY.json, written after it: the marks of the scene, the view, the settings and the program, what
+// it cost, and a digest of the picture. KEY is a digest of the marks, so that anything that changed
+// has other files. Errors are not kept: they follow from the pictures.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "app/command.h"
+#include "base/image.h"
+
+namespace earthshine::app {
+
+// Digests of everything in the scene that a picture can depend on, as a JSON object.
+[[nodiscard]] Json scene_marks(const LoadedScene& loaded);
+[[nodiscard]] Json camera_marks(const scenes::Camera& camera);
+
+struct StoredPart {
+  Json facts;
+  base::Image image;
+};
+
+class PartStore {
+ public:
+  // Makes the folder; throws base::Error where that cannot be or nothing can be written in it.
+  explicit PartStore(const std::filesystem::path& folder);
+
+  // None if there is no such part. One that is there but torn, foreign or not of its picture is
+  // named in `said` and counts as not there.
+  [[nodiscard]] std::optional<StoredPart> find(const Json& marks, std::string& said) const;
+  // Whether it looks as if there was one; it may turn out to be torn.
+  [[nodiscard]] bool has(const Json& marks) const;
+  void keep(const Json& marks, const StoredPart& part) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace earthshine::app

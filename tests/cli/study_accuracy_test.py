@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: Apache-2.0
+"""study accuracy: its folder, going on after a kill, what is refused, and what has nothing to measure."""
+import csv
+import json
+import os
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+import xml.etree.ElementTree as xml
+
+import program
+
+# Few pixels and rays: a second of work.
+CALL = ("--size", "12x9", "--wanted", "0.5,0.3", "--reference-factor", "1", "--paths", "2,8")
+
+
+class Accuracy(program.Case):
+    def setUp(self):
+        super().setUp()
+        self.write("ball.toml", program.BALL.replace("patch_edge = 0.5\nform_factor_rays = 64\ngather_rays = 16\n", "error = 0.3\n"))
+
+    def study(self, *more, scene="ball.toml", folder="d"):
+        return ("study", "accuracy", scene, "-o", folder, "--camera", "A", *CALL, *more)
+
+    def result(self, folder="d"):
+        return json.loads((self.folder / folder / "accuracy.json").read_text(encoding="utf-8"),
+                          parse_constant=lambda word: self.fail(f"{word} in the JSON"))
+
+    def table(self, folder="d"):
+        with open(self.folder / folder / "accuracy.csv", newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def parts(self, folder="d"):
+        return {path.name: path.stat().st_mtime_ns for path in (self.folder / folder / "points").iterdir()}
+
+    def figures(self, value):
+        """Without what seconds decide: they, the front, what follows from it."""
+        value = {key: found for key, found in value.items() if key not in ("front", "worth", "wanted", "reference")}
+        for row in value["points"]:
+            for key in [key for key in row if "seconds" in key or key == "on_front"]:
+                del row[key]
+        return value
+
+
+class Folder(Accuracy):
+    def test_tables_plots_and_json(self):
+        text = self.done(*self.study(folder="new/a 'b' $(c)"))
+        folder = "new/a 'b' $(c)"
+        self.says(text, "radiosity error=", "paths samples=2", "Limit of radiosity", "the cheapest way", "30 %", "CPU s")
+        names = sorted(os.listdir(self.folder / folder))
+        plots = ["error-seconds.gp", "error-settings.gp"]
+        if shutil.which("gnuplot"):
+            plots += ["error-seconds.svg", "error-settings.svg"]
+            for stem in ("error-seconds", "error-settings"):
+                picture = (self.folder / folder / f"{stem}.svg").read_text(encoding="utf-8")
+                xml.fromstring(picture)
+                self.says(picture, "error")
+        self.assertEqual(names, sorted(["accuracy.csv", "accuracy.json", "points", *plots]))
+        result, rows = self.result(folder), self.table(folder)
+        self.assertEqual(len(rows), len(result["points"]))
+        for row, record in zip(rows, result["points"]):
+            self.assertEqual(row["method"], record["method"])
+            self.assertEqual(float(row["error"]), record["error"])
+            self.assertGreaterEqual(record["error_high"], record["error"])
+            self.assertLessEqual(record["error_low"], record["error"])
+            self.assertGreater(record["cpu_seconds"], 0)
+            self.assertGreater(record["memory_mib"], 0)
+        methods = {row["method"] for row in rows}
+        self.assertEqual(methods, {"radiosity", "direct", "paths"})  # no wide source: no distributed lights
+        self.assertEqual([answer["wanted"] for answer in result["wanted"]], [0.5, 0.3])
+        front = [result["points"][k] for k in result["front"]]
+        self.assertEqual(front, sorted(front, key=lambda row: row["cpu_seconds"]))
+        self.assertEqual([row["on_front"] for row in result["points"]].count(True), len(front))
+
+    def test_a_setting_is_a_call_that_works(self):
+        shutil.copy(self.folder / "ball.toml", self.folder / "my ball's.toml")
+        self.done(*self.study("--set", "light.lamp.intensity=500", scene="my ball's.toml"))
+        answer = next(answer for answer in self.result()["wanted"] if answer["reached"])
+        call = answer["setting"]["command"]
+        self.says(call, "--size 12x9", "light.lamp.intensity=500")
+        run = subprocess.run(["sh", "-c", call.replace("earthshine", '"$0"', 1), program.PROGRAM],
+                             cwd=self.folder, capture_output=True, text=True, timeout=120)
+        self.assertEqual(run.returncode, 0, call + run.stderr)
+
+    def test_without_gnuplot_the_figures_are_there_all_the_same(self):
+        (self.folder / "d").mkdir()
+        (self.folder / "d" / "error-seconds.svg").write_text("old")
+        run = self.run_program(*self.study("-q"), env={"PATH": str(self.folder)})
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.says(run.stderr, "gnuplot-nox", "error-seconds.gp")
+        self.assertEqual(sorted(os.listdir(self.folder / "d")),
+                         ["accuracy.csv", "accuracy.json", "error-seconds.gp", "error-settings.gp", "points"])
+
+    def test_names_do_not_reach_the_plots_as_commands(self):
+        evil = "a'; system('touch owned'); set title `touch owned` $(touch owned)"
+        scene = (self.folder / "ball.toml").read_text().replace('"ball on a floor"', json.dumps(evil))
+        self.write("evil.toml", scene)
+        self.done(*self.study(scene="evil.toml"))
+        self.assertFalse((self.folder / "d" / "owned").exists() or (self.folder / "owned").exists())
+        if shutil.which("gnuplot"):
+            self.says((self.folder / "d" / "error-seconds.svg").read_text(), "touch owned")
+
+
+class GoesOn(Accuracy):
+    def test_a_killed_run_goes_on_to_the_same_figures(self):
+        self.done(*self.study(folder="whole"))
+        process = subprocess.Popen([program.PROGRAM, *self.study()], cwd=self.folder, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL)
+        points = self.folder / "d" / "points"
+        until = time.monotonic() + 60
+        while time.monotonic() < until and process.poll() is None:
+            if points.is_dir() and len(list(points.glob("*.json"))) >= 6:
+                break
+            time.sleep(0.002)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        before = self.parts()
+        self.assertFalse((self.folder / "d" / "accuracy.json").exists(), "it ended before it was killed")
+        self.done(*self.study())
+        after = self.parts()
+        for name in (name for name in before if name.endswith(".json")):
+            self.assertEqual(before[name], after[name], f"{name} was done again")
+        self.assertEqual(self.figures(self.result()), self.figures(self.result("whole")))
+
+    def test_a_finished_run_does_nothing_again(self):
+        self.done(*self.study())
+        before, result = self.parts(), self.result()
+        self.done(*self.study())
+        self.assertEqual(before, self.parts())
+        self.assertEqual(result, self.result())
+
+    def test_what_changed_is_done_again_and_what_did_not_is_not(self):
+        self.done(*self.study())
+        before = set(self.parts())
+        self.done(*self.study("--set", "material.paint.specular=0.2"))
+        self.assertFalse([name for name in before if name not in self.parts()])
+        fresh = len(self.parts()) - len(before)
+        self.assertGreaterEqual(fresh, len(before))  # the lobe is in every picture
+        for change in (("--seed", "7"), ("--set", "camera.A.fov_deg=39")):
+            count = len(self.parts())
+            self.done(*self.study(*change))
+            self.assertGreaterEqual(len(self.parts()) - count, len(before), change)
+        count = len(self.parts())
+        call = [word if word != "0.5,0.3" else "0.4,0.3" for word in self.study()]
+        self.done(*call)  # other questions, the same ladder
+        self.assertEqual(len(self.parts()), count)
+
+    def test_torn_and_foreign_parts_are_named_and_done_again(self):
+        self.done(*self.study())
+        result = self.result()
+        parts = sorted((self.folder / "d" / "points").glob("*.json"))
+        parts[0].write_text(parts[0].read_text()[:40])
+        shutil.copy(parts[1], parts[2])
+        parts[3].with_suffix(".exr").write_bytes(b"torn")
+        reference = next(part for part in parts[5:] if '"reference"' in part.read_text())
+        step = next(part for part in parts[8:] if '"step"' in part.read_text())
+        shutil.copy(reference.with_suffix(".exr"), step.with_suffix(".exr"))
+        parts[6].write_text(parts[6].read_text().replace('"cpu_seconds": ', '"cpu_seconds": "x", "y": '))
+        parts[7].write_text("[1, 2]")
+        run = self.run_program(*self.study())
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.says(run.stderr, "is broken", "belongs to something else", "has lost its picture",
+                  "has another picture", "lacks some of its figures", "it is done again")
+        self.assertEqual(self.figures(self.result()), self.figures(result))
+
+    def test_ctrl_c_says_what_is_finished(self):
+        process = subprocess.Popen([program.PROGRAM, *self.study()], cwd=self.folder, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        points = self.folder / "d" / "points"
+        while process.poll() is None and not (points.is_dir() and list(points.glob("*.json"))):
+            time.sleep(0.002)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+        self.assertEqual((process.returncode, out), (1, ""), err)
+        self.says(err, "interrupted", "finished in d", "goes on")
+
+    def test_a_time_limit_leaves_out_and_says_so(self):
+        result = self.json(*self.study("--time-limit", "0.001"))
+        self.assertEqual(result["points"], [])
+        self.says(result["not_run"][0]["why"], "time limit")
+        self.assertEqual(self.table(), [])
+        whole = self.json(*self.study())
+        self.assertEqual(whole["not_run"], [])
+
+
+class Nothing(Accuracy):
+    def test_no_light_no_surface_or_only_sources(self):
+        scene = (self.folder / "ball.toml").read_text()
+        dark = scene[:scene.index("[[light]]")] + scene[scene.index("[[camera]]"):]
+        self.write("dark.toml", dark)
+        self.write("box.toml", program.CLOSED_BOX)
+        self.write("away.toml", scene.replace("look_at = [0, 0, 0.4]", "look_at = [3, -3, 9]\n").replace("up = [0, 0, 1]", "up = [0, 1, 0]"))
+        hidden = scene.replace('direction = [-0.3, 0.2, 1]', 'direction = [-0.3, 0.2, -1]').replace("[900, 800, 700]", "[0, 0, 0]")
+        self.write("hidden.toml", hidden)
+        for name, word in (("dark", "gives light"), ("box", "no source"), ("away", "no pixel"), ("hidden", "light")):
+            folder = "out-" + name
+            call = ["study", "accuracy", name + ".toml", "-o", folder, *CALL]
+            text = self.done(*call)
+            self.says(text, "Nothing was measured", word)
+            result = self.result(folder)
+            self.says(result["nothing_to_measure"], word)
+            self.assertEqual(result["points"], [])
+            self.assertEqual((self.folder / folder / "accuracy.csv").read_text(), "")
+
+
+class Refused(Accuracy):
+    def test_wrong_calls(self):
+        for option, values in {"--wanted": ("", "0", "2", "x", "0.1,", "nan", "-0.1"), "--lights": ("1", "4,x", ""),
+                               "--paths": ("1", "", "4.5"), "--reference-factor": ("0.5", "inf", "x"),
+                               "--time-limit": ("0", "-1", "x")}.items():
+            for value in values:
+                message = self.refused("study", "accuracy", "ball.toml", "-o", "d", f"{option}={value}")
+                self.says(message, option)
+        self.says(self.refused("study", "accuracy", "ball.toml"), "--output")
+        self.says(self.refused("study", "accuracy", "ball.toml", "-o", "d", "--camera", "none"), '"none"', "above")
+        self.assertEqual(os.listdir(self.folder), ["ball.toml"])
+
+    def test_folders_that_cannot_be(self):
+        self.says(self.refused("study", "accuracy", "ball.toml", "-o", "ball.toml"), "ball.toml", "folder")
+        (self.folder / "d").mkdir()
+        (self.folder / "d" / "points").write_text("")
+        self.says(self.refused("study", "accuracy", "ball.toml", "-o", "d"), "points", "folder")
+        if os.geteuid() != 0:
+            (self.folder / "e").mkdir(mode=0o500)
+            self.says(self.refused("study", "accuracy", "ball.toml", "-o", "e", code=1), "e")
+        self.says(self.refused("study", "accuracy", "ball.toml", "-o", "/proc/none"), "/proc/none")
+
+    def test_scene_without_cameras(self):
+        self.write("bare.toml", program.BALL.split("[[camera]]")[0])
+        self.says(self.refused("study", "accuracy", "bare.toml", "-o", "d"), "camera")
+
+
+if __name__ == "__main__":
+    unittest.main()
