@@ -41,6 +41,13 @@ TEST(SpreadByWeight, NothingIsChosenOfNothing) {
   EXPECT_TRUE(spread_by_weight(lit, 0, 1).empty());
 }
 
+TEST(ErrorWeight, IsOneUpToFourTimesTheMean) {
+  EXPECT_EQ(error_weight(0.0, 1.0), 1.0);
+  EXPECT_EQ(error_weight(4.0, 1.0), 1.0);
+  EXPECT_DOUBLE_EQ(error_weight(400.0, 2.0), 0.02);
+  EXPECT_EQ(error_weight(0.0, 0.0), 1.0);
+}
+
 TEST(SpreadEvenly, OneOfEachRunAndAllAlike) {
   std::vector<std::uint32_t> pixels(103);
   std::iota(pixels.begin(), pixels.end(), 1000U);
