@@ -75,11 +75,14 @@ Expectation expect(const LoadedScene& loaded, const RenderCall& call, const Comm
     sizes.solves = false;
     sizes.columns = 0;
   }
+  if (!call.solution.empty()) sizes.solves = false;
   studies::expect_rows(sizes, loaded.scene, query, solver);
   Expectation expected;
   expected.pilot = studies::expect_costs(
       {loaded.scene, loaded.groups, loaded.effects, query, solver, sizes.row_entries},
       asked.cameras, options);
+  // The pilot's own solve only lights its pictures then.
+  if (!call.solution.empty()) expected.pilot.bill.solve = {};
   expected.costs = studies::effect_costs(expected.pilot.bill, loaded.effects);
   studies::EffectCost cctv{"cctv"};
   Common quiet = common;
@@ -156,7 +159,8 @@ Json report_json(const LoadedScene& loaded, const RenderCall& call, const scenes
                  const StageTimes& times, double cpu_seconds) {
   const double threads = base::available_threads();
   studies::Bill bill;
-  bill.solve = solved;
+  // What a solution cost that was read stands with whoever solved it.
+  if (call.solution.empty()) bill.solve = solved;
   studies::EffectCost cctv{"cctv"};
   for (const Picture& picture : pictures) {
     bill.pictures.push_back(picture.rendered);
@@ -174,6 +178,7 @@ Json report_json(const LoadedScene& loaded, const RenderCall& call, const scenes
   }
   return {{"scene", loaded.scene.path.string()},
           {"name", loaded.scene.name},
+          {"solution", call.solution.empty() ? Json(nullptr) : Json(call.solution)},
           {"effects", rows},
           {"expected",
            {{"seconds", studies::total_seconds(expected.pilot.bill)},

@@ -136,7 +136,7 @@ std::vector<Setting> settings() {
              }
            }},
           {"layers", nothing, false, {"depth", "normal", "crypto_object"}},
-          {"layers_for_a_range_sensor", nothing, false, {"range", "N", "P", "albedo"}},
+          {"layers_for_a_range_sensor", nothing, false, {"range", "normal", "position", "albedo"}},
           {"point_lamp_per_light", adds(LampKind::Point), false, {}, true},
           {"cctv", nothing, false, {}, false, true}};
 }
