@@ -1,77 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is skipped must not be able to matter. Each bound is walked up to from both sides: the last
 // case where light just cannot arrive, and the first where it can.
-#include "scenes/idle.h"
-
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-
-#include "base/random.h"
-#include "scenes/lamp_light.h"
-#include "tests/support/scene_builder.h"
+#include "tests/scenes/idle_scenes.h"
 
 namespace earthshine::scenes {
 namespace {
-
-struct Found {
-  std::vector<Idle> idle;
-  LightGroups groups;
-  Effects effects;
-
-  [[nodiscard]] const Idle* row(const std::string& effect) const {
-    const auto found = std::find_if(idle.begin(), idle.end(),
-                                    [&](const Idle& off) { return off.effect == effect; });
-    return found == idle.end() ? nullptr : &*found;
-  }
-  [[nodiscard]] bool has(const std::string& effect) const { return row(effect) != nullptr; }
-};
-
-Found look(const Scene& scene, double wanted_error = 0.02, const Asked& asked = {},
-           const HiddenLights& hidden = {}) {
-  Found found;
-  found.groups = find_light_groups(scene);
-  found.effects = find_effects(scene, found.groups, asked);
-  found.idle = switch_off_idle(scene, asked, wanted_error, hidden, found.groups, found.effects);
-  return found;
-}
-
-Sun sun_at(double height_deg, double radius_deg) {
-  const double h = base::radians(height_deg);
-  return {{std::cos(h), 0.0, std::sin(h)}, Rgb(1000.0), radius_deg};
-}
-
-Earth earth_at(double height_deg, double half_angle_deg) {
-  const double h = base::radians(height_deg);
-  Earth earth;
-  earth.direction = {0.0, std::cos(h), std::sin(h)};
-  earth.half_angle_deg = half_angle_deg;
-  earth.model = EarthModel::Uniform;
-  earth.radiance = Rgb(100.0);
-  return earth;
-}
-
-// A plate in z = 0, 2 m wide, that looks up.
-tests::SceneBuilder floor_of(const Material& material) {
-  tests::SceneBuilder builder;
-  builder.plate(builder.material(material), 2.0, 0.0, true);
-  return builder;
-}
-
-Lamp lamp_of(LampKind kind, const Vec3& position, const Vec3& axis) {
-  Lamp lamp;
-  lamp.name = lamp.group = "lamp";
-  lamp.kind = kind;
-  lamp.position = position;
-  lamp.axis = axis;
-  if (kind == LampKind::Rectangle || kind == LampKind::Disk) {
-    lamp.exitance = Rgb(10.0);
-  } else {
-    lamp.intensity_cd = Rgb(10.0);
-  }
-  return lamp;
-}
 
 // A disc whose centre stands h below the horizon and whose radius is r shows above it if h < r. It
 // is left on where it just touches: rounding of the direction must not decide.
@@ -144,119 +79,6 @@ TEST(Idle, WhatLivesOnLightThatIsSkippedIsSkippedWithIt) {
   EXPECT_FALSE(sunny.effects.glossy);
   EXPECT_TRUE(sunny.has("glossy reflection"));
   EXPECT_FALSE(sunny.has("phong lobe"));
-}
-
-// A lamp of half width w in the plane z = -h, tilted by 45 degrees about y, reaches up to
-// -h + w sin 45: the floor's front sees it from there on. The disk's own radius bounds its reach.
-TEST(Idle, LampsBehindEverySurfaceAreSkipped) {
-  const double tilted = 0.25 * std::sqrt(0.5), edge = 1e-3;
-  struct Case {
-    LampKind kind;
-    double depth_m;  // at which it just cannot shine on the front
-  };
-  for (const Case& c : {Case{LampKind::Point, 0.0}, Case{LampKind::Measured, 0.0},
-                        Case{LampKind::Rectangle, tilted}, Case{LampKind::Disk, 0.25}}) {
-    for (const double below : {-edge, edge}) {
-      Scene scene = floor_of(tests::grey(0.5)).scene;
-      Lamp lamp = lamp_of(c.kind, {0.2, 0, -c.depth_m - below}, glm::normalize(Vec3(-1, 0, 1)));
-      lamp.edge_u = 0.5 * glm::normalize(Vec3(1, 0, 1));
-      lamp.edge_v = {0.0, 0.5, 0.0};
-      lamp.radius_m = 0.25;
-      scene.lamps = {lamp};
-      const Found found = look(scene);
-      EXPECT_EQ(found.groups.lamp[0] == no_group, below > 0.0) << int(c.kind) << " " << below;
-      EXPECT_EQ(found.effects.lamps, below < 0.0);
-    }
-  }
-}
-
-// Shining upward from above the floor: a flat lamp and a spot of up to 180 degrees have no light
-// for what is behind their plane; a point lamp has no axis and shines all around.
-TEST(Idle, FlatLampsAndSpotsShineOnlyForward) {
-  for (const LampKind kind :
-       {LampKind::Point, LampKind::Spot, LampKind::Rectangle, LampKind::Disk}) {
-    for (const double height : {-1.0, 1.0}) {
-      Scene scene = floor_of(tests::grey(0.5)).scene;
-      Lamp lamp = lamp_of(kind, {0, 0, 1}, {0, 0, height});
-      lamp.beam_deg = lamp.field_deg = 180.0;
-      lamp.radius_m = 0.1;
-      lamp.edge_u = {0.1, 0, 0};
-      lamp.edge_v = {0, 0.1 * height, 0};
-      scene.lamps = {lamp};
-      EXPECT_EQ(look(scene).has(std::string(effect_of(kind_of(kind)))),
-                height > 0.0 && kind != LampKind::Point);
-    }
-  }
-}
-
-// From (0, 0, 1) the floor, 2 m wide, lies within atan(sqrt 2) = 54.7 degrees of straight down; its
-// triangles are seen within balls about their centres, (1/3, -1/3, 0) and (-1/3, 1/3, 0), of
-// radius sqrt(20)/3: 52 degrees off up to 90 more. A spot that looks along x and is 2 a wide misses
-// them for sure only where 90 - a > 64.8 + ... : found by rays, not by that bound, below.
-TEST(Idle, ASpotIsSkippedOnlyIfNoPointOfASurfaceIsInItsCone) {
-  std::size_t skipped = 0;
-  for (std::uint64_t trial = 0; trial < 400; ++trial) {
-    base::Rng random(base::Key(7, base::Stream::Test, trial));
-    tests::SceneBuilder builder;
-    const auto point = [&] { return 4.0 * Vec3(random.next(), random.next(), random.next()); };
-    const Vec3 a = point(), u = 0.3 * point(), v = 0.3 * point();
-    builder.quad(builder.material(tests::grey(0.5)), a, a + u, a + u + v, a + v);
-    Lamp lamp = lamp_of(LampKind::Spot, point(), glm::normalize(point() - Vec3(2.0)));
-    lamp.beam_deg = 1.0;
-    lamp.field_deg = 5.0 + 200.0 * random.next();
-    builder.scene.lamps = {lamp};
-    const bool off = look(builder.scene).has("spot lamps");
-    skipped += off ? 1 : 0;
-    const Vec3 normal = glm::normalize(glm::cross(u, v));
-    bool lit = false;
-    for (int k = 0; k < 200; ++k) {
-      const Vec3 p = a + random.next() * u + random.next() * v;
-      const Vec3 way = lamp.position - p;
-      const double cosine = glm::dot(-glm::normalize(way), lamp.axis);
-      lit |= glm::dot(normal, way) > 0.0 && cosine > std::cos(base::radians(lamp.field_deg) / 2);
-    }
-    EXPECT_FALSE(off && lit) << trial;
-  }
-  EXPECT_GT(skipped, 100U);  // and it does skip
-  EXPECT_LT(skipped, 390U);
-}
-
-// Half behind a spot's plane, by the last bit and by a millimetre.
-TEST(Idle, AFlatLampIsKeptWhileACameraOrItsLensMaySeeItShine) {
-  for (const double aperture : {0.0, 0.2}) {
-    for (const double over : {-1e-3, 1e-3}) {
-      Scene scene = floor_of(tests::grey(0.5)).scene;
-      Lamp lamp = lamp_of(LampKind::Disk, {0, 0, 1}, {0, 0, 1});
-      lamp.radius_m = 0.1;
-      scene.lamps = {lamp};
-      Camera camera;
-      camera.name = "A";
-      camera.position = {3, 0, 1.0 - aperture / 2 + over};
-      camera.aperture_m = aperture;
-      camera.focus_m = 1.0;
-      scene.cameras = {camera};
-      EXPECT_EQ(look(scene).has("disk lamps"), over < 0.0) << aperture << " " << over;
-      // Only the cameras of the call count.
-      scene.cameras.push_back(camera);
-      scene.cameras[1].position.z = 0.5;
-      Asked asked;
-      asked.cameras = {&scene.cameras[1]};
-      EXPECT_TRUE(look(scene, 0.02, asked).has("disk lamps"));
-    }
-  }
-}
-
-TEST(Idle, LampsAreSkippedOneByOneAndKeepTheirGroups) {
-  Scene scene = floor_of(tests::grey(0.5)).scene;
-  scene.lamps = {lamp_of(LampKind::Point, {0, 0, -1}, {0, 0, 1}),
-                 lamp_of(LampKind::Point, {0, 0, 1}, {0, 0, 1})};
-  scene.lamps[0].group = "behind";
-  const Found found = look(scene);
-  EXPECT_TRUE(found.has("point lamps"));
-  EXPECT_EQ(found.groups.names, (std::vector<std::string>{"behind", "lamp"}));
-  EXPECT_EQ(found.groups.lamp[0], no_group);
-  EXPECT_EQ(found.groups.lamp[1], 1U);
-  EXPECT_TRUE(found.effects.lamps);
 }
 
 // r / (1 - r) <= 0.001 e for the wanted error e: r = 0.001 e / (1 + 0.001 e).
