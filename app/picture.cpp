@@ -4,6 +4,7 @@
 
 #include "app/cctv.h"
 #include "app/console.h"
+#include "app/error_json.h"
 #include "app/interrupt.h"
 #include "app/provenance.h"
 #include "app/render_call.h"
@@ -182,6 +183,10 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
                               std::ref(progress));
     });
   }
+  const studies::ErrorBudget errors = times.measure("error", [&] {
+    return studies::error_budget(studio.scene(), *studio.solution_errors, studio.light.solution,
+                                 {&camera, options}, frame);
+  });
   std::optional<base::ToneMapped> tone;
   std::optional<degrade::Result> screen;
   if (!files.png.empty()) {
@@ -198,6 +203,7 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
       {studio.loaded.scene, call.scene.overrides, camera, options, studio.light.solver,
        studio.light.solved ? &studio.light.solution.report : nullptr, frame.report});
   header.whole = {options.columns, options.rows, frame.window.x, frame.window.y};
+  add_errors(header, errors);
   if (call.timings) add_times(header, times);
   times.measure("write", [&] {
     if (tone) base::write_png(files.png, frame.image.width, frame.image.height, 3, tone->rgb);
@@ -206,6 +212,7 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
   });
   Picture picture{json_of(studio, camera, frame, times), !frame.report.stopped, frame.report, {}};
   picture.times = times;
+  picture.report["error"] = error_json(errors, studio.loaded.scene.quality.error);
   if (screen) picture.report["cctv"] = cctv_json(*cctv, *screen);
   if (call.only_pixel) {
     picture.report["pixel"] = pixel_json(studio.loaded.scene, frame);
@@ -213,6 +220,7 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
   }
   if (studio.common.quiet) return picture;
   tell(studio, frame, times);
+  note("  " + error_text(errors));
   if (screen) note("  " + cctv_summary(*cctv, *screen));
   return picture;
 }

@@ -207,6 +207,13 @@ void run(RenderCall call, const Common& common) {
   const double cpu_before = base::cpu_seconds();
   const Solved light = find_light(call, common, loaded, query, times);
   Studio studio{call, common, loaded, query, light};
+  std::vector<studies::WatchedPicture> watched;
+  for (const Wanted& picture : pictures) {
+    watched.push_back({picture.camera, picture_options(call, common, loaded, *picture.camera)});
+  }
+  const studies::SecondOpinion opinion = times.measure("second opinion", [&] {
+    return studies::second_opinion(studio.scene(), light.solution, light.solver, watched);
+  });
   Json reports = Json::array();
   std::vector<Picture> taken;
   bool whole = true;
@@ -217,6 +224,7 @@ void run(RenderCall call, const Common& common) {
         const double left = call.time_limit_s - times.total();
         studio.time_limit_s = std::max(1e-3, left / static_cast<double>(pictures.size() - k));
       }
+      studio.solution_errors = &opinion.pictures[k];
       Picture picture = take_picture(studio, *pictures[k].camera, pictures[k].files, times);
       times.add({{"pictures", picture.report["seconds"]["render"].get<double>()}});
       whole = picture.whole;

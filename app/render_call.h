@@ -12,6 +12,7 @@
 #include "raytrace/render.h"
 #include "scenes/idle.h"
 #include "scenes/ray_query.h"
+#include "studies/error_budget.h"
 
 namespace earthshine::app {
 
@@ -73,7 +74,11 @@ struct Studio {
   const LoadedScene& loaded;
   const scenes::RayQuery& query;
   const Solved& light;
-  double time_limit_s = 0.0;  // for one picture; 0: none
+  [[nodiscard]] studies::StudyScene scene() const {
+    return {loaded.scene, loaded.groups, loaded.effects, query};
+  }
+  double time_limit_s = 0.0;                                // for one picture; 0: none
+  const studies::WatchedErrors* solution_errors = nullptr;  // of this picture
 };
 
 // The size, the layers and the rays of one camera's picture.

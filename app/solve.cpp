@@ -6,6 +6,7 @@
 
 #include "app/command.h"
 #include "app/console.h"
+#include "app/error_json.h"
 #include "app/memory.h"
 #include "app/solution.h"
 #include "base/error.h"
@@ -172,10 +173,15 @@ void run(const SolveCall& call, const Common& common) {
   if (!call.mesh.empty()) {
     times.measure("write GLB", [&] { write_mesh(call.mesh, solution, loaded); });
   }
-  const Json json = json_of(loaded, solution.report, times);
+  const studies::SurfaceError error = times.measure("error", [&] {
+    return studies::surface_error({loaded.scene, loaded.groups, loaded.effects, query}, solution,
+                                  options);
+  });
+  Json json = json_of(loaded, solution.report, times);
+  json["error"] = error_json(error, loaded.scene.quality.error);
   if (writes_report) base::write_text(call.output, dump(json));
   if (call.json) print(dump(json));
-  if (!call.json && !writes_report) print(text_of(json));
+  if (!call.json && !writes_report) print(text_of(json) + "\n" + error_text(error) + "\n");
 }
 
 }  // namespace

@@ -26,7 +26,8 @@ enum class Stream : std::uint32_t {
   ExactOpening,
   Refinement,
   Path,
-  RangeNoise
+  RangeNoise,
+  ErrorBudget
 };
 
 // A 64-bit mix of the key's parts (SplitMix64 finaliser, Steele et al. 2014).

@@ -45,7 +45,7 @@ struct DirectLight {
 struct DirectOptions {
   int points_per_patch = 16;  // receiver points for distant sources; 16 times more near a source
   int flux_rays = 1 << 16;    // shot from each lamp to find what escapes
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 0;
 };
 
 // Per patch the mean over factors.open, what no body covers. factors.sky_illuminance is taken for

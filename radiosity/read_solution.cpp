@@ -155,15 +155,25 @@ Solution read_solution(const std::filesystem::path& path, const SolutionOrigin& 
   if (groups != 0 && groups != origin.groups.count()) {
     file.fail(fmt::format("it has {} light groups, the scene {}", groups, origin.groups.count()));
   }
-  Reading store{file, extent("facets/s_count", 1)[0], extent("facets/tree", 1)[0],
-                extent("area", 1)[0], groups};
-  PatchLayout layout;
-  visit_layout(store, layout);
+  const auto read_patches = [&](const std::string& prefix, const char* area, Reading& store) {
+    store.facets = extent((prefix + "s_count").c_str(), 1)[0];
+    store.tree = extent((prefix + "tree").c_str(), 1)[0];
+    store.patches = extent(area, 1)[0];
+    PatchLayout layout;
+    visit_layout(store, layout, prefix, area);
+    try {
+      return rebuild_patches(origin.scene, std::move(layout));
+    } catch (const std::invalid_argument& problem) {
+      file.fail(problem.what());
+    }
+  };
+  Reading store{file, 0, 0, 0, groups};
   Solution solution;
-  try {
-    solution.patches = rebuild_patches(origin.scene, std::move(layout));
-  } catch (const std::invalid_argument& problem) {
-    file.fail(problem.what());
+  solution.patches = read_patches("facets/", "area", store);
+  solution.coarser.error = file.number_attribute("coarser_error");
+  if (solution.coarser.error > 0.0) {
+    Reading apart{file, 0, 0, 0, 0};
+    solution.coarser.patches = read_patches("coarser/", "coarser/area", apart);
   }
   solution.columns = 3 * groups;
   visit_light(store, solution);

@@ -17,6 +17,8 @@ constexpr double thinnest = 4.0;          // a cell longer than this times its w
 constexpr double undirected_share = 0.1;  // of the error, counted toward the longer side
 constexpr std::size_t growth_between_solves = 4;
 constexpr int fewest_rays = 64;
+// Of errors: from an earlier round to the last, and from one round that is kept to the next.
+constexpr double clearly_coarser = 2.0, between_kept = 0.8;
 
 std::uint32_t other_side(const Patches& patches, std::uint32_t patch) {
   const Facet& facet = patches.facets[patches.facet[patch]];
@@ -133,6 +135,7 @@ class Refinement {
       double total = 0.0;
       for (const Unevenness& u : uneven_) total += u.error;
       refined_.rounds.push_back({refined_.patches.count(), std::sqrt(total)});
+      keep();
       if (round == most_rounds || total <= options_.refine.error * options_.refine.error) break;
       if (!cut(choose(refined_.patches, uneven_, total, max_patches_))) break;
       // Worth its rays only while most of the cuts are still to come.
@@ -142,10 +145,22 @@ class Refinement {
       }
     }
     refined_.rays += variation_.rays();
+    for (Coarser& kept : kept_) {
+      if (kept.error >= clearly_coarser * refined_.rounds.back().error) {
+        refined_.coarser = std::move(kept);
+      }
+    }
     return std::move(refined_);
   }
 
  private:
+  // Now and then: few of them are ever there.
+  void keep() {
+    const double error = refined_.rounds.back().error;
+    if (!kept_.empty() && error > between_kept * kept_.back().error) return;
+    kept_.push_back({refined_.patches, error});
+  }
+
   void solve_for(const Patches& patches) {
     solution_ = solve(scene_, groups_, effects_, query_, cheap_, patches);
     refined_.rays += solution_.report.form_factor_rays + solution_.report.shadow_rays;
@@ -209,6 +224,7 @@ class Refinement {
   RelativeLight light_;
   std::vector<Unevenness> uneven_;      // per patch
   std::vector<std::uint32_t> unknown_;  // patches not looked at yet
+  std::vector<Coarser> kept_;           // by falling error
   Refined refined_;
 };
 

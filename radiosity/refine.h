@@ -14,6 +14,7 @@ namespace earthshine::radiosity {
 struct Refined {
   Patches patches;
   std::vector<RefineRound> rounds;
+  Coarser coarser;
   std::uint64_t rays = 0;  // of all rounds
 };
 

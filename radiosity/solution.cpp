@@ -156,13 +156,14 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   SolveReport& report = solution.report;
   report.seconds.insert(report.seconds.begin(), cutting.seconds.front());
   report.rounds = std::move(refined.rounds);
+  solution.coarser = std::move(refined.coarser);
   report.refinement_rays = refined.rays;
   return solution;
 }
 
 Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
                const scenes::Effects& effects, const scenes::RayQuery& query,
-               const SolveOptions& options, Patches cut) {
+               const SolveOptions& options, Patches cut, const SolveVariant& variant) {
   Solution solution;
   SolveReport& report = solution.report;
   Stopwatch watch(report);
@@ -176,7 +177,7 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   if (effects.earth_by_gather) {
     sky = [&scene](const Vec3& direction) { return scenes::earth_radiance(scene, direction); };
   }
-  FormFactorOptions rays{options.form_factor_rays, options.seed};
+  FormFactorOptions rays{options.form_factor_rays, options.seed, variant.replicate};
   rays.leave_out_covered = true;
   FormFactors factors = cast_form_factors(scene, query, patches, rays, sky);
   const std::vector<double> open_m2 = open_areas(factors.open, patches.area_m2);
@@ -188,8 +189,8 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   report.balance = balance(factors, open_m2);
   watch.lap("balance");
 
-  DirectOptions direct_options;
-  direct_options.seed = options.seed;
+  DirectOptions direct_options = variant.direct;
+  if (direct_options.seed == 0) direct_options.seed = options.seed;
   DirectLight light = direct_light(scene, groups, effects, query, patches, factors, direct_options);
   report.shadow_rays = light.shadow_rays;
   report.sources_cost = light.cost;

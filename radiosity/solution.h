@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,6 +39,13 @@ struct SolveOptions {
 struct RefineRound {
   std::size_t patches = 0;
   double error = 0.0;  // estimated for these patches, as RefineOptions::error
+};
+
+// The patches of the last round of refinement that had twice the error of the final ones or more:
+// what a coarser cut would have given.
+struct Coarser {
+  Patches patches;     // none where refinement ended too soon
+  double error = 0.0;  // estimated for them, as RefineOptions::error
 };
 
 // Where the energy of one light group went, lm per channel.
@@ -90,6 +98,7 @@ struct Solution {
   std::vector<float> soft_radiosity;  // the part of it not due to explicit sources: rho (E - E0
                                       // explicit) + M through F
   std::vector<float> direct_lx, indirect_lx;  // E0 and F B
+  Coarser coarser;                            // of a refined solution, unless it was read
   SolveReport report;
 };
 
@@ -104,10 +113,17 @@ using PatchListener = std::function<void(const Patches& patches)>;
 [[nodiscard]] Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
                              const scenes::Effects& effects, const scenes::RayQuery& query,
                              const SolveOptions& options, const PatchListener& listen = {});
+
+// In what a solve differs from the one with the same options.
+struct SolveVariant {
+  std::uint32_t replicate = 0;  // of the form factors: each number is an independent set of rays
+  DirectOptions direct = {};    // its seed 0: that of the options
+};
 // On patches that are cut already; options.patch_edge_m and options.refine are not looked at.
 [[nodiscard]] Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
                              const scenes::Effects& effects, const scenes::RayQuery& query,
-                             const SolveOptions& options, Patches patches);
+                             const SolveOptions& options, Patches patches,
+                             const SolveVariant& variant = {});
 
 // Whether there is any light to solve for. The ambient term is no source: it lights what the camera
 // sees and bounces nowhere.

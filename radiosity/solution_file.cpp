@@ -120,7 +120,13 @@ void write_solution(const std::filesystem::path& path, const Solution& solution,
   const PatchLayout layout = layout_of(solution.patches);
   Writing store{file, layout.s_count.size(), layout.tree.size(), solution.patches.count(),
                 solution.columns / 3};
-  visit_layout(store, layout);
+  visit_layout(store, layout, "facets/", "area");
+  file.attribute("coarser_error", solution.coarser.error);
+  if (solution.coarser.error > 0.0) {
+    const PatchLayout coarser = layout_of(solution.coarser.patches);
+    Writing apart{file, coarser.s_count.size(), coarser.tree.size(), coarser.area_m2.size(), 0};
+    visit_layout(apart, coarser, "coarser/", "coarser/area");
+  }
   visit_light(store, solution);
   visit_report(store, solution.report);
   base::write_text(path, file.finish());

@@ -54,6 +54,7 @@ struct RenderReport {
   // RMS standard error of a pixel's luminance over the mean luminance, both without the pixels that
   // show a source itself.
   double relative_noise = 0.0;
+  double gather_noise = 0.0;    // the part of it that gather points have
   double camera_samples = 0.0;  // per pixel, mean
   int most_camera_samples = 0;
   int gather_rays = 0;           // per pixel
@@ -73,7 +74,11 @@ struct RenderReport {
 struct Frame {
   base::Image image;
   Window window;  // which part of the picture the image is
+  // Per pixel of the window: of its luminance, as its samples and gather points state it,
+  // (cd/m^2)^2; shows_source where a sample saw a source itself. Not of traced paths.
+  std::vector<float> squared_error;
   RenderReport report;
 };
+inline constexpr float shows_source = -1.0F;
 
 }  // namespace earthshine::raytrace

@@ -85,10 +85,14 @@ double PixelSums::deviation(std::size_t pixel, double bright) const {
   return std::sqrt(sample_variance(pixel) * n) * (mean > bright ? bright / mean : 1.0);
 }
 
-double PixelSums::squared_error(std::size_t pixel) const {
+double PixelSums::squared_field_error(std::size_t pixel) const {
   if (samples[pixel] == 0) return 0.0;
   const double field = field_error[pixel] / samples[pixel];
-  return sample_variance(pixel) + field * field;
+  return field * field;
+}
+
+double PixelSums::squared_error(std::size_t pixel) const {
+  return sample_variance(pixel) + squared_field_error(pixel);
 }
 
 void shade_samples(const ShadingScene& shared, const CameraModel& camera,

@@ -28,6 +28,7 @@ struct PixelSums {
   // The same with what the gather points' own errors add. All samples of a pixel share a point,
   // hence the errors of its samples do not average out.
   [[nodiscard]] double squared_error(std::size_t pixel) const;
+  [[nodiscard]] double squared_field_error(std::size_t pixel) const;
 };
 
 // Brings every pixel up to wanted[pixel] samples. Sample k of a pixel is the same whatever came

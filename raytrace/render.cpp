@@ -6,10 +6,10 @@
 
 #include "base/parallel.h"
 #include "raytrace/cryptomatte.h"
-#include "raytrace/distributed_area.h"
 #include "raytrace/first_hit.h"
 #include "raytrace/layers.h"
 #include "raytrace/passes.h"
+#include "raytrace/shading_setup.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -48,8 +48,10 @@ void fill_layers(const PixelSums& sums, const Layout& layout, std::size_t image_
   }
 }
 
-void summarise(const PixelSums& sums, const Window& window, RenderReport& report) {
-  double error = 0.0, mean = 0.0, pixels = 0.0, samples = 0.0, finished = 0.0;
+void summarise(const PixelSums& sums, const Window& window, Frame& frame) {
+  RenderReport& report = frame.report;
+  frame.squared_error.assign(window.pixel_count(), shows_source);
+  double error = 0.0, field_error = 0.0, mean = 0.0, pixels = 0.0, samples = 0.0, finished = 0.0;
   for (int y = window.y; y < window.y + window.rows; ++y) {
     for (int x = window.x; x < window.x + window.columns; ++x) {
       const std::size_t p = sums.window.index(x, y);
@@ -58,7 +60,9 @@ void summarise(const PixelSums& sums, const Window& window, RenderReport& report
           std::max(report.most_camera_samples, static_cast<int>(sums.samples[p]));
       if (static_cast<int>(sums.samples[p]) >= report.least_camera_samples) finished += 1.0;
       if (sums.source_samples[p] > 0) continue;
+      frame.squared_error[window.index(x, y)] = static_cast<float>(sums.squared_error(p));
       error += sums.squared_error(p);
+      field_error += sums.squared_field_error(p);
       mean += sums.luminance[p] / sums.samples[p];
       pixels += 1.0;
     }
@@ -66,7 +70,9 @@ void summarise(const PixelSums& sums, const Window& window, RenderReport& report
   const auto all = static_cast<double>(window.pixel_count());
   report.camera_samples = samples / all;
   report.finished_share = finished / all;
-  report.relative_noise = mean > 0.0 ? std::sqrt(error / pixels) / (mean / pixels) : 0.0;
+  if (mean <= 0.0) return;
+  report.relative_noise = std::sqrt(error / pixels) / (mean / pixels);
+  report.gather_noise = std::sqrt(field_error / pixels) / (mean / pixels);
 }
 
 }  // namespace
@@ -87,41 +93,10 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
              const RenderOptions& options, const Progress& progress) {
   const auto start = Clock::now();
   Frame frame;
-  const CameraModel model = make_camera_model(camera, options.columns, options.rows);
-  const bool reads_solution = options.indirect == Indirect::Radiosity && solution.columns > 0;
-  const RadianceTable all(solution, reads_solution ? solution.radiosity : std::vector<float>{},
-                          options.per_light);
-  const bool recursive = effects.mirror || effects.refraction || effects.phong;
-  const RadianceTable soft(solution,
-                           reads_solution && (recursive || options.shared.on)
-                               ? solution.soft_radiosity
-                               : std::vector<float>{},
-                           options.per_light);
-  const LightSampler lights(scene, groups, effects, options.indirect, options.distributed_lights,
-                            options.per_light, earth_area(scene, options.distributed_over));
-  const BrightPatches bright = reads_solution ? BrightPatches(solution) : BrightPatches();
-  const std::size_t layers = options.per_light ? std::max<std::size_t>(1, groups.count()) : 1;
-  const std::size_t earth_layer =
-      options.per_light && groups.earth != scenes::no_group ? groups.earth : 0;
-  const IncomingLight incoming(scene, query, effects, all, bright, layers, earth_layer,
-                               effects.mirror || effects.refraction);
-
-  ShadingScene shared{scene, groups, effects, query, lights, soft, incoming};
-  shared.indirect = options.indirect;
-  shared.layers = layers;
-  for (std::size_t g = 0; g < groups.count(); ++g) {
-    shared.layer.push_back(options.per_light ? g : 0);
-  }
-  shared.gathers =
-      options.indirect != Indirect::Distributed && (reads_solution || effects.earth_by_gather);
-  shared.sampled_emitter.assign(scene.materials.size(), true);
-  if (options.indirect == Indirect::Radiosity) {
-    shared.sampled_emitter = radiosity::emitter_is_explicit(scene);
-  }
-  shared.seed = options.seed;
-  shared.camera_position = model.position;
-  shared.filter = PixelFilter(camera);
-
+  ShadingSetup setup(scene, groups, effects, query, solution, camera, options);
+  ShadingScene& shared = setup.shared();
+  const CameraModel& model = setup.camera();
+  const std::size_t layers = shared.layers;
   const Window window = window_of(options);
   frame.window = window;
   frame.image = base::make_rgb_image(window.columns, window.rows);
@@ -135,7 +110,7 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
   frame.report.rays.layers += fill_cryptomatte(
       scene, query, model, {options.seed, window, sums.window, sums.samples, shared.filter},
       frame.image);
-  summarise(sums, window, frame.report);
+  summarise(sums, window, frame);
   frame.report.stopped = options.stop && options.stop();
   frame.report.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return frame;

@@ -50,7 +50,7 @@ void PixelShader::begin_pixel(std::uint64_t pixel, std::size_t first, std::size_
 
 void PixelShader::add_sample(std::size_t sample, const Ray& ray, const scenes::Hit& hit) {
   sample_ = sample;
-  rng_ = base::Rng(base::Key(shared_.seed, base::Stream::Roulette, pixel_).with(sample));
+  rng_ = base::Rng(base::Key(shared_.lamp_seed, base::Stream::Roulette, pixel_).with(sample));
   ++rays_.camera;
   shade(ray, hit, Rgb(1.0), 0, Seen::ByCamera);
 }
@@ -145,7 +145,7 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
   const Vec3 origin = surface.position + surface.normal * offset;
   const Vec3 mirrored =
       2.0 * glm::dot(surface.view, surface.normal) * surface.normal - surface.view;
-  const base::Key light_key(shared_.seed, base::Stream::LightSample, pixel_);
+  const base::Key light_key(shared_.lamp_seed, base::Stream::LightSample, pixel_);
   const auto light_point = [&](std::size_t k) {
     return base::SobolOwen4(light_key.with(k)).point2(static_cast<std::uint32_t>(sample_));
   };

@@ -38,9 +38,10 @@ struct ShadingScene {
   DiffuseSource diffuse = DiffuseSource::Gather;
   const GatherField* field = nullptr;  // with DiffuseSource::Field
   Vec3 camera_position{0.0};
-  PixelFilter filter{scenes::Camera{}};  // of the camera samples
-  int gather_rays = 16;                  // per camera sample
-  std::uint64_t seed = 1;
+  PixelFilter filter{scenes::Camera{}};    // of the camera samples
+  int gather_rays = 16;                    // per camera sample
+  std::uint64_t seed = 1;                  // of camera and gather rays
+  std::uint64_t lamp_seed = 1;             // of shadow and lobe rays
   std::vector<bool> sampled_emitter = {};  // per material: shadow rays carry its light
 };
 

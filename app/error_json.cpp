@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/error_json.h"
+
+#include <fmt/format.h>
+
+namespace earthshine::app {
+namespace {
+
+using studies::Doubt;
+
+struct NamedPart {
+  const char* name;
+  const char* words;
+  Doubt part;
+};
+using Parts = std::vector<NamedPart>;
+
+Parts parts_of(const studies::ErrorParts& parts) {
+  return {{"form_factor_noise", "form factors", parts.form_factor_noise},
+          {"patch_size", "patches", parts.patch_size},
+          {"solver_residual", "solver", parts.solver_residual},
+          {"gather_noise", "gather", parts.gather_noise},
+          {"lamp_sampling", "lamps", parts.lamp_sampling},
+          {"camera_samples", "camera samples", parts.camera_samples}};
+}
+Parts parts_of(const studies::SolutionError& parts) {
+  return {{"form_factor_noise", "form factors", parts.form_factors},
+          {"patch_size", "patches", parts.patches},
+          {"solver_residual", "solver", parts.solver},
+          {"lamp_sampling", "lamps", parts.lamps}};
+}
+
+Json json_of(const Doubt& doubt) {
+  return {{"estimate", doubt.estimate}, {"bound_95", doubt.bound_95}};
+}
+
+// Null where nothing is seen that could be wrong.
+Json json_of(const Doubt& doubt, bool known) {
+  return known ? json_of(doubt) : Json{{"estimate", nullptr}, {"bound_95", nullptr}};
+}
+
+Json json_of(const studies::TargetError& target) {
+  Json json = json_of(target.error, target.luminance > 0.0);
+  json["name"] = target.name;
+  json["pixels"] = target.pixels;
+  json["luminance_cd_m2"] = target.pixels > 0 ? Json(target.luminance) : Json();
+  return json;
+}
+
+Json json_of(const Doubt& total, bool known, const Parts& parts, std::optional<double> wanted,
+             const std::vector<std::string>& not_captured) {
+  Json json = json_of(total, known);
+  json["wanted"] = wanted ? Json(*wanted) : Json();
+  json["parts"] = Json::object();
+  for (const NamedPart& part : parts) json["parts"][part.name] = json_of(part.part, known);
+  json["not_captured"] = not_captured;
+  return json;
+}
+
+std::string text_of(const Doubt& total, bool known, const Parts& parts,
+                    const std::vector<std::string>& not_captured) {
+  std::string text = "no error can be told: nothing lit is seen";
+  if (known) {
+    text = fmt::format("error {:.2g} %, 95 % sure below {:.2g} %:", 100.0 * total.estimate,
+                       100.0 * total.bound_95);
+    for (const NamedPart& part : parts) {
+      const double percent = 100.0 * part.part.estimate;
+      if (percent >= 0.005) text += fmt::format(" {} {:.2g},", part.words, percent);
+    }
+    text.pop_back();
+  }
+  for (const std::string& missing : not_captured) text += "\n  not in it: " + missing;
+  return text;
+}
+
+}  // namespace
+
+Json error_json(const studies::ErrorBudget& budget, std::optional<double> wanted) {
+  Json json = json_of(budget.parts.total(), budget.pixels > 0, parts_of(budget.parts), wanted,
+                      budget.not_captured);
+  json["targets"] = Json::array();
+  for (const auto& target : budget.targets) json["targets"].push_back(json_of(target));
+  return json;
+}
+
+Json error_json(const studies::SurfaceError& error, std::optional<double> wanted) {
+  return json_of(error.parts.total(), error.known, parts_of(error.parts), wanted,
+                 error.not_captured);
+}
+
+void add_errors(base::ExrHeader& header, const studies::ErrorBudget& budget) {
+  const auto number = [&](const std::string& name, double value) {
+    header.numbers.emplace_back("earthshine:error." + name, static_cast<float>(value));
+  };
+  if (budget.pixels > 0) {
+    const Doubt total = budget.parts.total();
+    number("estimate", total.estimate);
+    number("bound_95", total.bound_95);
+    for (const NamedPart& part : parts_of(budget.parts)) number(part.name, part.part.estimate);
+  }
+  header.text.emplace_back("earthshine:error.not_captured",
+                           fmt::format("{}", fmt::join(budget.not_captured, "; ")));
+}
+
+std::string error_text(const studies::ErrorBudget& budget) {
+  return text_of(budget.parts.total(), budget.pixels > 0, parts_of(budget.parts),
+                 budget.not_captured);
+}
+
+std::string error_text(const studies::SurfaceError& error) {
+  return text_of(error.parts.total(), error.known, parts_of(error.parts), error.not_captured);
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/solution_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace earthshine::studies {
+namespace {
+
+std::vector<double> taken(const std::vector<double>& values,
+                          const std::vector<std::uint32_t>& which) {
+  std::vector<double> some;
+  some.reserve(which.size());
+  for (const std::uint32_t i : which) some.push_back(values[i]);
+  return some;
+}
+
+std::vector<std::vector<double>> taken(const std::vector<std::vector<double>>& tries,
+                                       const std::vector<std::uint32_t>& which) {
+  std::vector<std::vector<double>> some;
+  for (const auto& values : tries) some.push_back(taken(values, which));
+  return some;
+}
+
+// Mean of (a - b)(a - c).
+double mean_product(const std::vector<double>& a, const std::vector<double>& b,
+                    const std::vector<double>& c) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - c[i]);
+  return sum / static_cast<double>(a.size());
+}
+
+// Of the difference between two cuts, what the solution's own is still off by.
+double patch_share(bool other_is_finer, double r, Reading reading, bool at_most) {
+  if (reading == Reading::Constant) return (other_is_finer ? 1.0 : r) / std::sqrt(1.0 - r * r);
+  const double left = at_most ? r : r * r;
+  return (other_is_finer ? 1.0 : left) / (1.0 - left);
+}
+
+// Rays that lead through a small opening may be found by none of the few-ray solutions, which then
+// agree with each other and not with the solution: the larger of the two variances counts.
+Spread form_factor_spread(const std::vector<double>& own,
+                          const std::vector<std::vector<double>>& few, double share) {
+  Spread spread = spread_of(few);
+  const auto tries = static_cast<double>(few.size());
+  std::vector<double> mean(own.size(), 0.0);
+  for (const auto& one : few) {
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += one[i] / tries;
+  }
+  // E (own - mean)^2 = variance (share + 1 / tries)
+  const double apart = mean_product(own, mean, mean) / (share + 1.0 / tries);
+  if (apart > spread.variance) spread.variance = apart;
+  return spread;
+}
+
+}  // namespace
+
+void Looks::add(radiosity::Look look, std::vector<double> values) {
+  switch (look) {
+    case radiosity::Look::FewRays:
+      few_rays.push_back(std::move(values));
+      break;
+    case radiosity::Look::OtherDirect:
+      other_direct.push_back(std::move(values));
+      break;
+    case radiosity::Look::OtherPatches:
+      other_patches.push_back(std::move(values));
+      break;
+  }
+}
+
+Looks some_of(const Looks& looks, const std::vector<std::uint32_t>& which) {
+  return {taken(looks.own, which), taken(looks.few_rays, which), taken(looks.other_direct, which),
+          taken(looks.other_patches, which)};
+}
+
+SolutionError solution_error(const Looks& looks, const radiosity::SecondLooks& made,
+                             double solver_error, const Measure& measure) {
+  SolutionError error;
+  if (looks.own.empty() || measure.scale <= 0.0) return error;
+  error.solver = {solver_error, solver_error};
+
+  const Spread lamps = spread_of(looks.other_direct);
+  error.lamps = doubt_of(lamps, looks.other_direct.size(), made.point_share, measure.scale);
+  Spread chance = form_factor_spread(looks.own, looks.few_rays, made.ray_share);
+  chance.variance = std::max(0.0, chance.variance - lamps.variance);
+  error.form_factors = doubt_of(chance, looks.few_rays.size(), made.ray_share, measure.scale);
+
+  const auto& others = looks.other_patches;
+  const double own_noise = chance.variance * made.ray_share + lamps.variance * made.point_share;
+  const double apart =
+      std::max(0.0, mean_product(looks.own, others.front(), others.back()) - own_noise);
+  const Spread noise = spread_of(others);
+  const double above = 1.645 * noise.variance / std::sqrt(noise.modes);
+  error.patches = {patch_share(made.finer, made.error_ratio, measure.reading, false) *
+                       std::sqrt(apart) / measure.scale,
+                   patch_share(made.finer, made.error_ratio, measure.reading, true) *
+                       std::sqrt(apart + above) / measure.scale};
+  return error;
+}
+
+PictureWatch::PictureWatch(const StudyScene& scene, const radiosity::Solution& solution,
+                           const scenes::Camera& camera, const raytrace::RenderOptions& options,
+                           std::vector<std::uint32_t> pixels)
+    : scene_(scene),
+      solution_(solution),
+      camera_(camera),
+      options_(options),
+      pixels_(std::move(pixels)) {
+  looks_.own = look_at(solution);
+}
+
+std::vector<double> PictureWatch::look_at(const radiosity::Solution& solution) {
+  raytrace::Probed probed = raytrace::probe(
+      scene_.scene, scene_.groups, scene_.effects, scene_.query, solution, solution_, camera_,
+      options_, pixels_, {.seed = options_.seed, .lamp_seed = options_.seed});
+  rays_ += probed.rays.total();
+  return std::move(probed.luminance);
+}
+
+void PictureWatch::add(radiosity::Look look, const radiosity::Solution& other) {
+  looks_.add(look, look_at(other));
+}
+
+}  // namespace earthshine::studies

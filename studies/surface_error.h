@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// The error of a radiosity solution over the surfaces themselves.
+#pragma once
+
+#include "studies/solution_error.h"
+
+namespace earthshine::studies {
+
+struct SurfaceError {
+  // Root mean square over all area of the difference between the radiosity (luminance, all light
+  // together) of the patch that holds a point and the point's own, relative to the root mean square
+  // radiosity.
+  SolutionError parts;
+  bool known = false;  // false where nothing is lit
+  std::vector<std::string> not_captured;
+  std::uint64_t rays = 0;
+  double seconds = 0.0;
+};
+
+// Solves again (radiosity/second_looks.h) and compares at some thousand points.
+[[nodiscard]] SurfaceError surface_error(const StudyScene& scene,
+                                         const radiosity::Solution& solution,
+                                         const radiosity::SolveOptions& solver);
+
+}  // namespace earthshine::studies
