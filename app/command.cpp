@@ -118,6 +118,45 @@ void add_number(CLI::App& command, const std::string& flags, std::optional<doubl
   command.add_option_function<std::string>(flags, read, help)->type_name("X");
 }
 
+void add_memory_option(CLI::App& command, std::uint64_t& bytes) {
+  command
+      .add_option_function<std::string>(
+          "--max-memory",
+          [&bytes](const std::string& text) {
+            double size = 0.0;
+            const char* end = text.data() + text.size();
+            const auto read = std::from_chars(text.data(), end, size);
+            const std::string unit(read.ptr, end);
+            const double scale = unit == "MiB" ? 0x1p20 : unit == "GiB" ? 0x1p30 : 0.0;
+            if (read.ec != std::errc() || scale == 0.0 || !(size * scale >= 0x1p20) ||
+                size * scale > 0x1p50) {
+              throw CLI::ValidationError(
+                  "--max-memory",
+                  "\"" + text + "\" is not a size of 1MiB or more, such as 500MiB or 2GiB");
+            }
+            bytes = static_cast<std::uint64_t>(size * scale);
+          },
+          "Memory that the work may take (default: what is free)")
+      ->type_name("SIZE");
+}
+
+void add_time_limit(CLI::App& command, double& seconds, const std::string& help) {
+  command
+      .add_option_function<std::string>(
+          "--time-limit",
+          [&seconds](const std::string& text) {
+            const char* end = text.data() + text.size();
+            const auto read = std::from_chars(text.data(), end, seconds);
+            if (read.ec == std::errc() && read.ptr == end && seconds > 0.0 && seconds <= 1e7) {
+              return;
+            }
+            throw CLI::ValidationError("--time-limit",
+                                       "\"" + text + "\" is not a number of seconds above 0");
+          },
+          help)
+      ->type_name("SECONDS");
+}
+
 CLI::Validator not_empty() {
   return {[](const std::string& word) { return word.empty() ? "is an empty word" : ""; }, ""};
 }
@@ -178,6 +217,15 @@ double StageTimes::total() const {
   double sum = 0.0;
   for (const Stage& stage : stages_) sum += stage.second;
   return sum;
+}
+
+void StageTimes::add(const std::string& name, double seconds) {
+  for (Stage& stage : stages_) {
+    if (stage.first != name) continue;
+    stage.second += seconds;
+    return;
+  }
+  stages_.emplace_back(name, seconds);
 }
 
 Json StageTimes::json() const {

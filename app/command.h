@@ -17,6 +17,7 @@
 #include "radiosity/solution.h"
 #include "scenes/effects.h"
 #include "scenes/light_groups.h"
+#include "scenes/quality.h"
 #include "scenes/scene.h"
 
 namespace earthshine::app {
@@ -28,6 +29,7 @@ struct Common {
   int threads = 0;  // 0: all
   std::uint64_t seed = 1;
   bool quiet = false;
+  std::uint64_t max_memory_bytes = 0;  // 0: what is free
 };
 
 // One file per command defines it: its options, and what it does once they are read.
@@ -77,6 +79,12 @@ void add_whole_number(CLI::App& command, const std::string& flags, std::uint64_t
 void add_number(CLI::App& command, const std::string& flags, std::optional<double>& value,
                 double least, double most, const std::string& help);
 
+// --max-memory SIZE, with a unit: 500MiB, 2GiB.
+void add_memory_option(CLI::App& command, std::uint64_t& bytes);
+
+// --time-limit SECONDS above 0.
+void add_time_limit(CLI::App& command, double& seconds, const std::string& help);
+
 // Refuses an empty word, such as that of a variable that the shell does not know.
 [[nodiscard]] CLI::Validator not_empty();
 
@@ -101,6 +109,8 @@ void note_backs(const radiosity::SolveReport& report);
 // The scene's accuracy knobs as the solver wants them.
 [[nodiscard]] radiosity::SolveOptions solve_options(const scenes::Scene& scene,
                                                     const Common& common);
+[[nodiscard]] radiosity::SolveOptions solve_options(const scenes::QualityKnobs& knobs,
+                                                    const Common& common);
 
 // Throws base::Error before any work is done if one of the files (empty names are left out) cannot
 // be written or two are the same.
@@ -118,19 +128,21 @@ class StageTimes {
       std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
       ~Stop() {
         const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;
-        times.stages_.emplace_back(stage, gone.count());
+        times.add(stage, gone.count());
       }
     } stop{*this, stage};
     return work();
   }
   void add(const std::vector<Stage>& stages) {
-    stages_.insert(stages_.end(), stages.begin(), stages.end());
+    for (const auto& [name, seconds] : stages) add(name, seconds);
   }
   [[nodiscard]] const std::vector<Stage>& stages() const { return stages_; }
   [[nodiscard]] double total() const;
   [[nodiscard]] Json json() const;
 
  private:
+  // What is done more than once adds up.
+  void add(const std::string& name, double seconds);
   std::vector<Stage> stages_;
 };
 

@@ -73,22 +73,80 @@ std::string text_of(const Doubt& total, bool known, const Parts& parts,
   return text;
 }
 
+const char* words_of(studies::Limit limit) {
+  switch (limit) {
+    case studies::Limit::None:
+      return "";
+    case studies::Limit::Time:
+      return "--time-limit came first";
+    case studies::Limit::Memory:
+      return "memory came first (--max-memory, or what is free)";
+    case studies::Limit::Settings:
+      return "the settings that are given, or the scene's own faces, allow no better";
+    case studies::Limit::Steps:
+      return "no end in sight after several tries";
+  }
+  return "";
+}
+
+void add_steps(Json& json, studies::Limit limit, const std::vector<studies::Step>& steps) {
+  json["limit"] = limit == studies::Limit::None ? Json() : Json(studies::limit_name(limit));
+  json["steps"] = Json::array();
+  for (const studies::Step& step : steps) {
+    Json one = {{"stage", step.stage}};
+    if (step.patches > 0) {
+      one["patches"] = step.patches;
+      one["form_factor_rays"] = step.form_factor_rays;
+    }
+    if (step.gather_rays > 0) one["gather_rays"] = step.gather_rays;
+    one["asked"] = step.asked;
+    one["estimate"] = step.estimate;
+    json["steps"].push_back(one);
+  }
+}
+
+// What was chosen to reach the error, or why it is not reached.
+std::string choice_text(studies::Limit limit, const std::vector<studies::Step>& steps,
+                        std::optional<double> wanted) {
+  if (!wanted || steps.empty()) return "";
+  std::string text;
+  for (const studies::Step& step : steps) {
+    text += fmt::format("\n  {}:", step.stage);
+    if (step.patches > 0) {
+      text += fmt::format(" {} patches, {} rays each,", step.patches, step.form_factor_rays);
+    }
+    if (step.gather_rays > 0) text += fmt::format(" {} gather rays a pixel,", step.gather_rays);
+    text += fmt::format(" leaves {:.2g} %", 100.0 * step.estimate);
+  }
+  if (limit != studies::Limit::None) {
+    text +=
+        fmt::format("\n  the wanted {:.2g} % is not reached: {}", 100.0 * *wanted, words_of(limit));
+  }
+  return text;
+}
+
 }  // namespace
 
-Json error_json(const studies::ErrorBudget& budget, std::optional<double> wanted) {
+Json error_json(const Drawn& drawn, std::optional<double> wanted) {
+  const studies::ErrorBudget& budget = drawn.errors;
   Json json = json_of(budget.parts.total(), budget.pixels > 0, parts_of(budget.parts), wanted,
                       budget.not_captured);
+  add_steps(json, drawn.limit, drawn.steps);
   json["targets"] = Json::array();
   for (const auto& target : budget.targets) json["targets"].push_back(json_of(target));
   return json;
 }
 
-Json error_json(const studies::SurfaceError& error, std::optional<double> wanted) {
-  return json_of(error.parts.total(), error.known, parts_of(error.parts), wanted,
-                 error.not_captured);
+Json error_json(const Solved& light, std::optional<double> wanted) {
+  const studies::SurfaceError& error = light.surface;
+  Json json =
+      json_of(error.parts.total(), error.known, parts_of(error.parts), wanted, error.not_captured);
+  add_steps(json, light.limit, light.steps);
+  return json;
 }
 
-void add_errors(base::ExrHeader& header, const studies::ErrorBudget& budget) {
+void add_errors(base::ExrHeader& header, const Drawn& drawn) {
+  const studies::ErrorBudget& budget = drawn.errors;
   const auto number = [&](const std::string& name, double value) {
     header.numbers.emplace_back("earthshine:error." + name, static_cast<float>(value));
   };
@@ -100,15 +158,22 @@ void add_errors(base::ExrHeader& header, const studies::ErrorBudget& budget) {
   }
   header.text.emplace_back("earthshine:error.not_captured",
                            fmt::format("{}", fmt::join(budget.not_captured, "; ")));
+  if (drawn.limit != studies::Limit::None) {
+    header.text.emplace_back("earthshine:error.limit", studies::limit_name(drawn.limit));
+  }
 }
 
-std::string error_text(const studies::ErrorBudget& budget) {
+std::string error_text(const Drawn& drawn, std::optional<double> wanted) {
+  const studies::ErrorBudget& budget = drawn.errors;
   return text_of(budget.parts.total(), budget.pixels > 0, parts_of(budget.parts),
-                 budget.not_captured);
+                 budget.not_captured) +
+         choice_text(drawn.limit, drawn.steps, wanted);
 }
 
-std::string error_text(const studies::SurfaceError& error) {
-  return text_of(error.parts.total(), error.known, parts_of(error.parts), error.not_captured);
+std::string error_text(const Solved& light, std::optional<double> wanted) {
+  const studies::SurfaceError& error = light.surface;
+  return text_of(error.parts.total(), error.known, parts_of(error.parts), error.not_captured) +
+         choice_text(light.limit, light.steps, wanted);
 }
 
 }  // namespace earthshine::app

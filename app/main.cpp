@@ -12,6 +12,7 @@
 #include "app/command.h"
 #include "app/console.h"
 #include "base/error.h"
+#include "base/free_memory.h"
 #include "base/output_file.h"
 #include "base/parallel.h"
 
@@ -26,6 +27,7 @@ void add_common_options(CLI::App& parser, Common& common, std::uint64_t& threads
   add_whole_number(parser, "-j,--threads", threads, 0, most_threads, "Threads; 0 means all cores");
   add_whole_number(parser, "--seed", common.seed, 0, ~std::uint64_t{0},
                    "Seed of the random numbers (default 1)");
+  add_memory_option(parser, common.max_memory_bytes);
   parser.add_flag("-q,--quiet", common.quiet, "No progress, no notes on standard error");
 }
 
@@ -115,6 +117,7 @@ int run(int argc, char** argv) {
   }
   common.threads = static_cast<int>(threads);
   const base::ThreadLimit limit(common.threads);
+  const base::MemoryLimit memory(common.max_memory_bytes);
   for (const Command& command : commands) {
     if (command.parser->parsed() && command.run) command.run(common);
   }

@@ -31,7 +31,9 @@ void refuse_too_much(const LoadedScene& loaded, const scenes::RayQuery& query,
   }
   if (need.total() <= free) return;
   throw base::Error(base::Blame::Work, loaded.scene.path.string(),
-                    "needs " + memory_text(memory_json(need)), size_text(free / mib) + " are free",
+                    "needs " + memory_text(memory_json(need)),
+                    size_text(free / mib) +
+                        (base::memory_is_limited() ? " are allowed by --max-memory" : " are free"),
                     studies::memory_remedy(need));
 }
 
@@ -78,6 +80,16 @@ void check_patch_memory(const LoadedScene& loaded, const scenes::RayQuery& query
       studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
   studies::set_patches(sizes, patches, solver);
   refuse_too_much(loaded, query, solver, sizes);
+}
+
+bool patches_fit(const LoadedScene& loaded, const radiosity::SolveOptions& solver,
+                 std::size_t patches) {
+  const auto free_bytes = base::free_memory_bytes();
+  if (!free_bytes) return true;
+  studies::MemoryCase sizes =
+      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
+  studies::set_patches(sizes, patches, solver);
+  return studies::memory_needed(sizes).total() <= static_cast<double>(*free_bytes);
 }
 
 void check_row_memory(const LoadedScene& loaded, const scenes::RayQuery& query, double patch_edge_m,

@@ -4,6 +4,7 @@
 
 #include "app/cctv.h"
 #include "app/console.h"
+#include "app/draw.h"
 #include "app/error_json.h"
 #include "app/interrupt.h"
 #include "app/provenance.h"
@@ -11,7 +12,6 @@
 #include "base/exr_file.h"
 #include "base/png_file.h"
 #include "base/tone.h"
-#include "raytrace/path_tracer.h"
 #include "scenes/quality.h"
 
 namespace earthshine::app {
@@ -163,30 +163,11 @@ raytrace::RenderOptions picture_options(const RenderCall& call, const Common& co
 Picture take_picture(const Studio& studio, const scenes::Camera& camera, const PictureFiles& files,
                      StageTimes times) {
   const RenderCall& call = studio.call;
-  raytrace::RenderOptions options = picture_options(call, studio.common, studio.loaded, camera);
-  options.time_limit_s = studio.time_limit_s;
   std::optional<CctvSetup> cctv;
   if (!files.cctv.empty()) cctv = cctv_of_camera(studio.loaded.scene, camera, studio.common);
-  raytrace::Frame frame;
-  {
-    Progress progress(fmt::format("render {}", camera.name), studio.common.quiet);
-    frame = times.measure("render", [&] {
-      if (call.indirect == raytrace::Indirect::Paths) {
-        return raytrace::trace_paths(
-            studio.loaded.scene, studio.loaded.groups, studio.loaded.effects, studio.query, camera,
-            {options.columns, options.rows, options.gather_rays, options.per_light,
-             raytrace::PathSet::All, options.seed, options.stop},
-            std::ref(progress));
-      }
-      return raytrace::render(studio.loaded.scene, studio.loaded.groups, studio.loaded.effects,
-                              studio.query, studio.light.solution, camera, options,
-                              std::ref(progress));
-    });
-  }
-  const studies::ErrorBudget errors = times.measure("error", [&] {
-    return studies::error_budget(studio.scene(), *studio.solution_errors, studio.light.solution,
-                                 {&camera, options}, frame);
-  });
+  const Drawn drawn = draw_picture(studio, camera, times);
+  const raytrace::Frame& frame = drawn.frame;
+  const raytrace::RenderOptions& options = drawn.options;
   std::optional<base::ToneMapped> tone;
   std::optional<degrade::Result> screen;
   if (!files.png.empty()) {
@@ -203,7 +184,7 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
       {studio.loaded.scene, call.scene.overrides, camera, options, studio.light.solver,
        studio.light.solved ? &studio.light.solution.report : nullptr, frame.report});
   header.whole = {options.columns, options.rows, frame.window.x, frame.window.y};
-  add_errors(header, errors);
+  add_errors(header, drawn);
   if (call.timings) add_times(header, times);
   times.measure("write", [&] {
     if (tone) base::write_png(files.png, frame.image.width, frame.image.height, 3, tone->rgb);
@@ -212,7 +193,7 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
   });
   Picture picture{json_of(studio, camera, frame, times), !frame.report.stopped, frame.report, {}};
   picture.times = times;
-  picture.report["error"] = error_json(errors, studio.loaded.scene.quality.error);
+  picture.report["error"] = error_json(drawn, studio.loaded.scene.quality.error);
   if (screen) picture.report["cctv"] = cctv_json(*cctv, *screen);
   if (call.only_pixel) {
     picture.report["pixel"] = pixel_json(studio.loaded.scene, frame);
@@ -220,7 +201,7 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
   }
   if (studio.common.quiet) return picture;
   tell(studio, frame, times);
-  note("  " + error_text(errors));
+  note("  " + error_text(drawn, studio.loaded.scene.quality.error));
   if (screen) note("  " + cctv_summary(*cctv, *screen));
   return picture;
 }

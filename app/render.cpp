@@ -11,6 +11,7 @@
 #include "app/console.h"
 #include "app/effect_table.h"
 #include "app/interrupt.h"
+#include "app/light.h"
 #include "app/memory.h"
 #include "app/provenance.h"
 #include "app/range.h"
@@ -120,49 +121,6 @@ std::vector<const scenes::Camera*> cameras_of(const std::vector<Wanted>& picture
   return cameras;
 }
 
-// With a time limit and no word on accuracy the solve gets about a third of the time: a coarse one
-// tells how fast the machine and the scene are. Cost grows about with error^-2.5 (patches times
-// rays, docs/validation.md).
-Solved solve_within(const LoadedScene& loaded, const scenes::RayQuery& query, const Common& common,
-                    double seconds, StageTimes& times) {
-  constexpr double coarse = 0.2, fine = 0.005, share = 0.3, exponent = 2.5;
-  LoadedScene quick = loaded;
-  quick.scene.quality.error = coarse;
-  const double before = times.total();
-  Solved light{{}, solve_options(quick.scene, common), true};
-  light.solution = solve_or_read(quick, query, light.solver, "", times);
-  const double taken = std::max(1e-3, times.total() - before);
-  const double error = coarse * std::pow(taken / (share * seconds), 1.0 / exponent);
-  if (error > 0.6 * coarse) return light;
-  quick.scene.quality.error = std::max(fine, error);
-  light.solver = solve_options(quick.scene, common);
-  light.solution = solve_or_read(quick, query, light.solver, "", times);
-  return light;
-}
-
-bool says_how_exact(const scenes::Quality& quality) {
-  return quality.error || quality.patch_edge_m || quality.max_patches || quality.form_factor_rays;
-}
-
-Solved find_light(const RenderCall& call, const Common& common, const LoadedScene& loaded,
-                  const scenes::RayQuery& query, StageTimes& times) {
-  Solved light;
-  light.solver = solve_options(loaded.scene, common);
-  if (call.indirect != raytrace::Indirect::Radiosity) return light;
-  if (!loaded.effects.solution && call.solution.empty()) {
-    if (loaded.groups.count() == 0) note("note: nothing gives light, the picture is black");
-    return light;
-  }
-  if (call.time_limit_s > 0.0 && call.solution.empty() && !says_how_exact(loaded.scene.quality)) {
-    light = solve_within(loaded, query, common, call.time_limit_s, times);
-  } else {
-    light.solution = solve_or_read(loaded, query, light.solver, call.solution, times);
-    light.solved = true;
-  }
-  if (!common.quiet) note_backs(light.solution.report);
-  return light;
-}
-
 void run(RenderCall call, const Common& common) {
   check_call(call);
   StageTimes times;
@@ -205,15 +163,12 @@ void run(RenderCall call, const Common& common) {
     expected = times.measure("pilot", [&] { return expect(loaded, call, common, asked, query); });
   }
   const double cpu_before = base::cpu_seconds();
-  const Solved light = find_light(call, common, loaded, query, times);
-  Studio studio{call, common, loaded, query, light};
   std::vector<studies::WatchedPicture> watched;
   for (const Wanted& picture : pictures) {
     watched.push_back({picture.camera, picture_options(call, common, loaded, *picture.camera)});
   }
-  const studies::SecondOpinion opinion = times.measure("second opinion", [&] {
-    return studies::second_opinion(studio.scene(), light.solution, light.solver, watched);
-  });
+  const Solved light = find_light({call, common, loaded, query, watched}, times);
+  Studio studio{call, common, loaded, query, light};
   Json reports = Json::array();
   std::vector<Picture> taken;
   bool whole = true;
@@ -224,7 +179,7 @@ void run(RenderCall call, const Common& common) {
         const double left = call.time_limit_s - times.total();
         studio.time_limit_s = std::max(1e-3, left / static_cast<double>(pictures.size() - k));
       }
-      studio.solution_errors = &opinion.pictures[k];
+      studio.number = k;
       Picture picture = take_picture(studio, *pictures[k].camera, pictures[k].files, times);
       times.add({{"pictures", picture.report["seconds"]["render"].get<double>()}});
       whole = picture.whole;

@@ -12,7 +12,7 @@
 #include "raytrace/render.h"
 #include "scenes/idle.h"
 #include "scenes/ray_query.h"
-#include "studies/error_budget.h"
+#include "studies/wanted_error.h"
 
 namespace earthshine::app {
 
@@ -65,6 +65,13 @@ struct Solved {
   radiosity::Solution solution;
   radiosity::SolveOptions solver;
   bool solved = false;
+  std::vector<studies::WatchedErrors> errors;  // of each picture, due to the solution
+  studies::SurfaceError surface;               // without pictures
+  // Where an error was asked for: how it was reached.
+  bool steered = false;
+  std::vector<studies::Step> steps;
+  std::vector<studies::Trial> trials;  // of each picture
+  studies::Limit limit = studies::Limit::None;
 };
 
 // What all pictures of a call share.
@@ -77,8 +84,8 @@ struct Studio {
   [[nodiscard]] studies::StudyScene scene() const {
     return {loaded.scene, loaded.groups, loaded.effects, query};
   }
-  double time_limit_s = 0.0;                                // for one picture; 0: none
-  const studies::WatchedErrors* solution_errors = nullptr;  // of this picture
+  double time_limit_s = 0.0;  // for one picture; 0: none
+  std::size_t number = 0;     // of the picture among the call's
 };
 
 // The size, the layers and the rays of one camera's picture.

@@ -100,21 +100,9 @@ void add_window_options(CLI::App& parser, RenderCall& call) {
           "Replays one pixel and prints all of it; -o is not needed")
       ->type_name("X,Y")
       ->excludes("--crop");
-  parser
-      .add_option_function<std::string>(
-          "--time-limit",
-          [&call](const std::string& text) {
-            const char* end = text.data() + text.size();
-            const auto read = std::from_chars(text.data(), end, call.time_limit_s);
-            if (read.ec == std::errc() && read.ptr == end && call.time_limit_s > 0.0 &&
-                call.time_limit_s <= 1e7) {
-              return;
-            }
-            throw CLI::ValidationError("--time-limit",
-                                       "\"" + text + "\" is not a number of seconds above 0");
-          },
-          "The best picture in that time; the bytes then differ between runs")
-      ->type_name("SECONDS");
+  add_time_limit(parser, call.time_limit_s,
+                 "The best picture in that time, or no longer than that for --error; the bytes "
+                 "then differ between runs");
 }
 
 std::vector<const scenes::Camera*> wanted_cameras(const std::vector<std::string>& texts,

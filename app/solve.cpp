@@ -7,6 +7,7 @@
 #include "app/command.h"
 #include "app/console.h"
 #include "app/error_json.h"
+#include "app/light.h"
 #include "app/memory.h"
 #include "app/solution.h"
 #include "base/error.h"
@@ -21,6 +22,7 @@ namespace {
 struct SolveCall {
   SceneInput scene;
   std::string output, mesh, solution;
+  double time_limit_s = 0.0;
   bool json = false;
 };
 
@@ -156,6 +158,25 @@ void check_call(const SolveCall& call) {
   check_outputs({call.output, call.mesh}, {call.scene.path, call.solution});
 }
 
+// By the scene's settings, until an error that it names is reached, or from a file.
+Solved solve_alone(const SolveCall& call, const Common& common, const LoadedScene& loaded,
+                   const scenes::RayQuery& query, const radiosity::SolveOptions& options,
+                   StageTimes& times) {
+  const bool reads = !call.solution.empty();
+  if (!reads && loaded.scene.quality.error && loaded.effects.solution) {
+    return solve_as_exactly({loaded, common, query, {}, call.time_limit_s}, times);
+  }
+  Solved light;
+  light.solver = options;
+  light.solution = solve_or_read(loaded, query, options, call.solution, times);
+  light.solved = true;
+  light.surface = times.measure("error", [&] {
+    return studies::surface_error({loaded.scene, loaded.groups, loaded.effects, query},
+                                  light.solution, options);
+  });
+  return light;
+}
+
 void run(const SolveCall& call, const Common& common) {
   check_call(call);
   StageTimes times;
@@ -164,7 +185,8 @@ void run(const SolveCall& call, const Common& common) {
       times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
   const radiosity::SolveOptions options = solve_options(loaded.scene, common);
   check_memory(loaded, query, options, nullptr, call.solution.empty());
-  const radiosity::Solution solution = solve_or_read(loaded, query, options, call.solution, times);
+  const Solved light = solve_alone(call, common, loaded, query, options, times);
+  const radiosity::Solution& solution = light.solution;
   if (!common.quiet) note_backs(solution.report);
   const bool writes_report = is_json(call.output);
   if (!call.output.empty() && !writes_report) {
@@ -173,21 +195,21 @@ void run(const SolveCall& call, const Common& common) {
   if (!call.mesh.empty()) {
     times.measure("write GLB", [&] { write_mesh(call.mesh, solution, loaded); });
   }
-  const studies::SurfaceError error = times.measure("error", [&] {
-    return studies::surface_error({loaded.scene, loaded.groups, loaded.effects, query}, solution,
-                                  options);
-  });
   Json json = json_of(loaded, solution.report, times);
-  json["error"] = error_json(error, loaded.scene.quality.error);
+  json["error"] = error_json(light, loaded.scene.quality.error);
   if (writes_report) base::write_text(call.output, dump(json));
   if (call.json) print(dump(json));
-  if (!call.json && !writes_report) print(text_of(json) + "\n" + error_text(error) + "\n");
+  if (!call.json && !writes_report)
+    print(text_of(json) + "\n" + error_text(light, loaded.scene.quality.error) + "\n");
 }
 
 }  // namespace
 
 radiosity::SolveOptions solve_options(const scenes::Scene& scene, const Common& common) {
-  const scenes::QualityKnobs knobs = scenes::resolve_quality(scene);
+  return solve_options(scenes::resolve_quality(scene), common);
+}
+
+radiosity::SolveOptions solve_options(const scenes::QualityKnobs& knobs, const Common& common) {
   return {knobs.patch_edge_m,
           knobs.form_factor_rays,
           knobs.solver_tolerance,
@@ -208,6 +230,8 @@ Command add_solve(CLI::App& program) {
   parser->add_option("--glb", call->mesh, "Also the solution as vertex colours for 3D viewers")
       ->type_name("FILE.glb");
   add_solution_option(*parser, call->solution);
+  add_time_limit(*parser, call->time_limit_s,
+                 "No longer than that for an error to reach; the numbers then differ between runs");
   parser->add_flag("--json", call->json, "JSON on standard output");
   return {parser, [call](const Common& common) { run(*call, common); }};
 }

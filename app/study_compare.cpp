@@ -5,7 +5,10 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <system_error>
+#include <utility>
 
+#include "app/compare_tables.h"
 #include "app/console.h"
 #include "app/study.h"
 #include "base/output_file.h"
@@ -23,66 +26,32 @@ namespace {
 constexpr std::uint64_t most_lights = 1U << 16U;
 constexpr const char* methods_csv = "compare.csv";
 constexpr const char* targets_csv = "compare-targets.csv";
+constexpr const char* equal_targets_csv = "compare-equal-targets.csv";
+constexpr const char* curves_csv = "compare-curves.csv";
+constexpr const char* lights_csv = "compare-lights.csv";
 constexpr const char* results_json = "compare.json";
+constexpr const char* equal_time = "equal-time-";
+constexpr const char* equal_error = "equal-error-";
 
 struct CompareCall : StudyCall {
   std::vector<int> lights = studies::CompareOptions().distributed_lights;
   std::string area;
+  std::optional<double> seconds, error;
 };
 
-std::string picture_name(const studies::Method& method) { return method.name + ".png"; }
-// None for the reference, which would differ from itself by nothing.
-std::optional<std::string> difference_name(const studies::Method& method) {
-  if (method.name == studies::reference_name) return std::nullopt;
-  return "difference-" + method.name + ".png";
-}
-
+// Of the reference its picture alone: it would differ from itself by nothing.
 std::vector<std::string> file_names(const std::vector<int>& lights, const std::string& area) {
-  std::vector<std::string> names = {methods_csv, targets_csv, results_json};
+  std::vector<std::string> names = {methods_csv, targets_csv, equal_targets_csv,
+                                    curves_csv,  lights_csv,  results_json};
   for (const studies::Method& method : studies::compare_methods(lights, area)) {
-    names.push_back(picture_name(method));
-    if (const auto difference = difference_name(method)) names.push_back(*difference);
-  }
-  return names;
-}
-
-Json method_rows(const studies::Comparison& comparison) {
-  Json rows = Json::array();
-  for (const studies::MethodResult& result : comparison.methods) {
-    const raytrace::RenderReport& report = result.frame.report;
-    const int lights = result.method.distributed_lights;
-    const std::string& over = result.method.distributed_over;
-    rows.push_back({{"method", result.method.name},
-                    {"lights", lights > 0 ? Json(lights) : Json()},
-                    {"area", over.empty() ? Json() : Json(over)},
-                    {"solve_seconds", result.solve_seconds},
-                    {"render_seconds", result.render_seconds},
-                    {"rays", report.rays.total()},
-                    {"relative_rmse", result.difference.relative_rmse},
-                    {"bias", result.difference.bias},
-                    {"off_share", result.difference.off_share},
-                    {"relative_noise", report.relative_noise}});
-  }
-  return rows;
-}
-
-Json target_rows(const studies::Comparison& comparison) {
-  Json rows = Json::array();
-  for (std::size_t k = 0; k < comparison.targets.size(); ++k) {
-    const studies::TargetView& view = comparison.targets[k];
-    for (const studies::MethodResult& result : comparison.methods) {
-      const auto& target = result.targets[k];
-      Json row = {{"target", view.name}, {"method", result.method.name}, {"pixels", view.pixels}};
-      row["luminance_cd_m2"] = target ? Json(target->light.luminance) : Json();
-      row["surround_cd_m2"] = target ? to_json(target->light.surround) : Json();
-      row["contrast"] = target ? to_json(target->light.contrast) : Json();
-      row["luminance_ratio"] = target ? Json(target->luminance_ratio) : Json();
-      row["contrast_difference"] = target ? to_json(target->contrast_difference) : Json();
-      row["misleads"] = target ? Json(target->misleads) : Json();
-      rows.push_back(std::move(row));
+    const bool is_reference = method.name == studies::reference_name;
+    for (const char* basis : {"", equal_time, equal_error}) {
+      if (is_reference && *basis != 0) continue;
+      names.push_back(basis + method.name + ".png");
+      if (!is_reference) names.push_back(std::string("difference-") + basis + method.name + ".png");
     }
   }
-  return rows;
+  return names;
 }
 
 std::string word_of(studies::Verdict verdict) {
@@ -118,54 +87,95 @@ Json json_of(const CompareCall& call, const scenes::Camera& camera,
           {"rows", options.rows},
           {"seed", options.seed},
           {"gather_rays", options.gather_rays},
-          {"reference_gather_rays", options.gather_rays * options.reference_factor},
+          {"reference_gather_rays", options.rays_of_a_reference()},
           {"patches", comparison.solution.patches},
+          {"reference_patches", comparison.reference_patches},
           {"pixels_compared", comparison.reference().difference.pixels},
           {"exposure",
            {{"signal_per_cd_m2", exposure.exposure}, {"white_cd_m2", exposure.white_cd_per_m2}}},
           {"rule",
            {{"luminance_factor", studies::misleading_factor},
             {"contrast_difference", studies::misleading_contrast}}},
+          {"noise_floor", comparison.reference_noise.relative_rmse},
+          {"wide_sources", comparison.wide_sources},
+          {"levels_out_at_lights", to_json(levels_out_at(comparison, false))},
+          {"equal",
+           {{"cpu_seconds", comparison.equal_seconds},
+            {"relative_rmse", comparison.equal_error},
+            {"targets", equal_target_rows(comparison)}}},
+          {"curves", curve_rows(comparison)},
+          {"lights", lights_rows(comparison)},
           {"methods", method_rows(comparison)},
           {"targets", target_rows(comparison)},
           {"verdicts", verdicts}};
 }
 
-void write_pictures(const std::filesystem::path& folder, const studies::Comparison& comparison,
-                    const base::ToneReport& exposure) {
-  const base::Image& reference = comparison.reference().frame.image;
-  for (const studies::MethodResult& result : comparison.methods) {
-    const base::Image& image = result.frame.image;
-    base::write_png(folder / picture_name(result.method), image.width, image.height, 3,
-                    base::tone_map_with(image, exposure).rgb);
-    if (const auto name = difference_name(result.method)) {
-      const studies::DifferencePicture difference = studies::difference_picture(image, reference);
-      base::write_png(folder / *name, difference.columns, difference.rows, 3, difference.rgb);
+class Pictures {
+ public:
+  Pictures(std::filesystem::path folder, const studies::Comparison& comparison,
+           const base::ToneReport& exposure)
+      : folder_(std::move(folder)), comparison_(comparison), exposure_(exposure) {}
+
+  void write() const {
+    for (const studies::MethodResult& result : comparison_.methods) {
+      const std::string& name = result.method.name;
+      if (name == studies::reference_name) {
+        write_one(name, result.frame.image);
+        continue;
+      }
+      write_pair("", name, result.frame.image, result.difference, "At the scene's settings.");
+      if (!result.equal) continue;
+      const studies::EqualResult& equal = *result.equal;
+      const std::string given = fmt::format("given {:.3g} CPU s", comparison_.equal_seconds);
+      // A method that takes longer even at its least has no picture at equal time.
+      if (equal.at_time) {
+        write_pair(equal_time, name, equal.at_time->image, equal.at_time->difference,
+                   fmt::format("At equal time: {}, took {:.3g}.", given, equal.at_time->seconds));
+      } else {
+        remove_pair(equal_time, name);
+      }
+      const bool reached = equal.ladder.reach == studies::Reach::Reached;
+      write_pair(equal_error, name, equal.at_error.image, equal.at_error.difference,
+                 fmt::format("{} of {:.3g} %: {:.3g} CPU s.",
+                             reached ? "At the equal error"
+                                     : "The least error; it does not reach the equal error",
+                             100.0 * comparison_.equal_error, equal.at_error.seconds));
     }
   }
-}
 
-std::string summary(const studies::Comparison& comparison) {
-  std::string text = fmt::format("{:<18} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "method",
-                                 "solve s", "render s", "rays", "RMSE", "bias", "off");
-  for (const studies::MethodResult& result : comparison.methods) {
-    const studies::PictureDifference& difference = result.difference;
-    text += fmt::format("{:<18} {:>9.1f} {:>9.1f} {:>9} {:>7.1f} % {:>+7.1f} % {:>7.1f} %\n",
-                        result.method.name, result.solve_seconds, result.render_seconds,
-                        short_count(static_cast<double>(result.frame.report.rays.total())),
-                        100.0 * difference.relative_rmse, 100.0 * difference.bias,
-                        100.0 * difference.off_share);
+ private:
+  void write_one(const std::string& name, const base::Image& image) const {
+    base::write_png(folder_ / (name + ".png"), image.width, image.height, 3,
+                    base::tone_map_with(image, exposure_).rgb);
   }
-  text += fmt::format(
-      "\nMisled: a target's luminance is off by more than a factor {}, or its contrast by more "
-      "than "
-      "{}.\n",
-      studies::misleading_factor, studies::misleading_contrast);
-  const std::vector<studies::TargetVerdict> verdicts = studies::judge_approximation(comparison);
-  if (verdicts.empty()) text += "The scene marks no object as a target.\n";
-  for (const studies::TargetVerdict& verdict : verdicts) text += verdict.sentence + "\n";
-  return text;
-}
+  void write_pair(const std::string& basis, const std::string& name, const base::Image& image,
+                  const studies::PictureDifference& difference, const std::string& when) const {
+    write_one(basis + name, image);
+    const std::vector<std::string> caption = {
+        name +
+            " / reference: ratio of the luminances in cd/m2. Red: too bright, blue: too dark, "
+            "white: within x1.1, or black in both. Grey: sky, not compared.",
+        when,
+        fmt::format("RMSE {:.3g} %, bias {:+.3g} % of the mean luminance; off by more than x{}: "
+                    "{:.3g} % of the pixels.",
+                    100.0 * difference.relative_rmse, 100.0 * difference.bias,
+                    studies::misleading_factor, 100.0 * difference.off_share)};
+    const studies::DifferencePicture picture = studies::difference_picture(
+        image, comparison_.reference().frame.image, comparison_.map, caption);
+    base::write_png(folder_ / ("difference-" + basis + name + ".png"), picture.columns,
+                    picture.rows, 3, picture.rgb);
+  }
+  // Of an earlier run into the same folder.
+  void remove_pair(const std::string& basis, const std::string& name) const {
+    std::error_code none;
+    std::filesystem::remove(folder_ / (basis + name + ".png"), none);
+    std::filesystem::remove(folder_ / ("difference-" + basis + name + ".png"), none);
+  }
+
+  std::filesystem::path folder_;
+  const studies::Comparison& comparison_;
+  const base::ToneReport& exposure_;
+};
 
 void run(const CompareCall& call, const Common& common) {
   const LoadedScene loaded = load(call.scene, common.quiet);
@@ -180,11 +190,15 @@ void run(const CompareCall& call, const Common& common) {
   studies::CompareOptions options;
   options.columns = call.size ? call.size->columns : camera.columns;
   options.rows = call.size ? call.size->rows : camera.rows;
-  // Every sample has gather rays of its own in all pictures: only the light differs between them.
+  // The program as users run it; the references alone share no gather rays.
   const scenes::QualityKnobs knobs = scenes::resolve_quality(loaded.scene);
-  options.gather_rays =
-      knobs.gather_rays *
+  const raytrace::RenderOptions as_rendered = raytrace::render_options(knobs);
+  options.gather_rays = as_rendered.gather_rays;
+  options.shared = as_rendered.shared;
+  options.reference_rays =
+      options.reference_factor * knobs.gather_rays *
       (loaded.scene.quality.gather_rays || !knobs.share_gather ? 1 : scenes::rays_alone_per_shared);
+  options.equal = studies::EqualOptions{call.seconds, call.error};
   options.distributed_lights = call.lights;
   options.distributed_over = call.area;
   options.solver = solve_options(loaded.scene, common);
@@ -198,9 +212,12 @@ void run(const CompareCall& call, const Common& common) {
   const base::ToneReport exposure = base::tone_map(comparison.reference().frame.image).report;
   const Json json = json_of(call, camera, options, comparison, exposure);
   const std::filesystem::path folder = call.folder;
-  write_pictures(folder, comparison, exposure);
+  Pictures(folder, comparison, exposure).write();
   base::write_text(folder / methods_csv, csv_of(json["methods"]));
   base::write_text(folder / targets_csv, csv_of(json["targets"]));
+  base::write_text(folder / equal_targets_csv, csv_of(json["equal"]["targets"]));
+  base::write_text(folder / curves_csv, csv_of(json["curves"]));
+  base::write_text(folder / lights_csv, csv_of(json["lights"]));
   base::write_text(folder / results_json, dump(json));
   print(call.json ? dump(json) : summary(comparison));
 }
@@ -233,6 +250,10 @@ Command add_study_compare(CLI::App& study) {
       ->add_option("--distributed-over", call->area,
                    "Also with the Earth's lights over this [[area]] of the scene, not its disc")
       ->type_name("NAME");
+  add_number(*parser, "--seconds", call->seconds, 1e-3, 1e7,
+             "Equal time: CPU seconds for each method (default: what radiosity takes)");
+  add_number(*parser, "--equal-error", call->error, 1e-6, 10.0,
+             "Equal error, relative (default: what radiosity reaches in the equal time)");
   return {parser, [call](const Common& common) { run(*call, common); }};
 }
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -91,13 +92,21 @@ Bytes left_of_address_space(const fs::path& root) {
   return less(limit.rlim_cur, pages * page_bytes);
 }
 
+std::atomic<std::uint64_t> most_bytes{0};  // 0: no cap
+
 }  // namespace
+
+MemoryLimit::MemoryLimit(std::uint64_t bytes) { most_bytes = bytes; }
+MemoryLimit::~MemoryLimit() { most_bytes = 0; }
+
+bool memory_is_limited() { return most_bytes != 0; }
 
 std::optional<std::uint64_t> free_memory_bytes(const fs::path& root) {
   Bytes least;
   if (const Bytes kib = number_after(root / "proc/meminfo", "MemAvailable:")) least = *kib * 1024;
   take_least(least, left_of_groups(root));
   take_least(least, left_of_address_space(root));
+  if (const std::uint64_t cap = most_bytes) take_least(least, cap);
   return least;
 }
 

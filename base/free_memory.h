@@ -8,6 +8,18 @@
 
 namespace earthshine::base {
 
+// Caps what free_memory_bytes() says for as long as it lives; 0: no cap.
+class MemoryLimit {
+ public:
+  explicit MemoryLimit(std::uint64_t bytes);
+  ~MemoryLimit();
+  MemoryLimit(const MemoryLimit&) = delete;
+  MemoryLimit& operator=(const MemoryLimit&) = delete;
+};
+
+// Whether such a cap is what holds.
+[[nodiscard]] bool memory_is_limited();
+
 // Bytes. The least of what Linux calls MemAvailable, what is left below the limit of the control
 // group or any above it (versions 1 and 2; file cache that can be dropped counts as free), and what
 // is left of RLIMIT_AS. Nothing where none of them can be read. Inside `root`, for tests, stand

@@ -11,7 +11,6 @@ namespace {
 
 constexpr int most_sweeps = 500;  // passes over the matrix there and back
 constexpr int plain_sweeps = 4;
-constexpr double enough = 1e-13;
 constexpr double largest_scale = 1e6;
 
 // column_scale_j sum_i weight_i F_raw,ij with F_raw = row_scale n. Rows are split in a fixed number
@@ -255,7 +254,7 @@ class Scaling {
 
 }  // namespace
 
-BalanceReport balance(FormFactors& factors, std::span<const double> area_m2) {
+BalanceReport balance(FormFactors& factors, std::span<const double> area_m2, double enough) {
   BalanceReport report;
   if (factors.count() == 0) {
     report.balanced = true;

@@ -82,7 +82,10 @@ struct BalanceReport {
   std::size_t borrowed = 0;  // patches that no ray had reached
   bool balanced = false;     // after <= 1e-12
 };
-BalanceReport balance(FormFactors& factors, std::span<const double> area_m2);
+// enough: the defect at which it ends.
+inline constexpr double balance_to_rounding = 1e-13;
+BalanceReport balance(FormFactors& factors, std::span<const double> area_m2,
+                      double enough = balance_to_rounding);
 
 // y = F x for `columns` right-hand sides side by side (row-major, count x columns).
 void multiply(const FormFactors& factors, std::span<const double> x, std::span<double> y,

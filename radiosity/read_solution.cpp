@@ -170,10 +170,10 @@ Solution read_solution(const std::filesystem::path& path, const SolutionOrigin& 
   Reading store{file, 0, 0, 0, groups};
   Solution solution;
   solution.patches = read_patches("facets/", "area", store);
-  solution.coarser.error = file.number_attribute("coarser_error");
-  if (solution.coarser.error > 0.0) {
+  solution.other.error = file.number_attribute("other_cut_error");
+  if (solution.other.error > 0.0) {
     Reading apart{file, 0, 0, 0, 0};
-    solution.coarser.patches = read_patches("coarser/", "coarser/area", apart);
+    solution.other.patches = read_patches("other_cut/", "other_cut/area", apart);
   }
   solution.columns = 3 * groups;
   visit_light(store, solution);

@@ -19,6 +19,7 @@ constexpr std::size_t growth_between_solves = 4;
 constexpr int fewest_rays = 64;
 // Of errors: from an earlier round to the last, and from one round that is kept to the next.
 constexpr double clearly_coarser = 2.0, between_kept = 0.8;
+constexpr std::size_t most_growth = 4;  // of patches, for a finer cut to compare with
 
 std::uint32_t other_side(const Patches& patches, std::uint32_t patch) {
   const Facet& facet = patches.facets[patches.facet[patch]];
@@ -130,26 +131,21 @@ class Refinement {
 
   Refined run() {
     start();
+    double error = find_errors();
     for (int round = 0;; ++round) {
-      find_errors();
-      double total = 0.0;
-      for (const Unevenness& u : uneven_) total += u.error;
-      refined_.rounds.push_back({refined_.patches.count(), std::sqrt(total)});
+      refined_.rounds.push_back({refined_.patches.count(), error});
       keep();
-      if (round == most_rounds || total <= options_.refine.error * options_.refine.error) break;
-      if (!cut(choose(refined_.patches, uneven_, total, max_patches_))) break;
-      // Worth its rays only while most of the cuts are still to come.
-      const std::size_t count = refined_.patches.count();
-      if (count >= growth_between_solves * solution_.patches.count() && 2 * count <= max_patches_) {
-        solve_for(refined_.patches);
-      }
+      if (round == most_rounds || error <= options_.refine.error) break;
+      if (!cut_worst(max_patches_)) break;
+      error = find_errors();
     }
-    refined_.rays += variation_.rays();
-    for (Coarser& kept : kept_) {
+    for (OtherCut& kept : kept_) {
       if (kept.error >= clearly_coarser * refined_.rounds.back().error) {
-        refined_.coarser = std::move(kept);
+        refined_.other = std::move(kept);
       }
     }
+    if (refined_.other.error <= 0.0) go_on();
+    refined_.rays += variation_.rays();
     return std::move(refined_);
   }
 
@@ -159,6 +155,38 @@ class Refinement {
     const double error = refined_.rounds.back().error;
     if (!kept_.empty() && error > between_kept * kept_.back().error) return;
     kept_.push_back({refined_.patches, error});
+  }
+
+  // Without an earlier round to compare with, a later one.
+  void go_on() {
+    const double last = refined_.rounds.back().error;
+    Patches finished = refined_.patches;
+    double error = last;
+    for (int round = 0; round < most_rounds && error > last / clearly_coarser; ++round) {
+      if (!cut_worst(most_growth * finished.count())) break;
+      error = find_errors();
+    }
+    if (error <= between_kept * last) refined_.other = {std::move(refined_.patches), error};
+    refined_.patches = std::move(finished);
+  }
+
+  // The estimated error of the patches as they are.
+  double find_errors() {
+    look_at_unknown();
+    total_ = 0.0;
+    for (const Unevenness& u : uneven_) total_ += u.error;
+    return std::sqrt(total_);
+  }
+
+  // False when nothing was left to cut.
+  bool cut_worst(std::size_t max_patches) {
+    if (!cut(choose(refined_.patches, uneven_, total_, max_patches))) return false;
+    // Worth its rays only while most of the cuts are still to come.
+    const std::size_t count = refined_.patches.count();
+    if (count >= growth_between_solves * solution_.patches.count() && 2 * count <= max_patches) {
+      solve_for(refined_.patches);
+    }
+    return true;
   }
 
   void solve_for(const Patches& patches) {
@@ -191,7 +219,7 @@ class Refinement {
     return false;
   }
 
-  void find_errors() {
+  void look_at_unknown() {
     const std::vector<Unevenness> found = variation_.find(refined_.patches, unknown_, light_);
     for (std::size_t k = 0; k < unknown_.size(); ++k) uneven_[unknown_[k]] = found[k];
   }
@@ -224,7 +252,8 @@ class Refinement {
   RelativeLight light_;
   std::vector<Unevenness> uneven_;      // per patch
   std::vector<std::uint32_t> unknown_;  // patches not looked at yet
-  std::vector<Coarser> kept_;           // by falling error
+  std::vector<OtherCut> kept_;          // by falling error
+  double total_ = 0.0;                  // squared error
   Refined refined_;
 };
 

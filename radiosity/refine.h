@@ -14,7 +14,7 @@ namespace earthshine::radiosity {
 struct Refined {
   Patches patches;
   std::vector<RefineRound> rounds;
-  Coarser coarser;
+  OtherCut other;
   std::uint64_t rays = 0;  // of all rounds
 };
 

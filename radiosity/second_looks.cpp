@@ -11,10 +11,10 @@ namespace earthshine::radiosity {
 namespace {
 
 constexpr int fewest_rays = 16;
-constexpr double least_ratio = 0.1;    // of the errors of two cuts
-constexpr double clearly_fewer = 0.4;  // patches, of twice the edge
+constexpr double least_ratio = 0.1, most_ratio = 0.9;  // of the errors of two cuts
+constexpr double clearly_fewer = 0.4;                  // patches, of twice the edge
 
-struct OtherCut {
+struct Comparison {
   Patches patches;
   double error_ratio = 0.5;
   bool finer = false;
@@ -34,11 +34,12 @@ Patches quartered(const Patches& patches) {
 }
 
 // Coarser where that is clearly coarser: faces of the model cannot be made larger.
-OtherCut cut_otherwise(const scenes::Scene& scene, const SolveOptions& options,
-                       const Solution& solution) {
-  if (solution.coarser.patches.count() > 0 && !solution.report.rounds.empty()) {
-    const double fine = solution.report.rounds.back().error;
-    return {solution.coarser.patches, std::max(least_ratio, fine / solution.coarser.error), false};
+Comparison cut_otherwise(const scenes::Scene& scene, const SolveOptions& options,
+                         const Solution& solution) {
+  if (solution.other.error > 0.0 && !solution.report.rounds.empty()) {
+    const double own = solution.report.rounds.back().error, other = solution.other.error;
+    const double ratio = std::min(own, other) / std::max(own, other);
+    return {solution.other.patches, std::clamp(ratio, least_ratio, most_ratio), other < own};
   }
   const double edge_m = 2.0 * options.patch_edge_m;
   const double share = static_cast<double>(count_patches(scene, edge_m)) /
@@ -117,7 +118,8 @@ SecondLooks look_again(const scenes::Scene& scene, const scenes::LightGroups& gr
                        const scenes::Effects& effects, const scenes::RayQuery& query,
                        const SolveOptions& options, const Solution& solution,
                        const LookListener& listen) {
-  constexpr double tolerance = 1e-5;  // what differs by chance is far above this
+  // What differs by chance is far above these.
+  constexpr double tolerance = 1e-5, balanced = 1e-3;
   SecondLooks looks;
   const scenes::LightGroups two = joined(groups, effects);
   const DirectOptions usual;
@@ -127,14 +129,16 @@ SecondLooks look_again(const scenes::Scene& scene, const scenes::LightGroups& gr
     with.form_factor_rays = std::min(rays, std::max(fewest_rays, rays / divided_by));
     with.tolerance = std::max(options.tolerance, tolerance);
     ++replicate;
-    Solution other = solve(
-        scene, two, effects, query, with, patches,
-        {replicate, {points, usual.flux_rays / divided_by, base::mix64(options.seed + replicate)}});
+    Solution other =
+        solve(scene, two, effects, query, with, patches,
+              {replicate,
+               {points, usual.flux_rays / divided_by, base::mix64(options.seed + replicate)},
+               balanced});
     looks.rays += other.report.form_factor_rays + other.report.shadow_rays;
     return other;
   };
 
-  const int rays = options.form_factor_rays;
+  const int rays = std::max(fewest_rays, solution.report.rays_per_patch);
   std::vector<Solution> few;
   for (std::uint32_t k = 0; k < few_rays_looks; ++k) {
     few.push_back(look(solution.patches, rays, 32, usual.points_per_patch / 4));
@@ -147,7 +151,7 @@ SecondLooks look_again(const scenes::Scene& scene, const scenes::LightGroups& gr
     listen(Look::OtherDirect, with_direct(scene, solution, other, mean));
   }
 
-  const OtherCut cut = cut_otherwise(scene, options, solution);
+  const Comparison cut = cut_otherwise(scene, options, solution);
   looks.error_ratio = cut.error_ratio;
   looks.finer = cut.finer;
   looks.other_patches = cut.patches.count();

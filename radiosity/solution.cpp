@@ -156,7 +156,7 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   SolveReport& report = solution.report;
   report.seconds.insert(report.seconds.begin(), cutting.seconds.front());
   report.rounds = std::move(refined.rounds);
-  solution.coarser = std::move(refined.coarser);
+  solution.other = std::move(refined.other);
   report.refinement_rays = refined.rays;
   return solution;
 }
@@ -182,11 +182,12 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   FormFactors factors = cast_form_factors(scene, query, patches, rays, sky);
   const std::vector<double> open_m2 = open_areas(factors.open, patches.area_m2);
   report.form_factor_rays = factors.ray_count;
+  report.rays_per_patch = factors.rays_per_patch;
   report.nonzeros = factors.hits.size();
   const std::vector<double> object_backs = back_shares(scene, patches, factors);
   report.back_share = back_share(factors);
   watch.lap("form factors");
-  report.balance = balance(factors, open_m2);
+  report.balance = balance(factors, open_m2, variant.balance);
   watch.lap("balance");
 
   DirectOptions direct_options = variant.direct;

@@ -41,11 +41,11 @@ struct RefineRound {
   double error = 0.0;  // estimated for these patches, as RefineOptions::error
 };
 
-// The patches of the last round of refinement that had twice the error of the final ones or more:
-// what a coarser cut would have given.
-struct Coarser {
-  Patches patches;     // none where refinement ended too soon
-  double error = 0.0;  // estimated for them, as RefineOptions::error
+// Patches of another round of refinement, to compare with: of the last that had twice the error of
+// the final ones or more, or else of one that goes on to half of their error.
+struct OtherCut {
+  Patches patches;
+  double error = 0.0;  // estimated for them, as RefineOptions::error; 0: there are none
 };
 
 // Where the energy of one light group went, lm per channel.
@@ -74,6 +74,7 @@ struct SolveReport {
   std::vector<RefineRound> rounds;  // of refinement, the last one for the patches solved
   std::uint64_t refinement_rays = 0;
   std::uint64_t form_factor_rays = 0;
+  int rays_per_patch = 0;  // of them, continuations beyond mirrors left out
   std::uint64_t shadow_rays = 0;
   std::array<SourceCost, scenes::light_kinds> sources_cost{};  // by LightKind; not of a read file
   std::size_t nonzeros = 0;
@@ -98,7 +99,7 @@ struct Solution {
   std::vector<float> soft_radiosity;  // the part of it not due to explicit sources: rho (E - E0
                                       // explicit) + M through F
   std::vector<float> direct_lx, indirect_lx;  // E0 and F B
-  Coarser coarser;                            // of a refined solution, unless it was read
+  OtherCut other;                             // of a refined solution
   SolveReport report;
 };
 
@@ -118,6 +119,7 @@ using PatchListener = std::function<void(const Patches& patches)>;
 struct SolveVariant {
   std::uint32_t replicate = 0;  // of the form factors: each number is an independent set of rays
   DirectOptions direct = {};    // its seed 0: that of the options
+  double balance = balance_to_rounding;
 };
 // On patches that are cut already; options.patch_edge_m and options.refine are not looked at.
 [[nodiscard]] Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,

@@ -12,7 +12,7 @@
 
 namespace earthshine::radiosity {
 
-// prefix: "facets/", or "coarser/" for the cut of an earlier round.
+// prefix: "facets/", or "other_cut/" for that of another round.
 template <class Store, class Layout>
 void visit_layout(Store& store, Layout& layout, const std::string& prefix, const char* area) {
   const auto per_facet = [&](const char* name, auto& values, const char* meaning) {
@@ -50,6 +50,7 @@ void visit_report(Store& store, Report& report) {
   store.rows("refinement/patches", report.rounds, &RefineRound::patches, "", "after each round");
   store.rows("refinement/error", report.rounds, &RefineRound::error, "", "estimated, relative");
   store.value("form_factor_rays_cast", report.form_factor_rays);
+  store.value("rays_per_patch", report.rays_per_patch);
   store.value("shadow_rays", report.shadow_rays);
   store.value("nonzeros", report.nonzeros);
   store.value("iterations", report.iterations);

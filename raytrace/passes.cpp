@@ -99,7 +99,8 @@ class Passes {
                               how.most_samples);
       shade(wanted, sums, report);
     }
-    while (options_.time_limit_s > 0.0 && per_deviation > 0.0 && !stops() && !out_of_time()) {
+    while (options_.time_limit_s > 0.0 && options_.fills_time && per_deviation > 0.0 && !stops() &&
+           !out_of_time()) {
       per_deviation *= 0.5;
       wanted = wanted_samples(sums, per_deviation, outlook.bright(), how.least_samples,
                               16 * how.most_samples);
@@ -130,8 +131,10 @@ class Passes {
     const Window wide = widened(
         around, 2 * sharing.smooth_pixels + find_pixels + shared_.filter.reach_px(), camera_);
     if (limited) {
+      const int wanted = how.rays;
       how.rays = 8;
       how.rays = affordable_rays(wide, cast);
+      if (!options_.fills_time) how.rays = std::min(how.rays, wanted);
     }
     how.stop = [this] { return stops() || out_of_time(); };
     const auto pixels = static_cast<double>(around.pixel_count());
@@ -145,7 +148,7 @@ class Passes {
     field_ = plain;
     smooth(field_, sharing.smooth_share, sharing.smooth_pixels);
     report.gather_rays = how.rays;
-    if (sharing.gather_noise > 0.0 && !limited) {
+    if (sharing.gather_noise > 0.0 && !(limited && options_.fills_time)) {
       how.progress = {};
       bool again = false;
       const int first_rays = how.rays;

@@ -67,6 +67,8 @@ struct RenderOptions {
   // then, with as many gather rays as half of them allow; 0: no limit. The bytes then differ
   // between runs.
   double time_limit_s = 0.0;
+  // Off: the limit is one alone, and the picture is done when it is as exact as wanted.
+  bool fills_time = true;
   // Asked often, from many threads; once it says true the frame is returned with what is finished.
   std::function<bool()> stop = {};
 };

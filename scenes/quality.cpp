@@ -24,13 +24,14 @@ double diagonal(const Scene& scene) {
 
 }  // namespace
 
-QualityKnobs resolve_quality(const Scene& scene) {
+QualityKnobs resolve_quality(const Scene& scene) { return resolve_quality(scene, scene.quality); }
+
+QualityKnobs resolve_quality(const Scene& scene, const Quality& given) {
   constexpr double reference_error = 0.02;
-  const double ratio = reference_error / scene.quality.error.value_or(reference_error);
+  const double ratio = reference_error / given.error.value_or(reference_error);
   QualityKnobs knobs;
-  knobs.form_factor_rays = scene.quality.form_factor_rays.value_or(
+  knobs.form_factor_rays = given.form_factor_rays.value_or(
       power_of_two_at_least(1024.0 * std::pow(ratio, 1.0 / 0.6), 64, 1 << 18));
-  const Quality& given = scene.quality;
   knobs.share_gather = given.share_gather.value_or(true);
   const double rays = 32.0 * (knobs.share_gather ? 1 : rays_alone_per_shared) * ratio * ratio;
   knobs.gather_rays =
@@ -47,7 +48,7 @@ QualityKnobs resolve_quality(const Scene& scene) {
   knobs.refine = given.refine.value_or(given.max_patches || !given.patch_edge_m);
   knobs.max_patches = given.max_patches.value_or(0);
   if (given.error || !given.max_patches) knobs.refine_error = 1.5 * reference_error / ratio;
-  knobs.solver_tolerance = scene.quality.solver_tolerance.value_or(1e-8);
+  knobs.solver_tolerance = given.solver_tolerance.value_or(1e-8);
   return knobs;
 }
 

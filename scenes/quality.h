@@ -39,5 +39,7 @@ struct QualityKnobs {
 // have; max_patches without error is spent to the last patch. Where patch_edge is set too, no patch
 // is longer.
 [[nodiscard]] QualityKnobs resolve_quality(const Scene& scene);
+// The same with other wishes than the scene's.
+[[nodiscard]] QualityKnobs resolve_quality(const Scene& scene, const Quality& given);
 
 }  // namespace earthshine::scenes

@@ -4,216 +4,263 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <limits>
+#include <ctime>
 
 #include "base/error.h"
 #include "raytrace/distributed_area.h"
+#include "studies/yardstick.h"
 
 namespace earthshine::studies {
 namespace {
 
 using raytrace::Indirect;
 
-// Infinite where only the reference is black, 1 where both are.
-double ratio(double value, double reference) {
-  if (reference > 0.0) return value / reference;
-  return value > 0.0 ? std::numeric_limits<double>::infinity() : 1.0;
-}
+// Of all threads of the process: what other programs take meanwhile is not in it.
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-bool far_off(double luminance_ratio) {
-  return luminance_ratio > misleading_factor || luminance_ratio < 1.0 / misleading_factor;
-}
-
-raytrace::RenderOptions render_options(const CompareOptions& options, const Method& method,
-                                       bool is_reference) {
-  raytrace::RenderOptions render;
-  render.columns = options.columns;
-  render.rows = options.rows;
-  render.gather_rays = options.gather_rays;
-  render.indirect = method.indirect;
-  if (method.distributed_lights > 0) render.distributed_lights = method.distributed_lights;
-  render.distributed_over = method.distributed_over;
-  render.seed = options.seed;
-  if (is_reference) {
-    render.gather_rays *= options.reference_factor;
-    render.seed = options.seed + 1;
-    render.aovs = {"object"};
+bool shines(const scenes::Scene& scene, std::uint32_t object) {
+  const scenes::Object& o = scene.objects[object];
+  for (std::uint32_t t = o.first_triangle; t < o.first_triangle + o.triangle_count; ++t) {
+    if (scene.materials[scene.triangles[t].material].emits()) return true;
   }
-  return render;
+  return false;
 }
+
+bool has_wide_sources(const StudyScene& study) {
+  const scenes::Scene& scene = study.scene;
+  return study.effects.earth ||
+         std::any_of(scene.lamps.begin(), scene.lamps.end(),
+                     [](const scenes::Lamp& lamp) {
+                       return lamp.kind == scenes::LampKind::Rectangle ||
+                              lamp.kind == scenes::LampKind::Disk;
+                     }) ||
+         std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const scenes::Material& material) { return material.emits(); });
+}
+
+class Comparing {
+ public:
+  Comparing(const StudyScene& study, const scenes::Camera& camera, const CompareOptions& options,
+            const StageListener& listen)
+      : study_(study), camera_(camera), options_(options), listen_(listen) {}
+
+  Comparison run() {
+    (void)raytrace::earth_area(study_.scene,
+                               options_.distributed_over);  // a wrong one before the work
+    const auto methods = compare_methods(options_.distributed_lights, options_.distributed_over);
+    comparison_.wide_sources = has_wide_sources(study_);
+    take_references(methods.front());
+    for (std::size_t k = 1; k < methods.size(); ++k) at_the_settings(methods[k]);
+    if (options_.equal) compare_equal();
+    return std::move(comparison_);
+  }
+
+ private:
+  [[nodiscard]] raytrace::Progress begin_stage(const std::string& stage) const {
+    return listen_ ? listen_(stage) : raytrace::Progress{};
+  }
+
+  [[nodiscard]] raytrace::RenderOptions render_options(const Method& method) const {
+    raytrace::RenderOptions render;
+    render.columns = options_.columns;
+    render.rows = options_.rows;
+    render.gather_rays = options_.gather_rays;
+    render.shared = options_.shared;
+    render.indirect = method.indirect;
+    if (method.distributed_lights > 0) render.distributed_lights = method.distributed_lights;
+    render.distributed_over = method.distributed_over;
+    render.seed = options_.seed;
+    render.aovs = {"variance"};
+    return render;
+  }
+
+  [[nodiscard]] raytrace::Frame draw(const radiosity::Solution& solution,
+                                     const raytrace::RenderOptions& render,
+                                     const std::string& stage) const {
+    return raytrace::render(study_.scene, study_.groups, study_.effects, study_.query, solution,
+                            camera_, render, begin_stage(stage));
+  }
+  [[nodiscard]] radiosity::Solution solve(const radiosity::SolveOptions& solver,
+                                          const std::string& stage) const {
+    (void)begin_stage(stage);
+    return radiosity::solve(study_.scene, study_.groups, study_.effects, study_.query, solver);
+  }
+
+  void take_references(const Method& method) {
+    MethodResult result;
+    result.method = method;
+    for (const std::uint64_t k : {1, 2}) {
+      const std::string stage = fmt::format("{} {}", reference_name, k);
+      const double begin = cpu_seconds();
+      const radiosity::Solution solution =
+          solve(reference_solver(options_.solver, k), stage + ", solution");
+      comparison_.reference_patches = solution.report.patches;
+      for (const auto& [name, seconds] : solution.report.seconds) result.solve_seconds += seconds;
+      const double solved = cpu_seconds();
+      result.solve_cpu_seconds += solved - begin;
+      raytrace::RenderOptions render = render_options(method);
+      render.shared.on = false;
+      render.gather_rays = options_.rays_of_a_reference();
+      render.seed = options_.seed + k;
+      if (k == 1) render.aovs = {"object"};
+      raytrace::Frame frame = draw(solution, render, stage);
+      result.render_cpu_seconds += cpu_seconds() - solved;
+      result.render_seconds += frame.report.seconds;
+      (k == 1 ? yardstick_.first : yardstick_.second) = base::luminance_of(frame.image);
+      if (k == 1) {
+        result.frame = std::move(frame);
+        continue;
+      }
+      result.frame.report.rays += frame.report.rays;
+      result.frame.report.relative_noise =
+          0.5 * std::hypot(result.frame.report.relative_noise, frame.report.relative_noise);
+      for (const char* colour : {"R", "G", "B"}) average(colour, frame.image, result.frame.image);
+    }
+    base::Image& image = result.frame.image;
+    comparison_.map = object_map(image);
+    comparison_.targets = find_targets(study_.scene, camera_, comparison_.map);
+    for (const TargetView& view : comparison_.targets) {
+      comparison_.target_shines.push_back(shines(study_.scene, view.object));
+    }
+    yardstick_.mean = base::luminance_of(image);
+    comparison_.reference_noise =
+        reference_noise(yardstick_.first, yardstick_.second, comparison_.map);
+    result.difference = picture_difference(image, image, comparison_.map);
+    for (const TargetView& view : comparison_.targets) {
+      const auto light = measure_light(view, yardstick_.mean);
+      result.targets.push_back(light ? std::optional(target_difference(*light, *light))
+                                     : std::nullopt);
+    }
+    comparison_.methods.push_back(std::move(result));
+  }
+
+  static void average(const char* colour, const base::Image& other, base::Image& image) {
+    const std::vector<float>& more = other.find(colour)->values;
+    for (base::Channel& channel : image.channels) {
+      if (channel.name != colour) continue;
+      for (std::size_t i = 0; i < more.size(); ++i) {
+        channel.values[i] = 0.5F * (channel.values[i] + more[i]);
+      }
+    }
+  }
+
+  void at_the_settings(const Method& method) {
+    MethodResult result;
+    result.method = method;
+    radiosity::Solution solution;
+    const double begin = cpu_seconds();
+    if (method.indirect == Indirect::Radiosity) {
+      solution = solve(options_.solver, "radiosity solution");
+      comparison_.solution = solution.report;
+      for (const auto& [stage, seconds] : solution.report.seconds) result.solve_seconds += seconds;
+      result.solve_cpu_seconds = cpu_seconds() - begin;
+    }
+    const double solved = cpu_seconds();
+    result.frame = draw(solution, render_options(method), method.name);
+    result.render_cpu_seconds = cpu_seconds() - solved;
+    result.render_seconds = result.frame.report.seconds;
+    result.difference = difference_of(result.frame.image);
+    result.targets = target_differences(result.frame.image, comparison_.targets, yardstick_);
+    comparison_.methods.push_back(std::move(result));
+  }
+
+  [[nodiscard]] PictureDifference difference_of(const base::Image& image) const {
+    return picture_difference(base::luminance_of(image), yardstick_.first, yardstick_.second,
+                              comparison_.map);
+  }
+
+  [[nodiscard]] Shot shoot(const MethodResult& result, int rung) const {
+    if (rung == 0) {
+      return {result.frame.image, result.cpu_seconds(), result.frame.report.camera_samples,
+              result.difference, result.targets};
+    }
+    const Method& method = result.method;
+    const std::string stage = fmt::format("{}, step {:+}", method.name, rung);
+    radiosity::Solution solution;
+    const double begin = cpu_seconds();
+    if (method.indirect == Indirect::Radiosity) {
+      solution = solve(at_rung(options_.solver, rung), stage + ", solution");
+    }
+    raytrace::Frame frame = draw(solution, at_rung(render_options(method), rung), stage);
+    Shot shot{std::move(frame.image), cpu_seconds() - begin, frame.report.camera_samples, {}, {}};
+    shot.difference = difference_of(shot.image);
+    shot.targets = target_differences(shot.image, comparison_.targets, yardstick_);
+    return shot;
+  }
+
+  // Without gather rays and without sharing there are no more than so many camera samples.
+  [[nodiscard]] int most_rung(const Method& method) const {
+    constexpr int anyhow = LadderLimits().most_rung;
+    if (options_.shared.on || method.indirect == Indirect::Radiosity) return anyhow;
+    const auto rays = static_cast<std::uint32_t>(std::max(1, options_.gather_rays));
+    return std::max(0, (13 - static_cast<int>(std::bit_width(rays))) / 2);
+  }
+
+  [[nodiscard]] EqualResult equal_of(const MethodResult& result, const LadderLimits& wanted) const {
+    std::vector<std::pair<int, Shot>> shots;
+    LadderLimits limits = wanted;
+    limits.most_rung = std::min(limits.most_rung, most_rung(result.method));
+    limits.least_rung = std::min(0, limits.least_rung);
+    EqualResult equal;
+    equal.ladder = climb(
+        [&](int rung) {
+          shots.emplace_back(rung, shoot(result, rung));
+          const Shot& shot = shots.back().second;
+          return LadderPoint{rung, shot.seconds, shot.difference.relative_rmse};
+        },
+        limits);
+    std::sort(shots.begin(), shots.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [rung, shot] : shots) equal.differences.push_back(shot.difference);
+    if (equal.ladder.at_time != Ladder::none) equal.at_time = shots[equal.ladder.at_time].second;
+    equal.at_error = std::move(shots[equal.ladder.at_error].second);
+    return equal;
+  }
+
+  void compare_equal() {
+    const EqualOptions& wanted = *options_.equal;
+    LadderLimits limits;
+    MethodResult& radiosity = comparison_.methods[1];
+    limits.spend = wanted.spend;
+    limits.seconds = wanted.seconds.value_or(radiosity.cpu_seconds());
+    limits.wanted_error = wanted.error;
+    if (!wanted.seconds && !wanted.error) limits.least_rung = limits.most_rung = 0;
+    radiosity.equal = equal_of(radiosity, limits);
+    if (!wanted.error) {
+      // An error that the references' noise hides cannot be told from one that is as small.
+      const Shot& taken =
+          radiosity.equal->at_time ? *radiosity.equal->at_time : radiosity.equal->at_error;
+      limits.wanted_error =
+          std::max(taken.difference.relative_rmse, taken.difference.standard_error);
+      radiosity.equal->at_error = taken;
+      radiosity.equal->ladder.reach = Reach::Reached;
+      if (radiosity.equal->at_time)
+        radiosity.equal->ladder.at_error = radiosity.equal->ladder.at_time;
+    }
+    limits.least_rung = LadderLimits().least_rung;
+    limits.most_rung = LadderLimits().most_rung;
+    comparison_.equal_seconds = limits.seconds;
+    comparison_.equal_error = *limits.wanted_error;
+    for (std::size_t k = 2; k < comparison_.methods.size(); ++k) {
+      comparison_.methods[k].equal = equal_of(comparison_.methods[k], limits);
+    }
+  }
+
+  const StudyScene& study_;
+  const scenes::Camera& camera_;
+  const CompareOptions& options_;
+  const StageListener& listen_;
+  Yardstick yardstick_;
+  Comparison comparison_;
+};
 
 }  // namespace
-
-std::vector<Method> compare_methods(std::vector<int> lights, const std::string& area) {
-  if (lights.empty() || *std::min_element(lights.begin(), lights.end()) < fewest_lights) {
-    throw base::Error(base::Blame::Input, "study compare", "lights are missing",
-                      fmt::format("at least one number of lights, each {} or more", fewest_lights));
-  }
-  std::sort(lights.begin(), lights.end());
-  lights.erase(std::unique(lights.begin(), lights.end()), lights.end());
-  std::vector<Method> methods = {{reference_name, Indirect::Radiosity, 0},
-                                 {"radiosity", Indirect::Radiosity, 0}};
-  for (const int n : lights) {
-    methods.push_back({"distributed-" + std::to_string(n), Indirect::Distributed, n});
-  }
-  for (const int n : lights) {
-    if (area.empty()) break;
-    methods.push_back({"area-" + std::to_string(n), Indirect::Distributed, n, area});
-  }
-  methods.push_back({"direct", Indirect::None, 0});
-  return methods;
-}
-
-PictureDifference picture_difference(const base::Image& image, const base::Image& reference,
-                                     const ObjectMap& map) {
-  const std::vector<float> value = base::luminance_of(image);
-  const std::vector<float> right = base::luminance_of(reference);
-  PictureDifference result;
-  double squares = 0.0, sum = 0.0, right_sum = 0.0;
-  std::size_t off = 0;
-  for (std::size_t i = 0; i < map.object.size(); ++i) {
-    if (map.object[i] == no_object) continue;
-    ++result.pixels;
-    const double difference = double(value[i]) - double(right[i]);
-    squares += difference * difference;
-    sum += difference;
-    right_sum += double(right[i]);
-    if (far_off(ratio(double(value[i]), double(right[i])))) ++off;
-  }
-  if (result.pixels == 0) return result;
-  const auto n = static_cast<double>(result.pixels);
-  result.off_share = static_cast<double>(off) / n;
-  if (right_sum <= 0.0) return result;
-  result.relative_rmse = std::sqrt(squares / n) / (right_sum / n);
-  result.bias = sum / right_sum;
-  return result;
-}
-
-TargetDifference target_difference(const TargetLight& light, const TargetLight& reference) {
-  TargetDifference difference;
-  difference.light = light;
-  difference.luminance_ratio = ratio(light.luminance, reference.luminance);
-  difference.misleads = far_off(difference.luminance_ratio);
-  if (light.contrast && reference.contrast) {
-    difference.contrast_difference = *light.contrast - *reference.contrast;
-    if (std::abs(*difference.contrast_difference) > misleading_contrast) difference.misleads = true;
-  } else if (light.contrast.has_value() != reference.contrast.has_value()) {
-    difference.misleads = true;  // one surround is black, the other is not
-  }
-  return difference;
-}
 
 Comparison compare(const StudyScene& study, const scenes::Camera& camera,
                    const CompareOptions& options, const StageListener& listen) {
-  const auto begin_stage = [&](const std::string& stage) {
-    return listen ? listen(stage) : raytrace::Progress{};
-  };
-  Comparison comparison;
-  (void)raytrace::earth_area(study.scene, options.distributed_over);  // a wrong one before the work
-  (void)begin_stage("radiosity solution");
-  const radiosity::Solution solution =
-      radiosity::solve(study.scene, study.groups, study.effects, study.query, options.solver);
-  comparison.solution = solution.report;
-  double solve_seconds = 0.0;
-  for (const auto& [stage, seconds] : solution.report.seconds) solve_seconds += seconds;
-
-  for (const Method& method :
-       compare_methods(options.distributed_lights, options.distributed_over)) {
-    MethodResult result;
-    result.method = method;
-    const raytrace::RenderOptions render =
-        render_options(options, method, comparison.methods.empty());
-    result.frame = raytrace::render(study.scene, study.groups, study.effects, study.query, solution,
-                                    camera, render, begin_stage(method.name));
-    result.render_seconds = result.frame.report.seconds;
-    if (method.indirect == Indirect::Radiosity) result.solve_seconds = solve_seconds;
-    comparison.methods.push_back(std::move(result));
-  }
-
-  const base::Image& reference = comparison.reference().frame.image;
-  const ObjectMap map = object_map(reference);
-  comparison.targets = find_targets(study.scene, camera, map);
-  const std::vector<float> right = base::luminance_of(reference);
-  for (MethodResult& result : comparison.methods) {
-    result.difference = picture_difference(result.frame.image, reference, map);
-    const std::vector<float> luminance = base::luminance_of(result.frame.image);
-    for (const TargetView& view : comparison.targets) {
-      const auto light = measure_light(view, luminance);
-      result.targets.push_back(
-          light ? std::optional(target_difference(*light, *measure_light(view, right)))
-                : std::nullopt);
-    }
-  }
-  return comparison;
-}
-
-namespace {
-
-std::string contrast_text(const TargetLight& light) {
-  if (!light.contrast) return "undefined";
-  const double rounded = std::round(100.0 * *light.contrast) / 100.0;
-  return fmt::format("{:+.2f}", rounded == 0.0 ? 0.0 : rounded);  // never "-0.00"
-}
-
-// "3.1 instead of 5.2 cd/m2 (x 0.60), contrast -0.20 instead of +0.10"
-std::string figures(const TargetDifference& found, const TargetLight& right) {
-  return fmt::format("{:.3g} instead of {:.3g} cd/m2 (x {:.2f}), contrast {} instead of {}",
-                     found.light.luminance, right.luminance, found.luminance_ratio,
-                     contrast_text(found.light), contrast_text(right));
-}
-
-// The last of those over the disc: compare_methods lists them from 2 on by rising N.
-std::size_t most_lights(const std::vector<MethodResult>& methods) {
-  std::size_t k = 2;
-  while (methods[k + 1].method.indirect == Indirect::Distributed &&
-         methods[k + 1].method.distributed_over.empty()) {
-    ++k;
-  }
-  return k;
-}
-
-TargetVerdict judge(const Comparison& comparison, std::size_t target) {
-  const std::string& name = comparison.targets[target].name;
-  const auto& right = comparison.reference().targets[target];
-  if (!right) {
-    const bool hidden = comparison.targets[target].pixels_alone > 0;
-    return {Verdict::NotInView, name + (hidden ? ": hidden by other objects." : ": not in view.")};
-  }
-  const std::vector<MethodResult>& methods = comparison.methods;
-  const std::size_t most = most_lights(methods);
-  const MethodResult& best = methods[most];
-  const TargetDifference& found = *best.targets[target];
-  const std::string numbers = figures(found, right->light);
-  const int n = best.method.distributed_lights;
-  if (methods[1].targets[target]->misleads) {
-    return {Verdict::Undecided,
-            fmt::format("{}: too noisy to tell on {} pixels, even the radiosity picture differs "
-                        "from its reference; {} distributed lights give {}.",
-                        name, comparison.targets[target].pixels, n, numbers)};
-  }
-  if (found.misleads) {
-    return {Verdict::Misled,
-            fmt::format("{}: {} distributed lights would have misled, {}.", name, n, numbers)};
-  }
-  // The fewest lights from which on none misleads.
-  int enough = n;
-  for (std::size_t k = most; k >= 2 && !methods[k].targets[target]->misleads; --k) {
-    enough = methods[k].method.distributed_lights;
-  }
-  const std::string from = enough == n ? "" : fmt::format(", nor would {}", enough);
-  return {Verdict::NotMisled, fmt::format("{}: {} distributed lights would not have misled{}, {}.",
-                                          name, n, from, numbers)};
-}
-
-}  // namespace
-
-std::vector<TargetVerdict> judge_approximation(const Comparison& comparison) {
-  std::vector<TargetVerdict> verdicts;
-  for (std::size_t target = 0; target < comparison.targets.size(); ++target) {
-    verdicts.push_back(judge(comparison, target));
-  }
-  return verdicts;
+  return Comparing(study, camera, options, listen).run();
 }
 
 }  // namespace earthshine::studies

@@ -5,11 +5,12 @@
 #include <array>
 #include <limits>
 #include <string_view>
+#include <utility>
+
+#include "studies/bitmap_text.h"
 
 namespace earthshine::studies {
 namespace {
-
-using Colour = std::array<std::uint8_t, 3>;
 
 // From far too bright to far too dark. Equal steps of lightness on both sides of white, and hues
 // that people with a colour deficiency tell apart.
@@ -37,86 +38,75 @@ std::size_t band_of(double value, double reference) {
   return band;
 }
 
-// Just the letters of the labels, 5 x 7, a bit per pixel, the leftmost highest.
-struct Glyph {
-  char letter;
-  std::array<std::uint8_t, 7> rows;
-};
-constexpr std::array<Glyph, 7> glyphs = {
-    {{'1', {0b00100, 0b01100, 0b00100, 0b00100, 0b00100, 0b00100, 0b01110}},
-     {'2', {0b01110, 0b10001, 0b00001, 0b00010, 0b00100, 0b01000, 0b11111}},
-     {'4', {0b00010, 0b00110, 0b01010, 0b10010, 0b11111, 0b00010, 0b00010}},
-     {'5', {0b11111, 0b10000, 0b11110, 0b00001, 0b00001, 0b10001, 0b01110}},
-     {'.', {0b00000, 0b00000, 0b00000, 0b00000, 0b00000, 0b01100, 0b01100}},
-     {'x', {0b00000, 0b00000, 0b10001, 0b01010, 0b00100, 0b01010, 0b10001}},
-     {'/', {0b00001, 0b00001, 0b00010, 0b00100, 0b01000, 0b10000, 0b10000}}}};
-constexpr int letter_width = 5, letter_height = 7, letter_step = 6;
-
 constexpr int gap = 6, box_width = 14, box_height = 14, letters = 4;
 constexpr int scale_width = gap + box_width + 3 + letters * letter_step + 1;
 constexpr int scale_height = box_height * static_cast<int>(band_colours.size());
-constexpr Colour paper = {255, 255, 255}, ink = {0, 0, 0};
-
-class Canvas {
- public:
-  Canvas(int columns, int rows) {
-    picture_.columns = columns;
-    picture_.rows = rows;
-    picture_.rgb.assign(3 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows),
-                        paper[0]);
-  }
-  void dot(int x, int y, const Colour& colour) {
-    const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(picture_.columns) +
-                    static_cast<std::size_t>(x);
-    std::copy(colour.begin(), colour.end(),
-              picture_.rgb.begin() + static_cast<std::ptrdiff_t>(3 * at));
-  }
-  void text(int x, int y, std::string_view word) {
-    for (const char letter : word) {
-      const auto glyph = std::find_if(glyphs.begin(), glyphs.end(),
-                                      [&](const Glyph& g) { return g.letter == letter; });
-      for (int row = 0; row < letter_height; ++row) {
-        for (int column = 0; column < letter_width; ++column) {
-          const unsigned bit = 1U << static_cast<unsigned>(letter_width - 1 - column);
-          if ((glyph->rows[static_cast<std::size_t>(row)] & bit) != 0) {
-            dot(x + column, y + row, ink);
-          }
-        }
-      }
-      x += letter_step;
-    }
-  }
-  [[nodiscard]] DifferencePicture take() { return std::move(picture_); }
-
- private:
-  DifferencePicture picture_;
-};
+constexpr int captioned_height =
+    scale_height + gap + box_height;  // with the box of what is left out
+constexpr int least_captioned_width = 300;
+constexpr int magnified_to = 256;  // small pictures, so that they can be seen beside the scale
+constexpr Colour paper = {255, 255, 255}, ink = {0, 0, 0}, left_out = {160, 160, 160};
 
 void draw_scale(Canvas& canvas, int left) {
-  for (int y = 0; y < scale_height; ++y) {
-    const Colour& colour = band_colours[static_cast<std::size_t>(y / box_height)];
-    for (int x = 0; x < box_width; ++x) canvas.dot(left + gap + x, y, colour);
+  for (std::size_t band = 0; band < band_colours.size(); ++band) {
+    canvas.box(left + gap, box_height * static_cast<int>(band), box_width, box_height,
+               band_colours[band]);
   }
   for (std::size_t k = 0; k < labels.size(); ++k) {
     const int limit = box_height * static_cast<int>(k + 1);
-    canvas.text(left + gap + box_width + 3, limit - letter_height / 2, labels[k]);
+    canvas.text(left + gap + box_width + 3, limit - letter_height / 2, labels[k], ink);
   }
+}
+
+// Each pixel as a square of `edge` dots.
+void draw_picture(Canvas& canvas, const base::Image& image, const base::Image& reference,
+                  const ObjectMap* map, int edge) {
+  const std::vector<float> value = base::luminance_of(image);
+  const std::vector<float> right = base::luminance_of(reference);
+  std::size_t i = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x, ++i) {
+      const bool shown = map == nullptr || map->object[i] != no_object;
+      canvas.box(edge * x, edge * y, edge, edge,
+                 shown ? band_colours[band_of(double(value[i]), double(right[i]))] : left_out);
+    }
+  }
+}
+
+DifferencePicture taken(const Canvas& canvas) {
+  return {canvas.columns(), canvas.rows(), canvas.rgb()};
 }
 
 }  // namespace
 
 DifferencePicture difference_picture(const base::Image& image, const base::Image& reference) {
-  const std::vector<float> value = base::luminance_of(image);
-  const std::vector<float> right = base::luminance_of(reference);
-  Canvas canvas(image.width + scale_width, std::max(image.height, scale_height));
-  std::size_t i = 0;
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x, ++i) {
-      canvas.dot(x, y, band_colours[band_of(double(value[i]), double(right[i]))]);
-    }
-  }
+  Canvas canvas(image.width + scale_width, std::max(image.height, scale_height), paper);
+  draw_picture(canvas, image, reference, nullptr, 1);
   draw_scale(canvas, image.width);
-  return canvas.take();
+  return taken(canvas);
+}
+
+DifferencePicture difference_picture(const base::Image& image, const base::Image& reference,
+                                     const ObjectMap& map,
+                                     const std::vector<std::string>& caption) {
+  const int edge = std::clamp(magnified_to / std::max(image.width, image.height), 1, 16);
+  const int width = edge * image.width, height = edge * image.height;
+  const int columns = std::max(width + scale_width, least_captioned_width);
+  std::vector<std::string> lines;
+  for (const std::string& words : caption) {
+    for (std::string& line : wrapped(words, columns - 2 * gap)) lines.push_back(std::move(line));
+  }
+  const int top = std::max(height, captioned_height) + gap;
+  Canvas canvas(columns, top + line_step * static_cast<int>(lines.size()), paper);
+  draw_picture(canvas, image, reference, &map, edge);
+  draw_scale(canvas, width);
+  canvas.box(width + gap, scale_height + gap, box_width, box_height, left_out);
+  canvas.text(width + gap + box_width + 3, scale_height + gap + (box_height - letter_height) / 2,
+              "sky", ink);
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    canvas.text(gap, top + line_step * static_cast<int>(k), lines[k], ink);
+  }
+  return taken(canvas);
 }
 
 }  // namespace earthshine::studies

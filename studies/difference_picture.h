@@ -4,9 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "base/image.h"
+#include "studies/target_view.h"
 
 namespace earthshine::studies {
 
@@ -22,5 +24,13 @@ struct DifferencePicture {
 // same size.
 [[nodiscard]] DifferencePicture difference_picture(const base::Image& image,
                                                    const base::Image& reference);
+
+// The same with a caption below, a paragraph per entry; pixels that show no object, which are not
+// compared, are grey, and the scale says so ("sky"). Pixels of a small picture are
+// drawn as squares; a narrow one gets paper beside it.
+[[nodiscard]] DifferencePicture difference_picture(const base::Image& image,
+                                                   const base::Image& reference,
+                                                   const ObjectMap& map,
+                                                   const std::vector<std::string>& caption);
 
 }  // namespace earthshine::studies

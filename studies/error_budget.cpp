@@ -21,12 +21,6 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-double mean_of(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
-
 // Pixels of one camera that are watched: some of the whole picture, some more of each target.
 struct Watched {
   std::vector<std::uint32_t> pixels;
@@ -102,9 +96,8 @@ SecondOpinion second_opinion(const StudyScene& scene, const radiosity::Solution&
                             });
   for (std::size_t k = 0; k < watches.size(); ++k) {
     const auto error = [&](const std::vector<std::uint32_t>& which) {
-      const Looks some = some_of(watches[k].looks(), which);
-      return solution_error(some, opinion.looks, solution.report.solver_error,
-                            {mean_of(some.own), Reading::Interpolated});
+      return weighed_error(some_of(watches[k].looks(), which), opinion.looks,
+                           solution.report.solver_error);
     };
     opinion.pictures[k].whole = error(watched[k].whole);
     for (const auto& [object, which] : watched[k].targets) {

@@ -3,7 +3,8 @@
 //
 // An error is the root mean square difference of luminance to the picture that more rays, samples
 // and patches would lead to, over the pixels that show a surface and no source itself, relative to
-// their mean luminance. What no setting would bring is no part of it; it is named instead.
+// their mean luminance; pixels brighter than four times that count in proportion (error_weight).
+// What no setting would bring is no part of it; it is named instead.
 #pragma once
 
 #include <cstdint>

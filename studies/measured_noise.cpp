@@ -36,11 +36,14 @@ class CloserLook {
              const WatchedPicture& picture, const raytrace::Frame& frame, const SurfacePixels& seen)
       : scene_(scene), solution_(solution), picture_(picture), frame_(frame), seen_(seen) {}
 
-  Measured squared_error(const std::vector<std::uint32_t>& pixels, double stated) {
+  // mean: of the pixels' luminance; stated: their mean squared error.
+  Measured squared_error(const std::vector<std::uint32_t>& pixels, double mean, double stated) {
     const auto count = static_cast<double>(pixels.size());
     std::vector<double> weights;
     for (const std::uint32_t pixel : pixels) {
-      const double own = double(frame_.squared_error[seen_.in_window(pixel)]);
+      const std::size_t at = seen_.in_window(pixel);
+      const double weight = error_weight(pixel_luminance(frame_.image, at), mean);
+      const double own = weight * weight * double(frame_.squared_error[at]);
       const double by_error = stated > 0.0 ? own / (stated * count) : 1.0 / count;
       weights.push_back((1.0 - evenly_looked_at) * by_error + evenly_looked_at / count);
     }
@@ -52,8 +55,9 @@ class CloserLook {
     double squares = 0.0, looks = 0.0;
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       const double own = pixel_luminance(frame_.image, seen_.in_window(looked_at[k]));
-      const double off =
-          (own - a.luminance[k]) * (own - b.luminance[k]) / (weights[chosen[k]] * count);
+      const double weight = error_weight(own, mean);
+      const double off = weight * weight * (own - a.luminance[k]) * (own - b.luminance[k]) /
+                         (weights[chosen[k]] * count);
       found.mean += off;
       squares += off * off;
       looks += 1.0;
@@ -126,11 +130,16 @@ PixelMeans pixel_means(const raytrace::Frame& frame, const SurfacePixels& seen,
     const std::size_t at = seen.in_window(pixel);
     if (frame.squared_error[at] == raytrace::shows_source) continue;
     means.luminance += pixel_luminance(frame.image, at);
-    means.squared_error += double(frame.squared_error[at]);
     ++means.pixels;
   }
   if (means.pixels == 0) return means;
   means.luminance /= static_cast<double>(means.pixels);
+  for (const std::uint32_t pixel : pixels) {
+    const std::size_t at = seen.in_window(pixel);
+    if (frame.squared_error[at] == raytrace::shows_source) continue;
+    const double weight = error_weight(pixel_luminance(frame.image, at), means.luminance);
+    means.squared_error += weight * weight * double(frame.squared_error[at]);
+  }
   means.squared_error /= static_cast<double>(means.pixels);
   return means;
 }
@@ -155,7 +164,7 @@ MeasuredNoise measure_noise(const StudyScene& scene, const radiosity::Solution& 
   noise.pixels = means.luminance > 0.0 ? means.pixels : 0;
   if (noise.pixels == 0) return noise;
   CloserLook looks(scene, solution, picture, frame, seen);
-  const Measured measured = looks.squared_error(pixels, means.squared_error);
+  const Measured measured = looks.squared_error(pixels, means.luminance, means.squared_error);
   const double least = std::max(measured.mean, 0.0);
   const double most = std::max(measured.mean, 0.0) + one_sided_95 * measured.error;
   const double all = std::sqrt(least) / means.luminance, bound = std::sqrt(most) / means.luminance;

@@ -24,7 +24,7 @@ struct MeasuredNoise {
 struct PixelMeans {
   std::size_t pixels = 0;
   double luminance = 0.0;      // cd/m^2
-  double squared_error = 0.0;  // as stated, (cd/m^2)^2
+  double squared_error = 0.0;  // as stated, with error_weight, (cd/m^2)^2
 };
 [[nodiscard]] PixelMeans pixel_means(const raytrace::Frame& frame, const SurfacePixels& seen,
                                      std::span<const std::uint32_t> pixels);

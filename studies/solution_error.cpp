@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "studies/pixel_choice.h"
+
 namespace earthshine::studies {
 namespace {
 
@@ -30,12 +32,9 @@ double mean_product(const std::vector<double>& a, const std::vector<double>& b,
   return sum / static_cast<double>(a.size());
 }
 
-// Of the difference between two cuts, what the solution's own is still off by.
-double patch_share(bool other_is_finer, double r, Reading reading, bool at_most) {
-  if (reading == Reading::Constant) return (other_is_finer ? 1.0 : r) / std::sqrt(1.0 - r * r);
-  const double left = at_most ? r : r * r;
-  return (other_is_finer ? 1.0 : left) / (1.0 - left);
-}
+// Of the difference between two cuts, what the solution's own is still off by when the finer one
+// has `q` of the other's error.
+double patch_share(bool other_is_finer, double q) { return (other_is_finer ? 1.0 : q) / (1.0 - q); }
 
 // Rays that lead through a small opening may be found by none of the few-ray solutions, which then
 // agree with each other and not with the solution: the larger of the two variances counts.
@@ -75,16 +74,16 @@ Looks some_of(const Looks& looks, const std::vector<std::uint32_t>& which) {
 }
 
 SolutionError solution_error(const Looks& looks, const radiosity::SecondLooks& made,
-                             double solver_error, const Measure& measure) {
+                             double solver_error, double scale) {
   SolutionError error;
-  if (looks.own.empty() || measure.scale <= 0.0) return error;
+  if (looks.own.empty() || scale <= 0.0) return error;
   error.solver = {solver_error, solver_error};
 
   const Spread lamps = spread_of(looks.other_direct);
-  error.lamps = doubt_of(lamps, looks.other_direct.size(), made.point_share, measure.scale);
+  error.lamps = doubt_of(lamps, looks.other_direct.size(), made.point_share, scale);
   Spread chance = form_factor_spread(looks.own, looks.few_rays, made.ray_share);
   chance.variance = std::max(0.0, chance.variance - lamps.variance);
-  error.form_factors = doubt_of(chance, looks.few_rays.size(), made.ray_share, measure.scale);
+  error.form_factors = doubt_of(chance, looks.few_rays.size(), made.ray_share, scale);
 
   const auto& others = looks.other_patches;
   const double own_noise = chance.variance * made.ray_share + lamps.variance * made.point_share;
@@ -92,11 +91,25 @@ SolutionError solution_error(const Looks& looks, const radiosity::SecondLooks& m
       std::max(0.0, mean_product(looks.own, others.front(), others.back()) - own_noise);
   const Spread noise = spread_of(others);
   const double above = 1.645 * noise.variance / std::sqrt(noise.modes);
-  error.patches = {patch_share(made.finer, made.error_ratio, measure.reading, false) *
-                       std::sqrt(apart) / measure.scale,
-                   patch_share(made.finer, made.error_ratio, measure.reading, true) *
-                       std::sqrt(apart + above) / measure.scale};
+  const double r = made.error_ratio;
+  error.patches = {patch_share(made.finer, r * r) * std::sqrt(apart) / scale,
+                   patch_share(made.finer, r) * std::sqrt(apart + above) / scale};
   return error;
+}
+
+SolutionError weighed_error(Looks looks, const radiosity::SecondLooks& made, double solver_error) {
+  double mean = 0.0;
+  for (const double value : looks.own) mean += value / static_cast<double>(looks.own.size());
+  std::vector<double> weights;
+  for (const double value : looks.own) weights.push_back(error_weight(value, mean));
+  const auto weigh = [&](std::vector<double>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] *= weights[i];
+  };
+  weigh(looks.own);
+  for (auto* tries : {&looks.few_rays, &looks.other_direct, &looks.other_patches}) {
+    std::for_each(tries->begin(), tries->end(), weigh);
+  }
+  return solution_error(looks, made, solver_error, mean);
 }
 
 PictureWatch::PictureWatch(const StudyScene& scene, const radiosity::Solution& solution,

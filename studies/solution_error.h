@@ -12,8 +12,7 @@
 
 namespace earthshine::studies {
 
-// Relative to the mean luminance of the pixels, or to the root mean square radiosity of the
-// surfaces.
+// Relative to the mean luminance of the pixels, or to the mean radiosity of the surfaces.
 struct SolutionError {
   Doubt form_factors;  // noise of the form factors' rays
   Doubt patches;       // one radiosity for a whole patch
@@ -36,17 +35,12 @@ struct Looks {
 // where light varies smoothly: the estimate takes q = r^2, r = SecondLooks::error_ratio, and the
 // bound q = r, for shadows' edges. The product of the differences to two independent others has
 // their noise left out.
-//
-// Read as it is, constant over each patch, the mean over a patch is the best there is: then the
-// errors of nested cuts differ in squares, and the share of the difference is 1 / sqrt(1 - r^2) or
-// r / sqrt(1 - r^2).
-enum class Reading { Interpolated, Constant };
-struct Measure {
-  double scale = 0.0;  // errors are relative to it
-  Reading reading = Reading::Interpolated;
-};
+// scale: what errors are relative to.
 [[nodiscard]] SolutionError solution_error(const Looks& looks, const radiosity::SecondLooks& made,
-                                           double solver_error, const Measure& measure);
+                                           double solver_error, double scale);
+// Relative to the mean, what is bright as error_weight() has it.
+[[nodiscard]] SolutionError weighed_error(Looks looks, const radiosity::SecondLooks& made,
+                                          double solver_error);
 // The values numbered by `which`.
 [[nodiscard]] Looks some_of(const Looks& looks, const std::vector<std::uint32_t>& which);
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studies/surface_error.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "base/random.h"
+#include "raytrace/radiance_table.h"
 #include "studies/error_budget.h"
 #include "studies/pixel_choice.h"
 
@@ -13,51 +15,45 @@ namespace {
 
 constexpr std::size_t points = 8192;
 
-struct SurfacePoint {
-  std::uint32_t facet;
-  bool front;
-  radiosity::Parameters where;
-};
-
-// Spread over the surfaces by area. Of a triangle's cells, which are trapezoids, by their
-// parameters within the cell.
-std::vector<SurfacePoint> spread_points(const radiosity::Patches& patches, std::uint64_t seed) {
-  const auto chosen = spread_by_weight(patches.area_m2, points, seed);
-  std::vector<SurfacePoint> spread;
+// Spread over the surfaces by area, sheets on both sides.
+std::vector<scenes::Hit> spread_points(const scenes::Scene& scene, std::uint64_t seed) {
+  std::vector<double> area;
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    const bool sheet = scene.materials[scene.triangles[t].material].two_sided;
+    area.push_back((sheet ? 2.0 : 1.0) * scenes::triangle_area(scene, t));
+  }
+  std::vector<scenes::Hit> spread;
   base::Rng rng(base::Key(seed, base::Stream::ErrorBudget, 2));
-  for (const std::size_t k : chosen) {
-    const auto patch = static_cast<std::uint32_t>(k);
-    const radiosity::Rectangle cell = patches.rectangle(patch);
-    const double x = rng.next(), y = rng.next();
-    spread.push_back({patches.facet[patch],
-                      patches.is_back[patch] == 0,
-                      {std::lerp(cell.s0, cell.s1, x), std::lerp(cell.t0, cell.t1, y)}});
+  for (const std::size_t t : spread_by_weight(area, points, seed)) {
+    double u = rng.next(), v = rng.next();
+    if (u + v > 1.0) {
+      u = 1.0 - u;
+      v = 1.0 - v;
+    }
+    const bool sheet = scene.materials[scene.triangles[t].material].two_sided;
+    const bool front = !sheet || rng.next() < 0.5;
+    scenes::Hit hit;
+    hit.triangle = static_cast<std::uint32_t>(t);
+    hit.u = static_cast<decltype(hit.u)>(u);
+    hit.v = static_cast<decltype(hit.v)>(v);
+    hit.front = front;
+    spread.push_back(hit);
   }
   return spread;
 }
 
-// Luminance of the patches' radiosity, lm/m^2.
+// Luminance of the radiosity, lm/m^2.
 std::vector<double> read(const radiosity::Solution& solution,
-                         const std::vector<SurfacePoint>& where) {
+                         const std::vector<scenes::Hit>& where) {
+  const raytrace::RadianceTable table(solution, solution.radiosity, false);
   std::vector<double> values;
   values.reserve(where.size());
-  for (const SurfacePoint& point : where) {
-    const radiosity::Facet& facet = solution.patches.facets[point.facet];
-    const std::size_t patch = (point.front ? facet.first_front : facet.first_back) +
-                              solution.patches.leaf(facet, point.where);
-    Rgb sum(0.0);
-    for (std::size_t k = 0; k < solution.columns; ++k) {
-      sum[static_cast<int>(k % 3)] += double(solution.radiosity[patch * solution.columns + k]);
-    }
-    values.push_back(base::luminance(sum));
+  for (const scenes::Hit& hit : where) {
+    std::array<Rgb, 1> sum{Rgb(0.0)};
+    table.add(hit, Rgb(base::pi), sum);
+    values.push_back(base::luminance(sum[0]));
   }
   return values;
-}
-
-double root_mean_square(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
 }  // namespace
@@ -69,7 +65,7 @@ SurfaceError surface_error(const StudyScene& scene, const radiosity::Solution& s
   SurfaceError error;
   error.not_captured = not_captured(scene, {});
   if (solution.columns == 0 || solution.patches.count() == 0) return error;
-  const std::vector<SurfacePoint> where = spread_points(solution.patches, solver.seed);
+  const std::vector<scenes::Hit> where = spread_points(scene.scene, solver.seed);
   Looks looks;
   looks.own = read(solution, where);
   const radiosity::SecondLooks made =
@@ -77,10 +73,8 @@ SurfaceError surface_error(const StudyScene& scene, const radiosity::Solution& s
                             [&](radiosity::Look look, const radiosity::Solution& other) {
                               looks.add(look, read(other, where));
                             });
-  const double scale = root_mean_square(looks.own);
-  error.known = scale > 0.0;
-  error.parts =
-      solution_error(looks, made, solution.report.solver_error, {scale, Reading::Constant});
+  error.known = std::any_of(looks.own.begin(), looks.own.end(), [](double b) { return b > 0.0; });
+  error.parts = weighed_error(std::move(looks), made, solution.report.solver_error);
   error.rays = made.rays;
   error.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return error;

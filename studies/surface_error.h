@@ -7,9 +7,9 @@
 namespace earthshine::studies {
 
 struct SurfaceError {
-  // Root mean square over all area of the difference between the radiosity (luminance, all light
-  // together) of the patch that holds a point and the point's own, relative to the root mean square
-  // radiosity.
+  // Root mean square of the error of the radiosity (luminance, all light together), interpolated
+  // between patches as pictures read it, over all area and relative to its mean; what is more than
+  // four times as bright counts in proportion (error_weight).
   SolutionError parts;
   bool known = false;  // false where nothing is lit
   std::vector<std::string> not_captured;

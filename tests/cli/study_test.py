@@ -40,10 +40,12 @@ class Compare(Study):
     def test_folder_holds_tables_and_pictures(self):
         text = self.done("study", "compare", "ball.toml", "-o", "new/folder", "--lights", "16,4")
         self.assertEqual(self.files("new/folder"),
-                         sorted(["compare.csv", "compare-targets.csv", "compare.json"]
-                                + [f"{method}.png" for method in self.METHODS]
-                                + [f"difference-{method}.png" for method in self.METHODS[1:]]))
-        self.says(text, *self.METHODS, "factor 1.5", "ball: 16 distributed lights would")
+                         sorted(["compare.csv", "compare-targets.csv", "compare.json", "compare-equal-targets.csv",
+                                 "compare-curves.csv", "compare-lights.csv", "reference.png"]
+                                + [f"{difference}{basis}{method}.png" for method in self.METHODS[1:]
+                                   for difference in ("", "difference-")
+                                   for basis in ("", "equal-time-", "equal-error-")]))
+        self.says(text, *self.METHODS, "factor 1.5", "ball: 16 distributed lights would", "Equal time", "noise-floor")
         for method in self.METHODS:
             self.assertEqual(self.png_size("new/folder", f"{method}.png"), (32, 24))
         width, height = self.png_size("new/folder", "difference-direct.png")
@@ -55,8 +57,8 @@ class Compare(Study):
         self.assertEqual(printed, self.result("d", "compare.json"))
         self.assertEqual((printed["camera"], printed["columns"], printed["rows"]), ("A", 24, 18))
         methods = self.table("d", "compare.csv")
-        self.assertEqual([row["method"] for row in methods], self.METHODS)
-        self.assertEqual([row["lights"] for row in methods], ["", "", "4", "16", ""])
+        self.assertEqual([row["method"] for row in methods], self.METHODS + ["noise-floor"])
+        self.assertEqual([row["lights"] for row in methods], ["", "", "4", "16", "", ""])
         for row, record in zip(methods, printed["methods"]):
             self.assertEqual(float(row["relative_rmse"]), record["relative_rmse"])
         self.assertEqual([float(methods[0][key]) for key in ("relative_rmse", "bias", "off_share")], [0, 0, 0])
@@ -87,7 +89,9 @@ class Compare(Study):
     def test_same_bytes_on_any_number_of_threads(self):
         def pictures(threads):
             self.done("study", "compare", "ball.toml", "-o", threads, "--lights", "4", "-j", threads)
-            return [self.png(threads, name) for name in self.files(threads) if name.endswith(".png")]
+            # Which pictures stand at equal time follows from the seconds.
+            return [self.png(threads, name) for name in self.files(threads)
+                    if name.endswith(".png") and "equal-" not in name]
         self.assertEqual(pictures("1"), pictures("2"))
 
     def test_pictures_share_one_exposure(self):
@@ -105,6 +109,122 @@ class Compare(Study):
         text = self.done("study", "compare", "box.toml", "-o", "d", "--lights", "4")
         self.says(text, "no object as a target")
         self.assertEqual((self.folder / "d" / "compare-targets.csv").read_text(), "")
+
+
+# A lit plate under an area lamp, one light group; what varies is put in.
+PLATE = """format = 1
+name = "plate"
+unit = "m"
+
+[[material]]
+name = "paint"
+diffuse = {diffuse}
+emit = {emit}
+
+[[object]]
+name = "ground"
+shape = "quad"
+corners = [[-2, -2, 0], [2, -2, 0], [2, 2, 0], [-2, 2, 0]]
+material = "paint"
+
+[[object]]
+name = "plate"
+shape = "quad"
+corners = [[{x}, -0.5, 0.1], [{x_end}, -0.5, 0.1], [{x_end}, 0.5, 0.1], [{x}, 0.5, 0.1]]
+material = "paint"
+target = true
+
+{light}
+
+[[camera]]
+name = "above"
+position = [0, 0, 3]
+look_at = [0, 0, 0]
+up = [0, 1, 0]
+fov_deg = 50
+resolution = [16, 16]
+
+[quality]
+patch_edge = 1.0
+form_factor_rays = 64
+gather_rays = 16
+"""
+PANEL = """[[light]]
+name = "panel"
+type = "rectangle"
+center = [0, 0, 2]
+edge_u = [0, 0.5, 0]
+edge_v = [0.5, 0, 0]
+exitance = 1000
+"""
+SUN = "[sun]\ndirection = [0, 0, 1]\nilluminance = 1000\n"
+
+
+class CompareEqual(Study):
+    KINDS = ("reached", "levels-out", "not-within")
+
+    def compared(self, diffuse=0.5, emit=0.0, x=-0.5, light=PANEL, more=()):
+        self.write("plate.toml", PLATE.format(diffuse=diffuse, emit=emit, x=x, x_end=x + 1, light=light))
+        printed = self.json("study", "compare", "plate.toml", "-o", "d", "--lights", "4,16", *more)
+        for name in self.files("d"):
+            if name.endswith(".csv"):
+                text = (self.folder / "d" / name).read_text(encoding="utf-8").lower()
+                self.assertNotRegex(text, r"(^|,)-?(nan|inf)", name)
+        return printed
+
+    def test_each_method_has_a_row_at_equal_time_and_for_the_equal_error(self):
+        printed = self.compared()
+        equal = printed["equal"]
+        self.assertGreater(equal["cpu_seconds"], 0)
+        rows = printed["methods"]
+        self.assertEqual(rows[1]["equal_error"], "reached")
+        self.assertEqual(rows[1]["equal_time_seconds"], equal["cpu_seconds"])
+        for row in rows[1:-1]:
+            self.assertIn(row["equal_error"], self.KINDS)
+            self.assertEqual(row["equal_error"] == "reached", row["equal_error_seconds"] is not None)
+            if row["equal_time_seconds"] is not None:
+                self.assertLessEqual(row["equal_time_seconds"], 1.1 * equal["cpu_seconds"])
+        self.assertEqual((rows[0]["equal_error"], rows[-1]["method"]), (None, "noise-floor"))
+        curves = self.table("d", "compare-curves.csv")
+        for row in rows[1:-1]:
+            points = [float(point["relative_rmse"]) for point in curves if point["method"] == row["method"]]
+            self.assertEqual(min(points), row["least_rmse"])
+        self.assertEqual([row["lights"] for row in self.table("d", "compare-lights.csv")], ["4", "16"])
+        bases = {row["basis"] for row in self.table("d", "compare-equal-targets.csv")}
+        self.assertLessEqual({"equal-time", "equal-error"}, bases | {"equal-time"})
+
+    def test_time_and_error_can_be_given(self):
+        printed = self.compared(more=("--seconds", "0.05", "--equal-error", "0.9"))
+        self.assertEqual((printed["equal"]["cpu_seconds"], printed["equal"]["relative_rmse"]), (0.05, 0.9))
+        self.assertEqual(printed["methods"][3]["equal_error"], "reached")
+
+    def test_a_target_out_of_view_has_no_figures(self):
+        printed = self.compared(x=9.0)
+        self.assertEqual(printed["verdicts"][0], {"target": "plate", "verdict": "not-in-view",
+                                                  "sentence": "plate: not in view."})
+        self.assertTrue(all(row["luminance_cd_m2"] is None and row["decided"] is None for row in printed["targets"]))
+
+    def test_black_surfaces_leave_nothing_between_the_methods(self):
+        printed = self.compared(diffuse=0.0)
+        self.assertEqual({row["relative_rmse"] for row in printed["methods"]}, {0})
+        self.assertEqual({row["equal_error"] for row in printed["methods"][1:-1]}, {"reached"})
+        self.says(printed["verdicts"][0]["sentence"], "would not have misled", "black in both")
+
+    def test_a_target_that_is_a_source_is_said_to_be(self):
+        self.says(self.compared(emit=500.0)["verdicts"][0]["sentence"], "plate (itself a source): 16 distributed lights")
+
+    def test_without_anything_wide_the_approximation_is_direct_light(self):
+        printed = self.compared(light=SUN)
+        self.assertFalse(printed["wide_sources"])
+        # The number of lights then changes nothing.
+        self.assertEqual(printed["methods"][2]["relative_rmse"], printed["methods"][3]["relative_rmse"])
+        self.says(self.done("study", "compare", "plate.toml", "-o", "d", "--lights", "4"), "direct light alone")
+
+    def test_difference_pictures_have_a_caption(self):
+        self.compared()
+        width, height = self.png_size("d", "difference-direct.png")
+        self.assertGreaterEqual(width, 300)
+        self.assertGreater(height, 16 + 9 * 14)
 
 
 class Visibility(Study):
@@ -157,6 +277,9 @@ class Refused(Study):
         self.says(self.refused("study", "compare", "ball.toml"), "study compare", "--output")
         for lights in ("", "1", "4,", "4,x", "-4", "4.5"):
             self.says(self.refused("study", "compare", "ball.toml", "-o", "d", f"--lights={lights}"), "--lights")
+        for option in ("--seconds", "--equal-error"):
+            for value in ("0", "-1", "x", "nan", "inf", ""):
+                self.says(self.refused("study", "compare", "ball.toml", "-o", "d", f"{option}={value}"), option)
         self.says(self.refused("study", "visibility", "ball.toml", "-o", "d", "--camera", "none"), '"none"', "above")
         self.says(self.refused("study", "visibility", "ball.toml", "-o", "d", "--lights", "4"), '"--lights"')
         self.assertEqual(self.files("."), ["ball.toml", "monitored.toml"])  # nothing was begun

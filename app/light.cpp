@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/console.h"
+#include "app/memory.h"
+#include "app/solution.h"
+
+namespace earthshine::app {
+namespace {
+
+// With a time limit and no word on accuracy the solve gets about a third of the time: a coarse one
+// tells how fast the machine and the scene are. Cost grows about with error^-2.5 (patches times
+// rays, docs/validation.md).
+Solved solve_within(const LightCall& wanted, double seconds, StageTimes& times) {
+  constexpr double coarse = 0.2, fine = 0.005, share = 0.3, exponent = 2.5;
+  LoadedScene quick = wanted.loaded;
+  quick.scene.quality.error = coarse;
+  const double before = times.total();
+  Solved light;
+  light.solver = solve_options(quick.scene, wanted.common);
+  light.solved = true;
+  light.solution = solve_or_read(quick, wanted.query, light.solver, "", times);
+  const double taken = std::max(1e-3, times.total() - before);
+  const double error = coarse * std::pow(taken / (share * seconds), 1.0 / exponent);
+  if (error > 0.6 * coarse) return light;
+  quick.scene.quality.error = std::max(fine, error);
+  light.solver = solve_options(quick.scene, wanted.common);
+  light.solution = solve_or_read(quick, wanted.query, light.solver, "", times);
+  return light;
+}
+
+bool says_how_exact(const scenes::Quality& quality) {
+  return quality.error || quality.patch_edge_m || quality.max_patches || quality.form_factor_rays;
+}
+
+Solved solve_or_take(const LightCall& wanted, StageTimes& times) {
+  const RenderCall& call = wanted.call;
+  const LoadedScene& loaded = wanted.loaded;
+  Solved light;
+  light.solver = solve_options(loaded.scene, wanted.common);
+  if (call.indirect != raytrace::Indirect::Radiosity) return light;
+  if (!loaded.effects.solution && call.solution.empty()) {
+    if (loaded.groups.count() == 0) note("note: nothing gives light, the picture is black");
+    return light;
+  }
+  if (call.solution.empty() && steers(call, loaded.scene)) {
+    std::vector<studies::WatchedPicture> whole = wanted.pictures;
+    for (studies::WatchedPicture& picture : whole) picture.options.crop = {};
+    return solve_as_exactly({loaded, wanted.common, wanted.query, whole, call.time_limit_s}, times);
+  }
+  if (call.time_limit_s > 0.0 && call.solution.empty() && !says_how_exact(loaded.scene.quality)) {
+    return solve_within(wanted, call.time_limit_s, times);
+  }
+  light.solution = solve_or_read(loaded, wanted.query, light.solver, call.solution, times);
+  light.solved = true;
+  return light;
+}
+
+}  // namespace
+
+Solved solve_as_exactly(const ExactCall& call, StageTimes& times) {
+  const LoadedScene& loaded = call.loaded;
+  const studies::StudyScene scene{loaded.scene, loaded.groups, loaded.effects, call.query};
+  const auto start = std::chrono::steady_clock::now();
+  double in_stages = 0.0;
+  studies::SteeredSolution found = studies::reach_solution(
+      scene, wanted_error(loaded, call.common, call.time_limit_s, times),
+      [&](const scenes::QualityKnobs& knobs) { return solve_options(knobs, call.common); },
+      call.pictures,
+      [&](const radiosity::SolveReport& report) {
+        times.add(report.seconds);
+        for (const auto& [stage, seconds] : report.seconds) in_stages += seconds;
+      });
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  times.add({{"second opinion", std::max(0.0, taken.count() - in_stages)}});
+  note_balance(found.solution.report.balance);
+  Solved light;
+  light.solution = std::move(found.solution);
+  light.solver = found.solver;
+  light.solved = light.steered = true;
+  light.errors = std::move(found.opinion.pictures);
+  light.surface = std::move(found.surface);
+  light.steps = std::move(found.steps);
+  light.trials = std::move(found.trials);
+  light.limit = found.limit;
+  return light;
+}
+
+bool steers(const RenderCall& call, const scenes::Scene& scene) {
+  return scene.quality.error && call.indirect != raytrace::Indirect::Paths;
+}
+
+studies::Wanted wanted_error(const LoadedScene& loaded, const Common& common, double time_limit_s,
+                             const StageTimes& times) {
+  studies::Wanted wanted;
+  wanted.error = loaded.scene.quality.error.value_or(wanted.error);
+  wanted.seconds = time_limit_s;
+  const double before = times.total();
+  const auto start = std::chrono::steady_clock::now();
+  wanted.now = [before, start] {
+    const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;
+    return before + gone.count();
+  };
+  wanted.fits = [&loaded, &common](double patches, int rays) {
+    radiosity::SolveOptions options = solve_options(loaded.scene, common);
+    options.form_factor_rays = rays;
+    return patches_fit(loaded, options, static_cast<std::size_t>(patches));
+  };
+  return wanted;
+}
+
+Solved find_light(const LightCall& wanted, StageTimes& times) {
+  Solved light = solve_or_take(wanted, times);
+  if (light.solved && !wanted.common.quiet) note_backs(light.solution.report);
+  if (!light.errors.empty()) return light;
+  const LoadedScene& loaded = wanted.loaded;
+  light.errors = times.measure("second opinion", [&] {
+    return studies::second_opinion({loaded.scene, loaded.groups, loaded.effects, wanted.query},
+                                   light.solution, light.solver, wanted.pictures)
+        .pictures;
+  });
+  return light;
+}
+
+}  // namespace earthshine::app

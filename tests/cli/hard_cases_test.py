@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scenes that are likely to fool an error estimate: the bound holds, or what is missing is named."""
+import math
+import sys
+import unittest
+
+import program
+
+sys.path.insert(0, str(program.TOP / "tests" / "validation"))
+import error_truth  # noqa: E402
+import hard_scenes  # noqa: E402
+
+
+class HardCases(program.Case):
+    def picture(self, hard, *options, name="out.exr"):
+        """(report, luminances)"""
+        self.write("hard.toml", hard.text)
+        report = self.json("render", "hard.toml", "--error", "0.1", "-o", name, *options)
+        return report, error_truth.picture(self.folder / name)[0]
+
+    def holds(self, hard, paths, size="16x16"):
+        """The true error of the picture, by two runs of the path tracer, is within the bound that is stated."""
+        report, light = self.picture(hard, "--size", size)
+        references = []
+        for seed in (71, 72):
+            self.done("render", "hard.toml", "--size", size, "--indirect", "paths", "--seed", seed,
+                      "--set", f"quality.gather_rays={paths}", "-o", "paths.exr")
+            references.append(error_truth.picture(self.folder / "paths.exr")[0])
+        truth = error_truth.compare(light, *references)
+        error = report["error"]
+        # The references' noise is in the square's standard error.
+        self.assertLess(truth.error**2, error["bound_95"]**2 + 4 * truth.doubt, (truth.error, error))
+        self.assertLess(error["estimate"], error["bound_95"])
+        return truth, error
+
+    def test_a_small_emitter_that_form_factor_rays_would_miss(self):
+        hard = hard_scenes.small_emitter()
+        self.holds(hard, 256)
+        self.mean_is_known(hard)
+
+    def mean_is_known(self, hard):
+        """The mean illuminance that conservation demands: a mean's error is at most the root mean square error, which is stated
+        over the root mean square, and that is no less than the mean."""
+        solved = self.json("solve", "hard.toml", "--error", "0.1")
+        area = sum(thing["area_m2"] for thing in solved["objects"])
+        mean = sum(thing["area_m2"] * thing["illuminance_lx"][1] for thing in solved["objects"]) / area
+        self.assertLess(abs(mean / hard.mean - 1), max(solved["error"]["bound_95"], 1e-6))
+
+    def test_an_emitter_that_form_factors_carry(self):
+        self.holds(hard_scenes.wide_emitter(), 256)
+
+    def test_a_small_spot_in_the_sun_lights_the_room(self):
+        self.holds(hard_scenes.sun_spot(), 2048, "8x8")
+
+    def test_a_picture_of_one_pixel(self):
+        self.holds(hard_scenes.one_pixel(), 16384, "1x1")
+
+    def test_next_to_nothing_to_see(self):
+        truth, error = self.holds(hard_scenes.black_picture(), 256)
+        self.assertLess(truth.mean, 1e-11)
+        self.assertLess(error["bound_95"], 0.2)  # relative, as ever
+
+    def test_a_hundred_reflections(self):
+        hard = hard_scenes.white_room()
+        report, light = self.picture(hard)
+        for value in light:
+            self.assertAlmostEqual(value, hard.light, delta=1e-4 * hard.light)
+        self.assertFalse(report["error"]["estimate"])  # every pixel shows a source itself
+        self.mean_is_known(hard)
+
+    def test_a_hundred_reflections_of_a_lamp(self):
+        hard = hard_scenes.lit_white_room()
+        self.picture(hard)
+        self.mean_is_known(hard)
+
+    def test_a_target_in_full_shadow_is_less_sure_than_the_picture(self):
+        hard = hard_scenes.shadowed_target()
+        report, light = self.picture(hard, "--size", "48x48")
+        target, = report["error"]["targets"]
+        self.assertEqual(target["name"], hard.target)
+        self.assertLess(target["luminance_cd_m2"], 0.2 * sum(light) / len(light))
+        self.assertGreater(target["bound_95"], 2 * report["error"]["bound_95"])
+
+    def test_a_caustic_is_named(self):
+        report, _ = self.picture(hard_scenes.caustic())
+        self.says(" ".join(report["error"]["not_captured"]), "caustics", "mirrors")
+        report, _ = self.picture(hard_scenes.small_emitter(), "--size", "8x8")
+        self.assertEqual(report["error"]["not_captured"], [])
+
+    def test_nothing_to_state(self):
+        for hard in (hard_scenes.sky_alone(), hard_scenes.no_light()):
+            report, light = self.picture(hard, "--size", "8x8")
+            self.assertEqual(max(light), 0)
+            self.assertFalse(report["error"]["estimate"])
+            self.assertFalse(report["error"]["bound_95"])
+
+
+if __name__ == "__main__":
+    unittest.main()

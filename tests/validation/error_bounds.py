@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Are the stated errors honest? `./dev validate --errors` runs this; its output is a part of docs/validation.md.
+
+    error_bounds.py PROGRAM [--quick] [--only NAME] [--cache DIR] [--seed N]
+
+Renders and solves shipped scenes and random rooms by many settings, and compares what the program states with the true
+error: against two independent references with ten times the patches and 64 camera samples of 64 gather rays a pixel, not
+shared (error_truth.py; their noise drops out). Ends with code 1 unless at least 90 % of the true errors lie within the
+bounds and the median of bound over true error is 3 or less. References are kept in DIR (out/error-references).
+"""
+import argparse
+import concurrent.futures
+import dataclasses
+import hashlib
+import json
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import error_scenes
+import error_truth
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+FINER = 10  # of the references, in patches
+REFERENCE_RAYS = 1024  # form-factor rays per patch of a reference, or as many as the settings have
+REFERENCE_GATHER = 4096  # gather rays per pixel of a reference: 64 from each of 64 camera samples
+SHARE, MEDIAN = 0.9, 3.0  # asked for
+# Of a true error: below, the references' own noise and rounding decide, and a ratio says nothing.
+LEAST = 1e-3
+
+
+@dataclasses.dataclass
+class Row:
+    kind: str  # picture or solve
+    scene: str
+    asked: str
+    patches: int
+    estimate: float
+    bound: float
+    parts: dict
+    truth: error_truth.Truth
+
+    @property
+    def within(self):
+        return self.truth.error <= self.bound or self.truth.error < LEAST
+
+    @property
+    def ratio(self):
+        return self.bound / self.truth.error if self.truth.error >= LEAST else math.nan
+
+    @property
+    def unsure(self):
+        """Standard error of the true error, from that of its square."""
+        return self.truth.doubt / (2 * self.truth.error) if self.truth.error > 0 else math.sqrt(self.truth.doubt)
+
+
+class Bench:
+    """The program, and a folder for its files."""
+
+    def __init__(self, program, folder, cache, seed):
+        self.program, self.folder, self.cache, self.seed = program, folder, cache, seed
+
+    def json(self, *words):
+        run = subprocess.run([self.program, *map(str, words), "-q", "--json", "-j", "1"], cwd=self.folder,
+                             stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        if run.returncode != 0:
+            raise RuntimeError(f"{' '.join(map(str, words))}: {run.stderr.strip()}")
+        return json.loads(run.stdout)
+
+    def scene(self, name, source, more):
+        """(path, text for the key of its references) of a scene given as file or text."""
+        if isinstance(source, pathlib.Path):
+            meshes = sorted(source.parent.glob("meshes/*"))
+            return source, "".join([source.read_text(), *map(str, more), *(hash_of(m.read_bytes()) for m in meshes)])
+        path = self.folder / (name.replace(" ", "-") + ".toml")
+        path.write_text(source)
+        return path, source
+
+    def sources_seen(self, path, more):
+        """Pixels of which a camera sample met a source itself: with black surfaces nothing else shines."""
+        black = []
+        for material in self.json("inspect", path)["materials"]:
+            for key in ("diffuse", "specular", "mirror", "transmit"):
+                black += ["--set", f"material.{material['name']}.{key}=0"]
+        out = self.folder / f"{path.parent.name}-{path.stem}-black.exr"
+        self.json("render", path, "-o", out, "--indirect", "none", *more, *black,
+                  *error_scenes.knobs(gather="per-sample", gather_rays=REFERENCE_GATHER))
+        return [light > 0 for light in error_truth.picture(out)[0]]
+
+    def references(self, path, text, more, patches, rays):
+        """(folder, luminances of both references, pixels that count), from the cache if they are there."""
+        fine = error_scenes.knobs(max_patches=rounded_up(FINER * patches), form_factor_rays=max(REFERENCE_RAYS, rays))
+        fine += error_scenes.knobs(refine="true", gather="per-sample", gather_rays=REFERENCE_GATHER)
+        folder = self.cache / hash_of(text, *fine)[:16]
+        if not (folder / "done").exists():
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.mkdir(parents=True)
+            for k in (1, 2):
+                seed = ["--seed", 9000 + k]
+                self.json("solve", path, *fine, *seed, "-o", folder / f"{k}.h5")
+                self.json("render", path, *fine, *seed, *more, "--solution", folder / f"{k}.h5", "--aov", "object",
+                          "-o", folder / f"{k}.exr")
+            (folder / "seen").write_text(json.dumps([int(seen) for seen in self.sources_seen(path, more)]))
+            (folder / "done").touch()
+        first, things = error_truth.picture(folder / "1.exr", "object")
+        second, _ = error_truth.picture(folder / "2.exr")
+        seen = json.loads((folder / "seen").read_text())
+        return folder, first, second, [float(o >= 0 and not s) for o, s in zip(things, seen)]
+
+    def rows(self, name, source, more, asked):
+        """Everything that is asked of one scene."""
+        path, text = self.scene(name, source, more)
+        if isinstance(source, pathlib.Path):
+            more = [*more, "--size", "64x64"]
+        runs = []
+        for setting in asked:
+            words = error_scenes.ASKED[setting] + ["--seed", self.seed]
+            stem = self.folder / f"{name} {setting}".replace(" ", "-").replace("/", "-")
+            solved = self.json("solve", path, *words, "-o", f"{stem}.h5")
+            rendered = self.json("render", path, *words, *more, "-o", f"{stem}.exr")
+            runs.append((setting, stem, solved, rendered))
+        patches = max(solved["patches"] for _, _, solved, _ in runs)
+        rays = max(solved["rays"] // max(1, solved["patches"]) for _, _, solved, _ in runs)
+        folder, first, second, counts = self.references(path, text, more, patches, power_of_two(rays))
+        found = []
+        for setting, stem, solved, rendered in runs:
+            light, _ = error_truth.picture(f"{stem}.exr")
+            truths = (("solve", solved, error_truth.compare_solutions(f"{stem}.h5", folder / "1.h5", folder / "2.h5")),
+                      ("picture", rendered, error_truth.compare(light, first, second, counts)))
+            for kind, report, truth in truths:
+                error = report["error"]
+                if error["estimate"] is None and truth.mean == 0:
+                    continue  # no pixel that counts, and the program says so
+                parts = {key: part["estimate"] for key, part in error["parts"].items()}
+                found.append(Row(kind, name, setting, solved["patches"], error["estimate"] or 0.0,
+                                 error["bound_95"] or 0.0, parts, truth))
+        return found
+
+
+def hash_of(*what):
+    digest = hashlib.sha256()
+    for one in what:
+        digest.update(one if isinstance(one, bytes) else str(one).encode())
+    return digest.hexdigest()
+
+
+def power_of_two(number):
+    return 1 << max(0, math.ceil(math.log2(max(1, number))))
+
+
+def rounded_up(number):
+    """To a power of the root of two, so that a program that cuts a little otherwise finds its references."""
+    return math.ceil(2 ** (math.ceil(2 * math.log2(number)) / 2))
+
+
+def median(values):
+    values = sorted(values)
+    middle = len(values) // 2
+    return values[middle] if len(values) % 2 else (values[middle - 1] + values[middle]) / 2
+
+
+def percent(value):
+    return f"{100 * value:.2g} %"
+
+
+def table(rows):
+    print("| scene | asked for | patches | estimate | bound 95 % | its parts | true error | bound / true |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    for row in rows:
+        parts = ", ".join(f"{key.replace('_', ' ')} {percent(value)}" for key, value in row.parts.items()
+                          if value > 0.2 * row.estimate)  # those that make up 96 % of the square and more
+        mark = "" if row.within else " **outside**"
+        ratio = f"{row.ratio:.2f}" if row.truth.error >= LEAST else ""
+        print(f"| {row.scene} | {row.asked} | {row.patches} | {percent(row.estimate)} | {percent(row.bound)} | {parts} | "
+              f"{percent(row.truth.error)} ± {percent(row.unsure)} | {ratio}{mark} |")
+
+
+def summary(kind, rows):
+    """Prints how often the bound held; whether that is what was asked for."""
+    share = sum(row.within for row in rows) / len(rows)
+    unsure = math.sqrt(share * (1 - share) / len(rows))
+    ratios = [row.ratio for row in rows if not math.isnan(row.ratio)]
+    middle = median(ratios) if ratios else math.nan
+    good = share >= SHARE and not middle > MEDIAN
+    print(f"\n{kind.capitalize()}: {sum(row.within for row in rows)} of {len(rows)} true errors within the bound, "
+          f"{100 * share:.0f} ± {100 * unsure:.0f} % (asked: {100 * SHARE:.0f} %); bound over true error {middle:.2f} in "
+          f"the median of {len(ratios)} (asked: at most {MEDIAN:.0f}), {min(ratios, default=math.nan):.2f} to "
+          f"{max(ratios, default=math.nan):.1f}. {'Holds' if good else 'Does not hold'}.")
+    return good
+
+
+def main():
+    parser = argparse.ArgumentParser(description="are the stated errors honest?")
+    parser.add_argument("program", type=pathlib.Path)
+    parser.add_argument("--quick", action="store_true", help="a few scenes")
+    parser.add_argument("--only", action="append", help="the scene of this name")
+    parser.add_argument("--cache", type=pathlib.Path, default=TOP / "out" / "error-references")
+    parser.add_argument("--seed", type=int, default=1, help="of the runs that are judged")
+    parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count())
+    call = parser.parse_args()
+    rows = []
+    with tempfile.TemporaryDirectory(prefix="errors-") as folder:
+        bench = Bench(call.program.resolve(), pathlib.Path(folder), call.cache.resolve(), call.seed)
+        (bench.folder / "flood.ies").write_text(error_scenes.IES)
+        chosen = [case for case in error_scenes.cases(call.quick) if not call.only or case[0] in call.only]
+        with concurrent.futures.ThreadPoolExecutor(call.jobs) as pool:
+            for k, found in enumerate(pool.map(lambda case: bench.rows(*case), chosen)):
+                rows += found
+                print(f"{k + 1} of {len(chosen)} scenes: {chosen[k][0]}", file=sys.stderr)
+    good = []
+    for kind, title in (("picture", "Pictures"), ("solve", "Radiosities, over all surface")):
+        print(f"\n{title}:\n")
+        mine = [row for row in rows if row.kind == kind]
+        table(mine)
+        good.append(summary(kind, mine))
+    return 0 if all(good) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
