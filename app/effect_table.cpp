@@ -9,6 +9,7 @@
 #include "app/cctv_plan.h"
 #include "app/console.h"
 #include "app/memory.h"
+#include "base/parallel.h"
 
 namespace earthshine::app {
 namespace {
@@ -67,9 +68,21 @@ Expectation expect(const LoadedScene& loaded, const RenderCall& call, const Comm
   for (const scenes::Camera* camera : asked.cameras) {
     options.push_back(picture_options(call, common, loaded, *camera));
   }
+  // Looked at once, for the memory and for the solver's seconds.
+  studies::MemoryCase sizes =
+      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
+  if (!loaded.effects.solution) {
+    sizes.solves = false;
+    sizes.columns = 0;
+  }
+  if (!call.solution.empty()) sizes.solves = false;
+  studies::expect_rows(sizes, loaded.scene, query, solver);
   Expectation expected;
   expected.pilot = studies::expect_costs(
-      {loaded.scene, loaded.groups, loaded.effects, query, solver}, asked.cameras, options);
+      {loaded.scene, loaded.groups, loaded.effects, query, solver, sizes.row_entries},
+      asked.cameras, options);
+  // The pilot's own solve only lights its pictures then.
+  if (!call.solution.empty()) expected.pilot.bill.solve = {};
   expected.costs = studies::effect_costs(expected.pilot.bill, loaded.effects);
   studies::EffectCost cctv{"cctv"};
   Common quiet = common;
@@ -83,13 +96,6 @@ Expectation expect(const LoadedScene& loaded, const RenderCall& call, const Comm
   }
   expected.costs.push_back(cctv);
 
-  studies::MemoryCase sizes =
-      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
-  if (!loaded.effects.solution) {
-    sizes.solves = false;
-    sizes.columns = 0;
-  }
-  studies::expect_rows(sizes, loaded.scene, query, solver);
   expected.memory = studies::memory_needed(sizes);
   for (const raytrace::RenderOptions& picture : options) {
     studies::MemoryCase with_picture = sizes;
@@ -150,9 +156,11 @@ void add_expectation(Json& rows, const Expectation& expected) {
 Json report_json(const LoadedScene& loaded, const RenderCall& call, const scenes::Asked& asked,
                  const std::vector<scenes::Idle>& idle, const Expectation& expected,
                  const radiosity::SolveReport& solved, const std::vector<Picture>& pictures,
-                 const StageTimes& times) {
+                 const StageTimes& times, double cpu_seconds) {
+  const double threads = base::available_threads();
   studies::Bill bill;
-  bill.solve = solved;
+  // What a solution cost that was read stands with whoever solved it.
+  if (call.solution.empty()) bill.solve = solved;
   studies::EffectCost cctv{"cctv"};
   for (const Picture& picture : pictures) {
     bill.pictures.push_back(picture.rendered);
@@ -170,14 +178,18 @@ Json report_json(const LoadedScene& loaded, const RenderCall& call, const scenes
   }
   return {{"scene", loaded.scene.path.string()},
           {"name", loaded.scene.name},
+          {"solution", call.solution.empty() ? Json(nullptr) : Json(call.solution)},
           {"effects", rows},
           {"expected",
            {{"seconds", studies::total_seconds(expected.pilot.bill)},
             {"patches", expected.pilot.bill.solve.patches},
             {"memory_mib", memory_json(expected.memory)["total_mib"]},
-            {"pilot_seconds", expected.pilot.seconds}}},
+            {"cpu_seconds", studies::total_seconds(expected.pilot.bill) * threads},
+            {"pilot_seconds", expected.pilot.seconds},
+            {"pilot_cpu_seconds", expected.pilot.cpu_seconds}}},
           {"taken",
            {{"seconds", studies::total_seconds(bill)},
+            {"cpu_seconds", cpu_seconds},
             {"patches", solved.patches},
             {"memory_mib", peak_memory_mib()},
             {"stages", times.json()}}}};

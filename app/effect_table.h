@@ -32,11 +32,13 @@ struct Expectation {
 // Appends a row for the camera rays, which every picture has.
 void add_expectation(Json& rows, const Expectation& expected);
 
-// The table once more with what each effect really took, in `taken` beside `expected`.
+// The table once more with what each effect really took, in `taken` beside `expected`. cpu_seconds:
+// of solve and pictures, all threads.
 [[nodiscard]] Json report_json(const LoadedScene& loaded, const RenderCall& call,
                                const scenes::Asked& asked, const std::vector<scenes::Idle>& idle,
                                const Expectation& expected, const radiosity::SolveReport& solved,
-                               const std::vector<Picture>& pictures, const StageTimes& times);
+                               const std::vector<Picture>& pictures, const StageTimes& times,
+                               double cpu_seconds);
 
 // As columns; cells that a row has no value for stay empty.
 [[nodiscard]] std::string effect_text(const Json& rows);

@@ -11,6 +11,7 @@
 #include "app/effect_table.h"
 #include "app/memory.h"
 #include "app/render_call.h"
+#include "base/parallel.h"
 #include "radiosity/refine.h"
 #include "scenes/quality.h"
 
@@ -83,7 +84,9 @@ void add_seconds(Json& report, const LoadedScene& loaded, const RenderCall& call
   report["expected"] = {{"seconds", studies::total_seconds(bill)},
                         {"solve_seconds", studies::total_seconds(bill) - pictures},
                         {"patches", bill.solve.patches},
-                        {"pilot_seconds", expected.pilot.seconds}};
+                        {"cpu_seconds", studies::total_seconds(bill) * base::available_threads()},
+                        {"pilot_seconds", expected.pilot.seconds},
+                        {"pilot_cpu_seconds", expected.pilot.cpu_seconds}};
 }
 
 Json report_of(const RenderCall& call, const Common& common) {

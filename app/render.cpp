@@ -20,6 +20,7 @@
 #include "app/study.h"
 #include "base/error.h"
 #include "base/output_file.h"
+#include "base/parallel.h"
 #include "base/png_file.h"
 #include "raytrace/camera_check.h"
 
@@ -161,6 +162,7 @@ void run(RenderCall call, const Common& common) {
   if (!call.report.empty()) {
     expected = times.measure("pilot", [&] { return expect(loaded, call, common, asked, query); });
   }
+  const double cpu_before = base::cpu_seconds();
   std::vector<studies::WatchedPicture> watched;
   for (const Wanted& picture : pictures) {
     watched.push_back({picture.camera, picture_options(call, common, loaded, *picture.camera)});
@@ -187,8 +189,9 @@ void run(RenderCall call, const Common& common) {
     }
   }
   if (expected) {
-    base::write_text(call.report, dump(report_json(loaded, call, asked, idle, *expected,
-                                                   light.solution.report, taken, times)));
+    base::write_text(call.report,
+                     dump(report_json(loaded, call, asked, idle, *expected, light.solution.report,
+                                      taken, times, base::cpu_seconds() - cpu_before)));
   }
   if (call.json) print(dump(reports.size() == 1 ? reports.front() : reports));
   if (whole) return;

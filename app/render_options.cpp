@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "app/render_call.h"
+#include "radiosity/walls.h"
 
 namespace earthshine::app {
 namespace {
@@ -159,9 +160,9 @@ std::vector<scenes::Idle> decide_effects(LoadedScene& loaded, const RenderCall& 
   const bool reference = call.indirect == raytrace::Indirect::Paths;
   if (call.all_effects || reference || !call.solution.empty()) return {};
   constexpr double default_error = 0.02;
-  return scenes::switch_off_idle(loaded.scene, asked,
-                                 loaded.scene.quality.error.value_or(default_error), loaded.groups,
-                                 loaded.effects);
+  return scenes::switch_off_idle(
+      loaded.scene, asked, loaded.scene.quality.error.value_or(default_error),
+      radiosity::hidden_lights(loaded.scene, asked.cameras), loaded.groups, loaded.effects);
 }
 
 scenes::Asked asked_of(const RenderCall& call, std::vector<const scenes::Camera*> cameras) {
@@ -172,6 +173,7 @@ scenes::Asked asked_of(const RenderCall& call, std::vector<const scenes::Camera*
   if (call.indirect == raytrace::Indirect::Distributed) {
     asked.paths = scenes::LightPaths::Distributed;
   }
+  asked.earth_on_area = !call.distributed_over.empty();
   asked.per_light = call.per_light;
   asked.layers = call.aovs;
   return asked;

@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include <atomic>
+#include <ctime>
 
 #ifdef __SANITIZE_THREAD__
 #include <exception>
@@ -56,7 +57,14 @@ ThreadLimit::ThreadLimit(int threads)
 
 ThreadLimit::~ThreadLimit() { delete static_cast<tbb::global_control*>(control_); }
 
-int available_threads() { return tbb::info::default_concurrency(); }
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+// No more than cores, and than the ThreadLimit in force allows.
+int available_threads() {
+  const auto allowed =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return std::min(tbb::info::default_concurrency(), static_cast<int>(allowed));
+}
 
 void parallel_chunks(std::size_t count, std::size_t chunk,
                      const std::function<void(std::size_t, std::size_t)>& body) {

@@ -24,6 +24,10 @@ class ThreadLimit {
 
 [[nodiscard]] int available_threads();
 
+// CPU seconds of this process so far, all threads together: what others on the machine take is not
+// in it.
+[[nodiscard]] double cpu_seconds();
+
 // Calls body(begin, end) over [0, count) in chunks of at most `chunk` items. body may write only to
 // the slots it owns. The first exception is rethrown on the calling thread.
 void parallel_chunks(std::size_t count, std::size_t chunk,

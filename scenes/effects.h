@@ -25,6 +25,7 @@ enum class LightPaths {
 struct Asked {
   std::vector<const Camera*> cameras;  // empty: all of the scene's
   LightPaths paths = LightPaths::All;
+  bool earth_on_area = false;  // its lights stand on an [[area]] of the scene, not in the sky
   bool per_light = false;
   std::vector<std::string> layers;
 };

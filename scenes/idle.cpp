@@ -126,65 +126,98 @@ class IdleFinder {
   double extent_ = 0.0;  // m
 };
 
+// Once the others are decided: the bounds of light between surfaces.
+std::vector<Idle> skip_interreflection(const IdleFinder& finder, double wanted_error,
+                                       Effects& effects) {
+  const bool read_otherwise = effects.phong || effects.mirror || effects.refraction ||
+                              effects.emitters || effects.earth_by_gather;
+  if (!effects.solution || read_otherwise) return {};
+  Idle idle{"interreflection", "cannot matter: no surface is in front of another"};
+  const double r = finder.largest_reflectance();
+  const double error = r < 1.0 ? r / (1.0 - r) : 1.0;
+  if (error <= small_share * wanted_error) {
+    idle.error = error;
+    idle.why = fmt::format(
+        "cannot matter: reflectances up to {:.2g} leave out {:.2g} of the "
+        "light at most, the wanted error is {:g}",
+        r, error, wanted_error);
+  } else if (finder.any_facing()) {
+    return {};
+  }
+  effects.interreflection = effects.solution = false;
+  return {idle};
+}
+
 }  // namespace
 
 std::vector<Idle> switch_off_idle(const Scene& scene, const Asked& asked, double wanted_error,
-                                  LightGroups& groups, Effects& effects) {
+                                  const HiddenLights& hidden, LightGroups& groups,
+                                  Effects& effects) {
   std::vector<Idle> idle;
   const IdleFinder finder(scene);
   std::vector<const Camera*> cameras = asked.cameras;
   for (const Camera& camera : scene.cameras) {
     if (asked.cameras.empty()) cameras.push_back(&camera);
   }
+  const char* const walled = "cannot matter: closed walls stand between it and every camera";
   const bool sun_idle =
-      effects.sun && finder.below_every_horizon(scene.sun->direction,
-                                                base::radians(scene.sun->angular_radius_deg));
+      effects.sun &&
+      (hidden.sky || finder.below_every_horizon(scene.sun->direction,
+                                                base::radians(scene.sun->angular_radius_deg)));
   const bool earth_idle =
-      effects.earth && finder.below_every_horizon(scene.earth->direction,
-                                                  base::radians(scene.earth->half_angle_deg));
+      effects.earth && !asked.earth_on_area &&
+      (hidden.sky || finder.below_every_horizon(scene.earth->direction,
+                                                base::radians(scene.earth->half_angle_deg)));
   bool lamp_idle = false;
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
-    if (groups.lamp[k] == no_group || !finder.lights_nothing(scene.lamps[k], cameras)) continue;
+    if (groups.lamp[k] == no_group) continue;
+    const Lamp& lamp = scene.lamps[k];
+    const bool shut_in = k < hidden.lamps.size() && hidden.lamps[k];
+    if (!shut_in && !finder.lights_nothing(lamp, cameras)) continue;
     groups.lamp[k] = no_group;
     lamp_idle = true;
     idle.push_back(
-        {std::string(effect_of(kind_of(scene.lamps[k].kind))),
-         fmt::format("cannot matter: no surface and no camera is in reach of lamp \"{}\"",
-                     scene.lamps[k].name)});
+        {std::string(effect_of(kind_of(lamp.kind))),
+         shut_in
+             ? fmt::format("cannot matter: closed walls stand between lamp \"{}\" and every camera",
+                           lamp.name)
+             : fmt::format("cannot matter: no surface and no camera is in reach of lamp \"{}\"",
+                           lamp.name)});
   }
   if (lamp_idle) effects = find_effects(scene, groups, asked);
   if (sun_idle) {
+    if (effects.penumbra) {
+      idle.push_back({"penumbra", "cannot matter: no sunlight reaches what a camera sees"});
+    }
     effects.sun = effects.penumbra = false;
-    idle.push_back({"sun", "cannot matter: it is below the horizon of every surface"});
-    idle.push_back({"penumbra", "cannot matter: no sunlight reaches a surface"});
+    idle.push_back(
+        {"sun", hidden.sky ? walled : "cannot matter: it is below the horizon of every surface"});
   }
   if (earth_idle) {
     effects.earth = effects.earth_by_gather = false;
-    idle.push_back({"earth", "cannot matter: its disc is below the horizon of every surface"});
+    idle.push_back(
+        {"earth",
+         hidden.sky ? walled : "cannot matter: its disc is below the horizon of every surface"});
   }
-  if (!effects.sun && !effects.earth && !effects.lamps && !effects.emitters && !idle.empty()) {
-    if (effects.interreflection) {
-      idle.push_back({"interreflection", "cannot matter: no light reaches a surface"});
-    }
-    effects.interreflection = effects.solution = effects.phong = effects.glossy = false;
+  if (idle.empty()) return skip_interreflection(finder, wanted_error, effects);
+  const bool lit = effects.sun || effects.earth || effects.lamps || effects.emitters;
+  const auto forget = [&](const char* effect, bool& runs, const char* why) {
+    if (runs) idle.push_back({effect, why});
+    runs = false;
+  };
+  const bool goes_on = asked.paths == LightPaths::All || asked.paths == LightPaths::Traced;
+  if (!lit) {
+    const char* const dark = "cannot matter: no light is left that could reach a surface";
+    forget("interreflection", effects.interreflection, dark);
+    forget("phong lobe", effects.phong, dark);
+    forget("glossy reflection", effects.glossy, dark);
+    effects.solution = false;
+  } else if (!goes_on && !effects.earth_by_gather) {
+    forget("glossy reflection", effects.glossy, "cannot matter: it has the Earth alone to show");
   }
-  const bool read_otherwise = effects.phong || effects.mirror || effects.refraction ||
-                              effects.emitters || effects.earth_by_gather;
-  if (!effects.solution || read_otherwise) return idle;
-  const double r = finder.largest_reflectance();
-  const double error = r < 1.0 ? r / (1.0 - r) : 1.0;
-  if (error <= small_share * wanted_error) {
-    idle.push_back({"interreflection",
-                    fmt::format("cannot matter: reflectances up to {:.2g} leave out {:.2g} of the "
-                                "light at most, the wanted error is {:g}",
-                                r, error, wanted_error),
-                    error});
-  } else if (!finder.any_facing()) {
-    idle.push_back({"interreflection", "cannot matter: no surface is in front of another"});
-  } else {
-    return idle;
+  for (Idle& row : skip_interreflection(finder, wanted_error, effects)) {
+    idle.push_back(std::move(row));
   }
-  effects.interreflection = effects.solution = false;
   return idle;
 }
 

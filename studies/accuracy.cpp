@@ -6,6 +6,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "radiosity/walls.h"
 #include "raytrace/path_tracer.h"
 #include "scenes/idle.h"
 #include "scenes/quality.h"
@@ -76,7 +77,8 @@ struct Asked {
     effects = scenes::find_effects(study.scene, groups, asked);
     if (step.indirect == Indirect::Paths) return;
     (void)scenes::switch_off_idle(study.scene, asked, step.quality.error.value_or(default_error),
-                                  groups, effects);
+                                  radiosity::hidden_lights(study.scene, asked.cameras), groups,
+                                  effects);
   }
 };
 

@@ -26,23 +26,21 @@ struct PilotCall {
   const scenes::Effects& effects;
   const scenes::RayQuery& query;
   radiosity::SolveOptions solver;
+  double row_entries = 0.0;  // form factors of a mean row (radiosity/row_pilot.h)
 };
 
 // What the run will take: the scene is solved on the coarse patches that refinement starts from,
-// with a sixteenth of the rays, and each picture is drawn with a few thousand pixels; rays and
-// seconds are scaled to the patches, rows and pixels of the run.
-//   patches       until the refinement's error, extrapolated from its first rounds by a power law
-//   form factors  seconds per ray; linear solve and balance: seconds per entry and column
-//   picture       rays of each kind and seconds per pixel. Camera samples beyond the least are
-//   spent
-//                 on edges, whose share of the pixels falls with the picture's size; the small one
-//                 is drawn to as much more noise
-// Takes a few tenths of a second. Of paths a few per pixel are traced. pictures: of the wanted
-// size.
+// with a sixteenth of the rays, and each picture is drawn with a thousand pixels or, where these
+// are cheap, four; rays and seconds are scaled to the patches, rows and pixels of the run
+// (cost_laws.h). Camera samples beyond the least are spent on edges, whose share of the pixels
+// falls with the picture's size; the small one is drawn to as much more noise. Seconds are those of
+// a machine that does nothing else: CPU seconds over threads. Takes some tenths of a CPU second,
+// more where the scene has more faces than that. Of paths a few per pixel are traced. pictures: of
+// the wanted size.
 struct Pilot {
   Bill bill;
-  std::vector<base::Image> pictures;  // the small ones
-  double seconds = 0.0;               // that the pilot took
+  std::vector<base::Image> pictures;        // the small ones
+  double seconds = 0.0, cpu_seconds = 0.0;  // that the pilot took, wall and all threads
 };
 [[nodiscard]] Pilot expect_costs(const PilotCall& call,
                                  const std::vector<const scenes::Camera*>& cameras,

@@ -5,11 +5,15 @@
 #include <benchmark/benchmark.h>
 
 #include <functional>
+#include <memory>
 #include <string>
 
+#include "degrade/chain.h"
+#include "degrade/presets.h"
 #include "payload_bay.h"
 #include "radiosity/solution.h"
 #include "raytrace/render.h"
+#include "scenes/photometry.h"
 #include "scenes/quality.h"
 
 namespace earthshine {
@@ -20,6 +24,7 @@ struct Setting {
   std::function<void(scenes::Scene&)> change;
   bool bounces = false;
   std::vector<std::string> layers = {};
+  bool per_light = false, cctv = false;
 };
 
 // The bay under a Sun that is a point, without Earth, highlights, mirrors.
@@ -55,7 +60,42 @@ void lamp(scenes::Scene& scene, scenes::LampKind kind) {
   light.edge_u = {0.5, 0.0, 0.0};
   light.edge_v = {0.0, -0.5, 0.0};
   light.exitance = Rgb(1000.0);
+  if (kind == scenes::LampKind::Measured) {
+    light.photometry = std::make_shared<const scenes::Photometry>(
+        std::vector<double>{0.0, 45.0, 90.0}, std::vector<double>{0.0, 360.0},
+        std::vector<double>{2.0, 1.0, 0.0, 2.0, 1.0, 0.0});
+  }
   scene.lamps.push_back(light);
+}
+
+// A panel of a square metre over the bay.
+void panel(scenes::Scene& scene) {
+  scenes::Material shining;
+  shining.name = shining.light_group = "panel";
+  shining.emit = Rgb(1000.0);
+  scene.materials.push_back(shining);
+  const auto v = static_cast<std::uint32_t>(scene.vertices.size());
+  const auto m = static_cast<std::uint32_t>(scene.materials.size() - 1);
+  const auto o = static_cast<std::uint32_t>(scene.objects.size());
+  for (const Vec3& corner :
+       {Vec3(-0.5, -0.5, 4.0), Vec3(-0.5, 0.5, 4.0), Vec3(0.5, 0.5, 4.0), Vec3(0.5, -0.5, 4.0)}) {
+    scene.vertices.push_back(corner);
+  }
+  scenes::Object object;
+  object.name = "panel";
+  object.first_triangle = static_cast<std::uint32_t>(scene.triangles.size());
+  object.triangle_count = 2;
+  object.polygon_count = 1;
+  object.area_m2 = 1.0;
+  scene.objects.push_back(object);
+  const std::uint32_t polygon = scene.triangles.back().polygon + 1;
+  scene.triangles.push_back({{v, v + 1, v + 2}, o, m, polygon});
+  scene.triangles.push_back({{v, v + 2, v + 3}, o, m, polygon});
+}
+
+void shine(scenes::Material& material) {
+  material.specular = Rgb(0.1);
+  material.shininess = 20.0;
 }
 
 template <class Change>
@@ -78,12 +118,16 @@ std::vector<Setting> settings() {
           {"spot_lamp", adds(LampKind::Spot)},
           {"rectangle_lamp", adds(LampKind::Rectangle)},
           {"disk_lamp", adds(LampKind::Disk)},
+          {"measured_lamp", adds(LampKind::Measured)},
+          {"emitting_surface", panel},
           {"ambient", [](scenes::Scene& s) { s.ambient_radiance = Rgb(100.0); }},
-          {"phong_lobe", materials([](scenes::Material& m) {
-             m.specular = Rgb(0.1);
-             m.shininess = 20.0;
-           })},
+          {"phong_lobe", materials(shine)},
+          {"interreflection_and_glossy", materials(shine), true},
           {"mirror", materials([](scenes::Material& m) { m.mirror = Rgb(0.1); })},
+          {"refraction", materials([](scenes::Material& m) {
+             m.transmit = Rgb(0.1);
+             m.ior = 1.5;
+           })},
           {"depth_of_field",
            [](scenes::Scene& s) {
              for (scenes::Camera& camera : s.cameras) {
@@ -91,7 +135,10 @@ std::vector<Setting> settings() {
                camera.focus_m = 8.0;
              }
            }},
-          {"layers", nothing, false, {"depth", "normal", "crypto_object"}}};
+          {"layers", nothing, false, {"depth", "normal", "crypto_object"}},
+          {"layers_for_a_range_sensor", nothing, false, {"range", "normal", "position", "albedo"}},
+          {"point_lamp_per_light", adds(LampKind::Point), false, {}, true},
+          {"cctv", nothing, false, {}, false, true}};
 }
 
 void run(benchmark::State& state, const Setting& setting) {
@@ -109,6 +156,7 @@ void run(benchmark::State& state, const Setting& setting) {
   raytrace::RenderOptions picture = raytrace::render_options(knobs);
   picture.columns = picture.rows = 128;
   picture.aovs = setting.layers;
+  picture.per_light = setting.per_light;
   picture.indirect = setting.bounces ? raytrace::Indirect::Radiosity : raytrace::Indirect::None;
   double rays = 0.0;
   for (auto _ : state) {
@@ -116,6 +164,14 @@ void run(benchmark::State& state, const Setting& setting) {
     if (effects.solution) solution = radiosity::solve(scene, groups, effects, query, solver);
     const raytrace::Frame frame =
         raytrace::render(scene, groups, effects, query, solution, scene.cameras.front(), picture);
+    if (setting.cctv) {
+      const degrade::Preset& preset = *degrade::find_preset("sit-monochrome");
+      degrade::Options options;
+      options.fov_deg = scene.cameras.front().fov_deg;
+      const degrade::Result seen =
+          degrade::degrade(frame.image, preset.camera, preset.monitor, options);
+      benchmark::DoNotOptimize(seen.pixels.data());
+    }
     rays = static_cast<double>(frame.report.rays.total() + solution.report.form_factor_rays +
                                solution.report.shadow_rays);
   }

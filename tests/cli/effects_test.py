@@ -71,6 +71,22 @@ MATTERS = [
     (FLAT.format(-1), ["--camera", "A", "--set", "camera.A.position=[3, -3, 0.5]"], "rectangle lamps", False, ""),
 ]
 
+# A box from corner to corner, seen from inside, with a lamp in it.
+QUAD = '[[object]]\nname = "{}"\nshape = "quad"\ncorners = {}\nmaterial = "{}"\n'
+CORNERS = {"x0": [[0, 0, 0], [0, 1, 0], [0, 1, 1], [0, 0, 1]], "x1": [[1, 0, 0], [1, 0, 1], [1, 1, 1], [1, 1, 0]],
+           "y0": [[0, 0, 0], [0, 0, 1], [1, 0, 1], [1, 0, 0]], "y1": [[0, 1, 0], [1, 1, 0], [1, 1, 1], [0, 1, 1]],
+           "z0": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "z1": [[0, 0, 1], [0, 1, 1], [1, 1, 1], [1, 0, 1]]}
+PLACED = {face: [[x - 0.5, y - 0.5, z * 0.5 + 0.2] for x, y, z in corners] for face, corners in CORNERS.items()}
+SHORT = [[min(x, 0.499), y, z] for x, y, z in PLACED["z1"]]
+SHUT_IN = ('[[material]]\nname = "wall"\ndiffuse = 0.5\n[[material]]\nname = "lid"\ndiffuse = 0.1\n{}\n'
+           + "".join(QUAD.format(face, corners, "wall") for face, corners in PLACED.items() if face != "z1") + "CUT"
+           + '[[light]]\nname = "in"\ntype = "point"\nposition = [0, 0, 0.4]\nintensity = 100\n')
+LID_ON = QUAD.format("z1", PLACED["z1"], "lid")
+# What the lid has more, the lid, and whether the lamp is found not to matter.
+SHUT = {"shut": ("", LID_ON, True), "a lid a millimetre short": ("", QUAD.format("z1", SHORT, "lid"), False),
+        "no lid": ("", "", False), "a lid of glass": ("transmit = 0.5\nior = 1.5", LID_ON, False),
+        "a lid that mirrors": ("mirror = 0.5", LID_ON, False), "a lid of two sides": ("two_sided = true", LID_ON, False)}
+
 
 def with_more(scene, more):
     """After the head, before the scene's own tables."""
@@ -200,6 +216,52 @@ class Effects(program.Case):
                     self.assertLessEqual(rows[effect]["skipped_error"], 1e-3 * 0.1 * 1.0001)
                     rows = {r["effect"]: r for r in self.json("plan", "scene.toml", "--all-effects", *call)["effects"]}
                     self.assertTrue(rows[effect]["runs"])
+
+    def test_a_solution_that_was_read_is_not_on_the_bill(self):
+        self.write("scene.toml", BALL)
+        self.done("solve", "scene.toml", "-o", "s.h5", "-q")
+        said = self.json("render", "scene.toml", "-o", "a.exr", "--report", "r.json", "--camera", "A", "-q", "--solution", "s.h5")
+        report = program.json.loads((self.folder / "r.json").read_text())
+        self.assertEqual(report["solution"], "s.h5")
+        pictures = ("camera", "shadow", "gather", "lobe", "mirror", "refraction", "planning", "layers")
+        self.assertEqual(sum(row["taken"]["rays"] for row in report["effects"]), sum(said["rays"][k] for k in pictures))
+        rows = {row["effect"]: row for row in report["effects"]}
+        self.assertEqual(rows["interreflection"]["taken"]["rays"], said["rays"]["gather"])
+        self.assertEqual(rows["sun"]["taken"]["rays"], said["rays"]["shadow_by"]["sun"])
+        ratio = rows["interreflection"]["expected"]["rays"] / rows["interreflection"]["taken"]["rays"]
+        self.assertTrue(0.5 < ratio < 2, ratio)
+        self.assertNotIn("direct_by", said["rays"])
+
+    def test_lights_behind_closed_walls_are_found_and_those_behind_leaking_ones_are_not(self):
+        """A lamp in a box on the floor; a lid that is short, of glass or missing keeps it on."""
+        for name, (wall, cut, found) in SHUT.items():
+            with self.subTest(name=name):
+                scene = with_more(FLOOR, SHUT_IN.format(wall)).replace("CUT", cut)
+                self.write("scene.toml", scene)
+                rows = {row["effect"]: row for row in self.json("plan", "scene.toml", "--camera", "A")["effects"]}
+                self.assertIs(rows["point lamps"]["runs"], not found, rows["point lamps"]["why"])
+                self.assertEqual("closed walls" in rows["point lamps"]["why"], found)
+                if not found:
+                    continue
+                # Without the lamp's light: straight light, so that patches play no part.
+                skipped, cost = self.render(scene, "--indirect", "none")
+                whole, price = self.render(scene, "--indirect", "none", "--all-effects")
+                self.assertEqual(cost["rays"]["shadow_by"]["point lamps"], 0)
+                self.assertGreater(price["rays"]["shadow_by"]["point lamps"], 0)
+                self.same(skipped, whole)
+                inside = self.json("plan", "scene.toml", "--camera", "A", "--set", "camera.A.position=[0, 0, 0.4]",
+                                   "--set", "camera.A.look_at=[0, 0, 1]", "--set", "camera.A.up=[0, 1, 0]")
+                rows = {row["effect"]: row for row in inside["effects"]}
+                self.assertTrue(rows["point lamps"]["runs"])
+                for effect in ("sun", "penumbra"):
+                    self.assertIn("cannot matter", rows[effect]["why"])
+
+    def test_lights_on_an_area_do_not_set_with_the_earth(self):
+        area = '[[area]]\nname = "sky"\ncenter = [0, 0, 3]\nedge_u = [1, 0, 0]\nedge_v = [0, -1, 0]\n'
+        self.write("scene.toml", with_more(FLOOR, area + BELOW.format(60, 100)))
+        for over, runs in ((["--distributed-over", "sky"], True), ([], False)):
+            rows = self.json("plan", "scene.toml", "--indirect", "distributed", *over)["effects"]
+            self.assertEqual([row["runs"] for row in rows if row["effect"] == "earth"], [runs])
 
     def test_what_is_skipped_was_not_in_the_picture(self):
         away = ["--set", "camera.A.position=[3, -3, 0.5]"]

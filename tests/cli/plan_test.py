@@ -105,6 +105,28 @@ class Plan(program.Case):
         self.assertFalse([name for name in names if name.startswith("cctv:")])
         self.assertEqual(len(names), len(set(names)))
 
+    def test_every_stage_says_which_settings_decide(self):
+        """One that can be off names a setting; the settings named are those that turn it on or off."""
+        listed = self.done("degrade", "--list").split("stages, in order\n")[1].split("\n\n")[0]
+        stages = [line.split()[0] for line in listed.splitlines() if line.startswith("  ")]
+        self.assertGreater(len(stages), 20)
+        seen = {}
+        for preset in ("ideal", "report-1990", "sit-monochrome", "sit-colour-wheel", "ccd-colour"):
+            self.write("scene.toml", program.BALL)
+            rows = self.json("plan", "scene.toml", "--camera", "A", "--set", f"camera.A.cctv={preset}")["effects"]
+            planned = {row["effect"][6:]: row for row in rows if row["effect"].startswith("cctv: ")}
+            self.assertEqual(list(planned), stages)
+            for name, row in planned.items():
+                seen.setdefault(name, set()).add((row["runs"], row["why"]))
+        for name, rows in seen.items():
+            always = {why for _, why in rows} == {"part of every CCTV picture"}
+            if always:
+                self.assertEqual({runs for runs, _ in rows}, {True}, name)
+            else:
+                self.assertTrue(all(" is " in why for _, why in rows), name)
+            # The same settings, the same decision.
+            self.assertEqual(len(rows), len({why for _, why in rows}), name)
+
     def test_cameras_and_sizes_are_those_of_the_call(self):
         self.write("scene.toml", program.BALL)
         images = self.json("plan", "scene.toml", "--camera", "above", "--size", "10x6")["images"]
