@@ -257,8 +257,11 @@ class Effects(program.Case):
                     self.assertIn("cannot matter", rows[effect]["why"])
 
     def test_lights_on_an_area_do_not_set_with_the_earth(self):
-        area = '[[area]]\nname = "sky"\ncenter = [0, 0, 3]\nedge_u = [1, 0, 0]\nedge_v = [0, -1, 0]\n'
-        self.write("scene.toml", with_more(FLOOR, area + BELOW.format(60, 100)))
+        # The disc's upper edge is 3 degrees below the floor's horizon; the area on its side stands above the floor.
+        area = '[[area]]\nname = "sky"\ncenter = [3, 0, 1]\nedge_u = [0, 0, 1]\nedge_v = [0, 1, 0]\n'
+        earth = BELOW.format(3, 100).replace("direction = [0, 0, -1]", "direction = [1, 0, -0.1051]")
+        self.assertIn("-0.1051", earth)
+        self.write("scene.toml", with_more(FLOOR, area + earth))
         for over, runs in ((["--distributed-over", "sky"], True), ([], False)):
             rows = self.json("plan", "scene.toml", "--indirect", "distributed", *over)["effects"]
             self.assertEqual([row["runs"] for row in rows if row["effect"] == "earth"], [runs])
