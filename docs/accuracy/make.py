@@ -14,10 +14,8 @@ PAGE = ROOT / "docs/accuracy.md"
 BEGIN, END = "<!-- docs/accuracy/make.py writes this: begin -->", "<!-- docs/accuracy/make.py writes this: end -->"
 # Name of the plots, scene, camera, size.
 VIEWS = [
-    ("day", "sts46/day-earthshine", "B", "128x128"),
-    ("night", "sts46/night-lamps", "B", "128x128"),
-    ("cornell", "cornell-box/scene", None, "128x128"),
-    ("still-life", "still-life/scene", None, "128x96"),
+    ("cornell", "cornell-box/scene", None, "96x96"),
+    ("day", "sts46/day-earthshine", "B", "96x96"),
 ]
 
 
@@ -34,7 +32,8 @@ def count(value):
 
 
 def study(program, scene, camera, size, folder):
-    call = ["study", "accuracy", f"scenes/library/{scene}.toml", "--size", size, "-o", str(folder.relative_to(ROOT))]
+    call = ["study", "accuracy", f"scenes/library/{scene}.toml", "--size", size, "--lights", "4,16,64", "-o",
+            str(folder.relative_to(ROOT))]
     call += ["--camera", camera] if camera else []
     subprocess.run([program, *call], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     return json.loads((folder / "accuracy.json").read_text()), "earthshine " + " ".join(call)
