@@ -32,7 +32,7 @@ def count(value):
 
 
 def study(program, scene, camera, size, folder):
-    call = ["study", "accuracy", f"scenes/library/{scene}.toml", "--size", size, "--lights", "4,16,64", "-o",
+    call = ["study", "accuracy", f"scenes/library/{scene}.toml", "--size", size, "--lights", "4,16,64", "--time-limit", "300", "-o",
             str(folder.relative_to(ROOT))]
     call += ["--camera", camera] if camera else []
     subprocess.run([program, *call], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)

@@ -133,6 +133,17 @@ TEST(ErrorBudget, TakesEachPartFromWhereItWasMeasured) {
       1e-9);
 }
 
+TEST(PictureWatch, SeesTheSameSolutionAsTheSame) {
+  // Every look has the same rays: what differs is the solutions alone.
+  const tests::SmallRoom& room = tests::small_room();
+  PictureWatch watch(room.study(), room.solution, room.camera, small_picture(), {30, 200, 310});
+  const std::uint64_t rays = watch.rays();
+  watch.add(radiosity::Look::FewRays, room.solution);
+  EXPECT_EQ(watch.looks().few_rays.front(), watch.looks().own);
+  EXPECT_EQ(watch.looks().own.size(), 3U);
+  EXPECT_EQ(watch.rays(), 2 * rays);
+}
+
 TEST(ErrorBudget, ChangesNeitherPictureNorSolution) {
   const tests::SmallRoom& room = tests::small_room();
   const raytrace::RenderOptions options = small_picture();
