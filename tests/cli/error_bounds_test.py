@@ -34,6 +34,14 @@ class Truth(unittest.TestCase):
         found = error_truth.compare([3.0, 9.0], [2.0, 1.0], [2.0, 1.0], [1.0, 0.0])
         self.assertEqual((found.error, found.bias, found.mean), (0.5, 0.5, 2.0))
 
+    def test_bright_pixels_count_in_proportion(self):
+        # Mean (16 * 1 + 48) / 17 = 64 / 17, so that 48 counts with w = 4 (64 / 17) / 48 = 16 / 51: one of 17 squares is (8 w)^2.
+        truth = [1.0] * 16 + [48.0]
+        found = error_truth.compare(truth[:-1] + [56.0], truth, truth)
+        mean, w = 64 / 17, 16 / 51
+        self.assertAlmostEqual(found.error, math.sqrt((w * 8)**2 / 17) / mean, places=12)
+        self.assertAlmostEqual(found.bias, 8 / 17 / mean, places=12)
+
     def test_every_room_is_the_same_everywhere(self):
         # Scenes are part of the published table: they must not move with a Python's random module.
         self.assertEqual(error_bounds.hash_of(*(error_scenes.room(n) for n in range(error_scenes.ROOMS)))[:16], ROOMS)
@@ -48,22 +56,39 @@ class Harness(program.Case):
         self.write("flood.ies", error_scenes.IES)
         self.bench = error_bounds.Bench(pathlib.Path(program.PROGRAM), self.folder, self.folder / "cache", 1)
 
-    def test_radiosity_as_a_function_of_position(self):
+    def test_radiosity_by_means_of_patches(self):
         # With M = 10 on every wall, rho 0.5 on all: B = 20 at each of the points, on patches of whatever size.
         import h5py
         self.write("box.toml", program.CLOSED_BOX)
         for name, edge in (("a.h5", 0.5), ("b.h5", 0.21)):
             self.bench.json("solve", "box.toml", "-o", name, "--set", f"quality.patch_edge={edge}")
-        points = error_truth.Solution(self.folder / "b.h5").points(500, 1)
+        own = error_truth.Solution(self.folder / "a.h5")
+        where, order = own.points(own.draw(100, 1), 2, 1)
+        self.assertEqual(len(order), 100)
         for name in ("a.h5", "b.h5"):
-            values = error_truth.Solution(self.folder / name).at(points)
-            self.assertEqual(len(values), 500)
+            values = error_truth.Solution(self.folder / name).at(where)
+            self.assertEqual(len(values), 400)
             self.assertLess(abs(values - 20).max(), 1e-4)
-        # A solution whose patches are made brighter by 10 % and one by a step of 10 % from one facet to the next.
+        # One that is brighter by 10 % everywhere.
         with h5py.File(self.folder / "a.h5", "a") as file:
             file["radiosity"][:] *= 1.1
-        found = error_truth.compare_solutions(*(self.folder / name for name in ("a.h5", "b.h5", "b.h5")), points=500)
+        found = error_truth.compare_solutions(*(self.folder / name for name in ("a.h5", "b.h5", "b.h5")), patches=100)
         self.assertAlmostEqual(found.error, 0.1, places=5)
+
+    def test_points_of_a_patch_are_the_patch_s(self):
+        # The mean over a patch of the fine solution, read at points of that patch alone, is the area's mean of the fine patches
+        # in it: of B = the number of the facet and side, exactly that.
+        import h5py
+        self.write("box.toml", program.CLOSED_BOX)
+        for name, edge in (("a.h5", 0.5), ("b.h5", 0.21)):
+            self.bench.json("solve", "box.toml", "-o", name, "--set", f"quality.patch_edge={edge}")
+            solution = error_truth.Solution(self.folder / name)
+            with h5py.File(self.folder / name, "a") as file:
+                for k, (_, _, first, count) in enumerate(solution.sides()):
+                    file["radiosity"][first:first + count] = k + 1
+        found = error_truth.compare_solutions(*(self.folder / name for name in ("a.h5", "b.h5", "b.h5")), patches=200)
+        self.assertGreater(found.mean, 1)
+        self.assertAlmostEqual(found.error, 0, places=9)
 
     def test_an_emitter_in_the_picture_does_not_count(self):
         emitter = program.CLOSED_BOX.replace("emit = 10.0", "") + """
