@@ -16,6 +16,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -85,8 +86,8 @@ class Bench:
     def scene(self, name, source, more):
         """(path, text for the key of its references) of a scene given as file or text."""
         if isinstance(source, pathlib.Path):
-            # Without the error that it may ask for: references are not to be steered by it.
-            text = "".join(line for line in source.read_text().splitlines(True) if not line.startswith("error ="))
+            # Without settings of its own, which would hold fast what is asked for here.
+            text = re.sub(r"^\[quality\]\n(.+\n)*", "", source.read_text(), flags=re.MULTILINE)
             folder = self.folder / source.parent.name
             folder.mkdir(exist_ok=True)
             meshes = sorted(source.parent.glob("meshes/*"))
@@ -126,7 +127,7 @@ class Bench:
             (folder / "done").touch()
         first, things = error_truth.picture(folder / "1.exr", "object")
         second, _ = error_truth.picture(folder / "2.exr")
-        seen = json.loads((folder / "seen").read_text())
+        seen = with_neighbours(json.loads((folder / "seen").read_text()), error_truth.columns(folder / "1.exr"))
         solutions = [[folder / f"{k}.h5", 9000 + k, *overrides(fine)] for k in (1, 2)]
         return solutions, first, second, [float(o >= 0 and not s) for o, s in zip(things, seen)]
 
@@ -173,6 +174,17 @@ def hash_of(*what):
     for one in what:
         digest.update(one if isinstance(one, bytes) else str(one).encode())
     return digest.hexdigest()
+
+
+def with_neighbours(seen, columns):
+    """Also the pixels about those that show a source: a sliver of it there may be met by one picture's samples and not by
+    another's, and would be all of the difference."""
+    near = [False] * len(seen)
+    for k, is_seen in enumerate(seen):
+        for x in range(max(0, k % columns - 1), min(columns, k % columns + 2)) if is_seen else ():
+            for row in range(max(0, k // columns - 1), min(len(seen) // columns, k // columns + 2)):
+                near[row * columns + x] = True
+    return near
 
 
 def overrides(words):

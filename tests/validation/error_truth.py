@@ -24,6 +24,10 @@ def picture(path, layer=None):
     return light, channels[layer] if layer else None
 
 
+def columns(path):
+    return exr.read(path)[1]
+
+
 class Truth:
     """error and bias: relative to `mean`; doubt: standard error of the error's square."""
 
