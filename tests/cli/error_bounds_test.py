@@ -34,6 +34,23 @@ class Truth(unittest.TestCase):
         found = error_truth.compare([3.0, 9.0], [2.0, 1.0], [2.0, 1.0], [1.0, 0.0])
         self.assertEqual((found.error, found.bias, found.mean), (0.5, 0.5, 2.0))
 
+    def test_bright_pixels_count_in_proportion(self):
+        # Mean (16 * 1 + 48) / 17 = 64 / 17, so that 48 counts with w = 4 (64 / 17) / 48 = 16 / 51: one of 17 squares is (8 w)^2.
+        truth = [1.0] * 16 + [48.0]
+        found = error_truth.compare(truth[:-1] + [56.0], truth, truth)
+        mean, w = 64 / 17, 16 / 51
+        self.assertAlmostEqual(found.error, math.sqrt((w * 8)**2 / 17) / mean, places=12)
+        self.assertAlmostEqual(found.bias, 8 / 17 / mean, places=12)
+
+    def test_pixels_about_a_source(self):
+        seen = [0] * 12
+        seen[0] = seen[11] = 1  # of 4 x 3: a corner and the one across
+        self.assertEqual([int(near) for near in error_bounds.with_neighbours(seen, 4)], [1, 1, 0, 0, 1, 1, 1, 1, 0, 0, 1, 1])
+
+    def test_what_is_asked_for_as_overrides(self):
+        self.assertEqual(error_bounds.overrides(error_scenes.ASKED["error, 8 gather rays"]),
+                         ["quality.error=0.05", "quality.gather_rays=8"])
+
     def test_every_room_is_the_same_everywhere(self):
         # Scenes are part of the published table: they must not move with a Python's random module.
         self.assertEqual(error_bounds.hash_of(*(error_scenes.room(n) for n in range(error_scenes.ROOMS)))[:16], ROOMS)
@@ -48,22 +65,26 @@ class Harness(program.Case):
         self.write("flood.ies", error_scenes.IES)
         self.bench = error_bounds.Bench(pathlib.Path(program.PROGRAM), self.folder, self.folder / "cache", 1)
 
-    def test_radiosity_as_a_function_of_position(self):
+    def test_radiosities_of_solutions(self):
         # With M = 10 on every wall, rho 0.5 on all: B = 20 at each of the points, on patches of whatever size.
-        import h5py
         self.write("box.toml", program.CLOSED_BOX)
+        solutions = []
         for name, edge in (("a.h5", 0.5), ("b.h5", 0.21)):
-            self.bench.json("solve", "box.toml", "-o", name, "--set", f"quality.patch_edge={edge}")
-        points = error_truth.Solution(self.folder / "b.h5").points(500, 1)
-        for name in ("a.h5", "b.h5"):
-            values = error_truth.Solution(self.folder / name).at(points)
-            self.assertEqual(len(values), 500)
-            self.assertLess(abs(values - 20).max(), 1e-4)
-        # A solution whose patches are made brighter by 10 % and one by a step of 10 % from one facet to the next.
-        with h5py.File(self.folder / "a.h5", "a") as file:
-            file["radiosity"][:] *= 1.1
-        found = error_truth.compare_solutions(*(self.folder / name for name in ("a.h5", "b.h5", "b.h5")), points=500)
-        self.assertAlmostEqual(found.error, 0.1, places=5)
+            knob = f"quality.patch_edge={edge}"
+            self.bench.json("solve", "box.toml", "-o", name, "--seed", "3", "--set", knob)
+            solutions.append([self.folder / name, 3, knob])
+        found = error_truth.radiosities(self.bench.reader, self.folder / "box.toml", solutions, points=500)
+        self.assertEqual([len(column) for column in found], [500, 500])
+        self.assertLess(max(abs(value - 20) for column in found for value in column), 1e-4)
+        # One that shines brighter by 10 % everywhere.
+        brighter = ["--seed", "3", "--set", "quality.patch_edge=0.5", "--set", "material.wall.emit=11"]
+        self.bench.json("solve", "box.toml", "-o", "c.h5", *brighter)
+        solutions[0] = [self.folder / "c.h5", 3, "quality.patch_edge=0.5", "material.wall.emit=11"]
+        first, second = error_truth.radiosities(self.bench.reader, self.folder / "box.toml", solutions, points=500)
+        self.assertAlmostEqual(error_truth.compare(first, second, second).error, 0.1, places=5)
+        # One found by other settings is refused.
+        with self.assertRaises(RuntimeError):
+            error_truth.radiosities(self.bench.reader, self.folder / "box.toml", [[self.folder / "a.h5", 4, "quality.patch_edge=0.5"]])
 
     def test_an_emitter_in_the_picture_does_not_count(self):
         emitter = program.CLOSED_BOX.replace("emit = 10.0", "") + """

@@ -200,37 +200,39 @@ def knobs(**values):
     return [word for key, value in values.items() for word in ("--set", f"quality.{key}={value}")]
 
 
-# What a user may ask for: an error, or knobs by hand.
+# What a user may ask for: an error, which the program then steers by, with or without a knob held fast; or knobs alone.
 ASKED = {
     "error 0.1": ["--error", "0.1"],
     "error 0.05": ["--error", "0.05"],
-    "error 0.02": ["--error", "0.02"],
+    "error 0.03": ["--error", "0.03"],
+    "error, 8 gather rays": ["--error", "0.05", *knobs(gather_rays=8)],
+    "error, even patches": ["--error", "0.1", *knobs(refine="false")],
     "coarse patches": knobs(patch_edge=0.8),
     "few form-factor rays": knobs(patch_edge=0.4, form_factor_rays=32),
-    "few gather rays": knobs(error=0.05, gather_rays=8),
-    "even patches": knobs(error=0.1, refine="false"),
-    "plain gather": knobs(error=0.1, gather="per-sample", gather_rays=64),
+    "few patches": knobs(max_patches=500, form_factor_rays=128, gather_rays=16),
+    "plain gather": knobs(patch_edge=0.5, gather="per-sample", gather_rays=64),
 }
-PAIRS = (("error 0.1", "coarse patches"), ("error 0.05", "few gather rays"), ("error 0.1", "few form-factor rays"),
-         ("error 0.02", "even patches"), ("error 0.05", "plain gather"))
+PAIRS = (("error 0.1", "coarse patches"), ("error 0.05", "few patches"), ("error 0.1", "few form-factor rays"),
+         ("error 0.03", "plain gather"), ("error, even patches", "error, 8 gather rays"))
 
+SMALL = ["--size", "48x48"]
 # Of those that ship: what is asked for, and the picture.
 SHIPPED = {
-    "cornell-box/scene.toml": (["error 0.1", "error 0.02"], []),
-    "still-life/scene.toml": (["error 0.1", "few gather rays"], []),
-    "furnace/scene.toml": (["error 0.1"], []),
-    "closed-box/scene.toml": (["error 0.1"], []),
-    "sts46/day-sun.toml": (["error 0.1"], ["--camera", "B"]),
-    "sts46/day-earthshine.toml": (["error 0.1"], ["--camera", "B"]),
-    "sts46/night-lamps.toml": (["error 0.1"], ["--camera", "B"]),
+    "cornell-box/scene.toml": (["error 0.1", "error 0.05"], SMALL),
+    "still-life/scene.toml": (["error 0.1", "few patches"], SMALL),
+    "furnace/scene.toml": (["error 0.1"], SMALL),
+    "closed-box/scene.toml": (["error 0.1"], SMALL),
+    "sts46/day-sun.toml": (["error 0.1"], ["--camera", "B", *SMALL]),
+    "sts46/day-earthshine.toml": (["error 0.1"], ["--camera", "B", *SMALL]),
+    "sts46/night-lamps.toml": (["error 0.1"], ["--camera", "B", *SMALL]),
 }
 ROOMS = 22
 
 
 def cases(quick=False):
     """Yields (name, path or text, further arguments, names of what is asked)."""
+    for number in range(4 if quick else ROOMS):
+        yield f"room {number}", room(number), [], list(PAIRS[number % len(PAIRS)])
     for name, (asked, more) in SHIPPED.items():
         if not quick or name.startswith("cornell"):
             yield name.replace("/scene.toml", "").replace(".toml", ""), LIBRARY / name, more, asked
-    for number in range(4 if quick else ROOMS):
-        yield f"room {number}", room(number), [], list(PAIRS[number % len(PAIRS)])

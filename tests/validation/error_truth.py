@@ -7,6 +7,7 @@ is that of (L - R)^2: what noise the references have is in one factor or the oth
 import array
 import math
 import pathlib
+import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
@@ -23,6 +24,10 @@ def picture(path, layer=None):
     return light, channels[layer] if layer else None
 
 
+def columns(path):
+    return exr.read(path)[1]
+
+
 class Truth:
     """error and bias: relative to `mean`; doubt: standard error of the error's square."""
 
@@ -30,107 +35,34 @@ class Truth:
         self.error, self.doubt, self.bias, self.mean = error, doubt, bias, mean
 
 
-def compare(values, first, second, weights=None, over="mean"):
-    """The error of values, where first and second are two references of the same; weights sum to any number. over: what the
-    error is relative to, their "mean" or "root mean square"."""
-    if weights is None:
-        weights = [1.0] * len(values)
-    whole = sum(weights)
-    if whole <= 0:
-        return Truth(0.0, 0.0, 0.0, 0.0)
-    rows = list(zip(values, first, second, weights))
-    if over == "mean":
-        mean = sum(w * (a + b) / 2 for _, a, b, w in rows) / whole
-    else:
-        mean = math.sqrt(max(0.0, sum(w * a * b for _, a, b, w in rows) / whole))
+BRIGHT = 4.0  # times the mean: above, an error counts in proportion (studies/pixel_choice.h)
+
+
+def compare(values, first, second, counts=None):
+    """The error of values, where first and second are two references of the same, over those that count, relative to their
+    mean, with the program's weights: a value L brighter than 4 times the mean counts with w = 4 mean / L, in both factors.
+    L is the references' mean, so that what is judged has no say in it."""
+    if counts is None:
+        counts = [1.0] * len(values)
+    rows = [(v, a, b) for v, a, b, c in zip(values, first, second, counts) if c]
+    mean = sum(a + b for _, a, b in rows) / (2 * len(rows)) if rows else 0.0
     if mean <= 0:
         return Truth(0.0, 0.0, 0.0, 0.0)
-    products = [(v - a) * (v - b) / mean**2 for v, a, b, _ in rows]
-    square = sum(p * row[3] for p, row in zip(products, rows)) / whole
-    spread = sum(row[3]**2 * (p - square)**2 for p, row in zip(products, rows)) / whole**2
-    bias = sum(w * (v - (a + b) / 2) for v, a, b, w in rows) / whole / mean
+    products = [weight((a + b) / 2, mean)**2 * (v - a) * (v - b) / mean**2 for v, a, b in rows]
+    square = sum(products) / len(rows)
+    spread = sum((p - square)**2 for p in products) / len(rows)**2
+    bias = sum(v - (a + b) / 2 for v, a, b in rows) / len(rows) / mean
     return Truth(math.sqrt(max(0.0, square)), math.sqrt(spread), bias, mean)
 
 
-class Solution:
-    """A stored solution that can be asked for the radiosity at a point."""
-
-    def __init__(self, path):
-        import h5py
-        import numpy as np
-        self.np = np
-        with h5py.File(path) as file:
-            self.corners = file["corners"][:].astype(float)
-            self.area = file["area"][:]
-            self.light = file["radiosity"][:].astype(float).sum(axis=1) @ np.array(WEIGHTS)
-            facets = file["facets"]
-            self.leaves = facets["leaves"][:].astype(np.int64)
-            self.first = [facets["first_front"][:].astype(np.int64), facets["first_back"][:].astype(np.int64)]
-
-    def sides(self):
-        """The facet's sides, as (facet, front or back, first patch, patches)."""
-        for facet, count in enumerate(self.leaves):
-            for side in (0, 1):
-                if self.first[side][facet] != 2**32 - 1:
-                    yield facet, side, int(self.first[side][facet]), int(count)
-
-    def points(self, number, seed):
-        """Random points, evenly over all surface: (facet, side) to an array of points."""
-        np = self.np
-        chance = np.random.Generator(np.random.PCG64(seed))
-        steps = (np.arange(number) + chance.random(number)) / number  # one in each equal share of the surface
-        whole = np.cumsum(self.area)
-        patch = np.minimum(np.searchsorted(whole, steps * whole[-1]), len(whole) - 1)
-        found = {}
-        for facet, side, first, count in self.sides():
-            mine = patch[(patch >= first) & (patch < first + count)]
-            if len(mine):
-                s, t = chance.random((2, len(mine), 1))
-                a, b, c, d = self.corners[mine].transpose(1, 0, 2)
-                # A quadrilateral's halves in proportion to their areas; of a triangle one is empty.
-                left = np.linalg.norm(np.cross(b - a, c - a), axis=1, keepdims=True)
-                right = np.linalg.norm(np.cross(c - a, d - a), axis=1, keepdims=True)
-                other = chance.random((len(mine), 1)) * (left + right) > left
-                s, corner = np.sqrt(s), np.where(other, d, b)
-                found[facet, side] = (1 - s) * a + s * (1 - t) * corner + s * t * c
-        return found
-
-    def at(self, points):
-        """Radiosity (luminance) at points(); NaN where a point lies on no patch, by rounding."""
-        np = self.np
-        found = []
-        for (facet, side), places in points.items():
-            first, count = int(self.first[side][facet]), int(self.leaves[facet])
-            corners = self.corners[first:first + count]
-            normal = np.cross(corners[0][1] - corners[0][0], corners[0][2] - corners[0][0])
-            normal += np.cross(corners[0][2] - corners[0][0], corners[0][3] - corners[0][0])
-            kept = [k for k in range(3) if k != np.argmax(np.abs(normal))]
-            flat, spots = corners[:, :, kept], places[:, kept]
-            low, high = flat.min(axis=1), flat.max(axis=1)
-            value = np.full(len(spots), np.nan)
-            for k, spot in enumerate(spots):
-                near = np.flatnonzero(np.all((low <= spot) & (spot <= high), axis=1))
-                if len(near) > 1:
-                    near = near[inside(np, flat[near], spot)]
-                if len(near):
-                    value[k] = self.light[first + near[0]]
-            found.append(value)
-        return np.concatenate(found)
+def weight(luminance, mean):
+    return BRIGHT * mean / luminance if luminance > BRIGHT * mean else 1.0
 
 
-def inside(np, quads, spot):
-    """Which of the convex quadrilaterals (n x 4 x 2) hold the spot."""
-    along = np.roll(quads, -1, axis=1) - quads
-    to = spot - quads
-    turn = along[:, :, 0] * to[:, :, 1] - along[:, :, 1] * to[:, :, 0]
-    return np.all(turn >= -1e-12, axis=1) | np.all(turn <= 1e-12, axis=1)
-
-
-def compare_solutions(path, first, second, points=20000):
-    """The error of the radiosity as a function of position: root mean square over all surface, over the root mean square."""
-    solutions = [Solution(p) for p in (path, first, second)]
-    where = solutions[1].points(points, 7)
-    values = [s.at(where) for s in solutions]
-    np = solutions[0].np
-    good = ~np.isnan(values[0]) & ~np.isnan(values[1]) & ~np.isnan(values[2])
-    return compare(*[v[good].tolist() for v in values], over="root mean square")
+def radiosities(reader, scene, solutions, points=16384):
+    """Of each of the solutions (words of tests/validation/surfaces.cpp) the radiosity at the same points, spread by area."""
+    words = [word for one in solutions for word in ["--", *one]][1:]
+    run = subprocess.run([reader, scene, str(points), *map(str, words)], capture_output=True, text=True)
+    if run.returncode != 0:
+        raise RuntimeError(run.stderr.strip())
+    return list(zip(*(map(float, line.split()) for line in run.stdout.splitlines())))

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/surface_points.h"
+
+#include "base/random.h"
+#include "raytrace/radiance_table.h"
+#include "studies/pixel_choice.h"
+
+namespace earthshine::studies {
+
+std::vector<scenes::Hit> spread_over_surfaces(const scenes::Scene& scene, std::size_t count,
+                                              std::uint64_t seed) {
+  std::vector<double> area;
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    const bool sheet = scene.materials[scene.triangles[t].material].two_sided;
+    area.push_back((sheet ? 2.0 : 1.0) * scenes::triangle_area(scene, t));
+  }
+  std::vector<scenes::Hit> spread;
+  base::Rng rng(base::Key(seed, base::Stream::ErrorBudget, 2));
+  for (const std::size_t t : spread_by_weight(area, count, seed)) {
+    double u = rng.next(), v = rng.next();
+    if (u + v > 1.0) {
+      u = 1.0 - u;
+      v = 1.0 - v;
+    }
+    const bool sheet = scene.materials[scene.triangles[t].material].two_sided;
+    const bool front = !sheet || rng.next() < 0.5;
+    scenes::Hit hit;
+    hit.triangle = static_cast<std::uint32_t>(t);
+    hit.u = static_cast<decltype(hit.u)>(u);
+    hit.v = static_cast<decltype(hit.v)>(v);
+    hit.front = front;
+    spread.push_back(hit);
+  }
+  return spread;
+}
+
+std::vector<double> radiosity_at(const radiosity::Solution& solution,
+                                 const std::vector<scenes::Hit>& where) {
+  if (solution.columns == 0) return std::vector<double>(where.size(), 0.0);  // nothing shines
+  const raytrace::RadianceTable table(solution, solution.radiosity, false);
+  std::vector<double> values;
+  values.reserve(where.size());
+  for (const scenes::Hit& hit : where) {
+    std::array<Rgb, 1> sum{Rgb(0.0)};
+    table.add(hit, Rgb(base::pi), sum);
+    values.push_back(base::luminance(sum[0]));
+  }
+  return values;
+}
+
+}  // namespace earthshine::studies

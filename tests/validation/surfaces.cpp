@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Radiosity at the same points of several stored solutions of one scene, for error_truth.py:
+//   earthshine_surfaces SCENE POINTS {FILE.h5 SEED KEY=VALUE...} -- {FILE.h5 SEED KEY=VALUE...} ...
+// SEED and KEY=VALUE (scene overrides) as they were given to "solve". A line per point: luminances.
+#include <fmt/format.h>
+
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "radiosity/solution_file.h"
+#include "scenes/light_groups.h"
+#include "scenes/quality.h"
+#include "scenes/scene_file.h"
+#include "studies/surface_points.h"
+
+namespace {
+
+using namespace earthshine;
+
+radiosity::Solution read(const std::string& path, const std::vector<std::string>& words) {
+  const std::vector<std::string> overrides(words.begin() + 3, words.end());
+  const scenes::Scene scene = scenes::read_scene(path, overrides);
+  const scenes::QualityKnobs knobs = scenes::resolve_quality(scene);
+  const radiosity::SolveOptions options{
+      knobs.patch_edge_m,
+      knobs.form_factor_rays,
+      knobs.solver_tolerance,
+      std::stoull(words[2]),
+      {knobs.refine, knobs.start_edge_m, static_cast<std::size_t>(knobs.max_patches),
+       knobs.refine_error}};
+  return radiosity::read_solution(
+      words[1], {scene, scenes::find_light_groups(scene), options, EARTHSHINE_VERSION});
+}
+
+void print(const std::vector<std::string>& arguments) {
+  constexpr std::uint64_t seed = 20261121;  // not one that the program is called with
+  const std::string& path = arguments.at(0);
+  const auto where =
+      studies::spread_over_surfaces(scenes::read_scene(path), std::stoul(arguments.at(1)), seed);
+  std::vector<std::vector<double>> columns;
+  std::vector<std::string> words = {"--"};
+  const auto end = [&] {
+    columns.push_back(studies::radiosity_at(read(path, words), where));
+    words = {"--"};
+  };
+  for (std::size_t k = 2; k < arguments.size(); ++k) {
+    if (arguments[k] == "--") {
+      end();
+    } else {
+      words.push_back(arguments[k]);
+    }
+  }
+  end();
+  for (std::size_t i = 0; i < where.size(); ++i) {
+    std::string line;
+    for (const auto& column : columns) line += fmt::format("{:.9g} ", column[i]);
+    fmt::print("{}\n", line);
+  }
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  try {
+    print({words + 1, words + count});
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}
