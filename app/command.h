@@ -17,7 +17,6 @@
 #include "radiosity/solution.h"
 #include "scenes/effects.h"
 #include "scenes/light_groups.h"
-#include "scenes/quality.h"
 #include "scenes/scene.h"
 
 namespace earthshine::app {
@@ -108,8 +107,6 @@ void note_backs(const radiosity::SolveReport& report);
 
 // The scene's accuracy knobs as the solver wants them.
 [[nodiscard]] radiosity::SolveOptions solve_options(const scenes::Scene& scene,
-                                                    const Common& common);
-[[nodiscard]] radiosity::SolveOptions solve_options(const scenes::QualityKnobs& knobs,
                                                     const Common& common);
 
 // Throws base::Error before any work is done if one of the files (empty names are left out) cannot

@@ -67,10 +67,8 @@ Solved solve_as_exactly(const ExactCall& call, StageTimes& times) {
   const auto start = std::chrono::steady_clock::now();
   double in_stages = 0.0;
   studies::SteeredSolution found = studies::reach_solution(
-      scene, wanted_error(loaded, call.common, call.time_limit_s, times),
-      [&](const scenes::QualityKnobs& knobs) { return solve_options(knobs, call.common); },
-      call.pictures,
-      [&](const radiosity::SolveReport& report) {
+      scene, wanted_error(loaded, call.common, call.time_limit_s, times), call.common.seed,
+      call.pictures, [&](const radiosity::SolveReport& report) {
         times.add(report.seconds);
         for (const auto& [stage, seconds] : report.seconds) in_stages += seconds;
       });

@@ -14,6 +14,7 @@
 
 #include "app/render_call.h"
 #include "radiosity/walls.h"
+#include "scenes/quality.h"
 
 namespace earthshine::app {
 namespace {
@@ -159,9 +160,8 @@ std::vector<scenes::Idle> decide_effects(LoadedScene& loaded, const RenderCall& 
   loaded.effects = scenes::find_effects(loaded.scene, loaded.groups, asked);
   const bool reference = call.indirect == raytrace::Indirect::Paths;
   if (call.all_effects || reference || !call.solution.empty()) return {};
-  constexpr double default_error = 0.02;
   return scenes::switch_off_idle(
-      loaded.scene, asked, loaded.scene.quality.error.value_or(default_error),
+      loaded.scene, asked, loaded.scene.quality.error.value_or(scenes::default_error),
       radiosity::hidden_lights(loaded.scene, asked.cameras), loaded.groups, loaded.effects);
 }
 

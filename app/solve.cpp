@@ -206,16 +206,7 @@ void run(const SolveCall& call, const Common& common) {
 }  // namespace
 
 radiosity::SolveOptions solve_options(const scenes::Scene& scene, const Common& common) {
-  return solve_options(scenes::resolve_quality(scene), common);
-}
-
-radiosity::SolveOptions solve_options(const scenes::QualityKnobs& knobs, const Common& common) {
-  return {knobs.patch_edge_m,
-          knobs.form_factor_rays,
-          knobs.solver_tolerance,
-          common.seed,
-          {knobs.refine, knobs.start_edge_m, static_cast<std::size_t>(knobs.max_patches),
-           knobs.refine_error}};
+  return radiosity::solve_options(scenes::resolve_quality(scene), common.seed);
 }
 
 Command add_solve(CLI::App& program) {

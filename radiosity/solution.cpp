@@ -140,6 +140,15 @@ std::vector<bool> emitter_is_explicit(const scenes::Scene& scene) {
   return is_explicit;
 }
 
+SolveOptions solve_options(const scenes::QualityKnobs& knobs, std::uint64_t seed) {
+  return {knobs.patch_edge_m,
+          knobs.form_factor_rays,
+          knobs.solver_tolerance,
+          seed,
+          {knobs.refine, knobs.start_edge_m, static_cast<std::size_t>(knobs.max_patches),
+           knobs.refine_error}};
+}
+
 bool is_lit(const scenes::Effects& effects) {
   return effects.sun || effects.earth || effects.lamps || effects.emitters;
 }

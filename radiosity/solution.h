@@ -16,6 +16,7 @@
 #include "radiosity/patches.h"
 #include "scenes/effects.h"
 #include "scenes/light_groups.h"
+#include "scenes/quality.h"
 #include "scenes/ray_query.h"
 
 namespace earthshine::radiosity {
@@ -35,6 +36,9 @@ struct SolveOptions {
   std::uint64_t seed = 1;
   RefineOptions refine = {};
 };
+
+// The solver's part of the accuracy knobs.
+[[nodiscard]] SolveOptions solve_options(const scenes::QualityKnobs& knobs, std::uint64_t seed);
 
 struct RefineRound {
   std::size_t patches = 0;

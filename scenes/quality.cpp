@@ -27,7 +27,7 @@ double diagonal(const Scene& scene) {
 QualityKnobs resolve_quality(const Scene& scene) { return resolve_quality(scene, scene.quality); }
 
 QualityKnobs resolve_quality(const Scene& scene, const Quality& given) {
-  constexpr double reference_error = 0.02;
+  constexpr double reference_error = default_error;  // what the laws were measured at
   const double ratio = reference_error / given.error.value_or(reference_error);
   QualityKnobs knobs;
   knobs.form_factor_rays = given.form_factor_rays.value_or(

@@ -9,6 +9,9 @@ namespace earthshine::scenes {
 // Gather rays of a pixel that shares none, for the noise of one that does.
 inline constexpr int rays_alone_per_shared = 8;
 
+// Relative; of a scene that names none.
+inline constexpr double default_error = 0.02;
+
 struct QualityKnobs {
   double patch_edge_m = 0.25;  // of patches that are all alike
   bool refine = false;         // adaptive patches instead, from cells of start_edge_m at most

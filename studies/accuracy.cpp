@@ -54,15 +54,6 @@ scenes::QualityKnobs knobs_of(const scenes::Scene& scene, const AccuracyStep& st
   return scenes::resolve_quality(scene, step.quality);
 }
 
-radiosity::SolveOptions solver_of(const scenes::QualityKnobs& knobs, std::uint64_t seed) {
-  return {knobs.patch_edge_m,
-          knobs.form_factor_rays,
-          knobs.solver_tolerance,
-          seed,
-          {knobs.refine, knobs.start_edge_m, static_cast<std::size_t>(knobs.max_patches),
-           knobs.refine_error}};
-}
-
 // Light groups and effects as `render` has them for the step.
 struct Asked {
   scenes::LightGroups groups;
@@ -70,15 +61,14 @@ struct Asked {
 
   Asked(const StudyScene& study, const AccuracyView& view, const AccuracyStep& step)
       : groups(study.groups) {
-    constexpr double default_error = 0.02;
     scenes::Asked asked;
     asked.cameras = {&view.camera};
     asked.paths = paths_of(step.indirect);
     effects = scenes::find_effects(study.scene, groups, asked);
     if (step.indirect == Indirect::Paths) return;
-    (void)scenes::switch_off_idle(study.scene, asked, step.quality.error.value_or(default_error),
-                                  radiosity::hidden_lights(study.scene, asked.cameras), groups,
-                                  effects);
+    (void)scenes::switch_off_idle(
+        study.scene, asked, step.quality.error.value_or(scenes::default_error),
+        radiosity::hidden_lights(study.scene, asked.cameras), groups, effects);
   }
 };
 
@@ -192,8 +182,7 @@ std::optional<StepResult> run_steered(const Work& work) {
   const bool solves = asked.effects.solution;
   if (solves) {
     found = reach_solution(
-        scene, wanted,
-        [&](const scenes::QualityKnobs& knobs) { return solver_of(knobs, view.seed); }, {watched},
+        scene, wanted, view.seed, {watched},
         [&cost](const radiosity::SolveReport& report) { cost.solve_rays += solve_rays(report); });
     cost.solve_wall_seconds = clock.wall();
     cost.solve_cpu_seconds = clock.cpu();
@@ -235,7 +224,7 @@ AccuracyView accuracy_view(const scenes::Camera& camera, int columns, int rows,
 
 radiosity::SolveOptions solver_of(const StudyScene& study, const AccuracyStep& step,
                                   std::uint64_t seed) {
-  return solver_of(knobs_of(study.scene, step), seed);
+  return radiosity::solve_options(knobs_of(study.scene, step), seed);
 }
 
 raytrace::RenderOptions picture_of(const StudyScene& study, const AccuracyView& view,

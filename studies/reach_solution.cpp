@@ -21,11 +21,11 @@ constexpr double share_of_time = 0.5;  // for the solution
 
 class SolutionSearch {
  public:
-  SolutionSearch(const StudyScene& scene, const Wanted& wanted, const SolverOf& solver_of,
+  SolutionSearch(const StudyScene& scene, const Wanted& wanted, std::uint64_t seed,
                  const std::vector<WatchedPicture>& pictures, const SolveListener& listen)
       : scene_(scene),
         wanted_(wanted),
-        solver_of_(solver_of),
+        seed_(seed),
         pictures_(pictures),
         listen_(listen),
         given_(scene.scene.quality) {}
@@ -39,7 +39,7 @@ class SolutionSearch {
         if (!is_enough() && !choice.reached) result_.limit = why_not();
         break;
       }
-      if (static_cast<int>(result_.steps.size()) >= most_solves) {
+      if (solves_ == most_solves) {
         result_.limit = Limit::Steps;
         break;
       }
@@ -56,7 +56,7 @@ class SolutionSearch {
       }
       const double patches = state().patches, before = worst().total().estimate;
       solve(options);
-      if (worst().total().estimate > no_better * before) {
+      if (!is_enough() && worst().total().estimate > no_better * before) {
         result_.limit = Limit::Steps;
         break;
       }
@@ -75,7 +75,8 @@ class SolutionSearch {
   radiosity::SolveOptions first_options() {
     scenes::Quality coarse = given_;
     coarse.error = std::min(1.0, first_patches * wanted_.error);
-    radiosity::SolveOptions options = solver_of_(scenes::resolve_quality(scene_.scene, coarse));
+    radiosity::SolveOptions options =
+        radiosity::solve_options(scenes::resolve_quality(scene_.scene, coarse), seed_);
     if (may_cast()) {
       scenes::Quality as_wanted = given_;
       as_wanted.error = wanted_.error;
@@ -87,6 +88,7 @@ class SolutionSearch {
 
   void solve(const radiosity::SolveOptions& options) {
     const double before = seconds();
+    ++solves_;
     result_.solver = options;
     result_.solution =
         radiosity::solve(scene_.scene, scene_.groups, scene_.effects, scene_.query, options);
@@ -205,22 +207,22 @@ class SolutionSearch {
 
   const StudyScene& scene_;
   const Wanted& wanted_;
-  const SolverOf& solver_of_;
+  std::uint64_t seed_;
   const std::vector<WatchedPicture>& pictures_;
   const SolveListener& listen_;
   const scenes::Quality& given_;
   SteeredSolution result_;
   double trial_rays_ = 0.0, trial_noise_ = 0.0, solve_seconds_ = 0.0;
+  int solves_ = 0;
   bool cut_out_ = false;
 };
 
 }  // namespace
 
-SteeredSolution reach_solution(const StudyScene& scene, const Wanted& wanted,
-                               const SolverOf& solver_of,
+SteeredSolution reach_solution(const StudyScene& scene, const Wanted& wanted, std::uint64_t seed,
                                const std::vector<WatchedPicture>& pictures,
                                const SolveListener& listen) {
-  return SolutionSearch(scene, wanted, solver_of, pictures, listen).run();
+  return SolutionSearch(scene, wanted, seed, pictures, listen).run();
 }
 
 }  // namespace earthshine::studies

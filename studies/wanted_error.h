@@ -51,8 +51,6 @@ struct SteeredSolution {
   Limit limit = Limit::None;
 };
 
-// Makes the solver's options for knobs.
-using SolverOf = std::function<radiosity::SolveOptions(const scenes::QualityKnobs&)>;
 // Called before each solve; gives the listener for what the solve takes, which may be empty.
 using SolveListener = std::function<void(const radiosity::SolveReport&)>;
 
@@ -60,7 +58,7 @@ using SolveListener = std::function<void(const radiosity::SolveReport&)>;
 // have the options for the wanted error but for gather rays and noise. Without pictures until the
 // surfaces' own error is small enough. Settings that the scene names stay as they are.
 [[nodiscard]] SteeredSolution reach_solution(const StudyScene& scene, const Wanted& wanted,
-                                             const SolverOf& solver_of,
+                                             std::uint64_t seed,
                                              const std::vector<WatchedPicture>& pictures,
                                              const SolveListener& listen = {});
 
