@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "radiosity/closed_parts.h"
+#include "radiosity/stopped_holes.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -87,8 +89,9 @@ ClosedBodies::ClosedBodies(const scenes::Scene& scene, const Vec3& centre) : cen
   const ClosedParts parts = find_closed_parts(scene);
   std::vector<std::uint32_t> order;
   std::vector<char> walls(parts.of.size(), 0);
+  const std::map<std::uint32_t, std::vector<Vec3>> stoppers = find_stoppers(scene, parts);
   for (std::uint32_t t = 0; t < parts.of.size(); ++t) {
-    if (parts.closed[parts.of[t]] != 0) order.push_back(t);
+    if (parts.closed[parts.of[t]] != 0 || stoppers.contains(parts.of[t])) order.push_back(t);
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return parts.of[a] < parts.of[b]; });
@@ -98,6 +101,9 @@ ClosedBodies::ClosedBodies(const scenes::Scene& scene, const Vec3& centre) : cen
       for (const std::uint32_t v : scene.triangles[order[end]].vertex) {
         corners.push_back(scene.vertices[v] - centre);
       }
+    }
+    if (const auto stopper = stoppers.find(parts.of[order[begin]]); stopper != stoppers.end()) {
+      for (const Vec3& p : stopper->second) corners.push_back(p - centre);
     }
     ClosedSurface surface(corners);
     const double least = least_volume_share * surface.box_m3();

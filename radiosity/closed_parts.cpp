@@ -2,6 +2,7 @@
 #include "radiosity/closed_parts.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <numeric>
 #include <tuple>
 
@@ -62,7 +63,6 @@ ClosedParts find_closed_parts(const scenes::Scene& scene) {
     const std::uint32_t ra = root(a), rb = root(b);
     parts.of[std::max(ra, rb)] = std::min(ra, rb);
   };
-  std::vector<std::uint32_t> open;
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
     // An object whose own faces close at this edge hangs together there without the others: a box
     // in the corner of a room is no part of the room.
@@ -82,11 +82,19 @@ ClosedParts find_closed_parts(const scenes::Scene& scene) {
       if (loose != none) unite(loose, uses[first].triangle);
       loose = uses[first].triangle;
     }
-    if (net != 0) open.push_back(loose);
+    const auto [low, high] = uses[begin].edge();
+    for (int k = 0; k < std::abs(net); ++k) {
+      parts.rims.push_back({loose, net > 0 ? low : high, net > 0 ? high : low});
+    }
   }
   parts.closed.assign(parts.of.size(), 0);
   for (const EdgeUse& use : uses) parts.closed[root(use.triangle)] = 1;
-  for (const std::uint32_t t : open) parts.closed[root(t)] = 0;
+  for (ClosedParts::RimEdge& edge : parts.rims) {
+    edge.part = root(edge.part);
+    parts.closed[edge.part] = 0;
+  }
+  std::stable_sort(parts.rims.begin(), parts.rims.end(),
+                   [](const auto& a, const auto& b) { return a.part < b.part; });
   for (std::uint32_t t = 0; t < parts.of.size(); ++t) parts.of[t] = root(t);
   return parts;
 }

@@ -13,8 +13,13 @@ namespace earthshine::radiosity {
 // `closed` says of that one whether every edge is used equally often both ways. Sheets and glass
 // are no part of any such surface: each of their triangles is a part of its own, which is open.
 struct ClosedParts {
+  // An edge that is used once more one way than the other: this way.
+  struct RimEdge {
+    std::uint32_t part, from, to;  // vertices
+  };
   std::vector<std::uint32_t> of;
   std::vector<char> closed;
+  std::vector<RimEdge> rims;  // by part
 };
 [[nodiscard]] ClosedParts find_closed_parts(const scenes::Scene& scene);
 

@@ -19,7 +19,6 @@ constexpr std::size_t growth_between_solves = 4;
 constexpr int fewest_rays = 64;
 // Of errors: from an earlier round to the last, and from one round that is kept to the next.
 constexpr double clearly_coarser = 2.0, between_kept = 0.8;
-constexpr std::size_t most_growth = 4;  // of patches, for a finer cut to compare with
 
 std::uint32_t other_side(const Patches& patches, std::uint32_t patch) {
   const Facet& facet = patches.facets[patches.facet[patch]];
@@ -144,7 +143,6 @@ class Refinement {
         refined_.other = std::move(kept);
       }
     }
-    if (refined_.other.error <= 0.0) go_on();
     refined_.rays += variation_.rays();
     return std::move(refined_);
   }
@@ -155,19 +153,6 @@ class Refinement {
     const double error = refined_.rounds.back().error;
     if (!kept_.empty() && error > between_kept * kept_.back().error) return;
     kept_.push_back({refined_.patches, error});
-  }
-
-  // Without an earlier round to compare with, a later one.
-  void go_on() {
-    const double last = refined_.rounds.back().error;
-    Patches finished = refined_.patches;
-    double error = last;
-    for (int round = 0; round < most_rounds && error > last / clearly_coarser; ++round) {
-      if (!cut_worst(most_growth * finished.count())) break;
-      error = find_errors();
-    }
-    if (error <= between_kept * last) refined_.other = {std::move(refined_.patches), error};
-    refined_.patches = std::move(finished);
   }
 
   // The estimated error of the patches as they are.

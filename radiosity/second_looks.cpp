@@ -37,9 +37,8 @@ Patches quartered(const Patches& patches) {
 Comparison cut_otherwise(const scenes::Scene& scene, const SolveOptions& options,
                          const Solution& solution) {
   if (solution.other.error > 0.0 && !solution.report.rounds.empty()) {
-    const double own = solution.report.rounds.back().error, other = solution.other.error;
-    const double ratio = std::min(own, other) / std::max(own, other);
-    return {solution.other.patches, std::clamp(ratio, least_ratio, most_ratio), other < own};
+    const double ratio = solution.report.rounds.back().error / solution.other.error;
+    return {solution.other.patches, std::clamp(ratio, least_ratio, most_ratio), false};
   }
   const double edge_m = 2.0 * options.patch_edge_m;
   const double share = static_cast<double>(count_patches(scene, edge_m)) /
@@ -155,8 +154,10 @@ SecondLooks look_again(const scenes::Scene& scene, const scenes::LightGroups& gr
   looks.error_ratio = cut.error_ratio;
   looks.finer = cut.finer;
   looks.other_patches = cut.patches.count();
+  // Cells cut in four have as many points as the solution has.
+  const int points = cut.finer ? usual.points_per_patch / 4 : usual.points_per_patch;
   for (std::uint32_t k = 0; k < other_patches_looks; ++k) {
-    listen(Look::OtherPatches, look(cut.patches, rays, 16, usual.points_per_patch));
+    listen(Look::OtherPatches, look(cut.patches, rays, 16, points));
   }
   return looks;
 }

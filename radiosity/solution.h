@@ -45,8 +45,8 @@ struct RefineRound {
   double error = 0.0;  // estimated for these patches, as RefineOptions::error
 };
 
-// Patches of another round of refinement, to compare with: of the last that had twice the error of
-// the final ones or more, or else of one that goes on to half of their error.
+// Patches of an earlier round of refinement, to compare with: of the last that had twice the error
+// of the final ones or more.
 struct OtherCut {
   Patches patches;
   double error = 0.0;  // estimated for them, as RefineOptions::error; 0: there are none

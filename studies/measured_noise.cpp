@@ -11,13 +11,24 @@
 namespace earthshine::studies {
 namespace {
 
-constexpr std::size_t most_looked_at = 512, fewest_looked_at = 64;
-constexpr double evenly_looked_at = 0.25;  // share of the looks that do not follow the stated error
+constexpr std::size_t most_looked_at = 1024, fewest_looked_at = 256;
+constexpr double evenly_looked_at = 0.5;  // share of the looks that do not follow the stated error
 constexpr raytrace::ProbeOptions close_look{.camera_samples = 64};
 // Enough to tell lamps from edges.
 constexpr raytrace::ProbeOptions quick_look{.reads_solution = true};
 constexpr double most_of_the_picture = 0.15;  // of its rays
 constexpr double one_sided_95 = 1.645;
+// Few pixels hold much of the squared error, and the spread that some hundred looks show is too
+// small as a rule: over seeds they scatter 1.5 times as far (docs/validation.md).
+constexpr double unseen_spread = 1.5;
+
+// Of a mean of products that most often are small and now and then large: its logarithm is nearer
+// to normal than itself, and what lies beyond one standard error is worth as much again.
+double bound_of_mean(double mean, double error) {
+  const double linear = one_sided_95 * unseen_spread * error;
+  const double x = mean > 0.0 ? std::min(linear / mean, one_sided_95) : one_sided_95;
+  return mean + linear * (x > 0.0 ? std::expm1(x) / x : 1.0);
+}
 
 double pixel_luminance(const base::Image& image, std::size_t at) {
   const auto& c = image.channels;
@@ -51,21 +62,24 @@ class CloserLook {
     std::vector<std::uint32_t> looked_at;
     for (const std::size_t k : chosen) looked_at.push_back(pixels[k]);
     const raytrace::Probed a = look(looked_at, close_look, 1), b = look(looked_at, close_look, 2);
-    Measured found;
-    double squares = 0.0, looks = 0.0;
-    for (std::size_t k = 0; k < chosen.size(); ++k) {
+    // A pixel that was chosen more than once was looked at by the same rays: one value.
+    double sum = 0.0, squares = 0.0, values = 0.0;
+    for (std::size_t k = 0, next = 0; k < chosen.size(); k = next) {
+      while (next < chosen.size() && chosen[next] == chosen[k]) ++next;
       const double own = pixel_luminance(frame_.image, seen_.in_window(looked_at[k]));
       const double weight = error_weight(own, mean);
-      const double off = weight * weight * (own - a.luminance[k]) * (own - b.luminance[k]) /
-                         (weights[chosen[k]] * count);
-      found.mean += off;
+      const double off = double(next - k) * weight * weight * (own - a.luminance[k]) *
+                         (own - b.luminance[k]) / (weights[chosen[k]] * count);
+      sum += off;
       squares += off * off;
-      looks += 1.0;
+      values += 1.0;
     }
-    if (looks < 2.0) return {stated, stated};
-    found.mean /= looks;
-    const double variance = std::max(0.0, squares / looks - found.mean * found.mean);
-    found.error = std::sqrt(variance / (looks - 1.0));
+    if (values < 2.0) return {stated, stated};
+    const auto looks = static_cast<double>(chosen.size());
+    const double spread = std::max(0.0, squares - sum * sum / values) * values / (values - 1.0);
+    Measured found;
+    found.mean = sum / looks;
+    found.error = std::sqrt(spread) / looks;
     return found;
   }
 
@@ -166,7 +180,7 @@ MeasuredNoise measure_noise(const StudyScene& scene, const radiosity::Solution& 
   CloserLook looks(scene, solution, picture, frame, seen);
   const Measured measured = looks.squared_error(pixels, means.luminance, means.squared_error);
   const double least = std::max(measured.mean, 0.0);
-  const double most = std::max(measured.mean, 0.0) + one_sided_95 * measured.error;
+  const double most = bound_of_mean(least, measured.error);
   const double all = std::sqrt(least) / means.luminance, bound = std::sqrt(most) / means.luminance;
   if (means.squared_error > 0.0) {
     noise.correction = {std::sqrt(least / means.squared_error),

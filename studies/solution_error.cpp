@@ -60,6 +60,25 @@ Spread form_factor_spread(const Looks& looks, const radiosity::SecondLooks& made
   return spread;
 }
 
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+double mean_of(const std::vector<std::vector<double>>& tries) {
+  double sum = 0.0;
+  for (const auto& values : tries) sum += mean_of(values);
+  return sum / static_cast<double>(tries.size());
+}
+
+// The mean without the share by which it is too bright: light that leaks under a wall may be nearly
+// all that a dark room has, and an error of all of it is many times what the room should have.
+double true_mean(double excess) {
+  constexpr double darkest = 0.02;  // two cuts do not tell more
+  return std::clamp(1.0 - excess, darkest, 1.0);
+}
+
 }  // namespace
 
 void Looks::add(radiosity::Look look, std::vector<double> values) {
@@ -99,8 +118,10 @@ SolutionError solution_error(const Looks& looks, const radiosity::SecondLooks& m
   // Their noise has the modes of the few-ray solutions', which is told by more tries.
   const double above = 1.645 * spread_of(others).variance / std::sqrt(sure_modes(chance));
   const double r = made.error_ratio;
-  error.patches = {patch_share(made.finer, r * r) * std::sqrt(apart) / scale,
-                   most_patch_share(made.finer, r) * std::sqrt(apart + above) / scale};
+  const double share = patch_share(made.finer, r * r), most = most_patch_share(made.finer, r);
+  const double excess = (mean_of(looks.own) - mean_of(others)) / scale;
+  error.patches = {share * std::sqrt(apart) / (scale * true_mean(share * excess)),
+                   most * std::sqrt(apart + above) / (scale * true_mean(most * excess))};
   return error;
 }
 

@@ -37,8 +37,10 @@ struct Looks {
 // that the edge crosses, an area as wide as they are: its square falls as r, not r^2, and as the
 // means of fine cells are the coarse one's (f - P f at right angles to what coarse cells hold),
 // d^2 = e_coarse^2 - e_fine^2: the coarser one is off by d / sqrt(1 - r), the finer by
-// d sqrt(r / (1 - r)). The bound takes what is more. The product of the differences to two
-// independent others has their noise left out. scale: what errors are relative to.
+// d sqrt(r / (1 - r)). The bound takes what is more. Where the cuts' means show that the solution
+// is too bright, errors of the patches are relative to the mean without that. The product of the
+// differences to two independent others has their noise left out. scale: what errors are relative
+// to.
 [[nodiscard]] SolutionError solution_error(const Looks& looks, const radiosity::SecondLooks& made,
                                            double solver_error, double scale);
 // Relative to the mean, what is bright as error_weight() has it.

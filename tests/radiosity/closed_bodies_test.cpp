@@ -131,6 +131,32 @@ TEST(ClosedBodies, ARoomWithinAShellIsOpenAndItsWallsAreNot) {
   EXPECT_FALSE(covered(builder.scene, {0.5, 0.5, -0.15}));  // outside
 }
 
+TEST(ClosedBodies, ABlockWithoutABottomIsStoppedUpByTheFloorThatItStandsOn) {
+  // A floor of two quads that meet under the block, and a prism of walls and a roof upon it.
+  const auto covers = [](double lift, double floor_to, bool sheet) {
+    tests::SceneBuilder builder;
+    const std::uint32_t m = builder.material(grey(0.5));
+    scenes::Material paper = grey(0.5);
+    paper.two_sided = sheet;
+    const std::uint32_t ground = builder.material(paper);
+    builder.quad(ground, {0, 0, 0}, {2, 0, 0}, {2, 4, 0}, {0, 4, 0});
+    builder.quad(ground, {2, 0, 0}, {floor_to, 0, 0}, {floor_to, 4, 0}, {2, 4, 0});
+    const Vec3 up(0, 0, lift), high(0, 0, lift + 1.0);
+    const Vec3 corner[] = {{2, 1, 0}, {3, 2, 0}, {2, 3, 0}, {1, 2, 0}};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Vec3 from = corner[k], to = corner[(k + 1) % 4];
+      builder.quad(m, from + up, to + up, to + high, from + high);
+    }
+    builder.quad(m, corner[0] + high, corner[1] + high, corner[2] + high, corner[3] + high);
+    return covered(builder.scene, {2.0, 2.0, 0.5}) && covered(builder.scene, {2.0, 2.0, 1e-9}) &&
+           !covered(builder.scene, {2.9, 2.9, 1e-9}) && !covered(builder.scene, {2.0, 2.0, 1.1});
+  };
+  EXPECT_TRUE(covers(0.0, 4.0, false));
+  EXPECT_FALSE(covers(1e-3, 4.0, false));  // light comes in by the gap
+  EXPECT_FALSE(covers(0.0, 2.5, false));   // its corner stands out over the edge
+  EXPECT_FALSE(covers(0.0, 4.0, true));    // a sheet's other side is no floor
+}
+
 TEST(ClosedBodies, OnlyOpaqueClosedConsistentSurfacesCover) {
   const auto covers = [](auto change) {
     tests::SceneBuilder builder;

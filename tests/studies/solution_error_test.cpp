@@ -138,8 +138,23 @@ TEST(SolutionError, BrightValuesCountInProportion) {
   looks.other_patches.assign(2, other);
   const SolutionError error =
       weighed_error(looks, {.error_ratio = std::sqrt(0.5), .finer = false}, 0.0);
-  // q = r^2 = 1/2: q / (1 - q) = 1.
-  EXPECT_NEAR(error.patches.estimate, 2.0 / std::sqrt(20.0) / 5.0, 1e-12);
+  // q = r^2 = 1/2: q / (1 - q) = 1. The mean is too bright by 2 / 20 of 5.
+  EXPECT_NEAR(error.patches.estimate, 2.0 / std::sqrt(20.0) / (5.0 * 0.98), 1e-12);
+}
+
+// A room has 35 times the light that it should: what leaks in goes with the patch edge, and the
+// other cut, of half the edge, shows (1 + 34 / 2) of the 35. The error is 34 times the truth, which
+// is 34 / 35 of what is seen.
+TEST(SolutionError, IsRelativeToWhatTheMeanShouldBe) {
+  Looks looks;
+  looks.own.assign(20, 35.0);
+  looks.few_rays.assign(4, looks.own);
+  looks.other_direct.assign(4, looks.own);
+  looks.other_patches.assign(2, std::vector<double>(20, 18.0));
+  const SolutionError error = weighed_error(looks, {.error_ratio = 0.5, .finer = true}, 0.0);
+  EXPECT_NEAR(error.patches.bound_95, 34.0, 1e-9);
+  // By the second order 17 / (1 - 1/4) = 22.7 are too much.
+  EXPECT_NEAR(error.patches.estimate, (17.0 / 0.75) / (35.0 - 17.0 / 0.75), 1e-9);
 }
 
 TEST(SolutionError, PatchesAreFreeOfNoiseOnAverage) {
