@@ -149,10 +149,10 @@ class Study {
     result_.limits.push_back(
         {"radiosity",
          differs_ ? studies::limit_error(gathered_, full_, counted_) : studies::PictureError{},
-         differs_
-             ? "leaves out what lobes, mirrors and glass do behind a diffuse bounce: highlights "
-               "seen by gather rays, caustics"
-             : "none: without lobes, mirrors and glass it comes to what paths come to"});
+         differs_ ? "behind a diffuse bounce lobes reflect as if they were diffuse, and mirrors "
+                    "and glass "
+                    "throw no caustics"
+                  : "none: without lobes, mirrors and glass it comes to what paths come to"});
     const studies::PictureError straight = studies::limit_error(straight_, full_, counted_);
     result_.limits.push_back({"direct", straight, "leaves out the light between surfaces"});
     result_.limits.push_back({"distributed", straight, "leaves out the light between surfaces"});

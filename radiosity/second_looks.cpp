@@ -6,6 +6,7 @@
 
 #include "base/random.h"
 #include "radiosity/split.h"
+#include "scenes/spread_reflectance.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -79,11 +80,11 @@ Solution with_direct(const scenes::Scene& scene, const Solution& solution, const
   changed.patches = solution.patches;
   changed.columns = 3;
   const std::size_t count = solution.patches.count(), columns = solution.columns;
+  const std::vector<Rgb> spread = scenes::spread_reflectances(scene);
   changed.radiosity.assign(count * 3, 0.0F);
   changed.soft_radiosity.assign(count * 3, 0.0F);
   for (std::size_t i = 0; i < count; ++i) {
-    const Rgb& rho =
-        scene.materials[solution.patches.material(static_cast<std::uint32_t>(i))].diffuse;
+    const Rgb& rho = spread[solution.patches.material(static_cast<std::uint32_t>(i))];
     for (std::size_t k = 0; k < columns; ++k) {
       changed.radiosity[i * 3 + k % 3] += solution.radiosity[i * columns + k];
       changed.soft_radiosity[i * 3 + k % 3] += solution.soft_radiosity[i * columns + k];

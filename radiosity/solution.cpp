@@ -10,6 +10,7 @@
 #include "radiosity/linear_solve.h"
 #include "radiosity/refine.h"
 #include "scenes/sky.h"
+#include "scenes/spread_reflectance.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -38,8 +39,9 @@ class Stopwatch {
 std::vector<double> reflectances(const scenes::Scene& scene, const Patches& patches,
                                  std::size_t groups) {
   std::vector<double> values(patches.count() * 3 * groups);
+  const std::vector<Rgb> spread = scenes::spread_reflectances(scene);
   for (std::size_t i = 0; i < patches.count(); ++i) {
-    const Rgb& rho = scene.materials[patches.material(static_cast<std::uint32_t>(i))].diffuse;
+    const Rgb& rho = spread[patches.material(static_cast<std::uint32_t>(i))];
     for (std::size_t k = 0; k < 3 * groups; ++k) {
       values[i * 3 * groups + k] = rho[static_cast<int>(k % 3)];
     }
@@ -239,10 +241,12 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   solution.indirect_lx.assign(indirect.begin(), indirect.end());
   solution.soft_radiosity.resize(source.size());
   for (std::size_t k = 0; k < source.size(); ++k) {
-    double soft = rho[k] * indirect[k];
     const std::size_t column = k % columns;
+    const std::uint32_t material = patches.material(static_cast<std::uint32_t>(k / columns));
+    const double diffuse = scene.materials[material].diffuse[static_cast<int>(column % 3)];
+    double soft = diffuse * indirect[k];
     if (effects.earth_by_gather && column / 3 == groups.earth) {
-      soft += rho[k] * factors.sky_illuminance[k / columns][static_cast<int>(column % 3)];
+      soft += diffuse * factors.sky_illuminance[k / columns][static_cast<int>(column % 3)];
     }
     solution.soft_radiosity[k] = static_cast<float>(soft);
   }

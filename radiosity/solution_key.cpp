@@ -42,6 +42,8 @@ std::uint64_t surfaces(const Scene& scene) {
         scene.materials[m];
     Digest digest;
     digest.add(diffuse);
+    digest.add(specular);
+    digest.add(shininess);
     digest.add(mirror);
     digest.add(transmit);
     digest.add(ior);

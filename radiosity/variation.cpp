@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "scenes/sky.h"
+#include "scenes/spread_reflectance.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -142,6 +143,7 @@ Variation::Variation(const scenes::Scene& scene, const scenes::LightGroups& grou
       sources_(find_sources(scene, groups, effects, 16)),
       groups_(groups.count()),
       earth_group_(groups.earth),
+      reflectances_(scenes::spread_reflectances(scene)),
       options_(options) {}
 
 std::vector<Unevenness> Variation::find(const Patches& patches,
@@ -237,7 +239,7 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
   base::parallel_chunks(which.size(), 64, [&](std::size_t begin, std::size_t end) {
     std::uint64_t rays = 0;
     for (std::size_t k = begin; k < end; ++k) {
-      const Rgb& rho = scene_.materials[patches.material(which[k])].diffuse;
+      const Rgb& rho = reflectances_[patches.material(which[k])];
       if (base::max_component(rho) <= 0.0) continue;
       Looks sharp(points_on(patches.area_m2[which[k]]), groups_), soft(indirect_points, groups_);
       rays += direct(which[k], rho, sharp);

@@ -64,6 +64,7 @@ class Variation {
   const scenes::RayQuery& query_;
   std::vector<LightSource> sources_;
   std::size_t groups_, earth_group_;
+  std::vector<Rgb> reflectances_;  // per material, with lobes
   VariationOptions options_;
   std::uint64_t rays_ = 0;
 };

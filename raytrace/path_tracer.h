@@ -28,8 +28,8 @@ namespace earthshine::raytrace {
 
 enum class PathSet {
   All,
-  // Without those that render() leaves out, for tests of it: behind a diffuse bounce or one off a
-  // lobe of an exponent below 100 surfaces have no lobe, and there are no caustics.
+  // As render() has them, for tests of it: behind a diffuse bounce or one off a lobe of an exponent
+  // below 100 surfaces reflect all as if it were diffuse, and there are no caustics.
   Gathered
 };
 

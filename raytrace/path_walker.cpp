@@ -30,6 +30,7 @@ bool lit(const Rgb& c) { return base::max_component(c) > 0.0; }
 
 struct PathWalker::Surface {
   const scenes::Material& material;
+  Rgb diffuse;
   Vec3 position;
   Vec3 outward;   // unit normal of the front
   Vec3 normal;    // the same on the side that the path arrives from
@@ -66,7 +67,9 @@ bool PathWalker::step() {
 
   const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
   const auto& v = triangle.vertex;
+  const bool spread = world_.paths == PathSet::Gathered && !glossy_;
   const Surface surface{material,
+                        spread ? world_.spread[triangle.material] : material.diffuse,
                         (1.0 - hit.u - hit.v) * scene.vertices[v[0]] +
                             hit.u * scene.vertices[v[1]] + hit.v * scene.vertices[v[2]],
                         outward,
@@ -81,7 +84,7 @@ bool PathWalker::step() {
     if (from_camera_) {
       add(world_.groups.ambient, material.diffuse * scene.ambient_radiance);
     }
-    if (lit(material.diffuse) || surface.glossy) light_directly(surface);
+    if (lit(surface.diffuse) || surface.glossy) light_directly(surface);
   }
   return go_on(surface);
 }
@@ -142,7 +145,7 @@ void PathWalker::light_directly(const Surface& surface) {
     const scenes::LightSample light = world_.lights.sample(k, surface.position, u, v);
     const double cosine = glm::dot(light.direction, surface.normal);
     if (cosine <= 0.0 || !lit(light.normal_illuminance_lx)) continue;
-    Rgb reflectance = surface.material.diffuse;
+    Rgb reflectance = surface.diffuse;
     const double cos_alpha = glm::dot(light.direction, surface.mirrored);
     if (surface.glossy && cos_alpha > 0.0) {
       reflectance += surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
@@ -165,7 +168,7 @@ bool PathWalker::go_on(const Surface& surface) {
   const double n = material.shininess;
   enum : std::size_t { Diffuse, Lobe, Mirror, Glass };
   const std::array<double, 4> share = {
-      surface.shines ? base::max_component(material.diffuse) : 0.0,
+      surface.shines ? base::max_component(surface.diffuse) : 0.0,
       surface.glossy ? base::max_component(material.specular) * 2.0 / (n + 2.0) : 0.0,
       base::max_component(material.mirror), base::max_component(material.transmit)};
   const double all = share[Diffuse] + share[Lobe] + share[Mirror] + share[Glass];
@@ -211,7 +214,7 @@ void PathWalker::scatter(const Surface& surface, bool by_lobe) {
     const double cosine = std::max(0.0, glm::dot(direction, surface.normal));
     weight_ *= surface.material.specular * (2.0 * cosine / (n + 1.0));
   } else {
-    weight_ *= surface.material.diffuse;
+    weight_ *= surface.diffuse;
   }
   ray_ = {surface.position + surface.normal * world_.query.surface_offset_m(), direction};
   sees_sampled_ = from_camera_ = false;

@@ -19,6 +19,7 @@ struct PathWorld {
   const scenes::Effects& effects;
   const scenes::RayQuery& query;
   const LightSampler& lights;
+  std::vector<Rgb> spread;            // per material: scenes/spread_reflectance.h
   std::vector<bool> sampled_emitter;  // per material: shadow rays carry its light
   std::vector<std::size_t> layer;     // of a light group: its image layer
   std::size_t layers = 1;

@@ -34,7 +34,9 @@ std::vector<std::string> not_captured(const StudyScene& scene,
       break;
     case raytrace::Indirect::Radiosity:
       if (effects.phong && effects.interreflection) {
-        missing.emplace_back("highlights and glossy reflection behind a diffuse bounce");
+        missing.emplace_back(
+            "the direction of highlights and glossy reflection behind a diffuse bounce: spread as "
+            "if diffuse");
       }
       break;
   }

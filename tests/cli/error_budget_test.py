@@ -137,7 +137,7 @@ class ErrorBudget(program.Case):
         self.assertEqual(error["targets"][0]["pixels"], 0)
 
     def test_what_is_not_captured_is_said(self):
-        lobes = "highlights and glossy reflection behind a diffuse bounce"
+        lobes = "the direction of highlights and glossy reflection behind a diffuse bounce: spread as if diffuse"
         thrown = "caustics: light of lamps, Sun and emitters that mirrors or glass throw"
         through = "light of lamps, Sun and emitters through glass, which casts a shadow"
         between = "light from surface to surface"

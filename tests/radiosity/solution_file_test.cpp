@@ -201,8 +201,6 @@ TEST(SolutionFile, WhatRadiosityDoesNotReadDoesNotMakeItStale) {
   scene.objects[0].target = true;
   for (scenes::Material& material : scene.materials) {
     material.name += " paint";
-    material.specular = Rgb(0.2);
-    material.shininess = 9.0;
   }
   scene.materials.push_back(tests::grey(0.9, 1.0));  // nothing wears it
   EXPECT_EQ(stored.read(scene, stored.options).radiosity, stored.solution.radiosity);
