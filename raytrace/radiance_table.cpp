@@ -26,8 +26,8 @@ Neighbours neighbours(double parameter, std::uint32_t count) {
 }  // namespace
 
 RadianceTable::RadianceTable(const radiosity::Solution& solution, std::span<const float> values,
-                             bool per_light)
-    : patches_(&solution.patches) {
+                             bool per_light, const CellSight& sight)
+    : patches_(&solution.patches), sight_(&sight) {
   const std::size_t groups = solution.columns / 3;
   layers_ = per_light ? groups : 1;
   const std::size_t patches = solution.patches.count();
@@ -71,7 +71,9 @@ void RadianceTable::fill_knots() {
           if (first == radiosity::no_patch) continue;
           glm::vec4* values = &knots_[side_knots_[f][front ? 1 : 0] + k * layers_];
           for (const KnotTerm& term : terms) {
-            const glm::vec4* from = &radiance_[(first + term.leaf) * layers_];
+            const bool other_room = sight_->parted(first + leaf, first + term.leaf);
+            const std::uint32_t read = first + (other_room ? leaf : term.leaf);
+            const glm::vec4* from = &radiance_[read * layers_];
             for (std::size_t layer = 0; layer < layers_; ++layer) {
               values[layer] += term.weight * from[layer];
             }
@@ -109,8 +111,15 @@ void RadianceTable::add(const scenes::Hit& hit, const Rgb& weight, std::span<Rgb
   if (facet.tree != radiosity::no_tree) return add_uneven(facet, hit.front, p, weight, out);
   const Neighbours s = neighbours(p.s, facet.s_count);
   const Neighbours t = neighbours(p.t, facet.t_count);
+  const auto patch = [&](std::uint32_t row, std::uint32_t column) {
+    return first + row * facet.t_count + column;
+  };
+  const std::uint32_t own =
+      patch(s.weight < 0.5F ? s.low : s.high, t.weight < 0.5F ? t.low : t.high);
+  const bool at_wall = sight_->at_wall(own);
   const auto cell = [&](std::uint32_t row, std::uint32_t column) {
-    return &radiance_[(first + row * facet.t_count + column) * layers_];
+    const std::uint32_t other = patch(row, column);
+    return &radiance_[(at_wall && sight_->parted(own, other) ? own : other) * layers_];
   };
   const glm::vec4* a = cell(s.low, t.low);
   const glm::vec4* b = cell(s.low, t.high);

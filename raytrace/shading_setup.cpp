@@ -37,12 +37,14 @@ ShadingSetup::ShadingSetup(const scenes::Scene& scene, const scenes::LightGroups
                            const radiosity::Solution& solution, const scenes::Camera& camera,
                            const RenderOptions& options, const radiosity::Solution* aimed_at)
     : camera_(make_camera_model(camera, options.columns, options.rows)),
-      all_(solution, values_if(reads(solution, options), solution.radiosity), options.per_light),
+      sight_(reads(solution, options) ? CellSight(query, solution.patches) : CellSight()),
+      all_(solution, values_if(reads(solution, options), solution.radiosity), options.per_light,
+           sight_),
       soft_(solution,
             values_if(reads(solution, options) &&
                           (recursive(effects) || options.shared.on || aimed_at != nullptr),
                       solution.soft_radiosity),
-            options.per_light),
+            options.per_light, sight_),
       lights_(scene, groups, effects, options.indirect, options.distributed_lights,
               options.per_light, earth_area(scene, options.distributed_over)),
       bright_(bright_of(aimed_at != nullptr ? *aimed_at : solution, options)),

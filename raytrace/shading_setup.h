@@ -22,6 +22,7 @@ class ShadingSetup {
 
  private:
   CameraModel camera_;
+  CellSight sight_;
   RadianceTable all_, soft_;
   LightSampler lights_;
   BrightPatches bright_;

@@ -23,11 +23,11 @@ SurfaceError surface_error(const StudyScene& scene, const radiosity::Solution& s
   if (solution.columns == 0 || solution.patches.count() == 0) return error;
   const std::vector<scenes::Hit> where = spread_over_surfaces(scene.scene, points, solver.seed);
   Looks looks;
-  looks.own = radiosity_at(solution, where);
+  looks.own = radiosity_at(scene.query, solution, where);
   const radiosity::SecondLooks made =
       radiosity::look_again(scene.scene, scene.groups, scene.effects, scene.query, solver, solution,
                             [&](radiosity::Look look, const radiosity::Solution& other) {
-                              looks.add(look, radiosity_at(other, where));
+                              looks.add(look, radiosity_at(scene.query, other, where));
                             });
   error.known = std::any_of(looks.own.begin(), looks.own.end(), [](double b) { return b > 0.0; });
   error.parts = weighed_error(std::move(looks), made, solution.report.solver_error);

@@ -13,7 +13,8 @@ namespace earthshine::studies {
 [[nodiscard]] std::vector<scenes::Hit> spread_over_surfaces(const scenes::Scene& scene,
                                                             std::size_t count, std::uint64_t seed);
 // Luminance of the radiosity there, lm/m^2, interpolated as pictures read it.
-[[nodiscard]] std::vector<double> radiosity_at(const radiosity::Solution& solution,
+[[nodiscard]] std::vector<double> radiosity_at(const scenes::RayQuery& query,
+                                               const radiosity::Solution& solution,
                                                const std::vector<scenes::Hit>& where);
 
 }  // namespace earthshine::studies

@@ -37,7 +37,8 @@ struct Setup {
   const PayloadBay& bay = payload_bay();
   raytrace::CameraModel camera =
       raytrace::make_camera_model(bay.scene.cameras[1], edge_px, edge_px);
-  raytrace::RadianceTable table{solution(), solution().radiosity, false};
+  raytrace::CellSight sight{bay.query, solution().patches};
+  raytrace::RadianceTable table{solution(), solution().radiosity, false, sight};
   raytrace::BrightPatches bright{solution()};
   raytrace::IncomingLight incoming{bay.scene, bay.query, bay.effects, table, bright, 1, 0, true};
 };

@@ -75,7 +75,7 @@ struct Errors {
 
 class Judge {
  public:
-  Judge(const Call& call, const tests::Prepared& scene) {
+  Judge(const Call& call, const tests::Prepared& scene) : query_(scene.query) {
     radiosity::SolveOptions options;
     options.patch_edge_m = call.reference_edge_m;
     options.form_factor_rays = call.rays;
@@ -92,7 +92,8 @@ class Judge {
     const std::size_t groups = solution.columns / 3;
     Errors errors{std::vector<double>(groups + 1), std::vector<double>(groups + 1),
                   std::vector<double>(groups + 1)};
-    const raytrace::RadianceTable table(solution, solution.radiosity, true);
+    const raytrace::CellSight sight(query_, solution.patches);
+    const raytrace::RadianceTable table(solution, solution.radiosity, true, sight);
     std::vector<Rgb> read(groups);
     for (std::uint32_t i = 0; i < fine.count(); ++i) {
       const radiosity::Rectangle r = fine.rectangle(i);
@@ -121,6 +122,7 @@ class Judge {
   [[nodiscard]] std::size_t patches() const { return reference_[0].patches.count(); }
 
  private:
+  const scenes::RayQuery& query_;
   std::array<radiosity::Solution, 2> reference_;
 };
 

@@ -48,6 +48,8 @@ radiosity::Solution filled(const radiosity::Patches& patches, const Field& front
   return solution;
 }
 
+const CellSight nothing_stands_there;
+
 double read(const RadianceTable& table, const scenes::Hit& hit) {
   std::vector<Rgb> out{Rgb(0.0)};
   table.add(hit, Rgb(1.0), out);
@@ -62,7 +64,7 @@ TEST(RadianceTable, ALinearFieldIsReadExactlyAcrossCellsOfAnySize) {
     const radiosity::Patches patches =
         tests::random_cuts(radiosity::subdivide(plate(), 1.0 / 16), graded ? 6 : 1, 0.3, 1, graded);
     const radiosity::Solution solution = filled(patches, linear);
-    const RadianceTable table(solution, solution.radiosity, false);
+    const RadianceTable table(solution, solution.radiosity, false, nothing_stands_there);
     base::Rng rng(base::Key(1, base::Stream::Test, 0));
     for (int k = 0; k < 5000; ++k) {
       const double s = 0.125 + 0.75 * rng.next(), t = 0.125 + 0.75 * rng.next();
@@ -79,7 +81,7 @@ TEST(RadianceTable, TheRadianceHasNoStepsBetweenCellsOfDifferentSizes) {
       tests::random_cuts(radiosity::subdivide(plate(), 0.5), 12, 0.25, 3);
   const radiosity::Solution solution =
       filled(patches, [&](double, double) { return values.next(); });
-  const RadianceTable table(solution, solution.radiosity, false);
+  const RadianceTable table(solution, solution.radiosity, false, nothing_stands_there);
   base::Rng rng(base::Key(1, base::Stream::Test, 1));
   for (std::uint32_t i = 0; i < patches.count(); ++i) {
     const radiosity::Rectangle r = patches.rectangle(i);
@@ -103,7 +105,8 @@ TEST(RadianceTable, AnEvenTreeReadsLikeTheGridOfItsCells) {
   ASSERT_EQ(cut.count(), grid.count());
   ASSERT_NE(cut.facets[0].tree, radiosity::no_tree);
   const radiosity::Solution a = filled(cut, wavy), b = filled(grid, wavy);
-  const RadianceTable one(a, a.radiosity, false), other(b, b.radiosity, false);
+  const RadianceTable one(a, a.radiosity, false, nothing_stands_there),
+      other(b, b.radiosity, false, nothing_stands_there);
   base::Rng rng(base::Key(1, base::Stream::Test, 2));
   for (int k = 0; k < 5000; ++k) {
     const scenes::Hit hit = hit_at(rng.next(), rng.next());
@@ -120,7 +123,7 @@ TEST(RadianceTable, TheErrorOnUnevenCellsFallsWithTheSquareOfTheEdge) {
         tests::random_cuts(radiosity::subdivide(plate(), 0.125), 3, 0.3, 5, true);
     for (int k = 0; k < more; ++k) patches = tests::all_in_four(std::move(patches));
     const radiosity::Solution solution = filled(patches, bump);
-    const RadianceTable table(solution, solution.radiosity, false);
+    const RadianceTable table(solution, solution.radiosity, false, nothing_stands_there);
     base::Rng rng(base::Key(1, base::Stream::Test, 3));
     double sum = 0.0;
     for (int k = 0; k < 4000; ++k) {
@@ -139,7 +142,7 @@ TEST(RadianceTable, EachSideOfAnUnevenSheetHasItsOwnLight) {
       tests::random_cuts(radiosity::subdivide(plate(true), 0.25), 5, 0.3, 1);
   const radiosity::Solution solution = filled(
       patches, [](double, double) { return 3.0; }, [](double, double) { return 5.0; });
-  const RadianceTable table(solution, solution.radiosity, false);
+  const RadianceTable table(solution, solution.radiosity, false, nothing_stands_there);
   EXPECT_NEAR(read(table, hit_at(0.3, 0.6, true)), 3.0, 1e-5);
   EXPECT_NEAR(read(table, hit_at(0.3, 0.6, false)), 5.0, 1e-5);
 }

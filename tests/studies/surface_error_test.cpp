@@ -19,7 +19,7 @@ namespace {
 class Reader {
  public:
   explicit Reader(const radiosity::Solution& solution)
-      : table_(solution, solution.radiosity, false) {}
+      : table_(solution, solution.radiosity, false, nothing_stands_there_) {}
   double operator()(const scenes::Hit& hit) const {
     std::array<Rgb, 1> radiance{Rgb(0.0)};
     table_.add(hit, Rgb(base::pi), radiance);
@@ -27,6 +27,7 @@ class Reader {
   }
 
  private:
+  raytrace::CellSight nothing_stands_there_;
   raytrace::RadianceTable table_;
 };
 

@@ -22,13 +22,7 @@ radiosity::Solution read(const std::string& path, const std::vector<std::string>
   const std::vector<std::string> overrides(words.begin() + 3, words.end());
   const scenes::Scene scene = scenes::read_scene(path, overrides);
   const scenes::QualityKnobs knobs = scenes::resolve_quality(scene);
-  const radiosity::SolveOptions options{
-      knobs.patch_edge_m,
-      knobs.form_factor_rays,
-      knobs.solver_tolerance,
-      std::stoull(words[2]),
-      {knobs.refine, knobs.start_edge_m, static_cast<std::size_t>(knobs.max_patches),
-       knobs.refine_error}};
+  const radiosity::SolveOptions options = radiosity::solve_options(knobs, std::stoull(words[2]));
   return radiosity::read_solution(
       words[1], {scene, scenes::find_light_groups(scene), options, EARTHSHINE_VERSION});
 }
@@ -36,12 +30,13 @@ radiosity::Solution read(const std::string& path, const std::vector<std::string>
 void print(const std::vector<std::string>& arguments) {
   constexpr std::uint64_t seed = 20261121;  // not one that the program is called with
   const std::string& path = arguments.at(0);
-  const auto where =
-      studies::spread_over_surfaces(scenes::read_scene(path), std::stoul(arguments.at(1)), seed);
+  const scenes::Scene scene = scenes::read_scene(path);
+  const scenes::RayQuery query(scene);
+  const auto where = studies::spread_over_surfaces(scene, std::stoul(arguments.at(1)), seed);
   std::vector<std::vector<double>> columns;
   std::vector<std::string> words = {"--"};
   const auto end = [&] {
-    columns.push_back(studies::radiosity_at(read(path, words), where));
+    columns.push_back(studies::radiosity_at(query, read(path, words), where));
     words = {"--"};
   };
   for (std::size_t k = 2; k < arguments.size(); ++k) {
