@@ -133,14 +133,6 @@ void refuse_stale(const Hdf5Reader& file, const SolutionOrigin& origin) {
          origin);
 }
 
-// An error that no round can have would make nonsense of the estimates made from it.
-void check_other_cut(const Hdf5Reader& file, const Solution& solution) {
-  const double error = solution.other.error;
-  if (error == 0.0) return;
-  if (std::isfinite(error) && error > 0.0 && !solution.report.rounds.empty()) return;
-  file.fail(fmt::format("\"other_cut_error\" is {}, which no round of refinement has", error));
-}
-
 }  // namespace
 
 Solution read_solution(const std::filesystem::path& path, const SolutionOrigin& origin) {
@@ -163,31 +155,20 @@ Solution read_solution(const std::filesystem::path& path, const SolutionOrigin& 
   if (groups != 0 && groups != origin.groups.count()) {
     file.fail(fmt::format("it has {} light groups, the scene {}", groups, origin.groups.count()));
   }
-  const auto read_patches = [&](const std::string& prefix, const char* area, Reading& store) {
-    store.facets = extent((prefix + "s_count").c_str(), 1)[0];
-    store.tree = extent((prefix + "tree").c_str(), 1)[0];
-    store.patches = extent(area, 1)[0];
-    PatchLayout layout;
-    visit_layout(store, layout, prefix, area);
-    try {
-      return rebuild_patches(origin.scene, std::move(layout));
-    } catch (const std::invalid_argument& problem) {
-      file.fail(problem.what());
-    }
-  };
-  Reading store{file, 0, 0, 0, groups};
+  Reading store{file, extent("facets/s_count", 1)[0], extent("facets/tree", 1)[0],
+                extent("area", 1)[0], groups};
+  PatchLayout layout;
+  visit_layout(store, layout);
   Solution solution;
-  solution.patches = read_patches("facets/", "area", store);
-  solution.other.error = file.number_attribute("other_cut_error");
-  if (solution.other.error != 0.0) {
-    Reading apart{file, 0, 0, 0, 0};
-    solution.other.patches = read_patches("other_cut/", "other_cut/area", apart);
+  try {
+    solution.patches = rebuild_patches(origin.scene, std::move(layout));
+  } catch (const std::invalid_argument& problem) {
+    file.fail(problem.what());
   }
   solution.columns = 3 * groups;
   visit_light(store, solution);
   visit_report(store, solution.report);
   solution.report.patches = solution.patches.count();
-  check_other_cut(file, solution);
   return solution;
 }
 

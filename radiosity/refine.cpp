@@ -17,8 +17,6 @@ constexpr double thinnest = 4.0;          // a cell longer than this times its w
 constexpr double undirected_share = 0.1;  // of the error, counted toward the longer side
 constexpr std::size_t growth_between_solves = 4;
 constexpr int fewest_rays = 64;
-// Of errors: from an earlier round to the last, and from one round that is kept to the next.
-constexpr double clearly_coarser = 2.0, between_kept = 0.8;
 
 std::uint32_t other_side(const Patches& patches, std::uint32_t patch) {
   const Facet& facet = patches.facets[patches.facet[patch]];
@@ -133,28 +131,15 @@ class Refinement {
     double error = find_errors();
     for (int round = 0;; ++round) {
       refined_.rounds.push_back({refined_.patches.count(), error});
-      keep();
       if (round == most_rounds || error <= options_.refine.error) break;
       if (!cut_worst(max_patches_)) break;
       error = find_errors();
-    }
-    for (OtherCut& kept : kept_) {
-      if (kept.error >= clearly_coarser * refined_.rounds.back().error) {
-        refined_.other = std::move(kept);
-      }
     }
     refined_.rays += variation_.rays();
     return std::move(refined_);
   }
 
  private:
-  // Now and then: few of them are ever there.
-  void keep() {
-    const double error = refined_.rounds.back().error;
-    if (!kept_.empty() && error > between_kept * kept_.back().error) return;
-    kept_.push_back({refined_.patches, error});
-  }
-
   // The estimated error of the patches as they are.
   double find_errors() {
     look_at_unknown();
@@ -237,7 +222,6 @@ class Refinement {
   RelativeLight light_;
   std::vector<Unevenness> uneven_;      // per patch
   std::vector<std::uint32_t> unknown_;  // patches not looked at yet
-  std::vector<OtherCut> kept_;          // by falling error
   double total_ = 0.0;                  // squared error
   Refined refined_;
 };

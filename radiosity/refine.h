@@ -14,7 +14,6 @@ namespace earthshine::radiosity {
 struct Refined {
   Patches patches;
   std::vector<RefineRound> rounds;
-  OtherCut other;
   std::uint64_t rays = 0;  // of all rounds
 };
 

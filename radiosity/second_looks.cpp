@@ -12,8 +12,7 @@ namespace earthshine::radiosity {
 namespace {
 
 constexpr int fewest_rays = 16;
-constexpr double least_ratio = 0.1, most_ratio = 0.9;  // of the errors of two cuts
-constexpr double clearly_fewer = 0.4;                  // patches, of twice the edge
+constexpr double clearly_fewer = 0.4;  // patches, of twice the edge
 
 struct Comparison {
   Patches patches;
@@ -34,13 +33,10 @@ Patches quartered(const Patches& patches) {
   return finer;
 }
 
-// Coarser where that is clearly coarser: faces of the model cannot be made larger.
+// Coarser where that is clearly coarser: faces of the model cannot be made larger, and the coarse
+// cells that refinement left are the same in its earlier rounds.
 Comparison cut_otherwise(const scenes::Scene& scene, const SolveOptions& options,
                          const Solution& solution) {
-  if (solution.other.error > 0.0 && !solution.report.rounds.empty()) {
-    const double ratio = solution.report.rounds.back().error / solution.other.error;
-    return {solution.other.patches, std::clamp(ratio, least_ratio, most_ratio), false};
-  }
   const double edge_m = 2.0 * options.patch_edge_m;
   const double share = static_cast<double>(count_patches(scene, edge_m)) /
                        static_cast<double>(solution.patches.count());
@@ -155,10 +151,12 @@ SecondLooks look_again(const scenes::Scene& scene, const scenes::LightGroups& gr
   looks.error_ratio = cut.error_ratio;
   looks.finer = cut.finer;
   looks.other_patches = cut.patches.count();
-  // Cells cut in four have as many points as the solution has.
+  // Cells cut in four have as many points as the solution has, and no more than twice the rays of
+  // a coarser cut.
   const int points = cut.finer ? usual.points_per_patch / 4 : usual.points_per_patch;
+  const int divided_by = cut.finer ? 32 : 16;
   for (std::uint32_t k = 0; k < other_patches_looks; ++k) {
-    listen(Look::OtherPatches, look(cut.patches, rays, 16, points));
+    listen(Look::OtherPatches, look(cut.patches, rays, divided_by, points));
   }
   return looks;
 }

@@ -16,9 +16,8 @@ enum class Look {
   FewRays,
   // The solution with the direct light of one of those, followed for one bounce.
   OtherDirect,
-  // On other patches: coarser ones, or finer ones where a coarser cut cannot be had, with a
-  // sixteenth
-  // of the form-factor rays.
+  // On other patches: of twice the edge with a sixteenth of the form-factor rays, or, of refined
+  // ones and where faces cannot be made larger, each cut in four with a 32nd.
   OtherPatches
 };
 inline constexpr std::uint32_t few_rays_looks = 4, other_patches_looks = 2;
@@ -28,9 +27,8 @@ struct SecondLooks {
   double ray_share = 1.0;
   // Points on a patch to which direct light was found, over the solution's.
   double point_share = 1.0;
-  // By how much the finer of the two cuts is better: its error over the other's. Of refined
-  // patches as estimated (variation.h), else the root of the share of patches, which is the ratio
-  // of their edges and the first order in which piecewise constant radiosity converges.
+  // By how much the finer of the two cuts is better: the root of the share of patches, which is
+  // the ratio of their edges and the first order in which piecewise constant radiosity converges.
   double error_ratio = 0.5;
   bool finer = false;  // the other patches are the finer ones
   std::size_t other_patches = 0;

@@ -167,7 +167,6 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   SolveReport& report = solution.report;
   report.seconds.insert(report.seconds.begin(), cutting.seconds.front());
   report.rounds = std::move(refined.rounds);
-  solution.other = std::move(refined.other);
   report.refinement_rays = refined.rays;
   return solution;
 }

@@ -45,13 +45,6 @@ struct RefineRound {
   double error = 0.0;  // estimated for these patches, as RefineOptions::error
 };
 
-// Patches of an earlier round of refinement, to compare with: of the last that had twice the error
-// of the final ones or more.
-struct OtherCut {
-  Patches patches;
-  double error = 0.0;  // estimated for them, as RefineOptions::error; 0: there are none
-};
-
 // Where the energy of one light group went, lm per channel.
 //   emitted (by patches through F) + landed (directly, as computed) = absorbed + escaped
 struct GroupLedger {
@@ -103,7 +96,6 @@ struct Solution {
   std::vector<float> soft_radiosity;  // the part of it not due to explicit sources: rho (E - E0
                                       // explicit) + M through F
   std::vector<float> direct_lx, indirect_lx;  // E0 and F B
-  OtherCut other;                             // of a refined solution
   SolveReport report;
 };
 

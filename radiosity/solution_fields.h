@@ -12,21 +12,20 @@
 
 namespace earthshine::radiosity {
 
-// prefix: "facets/", or "other_cut/" for that of another round.
 template <class Store, class Layout>
-void visit_layout(Store& store, Layout& layout, const std::string& prefix, const char* area) {
+void visit_layout(Store& store, Layout& layout) {
   const auto per_facet = [&](const char* name, auto& values, const char* meaning) {
-    store.column((prefix + name).c_str(), values, {store.facets}, "", meaning);
+    store.column(name, values, {store.facets}, "", meaning);
   };
-  per_facet("s_count", layout.s_count, "rows of the facet's grid of cells");
-  per_facet("t_count", layout.t_count, "columns of the facet's grid of cells");
-  per_facet("first_front", layout.first_front, "first patch of the front");
-  per_facet("first_back", layout.first_back, "first patch of a sheet's back; 2^32-1: none");
-  per_facet("leaves", layout.leaves, "patches of each side");
-  per_facet("tree_start", layout.tree_start, "start in the tree; 2^32-1: no cell split");
-  store.column((prefix + "tree").c_str(), layout.tree, {store.tree}, "",
+  per_facet("facets/s_count", layout.s_count, "rows of the facet's grid of cells");
+  per_facet("facets/t_count", layout.t_count, "columns of the facet's grid of cells");
+  per_facet("facets/first_front", layout.first_front, "first patch of the front");
+  per_facet("facets/first_back", layout.first_back, "first patch of a sheet's back; 2^32-1: none");
+  per_facet("facets/leaves", layout.leaves, "patches of each side");
+  per_facet("facets/tree_start", layout.tree_start, "start in facets/tree; 2^32-1: no cell split");
+  store.column("facets/tree", layout.tree, {store.tree}, "",
                "leaf number, or 2^31 + start of its two halves, + 2^30 if they lie along t");
-  store.column(area, layout.area_m2, {store.patches}, "m2", "area of the patch");
+  store.column("area", layout.area_m2, {store.patches}, "m2", "area of the patch");
 }
 
 template <class Store, class AnySolution>

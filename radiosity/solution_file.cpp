@@ -120,13 +120,7 @@ void write_solution(const std::filesystem::path& path, const Solution& solution,
   const PatchLayout layout = layout_of(solution.patches);
   Writing store{file, layout.s_count.size(), layout.tree.size(), solution.patches.count(),
                 solution.columns / 3};
-  visit_layout(store, layout, "facets/", "area");
-  file.attribute("other_cut_error", solution.other.error);
-  if (solution.other.error != 0.0) {
-    const PatchLayout other = layout_of(solution.other.patches);
-    Writing apart{file, other.s_count.size(), other.tree.size(), other.area_m2.size(), 0};
-    visit_layout(apart, other, "other_cut/", "other_cut/area");
-  }
+  visit_layout(store, layout);
   visit_light(store, solution);
   visit_report(store, solution.report);
   base::write_text(path, file.finish());

@@ -36,12 +36,6 @@ double mean_product(const std::vector<double>& a, const std::vector<double>& b,
 // has `q` of the other's error.
 double patch_share(bool other_is_finer, double q) { return (other_is_finer ? 1.0 : q) / (1.0 - q); }
 
-// The most that it may be, for cuts whose edges are as r to 1.
-double most_patch_share(bool other_is_finer, double r) {
-  const double first_order = patch_share(other_is_finer, r);
-  return std::max(first_order, std::sqrt(first_order));
-}
-
 // Rays that lead through a small opening may be found by none of the few-ray solutions, which then
 // agree with each other and not with the solution: the larger of the two variances counts, each
 // without what lamps add to it.
@@ -118,7 +112,7 @@ SolutionError solution_error(const Looks& looks, const radiosity::SecondLooks& m
   // Their noise has the modes of the few-ray solutions', which is told by more tries.
   const double above = 1.645 * spread_of(others).variance / std::sqrt(sure_modes(chance));
   const double r = made.error_ratio;
-  const double share = patch_share(made.finer, r * r), most = most_patch_share(made.finer, r);
+  const double share = patch_share(made.finer, r * r), most = patch_share(made.finer, std::sqrt(r));
   const double excess = (mean_of(looks.own) - mean_of(others)) / scale;
   error.patches = {share * std::sqrt(apart) / (scale * true_mean(share * excess)),
                    most * std::sqrt(apart + above) / (scale * true_mean(most * excess))};
