@@ -107,8 +107,8 @@ void add_steps(Json& json, studies::Limit limit, const std::vector<studies::Step
 
 // What was chosen to reach the error, or why it is not reached.
 std::string choice_text(studies::Limit limit, const std::vector<studies::Step>& steps,
-                        std::optional<double> wanted) {
-  if (!wanted || steps.empty()) return "";
+                        std::optional<double> wanted, bool known) {
+  if (!wanted || steps.empty() || !known) return "";
   std::string text;
   for (const studies::Step& step : steps) {
     text += fmt::format("\n  {}:", step.stage);
@@ -167,13 +167,13 @@ std::string error_text(const Drawn& drawn, std::optional<double> wanted) {
   const studies::ErrorBudget& budget = drawn.errors;
   return text_of(budget.parts.total(), budget.pixels > 0, parts_of(budget.parts),
                  budget.not_captured) +
-         choice_text(drawn.limit, drawn.steps, wanted);
+         choice_text(drawn.limit, drawn.steps, wanted, budget.pixels > 0);
 }
 
 std::string error_text(const Solved& light, std::optional<double> wanted) {
   const studies::SurfaceError& error = light.surface;
   return text_of(error.parts.total(), error.known, parts_of(error.parts), error.not_captured) +
-         choice_text(light.limit, light.steps, wanted);
+         choice_text(light.limit, light.steps, wanted, error.known);
 }
 
 }  // namespace earthshine::app

@@ -3,6 +3,7 @@
 // Traces a few rows of form factors for the memory, and a small run of the whole for the seconds.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <memory>
 
@@ -11,6 +12,7 @@
 #include "app/effect_table.h"
 #include "app/memory.h"
 #include "app/render_call.h"
+#include "base/free_memory.h"
 #include "base/parallel.h"
 #include "radiosity/refine.h"
 #include "scenes/quality.h"
@@ -122,27 +124,51 @@ Json report_of(const RenderCall& call, const Common& common) {
   return report;
 }
 
+// Said, and not refused, as render does: rows may turn out less full.
+std::string too_much_text(const Json& report) {
+  const auto free_bytes = base::free_memory_bytes();
+  if (!free_bytes) return "";
+  const double free_mib = static_cast<double>(*free_bytes) / 1048576.0;
+  double most = report["memory"]["total_mib"].get<double>();
+  for (const Json& image : report["images"]) {
+    most = std::max(most, image["memory"]["total_mib"].get<double>());
+  }
+  if (most <= free_mib) return "";
+  return fmt::format("that may not fit: {:.0f} MiB are {}; render looks closer and refuses\n",
+                     free_mib, base::memory_is_limited() ? "allowed by --max-memory" : "free");
+}
+
 std::string text_of(const Json& report) {
   std::string text = fmt::format("{} ({})\n\n", report["name"].get<std::string>(),
                                  report["scene"].get<std::string>());
   text += effect_text(report["effects"]);
   const Json& quality = report["quality"];
   const bool refines = report["patches_at_most"].get<bool>();
-  text += fmt::format(
-      "\n{}{} patches {}; {} form-factor rays ({} per patch)\n", refines ? "at most " : "",
-      report["patches"].get<std::size_t>(),
-      refines ? std::string("where light varies")
-              : fmt::format("with edges up to {:g} m", quality["patch_edge_m"].get<double>()),
-      short_count(report["rays"].get<double>()), quality["form_factor_rays"].get<int>());
-  text += fmt::format("{} right-hand sides, solved to {:g}\n",
-                      report["right_hand_sides"].get<std::size_t>(),
-                      quality["solver_tolerance"].get<double>());
-  text += std::string("memory of the solution: ") + (refines ? "at most " : "") +
-          memory_text(report["memory"]) + "\n";
-  text += fmt::format("expected on this machine: {}, of them {} for the solution of {} patches\n",
-                      duration(report["expected"]["seconds"].get<double>()),
-                      duration(report["expected"]["solve_seconds"].get<double>()),
-                      report["expected"]["patches"].get<std::size_t>());
+  const bool solves = report["rays"].get<double>() > 0.0;
+  if (solves) {
+    text += fmt::format(
+        "\n{}{} patches {}; {} form-factor rays ({} per patch)\n", refines ? "at most " : "",
+        report["patches"].get<std::size_t>(),
+        refines ? std::string("where light varies")
+                : fmt::format("with edges up to {:g} m", quality["patch_edge_m"].get<double>()),
+        short_count(report["rays"].get<double>()), quality["form_factor_rays"].get<int>());
+    text += fmt::format("{} right-hand sides, solved to {:g}\n",
+                        report["right_hand_sides"].get<std::size_t>(),
+                        quality["solver_tolerance"].get<double>());
+    text += std::string("memory of the solution: ") + (refines ? "at most " : "") +
+            memory_text(report["memory"]) + "\n";
+  } else {
+    text += "\nno radiosity: nothing is cut into patches and solved\n";
+  }
+  text += too_much_text(report);
+  text += fmt::format("expected on this machine: {}",
+                      duration(report["expected"]["seconds"].get<double>()));
+  if (solves) {
+    text += fmt::format(", of them {} for the solution of {} patches",
+                        duration(report["expected"]["solve_seconds"].get<double>()),
+                        report["expected"]["patches"].get<std::size_t>());
+  }
+  text += "\n";
   for (const Json& image : report["images"]) {
     text += fmt::format(
         "camera {}: {} x {} pixels, {} gather rays, {}, {:.0f} MiB in all\n",

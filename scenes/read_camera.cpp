@@ -57,7 +57,7 @@ void read_lens(Camera& camera, const TableReader& table) {
     table.fail("focus", "stands without \"aperture\"", "depth of field needs both",
                "Add aperture = ... (m, diameter), or remove focus");
   }
-  if (aperture && !focus) {
+  if (aperture.value_or(0.0) > 0.0 && !focus) {
     table.fail("aperture", "stands without \"focus\"", "depth of field needs both",
                "Add focus = ... (m), or remove aperture");
   }

@@ -32,12 +32,11 @@ struct Looks {
 // extrapolated to no patch size at all: if the finer of the two has q of the other's error, the
 // coarser one is off by 1 / (1 - q) of the difference, the finer one by q / (1 - q). The radiosity
 // is interpolated when it is read, which makes its error fall with the square of the patch edge
-// where light varies smoothly: the estimate takes q = r^2, r = SecondLooks::error_ratio. At a sharp
-// edge of a shadow all error is in the cells that the edge crosses, an area as wide as they are:
-// the bound takes q = sqrt(r), as if both cuts erred alike there. Where the cuts' means show that
-// the solution is too bright, errors of the patches are relative to the mean without that. The
-// product of the differences to two independent others has their noise left out. scale: what errors
-// are relative to.
+// where light varies smoothly: the estimate takes q = r^2, r = SecondLooks::error_ratio. The bound
+// takes q = r^(3/4), for shadows' edges: all error is in the cells that the edge crosses, an area
+// as wide as they are. Where the cuts' means show that the solution is too bright, errors of the
+// patches are relative to the mean without that. The product of the differences to two independent
+// others has their noise left out. scale: what errors are relative to.
 [[nodiscard]] SolutionError solution_error(const Looks& looks, const radiosity::SecondLooks& made,
                                            double solver_error, double scale);
 // Relative to the mean, what is bright as error_weight() has it.

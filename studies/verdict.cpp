@@ -2,6 +2,7 @@
 // What the comparison says of each target, in words.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "studies/compare.h"
@@ -76,6 +77,12 @@ TargetVerdict judge(const Comparison& comparison, std::size_t target) {
                         "the contrast.",
                         name, comparison.targets[target].measured.size(), n, numbers,
                         found.ratio_error, found.contrast_error)};
+  }
+  const bool black = std::all_of(methods.begin(), methods.end(), [&](const MethodResult& result) {
+    return !result.targets[target] || result.targets[target]->light.luminance <= 0.0;
+  });
+  if (black && right->light.luminance <= 0.0) {
+    return {Verdict::NotMisled, name + ": black by every method; there is nothing to tell."};
   }
   const std::string besides = methods[1].targets[target]->misleads
                                   ? fmt::format("; radiosity at these settings would have too, {}",

@@ -36,6 +36,7 @@ IDLE = {
     "specular 0": ("", ["--set", "material.floor.specular=0", "--set", "material.floor.shininess=30"]),
     "mirror 0": ("", ["--set", "material.floor.mirror=0"]),
     "transmit 0": ("", ["--set", "material.floor.transmit=0"]),
+    "aperture 0 alone": ("", ["--set", "camera.A.aperture=0"]),
     "aperture 0": ("", ["--set", "camera.A.aperture=0", "--set", "camera.A.focus=3"]),
     "the Earth without light, narrow": (EARTH.format(5, 0), []),
     "the Earth without light, wide": (EARTH.format(30, 0), []),

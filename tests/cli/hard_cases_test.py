@@ -52,6 +52,14 @@ class HardCases(program.Case):
     def test_a_small_spot_in_the_sun_lights_the_room(self):
         self.holds(hard_scenes.sun_spot(), 2048, "8x8")
 
+    def test_a_room_lit_through_a_pinhole(self):
+        truth, _ = self.holds(hard_scenes.pinhole(), 4096)
+        # What leaks along walls and floors into the dark room was 30 times what comes through the hole.
+        self.assertLess(abs(truth.bias), 0.25 + 4 * math.sqrt(truth.doubt))
+
+    def test_all_light_is_indirect(self):
+        self.holds(hard_scenes.baffle(), 1024)
+
     def test_a_picture_of_one_pixel(self):
         self.holds(hard_scenes.one_pixel(), 16384, "1x1")
 

@@ -136,6 +136,18 @@ class Plan(program.Case):
         self.assertEqual((straight["rays"], [i["gather_rays"] for i in straight["images"]]), (0, [0, 0]))
         self.assertNotIn("form factors", straight["memory"]["parts_mib"])
 
+    def test_without_light_there_is_nothing_to_solve(self):
+        self.write("ball.toml", program.BALL)
+        dark = self.done("plan", "ball.toml", "--set", "sun.illuminance=0", "--set", "light.lamp.intensity=0")
+        self.assertIn("no radiosity", dark)
+        self.assertNotIn("patches with", dark)
+
+    def test_what_does_not_fit_is_said(self):
+        self.write("ball.toml", program.BALL)
+        call = ("plan", "ball.toml", "--set", "quality.patch_edge=0.02", "--set", "quality.refine=false")
+        self.assertIn("that may not fit: 30 MiB are allowed by --max-memory", self.done(*call, "--max-memory", "30MiB"))
+        self.assertNotIn("may not fit", self.done(*call))
+
     def test_bad_options_are_refused_as_render_refuses_them(self):
         self.write("scene.toml", program.BALL)
         self.says(self.refused("plan", "scene.toml", "--aov", "deep"), "deep", "depth")

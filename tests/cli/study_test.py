@@ -208,7 +208,7 @@ class CompareEqual(Study):
         printed = self.compared(diffuse=0.0)
         self.assertEqual({row["relative_rmse"] for row in printed["methods"]}, {0})
         self.assertEqual({row["equal_error"] for row in printed["methods"][1:-1]}, {"reached"})
-        self.says(printed["verdicts"][0]["sentence"], "would not have misled", "black in both")
+        self.says(printed["verdicts"][0]["sentence"], "black by every method")
 
     def test_a_target_that_is_a_source_is_said_to_be(self):
         self.says(self.compared(emit=500.0)["verdicts"][0]["sentence"], "plate (itself a source): 16 distributed lights")

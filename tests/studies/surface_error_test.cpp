@@ -123,7 +123,7 @@ TEST(SurfaceError, OfASmoothGradientIsThePatchesOwn) {
     EXPECT_GT(error.parts.patches.estimate, 0.6 * truth) << edge_m;
     EXPECT_LT(error.parts.patches.estimate, 1.2 * truth) << edge_m;
     EXPECT_GE(error.parts.patches.bound_95, truth) << edge_m;
-    EXPECT_LT(error.parts.patches.bound_95, 3.0 * truth) << edge_m;
+    EXPECT_LT(error.parts.patches.bound_95, 4.0 * truth) << edge_m;
     // Nothing is reflected to anything; what is left is chance of the lamp's light.
     EXPECT_LT(error.parts.form_factors.estimate, 0.03 * truth);
   }
