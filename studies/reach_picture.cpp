@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/random.h"
 #include "raytrace/blend.h"
@@ -10,11 +11,20 @@ namespace earthshine::studies {
 namespace {
 
 constexpr int most_tries = 5;
+constexpr double no_better = 0.95;   // of the error before: more of the same will not help
+constexpr double most_change = 3.0;  // of the noise in one try: nine times the rays
+// Not sharing takes eight times the rays (scenes/quality.h): no matter in a small picture, which is
+// where edges are many.
+constexpr double small_picture = 65536.0;
 constexpr double aim = 0.95;         // of the noise that is left
 constexpr double least_share = 0.3;  // of the wanted error, for noise, whatever the rest is
 constexpr double least_setting = 1e-4;
 constexpr double trusted = 2.0;  // how far a small trial may lead away from the laws
 constexpr double most_of_last = 0.9;
+// Times the noise that was asked for: more is no noise, but what sharing gather rays blurs, and
+// more samples of the same kind do not take it away.
+constexpr double blurred = 1.5;
+constexpr int most_plain_tries = 3;
 
 }  // namespace
 
@@ -49,6 +59,24 @@ raytrace::RenderOptions with_noise(const raytrace::RenderOptions& options,
   return with;
 }
 
+namespace {
+
+// The same without sharing.
+raytrace::RenderOptions plain_with_noise(const raytrace::RenderOptions& options,
+                                         const scenes::Scene& scene, double noise) {
+  scenes::Quality quality = scene.quality;
+  quality.share_gather = false;
+  quality.error = std::clamp(noise, least_setting, 1.0);
+  const raytrace::RenderOptions plain =
+      raytrace::render_options(scenes::resolve_quality(scene, quality));
+  raytrace::RenderOptions with = options;
+  with.gather_rays = plain.gather_rays;
+  with.shared = plain.shared;
+  return with;
+}
+
+}  // namespace
+
 NoiseFound noise_found(const raytrace::RenderReport& report, const Doubt& gather,
                        const Doubt& samples) {
   const auto rays = static_cast<double>(report.rays.total());
@@ -75,24 +103,37 @@ class PictureSearch {
     const double by_solution = errors_.whole.total().estimate;
     const double left = aim * std::sqrt(std::max(squared(least_share * wanted_.error),
                                                  squared(wanted_.error) - squared(by_solution)));
-    const NoiseSetting first = first_setting(trial, left);
+    NoiseSetting first = first_setting(trial, left), setting = first;
     NoiseFound first_found;
-    NoiseSetting setting = first;
-    for (int tries = 1;; ++tries) {
+    double wish = std::numeric_limits<double>::infinity(), before = wish;
+    for (int tries = 1, of_kind = 1;; ++tries, ++of_kind) {
       const double started = now();
-      take_in(draw(setting, tries));
+      take_in(draw(setting, tries), of_kind == 1);
       const double noise = assess(setting);
-      if (tries == 1) first_found = noise_of_best();
+      if (of_kind == 1) first_found = noise_of_best();
       const double found = best_.budget.parts.total().estimate;
       // A crop has the pixels of the picture that a whole one starts with.
       if (best_.frame.report.stopped || found <= wanted_.error || crops()) break;
-      if (noise <= least_share * wanted_.error || tries == most_tries) return ended(Limit::Steps);
+      if (noise <= least_share * wanted_.error ||
+          of_kind == (plain_ ? most_plain_tries : most_tries)) {
+        return ended(Limit::Steps);
+      }
+      if (of_kind == 1) first_seconds_ = now() - started;
+      if (may_be_plain() && noise > blurred * wish) {
+        plain_ = true;
+        of_kind = 0;
+        first = setting = {left, left};
+        wish = before = std::numeric_limits<double>::infinity();
+        continue;
+      }
+      if (found > no_better * before) return ended(Limit::Steps);
+      before = found;
       // What comes next is blended with what is there: 1 / left^2 = 1 / noise^2 + 1 / ask^2.
-      const double wish = std::min(left, most_of_last * noise);
+      wish = std::clamp(left, noise / most_change, most_of_last * noise);
       const double ask = 1.0 / std::sqrt(1.0 / squared(wish) - 1.0 / squared(noise));
-      setting = next_setting(first, first_found, ask);
       const double all = std::hypot(first_found.gather, first_found.samples);
-      if (tries == 1) first_seconds_ = now() - started;
+      setting = plain_ ? NoiseSetting{left * ask / all, left * ask / all}
+                       : next_setting(first, first_found, ask);
       const double taken = first_seconds_ * squared(all / ask);
       if (wanted_.seconds > 0.0 && now() + taken > wanted_.seconds) return ended(Limit::Time);
     }
@@ -102,6 +143,11 @@ class PictureSearch {
  private:
   static double squared(double x) { return x * x; }
   [[nodiscard]] double now() const { return wanted_.now ? wanted_.now() : 0.0; }
+  [[nodiscard]] bool may_be_plain() const {
+    const scenes::Quality& given = scene_.scene.quality;
+    const double pixels = double(picture_.options.columns) * picture_.options.rows;
+    return !plain_ && pixels <= small_picture && !given.share_gather && !given.gather_rays;
+  }
   [[nodiscard]] bool crops() const { return picture_.options.crop.columns > 0; }
 
   static NoiseSetting first_setting(const Trial& trial, double left) {
@@ -112,21 +158,23 @@ class PictureSearch {
   }
 
   raytrace::Frame draw(const NoiseSetting& setting, int number) {
-    raytrace::RenderOptions options = with_noise(picture_.options, scene_.scene, setting);
+    raytrace::RenderOptions options =
+        plain_ ? plain_with_noise(picture_.options, scene_.scene, setting.gather)
+               : with_noise(picture_.options, scene_.scene, setting);
     if (number > 1) options.seed = base::mix64(options.seed + static_cast<std::uint64_t>(number));
     if (wanted_.seconds > 0.0) {
       options.time_limit_s = std::max(1e-3, wanted_.seconds - now());
       options.fills_time = false;
     }
-    if (number == 1) best_.options = options;
+    if (number == 1 || plain_) best_.options = options;
     return raytrace::render(scene_.scene, scene_.groups, scene_.effects, scene_.query, solution_,
                             *picture_.camera, options, progress_);
   }
 
   // Each by the inverse of its squared noise, as both state it in the same way. One that was
   // stopped is no help.
-  void take_in(raytrace::Frame next) {
-    if (steps_.empty()) {
+  void take_in(raytrace::Frame next, bool alone) {
+    if (steps_.empty() || (alone && !next.report.stopped)) {
       best_.frame = std::move(next);
       return;
     }
@@ -171,6 +219,7 @@ class PictureSearch {
   SteeredPicture best_;
   std::vector<Step> steps_;
   double first_seconds_ = 0.0;
+  bool plain_ = false;  // nothing is shared any more
 };
 
 }  // namespace

@@ -10,11 +10,11 @@ namespace {
 
 constexpr double most_patches_times = 4.0;
 constexpr int most_rays_times = 4, most_rays = 1 << 18;
-constexpr double least_picture_share = 0.1;  // of the wanted squared error
+constexpr double least_picture_share = 0.3;  // of the wanted squared error
 // A solve that is good enough is done again only if that saves a third of all that is left.
 constexpr double worth_another = 2.0 / 3.0;
 // What looking at a solve again takes (radiosity/second_looks.h), over its own rays.
-constexpr double second_looks = 0.25;
+constexpr double second_looks = 0.4;
 
 double squared(double x) { return x * x; }
 

@@ -240,7 +240,7 @@ columns = 400
 spread = "gaussian"
 
 [quality]
-error = 0.03  # of the picture"""
+error = 0.05  # of the picture"""
 
 
 def scene_text(name):
