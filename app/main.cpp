@@ -98,9 +98,9 @@ int run(int argc, char** argv) {
   program.get_formatter()->label("Subcommands", "Commands");
   Common common;
   std::uint64_t threads = 0;
-  std::vector<Command> commands = {add_render(program), add_solve(program),
+  std::vector<Command> commands = {add_render(program),       add_solve(program),
                                    add_form_factors(program), add_plan(program),
-                                   add_inspect(program)};
+                                   add_inspect(program),      add_relight(program)};
   for (Command& part : add_degrade(program)) commands.push_back(std::move(part));
   commands.push_back(add_fit_phong(program));
   for (Command& part : add_study(program)) commands.push_back(std::move(part));
