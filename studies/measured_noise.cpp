@@ -51,6 +51,7 @@ class CloserLook {
   Measured squared_error(const std::vector<std::uint32_t>& pixels, double mean, double stated) {
     const auto count = static_cast<double>(pixels.size());
     std::vector<double> weights;
+    weights.reserve(pixels.size());
     for (const std::uint32_t pixel : pixels) {
       const std::size_t at = seen_.in_window(pixel);
       const double weight = error_weight(pixel_luminance(frame_.image, at), mean);
