@@ -167,6 +167,7 @@ std::string text_of(const Json& report) {
     text += fmt::format(", of them {} for the solution of {} patches",
                         duration(report["expected"]["solve_seconds"].get<double>()),
                         report["expected"]["patches"].get<std::size_t>());
+    text += "; second looks, by which the error is stated, come on top";
   }
   text += "\n";
   for (const Json& image : report["images"]) {

@@ -24,7 +24,7 @@ constexpr double most_of_last = 0.9;
 // Times the noise that was asked for: more is no noise, but what sharing gather rays blurs, and
 // more samples of the same kind do not take it away.
 constexpr double blurred = 1.5;
-constexpr int most_plain_tries = 3;
+constexpr int most_plain_tries = 6;
 
 }  // namespace
 
@@ -126,7 +126,7 @@ class PictureSearch {
         wish = before = std::numeric_limits<double>::infinity();
         continue;
       }
-      if (found > no_better * before) return ended(Limit::Steps);
+      if (!plain_ && found > no_better * before) return ended(Limit::Steps);
       before = found;
       // What comes next is blended with what is there: 1 / left^2 = 1 / noise^2 + 1 / ask^2.
       wish = std::clamp(left, noise / most_change, most_of_last * noise);

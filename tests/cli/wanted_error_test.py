@@ -104,5 +104,15 @@ class WantedError(program.Case):
             self.says(message, "--max-memory")
 
 
+    def test_what_sharing_blurs_is_drawn_without(self):
+        """The bay in 64 x 64 pixels: most have edges in them, across which shared gather rays err by 7 %, however many there are."""
+        report = self.json("render", program.TOP / "scenes/library/sts46/day-earthshine.toml", "--camera", "A", "--size", "64x64",
+                           "--indirect", "none", "--error", "0.04", "-o", "bay.exr")
+        error = report["error"]
+        self.assertIsNone(error["limit"])
+        self.assertLess(error["estimate"], 0.04)
+        self.assertGreater(len(error["steps"]), 2)
+
+
 if __name__ == "__main__":
     unittest.main()
