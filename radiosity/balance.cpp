@@ -160,10 +160,11 @@ class Scaling {
 
   // The shares of sky and black backs follow the scales.
   void finish() {
+    const std::size_t parts = row_.empty() ? 0 : f_.sky_illuminance.size() / row_.size();
     for (std::size_t i = 0; i < row_.size(); ++i) {
       f_.sky[i] *= row_[i];
       f_.black[i] *= row_[i];
-      f_.sky_illuminance[i] *= row_[i];
+      for (std::size_t p = 0; p < parts; ++p) f_.sky_illuminance[i * parts + p] *= row_[i];
       f_.escape[i] *= f_.column_scale[i];
       f_.lost[i] *= f_.column_scale[i];
     }

@@ -102,15 +102,25 @@ class DirectStage {
   }
 
   void store(const std::vector<Rgb>& illuminance, std::size_t group, double scale) {
-    for (std::size_t i = 0; i < illuminance.size(); ++i) {
-      for (int c = 0; c < 3; ++c) {
-        light_.illuminance_lx[i * light_.columns + 3 * group + static_cast<std::size_t>(c)] +=
-            scale * illuminance[i][c];
-      }
+    for (std::size_t i = 0; i < illuminance.size(); ++i) add(i, group, scale * illuminance[i]);
+  }
+
+  // One of the `parts` values that each patch has.
+  void store_part(const std::vector<Rgb>& illuminance, std::size_t parts, std::size_t part,
+                  std::size_t group) {
+    for (std::size_t i = 0; i * parts < illuminance.size(); ++i) {
+      add(i, group, illuminance[i * parts + part]);
     }
   }
 
  private:
+  void add(std::size_t patch, std::size_t group, const Rgb& illuminance) {
+    for (int c = 0; c < 3; ++c) {
+      light_.illuminance_lx[patch * light_.columns + 3 * group + static_cast<std::size_t>(c)] +=
+          illuminance[c];
+    }
+  }
+
   const scenes::Scene& scene_;
   const scenes::RayQuery& query_;
   const Patches& patches_;
@@ -130,7 +140,12 @@ DirectLight direct_light(const scenes::Scene& scene, const scenes::LightGroups& 
   light.columns = 3 * groups.count();
   light.illuminance_lx.assign(patches.count() * light.columns, 0.0);
   DirectStage stage(scene, query, patches, factors.open, options, light);
-  if (effects.earth_by_gather) stage.store(factors.sky_illuminance, groups.earth, 1.0);
+  if (effects.earth_by_gather) {
+    const std::size_t parts = factors.sky_illuminance.size() / patches.count();
+    for (std::size_t part = 0; part < parts; ++part) {
+      stage.store_part(factors.sky_illuminance, parts, part, groups.earth + part);
+    }
+  }
   for (LightSource& light_source : find_sources(scene, groups, effects, options.points_per_patch)) {
     const auto start = std::chrono::steady_clock::now();
     const std::uint64_t before = light.shadow_rays;

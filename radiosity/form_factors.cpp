@@ -32,10 +32,11 @@ void assemble(std::vector<Band>& bands, FormFactors& factors) {
   for (const Band& band : bands) {
     for (const Row& row : band.rows) {
       factors.row_start[i + 1] = factors.row_start[i] + row.entries;
-      factors.sky_illuminance[i] = row.sky_illuminance;
       factors.ray_count += row.rays;
       ++i;
     }
+    factors.sky_illuminance.insert(factors.sky_illuminance.end(), band.sky_illuminance.begin(),
+                                   band.sky_illuminance.end());
     for (std::size_t o = 0; o < band.back_hits.size(); ++o) {
       factors.back_hits[o] += band.back_hits[o];
     }
@@ -49,6 +50,7 @@ void assemble(std::vector<Band>& bands, FormFactors& factors) {
     at += static_cast<std::ptrdiff_t>(band.column.size());
     band.column = {};
     band.hits = {};
+    band.sky_illuminance = {};
   }
 }
 
@@ -96,7 +98,6 @@ FormFactors cast_rows(const scenes::Scene& scene, const scenes::RayQuery& query,
   factors.lost.assign(count, 0.0);
   factors.row_scale.assign(count, 0.0);
   factors.column_scale.assign(patches.count(), 1.0);
-  factors.sky_illuminance.assign(count, Rgb(0.0));
 
   factors.row_start.assign(count + 1, 0);
   factors.back_hits.assign(scene.objects.size(), 0.0);

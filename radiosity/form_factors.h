@@ -17,6 +17,7 @@
 #include "radiosity/open_parts.h"
 #include "radiosity/patches.h"
 #include "scenes/ray_query.h"
+#include "scenes/sky_cells.h"
 
 namespace earthshine::radiosity {
 
@@ -27,6 +28,7 @@ struct FormFactorOptions {
   // Points of a patch that lie in a body (closed_bodies.h) send nothing: its row is the mean over
   // the others, FormFactors::open says how many they are. Else they are as good as any.
   bool leave_out_covered = false;
+  const scenes::SkyCells* sky_cells = nullptr;  // the sky's light is wanted for each of them
 };
 
 struct FormFactors {
@@ -41,8 +43,8 @@ struct FormFactors {
   std::vector<double> kept;          // a_j per patch
   std::vector<double>
       back_hits;  // per object of the scene: rays of exposed patches that met its back
-  std::vector<Rgb>
-      sky_illuminance;  // per patch, lx: pi times the mean over all rays of the sky's radiance
+  std::vector<Rgb> sky_illuminance;  // per patch, or per patch and cell of the sky, lx: pi times
+                                     // the mean over all rays of the sky's radiance
   // A row of a wholly covered patch has no entries; black = lost = 1.
   OpenParts open;
 

@@ -37,6 +37,8 @@ RowCaster::RowCaster(const scenes::Scene& scene, const scenes::RayQuery& query,
       patches_(patches),
       kept_(kept),
       sky_(sky),
+      sky_cells_(options.sky_cells),
+      sky_parts_(sky_cells_ == nullptr ? 1 : sky_cells_->count()),
       seed_(options.seed),
       replicate_(options.replicate),
       leave_out_covered_(options.leave_out_covered),
@@ -50,10 +52,14 @@ void RowCaster::cast(std::uint32_t patch, HitCounter& counter, Band& band) const
   if (replicate_ != 0) key = key.with(replicate_);
   const PatchRays::Sender sender = rays_.sender(patch, key);
   std::vector<std::uint32_t> near;
+  const std::size_t first_part = band.sky_illuminance.size();
+  band.sky_illuminance.resize(first_part + sky_parts_, Rgb(0.0));
   if (!trace(patch, sender, leave_out_covered_, near, row, counter, band)) {
     counter.clear();
     band.backs_met.clear();
     row = {};
+    std::fill(band.sky_illuminance.end() - static_cast<std::ptrdiff_t>(sky_parts_),
+              band.sky_illuminance.end(), Rgb(0.0));
     trace(patch, sender, false, near, row, counter, band);
   }
   row.rays += rays_.count();
@@ -64,7 +70,9 @@ void RowCaster::cast(std::uint32_t patch, HitCounter& counter, Band& band) const
   const std::size_t before = band.column.size();
   counter.take(band.column, band.hits);
   row.entries = static_cast<std::uint32_t>(band.column.size() - before);
-  if (row.open > 0) row.sky_illuminance *= base::pi / row.open;
+  for (std::size_t k = first_part; row.open > 0 && k < band.sky_illuminance.size(); ++k) {
+    band.sky_illuminance[k] *= base::pi / row.open;
+  }
   band.rows.push_back(row);
 }
 
@@ -110,13 +118,12 @@ void RowCaster::count_hits(const RayPacket& packet, const HitPacket& hits,
     ++row.open;
     const std::uint32_t triangle = hits.triangle[k];
     if (triangle == scenes::no_triangle) {
-      row.sky += 1.0;
-      if (sky_) row.sky_illuminance += sky_(direction(packet, k));
+      escape(direction(packet, k), 1.0, row, band);
       continue;
     }
     if (targets_.passes_on(triangle)) {
       follow(packet, k, {triangle, hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0}, row,
-             counter);
+             counter, band);
       continue;
     }
     const std::uint32_t to = targets_.find(triangle, hits.u[k], hits.v[k], hits.front[k] != 0);
@@ -129,16 +136,21 @@ void RowCaster::count_hits(const RayPacket& packet, const HitPacket& hits,
   }
 }
 
+void RowCaster::escape(const Vec3& direction, double weight, Row& row, Band& band) const {
+  row.sky += weight;
+  if (!sky_) return;
+  const std::size_t part = sky_cells_ == nullptr ? 0 : sky_cells_->cell_of(direction);
+  band.sky_illuminance[band.sky_illuminance.size() - sky_parts_ + part] += weight * sky_(direction);
+}
+
 // Counts a hit on a mirror or glass and the hits behind it.
 void RowCaster::follow(const RayPacket& packet, std::size_t lane, scenes::Hit hit, Row& row,
-                       HitCounter& counter) const {
+                       HitCounter& counter, Band& band) const {
   Vec3 way = direction(packet, lane);
   float weight = 1.0F;
   for (int step = 0;; ++step) {
     if (hit.missed()) {
-      row.sky += weight;
-      if (sky_) row.sky_illuminance += double(weight) * sky_(way);
-      return;
+      return escape(way, double(weight), row, band);
     }
     const std::uint32_t to = patches_.find(hit.triangle, hit.u, hit.v, hit.front);
     const scenes::Material& material = scene_.materials[scene_.triangles[hit.triangle].material];

@@ -20,7 +20,6 @@ namespace earthshine::radiosity {
 struct Row {
   std::uint32_t entries = 0;
   double black = 0.0, sky = 0.0;  // in rays
-  Rgb sky_illuminance{0.0};
   std::uint64_t rays = 0;
   std::uint32_t open = 0;  // rays that left from points which no body covers: those that count
 };
@@ -32,6 +31,7 @@ struct Band {
   std::vector<std::uint32_t> backs_met;  // of the row in progress: the objects
   std::vector<std::uint32_t> column;
   std::vector<float> hits;
+  std::vector<Rgb> sky_illuminance;  // of each row and cell of the sky
 };
 
 // Safe on many threads, each with a counter and a band of its own.
@@ -56,13 +56,17 @@ class RowCaster {
                   std::span<const std::uint32_t> near, Row& row, HitCounter& counter,
                   Band& band) const;
   void follow(const scenes::RayPacket& packet, std::size_t lane, scenes::Hit hit, Row& row,
-              HitCounter& counter) const;
+              HitCounter& counter, Band& band) const;
+  // A ray that met nothing: to the sky's light of the row that comes last.
+  void escape(const Vec3& direction, double weight, Row& row, Band& band) const;
 
   const scenes::Scene& scene_;
   const scenes::RayQuery& query_;
   const Patches& patches_;
   const std::vector<double>& kept_;
   const SkyRadiance& sky_;
+  const scenes::SkyCells* sky_cells_;
+  std::size_t sky_parts_;
   std::uint64_t seed_;
   std::uint32_t replicate_;
   bool leave_out_covered_, dark_sky_;

@@ -10,6 +10,7 @@
 #include "radiosity/linear_solve.h"
 #include "radiosity/refine.h"
 #include "scenes/sky.h"
+#include "scenes/sky_parts.h"
 #include "scenes/spread_reflectance.h"
 
 namespace earthshine::radiosity {
@@ -152,7 +153,7 @@ SolveOptions solve_options(const scenes::QualityKnobs& knobs, std::uint64_t seed
 }
 
 bool is_lit(const scenes::Effects& effects) {
-  return effects.sun || effects.earth || effects.lamps || effects.emitters;
+  return effects.sun || effects.sun_parts || effects.earth || effects.lamps || effects.emitters;
 }
 
 Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
@@ -189,6 +190,7 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   }
   FormFactorOptions rays{options.form_factor_rays, options.seed, variant.replicate};
   rays.leave_out_covered = true;
+  if (scene.sky_parts && scene.sky_parts->cells) rays.sky_cells = &*scene.sky_parts->cells;
   FormFactors factors = cast_form_factors(scene, query, patches, rays, sky);
   const std::vector<double> open_m2 = open_areas(factors.open, patches.area_m2);
   report.form_factor_rays = factors.ray_count;
@@ -239,13 +241,16 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   solution.direct_lx.assign(light.illuminance_lx.begin(), light.illuminance_lx.end());
   solution.indirect_lx.assign(indirect.begin(), indirect.end());
   solution.soft_radiosity.resize(source.size());
+  const std::size_t sky_parts = scenes::earth_parts(scene);
   for (std::size_t k = 0; k < source.size(); ++k) {
     const std::size_t column = k % columns;
     const std::uint32_t material = patches.material(static_cast<std::uint32_t>(k / columns));
     const double diffuse = scene.materials[material].diffuse[static_cast<int>(column % 3)];
     double soft = diffuse * indirect[k];
-    if (effects.earth_by_gather && column / 3 == groups.earth) {
-      soft += diffuse * factors.sky_illuminance[k / columns][static_cast<int>(column % 3)];
+    if (effects.earth_by_gather && column / 3 >= groups.earth &&
+        column / 3 < groups.earth + sky_parts) {
+      const std::size_t part = (k / columns) * sky_parts + column / 3 - groups.earth;
+      soft += diffuse * factors.sky_illuminance[part][static_cast<int>(column % 3)];
     }
     solution.soft_radiosity[k] = static_cast<float>(soft);
   }

@@ -3,6 +3,7 @@
 
 #include "base/digest.h"
 #include "scenes/photometry.h"
+#include "scenes/sky_parts.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -95,6 +96,18 @@ std::uint64_t sky(const Scene& scene) {
     for (const Vec3& v : {direction, albedo, radiance}) digest.add(v);
     for (const double x : {half_angle_deg, altitude_m}) digest.add(x);
     digest.add(static_cast<std::uint64_t>(model));
+  }
+  if (!scene.sky_parts) return digest.value();
+  const auto& [suns, cells] = *scene.sky_parts;
+  for (const auto& [direction, illuminance_lx, angular_radius_deg] : suns) {
+    digest.add(direction);
+    digest.add(illuminance_lx);
+    digest.add(angular_radius_deg);
+  }
+  if (cells) {
+    digest.add(cells->axis());
+    for (const double bound : cells->bounds_rad()) digest.add(bound);
+    for (const std::size_t sectors : cells->sectors()) digest.add(std::uint64_t{sectors});
   }
   return digest.value();
 }

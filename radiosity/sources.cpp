@@ -8,6 +8,7 @@
 #include "radiosity/solution.h"
 #include "scenes/emitters.h"
 #include "scenes/sky.h"
+#include "scenes/sky_parts.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -23,6 +24,22 @@ LightSource sun_source(const scenes::Scene& scene, std::size_t group, int points
   source.sample = [&scene, illuminance](const Vec3&, double u, double v) {
     return LightSample{scenes::sample_sun(scene, u, v), std::numeric_limits<double>::infinity(),
                        illuminance};
+  };
+  return {{}, std::move(source), Rgb(0.0), {}};
+}
+
+// The whole disc of a Sun that nothing in the sky hides.
+LightSource free_sun_source(const scenes::Sun& sun, std::uint64_t key, std::size_t group,
+                            int points) {
+  const double radius = base::radians(sun.angular_radius_deg);
+  const Rgb illuminance = scenes::sun_sample_illuminance(sun);
+  Source source;
+  source.key = key;
+  source.group = group;
+  source.points = points;
+  source.sample = [&sun, radius, illuminance](const Vec3&, double u, double v) {
+    return LightSample{scenes::sample_cone(sun.direction, radius, u, v),
+                       std::numeric_limits<double>::infinity(), illuminance};
   };
   return {{}, std::move(source), Rgb(0.0), {}};
 }
@@ -84,6 +101,11 @@ std::vector<LightSource> find_sources(const scenes::Scene& scene, const scenes::
     sources.push_back(std::move(source));
   };
   if (effects.sun) add(sun_source(scene, groups.sun, points), scenes::LightKind::Sun);
+  for (std::size_t k = 0; effects.sun_parts && k < scene.sky_parts->suns.size(); ++k) {
+    add(free_sun_source(scene.sky_parts->suns[k], (std::uint64_t{1} << 40) + k,
+                        groups.sun_parts + k, points),
+        scenes::LightKind::Sun);
+  }
   if (effects.earth && !effects.earth_by_gather) {
     add(earth_source(scene, groups.earth, points), scenes::LightKind::Earth);
   }

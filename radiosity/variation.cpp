@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "scenes/sky.h"
+#include "scenes/sky_parts.h"
 #include "scenes/spread_reflectance.h"
 
 namespace earthshine::radiosity {
@@ -220,8 +221,9 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
             if (hits.triangle[k] == scenes::no_triangle) {
               if (!effects_.earth_by_gather) continue;
               const Rgb sky = scenes::earth_radiance(scene_, directions[k]);
-              looks.at(point, set, earth_group_) +=
-                  weight * light.scale[earth_group_] * base::pi * base::luminance(sky);
+              const std::size_t group = earth_group_ + scenes::earth_part(scene_, directions[k]);
+              looks.at(point, set, group) +=
+                  weight * light.scale[group] * base::pi * base::luminance(sky);
               continue;
             }
             const std::uint32_t to = light.patches->find(hits.triangle[k], double(hits.u[k]),

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scenes/sky.h"
+#include "scenes/sky_parts.h"
 #include "scenes/specular.h"
 
 namespace earthshine::raytrace {
@@ -19,7 +20,7 @@ void IncomingLight::see_sky(const Vec3& direction, const Rgb& weight, std::span<
                             bool straight) const {
   if (!sees_earth_) return;
   const Rgb light = weight * scenes::earth_radiance(scene_, direction);
-  out[earth_layer_] += light;
+  out[earth_layer_ + (by_part_ ? scenes::earth_part(scene_, direction) : 0)] += light;
   if (straight && out.size() > layers_) out.back() += light;
 }
 

@@ -36,6 +36,7 @@ class IncomingLight {
         layers_(layers),
         earth_layer_(earth_layer),
         sees_earth_(effects.earth_by_gather),
+        by_part_(layers > 1 && scene.sky_parts != nullptr),
         follows_specular_(follows_specular) {}
 
   // Adds weight * radiance along the ray to out[0 .. layers); if out is one longer, what came
@@ -69,7 +70,7 @@ class IncomingLight {
   const RadianceTable& table_;
   const BrightPatches& bright_;
   std::size_t layers_, earth_layer_;
-  bool sees_earth_, follows_specular_;
+  bool sees_earth_, by_part_, follows_specular_;
 };
 
 }  // namespace earthshine::raytrace

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "scenes/sky.h"
+#include "scenes/sky_parts.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -37,6 +38,9 @@ LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups
                               ? scene.sun->illuminance_lx * scenes::visible_sun_share(scene)
                               : scenes::sun_sample_illuminance(scene);
     add({Kind::Sun, groups.sun}, 1);
+  }
+  for (std::size_t k = 0; effects.sun_parts && k < scene.sky_parts->suns.size(); ++k) {
+    add({Kind::SunPart, groups.sun_parts + k, k}, 1);
   }
   if (effects.earth && (distributed_ || !effects.earth_by_gather)) {
     earth_half_angle_rad_ = base::radians(scene.earth->half_angle_deg);
@@ -90,6 +94,7 @@ scenes::LightKind LightSampler::kind(std::size_t index) const {
   const Light& light = lights_[index];
   switch (light.kind) {
     case Kind::Sun:
+    case Kind::SunPart:
       return scenes::LightKind::Sun;
     case Kind::Earth:
     case Kind::EarthArea:
@@ -161,6 +166,12 @@ scenes::LightSample LightSampler::sample(std::size_t index, const Vec3& point, d
       sample = {distributed_ ? scene_.sun->direction : scenes::sample_sun(scene_, u, v),
                 std::numeric_limits<double>::infinity(), sun_illuminance_lx_};
       break;
+    case Kind::SunPart: {
+      const scenes::Sun& sun = scene_.sky_parts->suns[light.index];
+      sample = {scenes::sample_cone(sun.direction, base::radians(sun.angular_radius_deg), u, v),
+                std::numeric_limits<double>::infinity(), scenes::sun_sample_illuminance(sun)};
+      break;
+    }
     case Kind::Earth: {
       const Vec3 direction =
           scenes::sample_cone(scene_.earth->direction, earth_half_angle_rad_, u, v);

@@ -46,11 +46,11 @@ class LightSampler {
                                            double v) const;
 
  private:
-  enum class Kind { Sun, Earth, EarthArea, Lamp, Emitters };
+  enum class Kind { Sun, SunPart, Earth, EarthArea, Lamp, Emitters };
   struct Light {
     Kind kind;
     std::size_t group;
-    std::size_t index = 0;  // of the lamp or emitter set
+    std::size_t index = 0;  // of the lamp, emitter set or Sun of a sky in parts
     bool fixed = false;     // distributed: always the same (u, v)
     double u = 0.5, v = 0.5;
     double share = 1.0;  // of the source's light

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "scenes/sky.h"
+#include "scenes/sky_parts.h"
 #include "scenes/specular.h"
 
 namespace earthshine::raytrace {
@@ -100,11 +101,16 @@ void PathWalker::see_sky() {
   if (on_earth) {
     const bool met = sees_sampled_ || world_.effects.earth_by_gather;
     if (met && world_.groups.earth != no_group) {
-      add(world_.groups.earth, scenes::earth_radiance(scene, ray_.direction));
+      add(world_.groups.earth + scenes::earth_part(scene, ray_.direction),
+          scenes::earth_radiance(scene, ray_.direction));
     }
   } else if (sees_sampled_) {
     add(world_.groups.sun, scenes::sky_radiance(scene, ray_.direction));
   }
+  if (!sees_sampled_ || !world_.effects.sun_parts) return;
+  const std::size_t part = scenes::sun_part(scene, ray_.direction);
+  if (part == scene.sky_parts->suns.size()) return;
+  add(world_.groups.sun_parts + part, scenes::sun_radiance(scene.sky_parts->suns[part]));
 }
 
 bool PathWalker::see_lamp(const scenes::Hit& hit) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scenes/sky.h"
+#include "scenes/sky_parts.h"
 #include "scenes/specular.h"
 
 namespace earthshine::raytrace {
@@ -91,11 +92,17 @@ void PixelShader::see_sky(const Vec3& direction, const Rgb& weight, int depth, S
     // A lobe ray reads the Earth only where shadow rays do not already carry its highlight.
     const bool carried = seen == Seen::ByLobe && !shared_.effects.earth_by_gather;
     if (shared_.groups.earth != no_group && !carried) {
-      see_source(shared_.groups.earth, weight * scenes::earth_radiance(scene, direction), depth);
+      see_source(shared_.groups.earth + scenes::earth_part(scene, direction),
+                 weight * scenes::earth_radiance(scene, direction), depth);
     }
   } else if (seen == Seen::ByCamera && shared_.groups.sun != no_group) {
     see_source(shared_.groups.sun, weight * scenes::sky_radiance(scene, direction), depth);
   }
+  if (seen != Seen::ByCamera || !shared_.effects.sun_parts) return;
+  const std::size_t part = scenes::sun_part(scene, direction);
+  if (part == scene.sky_parts->suns.size()) return;
+  see_source(shared_.groups.sun_parts + part,
+             weight * scenes::sun_radiance(scene.sky_parts->suns[part]), depth);
 }
 
 bool PixelShader::see_lamp(const Ray& ray, double nearer_than_m, const Rgb& weight, int depth) {

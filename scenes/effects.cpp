@@ -22,6 +22,7 @@ bool worn_by_something(const Scene& scene, Value value) {
 Effects find_effects(const Scene& scene, const LightGroups& groups, const Asked& asked) {
   Effects effects;
   effects.sun = groups.sun != no_group;
+  effects.sun_parts = groups.sun_parts != no_group;
   // The report's lights have no extent.
   effects.penumbra =
       effects.sun && scene.sun->angular_radius_deg > 0.0 && asked.paths != LightPaths::Distributed;
@@ -35,7 +36,8 @@ Effects find_effects(const Scene& scene, const LightGroups& groups, const Asked&
   effects.emitters = std::any_of(groups.material.begin(), groups.material.end(),
                                  [](std::size_t group) { return group != no_group; });
   effects.ambient = groups.ambient != no_group;
-  const bool lit = effects.sun || effects.earth || effects.lamps || effects.emitters;
+  const bool lit =
+      effects.sun || effects.sun_parts || effects.earth || effects.lamps || effects.emitters;
   const bool goes_on = asked.paths == LightPaths::All || asked.paths == LightPaths::Traced;
   effects.interreflection =
       lit && goes_on && worn_by_something(scene, [](const Material& m) { return m.diffuse; });

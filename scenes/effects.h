@@ -52,6 +52,7 @@ struct Effects {
   bool interreflection = false;
   bool solution = false;  // radiosity is solved for: interreflection, or wide emitters in lobes
   bool sun = false;
+  bool sun_parts = false;  // Suns of a sky in parts
   bool penumbra = false;
   bool earth = false;
   bool earth_by_gather =

@@ -200,7 +200,8 @@ std::vector<Idle> switch_off_idle(const Scene& scene, const Asked& asked, double
          hidden.sky ? walled : "cannot matter: its disc is below the horizon of every surface"});
   }
   if (idle.empty()) return skip_interreflection(finder, wanted_error, effects);
-  const bool lit = effects.sun || effects.earth || effects.lamps || effects.emitters;
+  const bool lit =
+      effects.sun || effects.sun_parts || effects.earth || effects.lamps || effects.emitters;
   const auto forget = [&](const char* effect, bool& runs, const char* why) {
     if (runs) idle.push_back({effect, why});
     runs = false;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/light_groups.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scenes/sky.h"
+#include "scenes/sky_parts.h"
 
 namespace earthshine::scenes {
 
@@ -20,7 +23,17 @@ LightGroups find_light_groups(const Scene& scene) {
   if (visible_sun_share(scene) > 0.0 && base::max_component(scene.sun->illuminance_lx) > 0.0) {
     groups.sun = index_of("sun");
   }
-  if (earth_is_lit(scene)) groups.earth = index_of("earth");
+  if (earth_is_lit(scene)) {
+    const std::size_t parts = earth_parts(scene);
+    groups.earth = index_of(parts == 1 ? "earth" : "earth-0");
+    for (std::size_t part = 1; part < parts; ++part) index_of(fmt::format("earth-{}", part));
+  }
+  if (scene.sky_parts && !scene.sky_parts->suns.empty()) {
+    groups.sun_parts = index_of("sun-0");
+    for (std::size_t k = 1; k < scene.sky_parts->suns.size(); ++k) {
+      index_of(fmt::format("sun-{}", k));
+    }
+  }
 
   groups.lamp.assign(scene.lamps.size(), no_group);
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {

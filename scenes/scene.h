@@ -153,6 +153,8 @@ struct Quality {
   std::optional<double> solver_tolerance;
 };
 
+struct SkyParts;  // sky_parts.h
+
 struct Scene {
   std::filesystem::path path;
   std::string name;
@@ -164,7 +166,8 @@ struct Scene {
   std::vector<Area> areas;
   std::optional<Sun> sun;
   std::optional<Earth> earth;
-  Rgb ambient_radiance{0.0};  // k_a I_a with k_a = diffuse; 0: off
+  std::shared_ptr<const SkyParts> sky_parts;  // of studies alone
+  Rgb ambient_radiance{0.0};                  // k_a I_a with k_a = diffuse; 0: off
   std::vector<Camera> cameras;
   std::vector<SettingTable> cctv;
   std::optional<SettingTable> monitor;

@@ -109,6 +109,10 @@ Rgb sun_sample_illuminance(const Scene& scene) {
   return scene.sun->illuminance_lx * (visible_sun_share(scene) / mean_cosine);
 }
 
+Rgb sun_sample_illuminance(const Sun& sun) {
+  return sun.illuminance_lx / (0.5 * (1.0 + std::cos(base::radians(sun.angular_radius_deg))));
+}
+
 Rgb sun_radiance(const Sun& sun) {
   const double sine = std::sin(base::radians(sun.angular_radius_deg));
   if (sine <= 0.0) return Rgb(0.0);

@@ -30,6 +30,8 @@ namespace earthshine::scenes {
 // What directions spread so must each carry so that a plate that faces
 // it gets illuminance_lx times the share in view: the mean cosine over the disc is (1 + cos r) / 2.
 [[nodiscard]] Rgb sun_sample_illuminance(const Scene& scene);
+// The same over the whole disc of a Sun that nothing in the sky hides.
+[[nodiscard]] Rgb sun_sample_illuminance(const Sun& sun);
 
 // Radiance of the Sun's disc, cd/m^2: E / (pi sin^2 r); 0 for a point Sun.
 [[nodiscard]] Rgb sun_radiance(const Sun& sun);
