@@ -92,10 +92,16 @@ std::uint64_t sky(const Scene& scene) {
   }
   digest.add(std::uint64_t{scene.earth.has_value()});
   if (scene.earth) {
-    const auto& [direction, half_angle_deg, altitude_m, model, albedo, radiance] = *scene.earth;
+    const auto& [direction, half_angle_deg, altitude_m, model, albedo, radiance, by_latitude] =
+        *scene.earth;
     for (const Vec3& v : {direction, albedo, radiance}) digest.add(v);
     for (const double x : {half_angle_deg, altitude_m}) digest.add(x);
     digest.add(static_cast<std::uint64_t>(model));
+    if (by_latitude) {
+      const auto& [a0, a1, a2, north] = *by_latitude;
+      for (const double x : {a0, a1, a2}) digest.add(x);
+      digest.add(north);
+    }
   }
   if (!scene.sky_parts) return digest.value();
   const auto& [suns, cells] = *scene.sky_parts;

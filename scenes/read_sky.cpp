@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <optional>
 
+#include "scenes/orbit.h"
 #include "scenes/scene_parts.h"
 #include "scenes/sky.h"
 
@@ -15,21 +16,14 @@ constexpr std::string_view models[] = {"lambert", "uniform"};
 constexpr Range altitudes_km{0.0, 1e6, true};
 constexpr std::string_view example_direction = "direction = [x, y, z]";
 
-struct Orbit {
-  OrbitDirections directions;
-  double altitude_m = 0.0;
-};
-
 Orbit read_orbit(const TomlNode& node) {
   const TableReader table(node, "[orbit]", orbit_keys);
   Orbit orbit;
   orbit.altitude_m = 1e3 * table.required(table.number("altitude_km", altitudes_km), "altitude_km",
                                           "altitude_km = ..., the height over the ground");
-  const double beta = table.number("beta_deg", {-90.0, 90.0}).value_or(0.0);
-  const double position = table.number("position_deg", {-360.0, 360.0}).value_or(0.0);
-  const std::string attitude =
-      table.choice("attitude", orbit_attitudes).value_or(std::string(orbit_attitudes[0]));
-  orbit.directions = orbit_directions(beta, position, attitude);
+  orbit.beta_deg = table.number("beta_deg", {-90.0, 90.0}).value_or(0.0);
+  orbit.position_deg = table.number("position_deg", {-360.0, 360.0}).value_or(0.0);
+  orbit.attitude = table.choice("attitude", orbit_attitudes).value_or(orbit.attitude);
   return orbit;
 }
 
@@ -44,7 +38,6 @@ Sun read_sun(const TableReader& table, const std::optional<Orbit>& orbit) {
   Sun sun;
   if (orbit) {
     refuse_beside_orbit(table, "direction");
-    sun.direction = orbit->directions.sun;
   } else {
     sun.direction = table.required(table.direction("direction"), "direction", example_direction);
   }
@@ -84,7 +77,6 @@ Earth read_earth(const TableReader& table, const std::optional<Orbit>& orbit) {
     earth.model = EarthModel::Uniform;
   if (orbit) {
     refuse_beside_orbit(table, "direction");
-    earth.direction = orbit->directions.earth;
   } else {
     earth.direction = table.required(table.direction("direction"), "direction", example_direction);
   }
@@ -108,16 +100,16 @@ Earth read_earth(const TableReader& table, const std::optional<Orbit>& orbit) {
 }  // namespace
 
 void read_sky(Scene& scene, const TomlNode* sun, const TomlNode* earth, const TomlNode* orbit) {
-  std::optional<Orbit> path;
-  if (orbit != nullptr) path = read_orbit(*orbit);
+  if (orbit != nullptr) scene.orbit = read_orbit(*orbit);
   // With [orbit], Sun and Earth are there, and an absent table stands for its defaults.
   const TomlNode nothing{orbit != nullptr ? orbit->where : base::Location{}, TomlTable{}};
   if (orbit != nullptr && sun == nullptr) sun = &nothing;
   if (orbit != nullptr && earth == nullptr) earth = &nothing;
-  if (sun != nullptr) scene.sun = read_sun(TableReader(*sun, "[sun]", sun_keys), path);
+  if (sun != nullptr) scene.sun = read_sun(TableReader(*sun, "[sun]", sun_keys), scene.orbit);
   if (earth == nullptr) return;
   const TableReader table(*earth, "[earth]", earth_keys);
-  scene.earth = read_earth(table, path);
+  scene.earth = read_earth(table, scene.orbit);
+  if (scene.orbit) move_along_orbit(scene, scene.orbit->position_deg);
   if (scene.earth->model == EarthModel::Lambert && !scene.sun) {
     throw base::Error(
         base::Blame::Input, table.where("model"),

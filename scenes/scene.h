@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/gtc/quaternion.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -96,13 +97,46 @@ struct Sun {
 
 enum class EarthModel { Lambert, Uniform };
 
+// Albedo by latitude, a0 + a1 P1(sin latitude) + a2 P2(sin latitude), P1 and P2 Legendre's
+// polynomials, between 0 and 1: Knocke, Ries and Tapley, "Earth radiation pressure effects on
+// satellites", AIAA/AAS 1988, with a1 = 0.10 cos(day's angle from 22 December).
+struct LatitudeAlbedo {
+  double a0 = 0.34;
+  double a1 = 0.0;
+  double a2 = 0.29;
+  Vec3 north{0.0, 0.0, 1.0};  // unit, toward the Earth's north pole
+};
+
 struct Earth {
   Vec3 direction{0.0, 0.0, 1.0};  // unit, toward the centre
   double half_angle_deg = 0.0;    // asin(R / (R + h))
   double altitude_m = 0.0;        // 0 when only the half angle is known (uniform model)
   EarthModel model = EarthModel::Lambert;
   Rgb albedo{0.3};
-  Rgb radiance{0.0};  // uniform model, cd/m^2
+  Rgb radiance{0.0};                          // uniform model, cd/m^2
+  std::optional<LatitudeAlbedo> by_latitude;  // lambert model: `albedo` times this
+};
+
+// Attitudes against time; scenes/attitude_file.h says how a turn is to be read.
+struct AttitudeTable {
+  std::string file;
+  bool by_time = true;     // `at` is the time since orbit noon, s; otherwise the position, deg
+  std::vector<double> at;  // rising, one or more
+  std::vector<glm::dquat> turns;  // unit, one for each
+};
+
+// A circular orbit about the Earth and which way the spacecraft points along it; orbit.h has the
+// frames.
+struct Orbit {
+  double altitude_m = 0.0;
+  double beta_deg = 0.0;                  // height of the Sun over the orbit's plane
+  double position_deg = 0.0;              // where the scene's Sun and Earth are taken; 0 orbit noon
+  std::string attitude = "bay-to-earth";  // empty: by the table
+  std::string inertial_as = "bay-to-earth";  // } of attitude "inertial": the pose that is kept
+  double inertial_at_deg = 0.0;              // } and where the spacecraft takes it
+  std::shared_ptr<const AttitudeTable> table;
+  double inclination_deg = 0.0;
+  double noon_argument_deg = 0.0;  // argument of latitude at orbit noon
 };
 
 // How the light around a pixel's centre is weighed; raytrace/pixel_filter.h has the formulas.
@@ -166,6 +200,7 @@ struct Scene {
   std::vector<Area> areas;
   std::optional<Sun> sun;
   std::optional<Earth> earth;
+  std::optional<Orbit> orbit;                 // Sun and Earth are where it has them
   std::shared_ptr<const SkyParts> sky_parts;  // of studies alone
   Rgb ambient_radiance{0.0};                  // k_a I_a with k_a = diffuse; 0: off
   std::vector<Camera> cameras;

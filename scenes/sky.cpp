@@ -131,40 +131,4 @@ Rgb sky_radiance(const Scene& scene, const Vec3& direction) {
   return Rgb(0.0);
 }
 
-OrbitDirections orbit_directions(double beta_deg, double position_deg, std::string_view attitude) {
-  // Components along (velocity, normal, zenith), normal = zenith x velocity: a right-handed frame.
-  const double beta = base::radians(beta_deg);
-  const double position = base::radians(position_deg);
-  const Vec3 sun(-std::cos(beta) * std::sin(position), std::sin(beta),
-                 std::cos(beta) * std::cos(position));
-  const Vec3 velocity(1.0, 0.0, 0.0), normal(0.0, 1.0, 0.0), zenith(0.0, 0.0, 1.0);
-  const Vec3 earth = -zenith;
-  // The scene's axes in that frame: x aft, z out of the bay, y = z x x.
-  Vec3 aft, out_of_bay;
-  if (attitude == "bay-to-earth") {
-    aft = -velocity;
-    out_of_bay = -zenith;
-  } else if (attitude == "bay-to-space") {
-    aft = -velocity;
-    out_of_bay = zenith;
-  } else if (attitude == "tail-down") {
-    aft = -zenith;
-    out_of_bay = velocity;
-  } else if (attitude == "bay-to-sun") {
-    out_of_bay = sun;
-    Vec3 north = normal - glm::dot(normal, sun) * sun;
-    if (glm::dot(north, north) < 1e-12) north = zenith;  // Sun at the orbit's pole
-    aft = -glm::normalize(north);
-  } else {
-    throw base::Error(base::Blame::Input, "orbit",
-                      "unknown attitude \"" + std::string(attitude) + "\"",
-                      "allowed: bay-to-earth, bay-to-space, bay-to-sun, tail-down");
-  }
-  const Vec3 starboard = glm::cross(out_of_bay, aft);
-  const auto in_scene = [&](const Vec3& d) {
-    return glm::normalize(Vec3(glm::dot(d, aft), glm::dot(d, starboard), glm::dot(d, out_of_bay)));
-  };
-  return {in_scene(sun), in_scene(earth)};
-}
-
 }  // namespace earthshine::scenes

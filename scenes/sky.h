@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sun and Earth as the spacecraft sees them: radiance of a direction, eclipse, orbit to directions.
+// Sun and Earth as the spacecraft sees them: radiance of a direction, the Sun behind the limb.
 #pragma once
-
-#include <string_view>
 
 #include "scenes/scene.h"
 
@@ -39,18 +37,5 @@ namespace earthshine::scenes {
 // Radiance of everything behind the scene in a direction: the Sun's disc (not where the Earth hides
 // it) and the Earth.
 [[nodiscard]] Rgb sky_radiance(const Scene& scene, const Vec3& direction);
-
-// Directions in the scene's frame (x aft, y starboard, z out of the bay) for a circular orbit.
-//   position 0 is orbit noon, 180 midnight, growing with the motion; beta is the Sun's height over
-//   the orbit plane. bay-to-earth: z to the Earth, nose forward; bay-to-space: z to the zenith,
-//   nose forward; tail-down: tail to the Earth, bay forward; bay-to-sun: z to the Sun, nose toward
-//   orbit north.
-struct OrbitDirections {
-  Vec3 sun, earth;
-};
-inline constexpr std::string_view orbit_attitudes[] = {"bay-to-earth", "bay-to-space", "bay-to-sun",
-                                                       "tail-down"};
-[[nodiscard]] OrbitDirections orbit_directions(double beta_deg, double position_deg,
-                                               std::string_view attitude);
 
 }  // namespace earthshine::scenes

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "scenes/orbit.h"
 #include "scenes/sky.h"
 #include "tests/scenes/scene_text.h"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scenes/lamp_light.h"
+#include "scenes/orbit.h"
 
 namespace earthshine::scenes {
 namespace {
