@@ -77,31 +77,49 @@ PartStore::PartStore(const fs::path& folder) : folder_(folder) {
   const base::OutputFile writable(folder / "points.json");
 }
 
-std::optional<StoredPart> PartStore::find(const Json& marks, std::string& said) const {
-  const fs::path json_path = folder_ / (stem_of(marks) + ".json");
-  const fs::path image_path = folder_ / (stem_of(marks) + ".exr");
+std::optional<Json> PartStore::read(const Json& marks, std::string& said) const {
+  const fs::path path = folder_ / (stem_of(marks) + ".json");
   std::error_code ignored;
-  if (!fs::exists(json_path, ignored)) return std::nullopt;
-  const auto again = [&](const std::string& why) {
-    said = fmt::format("{} {}; it is done again", json_path.string(), why);
-    return std::nullopt;
-  };
-  std::ifstream file(json_path, std::ios::binary);
+  if (!fs::exists(path, ignored)) return std::nullopt;
+  std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object() || !json.contains("marks") || !json.contains("facts") ||
-      !json["facts"].is_object() || !json.contains("picture")) {
-    return again("is broken");
+  const bool whole = json.is_object() && json.contains("marks") && json.contains("facts") &&
+                     json["facts"].is_object() && json.contains("picture");
+  if (!whole || json["marks"] != marks) {
+    said = fmt::format("{} {}; it is done again", path.string(),
+                       whole ? "belongs to something else" : "is broken");
+    return std::nullopt;
   }
-  if (json["marks"] != marks) return again("belongs to something else");
-  StoredPart part{json["facts"], {}};
+  return json;
+}
+
+std::optional<StoredPart> PartStore::find(const Json& marks, std::string& said) const {
+  const std::optional<Json> json = read(marks, said);
+  if (!json) return std::nullopt;
+  const auto again = [&](const std::string& why) {
+    said = fmt::format("{} {}; it is done again", (folder_ / (stem_of(marks) + ".json")).string(),
+                       why);
+    return std::nullopt;
+  };
+  StoredPart part{(*json)["facts"], {}};
   try {
-    part.image = base::read_exr(image_path).image;
+    part.image = base::read_exr(folder_ / (stem_of(marks) + ".exr")).image;
   } catch (const base::Error& error) {
     return again(fmt::format("has lost its picture ({})", error.what()));
   }
-  if (json["picture"] != digest_of(part.image)) return again("has another picture beside it");
+  if ((*json)["picture"] != digest_of(part.image)) return again("has another picture beside it");
   return part;
+}
+
+std::optional<Json> PartStore::find_facts(const Json& marks, std::string& said) const {
+  const std::optional<Json> json = read(marks, said);
+  return json ? std::optional<Json>((*json)["facts"]) : std::nullopt;
+}
+
+void PartStore::keep_facts(const Json& marks, const Json& facts) const {
+  base::write_text(folder_ / (stem_of(marks) + ".json"),
+                   dump({{"marks", marks}, {"facts", facts}, {"picture", Json()}}));
 }
 
 bool PartStore::has(const Json& marks) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The finished parts of `study accuracy`, so that a run that was ended goes on from them.
+// The finished parts of a study, so that a run that was ended goes on from them.
 //
 // Each is two files in DIR/points: KEY.exr, its luminance (of a reference also the variance), and
 // KEY.json, written after it: the marks of the scene, the view, the settings and the program, what
@@ -37,7 +37,13 @@ class PartStore {
   [[nodiscard]] bool has(const Json& marks) const;
   void keep(const Json& marks, const StoredPart& part) const;
 
+  // The same of parts that are facts alone, without a picture.
+  [[nodiscard]] std::optional<Json> find_facts(const Json& marks, std::string& said) const;
+  void keep_facts(const Json& marks, const Json& facts) const;
+
  private:
+  [[nodiscard]] std::optional<Json> read(const Json& marks, std::string& said) const;
+
   std::filesystem::path folder_;
 };
 

@@ -191,6 +191,15 @@ scenes::Scene LightBasis::scene_at(std::size_t place, std::size_t setting) const
   return scene;
 }
 
+std::size_t LightBasis::sun_parts() const {
+  if (in_parts()) return scene_.sky_parts->suns.size();
+  return groups_.sun == no_group ? 0 : 1;
+}
+
+std::size_t LightBasis::earth_parts() const {
+  return groups_.earth == no_group ? 0 : scenes::earth_parts(scene_);
+}
+
 GroupWeights LightBasis::weights(std::size_t place, std::size_t setting, double lamps) const {
   GroupWeights weights{std::vector<Rgb>(groups_.count(), Rgb(0.0)),
                        std::vector<double>(groups_.count(), 0.0),

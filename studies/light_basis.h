@@ -65,6 +65,9 @@ class LightBasis {
   [[nodiscard]] const std::vector<SkyPlace>& places() const { return places_; }
   [[nodiscard]] const std::vector<LampSetting>& settings() const { return settings_; }
   [[nodiscard]] bool in_parts() const { return scene_.sky_parts != nullptr; }
+  // Light groups that stand for the Sun at its places, and for the Earth; 0 where none does.
+  [[nodiscard]] std::size_t sun_parts() const;
+  [[nodiscard]] std::size_t earth_parts() const;
   // The scene at one place, by one setting: what the weighted sum stands for.
   [[nodiscard]] scenes::Scene scene_at(std::size_t place, std::size_t setting) const;
 

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/study_answers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/study.h"
+#include "base/parallel.h"
+#include "studies/wanted_visibility.h"
+
+namespace earthshine::app {
+namespace {
+
+// The place where Sun and Earth give the target least.
+std::size_t darkest_place(const studies::LightBasis& basis, const std::vector<Rgb>& by_group) {
+  const scenes::LightGroups& groups = basis.groups();
+  std::size_t darkest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t place = 0; place < basis.places().size(); ++place) {
+    const studies::GroupWeights weights = basis.weights(place, 0, 0.0);
+    double light = 0.0;
+    for (std::size_t g = 0; g < groups.count(); ++g) {
+      light += base::luminance(weights.weight[g] * by_group[g]);
+    }
+    if (light >= least) continue;
+    least = light;
+    darkest = place;
+  }
+  return darkest;
+}
+
+bool has_lamps(const studies::LightBasis& basis, std::size_t setting) {
+  const studies::GroupWeights on = basis.weights(0, setting), off = basis.weights(0, setting, 0.0);
+  return on.weight != off.weight;
+}
+
+std::string at(double position_deg) { return fmt::format("orbit {:g} deg", position_deg); }
+
+std::string arcs_text(const std::vector<studies::Arc>& arcs) {
+  std::string text;
+  for (const auto& [from, to] : arcs) {
+    text += fmt::format("{}{:.0f} to {:.0f} deg", text.empty() ? "" : ", ", from, to);
+  }
+  return text;
+}
+
+std::string way_text(const WayOfLooking& way) {
+  return fmt::format("camera {}{}, lamps {}", way.camera,
+                     way.iris.empty() ? "" : " with iris " + way.iris, way.lamps);
+}
+
+struct Rated {
+  const WayOfLooking* way = nullptr;
+  std::vector<studies::Arc> arcs;
+  double reach = -1.0;  // share of the orbit, or whether the one place does
+  double best = 0.0;    // highest probability
+};
+
+Rated rate(const WayOfLooking& way, double wanted, bool closed) {
+  Rated rated{&way, {}, 0.0, *std::max_element(way.detect.begin(), way.detect.end())};
+  const auto seen = std::count_if(way.detect.begin(), way.detect.end(),
+                                  [&](double p) { return p >= wanted; });
+  rated.reach = static_cast<double>(seen) / static_cast<double>(way.detect.size());
+  if (way.positions_deg.empty()) return rated;
+  rated.arcs = studies::arcs_above(way.positions_deg, way.detect, wanted, closed);
+  if (closed) rated.reach = studies::total_deg(rated.arcs) / 360.0;
+  return rated;
+}
+
+std::string lamp_text(const std::vector<WayOfLooking>& ways, double wanted) {
+  const WayOfLooking* best = nullptr;
+  bool tried = false;
+  for (const WayOfLooking& way : ways) {
+    tried = tried || way.tried_factors;
+    if (way.least_factor && (best == nullptr || *way.least_factor < *best->least_factor)) {
+      best = &way;
+    }
+  }
+  if (!tried) return "";
+  const std::string where = ways.front().darkest_deg
+                                ? fmt::format("Where it is darkest, at {}, ", at(*ways.front().darkest_deg))
+                                : "Here ";
+  if (best == nullptr) {
+    return fmt::format(" {}no lamps up to {:g} times theirs bring it to {:g}.", where,
+                       studies::most_lamp_factor, wanted);
+  }
+  if (*best->least_factor <= 0.0) return fmt::format(" {}no lamps are needed.", where);
+  return fmt::format(" {}the least light that does is {:.3g} times that of lamps {}, by camera {}.",
+                     where, *best->least_factor, best->lamps, best->camera);
+}
+
+}  // namespace
+
+void add_ways(const StudyPart& part, const studies::StudyFile& study, const studies::Wanted& wanted,
+              const StudyCamera& camera, const studies::BasisView& view,
+              std::vector<WayOfLooking>& ways) {
+  const studies::LightBasis& basis = *part.basis;
+  const auto named = std::find(part.targets.begin(), part.targets.end(), wanted.target);
+  const auto target = static_cast<std::size_t>(named - part.targets.begin());
+  const std::size_t darkest = darkest_place(basis, view.targets[target].by_group);
+  std::vector<std::string> modes = camera.cctv ? study.iris : std::vector<std::string>{};
+  if (modes.empty()) modes = {""};
+  for (const std::string& mode : modes) {
+    std::optional<degrade::Setup> cctv;
+    std::string iris;
+    if (camera.cctv) {
+      cctv = camera.cctv->chain;
+      cctv->options.fov_deg = camera.camera->fov_deg;
+      constexpr auto words = degrade::words_of(degrade::IrisMode{});
+      if (!mode.empty()) {
+        const auto word = std::find(words.begin(), words.end(), mode) - words.begin();
+        cctv->camera.iris = static_cast<degrade::IrisMode>(word);
+      }
+      iris = words[static_cast<std::size_t>(cctv->camera.iris)];
+    }
+    for (std::size_t setting = 0; setting < basis.settings().size(); ++setting) {
+      WayOfLooking way{part.id, camera.camera->name, iris, basis.settings()[setting].name, {},
+                       part.positions_deg, {}, {}, false};
+      way.detect.resize(basis.places().size());
+      const auto probability = [&](std::size_t place, double lamps) {
+        return studies::detection(basis, view, target, place, setting, lamps, cctv);
+      };
+      base::parallel_chunks(way.detect.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t place = begin; place < end; ++place) {
+          way.detect[place] = probability(place, 1.0);
+        }
+      });
+      way.tried_factors = has_lamps(basis, setting);
+      if (!part.positions_deg.empty()) way.darkest_deg = part.positions_deg[darkest];
+      if (way.tried_factors) {
+        way.least_factor = studies::least_factor(
+            [&](double lamps) { return probability(darkest, lamps); }, wanted.probability);
+      }
+      ways.push_back(std::move(way));
+    }
+  }
+}
+
+Json answer_json(const studies::Wanted& wanted, const studies::StudyFile& study,
+                 const std::vector<WayOfLooking>& ways) {
+  Rated best;
+  for (const WayOfLooking& way : ways) {
+    Rated rated = rate(way, wanted.probability, study.timeline);
+    if (rated.reach > best.reach || (rated.reach == best.reach && rated.best > best.best)) {
+      best = std::move(rated);
+    }
+  }
+  Json answer = {{"wanted", wanted.text},      {"target", wanted.target},
+                 {"least", wanted.probability}, {"found", false},
+                 {"text", ""},                  {"camera", Json()},
+                 {"iris", Json()},              {"lamps", Json()},
+                 {"least_factor", Json()},      {"arcs_deg", Json::array()}};
+  if (best.way == nullptr) {
+    answer["text"] = fmt::format("Nothing was looked at for {}.", wanted.target);
+    return answer;
+  }
+  const WayOfLooking& way = *best.way;
+  answer["camera"] = way.camera;
+  answer["iris"] = way.iris.empty() ? Json() : Json(way.iris);
+  answer["lamps"] = way.lamps;
+  answer["best_probability"] = best.best;
+  answer["least_factor"] = to_json(way.least_factor);
+  for (const auto& [from, to] : best.arcs) answer["arcs_deg"].push_back({from, to});
+  answer["found"] = best.best >= wanted.probability;
+  std::string text;
+  if (best.best < wanted.probability) {
+    text = fmt::format(
+        "None of the cameras, iris modes and lamp settings detects {} with {:g} or more{}: at best "
+        "{:.2g}, by {}.",
+        wanted.target, wanted.probability,
+        way.positions_deg.empty() ? "" : " at any of the positions", best.best, way_text(way));
+  } else if (way.positions_deg.empty()) {
+    text = fmt::format("{} is detected with {:.2g}, by {}.", wanted.target, best.best,
+                       way_text(way));
+  } else {
+    text = fmt::format("{} is detected with {:g} or more best by {}: {}{}.", wanted.target,
+                       wanted.probability, way_text(way), arcs_text(best.arcs),
+                       study.timeline ? fmt::format(" ({:.0f} % of the orbit)", 100.0 * best.reach)
+                                      : "");
+  }
+  answer["text"] = text + lamp_text(ways, wanted.probability);
+  return answer;
+}
+
+}  // namespace earthshine::app
