@@ -7,6 +7,7 @@
 
 #include "app/command.h"
 #include "app/console.h"
+#include "app/orbit_facts.h"
 #include "scenes/lamp_light.h"
 
 namespace earthshine::app {
@@ -158,6 +159,7 @@ Json report_of(const LoadedScene& loaded) {
   report["lamps"] = lights_of(scene);
   report["areas"] = areas_of(scene);
   report.update(sky_of(scene, loaded));
+  report["orbit"] = orbit_facts(scene);
   report["ambient_radiance_cd_m2"] = to_json(scene.ambient_radiance);
   report["light_groups"] = loaded.groups.names;
   report["cameras"] = cameras_of(scene);
@@ -227,6 +229,7 @@ std::string lights_table(const Json& report) {
         fmt::format("{}: toward {}{}\n", name, numbers(body["direction"], "{:.4f} {:.4f} {:.4f}"),
                     body["shines"].get<bool>() ? "" : " (gives no light)");
   }
+  if (!report["orbit"].is_null()) text += orbit_line(report["orbit"]);
   for (const Json& camera : report["cameras"]) {
     text += fmt::format("camera {}: at {}, looks at {}, {:g} deg, {} x {}\n",
                         camera["name"].get<std::string>(), numbers(camera["position_m"]),

@@ -117,6 +117,8 @@ class Rows {
     if (!e_.earth) {
       if (scene_.earth->model == EarthModel::Uniform) return "earth.radiance is 0";
       if (base::max_component(scene_.earth->albedo) <= 0.0) return "earth.albedo is 0";
+      const auto& law = scene_.earth->by_latitude;
+      if (law && largest_albedo(*law) <= 0.0) return "the albedo is 0 at every latitude";
       return "the part of the Earth in view is dark";
     }
     return fmt::format(

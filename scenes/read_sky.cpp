@@ -9,23 +9,13 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr std::string_view sun_keys[] = {"direction", "illuminance", "angular_radius_deg"};
-constexpr std::string_view earth_keys[] = {"direction", "altitude_km", "albedo",
-                                           "model",     "radiance",    "half_angle_deg"};
-constexpr std::string_view orbit_keys[] = {"altitude_km", "beta_deg", "position_deg", "attitude"};
+constexpr std::string_view earth_keys[] = {"direction", "altitude_km",    "albedo",    "model",
+                                           "radiance",  "half_angle_deg", "albedo_by", "albedo_a0",
+                                           "albedo_a1", "albedo_a2",      "north"};
 constexpr std::string_view models[] = {"lambert", "uniform"};
-constexpr Range altitudes_km{0.0, 1e6, true};
+constexpr std::string_view albedo_laws[] = {"mean", "latitude"};
+constexpr std::string_view latitude_keys[] = {"albedo_a0", "albedo_a1", "albedo_a2", "north"};
 constexpr std::string_view example_direction = "direction = [x, y, z]";
-
-Orbit read_orbit(const TomlNode& node) {
-  const TableReader table(node, "[orbit]", orbit_keys);
-  Orbit orbit;
-  orbit.altitude_m = 1e3 * table.required(table.number("altitude_km", altitudes_km), "altitude_km",
-                                          "altitude_km = ..., the height over the ground");
-  orbit.beta_deg = table.number("beta_deg", {-90.0, 90.0}).value_or(0.0);
-  orbit.position_deg = table.number("position_deg", {-360.0, 360.0}).value_or(0.0);
-  orbit.attitude = table.choice("attitude", orbit_attitudes).value_or(orbit.attitude);
-  return orbit;
-}
 
 // What [orbit] determines may not be given a second time.
 void refuse_beside_orbit(const TableReader& table, std::string_view key) {
@@ -71,6 +61,31 @@ void read_disc(Earth& earth, const TableReader& table, const std::optional<Orbit
   earth.half_angle_deg = base::degrees(earth_half_angle_rad(earth.altitude_m));
 }
 
+// The share of the light that a Lambert Earth gives back.
+void read_albedo(Earth& earth, const TableReader& table, const std::optional<Orbit>& orbit) {
+  if (table.choice("albedo_by", albedo_laws).value_or("mean") == "mean") {
+    for (const std::string_view key : latitude_keys) {
+      if (!table.has(key)) continue;
+      table.fail(key, "belongs to albedo_by = \"latitude\"", "the mean albedo has no latitudes",
+                 "Write albedo_by = \"latitude\", or remove the key");
+    }
+    earth.albedo = table.colour("albedo", share).value_or(earth.albedo);
+    return;
+  }
+  LatitudeAlbedo law;
+  law.a0 = table.number("albedo_a0", share).value_or(law.a0);
+  law.a1 = table.number("albedo_a1", {-1.0, 1.0}).value_or(law.a1);
+  law.a2 = table.number("albedo_a2", {-1.0, 1.0}).value_or(law.a2);
+  if (orbit) {
+    refuse_beside_orbit(table, "north");
+  } else {
+    law.north = table.required(table.direction("north"), "north",
+                               "north = [x, y, z], toward the Earth's north pole");
+  }
+  earth.by_latitude = law;
+  earth.albedo = table.colour("albedo", share).value_or(Rgb(1.0));
+}
+
 Earth read_earth(const TableReader& table, const std::optional<Orbit>& orbit) {
   Earth earth;
   if (table.choice("model", models).value_or("lambert") == "uniform")
@@ -82,8 +97,10 @@ Earth read_earth(const TableReader& table, const std::optional<Orbit>& orbit) {
   }
   read_disc(earth, table, orbit);
   if (earth.model == EarthModel::Uniform) {
-    if (table.has("albedo")) {
-      table.fail("albedo", "belongs to model \"lambert\"", "model \"uniform\" has radiance");
+    for (const std::string_view key :
+         {"albedo", "albedo_by", "albedo_a0", "albedo_a1", "albedo_a2", "north"}) {
+      if (!table.has(key)) continue;
+      table.fail(key, "belongs to model \"lambert\"", "model \"uniform\" has radiance");
     }
     earth.radiance =
         table.required(table.colour("radiance"), "radiance", "radiance = ... (cd/m^2)");
@@ -92,7 +109,7 @@ Earth read_earth(const TableReader& table, const std::optional<Orbit>& orbit) {
       table.fail("radiance", "belongs to model \"uniform\"", "model \"lambert\" has albedo",
                  "Write model = \"uniform\", or remove the key");
     }
-    earth.albedo = table.colour("albedo", share).value_or(earth.albedo);
+    read_albedo(earth, table, orbit);
   }
   return earth;
 }
@@ -100,7 +117,7 @@ Earth read_earth(const TableReader& table, const std::optional<Orbit>& orbit) {
 }  // namespace
 
 void read_sky(Scene& scene, const TomlNode* sun, const TomlNode* earth, const TomlNode* orbit) {
-  if (orbit != nullptr) scene.orbit = read_orbit(*orbit);
+  if (orbit != nullptr) scene.orbit = read_orbit(scene, *orbit);
   // With [orbit], Sun and Earth are there, and an absent table stands for its defaults.
   const TomlNode nothing{orbit != nullptr ? orbit->where : base::Location{}, TomlTable{}};
   if (orbit != nullptr && sun == nullptr) sun = &nothing;

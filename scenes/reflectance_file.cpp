@@ -3,36 +3,20 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <fstream>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
 
 #include "base/error.h"
+#include "scenes/text_lines.h"
 
 namespace earthshine::scenes {
 namespace {
 
 using base::Blame;
 using base::Error;
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-std::optional<double> number_in(std::string_view text) {
-  text = trimmed(text);
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0.0;
-  const auto [stop, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (problem != std::errc() || stop != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 // A number within [least, most] at `column` of the line.
 double checked_number(std::string_view field, const base::Location& where, const char* what,

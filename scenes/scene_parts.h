@@ -40,7 +40,12 @@ class LuminaireShelf {
 
 [[nodiscard]] Area read_area(const TomlNode& node, double unit_m);
 
-// [sun], [earth] and [orbit], each null when absent, to scene.sun and scene.earth.
+inline constexpr Range altitudes_km{0.0, 1e6, true};
+
+// [orbit]; a table of attitudes is looked for beside scene.path, warnings go to the scene.
+[[nodiscard]] Orbit read_orbit(Scene& scene, const TomlNode& node);
+
+// [sun], [earth] and [orbit], each null when absent, to scene.sun, scene.earth and scene.orbit.
 void read_sky(Scene& scene, const TomlNode* sun, const TomlNode* earth, const TomlNode* orbit);
 
 [[nodiscard]] Camera read_camera(const TomlNode& node, double unit_m);

@@ -3,29 +3,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "scenes/lamp_light.h"
 
 namespace earthshine::scenes {
 namespace {
 
-// Sun's zenith cosine where a direction meets the sphere, or below -1 when it passes beside it.
-constexpr double beside_the_earth = -2.0;
-
 // The Earth's centre is at distance d along `earth.direction`; lengths in Earth radii.
 double distance_in_radii(const Earth& earth) {
   return 1.0 / std::sin(base::radians(earth.half_angle_deg));
 }
 
-// cos(theta_s) of the point of the sphere seen in `direction`, or beside_the_earth.
-double sun_zenith_cosine(const Earth& earth, const Vec3& sun, const Vec3& direction) {
+// The zenith, unit, of the point of the sphere seen in `direction`; nothing beside the disc.
+std::optional<Vec3> surface_zenith(const Earth& earth, const Vec3& direction) {
   const double d = distance_in_radii(earth);
   const double cos_off_centre = glm::dot(direction, earth.direction);
   const double discriminant = 1.0 - d * d * (1.0 - cos_off_centre * cos_off_centre);
-  if (cos_off_centre <= 0.0 || discriminant < 0.0) return beside_the_earth;
+  if (cos_off_centre <= 0.0 || discriminant < 0.0) return std::nullopt;
   const double t = d * cos_off_centre - std::sqrt(discriminant);
-  const Vec3 surface_normal = direction * t - earth.direction * d;  // unit by construction
-  return glm::dot(surface_normal, sun);
+  return direction * t - earth.direction * d;
 }
 
 // Where the limb crosses the Sun's disc: its height over the limb in radii of the disc, from -1,
@@ -48,15 +45,30 @@ double earth_half_angle_rad(double altitude_m) {
   return std::asin(base::earth_radius_m / (base::earth_radius_m + altitude_m));
 }
 
+double albedo_at(const LatitudeAlbedo& law, double sin_latitude) {
+  const double p2 = 0.5 * (3.0 * sin_latitude * sin_latitude - 1.0);
+  return std::clamp(law.a0 + law.a1 * sin_latitude + law.a2 * p2, 0.0, 1.0);
+}
+
+double largest_albedo(const LatitudeAlbedo& law) {
+  // A parabola in sin(latitude): at a pole, or at its top.
+  const double top = law.a2 < 0.0 ? std::clamp(-law.a1 / (3.0 * law.a2), -1.0, 1.0) : 1.0;
+  return std::max({albedo_at(law, -1.0), albedo_at(law, 1.0), albedo_at(law, top)});
+}
+
 Rgb earth_radiance(const Scene& scene, const Vec3& direction) {
   const Earth& earth = *scene.earth;
   if (glm::dot(direction, earth.direction) < std::cos(base::radians(earth.half_angle_deg))) {
     return Rgb(0.0);
   }
   if (earth.model == EarthModel::Uniform) return earth.radiance;
-  const double cos_sun = sun_zenith_cosine(earth, scene.sun->direction, direction);
+  const auto surface = surface_zenith(earth, direction);
+  if (!surface) return Rgb(0.0);
+  const double cos_sun = glm::dot(*surface, scene.sun->direction);
   if (cos_sun <= 0.0) return Rgb(0.0);
-  return earth.albedo * scene.sun->illuminance_lx * (cos_sun / base::pi);
+  const Rgb radiance = earth.albedo * scene.sun->illuminance_lx * (cos_sun / base::pi);
+  if (!earth.by_latitude) return radiance;
+  return radiance * albedo_at(*earth.by_latitude, glm::dot(*surface, earth.by_latitude->north));
 }
 
 bool earth_is_lit(const Scene& scene) {
@@ -66,6 +78,7 @@ bool earth_is_lit(const Scene& scene) {
   if (!scene.sun || base::max_component(scene.sun->illuminance_lx * earth.albedo) <= 0.0) {
     return false;
   }
+  if (earth.by_latitude && largest_albedo(*earth.by_latitude) <= 0.0) return false;
   // The visible cap reaches acos(R / (R + h)) = 90 deg - half angle around the sub-spacecraft
   // point; some of it is lit if the Sun stands less than 90 deg further from that point.
   const double sun_from_zenith =

@@ -9,8 +9,13 @@ namespace earthshine::scenes {
 // Half angle of the Earth's disc from altitude h: asin(R / (R + h)).
 [[nodiscard]] double earth_half_angle_rad(double altitude_m);
 
+// The law of Earth::by_latitude at a latitude, and the most that it gives anywhere.
+[[nodiscard]] double albedo_at(const LatitudeAlbedo& law, double sin_latitude);
+[[nodiscard]] double largest_albedo(const LatitudeAlbedo& law);
+
 // Radiance of the Earth in a unit direction, cd/m^2; 0 off its disc. Lambert: L = (a / pi) E_sun
-// max(0, cos theta_s), theta_s the Sun's zenith angle where the direction meets the sphere.
+// max(0, cos theta_s), theta_s the Sun's zenith angle where the direction meets the sphere; a is
+// Earth::albedo, by latitude times albedo_at that place.
 [[nodiscard]] Rgb earth_radiance(const Scene& scene, const Vec3& direction);
 
 // Whether any part of the disc shines.

@@ -100,6 +100,20 @@ double TextLines::number(std::size_t word) const {
   return number(words_[word]);
 }
 
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::optional<double> number_in(std::string_view text) {
+  text = without_plus(trimmed(text));
+  double value = 0.0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
 bool parse_whole(std::string_view text, std::int64_t& value) {
   text = without_plus(text);
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);

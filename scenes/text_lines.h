@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Words of a text file, line by line, each with its place; and numbers from words. OBJ, MTL, PLY
-// and STL.
+// and STL; the fields of CSV files.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,6 +54,12 @@ class TextLines {
   int line_;
   std::vector<Word> words_;
 };
+
+// Without blanks at its ends.
+[[nodiscard]] std::string_view trimmed(std::string_view text);
+
+// A number that fills the text, blanks around it aside; "nan" and "inf" are such.
+[[nodiscard]] std::optional<double> number_in(std::string_view text);
 
 // A whole number that fills the text; false otherwise.
 [[nodiscard]] bool parse_whole(std::string_view text, std::int64_t& value);

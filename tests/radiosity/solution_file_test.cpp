@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
+#include "radiosity/solution_key.h"
+#include "scenes/orbit.h"
 #include "scenes/photometry.h"
 #include "tests/base/temporary_folder.h"
 #include "tests/support/scene_builder.h"
@@ -173,6 +176,34 @@ TEST(SolutionFile, AChangeThatTheSolutionDependsOnIsNamed) {
     s.vertices[0].z = -1.0;
     s.materials[0].diffuse.r = 0.1;
   });
+}
+
+TEST(SolutionFile, TheEarthsAlbedoByLatitudeBelongsToTheSky) {
+  scenes::Scene scene;
+  scene.sun.emplace();
+  scene.earth.emplace();
+  scene.orbit.emplace().altitude_m = 425e3;
+  const auto sky = [&scene] {
+    return scene_parts(scene, scenes::find_light_groups(scene)).back().digest;
+  };
+  std::vector<std::uint64_t> digests = {sky()};
+  scene.orbit->inclination_deg = 28.5;  // sets the pole alone, which this Earth does not have
+  scene.orbit->position_deg = 5.0;
+  EXPECT_EQ(sky(), digests[0]);
+  scene.earth->by_latitude.emplace();
+  digests.push_back(sky());
+  scene.earth->by_latitude->a1 = 0.1;
+  digests.push_back(sky());
+  scene.earth->by_latitude->a0 = 0.3;
+  digests.push_back(sky());
+  scene.earth->by_latitude->a2 = 0.2;
+  digests.push_back(sky());
+  scene.earth->by_latitude->north = Vec3(1, 0, 0);
+  digests.push_back(sky());
+  move_along_orbit(scene, 90.0);
+  digests.push_back(sky());
+  std::sort(digests.begin(), digests.end());
+  EXPECT_EQ(std::unique(digests.begin(), digests.end()), digests.end());
 }
 
 TEST(SolutionFile, AChangedOptionIsNamedWithBothValues) {

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "scenes/lamp_light.h"
-#include "scenes/orbit.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -96,42 +95,6 @@ TEST(Sky, SunsRadianceTimesItsDiscIsItsIlluminance) {
   const Sun sun;
   const double sine = std::sin(base::radians(sun.angular_radius_deg));
   EXPECT_NEAR(sun_radiance(sun).g * base::pi * sine * sine, 133100.0, 1e-6);
-}
-
-TEST(Orbit, BayToEarthAtNoonHasTheSunBehindTheBellyAndTheEarthOverTheBay) {
-  const OrbitDirections d = orbit_directions(0.0, 0.0, "bay-to-earth");
-  EXPECT_NEAR(glm::length(d.earth - Vec3(0, 0, 1)), 0.0, 1e-15);
-  EXPECT_NEAR(glm::length(d.sun - Vec3(0, 0, -1)), 0.0, 1e-15);
-}
-
-TEST(Orbit, EveryAttitudeKeepsTheAngleBetweenSunAndEarth) {
-  // cos(angle from zenith to Sun) = cos(beta) cos(position), whatever way the spacecraft points.
-  for (const std::string_view attitude : orbit_attitudes) {
-    for (const double position : {0.0, 35.0, 90.0, 200.0}) {
-      const OrbitDirections d = orbit_directions(20.0, position, attitude);
-      EXPECT_NEAR(-glm::dot(d.sun, d.earth),
-                  std::cos(base::radians(20.0)) * std::cos(base::radians(position)), 1e-12)
-          << attitude << " " << position;
-      EXPECT_NEAR(glm::length(d.sun), 1.0, 1e-12);
-    }
-  }
-}
-
-TEST(Orbit, NoseForwardPutsTheMorningSunAheadOfNoonAndTheEveningSunBehind) {
-  // Past noon the Sun sinks behind the motion: with the nose forward that is aft, +x.
-  EXPECT_GT(orbit_directions(0.0, 45.0, "bay-to-space").sun.x, 0.5);
-  EXPECT_LT(orbit_directions(0.0, -45.0, "bay-to-space").sun.x, -0.5);
-  EXPECT_GT(orbit_directions(0.0, 45.0, "bay-to-earth").sun.x, 0.5);
-}
-
-TEST(Orbit, BayToSunPointsTheBayAtTheSun) {
-  const OrbitDirections d = orbit_directions(20.0, 70.0, "bay-to-sun");
-  EXPECT_NEAR(glm::length(d.sun - Vec3(0, 0, 1)), 0.0, 1e-12);
-}
-
-TEST(Orbit, TailDownHasTheEarthAft) {
-  const OrbitDirections d = orbit_directions(0.0, 0.0, "tail-down");
-  EXPECT_NEAR(glm::length(d.earth - Vec3(1, 0, 0)), 0.0, 1e-12);
 }
 
 TEST(Sky, EarthIsDarkAtMidnightAndLitAtNoon) {

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// What follows from a scene's [orbit], for reports.
+#pragma once
+
+#include <string>
+
+#include "app/command.h"
+#include "scenes/scene.h"
+
+namespace earthshine::app {
+
+// null without [orbit]; else altitude_m, period_s, beta_deg, position_deg, time_s (since orbit
+// noon), latitude_deg, attitude and attitude_table (one of them null), penumbra and umbra (each
+// null, or begin_deg, end_deg, begin_s, end_s).
+[[nodiscard]] Json orbit_facts(const scenes::Scene& scene);
+
+// One line of them.
+[[nodiscard]] std::string orbit_line(const Json& facts);
+
+}  // namespace earthshine::app
