@@ -9,7 +9,7 @@
 
 namespace earthshine::studies {
 
-// Never detect < recognise or recognise < identify.
+// Never detect < recognise, nor recognise < identify.
 struct Probability {
   double detect = 0.0, recognise = 0.0, identify = 0.0;
 };
@@ -24,9 +24,9 @@ struct CyclesNeeded {
 [[nodiscard]] double johnson_probability(double cycles, double needed);
 [[nodiscard]] Probability johnson_probability(double cycles, const CyclesNeeded& needed);
 
-// The least extent of a set of pixels: the least distance, over all directions in steps of 5
-// degrees, of two parallel lines that hold all of them; or the diameter of the disc of as many
-// pixels, where that is less, so that a few pixels far apart do not count as something large.
+// The least extent of a set of pixels: the least distance of two parallel lines that hold all of
+// them; or the diameter of the disc of as many pixels, where that is less, so that a few pixels far
+// apart do not count as something large.
 struct Extent {
   double pixels = 0.0;
   double direction_rad = 0.0;  // of the extent, from the picture's x to its y (down)

@@ -63,7 +63,7 @@ struct Reach {
 // night left out; lit: by any of them.
 [[nodiscard]] Reach reach_of_earth(const scenes::Scene& scene, const scenes::RayQuery& query,
                                    std::span<const SeenPoint> points, int directions = 64);
-// The same for an Earth and a Sun that are not the scene's. sun: none by night.
+// The same for an Earth and a Sun that are not the scene's.
 [[nodiscard]] Reach reach_of_earth(const scenes::Scene& scene, const scenes::RayQuery& query,
                                    std::span<const SeenPoint> points, const scenes::Earth& earth,
                                    const std::optional<scenes::Sun>& sun, int directions = 64);
