@@ -19,6 +19,7 @@ namespace earthshine::studies {
 
 struct EyeOptions {
   double slope = 3.5;  // beta of the psychometric function; 3.5 for luminance contrast (Quick 1974)
+  double threshold_factor = 1.0;  // on the least difference that is seen; 0: any is
 };
 
 // Of seeing a difference `ratio` times the threshold: P = 1 - 2^-(ratio^beta), 1/2 at threshold

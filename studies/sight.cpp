@@ -23,7 +23,8 @@ EyeSight eye_sight(const TargetLight& light, double angle_deg, double mean_lumin
   if (!light.surround) return eye;
   eye.weber = light.contrast;
   // Against a surround brighter than what it is adapted to, the eye needs what that calls for.
-  const double least = threshold_difference(std::max(mean_luminance, *light.surround));
+  const double least = options.eye.threshold_factor *
+                       threshold_difference(std::max(mean_luminance, *light.surround));
   if (*light.surround > 0.0) eye.threshold = least / *light.surround;
   const double seen =
       seeing_probability(std::abs(light.luminance - *light.surround) / least, options.eye);

@@ -118,7 +118,8 @@ void compare(TargetSignal& out, const TargetResels& at, const ShownMoments& mome
   s.dprime = ideal_observer(moments, at.seen, *s.surround, noise.variance_a);
 
   const double light = difference(m.luminance, *m.surround);
-  const double least = threshold_difference(std::max(line.screen_luminance, *m.surround));
+  const double least = options.eye.threshold_factor *
+                       threshold_difference(std::max(line.screen_luminance, *m.surround));
   if (*m.surround > 0.0) m.threshold = least / *m.surround;
 
   // The noise of a resel in the eye's time, and the eye's own threshold on the screen.

@@ -3,15 +3,16 @@
 //   out-of-view  it would not show even alone
 //   hidden       what stands in front is taken away, by name
 //   unlit        a source reaches all of it that faces the source, or is switched on
-//   iris         the iris stands as it would without a bright thing, by name; the light stays
+//   iris         the iris stands as it would without a bright thing, by name; its light stays
 //   saturated    exposure so low that target and surround are below white, at least two stops
 //   blur         lens, tube, video line and phosphor spread nothing
 //   noise        no noise
-//   contrast     the eye sees any difference on the monitor, or at the window
+//   contrast     the eye sees any difference, on the monitor or at the window
 //   small        any number of cycles across it will do
-// A cause is a reason if without it the probability of the first task that fails rises over the
-// wanted one or by `least_gain`; a reason that brings it over the wanted one drops those that do
-// not. If no single one does, all that are in the chain are taken away together.
+// A cause is a reason if without it the probability of the first task that fails rises by
+// `least_gain` or over the wanted one; those that bring it over the wanted one drop those that do
+// not. If no single one does, causes are taken away one after the other, the most helpful first,
+// until the task is done, and all of them are reasons. Reasons stand in the order above.
 #pragma once
 
 #include <optional>
@@ -37,8 +38,10 @@ struct Reason {
 };
 
 struct WhyNot {
-  std::vector<Reason> reasons;  // in the order in which light meets them
-  std::string text;             // one line; empty when the target is identified
+  std::vector<Reason> reasons;
+  std::string text;  // one line; empty when the target is identified
+  // That of the failing task with all of several reasons taken away; none where one is enough.
+  std::optional<double> probability_without_all;
 };
 
 // A light group and what it does to one target.
@@ -51,6 +54,9 @@ struct SourceOnTarget {
   double direct = 0.0;      // luminance by its direct light alone (0 when off)
   double unshadowed = 0.0;  // the same if it were on with nothing in between
   std::vector<std::string> shadow_of;  // objects in between, most first
+  // The picture with this group on, where it is off and the picture is at hand; otherwise only the
+  // target is thought to be lit.
+  const base::Image* when_on = nullptr;
 };
 
 struct WhyNotOptions {
