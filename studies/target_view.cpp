@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -95,6 +96,22 @@ Mask cast_alone(const scenes::Scene& scene, const scenes::Camera& camera, std::u
   return mask;
 }
 
+// What the map shows where the target would be seen alone.
+void find_blockers(TargetView& view, const ObjectMap& map, const Mask& alone) {
+  std::map<std::int32_t, std::size_t> counts;
+  for (std::size_t i = 0; i < alone.size(); ++i) {
+    const std::int32_t shown = map.object[i];
+    if (alone[i] == 0 || shown == static_cast<std::int32_t>(view.object)) continue;
+    view.hidden.push_back(static_cast<std::uint32_t>(i));
+    if (shown != no_object) ++counts[shown];
+  }
+  for (const auto& [object, pixels] : counts) {
+    view.hidden_by.push_back({static_cast<std::uint32_t>(object), pixels});
+  }
+  std::stable_sort(view.hidden_by.begin(), view.hidden_by.end(),
+                   [](const auto& a, const auto& b) { return a.pixels > b.pixels; });
+}
+
 bool touches_border(const Mask& mask, int columns, int rows) {
   for (std::size_t i = 0; i < mask.size(); ++i) {
     const int x = static_cast<int>(i) % columns, y = static_cast<int>(i) / columns;
@@ -149,6 +166,7 @@ std::vector<TargetView> find_targets(const scenes::Scene& scene, const scenes::C
       if (map.object[i] == static_cast<std::int32_t>(object)) alone[i] = 1;
     }
     view.pixels_alone = static_cast<std::size_t>(std::count(alone.begin(), alone.end(), 1));
+    find_blockers(view, map, alone);
     view.cut_by_frame = touches_border(alone, map.columns, map.rows);
     views.push_back(std::move(view));
   }

@@ -36,6 +36,14 @@ struct TargetView {
   std::size_t pixels = 0;        // seen
   std::size_t pixels_alone = 0;  // never fewer than seen
   bool cut_by_frame = false;  // alone it reaches the picture's border: more of it may lie outside
+  // Pixels that would show it alone and show something else: indices in ascending order.
+  std::vector<std::uint32_t> hidden;
+  // The objects on those pixels, most pixels first.
+  struct Blocker {
+    std::uint32_t object = 0;
+    std::size_t pixels = 0;
+  };
+  std::vector<Blocker> hidden_by;
   // What its luminance is taken over: the core, or all seen pixels of a target so thin that less
   // than a quarter of them is core. Pixel indices in ascending order.
   std::vector<std::uint32_t> measured;
@@ -44,7 +52,8 @@ struct TargetView {
   [[nodiscard]] bool in_view() const { return pixels > 0; }
 };
 
-// The view of one object of the map, without `pixels_alone`; the map decides alone.
+// The view of one object of the map, without what a cast of the object alone would add
+// (pixels_alone, cut_by_frame, hidden, hidden_by).
 [[nodiscard]] TargetView find_target(const ObjectMap& map, std::uint32_t object);
 
 // All objects of the scene marked as targets, in its order. Each is cast once more without the rest
