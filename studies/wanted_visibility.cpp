@@ -39,30 +39,32 @@ std::vector<Arc> arcs_above(const std::vector<double>& positions_deg,
     const double share = (wanted - probability[a]) / (probability[b] - probability[a]);
     return positions_deg[a] + share * (to_b - positions_deg[a]);
   };
-  std::optional<double> begin;
+  bool inside = false;
+  double begin = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
     const bool in = probability[k] >= wanted;
-    if (in && !begin) {
+    if (in && !inside) {
+      inside = true;
       const bool before = k > 0 && probability[k - 1] < wanted;
       begin = before ? crossing(k - 1, k, positions_deg[k]) : positions_deg[k];
     }
-    if (begin && !in) {
-      arcs.emplace_back(*begin, crossing(k - 1, k, positions_deg[k]));
-      begin.reset();
+    if (inside && !in) {
+      inside = false;
+      arcs.emplace_back(begin, crossing(k - 1, k, positions_deg[k]));
     }
   }
   const double around = positions_deg.front() + 360.0;
   const bool first_in = probability.front() >= wanted;
-  if (begin) {
+  if (inside) {
     const bool leaves = closed && !first_in;
     const double end = leaves   ? crossing(count - 1, 0, around)
                        : closed ? around
                                 : positions_deg.back();
-    arcs.emplace_back(*begin, end);
+    arcs.emplace_back(begin, end);
   } else if (closed && first_in && count > 1) {
     arcs.front().first = crossing(count - 1, 0, around) - 360.0;
   }
-  if (closed && begin && first_in && arcs.size() > 1) {  // one arc over the start
+  if (closed && inside && first_in && arcs.size() > 1) {  // one arc over the start
     arcs.front().first = arcs.back().first - 360.0;
     arcs.pop_back();
   }
