@@ -47,6 +47,7 @@ struct Command {
 [[nodiscard]] std::vector<Command> add_degrade(CLI::App& program);
 [[nodiscard]] Command add_certify(CLI::App& degrade);
 [[nodiscard]] Command add_fit_phong(CLI::App& program);
+[[nodiscard]] Command add_report(CLI::App& program);
 // `study` itself, which runs nothing, and one command of it per study.
 [[nodiscard]] std::vector<Command> add_study(CLI::App& program);
 

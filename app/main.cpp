@@ -104,6 +104,7 @@ int run(int argc, char** argv) {
   for (Command& part : add_degrade(program)) commands.push_back(std::move(part));
   commands.push_back(add_fit_phong(program));
   for (Command& part : add_study(program)) commands.push_back(std::move(part));
+  commands.push_back(add_report(program));
   add_common_options(program, common, threads);
   for (const Command& command : commands) add_common_options(*command.parser, common, threads);
   try {

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// One bar of choices for the whole page: camera, target, lamps and verdict.
+
+const names = (values) => [...new Set(values)].filter((value) => value !== "");
+
+const columnOf = (table, key) => {
+  const headings = table.tHead?.rows[table.tHead.rows.length - 1].cells ?? [];
+  return [...headings].findIndex((heading) => heading.dataset.key === key);
+};
+
+const tablesWith = (key) =>
+  [...document.querySelectorAll("table.matrix, table.figures, table.ledger")].map((table) => ({
+    table,
+    column: columnOf(table, key),
+  }));
+
+const valuesOf = (key) => {
+  const values = [];
+  for (const { table, column } of tablesWith(key)) {
+    if (column < 0 || (key === "verdict" && !table.matches(".figures"))) continue;
+    for (const row of table.tBodies[0].rows) values.push(row.cells[column].textContent);
+  }
+  return names(values);
+};
+
+const apply = (chosen) => {
+  const fits = (key, value) => !chosen[key] || value === undefined || chosen[key] === value;
+  for (const table of document.querySelectorAll("table.matrix, table.figures, table.ledger")) {
+    const columns = ["camera", "target", "verdict"].map((key) => [key, columnOf(table, key)]);
+    let shown = 0;
+    for (const row of table.tBodies[0].rows) {
+      row.hidden = !columns.every(([key, at]) => at < 0 || fits(key, row.cells[at].textContent));
+      if (!row.hidden) ++shown;
+    }
+    const holder = table.closest("[data-lamps]");
+    holder.hidden = shown === 0 || !fits("lamps", holder.dataset.lamps || undefined);
+    const reading = holder.nextElementSibling;
+    if (reading?.matches(".reading")) reading.hidden = holder.hidden;
+  }
+  for (const figure of document.querySelectorAll(".timeline")) {
+    figure.hidden = !["camera", "target", "lamps"].every((key) => fits(key, figure.dataset[key]));
+  }
+  // A verdict leaves the matrix whole and fades the other cells.
+  for (const cell of document.querySelectorAll("table.matrix td[data-r]")) {
+    cell.classList.toggle("faded", !fits("verdict", verdictText(cell)));
+  }
+};
+
+const verdictText = (cell) => {
+  const text = cell.textContent.toLowerCase();
+  return text.startsWith("?") ? "doubtful" : text;
+};
+
+const select = (label, values, changed) => {
+  const wrapper = document.createElement("label");
+  wrapper.textContent = `${label} `;
+  const list = document.createElement("select");
+  list.append(new Option("all", ""), ...values.map((value) => new Option(value, value)));
+  list.addEventListener("change", () => changed(list.value));
+  wrapper.append(list);
+  return { wrapper, list };
+};
+
+export const addFilters = () => {
+  const lamps = [...document.querySelectorAll("[data-lamps]")].map((part) => part.dataset.lamps);
+  const choices = [
+    ["Camera", "camera", valuesOf("camera")],
+    ["Target", "target", valuesOf("target")],
+    ["Lamps", "lamps", names(lamps)],
+    ["Verdict", "verdict", valuesOf("verdict")],
+  ].filter(([, , values]) => values.length > 1);
+  if (choices.length === 0) return;
+  const bar = document.createElement("search");
+  bar.setAttribute("role", "search");
+  bar.setAttribute("aria-label", "Choose what is shown");
+  bar.className = "filters";
+  const chosen = {};
+  const lists = [];
+  for (const [label, key, values] of choices) {
+    const { wrapper, list } = select(label, values, (value) => {
+      chosen[key] = value;
+      apply(chosen);
+    });
+    bar.append(wrapper);
+    lists.push(list);
+  }
+  const clear = document.createElement("button");
+  clear.type = "button";
+  clear.textContent = "Show all";
+  clear.addEventListener("click", () => {
+    for (const list of lists) list.value = "";
+    for (const key of Object.keys(chosen)) delete chosen[key];
+    apply(chosen);
+  });
+  bar.append(clear);
+  document.getElementById("summary").querySelector("h2").after(bar);
+};
