@@ -55,12 +55,13 @@ glm::dquat turn_at(const AttitudeTable& table, double at, double position_deg) {
   if (table.at.size() == 1) return table.turns[0];
   if (!(at >= table.at.front() && at <= table.at.back())) {
     const char* const column = table.by_time ? "time_s" : "position_deg";
-    throw base::Error(base::Blame::Input, table.file,
-                      fmt::format("no attitude at position_deg = {:.10g}, {} {:.10g}", position_deg,
-                                  table.by_time ? "which is time_s" : "its", at),
-                      fmt::format("its rows go from {} {:.10g} to {:.10g}", column,
-                                  table.at.front(), table.at.back()),
-                      "Add rows, or keep to positions between them");
+    throw base::Error(
+        base::Blame::Input, table.file,
+        fmt::format("no attitude at position_deg = {:.10g}{}", position_deg,
+                    table.by_time ? fmt::format(", which is time_s = {:.10g}", at) : ""),
+        fmt::format("its rows go from {} {:.10g} to {:.10g}", column, table.at.front(),
+                    table.at.back()),
+        "Add rows, or keep to positions between them");
   }
   const auto after = std::upper_bound(table.at.begin() + 1, table.at.end() - 1, at);
   const auto row = static_cast<std::size_t>(after - table.at.begin());

@@ -46,7 +46,7 @@ class Orbit(program.Case):
     def test_attitudes(self):
         kept = self.inspected(ORBIT, "orbit.attitude=inertial", "orbit.position_deg=60")
         self.assertNear(kept["sun"]["direction"], (0, 0, -1))  # as at noon, bay to the Earth
-        self.assertNear(kept["earth"]["direction"], (-math.sin(math.pi / 3), 0, 0.5))
+        self.assertNear(kept["earth"]["direction"], (math.sin(math.pi / 3), 0, 0.5))  # left behind, aft
         self.write("turns.csv", HEAD + "0,0,0,0\n90,0,0,90\n")
         turned = self.inspected(TABLE, "orbit.position_deg=30")
         self.assertNear(turned["earth"]["direction"], (0, 0.5, -math.sqrt(0.75)))

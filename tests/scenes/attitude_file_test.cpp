@@ -106,13 +106,14 @@ TEST_F(AttitudeFile, BeyondItsRowsThereIsNoAttitude) {
       static_cast<void>(orbit_state(turning, position));
       ADD_FAILURE() << "was not refused";
     } catch (const base::Error& error) {
-      EXPECT_TRUE(
-          holds(error.what(), {"turns.csv", "time_s", "from time_s -10 to 600", "Add rows"}));
+      EXPECT_TRUE(holds(error.what(),
+                        {"turns.csv", "which is time_s = ", "from time_s -10 to 600", "Add rows"}));
     }
   }
   // So is the scene whose own position is there.
-  EXPECT_TRUE(holds(refusal("position_deg,qw,qx,qy,qz\n10,1,0,0,0\n500,0,1,0,0\n"),
-                    {"turns.csv", "position_deg = 0", "from position_deg 10 to 500"}));
+  EXPECT_TRUE(holds(
+      refusal("position_deg,qw,qx,qy,qz\n10,1,0,0,0\n500,0,1,0,0\n"),
+      {"turns.csv", "no attitude at position_deg = 0; its rows go from position_deg 10 to 500"}));
   // One row holds everywhere.
   EXPECT_NO_THROW(static_cast<void>(orbit_state(orbit("time_s,qw,qx,qy,qz\n7,1,0,0,0\n"), 999.0)));
 }
