@@ -27,6 +27,50 @@ void add_study_options(CLI::App& command, StudyCall& call) {
   command.add_flag("--json", call.json, "Results as JSON on standard output");
 }
 
+void add_cameras_option(CLI::App& command, StudyCall& call) {
+  command.add_option("--camera", call.cameras, "Camera (may be repeated; default: all)")
+      ->type_name("NAME")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
+}
+
+void add_wanted_options(CLI::App& command, std::vector<std::string>& wanted,
+                        std::vector<std::string>& iris) {
+  command
+      .add_option("--wanted", wanted,
+                  "TARGET>=P: what it takes to detect the target with that probability (may be "
+                  "repeated)")
+      ->type_name("TARGET>=P")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
+  command
+      .add_option("--iris", iris, "Iris modes that --wanted may choose: fixed,peak,normal,average")
+      ->type_name("LIST")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"fixed", "peak", "normal", "average"}));
+}
+
+studies::StudyFile study_of(const StudyCall& call, const std::vector<std::string>& wanted,
+                            const std::vector<std::string>& iris) {
+  studies::StudyFile study;
+  study.scenes = {call.scene.path};
+  study.name = std::filesystem::path(call.scene.path).stem().string();
+  study.overrides = call.scene.overrides;
+  study.cameras = call.cameras;
+  if (call.size) {
+    study.columns = call.size->columns;
+    study.rows = call.size->rows;
+  }
+  study.lamps = {studies::lamps_as_they_are()};
+  study.iris = iris;
+  for (const std::string& text : wanted) {
+    study.wanted.push_back(studies::read_wanted(text, base::Location{"--wanted"}));
+  }
+  return study;
+}
+
 void prepare_folder(const std::string& folder, const std::vector<std::string>& files) {
   std::error_code problem;
   fs::create_directories(folder, problem);
@@ -96,12 +140,14 @@ std::string csv_of(const Json& rows) {
 
 std::vector<Command> add_study(CLI::App& program) {
   CLI::App* study = program.add_subcommand(
-      "study", "Questions answered about a scene: visibility, compare, accuracy");
+      "study", "Questions answered about a scene: visibility, orbit, compare, accuracy, run");
   study->require_subcommand(1);
   return {{study, {}},
           add_study_visibility(*study),
           add_study_compare(*study),
-          add_study_accuracy(*study)};
+          add_study_accuracy(*study),
+          add_study_orbit(*study),
+          add_study_run(*study)};
 }
 
 }  // namespace earthshine::app

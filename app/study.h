@@ -8,6 +8,7 @@
 
 #include "app/command.h"
 #include "studies/study.h"
+#include "studies/study_file.h"
 
 namespace earthshine::app {
 
@@ -21,9 +22,20 @@ struct StudyCall {
 };
 // -o, --size, --json and what add_scene_options adds.
 void add_study_options(CLI::App& command, StudyCall& call);
+// --camera, which may be repeated.
+void add_cameras_option(CLI::App& command, StudyCall& call);
+// --wanted and --iris.
+void add_wanted_options(CLI::App& command, std::vector<std::string>& wanted,
+                        std::vector<std::string>& iris);
+// The call as a study of one scene at its own place, with its lamps as they are.
+[[nodiscard]] studies::StudyFile study_of(const StudyCall& call,
+                                          const std::vector<std::string>& wanted,
+                                          const std::vector<std::string>& iris);
 
 [[nodiscard]] Command add_study_accuracy(CLI::App& study);
 [[nodiscard]] Command add_study_compare(CLI::App& study);
+[[nodiscard]] Command add_study_orbit(CLI::App& study);
+[[nodiscard]] Command add_study_run(CLI::App& study);
 [[nodiscard]] Command add_study_visibility(CLI::App& study);
 
 // Makes the folder where there is none and sees that each of the files can be written in it.

@@ -92,7 +92,7 @@ std::string lamp_text(const std::vector<WayOfLooking>& ways, double wanted) {
 
 }  // namespace
 
-void add_ways(const StudyPart& part, const studies::StudyFile& study, const studies::Wanted& wanted,
+void add_ways(const StudyPart& part, const studies::StudyFile& study, const studies::WantedTarget& wanted,
               const StudyCamera& camera, const studies::BasisView& view,
               std::vector<WayOfLooking>& ways) {
   const studies::LightBasis& basis = *part.basis;
@@ -137,7 +137,7 @@ void add_ways(const StudyPart& part, const studies::StudyFile& study, const stud
   }
 }
 
-Json answer_json(const studies::Wanted& wanted, const studies::StudyFile& study,
+Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& study,
                  const std::vector<WayOfLooking>& ways) {
   Rated best;
   for (const WayOfLooking& way : ways) {

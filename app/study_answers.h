@@ -22,12 +22,12 @@ struct WayOfLooking {
 };
 
 // Adds the ways of one camera for one wanted target.
-void add_ways(const StudyPart& part, const studies::StudyFile& study, const studies::Wanted& wanted,
+void add_ways(const StudyPart& part, const studies::StudyFile& study, const studies::WantedTarget& wanted,
               const StudyCamera& camera, const studies::BasisView& view,
               std::vector<WayOfLooking>& ways);
 
 // An entry of study.json's "answers".
-[[nodiscard]] Json answer_json(const studies::Wanted& wanted, const studies::StudyFile& study,
+[[nodiscard]] Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& study,
                                const std::vector<WayOfLooking>& ways);
 
 }  // namespace earthshine::app

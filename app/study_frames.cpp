@@ -126,7 +126,8 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
   if (std::optional<StoredPart> stored = store_.find(key, said)) {
     const double seconds = stored->facts["seconds"].get<double>();
     costs.push_back({stage, seconds, stored->facts["rays"].get<std::uint64_t>(), true});
-    return Frame{std::move(stored->image), stored->facts["relative_noise"].get<double>(), seconds};
+    return Frame{std::move(stored->image), stored->facts["relative_noise"].get<double>(), seconds,
+                 stored->facts["patches"].get<std::size_t>()};
   }
   if (!said.empty()) note("note: " + said);
   const LoadedScene& basis = part_.basis_scene;
@@ -139,10 +140,12 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
   if (drawn.report.stopped) return std::nullopt;
   const Json facts = {{"seconds", drawn.report.seconds},
                       {"relative_noise", drawn.report.relative_noise},
-                      {"rays", drawn.report.rays.total()}};
+                      {"rays", drawn.report.rays.total()},
+                      {"patches", light.report.patches}};
   store_.keep(key, {facts, drawn.image});
   costs.push_back({stage, drawn.report.seconds, drawn.report.rays.total(), false});
-  return Frame{std::move(drawn.image), drawn.report.relative_noise, drawn.report.seconds};
+  return Frame{std::move(drawn.image), drawn.report.relative_noise, drawn.report.seconds,
+               light.report.patches};
 }
 
 }  // namespace earthshine::app

@@ -52,6 +52,11 @@ void add_results(const CameraResults& found, std::map<std::string, double>& eart
   }
 }
 
+Json patches_of(const StudyFindings& findings, const StudyPart& part) {
+  const auto found = findings.patches.find(part.id);
+  return found == findings.patches.end() ? Json() : Json(found->second);
+}
+
 Json timeline_of(const CameraResults& found, const Json& conditions, std::size_t target,
                  std::size_t setting) {
   const std::size_t places = found.part->basis->places().size();
@@ -128,7 +133,10 @@ Json study_json(const StudyFindings& findings) {
   Json digests = Json::object();
   std::map<std::string, double> earth_error;
   for (const StudyPart* part : findings.parts) {
-    scenes.push_back({{"id", part->id}, {"name", part->loaded.scene.name}, {"path", part->path}});
+    scenes.push_back({{"id", part->id},
+                      {"name", part->loaded.scene.name},
+                      {"path", part->path},
+                      {"patches", patches_of(findings, *part)}});
     digests[part->id] = scene_marks(part->loaded);
     for (const std::string& name : part->targets) {
       if (std::find(targets.begin(), targets.end(), Json(name)) == targets.end()) {

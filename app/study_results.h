@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct CameraResults {
 };
 
 struct StudyFindings {
+  explicit StudyFindings(const studies::StudyFile& of) : study(of) {}
+
   const studies::StudyFile& study;
   std::string command;  // as it was called
   std::uint64_t seed = 1;
@@ -27,6 +30,7 @@ struct StudyFindings {
   std::vector<CameraResults> cameras;
   Json answers = Json::array(), pairs = Json::array(), figures = Json::array();
   std::vector<StudyCost> costs;
+  std::map<std::string, std::size_t> patches;  // of each scene, by its id
   bool complete = true;
 };
 

@@ -55,7 +55,7 @@ void mark_targets(const studies::StudyFile& study, scenes::Scene& scene) {
 }
 
 void check_wanted(const studies::StudyFile& study, const StudyPart& part) {
-  for (const studies::Wanted& wanted : study.wanted) {
+  for (const studies::WantedTarget& wanted : study.wanted) {
     if (std::find(part.targets.begin(), part.targets.end(), wanted.target) != part.targets.end()) {
       continue;
     }

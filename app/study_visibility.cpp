@@ -10,11 +10,10 @@
 #include "app/cctv.h"
 #include "app/console.h"
 #include "app/study.h"
+#include "app/study_run.h"
 #include "base/output_file.h"
 #include "base/png_file.h"
 #include "base/tone.h"
-#include "raytrace/camera_check.h"
-#include "scenes/quality.h"
 #include "studies/visibility.h"
 
 namespace earthshine::app {
@@ -25,20 +24,11 @@ constexpr const char* results_json = "visibility.json";
 
 using Cameras = std::vector<const scenes::Camera*>;
 
-// Those asked for, each once, in the order of the call; all of the scene where none is.
-Cameras choose_cameras(const scenes::Scene& scene, const std::vector<std::string>& names) {
-  Cameras cameras;
-  const auto add = [&](const scenes::Camera& camera) {
-    if (std::find(cameras.begin(), cameras.end(), &camera) == cameras.end()) {
-      cameras.push_back(&camera);
-    }
-  };
-  for (const std::string& name : names) add(choose_camera(scene, name));
-  if (!names.empty()) return cameras;
-  (void)choose_camera(scene, {});  // refuses a scene without any
-  for (const scenes::Camera& camera : scene.cameras) add(camera);
-  return cameras;
-}
+struct VisibilityCall {
+  StudyCall study;
+  std::vector<std::string> wanted, iris;
+  bool dry_run = false;
+};
 
 std::string picture_name(const scenes::Scene& scene, const scenes::Camera& camera) {
   return "view-" + file_stem(scene, camera) + ".png";
@@ -76,22 +66,6 @@ Json target_row(const scenes::Camera& camera, const studies::TargetMetrics& targ
           {"crushed_share", to_json(target.crushed_share)}};
 }
 
-Json camera_json(const scenes::Camera& camera, const studies::View& view,
-                 const std::optional<CctvSetup>& cctv) {
-  Json json = {{"name", camera.name},
-               {"columns", view.frame.image.width},
-               {"rows", view.frame.image.height},
-               {"render_seconds", view.frame.report.seconds},
-               {"relative_noise", view.frame.report.relative_noise},
-               {"cctv", Json()}};
-  if (cctv) {
-    json["cctv"] = cctv_json(*cctv, *view.cctv);
-    json["cctv"]["shown_from_cd_m2"] = view.shown->black;
-    json["cctv"]["shown_to_cd_m2"] = view.shown->white;
-  }
-  return json;
-}
-
 std::string cell(const Json& value, double factor, const char* unit) {
   return value.is_null() ? "-" : fmt::format("{:.3g}{}", factor * value.get<double>(), unit);
 }
@@ -113,56 +87,121 @@ std::string table_of(const Json& rows) {
   return text + "+ : reaches the picture's border, more of it may lie outside.\n";
 }
 
-void run(const StudyCall& call, const Common& common) {
-  const LoadedScene loaded = load(call.scene, common.quiet);
-  const scenes::Scene& scene = loaded.scene;
-  const Cameras cameras = choose_cameras(scene, call.cameras);
-  prepare_folder(call.folder, file_names(scene, cameras));
-  const std::filesystem::path folder = call.folder;
+// What the tables have said from the beginning, from the same picture as the rest of the study.
+class Tables {
+ public:
+  Tables(const StudyCall& call, const Common& common) : call_(call), common_(common) {}
 
-  const scenes::RayQuery query(scene);
-  for (const scenes::Camera* camera : cameras) raytrace::check_camera(scene, query, *camera);
-  StageTimes times;
-  const radiosity::Solution solution = times.measure("solve", [&] {
-    return radiosity::solve(scene, loaded.groups, loaded.effects, query,
-                            solve_options(scene, common));
-  });
-  Json views = Json::array(), rows = Json::array();
-  for (const scenes::Camera* camera : cameras) {
-    std::optional<CctvSetup> cctv;
-    if (!camera->cctv.empty()) cctv = cctv_of_camera(scene, *camera, common);
-    studies::ViewOptions options;
-    options.columns = call.size ? call.size->columns : camera->columns;
-    options.rows = call.size ? call.size->rows : camera->rows;
-    const raytrace::RenderOptions render = raytrace::render_options(scenes::resolve_quality(scene));
-    options.gather_rays = render.gather_rays;
-    options.shared = render.shared;
-    options.seed = common.seed;
-    if (cctv) options.cctv = cctv->chain;
-    const studies::View view =
-        studies::look({scene, loaded.groups, loaded.effects, query}, solution, *camera, options,
-                      progress_of_stages(common)("camera " + camera->name));
-    const base::Image& image = view.frame.image;
-    base::write_png(folder / picture_name(scene, *camera), image.width, image.height, 3,
+  void add(const StudyPart& part, const StudyCamera& looking, const studies::BasisView& view,
+           const StudyFrames::Frame& frame) {
+    const scenes::Scene& scene = part.loaded.scene;
+    const scenes::Camera& camera = *looking.camera;
+    const std::filesystem::path folder = call_.folder;
+    base::Image image = studies::weighted_sum(view.layers, part.basis->groups().names,
+                                              part.basis->weights(0, 0));
+    image.channels.push_back(*view.layers.find("object"));
+    base::write_png(folder / picture_name(scene, camera), image.width, image.height, 3,
                     base::tone_map(image).rgb);
-    if (cctv) write_cctv((folder / cctv_name(scene, *camera)).string(), *cctv, *view.cctv);
-    views.push_back(camera_json(*camera, view, cctv));
-    for (const studies::TargetMetrics& target : view.targets) {
-      rows.push_back(target_row(*camera, target));
+    std::optional<studies::ClippedResels> clipped;
+    Json cctv;
+    if (looking.cctv) {
+      const degrade::Setup& chain = looking.cctv->chain;
+      const degrade::Result result = run_chain(*looking.cctv, image);
+      write_cctv((folder / cctv_name(scene, camera)).string(), *looking.cctv, result);
+      const studies::ShownRange shown = studies::shown_range(
+          chain.camera, result.report, studies::mean_luminance(image));
+      degrade::Twin twin = degrade::twin(image, chain.camera, chain.monitor, chain.options);
+      clipped = {twin.signal.columns, twin.signal.rows, std::move(twin.saturated),
+                 std::move(twin.crushed)};
+      cctv = cctv_json(*looking.cctv, result);
+      cctv["shown_from_cd_m2"] = shown.black;
+      cctv["shown_to_cd_m2"] = shown.white;
+    }
+    views_.push_back({{"name", camera.name},
+                      {"columns", image.width},
+                      {"rows", image.height},
+                      {"render_seconds", frame.seconds},
+                      {"relative_noise", frame.relative_noise},
+                      {"cctv", cctv}});
+    for (const studies::TargetMetrics& target :
+         studies::target_metrics(scene, camera, image, clipped)) {
+      rows_.push_back(target_row(camera, target));
     }
   }
-  const Json json = {{"study", "visibility"},
-                     {"version", EARTHSHINE_VERSION},
-                     {"scene", call.scene.path},
-                     {"set", call.scene.overrides},
-                     {"seed", common.seed},
-                     {"patches", solution.report.patches},
-                     {"solve_seconds", times.total()},
-                     {"cameras", views},
-                     {"targets", rows}};
-  base::write_text(folder / results_csv, csv_of(rows));
-  base::write_text(folder / results_json, dump(json));
-  print(call.json ? dump(json) : table_of(rows));
+
+  // study: the content of study.json.
+  [[nodiscard]] Json write(const Json& study) {
+    double solve_seconds = 0.0;
+    for (const Json& cost : study["costs"]) {
+      if (cost["stage"] == "solve s0") solve_seconds = cost["seconds"];
+    }
+    std::size_t k = 0;
+    for (const Json& result : study["results"]) {
+      Json& row = rows_[k++];
+      row["verdict"] = result["verdict"];
+      for (const char* task : {"detect", "recognise", "identify"}) {
+        row[task] = result["probability"][task];
+      }
+      row["lit_fraction"] = result["lit_fraction"];
+      row["why"] = result["why"];
+    }
+    const Json json = {{"study", "visibility"},
+                       {"version", EARTHSHINE_VERSION},
+                       {"scene", call_.scene.path},
+                       {"set", call_.scene.overrides},
+                       {"seed", common_.seed},
+                       {"patches", study["scenes"][0]["patches"]},
+                       {"solve_seconds", solve_seconds},
+                       {"cameras", views_},
+                       {"targets", rows_},
+                       {"answers", study["answers"]}};
+    base::write_text(std::filesystem::path(call_.folder) / results_csv, csv_of(rows_));
+    base::write_text(std::filesystem::path(call_.folder) / results_json, dump(json));
+    return json;
+  }
+
+ private:
+  const StudyCall& call_;
+  const Common& common_;
+  Json views_ = Json::array(), rows_ = Json::array();
+};
+
+void run(const VisibilityCall& call, const Common& common) {
+  StudyTask task{study_of(call.study, call.wanted, call.iris), call.study.folder,
+                 "study visibility", call.dry_run};
+  if (call.dry_run) {
+    const Json plan = run_study(std::move(task), common);
+    return print(call.study.json ? dump(plan) : plan_text(plan));
+  }
+  const LoadedScene loaded = load(call.study.scene, true);
+  Cameras cameras;
+  for (const std::string& name : call.study.cameras) {
+    cameras.push_back(&choose_camera(loaded.scene, name));
+  }
+  for (const scenes::Camera& camera : loaded.scene.cameras) {
+    if (call.study.cameras.empty()) cameras.push_back(&camera);
+  }
+  prepare_folder(call.study.folder, file_names(loaded.scene, cameras));
+  Tables tables(call.study, common);
+  const Json study =
+      run_study(std::move(task), common,
+                [&](const StudyPart& part, const StudyCamera& camera,
+                    const studies::BasisView& view, const StudyFrames::Frame& frame) {
+                  tables.add(part, camera, view, frame);
+                });
+  const Json json = tables.write(study);
+  if (call.study.json) return print(dump(json));
+  std::string text = table_of(json["targets"]);
+  for (const Json& row : json["targets"]) {
+    if (row["why"].get<std::string>().empty()) continue;
+    text += fmt::format("{}, {}: {}\n", row["camera"].get<std::string>(),
+                        row["target"].get<std::string>(), row["why"].get<std::string>());
+  }
+  for (const Json& answer : json["answers"]) {
+    text += fmt::format("{}: {}\n", answer["wanted"].get<std::string>(),
+                        answer["text"].get<std::string>());
+  }
+  print(text);
 }
 
 }  // namespace
@@ -170,13 +209,11 @@ void run(const StudyCall& call, const Common& common) {
 Command add_study_visibility(CLI::App& study) {
   CLI::App* parser =
       study.add_subcommand("visibility", "How well each camera sees each target of the scene");
-  const auto call = std::make_shared<StudyCall>();
-  add_study_options(*parser, *call);
-  parser->add_option("--camera", call->cameras, "Camera (may be repeated; default: all)")
-      ->type_name("NAME")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->allow_extra_args(false);
+  const auto call = std::make_shared<VisibilityCall>();
+  add_study_options(*parser, call->study);
+  add_cameras_option(*parser, call->study);
+  add_wanted_options(*parser, call->wanted, call->iris);
+  parser->add_flag("--dry-run", call->dry_run, "Only say what would be done, and its price");
   return {parser, [call](const Common& common) { run(*call, common); }};
 }
 

@@ -217,9 +217,9 @@ void read_cameras(StudyFile& study, const TableReader& root) {
 
 }  // namespace
 
-Wanted read_wanted(const std::string& text, const base::Location& where) {
+WantedTarget read_wanted(const std::string& text, const base::Location& where) {
   const std::size_t at = text.rfind(">=");
-  Wanted wanted;
+  WantedTarget wanted;
   wanted.text = text;
   bool good = at != std::string::npos && at > 0;
   if (good) {

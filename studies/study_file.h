@@ -15,13 +15,13 @@
 namespace earthshine::studies {
 
 // "tss>=0.9": a target is to be detected with that probability.
-struct Wanted {
+struct WantedTarget {
   std::string target;
   double probability = 0.5;
   std::string text;  // as it was given
 };
 // Throws base::Error (Input) at `where` unless it is NAME>=P with P from above 0 to below 1.
-[[nodiscard]] Wanted read_wanted(const std::string& text, const base::Location& where);
+[[nodiscard]] WantedTarget read_wanted(const std::string& text, const base::Location& where);
 
 // What a picture of the report shows.
 enum class Shows { Clean, Cctv, Distributed, DistributedCctv };
@@ -50,7 +50,7 @@ struct StudyFile {
   std::map<std::string, std::string> camera_models;  // CCTV camera by camera
   scenes::Scene cctv;                         // its own [[cctv]] tables and [monitor]
   std::vector<std::string> iris;              // modes that answers choose among; empty: the camera's
-  std::vector<Wanted> wanted;
+  std::vector<WantedTarget> wanted;
   std::vector<PictureWish> pictures;
   std::vector<PairWish> pairs;
   double seen_probability = 0.5;  // from which on a target counts as seen

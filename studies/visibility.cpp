@@ -90,33 +90,6 @@ std::vector<TargetMetrics> target_metrics(const scenes::Scene& scene, const scen
   return metrics;
 }
 
-View look(const StudyScene& study, const radiosity::Solution& solution,
-          const scenes::Camera& camera, const ViewOptions& options,
-          const raytrace::Progress& progress) {
-  raytrace::RenderOptions render;
-  render.columns = options.columns;
-  render.rows = options.rows;
-  render.gather_rays = options.gather_rays;
-  render.shared = options.shared;
-  render.seed = options.seed;
-  render.aovs = {"object"};
-  View view;
-  view.frame = raytrace::render(study.scene, study.groups, study.effects, study.query, solution,
-                                camera, render, progress);
-  const base::Image& image = view.frame.image;
-  std::optional<ClippedResels> clipped;
-  if (options.cctv) {
-    view.cctv =
-        degrade::degrade(image, options.cctv->camera, options.cctv->monitor, options.cctv->options);
-    view.shown =
-        shown_range(options.cctv->camera, view.cctv->report, mean(base::luminance_of(image)));
-    degrade::Twin twin =
-        degrade::twin(image, options.cctv->camera, options.cctv->monitor, options.cctv->options);
-    clipped = {twin.signal.columns, twin.signal.rows, std::move(twin.saturated),
-               std::move(twin.crushed)};
-  }
-  view.targets = target_metrics(study.scene, camera, image, clipped);
-  return view;
-}
+double mean_luminance(const base::Image& image) { return mean(base::luminance_of(image)); }
 
 }  // namespace earthshine::studies

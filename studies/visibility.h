@@ -59,23 +59,7 @@ struct TargetMetrics {
                                                         const base::Image& image,
                                                         const std::optional<ClippedResels>& cctv);
 
-// One camera's view, with all that was found in it.
-struct ViewOptions {
-  int columns = 512;
-  int rows = 512;
-  int gather_rays = 256;  // per pixel
-  raytrace::SharedGather shared = {};
-  std::uint64_t seed = 1;
-  std::optional<degrade::Setup> cctv;  // none: no shares of clipped pixels
-};
-struct View {
-  raytrace::Frame frame;                // with the layer "object"
-  std::optional<degrade::Result> cctv;  // what the monitor shows
-  std::optional<ShownRange> shown;
-  std::vector<TargetMetrics> targets;
-};
-[[nodiscard]] View look(const StudyScene& study, const radiosity::Solution& solution,
-                        const scenes::Camera& camera, const ViewOptions& options,
-                        const raytrace::Progress& progress = {});
+// Mean luminance of a picture, cd/m^2.
+[[nodiscard]] double mean_luminance(const base::Image& image);
 
 }  // namespace earthshine::studies
