@@ -78,6 +78,24 @@ const checkKeyboard = async (page) => {
   await page.keyboard.press("Enter");
   check(await focused(page, () => document.activeElement.id === "content"), "it skips to the content");
 
+  // From here on each Tab goes further down the page, and what has the focus can be seen.
+  const stops = [];
+  for (let k = 0; k < 40; ++k) {
+    await page.keyboard.press("Tab");
+    stops.push(
+      await page.evaluate(() => {
+        const all = [...document.querySelectorAll("*")];
+        const at = document.activeElement;
+        const { outlineStyle } = getComputedStyle(at);
+        return { place: all.indexOf(at), shown: at.checkVisibility() && outlineStyle !== "none", tag: at.outerHTML.slice(0, 80) };
+      }),
+    );
+  }
+  const places = stops.map(({ place }) => place);
+  check(places.every((place, k) => k === 0 || place > places[k - 1]), "Tab goes down the page", places);
+  const unseen = stops.find(({ shown }) => !shown);
+  check(!unseen, "what has the focus is outlined", unseen?.tag);
+
   const heading = page.locator("table.matrix th[data-key=target] button").first();
   await heading.focus();
   await page.keyboard.press("Enter");
