@@ -57,7 +57,7 @@ std::vector<std::size_t> results_of(const StudyResults& study, const Block& bloc
 std::string block_title(const StudyResults& study, const Block& block) {
   const std::string& name = study.scenes[block.scene].name;
   std::string title = escaped(name.empty() ? study.scenes[block.scene].id : name);
-  if (!block.lamps.empty()) title += ", lamps " + escaped(block.lamps);
+  if (!block.lamps.empty()) title += ", lamps: " + escaped(block.lamps);
   return title;
 }
 

@@ -110,7 +110,7 @@ std::string answers_html(const StudyResults& study) {
                         escaped(answer.wanted), escaped(answer.text));
     std::string facts;
     const auto fact = [&facts](const char* name, const std::string& value) {
-      if (!value.empty()) facts += fmt::format("<dt>{}</dt><dd>{}</dd>", name, value);
+      if (!value.empty()) facts += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", name, value);
     };
     if (answer.found) {
       std::string arcs;

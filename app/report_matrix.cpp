@@ -32,8 +32,10 @@ std::string phase_row(const StudyResults& study, const Block& block) {
       ++end;
     }
     known = known || !phase.empty();
-    cells += fmt::format("<th scope=\"colgroup\" colspan=\"{}\" class=\"phase {}\">{}</th>",
-                         end - k, phase.empty() ? "none" : phase, phase.empty() ? dash : phase);
+    // A narrow one is written upward, lest it widens its columns.
+    cells += fmt::format(
+        "<th scope=\"colgroup\" colspan=\"{}\" class=\"phase {}{}\"><span>{}</span></th>", end - k,
+        phase.empty() ? "none" : phase, end - k < 4 ? " narrow" : "", phase.empty() ? dash : phase);
     k = end;
   }
   return known ? "<tr><td colspan=\"3\"></td>" + cells + "</tr>\n" : "";
@@ -85,8 +87,11 @@ std::string table(const StudyResults& study, const Block& block) {
   const std::string title = block_title(study, block);
   std::string html = fmt::format(
       "<div class=\"scroll\" role=\"region\" aria-label=\"Summary: {}\" tabindex=\"0\" "
-      "data-lamps=\"{}\">\n<table class=\"matrix{}\">\n<caption>{}</caption>\n<thead>\n",
-      title, escaped(block.lamps), block.conditions.size() > 8 ? " many" : "", title);
+      "data-lamps=\"{}\">\n<table class=\"matrix{}\">\n<caption>{}</caption>\n"
+      "<colgroup><col class=\"name\" span=\"2\"><col class=\"seen\"><col span=\"{}\"></colgroup>\n"
+      "<thead>\n",
+      title, escaped(block.lamps), block.conditions.size() > 8 ? " many" : "", title,
+      block.conditions.size());
   html += phase_row(study, block) + column_row(study, block) + "</thead>\n<tbody>\n";
   for (const auto& [names, by_condition] : rows) {
     html += row(study, block, names.first, names.second, by_condition);

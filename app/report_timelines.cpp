@@ -103,7 +103,7 @@ std::string timelines_html(const StudyResults& study) {
   for (std::size_t k = 0; k < study.timelines.size(); ++k) {
     const Timeline& line = study.timelines[k];
     std::string title = fmt::format("Camera {}, {}", escaped(line.camera), escaped(line.target));
-    if (!line.lamps.empty()) title += ", lamps " + escaped(line.lamps);
+    if (!line.lamps.empty()) title += ", lamps: " + escaped(line.lamps);
     if (study.scenes.size() > 1) title += " (" + escaped(line.scene) + ")";
     html += fmt::format(
         "<figure class=\"timeline\" data-line=\"{}\" data-camera=\"{}\" data-target=\"{}\" "

@@ -39,7 +39,7 @@ const licenceText = (name) => {
 
 // One entry per package; packages with the same text share it.
 const licences = (inputs) => {
-  const names = [...new Set(Object.keys(inputs).map(packageOf).filter(Boolean))].sort();
+  const names = [...new Set(inputs.map(packageOf).filter(Boolean))].sort();
   const byText = new Map();
   for (const name of names) {
     const { version, license } = JSON.parse(
@@ -56,9 +56,12 @@ if (process.argv[2] !== "--check") {
   // "</script" inside a string would end the element.
   const script = result.outputFiles[0].text.replaceAll(/<\/(script)/gi, "<\\/$1").trim();
   const folder = process.argv[2] ?? join(here, "out");
+  const used = Object.values(result.metafile.outputs).flatMap(({ inputs }) =>
+    Object.keys(inputs).filter((input) => inputs[input].bytesInOutput > 0),
+  );
   mkdirSync(folder, { recursive: true });
   const hash = `sha256-${createHash("sha256").update(script).digest("base64")}`;
   writeFileSync(join(folder, "script.js"), script);
   writeFileSync(join(folder, "script.hash"), hash);
-  writeFileSync(join(folder, "licences.txt"), licences(result.metafile.inputs));
+  writeFileSync(join(folder, "licences.txt"), licences(used));
 }

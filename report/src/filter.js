@@ -51,13 +51,16 @@ const verdictText = (cell) => {
   return text.startsWith("?") ? "doubtful" : text;
 };
 
-const select = (label, values, changed) => {
-  const wrapper = document.createElement("label");
-  wrapper.textContent = `${label} `;
+const select = (label, key, values, changed) => {
+  const wrapper = document.createElement("span");
+  const name = document.createElement("label");
   const list = document.createElement("select");
+  list.id = `choose-${key}`;
+  name.htmlFor = list.id;
+  name.textContent = label;
   list.append(new Option("all", ""), ...values.map((value) => new Option(value, value)));
   list.addEventListener("change", () => changed(list.value));
-  wrapper.append(list);
+  wrapper.append(name, " ", list);
   return { wrapper, list };
 };
 
@@ -77,7 +80,7 @@ export const addFilters = () => {
   const chosen = {};
   const lists = [];
   for (const [label, key, values] of choices) {
-    const { wrapper, list } = select(label, values, (value) => {
+    const { wrapper, list } = select(label, key, values, (value) => {
       chosen[key] = value;
       apply(chosen);
     });

@@ -47,20 +47,32 @@ const shading = (found) =>
     x2: "to",
     fill: (band) => `var(--${band.shade})`,
     stroke: "none",
-    ariaLabel: "eclipse and penumbra",
   });
 
 const xAxis = (data) => ({
   label: data.axis === "position" ? "position in the orbit (°)" : "time (s)",
   domain: [Math.min(...data.x), Math.max(...data.x)],
-  ...(data.axis === "position" && data.x.at(-1) - data.x[0] > 180
-    ? { ticks: [0, 60, 120, 180, 240, 300, 360].filter((t) => t >= data.x[0] && t <= data.x.at(-1)) }
-    : {}),
 });
 
-const common = { width: 560, marginLeft: 56, marginRight: 12, style: { fontSize: "12px" } };
+// Of an orbit every 60 degrees, else what the library finds.
+const xTicks = (data) => {
+  const [from, to] = xAxis(data).domain;
+  if (data.axis !== "position" || to - from < 180) return undefined;
+  return [0, 60, 120, 180, 240, 300, 360].filter((tick) => tick >= from && tick <= to);
+};
 
-const probabilities = (data, title) => {
+// Decades, at most five of them.
+const decades = (values) => {
+  const [from, to] = [Math.floor(Math.log10(Math.min(...values))), Math.ceil(Math.log10(Math.max(...values)))];
+  const step = Math.ceil((to - from) / 4);
+  const ticks = [];
+  for (let power = from; power <= to; power += step) ticks.push(10 ** power);
+  return ticks;
+};
+
+const common = { marginLeft: 52, marginRight: 14, style: { fontSize: "11px", fontFamily: "inherit" } };
+
+const probabilities = (data, title, width) => {
   const rows = data.x.map((x, k) => ({
     x,
     ...Object.fromEntries(series.map(({ key }) => [key, data[key][k]])),
@@ -68,15 +80,16 @@ const probabilities = (data, title) => {
   const few = rows.length <= 48;
   return plot({
     ...common,
-    height: 190,
+    width,
+    height: 165,
     ariaLabel: `Probabilities: ${title}`,
     x: xAxis(data),
     y: { domain: [0, 1], label: "probability" },
     marks: [
       shading(bands(data.x, data.sun)),
-      gridY({ strokeOpacity: 0.25 }),
-      axisX({ label: null, tickFormat: () => "" }),
-      axisY({ ticks: [0, 0.25, 0.5, 0.75, 1] }),
+      gridY({ strokeOpacity: 0.25, ticks: [0, 0.5, 1] }),
+      axisX({ label: null, ticks: xTicks(data), tickFormat: () => "" }),
+      axisY({ ticks: [0, 0.5, 1], tickFormat: String }),
       ...series.map(({ key, dash }, k) =>
         line(rows, { x: "x", y: key, stroke: colour(k), strokeWidth: 2, strokeDasharray: dash }),
       ),
@@ -101,22 +114,29 @@ const probabilities = (data, title) => {
   });
 };
 
-const luminance = (data, title) => {
+const luminance = (data, title, width) => {
   const rows = data.x.map((x, k) => ({ x, y: data.luminance[k] }));
   const positive = rows.map((row) => row.y).filter((y) => y > 0);
   const wide = positive.length > 0 && Math.max(...positive) > 20 * Math.min(...positive);
   if (wide) for (const row of rows) if (!(row.y > 0)) row.y = null;
+  const ticks = wide ? decades(positive) : 4;
   return plot({
     ...common,
-    height: 150,
+    width,
+    height: 140,
+    marginBottom: 36,
     ariaLabel: `Luminance: ${title}`,
     x: xAxis(data),
-    y: { type: wide ? "log" : "linear", label: "luminance (cd/m²)", zero: !wide, nice: true },
+    y: {
+      type: wide ? "log" : "linear",
+      label: "luminance (cd/m²)",
+      ...(wide ? { domain: [ticks[0], Math.max(ticks.at(-1), ...positive)] } : { zero: true, nice: true }),
+    },
     marks: [
       shading(bands(data.x, data.sun)),
-      gridY({ strokeOpacity: 0.25, ticks: 4 }),
-      axisX({}),
-      axisY({ ticks: 4, tickFormat: (value) => String(Number(value.toPrecision(3))) }),
+      gridY({ strokeOpacity: 0.25, ticks }),
+      axisX({ ticks: xTicks(data), labelAnchor: "center" }),
+      axisY({ ticks, tickFormat: (value) => String(Number(value.toPrecision(3))) }),
       ...(wide ? [] : [ruleY([0])]),
       line(rows, { x: "x", y: "y", stroke: "var(--text)", strokeWidth: 1.5 }),
       ...(rows.length <= 48 ? [dot(rows, { x: "x", y: "y", fill: "var(--text)", r: 2 })] : []),
@@ -185,18 +205,21 @@ const asTable = (data, title) => {
   return details;
 };
 
+const hasPlot = ({ x, detect, luminance: light }) =>
+  x.length > 1 && !x.includes(null) && [...detect, ...light].some((value) => value !== null);
+
 const draw = (figure, data) => {
   const title = figure.querySelector("figcaption").textContent;
   const charts = figure.querySelector(".charts");
-  if (charts.childElementCount > 0) return;
-  const known = data.x.filter((x) => x !== null);
-  if (known.length < 2 || known.length < data.x.length) {
-    charts.remove();
-    return;
+  if (!charts || charts.childElementCount > 0) return;
+  const width = Math.min(480, Math.max(320, charts.clientWidth || 480));
+  const drawings = [probabilities(data, title, width)];
+  if (data.luminance.some((value) => value !== null)) drawings.push(luminance(data, title, width));
+  for (const drawing of drawings) {
+    // One picture with one name: names of its parts are not read out, and not allowed either.
+    drawing.setAttribute("role", "img");
+    for (const part of drawing.querySelectorAll("[aria-label]")) part.removeAttribute("aria-label");
   }
-  const drawings = [probabilities(data, title)];
-  if (data.luminance.some((value) => value !== null)) drawings.push(luminance(data, title));
-  for (const drawing of drawings) drawing.setAttribute("role", "img");
   charts.append(...drawings);
 };
 
@@ -239,10 +262,11 @@ export const drawTimelines = (lines) => {
     { rootMargin: "600px" },
   );
   for (const figure of figures) {
+    const data = lines[Number(figure.dataset.line)];
+    if (!hasPlot(data)) continue; // its words say all there is
     const charts = document.createElement("div");
     charts.className = "charts";
     figure.querySelector("figcaption").after(charts);
-    const data = lines[Number(figure.dataset.line)];
     figure.append(asTable(data, figure.querySelector("figcaption").textContent));
     watch.observe(figure);
   }

@@ -14,7 +14,7 @@ LAMPS = {"off": 0.0, "bay lamps on": 1.0, "dimmed": 0.3}
 CAMERAS = ["B", "C", "A", "D"]
 TARGETS = ["tss", "eureca", "grapple-fixture", "keel-trunnion", "door-edge"]
 PERIOD_S = 5530.0
-ECLIPSE = (115.0, 245.0)  # degrees of the orbit without the Sun
+ECLIPSE = (121.0, 239.0)  # degrees of the orbit without the Sun
 
 
 def rounded(value, digits=4):
@@ -80,8 +80,8 @@ def result(condition, position, lamps, camera, target):
     if c == 1 and t == 1:
         return out_of_view(condition, camera, target)
     sun, lamp = sun_share(position), LAMPS[lamps]
-    height = max(0.0, math.cos(math.radians(position - 20 * t)))
-    by = {"sun": 9000 * sun * height / (1 + t), "earth": 160 * sun * (0.3 + 0.7 * height) + 0.004,
+    height = max(0.0, round(math.cos(math.radians(position - 20 * t)), 6))
+    by = {"sun": 9000 * sun * height / (1 + t), "earth": 160 * sun * (0.3 + 0.7 * height) + (0.3 if t == 0 else 0.004),
           "bay-lamps": 11.0 * lamp / (1 + 0.5 * t)}
     luminance = sum(by.values())
     visible = [0.93, 0.41, 0.77, 0.6, 0.85][t]

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// node check.mjs REPORT.html PLAIN.html FOLDER: opens both pages in headless Chromium as a reader
+// would, by keyboard too, and puts screenshots and a PDF into FOLDER.
+// Exit code 0 all well, 1 something is wrong, 77 there is no browser or no node_modules.
+import { existsSync, mkdirSync, statSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join, resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+
+const skip = (why) => {
+  console.log(`skipped: ${why}`);
+  process.exit(77);
+};
+
+// Ubuntu's packages of that name only fetch a snap.
+const browserPath = ["/usr/bin/chromium", "/usr/bin/google-chrome"].find((path) => existsSync(path));
+if (!browserPath) skip("no Chromium at /usr/bin/chromium");
+let chromium;
+try {
+  ({ chromium } = await import("playwright-core"));
+} catch {
+  skip("playwright-core is not in report/node_modules");
+}
+const axePath = createRequire(import.meta.url).resolve("axe-core/axe.min.js");
+
+const [page_file, plain_file, folder = "out"] = process.argv.slice(2);
+mkdirSync(folder, { recursive: true });
+let faults = 0;
+const check = (holds, what, found = "") => {
+  console.log(`${holds ? "ok   " : "FAULT"} ${what}${holds || found === "" ? "" : `: ${found}`}`);
+  if (!holds) ++faults;
+};
+
+const browser = await chromium.launch({ executablePath: browserPath, args: ["--no-sandbox"] });
+
+// A page that counts what it should never do.
+const open = async (file, options = {}) => {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
+  const page = await context.newPage();
+  const complaints = [];
+  page.on("console", (message) => {
+    if (["error", "warning"].includes(message.type())) complaints.push(message.text());
+  });
+  page.on("pageerror", (error) => complaints.push(String(error)));
+  page.on("request", (request) => {
+    if (!/^(file|data):/.test(request.url())) complaints.push(`request of ${request.url()}`);
+  });
+  const start = Date.now();
+  await page.goto(pathToFileURL(resolve(file)).href);
+  return { page, context, complaints, seconds: (Date.now() - start) / 1000 };
+};
+
+const axe = async (page, what) => {
+  // By the browser's own protocol: the page's policy lets no other script in.
+  await page.evaluate(await readAxe());
+  const { violations } = await page.evaluate(() => window.axe.run(document));
+  const said = violations.map((v) => `${v.id} (${v.nodes.length}): ${v.nodes[0].html.slice(0, 160)}`);
+  check(violations.length === 0, `${what}: axe finds nothing`, said.join("\n      "));
+};
+let axeText;
+const readAxe = async () => {
+  axeText ??= (await import("node:fs/promises")).readFile(axePath, "utf8");
+  return axeText;
+};
+
+const wholePage = (page, name) => page.screenshot({ path: join(folder, name), fullPage: true });
+
+// Everything drawn, as for paper, so that screenshots show it.
+const drawAll = (page) => page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+const asBefore = (page) => page.evaluate(() => dispatchEvent(new Event("afterprint")));
+
+const focused = (page, of) => page.evaluate(of);
+
+const checkKeyboard = async (page) => {
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press("Tab");
+  check(await focused(page, () => document.activeElement.matches(".skip")), "the skip link is first");
+  await page.keyboard.press("Enter");
+  check(await focused(page, () => document.activeElement.id === "content"), "it skips to the content");
+
+  // From here on each Tab goes further down the page, and what has the focus can be seen.
+  const stops = [];
+  for (let k = 0; k < 40; ++k) {
+    await page.keyboard.press("Tab");
+    stops.push(
+      await page.evaluate(() => {
+        const all = [...document.querySelectorAll("*")];
+        const at = document.activeElement;
+        const { outlineStyle } = getComputedStyle(at);
+        return { place: all.indexOf(at), shown: at.checkVisibility() && outlineStyle !== "none", tag: at.outerHTML.slice(0, 80) };
+      }),
+    );
+  }
+  const places = stops.map(({ place }) => place);
+  check(places.every((place, k) => k === 0 || place > places[k - 1]), "Tab goes down the page", places);
+  const unseen = stops.find(({ shown }) => !shown);
+  check(!unseen, "what has the focus is outlined", unseen?.tag);
+
+  const heading = page.locator("table.matrix th[data-key=target] button").first();
+  await heading.focus();
+  await page.keyboard.press("Enter");
+  const order = () =>
+    page.evaluate(() => {
+      const table = document.querySelector("table.matrix");
+      return {
+        sort: table.querySelector("th[data-key=target]").getAttribute("aria-sort"),
+        names: [...table.tBodies[0].rows].map((row) => row.cells[1].textContent),
+      };
+    });
+  const up = await order();
+  await page.keyboard.press("Enter");
+  const down = await order();
+  const sorted = [...up.names].sort();
+  check(up.sort === "ascending" && String(up.names) === String(sorted), "Enter sorts upward", up.names);
+  check(
+    down.sort === "descending" && String(down.names) === String(sorted.reverse()),
+    "Enter once more sorts downward",
+    down.names,
+  );
+
+  await page.locator("table.matrix td[tabindex='0']").first().focus();
+  const reading = () => page.locator(".reading").first().textContent();
+  const first = await reading();
+  await page.keyboard.press("ArrowRight");
+  const second = await reading();
+  check(/^Camera /.test(first) && first !== second, "arrow keys read the matrix", `${first} | ${second}`);
+  await page.keyboard.press("Enter");
+  check(
+    await focused(page, () => document.activeElement.matches("tr[id]") && document.activeElement.checkVisibility()),
+    "Enter goes to the cell's row",
+  );
+
+  const slider = page.locator("img-comparison-slider").first();
+  await slider.focus();
+  const value = () => slider.evaluate((element) => Number(element.getAttribute("aria-valuenow")));
+  const middle = await value();
+  await page.keyboard.down("ArrowRight");
+  await page.waitForTimeout(300);
+  await page.keyboard.up("ArrowRight");
+  const right = await value();
+  await page.keyboard.press("Home");
+  const home = await value();
+  check(right > middle && home === 0, "the slider moves by keyboard", [middle, right, home]);
+  await slider.evaluate((element) => { element.value = 50; });
+};
+
+const checkFilter = async (page) => {
+  const rows = () => page.locator("table.matrix tbody tr:visible").count();
+  const all = await rows();
+  await page.getByLabel("Camera", { exact: true }).selectOption({ index: 1 });
+  const some = await rows();
+  await page.getByRole("button", { name: "Show all" }).click();
+  check(some > 0 && some < all && (await rows()) === all, "a filter hides rows, Show all brings them back");
+};
+
+const checkPage = async () => {
+  const { page, context, complaints, seconds } = await open(page_file);
+  check(seconds < 2, "the page opens within 2 s", seconds);
+  await drawAll(page);
+  const figures = await page.locator(".timeline:has(.charts)").count();
+  const drawn = await page.locator(".timeline:has(.charts svg[role=img])").count();
+  check(figures > 0 && drawn === figures, "each timeline is drawn", `${drawn} of ${figures}`);
+  check((await page.locator("img-comparison-slider").count()) > 0, "pairs have sliders");
+  await page.waitForTimeout(300);
+  await wholePage(page, "report-open.png");
+  await axe(page, "all open");
+  await asBefore(page);
+  await wholePage(page, "report-wide.png");
+  await checkKeyboard(page);
+  await checkFilter(page);
+  const pdf = join(folder, "report.pdf");
+  await page.pdf({ path: pdf, preferCSSPageSize: true });
+  check(statSync(pdf).size > 20000, "it prints");
+  await page.emulateMedia({ media: "print" });
+  await drawAll(page);
+  await wholePage(page, "report-print.png");
+  check(complaints.length === 0, "no error, no request", complaints.join("; "));
+  await context.close();
+};
+
+const checkLooks = async (name, options) => {
+  const { page, context, complaints } = await open(page_file, options);
+  await drawAll(page);
+  await asBefore(page);
+  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  check(overflow <= 0, `${name}: nothing sticks out`, `${overflow} px`);
+  await axe(page, name);
+  await wholePage(page, `report-${name}.png`);
+  check(complaints.length === 0, `${name}: no error, no request`, complaints.join("; "));
+  await context.close();
+};
+
+const checkPlain = async () => {
+  const { page, context, complaints } = await open(plain_file);
+  check((await page.locator("script").count()) === 0, "the plain page has no script");
+  await axe(page, "plain");
+  await wholePage(page, "report-plain.png");
+  check(complaints.length === 0, "plain: no error, no request", complaints.join("; "));
+  await context.close();
+};
+
+await checkPage();
+await checkLooks("narrow", { viewport: { width: 400, height: 800 } });
+await checkLooks("dark", { colorScheme: "dark" });
+await checkPlain();
+await browser.close();
+console.log(faults === 0 ? "all well" : `${faults} faults`);
+process.exit(faults === 0 ? 0 : 1);

@@ -1,0 +1,273 @@
+# SPDX-License-Identifier: Apache-2.0
+"""report: the page drawn from a study.json, what is in it, what it may do, and what is refused."""
+import html.parser
+import json
+import os
+import re
+import shutil
+import unittest
+
+import program
+import report_sample
+
+SAMPLE = program.TOP / "tests" / "data" / "report"
+HAS_SCRIPT = os.environ.get("EARTHSHINE_REPORT_SCRIPT") == "ON"
+EVIL = "</script><img src=x onerror=alert(1)>\"'&"
+# Elements that may stand open to the end of what holds them.
+OPTIONAL = {"p", "li", "td", "th", "tr", "dt", "dd", "option"}
+VOID = {"meta", "img", "br", "col", "input", "link"}
+
+
+class Page(html.parser.HTMLParser):
+    """The elements, the text without style and script, and whether what is opened is closed."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.elements, self.faults, self.open, self.words, self.blocks = [], [], [], [], {}
+        self.feed(text)
+        self.faults += [f"<{name}> is not closed" for name in self.open if name not in OPTIONAL]
+        self.text = " ".join("".join(self.words).split())
+
+    def handle_starttag(self, tag, attributes):
+        self.elements.append((tag, dict(attributes)))
+        if tag != "i":  # the rest of a word in the matrix
+            self.words.append(" ")
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        while self.open and self.open[-1] != tag and self.open[-1] in OPTIONAL:
+            self.open.pop()
+        if not self.open or self.open.pop() != tag:
+            self.faults.append(f"</{tag}> closes nothing")
+
+    def handle_data(self, data):
+        if self.open and self.open[-1] in ("style", "script"):
+            kind = next(a for t, a in reversed(self.elements) if t == self.open[-1]).get("type", "")
+            self.blocks[f"{self.open[-1]} {kind}".strip()] = data
+        else:
+            self.words.append(data)
+
+    def all(self, tag):
+        return [attributes for name, attributes in self.elements if name == tag]
+
+
+class Report(program.Case):
+    def study(self, results=None, *arguments):
+        """Writes a study's folder, draws its report, gives the page's text."""
+        folder = self.folder / "study"
+        shutil.copytree(SAMPLE, folder, dirs_exist_ok=True)
+        if results is not None:
+            (folder / "study.json").write_text(json.dumps(results), encoding="utf-8")
+        self.done("report", "study", *arguments)
+        return (folder / "report.html").read_text(encoding="utf-8")
+
+    def refused_study(self, results, *parts):
+        folder = self.folder / "bad"
+        folder.mkdir(exist_ok=True)
+        text = results if isinstance(results, str) else json.dumps(results)
+        (folder / "study.json").write_text(text, encoding="utf-8")
+        self.says(self.refused("report", "bad"), *parts)
+        self.assertFalse((folder / "report.html").exists())
+
+
+class Content(Report):
+    def test_the_sample_is_what_its_script_makes(self):
+        self.assertEqual(json.loads((SAMPLE / "study.json").read_text(encoding="utf-8")), report_sample.study())
+
+    def test_everything_is_there_without_a_script(self):
+        page = Page(self.study(None, "--plain"))
+        self.assertEqual(page.faults, [])
+        self.assertEqual(page.all("script"), [])
+        for part in ("notes", "answers", "summary", "timelines", "pictures", "ledger", "figures", "setup", "provenance"):
+            self.assertIn({"id": part, "aria-labelledby": f"{part}-title"}, page.all("section"))
+            self.assertIn({"href": f"#{part}"}, page.all("a"))
+        study = report_sample.study()
+        for text in (study["name"], "The plain report", "scene_digest 5d3e0f1a2b4c6978", "is not simulated",
+                     study["answers"][0]["text"], "Camera B by night, clean and CCTV", "the tail stands in front",
+                     "288 results", "bay lamps on", "Eclipse: 135° to 225°. Penumbra: 120°, 240°."):
+            self.assertIn(text, page.text)
+        self.assertEqual(len(page.all("img")), 5)
+        self.assertTrue(all(image["alt"] for image in page.all("img")))
+        rows = [row for row in page.all("tr") if re.fullmatch(r"r\d+", row.get("id", ""))]
+        self.assertEqual(len(rows), len(study["results"]))
+        cells = [cell for cell in page.all("td") if "data-r" in cell]
+        self.assertEqual(len(cells), len(study["results"]))
+
+    def test_headings_tables_and_landmarks(self):
+        page = Page(self.study(None, "--plain"))
+        self.assertEqual(page.all("html"), [{"lang": "en"}])
+        levels = [int(tag[1]) for tag, _ in page.elements if re.fullmatch("h[1-6]", tag)]
+        self.assertEqual(levels[0], 1)
+        self.assertTrue(all(after - before <= 1 for before, after in zip(levels, levels[1:])))
+        self.assertEqual(levels.count(1), 1)
+        for landmark in ("header", "nav", "main"):
+            self.assertEqual(len(page.all(landmark)), 1)
+        self.assertEqual(len(page.all("table")), len(page.all("caption")))
+        self.assertTrue(all("scope" in head for head in page.all("th")))
+        self.assertEqual(next(a for t, a in page.elements if t == "a")["class"], "skip")
+
+    def test_nothing_is_loaded_and_nothing_foreign_runs(self):
+        text = self.study()
+        page = Page(text)
+        policy = next(m["content"] for m in page.all("meta") if "http-equiv" in m)
+        self.says(policy, "default-src 'none'", "img-src data:", "base-uri 'none'", "form-action 'none'")
+        self.assertNotIn("unsafe-inline'; base", policy)
+        for tag, attributes in page.elements:
+            self.assertNotIn(tag, ("link", "iframe", "object", "embed", "base"))
+            self.assertFalse([name for name in attributes if name.startswith("on")])
+            for name in ("src", "href", "srcset", "action", "poster"):
+                self.assertRegex(attributes.get(name, "#"), r"^(#|data:image/png;base64,)")
+        self.assertNotRegex(page.blocks["style"], r"url\(|@import")
+        self.assertLess(len(re.sub(r"data:image/png;base64,[^\"]*", "", text)), 2_000_000)
+
+    @unittest.skipUnless(HAS_SCRIPT, "built without the script")
+    def test_the_script_is_named_in_the_policy_and_its_data_is_json(self):
+        import base64
+        import hashlib
+        text = self.study()
+        page = Page(text)
+        self.assertEqual(page.faults, [])
+        digest = base64.b64encode(hashlib.sha256(page.blocks["script"].encode()).digest()).decode()
+        self.assertIn(f"script-src 'sha256-{digest}'", text)
+        data = json.loads(page.blocks["script application/json"])
+        self.assertEqual(len(data["timelines"]), len(report_sample.study()["timelines"]))
+        self.assertEqual(data["timelines"][0]["x"][:2], [0, 15])
+        self.says(page.text, "@observablehq/plot", "img-comparison-slider", "(ISC)", "(MIT)")
+
+    @unittest.skipIf(HAS_SCRIPT, "built with the script")
+    def test_without_node_the_plain_page_is_written_and_said_to_be(self):
+        shutil.copytree(SAMPLE, self.folder / "study")
+        run = self.run_program("report", "study")
+        self.assertEqual((run.returncode, run.stderr.count("note:")), (0, 1))
+        self.says(run.stderr, "without Node.js", "plain")
+        self.assertEqual(self.run_program("report", "study", "-q").stderr, "")
+
+    def test_same_bytes_again(self):
+        self.assertEqual(self.study(), self.study())
+
+
+class Safety(Report):
+    def evil_study(self):
+        """Each text of the sample that a user may choose is made to break out."""
+        text = json.dumps(report_sample.study(positions=6))
+        for word in ("tss", "bay lamps on", "STS-46 payload bay", "is not simulated", "by the Earth", "5d3e0f1a2b4c6978",
+                     "tone-mapped", "size", "GCC", "the tail stands", "c0"):
+            text = text.replace(word, word + json.dumps(EVIL)[1:-1])
+        return json.loads(text)
+
+    def test_no_text_breaks_out(self):
+        plain, evil = Page(self.study(report_sample.study(positions=6))), Page(self.study(self.evil_study()))
+        self.assertEqual(evil.faults, [])
+        self.assertEqual([tag for tag, _ in evil.elements], [tag for tag, _ in plain.elements])
+        self.assertEqual([sorted(a) for _, a in evil.elements], [sorted(a) for _, a in plain.elements])
+        self.assertIn(EVIL, evil.text)
+
+    def test_broken_text_and_control_characters(self):
+        study = report_sample.study(positions=4)
+        study["name"] = "a\u0000b\u001bc\ud800"
+        folder = self.folder / "study"
+        shutil.copytree(SAMPLE, folder)
+        (folder / "study.json").write_bytes(json.dumps(study).replace("\\ud800", "x").encode().replace(b"STS-46 payload", b"\xff\xc0\xaf"))
+        run = self.run_program("report", "study")
+        self.assertIn(run.returncode, (0, 2))  # a parser may refuse bytes that are no text
+        if run.returncode == 0:
+            (folder / "report.html").read_bytes().decode("utf-8")
+
+    def test_pictures_are_inside_the_folder_and_png(self):
+        study = report_sample.study(positions=4)
+        self.write("secret.png", (SAMPLE / "pictures" / "day-b.png").read_bytes())
+        for file, part in (("../secret.png", "not inside"), ("/etc/passwd", "not inside"), ("", "not inside"),
+                           ("none.png", "none.png"), ("study.json", "not a PNG")):
+            study["figures"] = [{"file": file, "caption": "x"}]
+            study["pairs"] = []
+            self.refused_study(study, part)
+
+
+class Studies(Report):
+    def test_nothing_to_see_is_said(self):
+        empty = {"format": 1, "study": "visibility", "name": "nothing", "version": "0", "scenes": [], "cameras": [],
+                 "targets": [], "conditions": [], "results": []}
+        self.says(Page(self.study(empty)).text, "no camera", "0 results")
+        full = report_sample.study(positions=4)
+        self.says(Page(self.study(full | {"targets": [], "results": [], "timelines": []})).text, "no object as a target")
+        self.says(Page(self.study(full | {"conditions": [], "results": [], "timelines": []})).text, "no condition")
+        self.says(Page(self.study(full | {"results": []})).text, "no result yet")
+        blind = full | {"results": [report_sample.out_of_view(r["condition"], r["camera"], r["target"])
+                                    for r in full["results"]]}
+        text = Page(self.study(blind)).text
+        self.says(text, "No camera has a target in view")
+        self.assertNotRegex(text, r"(?i)\bnan\b|\bnull\b")
+
+    def test_stopped_early_is_said_at_the_top(self):
+        study = report_sample.study(positions=4)
+        self.assertNotIn("Not complete", self.study(study))
+        study["complete"] = False
+        study["results"] = study["results"][:7]
+        page = Page(self.study(study))
+        self.says(page.text, "Not complete.", "no result")
+        self.assertLess(page.text.index("Not complete."), page.text.index("Summary"))
+
+    def test_conditions_without_a_position_stand_in_one_matrix(self):
+        study = report_sample.study(positions=1)
+        for condition in study["conditions"]:
+            condition |= {"position_deg": None, "time_s": None, "phase": None, "sun_share": None}
+        study["timelines"] = []
+        page = Page(self.study(study))
+        self.assertEqual(len([t for t in page.all("table") if "matrix" in t.get("class", "")]), 1)
+        self.assertNotIn({"href": "#timelines"}, page.all("a"))
+
+    def test_a_large_study_stays_small_enough_to_open(self):
+        study = report_sample.study(positions=90, cameras=4, targets=5, lamps=3)
+        self.assertEqual(len(study["results"]), 5400)
+        text = self.study(study)
+        page = Page(text)
+        self.assertEqual(page.faults, [])
+        self.assertLess(len(re.sub(r"data:image/png;base64,[^\"]*", "", text).encode()), 2_000_000)
+        self.assertEqual(len([cell for cell in page.all("td") if "data-r" in cell]), 5400)
+        self.says(page.text, "the columns that decide")
+
+    def test_figures_that_do_not_exist_are_dashes(self):
+        study = report_sample.study(positions=4)
+        for entry in study["results"]:
+            entry |= {"luminance": None, "signal": None, "monitor": None, "eye": None, "probability": None}
+        page = Page(self.study(study))
+        self.assertIn("–", page.text)
+        self.assertNotRegex(page.text, r"(?i)\bnan\b|\bnull\b")
+
+
+class Refusals(Report):
+    def test_what_is_no_study(self):
+        self.says(self.refused("report", "nowhere"), "nowhere/study.json", "cannot be read")
+        self.refused_study("{\"format\": 1,", "study.json", "not JSON")
+        self.refused_study("", "not JSON")
+        self.refused_study([1, 2], "not the result of a study")
+        self.refused_study({"study": "compare"}, "not the result of a study")
+        self.refused_study({"format": 2, "study": "visibility"}, "format is 2", "reads 1")
+        self.refused_study({"format": 1, "study": "compare"}, "compare", "visibility")
+        self.refused_study({"format": 1, "study": "visibility"}, "scenes is missing")
+
+    def test_the_place_of_a_fault_is_named(self):
+        def broken(part, key, value):
+            study = report_sample.study(positions=4)
+            study[part][3][key] = value
+            return study
+        self.refused_study(broken("results", "verdict", "perhaps"), "results[3].verdict", "perhaps", "not-seen")
+        self.refused_study(broken("results", "camera", "Z"), "results[3].camera", "Z", "cameras")
+        self.refused_study(broken("results", "condition", "c99"), "results[3].condition", "c99")
+        self.refused_study(broken("results", "target", 7), "results[3].target is a number", "a text")
+        self.refused_study(broken("results", "pixels", "many"), "results[3].pixels is a text")
+        self.refused_study(broken("results", "signal", 1), "results[3].signal is a number")
+        self.refused_study(broken("conditions", "phase", "dusk"), "conditions[3].phase", "dusk")
+        self.refused_study(broken("timelines", "detect", [0.5]), "timelines[3]", "same length")
+        doubled = report_sample.study(positions=4)
+        doubled["results"].append(doubled["results"][0])
+        self.refused_study(doubled, "once more")
+
+    def test_usage(self):
+        self.says(self.refused("report"), "folder")
+        self.says(self.done("report", "--help"), "study.json", "--plain")
+
+
+if __name__ == "__main__":
+    unittest.main()
