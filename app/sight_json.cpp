@@ -36,12 +36,9 @@ Json monitor_json(const std::optional<studies::MonitorSight>& monitor) {
 
 Json eye_json(const std::optional<studies::EyeSight>& eye) {
   if (!eye) return {};
-  return {{"adaptation", eye->adaptation},
-          {"acuity", eye->acuity},
-          {"cycles", eye->cycles},
-          {"threshold", to_json(eye->threshold)},
-          {"weber", to_json(eye->weber)},
-          {"probability", probability_json(eye->probability)}};
+  return {{"adaptation", eye->adaptation}, {"acuity", eye->acuity},
+          {"cycles", eye->cycles},         {"threshold", to_json(eye->threshold)},
+          {"weber", to_json(eye->weber)},  {"probability", probability_json(eye->probability)}};
 }
 
 Json reasons_json(const studies::WhyNot& why) {
@@ -91,30 +88,24 @@ Json target_json(const studies::Sight& sight, const std::string& name,
 }
 
 // A member of a part that may be missing.
-Json within(const Json& part, const char* key) {
-  return part.is_object() ? part.at(key) : Json();
-}
+Json within(const Json& part, const char* key) { return part.is_object() ? part.at(key) : Json(); }
 
 }  // namespace
 
 Json outcome_json(const studies::BasisView& view, const studies::Outcome& outcome) {
   Json targets = Json::array();
   for (std::size_t t = 0; t < outcome.targets.size(); ++t) {
-    targets.push_back(target_json(outcome.sight.targets[t], view.plan.targets[t].view.name,
-                                  outcome.targets[t]));
+    targets.push_back(
+        target_json(outcome.sight.targets[t], view.plan.targets[t].view.name, outcome.targets[t]));
   }
   return targets;
 }
 
 Json flat_row(const Json& condition, const Json& result) {
-  Json row = {{"scene", condition["scene"]},
-              {"position_deg", condition["position_deg"]},
-              {"time_s", condition["time_s"]},
-              {"phase", condition["phase"]},
-              {"sun_share", condition["sun_share"]},
-              {"lamps", condition["lamps"]},
-              {"camera", result["camera"]},
-              {"target", result["target"]},
+  Json row = {{"scene", condition["scene"]},         {"position_deg", condition["position_deg"]},
+              {"time_s", condition["time_s"]},       {"phase", condition["phase"]},
+              {"sun_share", condition["sun_share"]}, {"lamps", condition["lamps"]},
+              {"camera", result["camera"]},          {"target", result["target"]},
               {"verdict", result["verdict"]}};
   for (const char* task : {"detect", "recognise", "identify"}) {
     row[task] = result["probability"][task];

@@ -59,8 +59,8 @@ struct Rated {
 
 Rated rate(const WayOfLooking& way, double wanted, bool closed) {
   Rated rated{&way, {}, 0.0, *std::max_element(way.detect.begin(), way.detect.end())};
-  const auto seen = std::count_if(way.detect.begin(), way.detect.end(),
-                                  [&](double p) { return p >= wanted; });
+  const auto seen =
+      std::count_if(way.detect.begin(), way.detect.end(), [&](double p) { return p >= wanted; });
   rated.reach = static_cast<double>(seen) / static_cast<double>(way.detect.size());
   if (way.positions_deg.empty()) return rated;
   rated.arcs = studies::arcs_above(way.positions_deg, way.detect, wanted, closed);
@@ -78,9 +78,9 @@ std::string lamp_text(const std::vector<WayOfLooking>& ways, double wanted) {
     }
   }
   if (!tried) return "";
-  const std::string where = ways.front().darkest_deg
-                                ? fmt::format("Where it is darkest, at {}, ", at(*ways.front().darkest_deg))
-                                : "Here ";
+  const std::string where = ways.front().darkest_deg ? fmt::format("Where it is darkest, at {}, ",
+                                                                   at(*ways.front().darkest_deg))
+                                                     : "Here ";
   if (best == nullptr) {
     return fmt::format(" {}no lamps up to {:g} times theirs bring it to {:g}.", where,
                        studies::most_lamp_factor, wanted);
@@ -92,9 +92,9 @@ std::string lamp_text(const std::vector<WayOfLooking>& ways, double wanted) {
 
 }  // namespace
 
-void add_ways(const StudyPart& part, const studies::StudyFile& study, const studies::WantedTarget& wanted,
-              const StudyCamera& camera, const studies::BasisView& view,
-              std::vector<WayOfLooking>& ways) {
+void add_ways(const StudyPart& part, const studies::StudyFile& study,
+              const studies::WantedTarget& wanted, const StudyCamera& camera,
+              const studies::BasisView& view, std::vector<WayOfLooking>& ways) {
   const studies::LightBasis& basis = *part.basis;
   const auto named = std::find(part.targets.begin(), part.targets.end(), wanted.target);
   const auto target = static_cast<std::size_t>(named - part.targets.begin());
@@ -115,8 +115,9 @@ void add_ways(const StudyPart& part, const studies::StudyFile& study, const stud
       iris = words[static_cast<std::size_t>(cctv->camera.iris)];
     }
     for (std::size_t setting = 0; setting < basis.settings().size(); ++setting) {
-      WayOfLooking way{part.id, camera.camera->name, iris, basis.settings()[setting].name, {},
-                       part.positions_deg, {}, {}, false};
+      WayOfLooking way{part.id, camera.camera->name, iris, basis.settings()[setting].name,
+                       {},      part.positions_deg,  {},   {},
+                       false};
       way.detect.resize(basis.places().size());
       const auto probability = [&](std::size_t place, double lamps) {
         return studies::detection(basis, view, target, place, setting, lamps, cctv);
@@ -146,11 +147,16 @@ Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& 
       best = std::move(rated);
     }
   }
-  Json answer = {{"wanted", wanted.text},      {"target", wanted.target},
-                 {"least", wanted.probability}, {"found", false},
-                 {"text", ""},                  {"camera", Json()},
-                 {"iris", Json()},              {"lamps", Json()},
-                 {"least_factor", Json()},      {"arcs_deg", Json::array()}};
+  Json answer = {{"wanted", wanted.text},
+                 {"target", wanted.target},
+                 {"least", wanted.probability},
+                 {"found", false},
+                 {"text", ""},
+                 {"camera", Json()},
+                 {"iris", Json()},
+                 {"lamps", Json()},
+                 {"least_factor", Json()},
+                 {"arcs_deg", Json::array()}};
   if (best.way == nullptr) {
     answer["text"] = fmt::format("Nothing was looked at for {}.", wanted.target);
     return answer;
@@ -171,13 +177,13 @@ Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& 
         wanted.target, wanted.probability,
         way.positions_deg.empty() ? "" : " at any of the positions", best.best, way_text(way));
   } else if (way.positions_deg.empty()) {
-    text = fmt::format("{} is detected with {:.2g}, by {}.", wanted.target, best.best,
-                       way_text(way));
+    text =
+        fmt::format("{} is detected with {:.2g}, by {}.", wanted.target, best.best, way_text(way));
   } else {
-    text = fmt::format("{} is detected with {:g} or more best by {}: {}{}.", wanted.target,
-                       wanted.probability, way_text(way), arcs_text(best.arcs),
-                       study.timeline ? fmt::format(" ({:.0f} % of the orbit)", 100.0 * best.reach)
-                                      : "");
+    text = fmt::format(
+        "{} is detected with {:g} or more best by {}: {}{}.", wanted.target, wanted.probability,
+        way_text(way), arcs_text(best.arcs),
+        study.timeline ? fmt::format(" ({:.0f} % of the orbit)", 100.0 * best.reach) : "");
   }
   answer["text"] = text + lamp_text(ways, wanted.probability);
   return answer;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a study says to the probabilities that were wanted: which camera and iris, which lamps, which
-// parts of the orbit.
+// What a study says to the probabilities that were wanted: which camera and iris, which lamps,
+// which parts of the orbit.
 #pragma once
 
 #include <vector>
@@ -22,9 +22,9 @@ struct WayOfLooking {
 };
 
 // Adds the ways of one camera for one wanted target.
-void add_ways(const StudyPart& part, const studies::StudyFile& study, const studies::WantedTarget& wanted,
-              const StudyCamera& camera, const studies::BasisView& view,
-              std::vector<WayOfLooking>& ways);
+void add_ways(const StudyPart& part, const studies::StudyFile& study,
+              const studies::WantedTarget& wanted, const StudyCamera& camera,
+              const studies::BasisView& view, std::vector<WayOfLooking>& ways);
 
 // An entry of study.json's "answers".
 [[nodiscard]] Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& study,

@@ -121,8 +121,8 @@ std::optional<std::vector<Json>> StudyConditions::find(const StudyCamera& camera
 std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studies::BasisView& view,
                                          const Json& frame_marks, std::vector<StudyCost>& costs) {
   const auto start = std::chrono::steady_clock::now();
-  const raytrace::Progress progress = progress_of_stages(common_)(
-      fmt::format("conditions of camera {}", camera.camera->name));
+  const raytrace::Progress progress =
+      progress_of_stages(common_)(fmt::format("conditions of camera {}", camera.camera->name));
   std::optional<degrade::Setup> cctv;
   if (camera.cctv) cctv = camera.cctv->chain;
   if (cctv) cctv->options.fov_deg = camera.camera->fov_deg;
@@ -142,12 +142,12 @@ std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studie
     base::parallel_chunks(last - first, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = first + begin; k < first + end; ++k) {
         const auto [place, setting] = place_of(part_, k);
-        all[k] = outcome_json(view, studies::judge_condition(*part_.basis, *part_.query, view, place,
-                                                             setting, cctv, options()));
+        all[k] = outcome_json(view, studies::judge_condition(*part_.basis, *part_.query, view,
+                                                             place, setting, cctv, options()));
       }
     });
-    store_.keep_facts(key, {{"conditions", std::vector<Json>(
-                                               all.begin() + static_cast<std::ptrdiff_t>(first),
+    store_.keep_facts(
+        key, {{"conditions", std::vector<Json>(all.begin() + static_cast<std::ptrdiff_t>(first),
                                                all.begin() + static_cast<std::ptrdiff_t>(last))}});
   }
   const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;

@@ -27,8 +27,8 @@ class StudyConditions {
                                                       const Json& frame_marks);
 
  private:
-  [[nodiscard]] Json marks(const StudyCamera& camera, const Json& frame_marks,
-                           std::size_t first, std::size_t last) const;
+  [[nodiscard]] Json marks(const StudyCamera& camera, const Json& frame_marks, std::size_t first,
+                           std::size_t last) const;
   [[nodiscard]] studies::ConditionOptions options() const;
 
   const StudyPart& part_;

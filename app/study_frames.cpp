@@ -21,8 +21,8 @@ namespace {
 // Suns that the patches are cut for; the shadows of those between fall between theirs.
 constexpr std::size_t most_refined_suns = 4;
 
-// The same lights in few groups: patches are cut where the light of any of them varies, and noise in
-// many would be taken for variation.
+// The same lights in few groups: patches are cut where the light of any of them varies, and noise
+// in many would be taken for variation.
 scenes::Scene scene_to_cut(const scenes::Scene& basis) {
   scenes::Scene scene = basis;
   if (!basis.sky_parts) return scene;

@@ -56,8 +56,8 @@ void tell(const Json& found, bool json, bool dry_run) {
 
 void run_orbit(const OrbitCall& call, const Common& common) {
   studies::StudyFile study = study_of(call.study, call.wanted, call.iris);
-  study.positions_deg =
-      call.at.empty() ? studies::even_positions(static_cast<int>(call.positions)) : positions_of(call.at);
+  study.positions_deg = call.at.empty() ? studies::even_positions(static_cast<int>(call.positions))
+                                        : positions_of(call.at);
   study.timeline = call.at.empty() && call.positions > 1;
   StudyTask task{std::move(study), call.study.folder, "study orbit", call.dry_run};
   tell(run_study(std::move(task), common), call.study.json, call.dry_run);
@@ -94,8 +94,7 @@ Command add_study_run(CLI::App& study) {
       ->required()
       ->check(not_empty())
       ->type_name("");
-  parser
-      ->add_option("-o,--output", call->folder, "Folder for the results; made if it is not there")
+  parser->add_option("-o,--output", call->folder, "Folder for the results; made if it is not there")
       ->type_name("DIR")
       ->required();
   parser->add_flag("--dry-run", call->dry_run, "Only say what would be done, and its price");

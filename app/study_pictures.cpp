@@ -111,15 +111,17 @@ void fill_pictures(studies::StudyFile& study, const StudyPart& part) {
                              name + suffix, name + suffix + "-cctv"});
     };
     if (positions.size() < 2) {
-      add_place("", "as the scene has it", positions.empty() ? std::nullopt : std::optional(positions.front()));
+      add_place("", "as the scene has it",
+                positions.empty() ? std::nullopt : std::optional(positions.front()));
       continue;
     }
     add_place("-noon", fmt::format("orbit {:g} deg", positions.front()), positions.front());
     if (*midnight == positions.front()) continue;
     add_place("-night", fmt::format("orbit {:g} deg", *midnight), midnight);
     const std::string kind = camera.cctv ? "-cctv" : "";
-    study.pairs.push_back({fmt::format("Camera {}: orbit {:g} and {:g} deg", name, positions.front(), *midnight),
-                           name + "-noon" + kind, name + "-night" + kind});
+    study.pairs.push_back(
+        {fmt::format("Camera {}: orbit {:g} and {:g} deg", name, positions.front(), *midnight),
+         name + "-noon" + kind, name + "-night" + kind});
   }
 }
 

@@ -17,8 +17,7 @@ void fill_pictures(studies::StudyFile& study, const StudyPart& part);
 
 // Throws base::Error (Input) where a wish names a camera, a lamp setting or a position that the
 // study does not have. parts: of all scenes; the first one that has the camera draws it.
-void check_pictures(const studies::StudyFile& study,
-                    const std::vector<const StudyPart*>& parts);
+void check_pictures(const studies::StudyFile& study, const std::vector<const StudyPart*>& parts);
 
 // Draws the wishes for one camera into folder/pictures, adds figures of study.json to `figures`.
 void draw_pictures(const studies::StudyFile& study, const StudyPart& part,

@@ -42,15 +42,15 @@ Json plan_of(const StudyPart& part, const std::filesystem::path& folder, const C
   Json listed = Json::array();
   for (const StudyCamera& camera : part.cameras) {
     const bool found = frames && frames->has(camera);
-    listed.push_back({{"camera", camera.camera->name},
-                      {"columns", camera.columns},
-                      {"rows", camera.rows},
-                      {"cctv", camera.cctv ? Json(camera.cctv->name) : Json()},
-                      {"found", found},
-                      {"seconds", 0.0},
-                      {"conditions_seconds", static_cast<double>(part.conditions()) *
-                                                 chain_seconds(camera) /
-                                                 base::available_threads()}});
+    listed.push_back(
+        {{"camera", camera.camera->name},
+         {"columns", camera.columns},
+         {"rows", camera.rows},
+         {"cctv", camera.cctv ? Json(camera.cctv->name) : Json()},
+         {"found", found},
+         {"seconds", 0.0},
+         {"conditions_seconds", static_cast<double>(part.conditions()) * chain_seconds(camera) /
+                                    base::available_threads()}});
     if (found) continue;
     raytrace::RenderOptions options =
         raytrace::render_options(scenes::resolve_quality(basis.scene));
@@ -68,10 +68,9 @@ Json plan_of(const StudyPart& part, const std::filesystem::path& folder, const C
     studies::expect_rows(sizes, basis.scene, *part.query, solver);
     studies::add_picture(sizes, basis.groups, basis.effects, pictures.front());
     memory_mib = studies::memory_needed(sizes).total() / 1048576.0;
-    const studies::Pilot pilot =
-        studies::expect_costs({basis.scene, basis.groups, basis.effects, *part.query, solver,
-                               sizes.row_entries},
-                              cameras, pictures);
+    const studies::Pilot pilot = studies::expect_costs(
+        {basis.scene, basis.groups, basis.effects, *part.query, solver, sizes.row_entries}, cameras,
+        pictures);
     double drawn = 0.0;
     std::size_t next = 0;
     for (Json& one : listed) {
@@ -121,7 +120,8 @@ std::string plan_text(const Json& plan) {
   std::string text = plan["name"].get<std::string>() + "\n";
   for (const Json& scene : plan["scenes"]) {
     text += fmt::format(
-        "{}: {} places x {} lamp settings = {} conditions; {} light groups ({} Suns, {} cells of the "
+        "{}: {} places x {} lamp settings = {} conditions; {} light groups ({} Suns, {} cells of "
+        "the "
         "Earth), {:.0f} MiB; radiosity {}\n",
         scene["path"].get<std::string>(), scene["positions"].get<std::size_t>(),
         plan["lamps"].size(), scene["conditions"].get<std::size_t>(),
@@ -138,10 +138,10 @@ std::string plan_text(const Json& plan) {
                           duration(camera["conditions_seconds"].get<double>()));
     }
   }
-  return text + fmt::format("{} pictures for the report\nabout {} on this machine, without the "
-                            "reasons of targets that fail\n",
-                            plan["pictures"].get<std::size_t>(),
-                            duration(plan["seconds"].get<double>()));
+  return text + fmt::format(
+                    "{} pictures for the report\nabout {} on this machine, without the "
+                    "reasons of targets that fail\n",
+                    plan["pictures"].get<std::size_t>(), duration(plan["seconds"].get<double>()));
 }
 
 }  // namespace earthshine::app

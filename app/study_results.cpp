@@ -110,17 +110,21 @@ Json notes_of(const StudyFindings& findings) {
   }
   if (along) {
     notes.push_back(
-        "Along the orbit the Earth's light is a sum over cells of even radiance; luminance_error is "
+        "Along the orbit the Earth's light is a sum over cells of even radiance; luminance_error "
+        "is "
         "its likely size in each target's luminance, luminance_bound cannot be exceeded by it.");
-    notes.push_back("A partly hidden Sun counts as a whole one, dimmed; its penumbra has the width of "
-                    "the whole disc.");
+    notes.push_back(
+        "A partly hidden Sun counts as a whole one, dimmed; its penumbra has the width of "
+        "the whole disc.");
   }
   if (moving) {
     notes.push_back(
-        "The Earth moves through the sky of this attitude: its limb is drawn by cells of the sphere, "
+        "The Earth moves through the sky of this attitude: its limb is drawn by cells of the "
+        "sphere, "
         "coarse where a camera sees it directly or in a mirror.");
   }
-  if (!findings.complete) notes.push_back("The study was stopped before its end; run it again to go on.");
+  if (!findings.complete)
+    notes.push_back("The study was stopped before its end; run it again to go on.");
   return notes;
 }
 

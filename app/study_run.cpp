@@ -44,10 +44,7 @@ class Runner {
  public:
   Runner(const StudyTask& task, const Common& common, const Parts& parts,
          const ViewListener& listen)
-      : task_(task),
-        common_(common),
-        listen_(listen),
-        findings_(task.study) {
+      : task_(task), common_(common), listen_(listen), findings_(task.study) {
     findings_.command = task.command;
     findings_.seed = common.seed;
     findings_.parts = pointers(parts);
@@ -85,8 +82,7 @@ class Runner {
       findings_.patches[part.id] = frame->patches;
       const studies::BasisView view = studies::make_basis_view(
           *part.basis, *part.query, *camera.camera, std::move(frame->image));
-      found.conditions =
-          conditions.judge(camera, view, frames.marks(camera), findings_.costs);
+      found.conditions = conditions.judge(camera, view, frames.marks(camera), findings_.costs);
       if (!Interrupt::asked()) {
         draw_pictures(task_.study, part, camera, view, task_.folder, common_, findings_.figures);
         for (std::size_t k = 0; k < ways_.size(); ++k) {
@@ -128,9 +124,9 @@ Json run_study(StudyTask task, const Common& common, const ViewListener& listen)
   how.quiet = common.quiet;
   write_report(task.folder, study, how);
   if (!runner.findings().complete) {
-    throw base::Error(base::Blame::Work, "study", "interrupted", {},
-                      "Run the same command again: it goes on with what is finished in " +
-                          task.folder);
+    throw base::Error(
+        base::Blame::Work, "study", "interrupted", {},
+        "Run the same command again: it goes on with what is finished in " + task.folder);
   }
   return study;
 }

@@ -26,8 +26,7 @@ struct StudyTask {
 
 // The content of study.json; of a dry run what would be done and its price. Throws base::Error for
 // bad input before any work is done, and (Work) after everything was written if it was interrupted.
-[[nodiscard]] Json run_study(StudyTask task, const Common& common,
-                             const ViewListener& listen = {});
+[[nodiscard]] Json run_study(StudyTask task, const Common& common, const ViewListener& listen = {});
 
 // For people, of what a dry run gives.
 [[nodiscard]] std::string plan_text(const Json& plan);

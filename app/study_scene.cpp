@@ -59,12 +59,12 @@ void check_wanted(const studies::StudyFile& study, const StudyPart& part) {
     if (std::find(part.targets.begin(), part.targets.end(), wanted.target) != part.targets.end()) {
       continue;
     }
-    throw Error(
-        Blame::Input, "wanted",
-        fmt::format("{} names {}, which is no target of {}", scenes::in_quotes(wanted.text),
-                    scenes::in_quotes(wanted.target), part.path),
-        part.targets.empty() ? "it has no targets" : "its targets are " + scenes::listed(part.targets),
-        "Mark the object with target = true, or list it under targets");
+    throw Error(Blame::Input, "wanted",
+                fmt::format("{} names {}, which is no target of {}", scenes::in_quotes(wanted.text),
+                            scenes::in_quotes(wanted.target), part.path),
+                part.targets.empty() ? "it has no targets"
+                                     : "its targets are " + scenes::listed(part.targets),
+                "Mark the object with target = true, or list it under targets");
   }
 }
 

@@ -97,8 +97,8 @@ class Tables {
     const scenes::Scene& scene = part.loaded.scene;
     const scenes::Camera& camera = *looking.camera;
     const std::filesystem::path folder = call_.folder;
-    base::Image image = studies::weighted_sum(view.layers, part.basis->groups().names,
-                                              part.basis->weights(0, 0));
+    base::Image image =
+        studies::weighted_sum(view.layers, part.basis->groups().names, part.basis->weights(0, 0));
     image.channels.push_back(*view.layers.find("object"));
     base::write_png(folder / picture_name(scene, camera), image.width, image.height, 3,
                     base::tone_map(image).rgb);
@@ -108,8 +108,8 @@ class Tables {
       const degrade::Setup& chain = looking.cctv->chain;
       const degrade::Result result = run_chain(*looking.cctv, image);
       write_cctv((folder / cctv_name(scene, camera)).string(), *looking.cctv, result);
-      const studies::ShownRange shown = studies::shown_range(
-          chain.camera, result.report, studies::mean_luminance(image));
+      const studies::ShownRange shown =
+          studies::shown_range(chain.camera, result.report, studies::mean_luminance(image));
       degrade::Twin twin = degrade::twin(image, chain.camera, chain.monitor, chain.options);
       clipped = {twin.signal.columns, twin.signal.rows, std::move(twin.saturated),
                  std::move(twin.crushed)};
@@ -183,12 +183,10 @@ void run(const VisibilityCall& call, const Common& common) {
   }
   prepare_folder(call.study.folder, file_names(loaded.scene, cameras));
   Tables tables(call.study, common);
-  const Json study =
-      run_study(std::move(task), common,
-                [&](const StudyPart& part, const StudyCamera& camera,
-                    const studies::BasisView& view, const StudyFrames::Frame& frame) {
-                  tables.add(part, camera, view, frame);
-                });
+  const Json study = run_study(
+      std::move(task), common,
+      [&](const StudyPart& part, const StudyCamera& camera, const studies::BasisView& view,
+          const StudyFrames::Frame& frame) { tables.add(part, camera, view, frame); });
   const Json json = tables.write(study);
   if (call.study.json) return print(dump(json));
   std::string text = table_of(json["targets"]);

@@ -10,8 +10,8 @@
 
 #include "degrade/chain.h"
 #include "scenes/ray_query.h"
-#include "studies/lit_points.h"
 #include "studies/light_basis.h"
+#include "studies/lit_points.h"
 #include "studies/sight.h"
 #include "studies/why_not.h"
 
@@ -57,8 +57,7 @@ struct ConditionOptions {
 };
 
 [[nodiscard]] Outcome judge_condition(const LightBasis& basis, const scenes::RayQuery& query,
-                                      const BasisView& view, std::size_t place,
-                                      std::size_t setting,
+                                      const BasisView& view, std::size_t place, std::size_t setting,
                                       const std::optional<degrade::Setup>& cctv,
                                       const ConditionOptions& options);
 

@@ -23,8 +23,8 @@ using scenes::TomlNode;
 using scenes::TomlTable;
 
 constexpr std::string_view root_keys[] = {
-    "format", "name",   "scenes",        "scene", "set",    "cameras", "targets",
-    "size",   "wanted", "iris",          "orbit", "lamps",  "picture", "pair",
+    "format", "name",    "scenes",        "scene", "set",        "cameras", "targets",
+    "size",   "wanted",  "iris",          "orbit", "lamps",      "picture", "pair",
     "cctv",   "monitor", "camera_models", "seen",  "earth_cells"};
 constexpr std::string_view orbit_keys[] = {"positions", "positions_deg"};
 constexpr std::string_view lamps_keys[] = {"name", "set", "others"};
@@ -97,7 +97,7 @@ void read_positions(StudyFile& study, const TableReader& root) {
     const TomlNode& item = (*items)[k];
     const auto* whole = std::get_if<std::int64_t>(&item.value);
     const auto* real = std::get_if<double>(&item.value);
-    const double value = whole != nullptr ? static_cast<double>(*whole)
+    const double value = whole != nullptr  ? static_cast<double>(*whole)
                          : real != nullptr ? *real
                                            : std::nan("");
     if (!(std::abs(value) <= 360.0)) {
@@ -166,8 +166,8 @@ void read_pictures(StudyFile& study, const TableReader& root) {
   for (const TomlNode* entry : scenes::named_entries(root, "pair")) {
     const TableReader table(*entry, "[[pair]]", pair_keys);
     PairWish pair;
-    for (const auto& [key, text] : {std::pair{"title", &pair.title}, {"left", &pair.left},
-                                    {"right", &pair.right}}) {
+    for (const auto& [key, text] :
+         {std::pair{"title", &pair.title}, {"left", &pair.left}, {"right", &pair.right}}) {
       *text = table.required(table.text(key), key, fmt::format("{} = \"...\"", key));
     }
     for (const auto& [key, name] : {std::pair{"left", pair.left}, {"right", pair.right}}) {
@@ -206,8 +206,8 @@ void read_cameras(StudyFile& study, const TableReader& root) {
     for (const TomlEntry& model : *models) {
       const auto* name = std::get_if<std::string>(&model.node.value);
       if (name == nullptr) {
-        root.fail("camera_models", fmt::format("has {} for \"{}\"", scenes::describe(model.node),
-                                               model.key),
+        root.fail("camera_models",
+                  fmt::format("has {} for \"{}\"", scenes::describe(model.node), model.key),
                   "allowed is the name of a [[cctv]] table or of a camera that ships");
       }
       study.camera_models[model.key] = *name;
@@ -231,8 +231,7 @@ WantedTarget read_wanted(const std::string& text, const base::Location& where) {
   }
   if (!good) {
     throw Error(Blame::Input, where, fmt::format("\"{}\" is no target and its probability", text),
-                "allowed is TARGET>=P, with P between 0 and 1",
-                "Write for instance \"tss>=0.9\"");
+                "allowed is TARGET>=P, with P between 0 and 1", "Write for instance \"tss>=0.9\"");
   }
   wanted.target = text.substr(0, at);
   return wanted;

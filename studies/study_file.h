@@ -48,8 +48,8 @@ struct StudyFile {
   bool timeline = false;                      // the positions are evenly spaced over one turn
   std::vector<LampSetting> lamps;             // never empty
   std::map<std::string, std::string> camera_models;  // CCTV camera by camera
-  scenes::Scene cctv;                         // its own [[cctv]] tables and [monitor]
-  std::vector<std::string> iris;              // modes that answers choose among; empty: the camera's
+  scenes::Scene cctv;                                // its own [[cctv]] tables and [monitor]
+  std::vector<std::string> iris;  // modes that answers choose among; empty: the camera's
   std::vector<WantedTarget> wanted;
   std::vector<PictureWish> pictures;
   std::vector<PairWish> pairs;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Questions asked backwards: how much light a target needs to be detected with a wanted probability,
-// and along which parts of the orbit it is.
+// Questions asked backwards: how much light a target needs to be detected with a wanted
+// probability, and along which parts of the orbit it is.
 #pragma once
 
 #include <functional>

@@ -131,28 +131,5 @@ TEST(Visibility, PixelsBelongToTheReselOfTheirCentre) {
   EXPECT_EQ(metrics.front().crushed_share, 1.0);
 }
 
-TEST(Visibility, LookGivesThePictureTheMonitorAndTheTargets) {
-  auto builder = tests::plate_on_ground(0.4, 0.6);
-  builder.scene.sun = tests::overhead_sun(1000.0);
-  const tests::Prepared prepared(builder.scene);
-  const radiosity::Solution solution = prepared.solve({});
-  ViewOptions options;
-  options.columns = options.rows = 32;
-  options.gather_rays = 16;
-  options.cctv = degrade::Setup{degrade::find_preset("ideal")->camera, {}, {}};
-  const StudyScene study{builder.scene, prepared.groups, prepared.effects, prepared.query};
-  const View view = look(study, solution, tests::above(2.0, 2.0), options);
-  ASSERT_EQ(view.targets.size(), 1U);
-  EXPECT_NEAR(*view.targets[0].light->contrast, 0.5, 1e-3);
-  ASSERT_TRUE(view.cctv && view.shown);
-  // An iris that follows the peak brings it to white: the plate, the brightest thing there.
-  EXPECT_EQ(view.targets[0].saturated_share, 1.0);
-  EXPECT_EQ(view.targets[0].crushed_share, 0.0);
-  options.cctv.reset();
-  const View plain = look(study, solution, tests::above(2.0, 2.0), options);
-  EXPECT_FALSE(plain.cctv || plain.shown || plain.targets[0].saturated_share);
-  EXPECT_EQ(plain.frame.image.find("G")->values, view.frame.image.find("G")->values);
-}
-
 }  // namespace
 }  // namespace earthshine::studies
