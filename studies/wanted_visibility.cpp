@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studies/wanted_visibility.h"
 
+#include <algorithm>
+
 namespace earthshine::studies {
 
 double detection(const LightBasis& basis, const BasisView& view, std::size_t index,
@@ -22,7 +24,8 @@ std::optional<double> least_factor(const std::function<double(double)>& probabil
     high *= 2.0;
   }
   double low = high > least_lamp_factor ? high / 2.0 : 0.0;
-  while (high - low > 0.01 * high) {
+  // Where any light will do halving would never end.
+  while (high - low > 0.01 * std::max(high, least_lamp_factor)) {
     const double middle = 0.5 * (low + high);
     (probability(middle) >= wanted ? high : low) = middle;
   }

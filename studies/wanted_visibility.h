@@ -23,8 +23,9 @@ namespace earthshine::studies {
 // surround closes the iris.
 inline constexpr double least_lamp_factor = 1.0 / 128.0, most_lamp_factor = 8.0;
 
-// The least factor at which probability(factor) reaches `wanted`, to a hundredth of itself: the
-// first step that does, halved down. 0: it does without any; none: it does at no step.
+// The least factor at which probability(factor) reaches `wanted`, to a hundredth of itself (of the
+// least step where it lies below that): the first step that does, halved down. 0: it does without
+// any; none: it does at no step.
 [[nodiscard]] std::optional<double> least_factor(const std::function<double(double)>& probability,
                                                  double wanted);
 
