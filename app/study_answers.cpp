@@ -106,7 +106,6 @@ void add_ways(const StudyPart& part, const studies::StudyFile& study,
     std::string iris;
     if (camera.cctv) {
       cctv = camera.cctv->chain;
-      cctv->options.fov_deg = camera.camera->fov_deg;
       constexpr auto words = degrade::words_of(degrade::IrisMode{});
       if (!mode.empty()) {
         const auto word = std::find(words.begin(), words.end(), mode) - words.begin();

@@ -125,7 +125,6 @@ std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studie
       progress_of_stages(common_)(fmt::format("conditions of camera {}", camera.camera->name));
   std::optional<degrade::Setup> cctv;
   if (camera.cctv) cctv = camera.cctv->chain;
-  if (cctv) cctv->options.fov_deg = camera.camera->fov_deg;
   std::vector<Json> all(part_.conditions());
   for (std::size_t first = 0; first < all.size(); first += batch) {
     const std::size_t last = std::min(first + batch, all.size());

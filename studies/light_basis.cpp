@@ -66,6 +66,7 @@ LightBasis::LightBasis(const scenes::Scene& scene, std::vector<SkyPlace> places,
       settings_(std::move(settings)),
       sun_of_place_(places_.size(), no_group) {
   for (const scenes::Lamp& lamp : scene.lamps) group_of_lamp_.push_back(lamp.group);
+  check_settings();
   split_lamps();
   if (places_.size() == 1) {
     scene_.sun = places_.front().sun;
@@ -76,15 +77,19 @@ LightBasis::LightBasis(const scenes::Scene& scene, std::vector<SkyPlace> places,
   groups_ = scenes::find_light_groups(scene_);
 }
 
-// Lamps that a setting names get a group of their own; what is off in all settings goes.
-void LightBasis::split_lamps() {
+void LightBasis::check_settings() const {
   std::set<std::string> known;
+  if (std::any_of(places_.begin(), places_.end(), [](const SkyPlace& p) { return p.sun; })) {
+    known.insert("sun");
+  }
+  if (std::any_of(places_.begin(), places_.end(), [](const SkyPlace& p) { return p.earth; })) {
+    known.insert("earth");
+  }
   for (const scenes::Lamp& lamp : scene_.lamps) known.insert({lamp.name, lamp.group});
   const scenes::LightGroups groups = scenes::find_light_groups(original_);
   for (std::size_t m = 0; m < original_.materials.size(); ++m) {
     if (groups.material[m] != no_group) known.insert(original_.materials[m].light_group);
   }
-  std::set<std::string> named;
   for (const LampSetting& setting : settings_) {
     for (const auto& [name, factor] : setting.factors) {
       if (!known.contains(name)) {
@@ -99,8 +104,15 @@ void LightBasis::split_lamps() {
                           fmt::format("\"{}\" has a factor below 0", name), "0 or more",
                           "Write 0 for a lamp that is off");
       }
-      named.insert(name);
     }
+  }
+}
+
+// Lamps that a setting names get a group of their own; what is off in all settings goes.
+void LightBasis::split_lamps() {
+  std::set<std::string> named;
+  for (const LampSetting& setting : settings_) {
+    for (const auto& [name, factor] : setting.factors) named.insert(name);
   }
   const auto ever_on = [&](const std::string& name, const std::string& group) {
     return std::any_of(settings_.begin(), settings_.end(), [&](const LampSetting& setting) {
@@ -128,6 +140,11 @@ Rgb LightBasis::factor(const LampSetting& setting, const std::string& name,
     if (found != setting.factors.end()) return found->second;
   }
   return Rgb(setting.others_off ? 0.0 : 1.0);
+}
+
+Rgb LightBasis::sky_factor(const LampSetting& setting, const std::string& name) {
+  const auto found = setting.factors.find(name);
+  return found == setting.factors.end() ? Rgb(1.0) : found->second;
 }
 
 void LightBasis::split_sky(const BasisOptions& options) {
@@ -179,6 +196,11 @@ scenes::Scene LightBasis::scene_at(std::size_t place, std::size_t setting) const
   scenes::Scene scene = original_;
   scene.sun = places_[place].sun;
   scene.earth = places_[place].earth;
+  // The Earth shines by the Sun, which its own factor leaves alone.
+  if (scene.earth) {
+    scene.earth->albedo *= sky_factor(settings_[setting], "earth");
+    scene.earth->radiance *= sky_factor(settings_[setting], "earth");
+  }
   for (scenes::Lamp& lamp : scene.lamps) {
     const Rgb times = factor(settings_[setting], lamp.name, lamp.group);
     lamp.intensity_cd *= times;
@@ -216,9 +238,11 @@ GroupWeights LightBasis::weights(std::size_t place, std::size_t setting, double 
     set(groups_.material[m], lamps * factor(settings_[setting], group, group));
   }
   set(groups_.ambient, Rgb(1.0));
+  const Rgb sun = sky_factor(settings_[setting], "sun");
+  const Rgb earth = sky_factor(settings_[setting], "earth");
   if (!in_parts()) {
-    set(groups_.sun, Rgb(1.0));
-    set(groups_.earth, Rgb(1.0));
+    set(groups_.sun, sun);
+    set(groups_.earth, earth);
     return weights;
   }
   if (sun_of_place_[place] != no_group) {
@@ -227,23 +251,24 @@ GroupWeights LightBasis::weights(std::size_t place, std::size_t setting, double 
     const Rgb& unit = scene_.sky_parts->suns[part].illuminance_lx;
     for (int c = 0; c < 3; ++c) {
       const double wanted = places_[place].sun->illuminance_lx[c];
-      weights.weight[groups_.sun_parts + part][c] = unit[c] > 0.0 ? share * wanted / unit[c] : 0.0;
+      weights.weight[groups_.sun_parts + part][c] = unit[c] > 0.0 ? sun[c] * share * wanted / unit[c] : 0.0;
     }
   }
-  if (groups_.earth != no_group && places_[place].earth) weigh_earth(places_[place], weights);
+  if (groups_.earth != no_group && places_[place].earth) weigh_earth(places_[place], earth, weights);
   return weights;
 }
 
-void LightBasis::weigh_earth(const SkyPlace& place, GroupWeights& weights) const {
+void LightBasis::weigh_earth(const SkyPlace& place, const Rgb& factor,
+                             GroupWeights& weights) const {
   const scenes::Scene sky = bare(place);
-  if (!scenes::earth_is_lit(sky)) return;
+  if (!scenes::earth_is_lit(sky) || base::max_component(factor) <= 0.0) return;
   const scenes::SkyCells& cells = *scene_.sky_parts->cells;
   base::parallel_chunks(cells.count(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t cell = begin; cell < end; ++cell) {
       std::vector<Rgb> seen;
       Rgb mean(0.0);
       cells.visit(cell, cell_side, [&](const Vec3& direction) {
-        seen.push_back(scenes::earth_radiance(sky, direction) / earth_unit_);
+        seen.push_back(factor * scenes::earth_radiance(sky, direction) / earth_unit_);
         mean += seen.back();
       });
       mean /= static_cast<double>(seen.size());

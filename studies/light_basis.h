@@ -31,10 +31,10 @@ struct SkyPlace {
 [[nodiscard]] SkyPlace sky_of(const scenes::Scene& scene);
 
 // Factors by name of a lamp, of a light group of lamps or of an emitting material's group; a lamp's
-// own name goes before its group's.
+// own name goes before its group's. "sun" and "earth" stand for these.
 struct LampSetting {
   std::string name;
-  bool others_off = false;  // what is not named; else it stays as the scene has it
+  bool others_off = false;  // lamps and emitters not named; else they stay as the scene has them
   std::map<std::string, Rgb> factors;
 };
 
@@ -78,9 +78,11 @@ class LightBasis {
  private:
   [[nodiscard]] Rgb factor(const LampSetting& setting, const std::string& name,
                            const std::string& group) const;
+  [[nodiscard]] static Rgb sky_factor(const LampSetting& setting, const std::string& name);
+  void check_settings() const;
   void split_lamps();
   void split_sky(const BasisOptions& options);
-  void weigh_earth(const SkyPlace& place, GroupWeights& weights) const;
+  void weigh_earth(const SkyPlace& place, const Rgb& factor, GroupWeights& weights) const;
 
   scenes::Scene original_, scene_;
   std::vector<SkyPlace> places_;

@@ -31,6 +31,7 @@ struct PictureWish {
   std::string lamps;                   // a setting's name; empty: the first one
   Shows shows = Shows::Clean;
   int lights = 64;  // of the distributed ones
+  std::string cctv;  // another CCTV camera than the camera's own; empty: that
   base::Location where;
 };
 struct PairWish {
