@@ -180,7 +180,9 @@ WhyNot why_not(const WhyNotInputs& in, std::size_t index,
     return only({Cause::OutOfView, {}, {}, {}, "out of the camera's view"});
   }
   const std::optional<Change> hiding = without_hiding(in, index);
-  if (sight.pixels == 0 && hiding) return only(reason_of(*hiding, {}));
+  if (sight.pixels == 0) {
+    return only(hiding ? reason_of(*hiding, {}) : Reason{Cause::Hidden, {}, 1.0, {}, "hidden"});
+  }
   if (!sight.probability) {
     return only({Cause::Contrast, {}, {}, {}, "fills the picture: nothing to tell it from"});
   }
@@ -201,6 +203,12 @@ WhyNot why_not(const WhyNotInputs& in, std::size_t index,
   }
   keep_best_iris(trials, options.least_gain);
   const auto cures = [&](const Trial& t) { return t.probability >= options.wanted; };
+  // What the viewer lacks says nothing where the picture could be better.
+  const auto is_viewers = [](const Trial& t) { return t.change.cause >= Cause::Contrast; };
+  if (std::any_of(trials.begin(), trials.end(),
+                  [&](const Trial& t) { return cures(t) && !is_viewers(t); })) {
+    trials.erase(std::remove_if(trials.begin(), trials.end(), is_viewers), trials.end());
+  }
   const bool one_is_enough = std::any_of(trials.begin(), trials.end(), cures);
   WhyNot why;
   if (!one_is_enough) why = several(start, trials, task, now, options);
