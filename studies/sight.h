@@ -43,7 +43,7 @@ struct SignalSight {
   std::optional<double> rose;      // k: the same of the whole target in the eye's time
   std::optional<double> snr_d;     // |t - b| / sigma of that difference in the eye's time
   std::optional<double> dprime;    // ideal observer that knows the target's shape, in that time
-  std::optional<double> limiting_frequency;  // cycles per resel where C0 MTF(u) = 3 / SNR
+  std::optional<double> limiting_frequency;  // cycles per resel where C0 MTF(u) = 3 / SNR of a bar
 };
 
 // On the screen, cd/m^2, as a viewer sees it on average: with noise, phosphor spread and room

@@ -69,11 +69,29 @@ std::optional<double> weber_of(double target, double surround) {
   return (target - surround) / surround;
 }
 
-double limiting_frequency(const degrade::Setup& setup, double direction, double least_modulation) {
-  if (least_modulation >= 1.0) return 0.0;
+// What the least modulation that is seen follows from.
+struct Needed {
+  double delta = 0.0;       // of the line signal
+  double of_target = 0.0;   // } variances in the eye's time: of the target's mean
+  double of_resel = 0.0;    // } and of a resel
+  double of_the_eye = 1.0;  // threshold over the difference, on the screen
+  double lines = 0.0;       // across the target
+};
+
+// C0 MTF(u) = 3 / SNR, the SNR of one bar: half a period wide, as long as the target, so that it
+// holds 1 / (2 u lines) of its resels; never less than a resel's.
+double least_modulation(const Needed& needed, double frequency) {
+  const double bars = std::max(1.0, 2.0 * frequency * needed.lines);
+  const double variance = std::min(needed.of_resel, needed.of_target * bars);
+  return std::max(3.0 * std::sqrt(std::max(variance, 0.0)) / needed.delta, needed.of_the_eye);
+}
+
+double limiting_frequency(const degrade::Setup& setup, double direction, const Needed& needed) {
+  if (!(needed.delta > 0.0) || least_modulation(needed, 0.0) >= 1.0) return 0.0;
   constexpr double nyquist = 0.5;
-  return degrade::frequency_at([&](double f) { return chain_modulation(setup, direction, f); },
-                               least_modulation, nyquist);
+  return degrade::frequency_at(
+      [&](double f) { return chain_modulation(setup, direction, f) - least_modulation(needed, f); },
+      0.0, nyquist);
 }
 
 // Shares of the seen pixels whose resel is at white, or within the noise of black.
@@ -113,7 +131,8 @@ void compare(TargetSignal& out, const TargetResels& at, const ShownMoments& mome
   const MeanNoise noise = mean_noise(line, moments, at.seen, at.surround, frames);
   s.cnr = over(delta, both);
   // CNR sqrt(N n / sum r), where N n / sum r is how much less the mean scatters than a resel.
-  s.rose = over(delta, own > 0.0 ? both * noise.variance_a / own : noise.variance_a);
+  const double mean_variance = own > 0.0 ? both * noise.variance_a / own : noise.variance_a;
+  s.rose = over(delta, mean_variance);
   s.snr_d = over(delta, noise.variance_a + noise.variance_b - 2.0 * noise.covariance);
   s.dprime = ideal_observer(moments, at.seen, *s.surround, noise.variance_a);
 
@@ -122,14 +141,11 @@ void compare(TargetSignal& out, const TargetResels& at, const ShownMoments& mome
                        threshold_difference(std::max(line.screen_luminance, *m.surround));
   if (*m.surround > 0.0) m.threshold = least / *m.surround;
 
-  // The noise of a resel in the eye's time, and the eye's own threshold on the screen.
-  const double in_time = over(delta, 0.5 * (mean_of(moments.variance_in_time, at.measured) +
-                                            mean_of(moments.variance_in_time, at.surround)));
-  const double modulation =
-      delta > 0.0 && light > 0.0 ? std::max(3.0 / in_time, least / light) : 1.0;
-  s.limiting_frequency = limiting_frequency(setup, extent.direction_rad, modulation);
-  const double resels = out.lines;
-  out.cycles = resels * *s.limiting_frequency;
+  const double in_time = 0.5 * (mean_of(moments.variance_in_time, at.measured) +
+                                mean_of(moments.variance_in_time, at.surround));
+  const Needed needed{delta, mean_variance, in_time, light > 0.0 ? least / light : 1.0, out.lines};
+  s.limiting_frequency = limiting_frequency(setup, extent.direction_rad, needed);
+  out.cycles = out.lines * *s.limiting_frequency;
   const double most = std::min(degrade::normal_probability(*s.snr_d - options.even_chance_snr),
                                seeing_probability(light / least, options.eye));
   const Probability johnson = johnson_probability(*out.cycles, options.cycles);

@@ -150,6 +150,24 @@ TEST(SightNoise, FlatFieldsHaveTheNoiseOfTheClosedForms) {
   }
 }
 
+// What target and surround have in common leaves their difference.
+TEST(SightNoise, SharedNoiseLeavesTheDifference) {
+  degrade::Setup setup = tests::with_noise(tests::plain_cctv(edge, edge, 100.0), 0.0, 0.01);
+  setup.camera.blur_h = setup.camera.blur_v = 3.0;
+  const auto picture = tests::discs_on(50.0, {{48.0, 48.0, 2.5, 90.0}}, edge, edge);
+  const SightTarget& target = picture.plan.targets[0];
+  const CctvSignal line = pass_through(picture.image, setup);
+  const std::vector<std::uint32_t> all = all_of(edge, edge);
+  const MeanNoise noise =
+      mean_noise(line, moments_at(line, all, all, 6), weigh(target.seen, edge, edge, edge, edge),
+                 weigh(target.view.surround, edge, edge, edge, edge), 6);
+  EXPECT_GT(noise.covariance, 0.3 * noise.variance_a);
+  const SignalSight signal = *tests::sight_of(picture, setup).signal;
+  const double expected = (signal.mean - *signal.surround) /
+                          std::sqrt(noise.variance_a + noise.variance_b - 2.0 * noise.covariance);
+  EXPECT_NEAR(*signal.snr_d, expected, 1e-4 * expected);
+}
+
 TEST(SightNoise, FramesOfALaggingTubeAreAlike) {
   EXPECT_NEAR(time_factors(0.0, true, 6).same, 1.0 / 6.0, 1e-12);
   EXPECT_EQ(time_factors(0.0, true, 6).other, 0.0);

@@ -9,7 +9,6 @@
 #include "base/error.h"
 #include "degrade/detection.h"
 #include "degrade/presets.h"
-#include "studies/target_signal.h"
 #include "tests/studies/discs.h"
 
 namespace earthshine::studies {
@@ -93,34 +92,6 @@ TEST(Sight, LongerLooksAverageGrainButNoFixedPattern) {
   };
   EXPECT_NEAR(gain(grain), 2.0, 1e-6);  // 24 frames for 6
   EXPECT_NEAR(gain(pattern), 1.0, 1e-4);
-}
-
-// C0 MTF(u) = 3 / SNR: at the limiting frequency what the chain leaves of the difference is three
-// times the noise of a resel in the eye's time.
-TEST(Sight, LimitingFrequencyLeavesThreeTimesTheNoise) {
-  degrade::Setup setup = with_noise(plain_cctv(edge, edge, 100.0), 0.01);
-  setup.camera.lens_blur = 1.0;
-  const Sight sight = sight_of(bright_disc(), setup);
-  const double u = *sight.signal->limiting_frequency;
-  const double sinc = std::sin(base::pi * u) / (base::pi * u);
-  const double expected = 3.0 * std::sqrt(0.01 / 6.0) / 0.2;
-  // The disc's extent lies along no axis; the discrete Gaussian of sigma 1 is round to 1 %.
-  const double modulation = std::exp(-(1.0 - std::cos(2.0 * base::pi * u))) * sinc * sinc;
-  EXPECT_GT(u, 0.05);
-  EXPECT_LT(u, 0.3);
-  EXPECT_NEAR(modulation, expected, 0.03 * expected);
-  EXPECT_NEAR(*sight.johnson_cycles, *sight.tv_lines * u, 1e-9);
-}
-
-TEST(Sight, JohnsonDecidesWhereContrastIsAmple) {
-  // Without noise the resels' Nyquist frequency limits: n = lines / 2.
-  for (const double radius : {1.0, 4.0, 8.0}) {
-    const Sight sight = sight_of(bright_disc(radius), plain_cctv(edge, edge, 100.0));
-    EXPECT_EQ(*sight.signal->limiting_frequency, 0.5);
-    const Probability p = johnson_probability(0.5 * *sight.tv_lines, CyclesNeeded{});
-    EXPECT_NEAR(sight.probability->detect, p.detect, 1e-9);
-    EXPECT_NEAR(sight.probability->identify, p.identify, 1e-9);
-  }
 }
 
 TEST(Sight, NothingIsDetectedWithoutContrastInNoiseOrInWhite) {
