@@ -32,11 +32,24 @@ struct Trial {
   double probability = 0.0;
 };
 
-Reason reason_of(const Change& change, std::optional<double> without) {
-  Reason reason{change.cause, change.by, change.share, without, change.text};
-  if (without) {
-    reason.text += fmt::format("{} without it {:.2f}",
-                               change.text.find(':') == std::string::npos ? ":" : ";", *without);
+const char* without(Cause cause) {
+  switch (cause) {
+    case Cause::Unlit:
+      return "with it";
+    case Cause::Contrast:
+      return "to an eye without one";
+    case Cause::Small:
+      return "if it were large";
+    default:
+      return "without it";
+  }
+}
+
+Reason reason_of(const Change& change, std::optional<double> probability) {
+  Reason reason{change.cause, change.by, change.share, probability, change.text};
+  if (probability) {
+    const char* mark = change.text.find(':') == std::string::npos ? ":" : ";";
+    reason.text += fmt::format("{} {} {:.2f}", mark, without(change.cause), *probability);
   }
   return reason;
 }

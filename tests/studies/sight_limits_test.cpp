@@ -105,10 +105,44 @@ TEST(SightLimits, ProbabilityIsTheLeastOfSizeNoiseAndTheEye) {
   for (const double p : {by_noise.detect, by_noise.recognise, by_noise.identify}) {
     EXPECT_NEAR(p, 0.5, 1e-6);
   }
-  // At the eye's threshold no frequency is left either.
+  // Below the eye's threshold no frequency is left either; at 1.02 times it P = 1 - 2^-(1.02^3.5).
+  const double at_threshold = eye.eye.threshold_factor;
+  eye.eye.threshold_factor = 1.02 * at_threshold;
   EXPECT_EQ(sight_of(picture, setup, eye).probability->detect, 0.0);
-  eye.eye.threshold_factor *= 0.99;
-  EXPECT_NEAR(sight_of(picture, setup, eye).probability->detect, 0.5, 0.02);
+  eye.eye.threshold_factor = at_threshold / 1.02;
+  EXPECT_NEAR(sight_of(picture, setup, eye).probability->detect,
+              1.0 - std::exp2(-std::pow(1.02, 3.5)), 0.01);
+}
+
+// Left of the middle brighter than the ground by 20, right of it darker by as much: on average
+// nothing, but 20 everywhere.
+TEST(SightLimits, TargetLitFromOneSideStandsOutOnBoth) {
+  auto picture = discs_on(40.0, {{60.0, 60.0, 20.0, 40.0}}, edge, edge);
+  for (const std::uint32_t pixel : picture.plan.targets[0].seen) {
+    for (base::Channel& c : picture.image.channels) {
+      c.values[pixel] = pixel % edge < 60 ? 60.0F : 20.0F;
+    }
+  }
+  ASSERT_EQ(picture.plan.targets[0].parts.size(), 8U);
+  const Sight sight = sight_of(picture, plain_cctv(edge, edge, 100.0));
+  EXPECT_NEAR(*sight.weber, 0.0, 1e-3);
+  EXPECT_NEAR(*sight.signal->difference, 0.2, 0.01);  // sectors may share the middle
+  EXPECT_GT(sight.probability->identify, 0.9);
+  EXPECT_GT(sight.eye->probability->identify, 0.9);
+}
+
+TEST(SightLimits, PartsAreThoseOfLargeTargets) {
+  EXPECT_TRUE(bright_disc(3.0).plan.targets[0].parts.empty());
+  double share = 0.0;
+  std::size_t pixels = 0;
+  const auto picture = bright_disc();
+  for (const SightTarget::Part& part : picture.plan.targets[0].parts) {
+    share += part.share;
+    pixels += part.target.size();
+    EXPECT_GE(part.surround.size(), 16U);
+  }
+  EXPECT_NEAR(share, 1.0, 1e-12);
+  EXPECT_EQ(pixels, picture.plan.targets[0].view.measured.size());
 }
 
 TEST(SightLimits, JohnsonDecidesWhereContrastIsAmple) {

@@ -103,7 +103,7 @@ TEST(WhyNot, LampThatIsOffLightsThePictureItIsGiven) {
   lamp.when_on = &lit.image;
   const Told told = ask(dark, plain_cctv(edge, edge, 100.0), {lamp});
   expect_only(told, Cause::Unlit, "bay-lamps");
-  EXPECT_EQ(told.why.text, "unlit: bay-lamps switched off; without it 1.00");
+  EXPECT_EQ(told.why.text, "unlit: bay-lamps switched off; with it 1.00");
   // Without that picture, nor anything else to go by, the darkness is told all the same.
   lamp.when_on = nullptr;
   const Told blind = ask(dark, plain_cctv(edge, edge, 100.0), {lamp});
