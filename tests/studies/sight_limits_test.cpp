@@ -39,12 +39,22 @@ TEST(SightLimits, LimitingFrequencyLeavesThreeTimesTheNoiseOfABar) {
   EXPECT_NEAR(chain_modulation(setup, picture.plan.targets[0].extent.direction_rad, u), expected,
               1e-3 * expected);
   EXPECT_NEAR(*sight.johnson_cycles, lines * u, 1e-9);
-  // Fine noise against a fine pattern: a bar is never less than a resel, here a target of one.
-  const Sight tiny = sight_of(discs_on(40.0, {{60.5, 60.5, 0.6, 60.0}}, edge, edge),
-                              with_noise(plain_cctv(edge, edge, 100.0), 0.01));
-  const double v = *tiny.signal->limiting_frequency;
-  EXPECT_NEAR(chain_modulation(plain_cctv(edge, edge, 100.0), 0.0, v),
-              3.0 * std::sqrt(0.01 / 6.0) / 0.2, 2e-3);
+}
+
+// Noise blurred with the picture is as wide as this target: a bar scatters as much as a resel, and
+// no more. C0 / (3 / SNR) is then CNR sqrt(6 frames) / 3.
+TEST(SightLimits, ABarIsNoNoisierThanAResel) {
+  degrade::Setup setup = with_noise(plain_cctv(edge, edge, 100.0), 0.0, 0.03);
+  setup.camera.blur_h = setup.camera.blur_v = 2.0;
+  const auto picture = discs_on(50.0, {{60.0, 60.0, 3.0, 90.0}}, edge, edge);
+  SightOptions any_contrast;
+  any_contrast.eye.threshold_factor = 0.0;
+  const Sight sight = sight_of(picture, setup, any_contrast);
+  const double u = *sight.signal->limiting_frequency;
+  EXPECT_GT(2.0 * u * *sight.tv_lines, 1.5);
+  const double expected = 3.0 / (*sight.signal->cnr * std::sqrt(6.0));
+  EXPECT_NEAR(chain_modulation(setup, picture.plan.targets[0].extent.direction_rad, u), expected,
+              1e-2 * expected);
 }
 
 // A grating through the whole chain: the amplitude that its screen has left, by projection.

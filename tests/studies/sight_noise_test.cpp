@@ -40,6 +40,18 @@ degrade::Setup small_monitor(const degrade::Preset& preset) {
   return setup;
 }
 
+// Three pixels on two resels: the middle one lies on both.
+TEST(SightNoise, PixelsCountInEachReselByTheirArea) {
+  const WeightedResels middle = weigh({1}, 3, 1, 2, 1);
+  ASSERT_EQ(middle.resel.size(), 2U);
+  EXPECT_NEAR(middle.weight[0], 0.5, 1e-12);
+  EXPECT_NEAR(middle.area, 2.0 / 3.0, 1e-12);
+  const WeightedResels left = weigh({0, 1}, 3, 1, 2, 1);
+  EXPECT_NEAR(left.weight[0], 0.75, 1e-12);
+  EXPECT_NEAR(left.area, 4.0 / 3.0, 1e-12);
+  EXPECT_NEAR(weigh({0}, 1, 1, 4, 3).area, 12.0, 1e-12);  // and the other way
+}
+
 // Mean and variance of every resel, and the screen, as the twin of the whole picture has them.
 // Saturation moves the mean by less than the noise there, and all presets clip before.
 TEST(SightNoise, EveryReselIsThatOfTheTwin) {
