@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Why a target is not seen better: one cause at a time is taken away and the sight measured again.
 //   out-of-view  it would not show even alone
-//   hidden       what stands in front is taken away, by name
+//   hidden       what stands in front of a tenth of it or more is taken away, by name
 //   unlit        a source reaches all of it that faces the source, or is switched on
 //   iris         the iris stands as it would without a bright thing, by name; its light stays
 //   saturated    exposure so low that target and surround are below white, at least two stops
