@@ -74,6 +74,8 @@ studies::ConditionOptions StudyConditions::options() const {
   studies::ConditionOptions options;
   options.why.wanted = study_.seen_probability;
   options.why.sight.seen_probability = study_.seen_probability;
+  using Explain = studies::ConditionOptions::Explain;
+  options.explain = part_.conditions() > 1 ? Explain::Unseen : Explain::NotIdentified;
   return options;
 }
 

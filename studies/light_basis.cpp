@@ -223,6 +223,17 @@ std::size_t LightBasis::earth_parts() const {
 }
 
 GroupWeights LightBasis::weights(std::size_t place, std::size_t setting, double lamps) const {
+  return weigh(place, settings_[setting], lamps);
+}
+
+GroupWeights LightBasis::weights_with(std::size_t place, std::size_t setting,
+                                      const std::string& light) const {
+  LampSetting changed = settings_[setting];
+  changed.factors[light] = Rgb(1.0);
+  return weigh(place, changed, 1.0);
+}
+
+GroupWeights LightBasis::weigh(std::size_t place, const LampSetting& setting, double lamps) const {
   GroupWeights weights{std::vector<Rgb>(groups_.count(), Rgb(0.0)),
                        std::vector<double>(groups_.count(), 0.0),
                        std::vector<double>(groups_.count(), 0.0)};
@@ -230,16 +241,15 @@ GroupWeights LightBasis::weights(std::size_t place, std::size_t setting, double 
     if (group != no_group) weights.weight[group] = value;
   };
   for (std::size_t k = 0; k < scene_.lamps.size(); ++k) {
-    set(groups_.lamp[k],
-        lamps * factor(settings_[setting], scene_.lamps[k].name, group_of_lamp_[k]));
+    set(groups_.lamp[k], lamps * factor(setting, scene_.lamps[k].name, group_of_lamp_[k]));
   }
   for (std::size_t m = 0; m < scene_.materials.size(); ++m) {
     const std::string& group = scene_.materials[m].light_group;
-    set(groups_.material[m], lamps * factor(settings_[setting], group, group));
+    set(groups_.material[m], lamps * factor(setting, group, group));
   }
   set(groups_.ambient, Rgb(1.0));
-  const Rgb sun = sky_factor(settings_[setting], "sun");
-  const Rgb earth = sky_factor(settings_[setting], "earth");
+  const Rgb sun = sky_factor(setting, "sun");
+  const Rgb earth = sky_factor(setting, "earth");
   if (!in_parts()) {
     set(groups_.sun, sun);
     set(groups_.earth, earth);
@@ -251,10 +261,12 @@ GroupWeights LightBasis::weights(std::size_t place, std::size_t setting, double 
     const Rgb& unit = scene_.sky_parts->suns[part].illuminance_lx;
     for (int c = 0; c < 3; ++c) {
       const double wanted = places_[place].sun->illuminance_lx[c];
-      weights.weight[groups_.sun_parts + part][c] = unit[c] > 0.0 ? sun[c] * share * wanted / unit[c] : 0.0;
+      weights.weight[groups_.sun_parts + part][c] =
+          unit[c] > 0.0 ? sun[c] * share * wanted / unit[c] : 0.0;
     }
   }
-  if (groups_.earth != no_group && places_[place].earth) weigh_earth(places_[place], earth, weights);
+  if (groups_.earth != no_group && places_[place].earth)
+    weigh_earth(places_[place], earth, weights);
   return weights;
 }
 

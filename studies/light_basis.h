@@ -74,8 +74,13 @@ class LightBasis {
   // lamps: times all factors of the setting.
   [[nodiscard]] GroupWeights weights(std::size_t place, std::size_t setting,
                                      double lamps = 1.0) const;
+  // The same with the light of one name ("sun", "earth", a lamp or a group) as the scene has it.
+  [[nodiscard]] GroupWeights weights_with(std::size_t place, std::size_t setting,
+                                          const std::string& light) const;
 
  private:
+  [[nodiscard]] GroupWeights weigh(std::size_t place, const LampSetting& setting,
+                                   double lamps) const;
   [[nodiscard]] Rgb factor(const LampSetting& setting, const std::string& name,
                            const std::string& group) const;
   [[nodiscard]] static Rgb sky_factor(const LampSetting& setting, const std::string& name);

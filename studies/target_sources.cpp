@@ -132,7 +132,7 @@ TargetSources sources_on(const LightBasis& basis, const scenes::RayQuery& query,
                                base::luminance(sky.sun->illuminance_lx)),
             share);
     SourceOnTarget& sun = all.source("sun");
-    if (!on) sun.off = shines ? "switched off" : "in the Earth's shadow";
+    if (!on) sun.off = shines ? switched_off : "in the Earth's shadow";
     if (first != no_group) sun.luminance = luminance_of_groups(target, weights, first, count);
   }
   if (sky.earth) {
@@ -144,7 +144,7 @@ TargetSources sources_on(const LightBasis& basis, const scenes::RayQuery& query,
               reach_of_earth(scene, query, target.points, *sky.earth, sky.sun, earth_directions),
               on ? 1.0 : 0.0);
     }
-    if (!on) all.source("earth").off = lit ? "switched off" : "its night side is below";
+    if (!on) all.source("earth").off = lit ? switched_off : "its night side is below";
     if (groups.earth != no_group) {
       all.source("earth").luminance =
           luminance_of_groups(target, weights, groups.earth, basis.earth_parts());
@@ -155,7 +155,7 @@ TargetSources sources_on(const LightBasis& basis, const scenes::RayQuery& query,
     all.add(groups.names[group], reach, share);
     SourceOnTarget& source = all.source(groups.names[group]);
     source.luminance = luminance_of_groups(target, weights, group, 1);
-    if (share <= 0.0) source.off = "switched off";
+    if (share <= 0.0) source.off = switched_off;
   };
   for (std::size_t k = 0; k < target.lamps.size(); ++k) {
     if (target.lamps[k]) add_group(groups.lamp[k], *target.lamps[k]);
