@@ -19,7 +19,7 @@ namespace {
 struct OrbitCall {
   StudyCall study;
   std::uint64_t positions = 36;
-  std::string at;  // positions in degrees, with commas between
+  std::string at;  // positions in degrees, in any order, with commas between
   std::vector<std::string> wanted, iris;
   bool dry_run = false;
 };
@@ -46,6 +46,7 @@ std::vector<double> positions_of(const std::string& text) {
     }
     positions.push_back(value);
   }
+  std::sort(positions.begin(), positions.end());
   return positions;
 }
 

@@ -85,9 +85,7 @@ class Runner {
       found.conditions = conditions.judge(camera, view, frames.marks(camera), findings_.costs);
       if (!Interrupt::asked()) {
         draw_pictures(task_.study, part, camera, view, task_.folder, common_, findings_.figures);
-        for (std::size_t k = 0; k < ways_.size(); ++k) {
-          add_ways(part, task_.study, task_.study.wanted[k], camera, view, ways_[k]);
-        }
+        add_ways(part, task_.study, camera, view, ways_);
       }
       if (listen_) listen_(part, camera, view, *frame);
     }

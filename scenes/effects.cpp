@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "scenes/sky_parts.h"
+
 namespace earthshine::scenes {
 namespace {
 
@@ -27,8 +29,10 @@ Effects find_effects(const Scene& scene, const LightGroups& groups, const Asked&
   effects.penumbra =
       effects.sun && scene.sun->angular_radius_deg > 0.0 && asked.paths != LightPaths::Distributed;
   effects.earth = groups.earth != no_group;
-  effects.earth_by_gather = effects.earth && scene.earth->half_angle_deg >= wide_earth_deg &&
-                            asked.paths != LightPaths::Distributed;
+  // Shadow rays give all light of one source to one group: an Earth in cells is gathered always.
+  effects.earth_by_gather =
+      effects.earth && asked.paths != LightPaths::Distributed &&
+      (earth_parts(scene) > 1 || scene.earth->half_angle_deg >= wide_earth_deg);
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
     if (groups.lamp[k] == no_group) continue;
     effects.lamps = effects.lamp_kind[static_cast<std::size_t>(scene.lamps[k].kind)] = true;

@@ -56,7 +56,7 @@ struct Effects {
   bool penumbra = false;
   bool earth = false;
   bool earth_by_gather =
-      false;  // the Earth is wide: escaping gather rays read it; else it is sampled
+      false;  // the Earth is wide or in cells: escaping gather rays read it; else it is sampled
   bool lamps = false;
   std::array<bool, lamp_kinds> lamp_kind{};
   bool emitters = false;

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studies/light_basis.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
-#include <set>
 
-#include "base/error.h"
 #include "base/parallel.h"
 #include "scenes/lamp_light.h"
 #include "scenes/sky.h"
@@ -75,76 +70,6 @@ LightBasis::LightBasis(const scenes::Scene& scene, std::vector<SkyPlace> places,
     split_sky(options);
   }
   groups_ = scenes::find_light_groups(scene_);
-}
-
-void LightBasis::check_settings() const {
-  std::set<std::string> known;
-  if (std::any_of(places_.begin(), places_.end(), [](const SkyPlace& p) { return p.sun; })) {
-    known.insert("sun");
-  }
-  if (std::any_of(places_.begin(), places_.end(), [](const SkyPlace& p) { return p.earth; })) {
-    known.insert("earth");
-  }
-  for (const scenes::Lamp& lamp : scene_.lamps) known.insert({lamp.name, lamp.group});
-  const scenes::LightGroups groups = scenes::find_light_groups(original_);
-  for (std::size_t m = 0; m < original_.materials.size(); ++m) {
-    if (groups.material[m] != no_group) known.insert(original_.materials[m].light_group);
-  }
-  for (const LampSetting& setting : settings_) {
-    for (const auto& [name, factor] : setting.factors) {
-      if (!known.contains(name)) {
-        throw base::Error(
-            base::Blame::Input, "lamps \"" + setting.name + "\"",
-            fmt::format("the scene has no lamp or light group \"{}\"", name),
-            known.empty() ? "it has none at all" : fmt::format("it has {}", fmt::join(known, ", ")),
-            "Name one of them");
-      }
-      if (!(factor.r >= 0.0 && factor.g >= 0.0 && factor.b >= 0.0)) {
-        throw base::Error(base::Blame::Input, "lamps \"" + setting.name + "\"",
-                          fmt::format("\"{}\" has a factor below 0", name), "0 or more",
-                          "Write 0 for a lamp that is off");
-      }
-    }
-  }
-}
-
-// Lamps that a setting names get a group of their own; what is off in all settings goes.
-void LightBasis::split_lamps() {
-  std::set<std::string> named;
-  for (const LampSetting& setting : settings_) {
-    for (const auto& [name, factor] : setting.factors) named.insert(name);
-  }
-  const auto ever_on = [&](const std::string& name, const std::string& group) {
-    return std::any_of(settings_.begin(), settings_.end(), [&](const LampSetting& setting) {
-      return base::max_component(factor(setting, name, group)) > 0.0;
-    });
-  };
-  for (scenes::Lamp& lamp : scene_.lamps) {
-    if (!ever_on(lamp.name, lamp.group)) {
-      lamp.intensity_cd = lamp.exitance = Rgb(0.0);
-    } else if (named.contains(lamp.name)) {
-      lamp.group = lamp.name;
-    }
-  }
-  for (scenes::Material& material : scene_.materials) {
-    if (material.emits() && !ever_on(material.light_group, material.light_group)) {
-      material.emit = Rgb(0.0);
-    }
-  }
-}
-
-Rgb LightBasis::factor(const LampSetting& setting, const std::string& name,
-                       const std::string& group) const {
-  for (const std::string& key : {name, group}) {
-    const auto found = setting.factors.find(key);
-    if (found != setting.factors.end()) return found->second;
-  }
-  return Rgb(setting.others_off ? 0.0 : 1.0);
-}
-
-Rgb LightBasis::sky_factor(const LampSetting& setting, const std::string& name) {
-  const auto found = setting.factors.find(name);
-  return found == setting.factors.end() ? Rgb(1.0) : found->second;
 }
 
 void LightBasis::split_sky(const BasisOptions& options) {
@@ -244,7 +169,7 @@ GroupWeights LightBasis::weigh(std::size_t place, const LampSetting& setting, do
     set(groups_.lamp[k], lamps * factor(setting, scene_.lamps[k].name, group_of_lamp_[k]));
   }
   for (std::size_t m = 0; m < scene_.materials.size(); ++m) {
-    const std::string& group = scene_.materials[m].light_group;
+    const std::string& group = original_.materials[m].light_group;
     set(groups_.material[m], lamps * factor(setting, group, group));
   }
   set(groups_.ambient, Rgb(1.0));

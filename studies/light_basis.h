@@ -30,8 +30,8 @@ struct SkyPlace {
 };
 [[nodiscard]] SkyPlace sky_of(const scenes::Scene& scene);
 
-// Factors by name of a lamp, of a light group of lamps or of an emitting material's group; a lamp's
-// own name goes before its group's. "sun" and "earth" stand for these.
+// Factors by name of a lamp, of a light group of lamps or of an emitting material's group, as the
+// scene has them; a lamp's own name goes before its group's. "sun" and "earth" stand for these.
 struct LampSetting {
   std::string name;
   bool others_off = false;  // lamps and emitters not named; else they stay as the scene has them
@@ -61,6 +61,8 @@ class LightBasis {
   // With one place the scene's own sky; else a sky in parts (scenes/sky_parts.h). Sources are
   // scaled so that suns, Earth and lamps weigh alike where a picture's noise is judged.
   [[nodiscard]] const scenes::Scene& scene() const { return scene_; }
+  // A lamp that is set by itself has a group of its name; " (lamp)" or " (lamps)" follows where
+  // others have that name.
   [[nodiscard]] const scenes::LightGroups& groups() const { return groups_; }
   [[nodiscard]] const std::vector<SkyPlace>& places() const { return places_; }
   [[nodiscard]] const std::vector<LampSetting>& settings() const { return settings_; }

@@ -115,6 +115,7 @@ void read_positions(StudyFile& study, const TableReader& root) {
     orbit.fail("positions_deg", "is " + scenes::describe(list->node),
                fmt::format("allowed is a list of 1 to {} numbers", most_positions));
   }
+  std::sort(study.positions_deg.begin(), study.positions_deg.end());
 }
 
 LampSetting read_lamps(const TomlNode& node) {

@@ -45,9 +45,9 @@ struct StudyFile {
   std::vector<std::string> cameras;           // empty: all of the scene
   std::vector<std::string> targets;           // empty: the objects that the scene marks
   std::optional<int> columns, rows;           // none: the camera's own
-  std::vector<double> positions_deg;          // along the orbit; empty: the scene's own place
-  bool timeline = false;                      // the positions are evenly spaced over one turn
-  std::vector<LampSetting> lamps;             // never empty
+  std::vector<double> positions_deg;  // along the orbit, rising; empty: the scene's own place
+  bool timeline = false;              // the positions are evenly spaced over one turn
+  std::vector<LampSetting> lamps;     // never empty
   std::map<std::string, std::string> camera_models;  // CCTV camera by camera
   scenes::Scene cctv;                                // its own [[cctv]] tables and [monitor]
   std::vector<std::string> iris;  // modes that answers choose among; empty: the camera's
@@ -58,7 +58,7 @@ struct StudyFile {
   BasisOptions basis;
 };
 
-// Most positions, and most conditions (positions times settings).
+// Most positions of a study.
 inline constexpr int most_positions = 3600;
 
 // Throws base::Error (Input): where (file:line:column), what was found, what is allowed.

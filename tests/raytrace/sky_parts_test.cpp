@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures under a sky in parts: with the same rays the layers of the parts add up to the picture
+// under the whole sky.
+#include "scenes/sky_parts.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "raytrace/render.h"
+#include "tests/support/scene_builder.h"
+#include "tests/support/sky_in_parts.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+// A plate, a glossy one and a mirror on edge, seen before the Earth's disc.
+scenes::Scene things() {
+  tests::SceneBuilder builder;
+  builder.plate(builder.material(tests::grey(0.6)), 4.0, 0.0, true);
+  scenes::Material glossy = tests::grey(0.3);
+  glossy.specular = Rgb(0.4);
+  glossy.shininess = 20.0;
+  const std::uint32_t g = builder.material(glossy);
+  builder.quad(g, {-1, 1, 0}, {1, 1, 0}, {1, 1, 1}, {-1, 1, 1});
+  builder.quad(g, {-1, 1, 1}, {1, 1, 1}, {1, 1, 0}, {-1, 1, 0});
+  scenes::Material mirror = tests::grey(0.1);
+  mirror.mirror = Rgb(0.7);
+  builder.quad(builder.material(mirror), {-1, -1, 0}, {-1, 1, 0}, {-1, 1, 1}, {-1, -1, 1});
+  return builder.scene;
+}
+
+scenes::Camera looking_up() {
+  scenes::Camera camera;
+  camera.position = Vec3(1.5, -1.8, 0.7);
+  camera.look_at = Vec3(-0.3, 1, 0.6);
+  camera.fov_deg = 70.0;
+  return camera;
+}
+
+Frame drawn(const scenes::Scene& scene, bool per_light) {
+  const tests::Prepared prepared(scene);
+  radiosity::SolveOptions solve;
+  solve.patch_edge_m = 0.5;
+  solve.form_factor_rays = 256;
+  solve.tolerance = 1e-13;
+  RenderOptions options;
+  options.columns = options.rows = 24;
+  options.gather_rays = 64;
+  options.shared.on = false;
+  options.per_light = per_light;
+  return render(scene, prepared.groups, prepared.effects, prepared.query, prepared.solve(solve),
+                looking_up(), options);
+}
+
+// Every layer is rounded a few times on its way (radiosity, its sum over rays, the pixel), by
+// 2^-24 of itself, all to one side at worst.
+void expect_same_sum(const scenes::Scene& scene, std::size_t cells, bool lit_everywhere) {
+  const Frame whole = drawn(scene, false);
+  const Frame parts = drawn(tests::in_parts(scene, cells), true);
+  const std::vector<float>& picture = whole.image.find("G")->values;
+  std::vector<double> sum(picture.size(), 0.0);
+  std::size_t layers = 0;
+  for (const base::Channel& channel : parts.image.channels) {
+    if (channel.name.rfind("light_", 0) != 0 || channel.name.back() != 'G') continue;
+    ++layers;
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += double(channel.values[i]);
+  }
+  if (layers == 0) {  // a single group has no layers
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      sum[i] = double(parts.image.find("G")->values[i]);
+    }
+  }
+  std::size_t lit = 0;
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    lit += picture[i] > 0.0F ? 1 : 0;
+    EXPECT_NEAR(sum[i], double(picture[i]), 8.0 * 0x1p-24 * double(picture[i])) << i;
+  }
+  EXPECT_GT(lit, lit_everywhere ? sum.size() * 9 / 10 : sum.size() / 4);
+}
+
+TEST(SkyParts, LayersOfCellsAddUpToTheEarthsPicture) {
+  scenes::Scene scene = things();
+  scene.earth = tests::even_earth({-0.2, 0.5, 1.0}, 69.6, 100.0);
+  expect_same_sum(scene, 48, true);
+  expect_same_sum(scene, 2, true);
+}
+
+TEST(SkyParts, ThePartOfAPointSunIsTheSunsPicture) {
+  scenes::Scene scene = things();
+  scenes::Sun sun;
+  sun.direction = glm::normalize(Vec3(1, -1, 2));
+  sun.illuminance_lx = Rgb(1000.0);
+  sun.angular_radius_deg = 0.0;
+  scene.sun = sun;
+  expect_same_sum(scene, 2, false);
+}
+
+// The disc itself, seen by the camera and in the mirror: E / (pi sin^2 r) whether it is the scene's
+// Sun or a part. Nothing else of the picture is as bright.
+TEST(SkyParts, TheDiscOfASunIsSeen) {
+  scenes::Scene scene = things();
+  scenes::Sun sun;
+  sun.direction = glm::normalize(Vec3(-1.0, 2.8, 1.8));
+  sun.illuminance_lx = Rgb(1000.0);
+  sun.angular_radius_deg = 4.0;
+  scene.sun = sun;
+  const double radiance = 1000.0 / (base::pi * std::pow(std::sin(base::radians(4.0)), 2));
+  const Frame whole = drawn(scene, false), part = drawn(tests::in_parts(scene, 2), false);
+  const std::vector<float>&a = whole.image.find("G")->values, &b = part.image.find("G")->values;
+  std::size_t disc = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (double(a[i]) < 0.5 * radiance) continue;
+    ++disc;
+    EXPECT_NEAR(double(b[i]), double(a[i]), 1e-5 * radiance);
+  }
+  EXPECT_GT(disc, 0U);
+}
+
+}  // namespace
+}  // namespace earthshine::raytrace

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// The same sky whole and in parts, so that what the parts give can be held against the whole.
+#pragma once
+
+#include <memory>
+
+#include "scenes/sky_parts.h"
+
+namespace earthshine::tests {
+
+inline scenes::Earth even_earth(const Vec3& direction, double half_angle_deg, double radiance) {
+  scenes::Earth earth;
+  earth.model = scenes::EarthModel::Uniform;
+  earth.direction = glm::normalize(direction);
+  earth.half_angle_deg = half_angle_deg;
+  earth.radiance = Rgb(radiance);
+  return earth;
+}
+
+// The scene's uniform Earth in about `wanted` cells, its Sun as the only one of the parts.
+inline scenes::Scene in_parts(scenes::Scene scene, std::size_t wanted) {
+  scenes::SkyParts parts;
+  if (scene.sun) parts.suns.push_back(*scene.sun);
+  scene.sun.reset();
+  if (scene.earth) {
+    parts.cells = scenes::cells_of_disc(scene.earth->direction,
+                                        base::radians(scene.earth->half_angle_deg), wanted);
+  }
+  scene.sky_parts = std::make_shared<const scenes::SkyParts>(std::move(parts));
+  return scene;
+}
+
+}  // namespace earthshine::tests
