@@ -6,6 +6,7 @@
 #include <bit>
 #include <fstream>
 #include <iterator>
+#include <map>
 
 #include "base/digest.h"
 #include "base/error.h"
@@ -24,12 +25,15 @@ std::string stem_of(const Json& marks) {
   return digest.text();
 }
 
+// Whatever the order of its channels, which a file does not keep.
 std::string digest_of(const base::Image& image) {
   base::Digest digest;
   digest.add(std::uint64_t{image.pixel_count()});
-  for (const base::Channel& channel : image.channels) {
-    digest.add(std::string_view(channel.name));
-    for (const float value : channel.values) {
+  std::map<std::string_view, const std::vector<float>*> channels;
+  for (const base::Channel& channel : image.channels) channels[channel.name] = &channel.values;
+  for (const auto& [name, values] : channels) {
+    digest.add(name);
+    for (const float value : *values) {
       digest.add(std::uint64_t{std::bit_cast<std::uint32_t>(value)});
     }
   }

@@ -86,54 +86,68 @@ std::string lamp_text(const std::vector<WayOfLooking>& ways, double wanted) {
                        studies::most_lamp_factor, wanted);
   }
   if (*best->least_factor <= 0.0) return fmt::format(" {}no lamps are needed.", where);
-  return fmt::format(" {}the least light that does is {:.3g} times that of lamps {}, by camera {}.",
-                     where, *best->least_factor, best->lamps, best->camera);
+  const bool less = *best->least_factor <= studies::least_lamp_factor;
+  return fmt::format(
+      " {}the least light that does is {}{:.2g} times that of lamps {}, by camera {}.", where,
+      less ? "below " : "", *best->least_factor, best->lamps, best->camera);
 }
 
 }  // namespace
 
-void add_ways(const StudyPart& part, const studies::StudyFile& study,
-              const studies::WantedTarget& wanted, const StudyCamera& camera,
-              const studies::BasisView& view, std::vector<WayOfLooking>& ways) {
+namespace {
+
+// The camera's CCTV with that iris mode; its own for an empty one.
+std::optional<degrade::Setup> cctv_with(const StudyCamera& camera, const std::string& mode) {
+  if (!camera.cctv) return std::nullopt;
+  degrade::Setup cctv = camera.cctv->chain;
+  constexpr auto words = degrade::words_of(degrade::IrisMode{});
+  const auto word = std::find(words.begin(), words.end(), mode);
+  if (word != words.end()) cctv.camera.iris = static_cast<degrade::IrisMode>(word - words.begin());
+  return cctv;
+}
+
+std::vector<std::string> modes_of(const studies::StudyFile& study, const StudyCamera& camera) {
+  if (!camera.cctv || study.iris.empty()) return {""};
+  return study.iris;
+}
+
+}  // namespace
+
+void add_ways(const StudyPart& part, const studies::StudyFile& study, const StudyCamera& camera,
+              const studies::BasisView& view, std::vector<std::vector<WayOfLooking>>& ways) {
+  if (study.wanted.empty()) return;
   const studies::LightBasis& basis = *part.basis;
-  const auto named = std::find(part.targets.begin(), part.targets.end(), wanted.target);
-  const auto target = static_cast<std::size_t>(named - part.targets.begin());
-  const std::size_t darkest = darkest_place(basis, view.targets[target].by_group);
-  std::vector<std::string> modes = camera.cctv ? study.iris : std::vector<std::string>{};
-  if (modes.empty()) modes = {""};
-  for (const std::string& mode : modes) {
-    std::optional<degrade::Setup> cctv;
-    std::string iris;
-    if (camera.cctv) {
-      cctv = camera.cctv->chain;
-      cctv->options.fov_deg = camera.camera->fov_deg;
-      constexpr auto words = degrade::words_of(degrade::IrisMode{});
-      if (!mode.empty()) {
-        const auto word = std::find(words.begin(), words.end(), mode) - words.begin();
-        cctv->camera.iris = static_cast<degrade::IrisMode>(word);
-      }
-      iris = words[static_cast<std::size_t>(cctv->camera.iris)];
-    }
+  const std::size_t places = basis.places().size();
+  for (const std::string& mode : modes_of(study, camera)) {
+    const std::optional<degrade::Setup> cctv = cctv_with(camera, mode);
+    const std::string iris = cctv ? std::string(degrade::word_of(cctv->camera.iris)) : "";
     for (std::size_t setting = 0; setting < basis.settings().size(); ++setting) {
-      WayOfLooking way{part.id, camera.camera->name, iris, basis.settings()[setting].name,
-                       {},      part.positions_deg,  {},   {},
-                       false};
-      way.detect.resize(basis.places().size());
-      const auto probability = [&](std::size_t place, double lamps) {
-        return studies::detection(basis, view, target, place, setting, lamps, cctv);
-      };
-      base::parallel_chunks(way.detect.size(), 1, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::vector<double>> detect(places);  // by place and target
+      base::parallel_chunks(places, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t place = begin; place < end; ++place) {
-          way.detect[place] = probability(place, 1.0);
+          detect[place] = studies::detections(basis, view, place, setting, 1.0, cctv);
         }
       });
-      way.tried_factors = has_lamps(basis, setting);
-      if (!part.positions_deg.empty()) way.darkest_deg = part.positions_deg[darkest];
-      if (way.tried_factors) {
-        way.least_factor = studies::least_factor(
-            [&](double lamps) { return probability(darkest, lamps); }, wanted.probability);
+      const bool tries = has_lamps(basis, setting);
+      for (std::size_t w = 0; w < study.wanted.size(); ++w) {
+        const auto named =
+            std::find(part.targets.begin(), part.targets.end(), study.wanted[w].target);
+        const auto target = static_cast<std::size_t>(named - part.targets.begin());
+        const std::size_t darkest = darkest_place(basis, view.targets[target].by_group);
+        WayOfLooking way{part.id, camera.camera->name, iris, basis.settings()[setting].name,
+                         {},      part.positions_deg,  {},   {},
+                         tries};
+        for (const std::vector<double>& at_place : detect) way.detect.push_back(at_place[target]);
+        if (!part.positions_deg.empty()) way.darkest_deg = part.positions_deg[darkest];
+        if (tries) {
+          way.least_factor = studies::least_factor(
+              [&](double lamps) {
+                return studies::detections(basis, view, darkest, setting, lamps, cctv)[target];
+              },
+              study.wanted[w].probability);
+        }
+        ways[w].push_back(std::move(way));
       }
-      ways.push_back(std::move(way));
     }
   }
 }

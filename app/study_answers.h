@@ -21,10 +21,9 @@ struct WayOfLooking {
   bool tried_factors = false;  // false: the setting has no lamps on
 };
 
-// Adds the ways of one camera for one wanted target.
-void add_ways(const StudyPart& part, const studies::StudyFile& study,
-              const studies::WantedTarget& wanted, const StudyCamera& camera,
-              const studies::BasisView& view, std::vector<WayOfLooking>& ways);
+// Adds the ways of one camera to those of each wanted target.
+void add_ways(const StudyPart& part, const studies::StudyFile& study, const StudyCamera& camera,
+              const studies::BasisView& view, std::vector<std::vector<WayOfLooking>>& ways);
 
 // An entry of study.json's "answers".
 [[nodiscard]] Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& study,

@@ -74,6 +74,8 @@ studies::ConditionOptions StudyConditions::options() const {
   studies::ConditionOptions options;
   options.why.wanted = study_.seen_probability;
   options.why.sight.seen_probability = study_.seen_probability;
+  using Explain = studies::ConditionOptions::Explain;
+  options.explain = part_.conditions() > 1 ? Explain::Unseen : Explain::NotIdentified;
   return options;
 }
 
@@ -104,20 +106,6 @@ Json StudyConditions::marks(const StudyCamera& camera, const Json& frame_marks, 
   return marks;
 }
 
-std::optional<std::vector<Json>> StudyConditions::find(const StudyCamera& camera,
-                                                       const Json& frame_marks) {
-  std::vector<Json> all;
-  for (std::size_t first = 0; first < part_.conditions(); first += batch) {
-    const std::size_t last = std::min(first + batch, part_.conditions());
-    std::string said;
-    const std::optional<Json> stored =
-        store_.find_facts(marks(camera, frame_marks, first, last), said);
-    if (!stored) return std::nullopt;
-    for (const Json& one : (*stored)["conditions"]) all.push_back(one);
-  }
-  return all;
-}
-
 std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studies::BasisView& view,
                                          const Json& frame_marks, std::vector<StudyCost>& costs) {
   const auto start = std::chrono::steady_clock::now();
@@ -125,8 +113,8 @@ std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studie
       progress_of_stages(common_)(fmt::format("conditions of camera {}", camera.camera->name));
   std::optional<degrade::Setup> cctv;
   if (camera.cctv) cctv = camera.cctv->chain;
-  if (cctv) cctv->options.fov_deg = camera.camera->fov_deg;
   std::vector<Json> all(part_.conditions());
+  bool found = true;
   for (std::size_t first = 0; first < all.size(); first += batch) {
     const std::size_t last = std::min(first + batch, all.size());
     if (progress) progress(first, all.size());
@@ -138,6 +126,7 @@ std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studie
       continue;
     }
     if (!said.empty()) note("note: " + said);
+    found = false;
     if (Interrupt::asked()) break;
     base::parallel_chunks(last - first, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = first + begin; k < first + end; ++k) {
@@ -151,7 +140,8 @@ std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studie
                                                all.begin() + static_cast<std::ptrdiff_t>(last))}});
   }
   const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;
-  costs.push_back({fmt::format("conditions {} {}", part_.id, camera.camera->name), gone.count()});
+  costs.push_back(
+      {fmt::format("conditions {} {}", part_.id, camera.camera->name), gone.count(), 0, found});
   return all;
 }
 

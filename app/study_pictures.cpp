@@ -61,6 +61,17 @@ std::string file_of(const studies::StudyFile& study, const PictureWish& wish) {
   return fmt::format("pictures/{:02d}-{}", number + 1, stem);
 }
 
+CctvSetup cctv_of_wish(const StudyPart& part, const StudyCamera& camera, const PictureWish& wish,
+                       const Common& common) {
+  if (wish.cctv.empty()) return *camera.cctv;
+  const scenes::Scene& scene = part.loaded.scene;
+  CctvSetup setup = cctv_of_camera(scene, *camera.camera, common);
+  setup.name = wish.cctv;
+  setup.chain.camera = degrade::resolve_camera(scene, wish.cctv);
+  setup.chain.monitor = degrade::resolve_monitor(scene, wish.cctv);
+  return setup;
+}
+
 base::Image draw_distributed(const StudyPart& part, const StudyCamera& camera,
                              const PictureWish& wish, const Common& common) {
   const scenes::Scene scene = part.basis->scene_at(place_of(part, wish), setting_of(part, wish));
@@ -142,11 +153,12 @@ void check_pictures(const studies::StudyFile& study, const std::vector<const Stu
                          scenes::in_quotes(wish.camera)),
              "its cameras are " + scenes::listed(names));
     }
-    if (by_cctv(wish.shows) && !camera_of(**part, wish.camera)->cctv) {
+    if (by_cctv(wish.shows) && wish.cctv.empty() && !camera_of(**part, wish.camera)->cctv) {
       refuse(fmt::format("shows camera {} by CCTV, which it does not have",
                          scenes::in_quotes(wish.camera)),
              "give it one under camera_models, or show \"clean\"");
     }
+    if (!wish.cctv.empty()) (void)degrade::resolve_camera((*part)->loaded.scene, wish.cctv);
     if (setting_of(**part, wish) == (*part)->basis->settings().size()) {
       std::vector<std::string> names;
       for (const studies::LampSetting& s : (*part)->basis->settings()) names.push_back(s.name);
@@ -169,6 +181,9 @@ void draw_pictures(const studies::StudyFile& study, const StudyPart& part,
                    const std::filesystem::path& folder, const Common& common, Json& figures) {
   for (const PictureWish& wish : study.pictures) {
     if (wish.camera != camera.camera->name) continue;
+    const bool drawn = std::any_of(figures.begin(), figures.end(),
+                                   [&](const Json& one) { return one["name"] == wish.name; });
+    if (drawn) continue;  // by an earlier scene that has a camera of that name
     const std::string stem = file_of(study, wish);
     const base::Image radiance =
         distributed(wish.shows)
@@ -178,8 +193,7 @@ void draw_pictures(const studies::StudyFile& study, const StudyPart& part,
                   part.basis->weights(place_of(part, wish), setting_of(part, wish)));
     base::write_exr(folder / (stem + ".exr"), radiance);
     if (by_cctv(wish.shows)) {
-      CctvSetup cctv = *camera.cctv;
-      cctv.chain.options.fov_deg = camera.camera->fov_deg;
+      const CctvSetup cctv = cctv_of_wish(part, camera, wish, common);
       write_cctv((folder / (stem + ".png")).string(), cctv, run_chain(cctv, radiance));
     } else {
       base::write_png(folder / (stem + ".png"), radiance.width, radiance.height, 3,

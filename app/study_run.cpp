@@ -16,6 +16,7 @@
 #include "app/study_results.h"
 #include "base/error.h"
 #include "base/output_file.h"
+#include "scenes/message_text.h"
 
 namespace earthshine::app {
 namespace {
@@ -38,6 +39,20 @@ std::vector<const StudyPart*> pointers(const Parts& parts) {
   std::vector<const StudyPart*> all;
   for (const auto& part : parts) all.push_back(part.get());
   return all;
+}
+
+// A CCTV camera for a camera that no scene has would go unnoticed.
+void check_models(const studies::StudyFile& study, const std::vector<const StudyPart*>& parts) {
+  std::vector<std::string> names;
+  for (const StudyPart* part : parts) {
+    for (const scenes::Camera& camera : part->loaded.scene.cameras) names.push_back(camera.name);
+  }
+  for (const auto& [name, model] : study.camera_models) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    throw base::Error(base::Blame::Input, "camera_models",
+                      "no scene has a camera " + scenes::in_quotes(name),
+                      "there are " + scenes::listed(names), scenes::did_you_mean(name, names));
+  }
 }
 
 class Runner {
@@ -85,9 +100,7 @@ class Runner {
       found.conditions = conditions.judge(camera, view, frames.marks(camera), findings_.costs);
       if (!Interrupt::asked()) {
         draw_pictures(task_.study, part, camera, view, task_.folder, common_, findings_.figures);
-        for (std::size_t k = 0; k < ways_.size(); ++k) {
-          add_ways(part, task_.study, task_.study.wanted[k], camera, view, ways_[k]);
-        }
+        add_ways(part, task_.study, camera, view, ways_);
       }
       if (listen_) listen_(part, camera, view, *frame);
     }
@@ -108,10 +121,13 @@ class Runner {
 
 Json run_study(StudyTask task, const Common& common, const ViewListener& listen) {
   const Parts parts = prepare_parts(task.study, common);
+  check_models(task.study, pointers(parts));
   fill_pictures(task.study, *parts.front());
   check_pictures(task.study, pointers(parts));
   if (task.dry_run) return plan_json(task.study, pointers(parts), task.folder, common);
-  prepare_folder(task.folder, {study_file, results_table, report_file});
+  std::vector<std::string> files = {study_file, results_table, report_file};
+  files.insert(files.end(), task.more_files.begin(), task.more_files.end());
+  prepare_folder(task.folder, files);
   std::error_code ignored;
   fs::create_directories(fs::path(task.folder) / "pictures", ignored);
 

@@ -87,22 +87,20 @@ int ClosedSurface::winding(const Vec3& point) const {
 
 ClosedBodies::ClosedBodies(const scenes::Scene& scene, const Vec3& centre) : centre_(centre) {
   const ClosedParts parts = find_closed_parts(scene);
-  std::vector<std::uint32_t> order;
   std::vector<char> walls(parts.of.size(), 0);
   const std::map<std::uint32_t, std::vector<Vec3>> stoppers = find_stoppers(scene, parts);
-  for (std::uint32_t t = 0; t < parts.of.size(); ++t) {
-    if (parts.closed[parts.of[t]] != 0 || stoppers.contains(parts.of[t])) order.push_back(t);
-  }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return parts.of[a] < parts.of[b]; });
-  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+  const auto is_solid = [&](std::uint32_t part) {
+    return parts.closed[part] != 0 || stoppers.contains(part);
+  };
+  for (const auto& triangles : triangles_by_part(parts, is_solid)) {
     std::vector<Vec3> corners;
-    for (; end < order.size() && parts.of[order[end]] == parts.of[order[begin]]; ++end) {
-      for (const std::uint32_t v : scene.triangles[order[end]].vertex) {
+    for (const std::uint32_t t : triangles) {
+      for (const std::uint32_t v : scene.triangles[t].vertex) {
         corners.push_back(scene.vertices[v] - centre);
       }
     }
-    if (const auto stopper = stoppers.find(parts.of[order[begin]]); stopper != stoppers.end()) {
+    if (const auto stopper = stoppers.find(parts.of[triangles.front()]);
+        stopper != stoppers.end()) {
       for (const Vec3& p : stopper->second) corners.push_back(p - centre);
     }
     ClosedSurface surface(corners);
@@ -110,7 +108,7 @@ ClosedBodies::ClosedBodies(const scenes::Scene& scene, const Vec3& centre) : cen
     if (surface.volume_m3() > least) {
       bodies_.push_back({std::move(surface), {}});
     } else if (surface.volume_m3() < -least) {
-      for (std::size_t k = begin; k < end; ++k) walls[order[k]] = 1;
+      for (const std::uint32_t t : triangles) walls[t] = 1;
       cavities_.push_back(std::move(surface));
     }
   }

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "scenes/scene.h"
@@ -22,5 +24,18 @@ struct ClosedParts {
   std::vector<RimEdge> rims;  // by part
 };
 [[nodiscard]] ClosedParts find_closed_parts(const scenes::Scene& scene);
+
+// The triangles of the parts that keep(part) says yes to, part by part, each in ascending order.
+template <class Keep>
+[[nodiscard]] std::vector<std::vector<std::uint32_t>> triangles_by_part(const ClosedParts& parts,
+                                                                        const Keep& keep) {
+  std::map<std::uint32_t, std::vector<std::uint32_t>> of_part;
+  for (std::uint32_t t = 0; t < parts.of.size(); ++t) {
+    if (keep(parts.of[t])) of_part[parts.of[t]].push_back(t);
+  }
+  std::vector<std::vector<std::uint32_t>> all;
+  for (auto& [part, triangles] : of_part) all.push_back(std::move(triangles));
+  return all;
+}
 
 }  // namespace earthshine::radiosity

@@ -70,16 +70,11 @@ class Walls {
       const scenes::Material& material = scene.materials[scene.triangles[t].material];
       if (material.passes_light_on() || material.two_sided) holds[parts.of[t]] = 0;
     }
-    std::vector<std::uint32_t> order;
-    for (std::uint32_t t = 0; t < parts.of.size(); ++t) {
-      if (holds[parts.of[t]] != 0) order.push_back(t);
-    }
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return parts.of[a] < parts.of[b]; });
-    for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    for (const auto& triangles :
+         triangles_by_part(parts, [&](std::uint32_t part) { return holds[part] != 0; })) {
       std::vector<Vec3> corners;
-      for (; end < order.size() && parts.of[order[end]] == parts.of[order[begin]]; ++end) {
-        for (const std::uint32_t v : scene.triangles[order[end]].vertex) {
+      for (const std::uint32_t t : triangles) {
+        for (const std::uint32_t v : scene.triangles[t].vertex) {
           corners.push_back(scene.vertices[v]);
         }
       }

@@ -41,6 +41,7 @@ LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups
   }
   for (std::size_t k = 0; effects.sun_parts && k < scene.sky_parts->suns.size(); ++k) {
     add({Kind::SunPart, groups.sun_parts + k, k}, 1);
+    part_illuminance_lx_.push_back(scenes::sun_sample_illuminance(scene.sky_parts->suns[k]));
   }
   if (effects.earth && (distributed_ || !effects.earth_by_gather)) {
     earth_half_angle_rad_ = base::radians(scene.earth->half_angle_deg);
@@ -151,6 +152,15 @@ void LightSampler::add(Light light, int copies) {
   }
 }
 
+bool LightSampler::below_horizon(std::size_t index, const Vec3& normal) const {
+  const Light& light = lights_[index];
+  if (light.kind != Kind::Sun && light.kind != Kind::SunPart) return false;
+  const scenes::Sun& sun =
+      light.kind == Kind::Sun ? *scene_.sun : scene_.sky_parts->suns[light.index];
+  constexpr double rounding = 1e-9;
+  return glm::dot(sun.direction, normal) < -base::radians(sun.angular_radius_deg) - rounding;
+}
+
 scenes::LightSample LightSampler::sample(std::size_t index, const Vec3& point, double u,
                                          double v) const {
   const Light& light = lights_[index];
@@ -169,7 +179,7 @@ scenes::LightSample LightSampler::sample(std::size_t index, const Vec3& point, d
     case Kind::SunPart: {
       const scenes::Sun& sun = scene_.sky_parts->suns[light.index];
       sample = {scenes::sample_cone(sun.direction, base::radians(sun.angular_radius_deg), u, v),
-                std::numeric_limits<double>::infinity(), scenes::sun_sample_illuminance(sun)};
+                std::numeric_limits<double>::infinity(), part_illuminance_lx_[light.index]};
       break;
     }
     case Kind::Earth: {

@@ -42,6 +42,9 @@ class LightSampler {
   [[nodiscard]] std::size_t count() const { return lights_.size(); }
   [[nodiscard]] std::size_t group(std::size_t light) const { return lights_[light].group; }
   [[nodiscard]] scenes::LightKind kind(std::size_t light) const;
+  // Whether the whole of it is below the horizon of a surface that faces `normal`: known without a
+  // sample for Suns alone.
+  [[nodiscard]] bool below_horizon(std::size_t light, const Vec3& normal) const;
   [[nodiscard]] scenes::LightSample sample(std::size_t light, const Vec3& point, double u,
                                            double v) const;
 
@@ -72,6 +75,7 @@ class LightSampler {
   Crowd surfaces_{scenes::LightTree({}), {}};  // lamps that a ray can meet, by their number there
   std::vector<scenes::EmitterSet> emitters_;
   Rgb sun_illuminance_lx_{0.0};
+  std::vector<Rgb> part_illuminance_lx_;  // of a sky in parts
   double earth_half_angle_rad_ = 0.0;
   double earth_solid_angle_sr_ = 0.0;
 };

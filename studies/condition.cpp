@@ -1,13 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studies/condition.h"
 
-#include <algorithm>
 #include <map>
+#include <string>
 
-#include "scenes/sky.h"
 #include "studies/target_sources.h"
 
 namespace earthshine::studies {
+
+namespace {
+
+bool wants_reasons(const Sight& sight, const ConditionOptions& options) {
+  using Explain = ConditionOptions::Explain;
+  if (options.explain == Explain::None || sight.verdict == Verdict::Identified) return false;
+  const bool seen = sight.verdict == Verdict::Recognised || sight.verdict == Verdict::Detected;
+  return options.explain == Explain::NotIdentified || !seen;
+}
+
+}  // namespace
 
 BasisView make_basis_view(const LightBasis& basis, const scenes::RayQuery& query,
                           const scenes::Camera& camera, base::Image layers) {
@@ -39,6 +49,7 @@ Outcome judge_condition(const LightBasis& basis, const scenes::RayQuery& query,
   outcome.sight = measure_sight(view.plan, outcome.radiance, cctv, options.why.sight);
   const SkyPlace& sky = basis.places()[place];
   outcome.sun_share = sun_share_of(sky);
+  std::map<std::string, base::Image> lit_by;  // the picture with a source on that is off
   for (std::size_t t = 0; t < view.targets.size(); ++t) {
     const BasisView::Target& target = view.targets[t];
     TargetOutcome found;
@@ -46,10 +57,23 @@ Outcome judge_condition(const LightBasis& basis, const scenes::RayQuery& query,
     found.sources = sources.sources;
     if (!target.points.empty()) found.lit_fraction = sources.lit_fraction;
     found.basis_error = basis_error(weights, target.by_group);
-    if (options.explain) {
+    if (wants_reasons(outcome.sight.targets[t], options)) {
+      for (SourceOnTarget& source : found.sources) {
+        if (source.off != switched_off) continue;
+        auto picture = lit_by.find(source.group);
+        if (picture == lit_by.end()) {
+          picture = lit_by
+                        .emplace(source.group,
+                                 weighted_sum(view.layers, basis.groups().names,
+                                              basis.weights_with(place, setting, source.group)))
+                        .first;
+        }
+        source.when_on = &picture->second;
+      }
       found.why = why_not({basis.scene(), *view.camera, view.plan, outcome.radiance, cctv,
                            outcome.sight, sky.sun, sky.earth},
                           t, found.sources, options.why);
+      for (SourceOnTarget& source : found.sources) source.when_on = nullptr;
     }
     outcome.targets.push_back(std::move(found));
   }

@@ -51,8 +51,9 @@ struct Outcome {
 };
 
 struct ConditionOptions {
-  double lamps = 1.0;   // times all lamps of the setting
-  bool explain = true;  // fills TargetOutcome::why
+  double lamps = 1.0;  // times all lamps of the setting
+  // For which targets TargetOutcome::why is filled: each costs about as much as ten conditions.
+  enum class Explain { None, Unseen, NotIdentified } explain = Explain::NotIdentified;
   WhyNotOptions why;
 };
 

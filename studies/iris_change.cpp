@@ -123,9 +123,12 @@ std::vector<Change> with_iris_opened(const WhyNotInputs& in, std::size_t index, 
     for (const BrightThing* thing : gone) {
       sum -= thing->sum;
       left -= static_cast<double>(thing->pixels.size());
-      names += (names.empty() ? "" : ", ") + thing->name;
     }
     if (!(left > 0.0)) return;
+    for (std::size_t k = 0; k < std::min<std::size_t>(3, gone.size()); ++k) {
+      names += (k == 0 ? "" : ", ") + gone[k]->name;
+    }
+    if (gone.size() > 3) names += fmt::format(" and {} more", gone.size() - 3);
     std::vector<float> without = luminance;
     for (const BrightThing* thing : gone) {
       for (const std::uint32_t pixel : thing->pixels)

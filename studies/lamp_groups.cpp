@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lamps' part of a light basis: lamps that a setting names get a group of their own; what is
-// off in all settings goes.
+// The settings' part of a light basis: what they may name; lamps that one names get a group of their
+// own; what is off in all of them goes.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -65,14 +65,19 @@ void set_apart(scenes::Scene& scene, const std::vector<scenes::Lamp*>& split) {
 
 }  // namespace
 
-void LightBasis::split_lamps() {
+void LightBasis::check_settings() const {
   std::set<std::string> known;
+  if (std::any_of(places_.begin(), places_.end(), [](const SkyPlace& p) { return p.sun; })) {
+    known.insert("sun");
+  }
+  if (std::any_of(places_.begin(), places_.end(), [](const SkyPlace& p) { return p.earth; })) {
+    known.insert("earth");
+  }
   for (const scenes::Lamp& lamp : scene_.lamps) known.insert({lamp.name, lamp.group});
   const scenes::LightGroups groups = scenes::find_light_groups(original_);
   for (std::size_t m = 0; m < original_.materials.size(); ++m) {
     if (groups.material[m] != no_group) known.insert(original_.materials[m].light_group);
   }
-  std::set<std::string> named;
   for (const LampSetting& setting : settings_) {
     for (const auto& [name, factor] : setting.factors) {
       if (!known.contains(name)) {
@@ -87,8 +92,14 @@ void LightBasis::split_lamps() {
                           fmt::format("\"{}\" has a factor below 0", name), "0 or more",
                           "Write 0 for a lamp that is off");
       }
-      named.insert(name);
     }
+  }
+}
+
+void LightBasis::split_lamps() {
+  std::set<std::string> named;
+  for (const LampSetting& setting : settings_) {
+    for (const auto& [name, factor] : setting.factors) named.insert(name);
   }
   const auto ever_on = [&](const std::string& name, const std::string& group) {
     return std::any_of(settings_.begin(), settings_.end(), [&](const LampSetting& setting) {
@@ -119,6 +130,11 @@ Rgb LightBasis::factor(const LampSetting& setting, const std::string& name,
     if (found != setting.factors.end()) return found->second;
   }
   return Rgb(setting.others_off ? 0.0 : 1.0);
+}
+
+Rgb LightBasis::sky_factor(const LampSetting& setting, const std::string& name) {
+  const auto found = setting.factors.find(name);
+  return found == setting.factors.end() ? Rgb(1.0) : found->second;
 }
 
 }  // namespace earthshine::studies

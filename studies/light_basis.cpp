@@ -17,6 +17,7 @@ using scenes::no_group;
 
 constexpr double same_direction = 1e-9;  // rad
 constexpr int cell_side = 12;            // directions across a cell for its mean radiance
+constexpr double no_sun = 1e-12;         // factor of a Sun that is off while the Earth shines by it
 // What a smooth radiance may reach between two of them over what it reaches there: 1 / 12^2 of a
 // parabola's range over the cell, and a half more for what is none.
 constexpr double between_directions = 1.01;
@@ -73,6 +74,7 @@ LightBasis::LightBasis(const scenes::Scene& scene, std::vector<SkyPlace> places,
       settings_(std::move(settings)),
       sun_of_place_(places_.size(), no_group) {
   for (const scenes::Lamp& lamp : scene.lamps) group_of_lamp_.push_back(lamp.group);
+  check_settings();
   split_lamps();
   if (places_.size() == 1) {
     scene_.sun = places_.front().sun;
@@ -132,6 +134,14 @@ scenes::Scene LightBasis::scene_at(std::size_t place, std::size_t setting) const
   scenes::Scene scene = original_;
   scene.sun = places_[place].sun;
   scene.earth = places_[place].earth;
+  const Rgb sun = glm::max(sky_factor(settings_[setting], "sun"), Rgb(no_sun));
+  const Rgb earth = sky_factor(settings_[setting], "earth");
+  if (scene.sun) scene.sun->illuminance_lx *= sun;
+  // The Earth shines by the Sun: what the Sun's factor takes from it its albedo gives back.
+  if (scene.earth) {
+    scene.earth->albedo *= earth / sun;
+    scene.earth->radiance *= earth;
+  }
   for (scenes::Lamp& lamp : scene.lamps) {
     const Rgb times = factor(settings_[setting], lamp.name, lamp.group);
     lamp.intensity_cd *= times;
@@ -154,6 +164,17 @@ std::size_t LightBasis::earth_parts() const {
 }
 
 GroupWeights LightBasis::weights(std::size_t place, std::size_t setting, double lamps) const {
+  return weigh(place, settings_[setting], lamps);
+}
+
+GroupWeights LightBasis::weights_with(std::size_t place, std::size_t setting,
+                                      const std::string& light) const {
+  LampSetting changed = settings_[setting];
+  changed.factors[light] = Rgb(1.0);
+  return weigh(place, changed, 1.0);
+}
+
+GroupWeights LightBasis::weigh(std::size_t place, const LampSetting& setting, double lamps) const {
   GroupWeights weights{std::vector<Rgb>(groups_.count(), Rgb(0.0)),
                        std::vector<double>(groups_.count(), 0.0),
                        std::vector<double>(groups_.count(), 0.0)};
@@ -161,17 +182,18 @@ GroupWeights LightBasis::weights(std::size_t place, std::size_t setting, double 
     if (group != no_group) weights.weight[group] = value;
   };
   for (std::size_t k = 0; k < scene_.lamps.size(); ++k) {
-    set(groups_.lamp[k],
-        lamps * factor(settings_[setting], scene_.lamps[k].name, group_of_lamp_[k]));
+    set(groups_.lamp[k], lamps * factor(setting, scene_.lamps[k].name, group_of_lamp_[k]));
   }
   for (std::size_t m = 0; m < scene_.materials.size(); ++m) {
     const std::string& group = original_.materials[m].light_group;
-    set(groups_.material[m], lamps * factor(settings_[setting], group, group));
+    set(groups_.material[m], lamps * factor(setting, group, group));
   }
   set(groups_.ambient, Rgb(1.0));
+  const Rgb sun = sky_factor(setting, "sun");
+  const Rgb earth = sky_factor(setting, "earth");
   if (!in_parts()) {
-    set(groups_.sun, Rgb(1.0));
-    set(groups_.earth, Rgb(1.0));
+    set(groups_.sun, sun);
+    set(groups_.earth, earth);
     return weights;
   }
   if (sun_of_place_[place] != no_group) {
@@ -180,23 +202,27 @@ GroupWeights LightBasis::weights(std::size_t place, std::size_t setting, double 
     const Rgb& unit = scene_.sky_parts->suns[part].illuminance_lx;
     for (int c = 0; c < 3; ++c) {
       const double wanted = places_[place].sun->illuminance_lx[c];
-      weights.weight[groups_.sun_parts + part][c] = unit[c] > 0.0 ? share * wanted / unit[c] : 0.0;
+      weights.weight[groups_.sun_parts + part][c] =
+          unit[c] > 0.0 ? sun[c] * share * wanted / unit[c] : 0.0;
     }
   }
-  if (groups_.earth != no_group && places_[place].earth) weigh_earth(places_[place], weights);
+  if (groups_.earth != no_group && places_[place].earth) {
+    weigh_earth(places_[place], earth, weights);
+  }
   return weights;
 }
 
-void LightBasis::weigh_earth(const SkyPlace& place, GroupWeights& weights) const {
+void LightBasis::weigh_earth(const SkyPlace& place, const Rgb& factor,
+                             GroupWeights& weights) const {
   const scenes::Scene sky = bare(place);
-  if (!scenes::earth_is_lit(sky)) return;
+  if (!scenes::earth_is_lit(sky) || base::max_component(factor) <= 0.0) return;
   const scenes::SkyCells& cells = *scene_.sky_parts->cells;
   base::parallel_chunks(cells.count(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t cell = begin; cell < end; ++cell) {
       std::vector<Rgb> seen;
       Rgb mean(0.0);
       cells.visit(cell, cell_side, [&](const Vec3& direction) {
-        seen.push_back(scenes::earth_radiance(sky, direction) / earth_unit_);
+        seen.push_back(factor * scenes::earth_radiance(sky, direction) / earth_unit_);
         mean += seen.back();
       });
       mean /= static_cast<double>(seen.size());
@@ -206,7 +232,7 @@ void LightBasis::weigh_earth(const SkyPlace& place, GroupWeights& weights) const
       }
       // The extremes stand at edges and at the limb.
       const auto look = [&](const Vec3& direction) {
-        const Rgb value = scenes::earth_radiance(sky, direction) / earth_unit_;
+        const Rgb value = factor * scenes::earth_radiance(sky, direction) / earth_unit_;
         largest = std::max(largest, std::abs(base::luminance(value) - base::luminance(mean)));
       };
       cells.visit_lattice(cell, cell_side, [&](const Vec3& direction) {

@@ -31,10 +31,10 @@ struct SkyPlace {
 [[nodiscard]] SkyPlace sky_of(const scenes::Scene& scene);
 
 // Factors by name of a lamp, of a light group of lamps or of an emitting material's group, as the
-// scene has them; a lamp's own name goes before its group's.
+// scene has them; a lamp's own name goes before its group's. "sun" and "earth" stand for these.
 struct LampSetting {
   std::string name;
-  bool others_off = false;  // what is not named; else it stays as the scene has it
+  bool others_off = false;  // lamps and emitters not named; else they stay as the scene has them
   std::map<std::string, Rgb> factors;
 };
 
@@ -76,13 +76,20 @@ class LightBasis {
   // lamps: times all factors of the setting.
   [[nodiscard]] GroupWeights weights(std::size_t place, std::size_t setting,
                                      double lamps = 1.0) const;
+  // The same with the light of one name ("sun", "earth", a lamp or a group) as the scene has it.
+  [[nodiscard]] GroupWeights weights_with(std::size_t place, std::size_t setting,
+                                          const std::string& light) const;
 
  private:
+  [[nodiscard]] GroupWeights weigh(std::size_t place, const LampSetting& setting,
+                                   double lamps) const;
   [[nodiscard]] Rgb factor(const LampSetting& setting, const std::string& name,
                            const std::string& group) const;
+  [[nodiscard]] static Rgb sky_factor(const LampSetting& setting, const std::string& name);
+  void check_settings() const;
   void split_lamps();
   void split_sky(const BasisOptions& options);
-  void weigh_earth(const SkyPlace& place, GroupWeights& weights) const;
+  void weigh_earth(const SkyPlace& place, const Rgb& factor, GroupWeights& weights) const;
 
   scenes::Scene original_, scene_;
   std::vector<SkyPlace> places_;

@@ -14,12 +14,31 @@
 namespace earthshine::studies {
 namespace {
 
-EyeSight eye_sight(const TargetLight& light, double angle_deg, double mean_luminance,
+double mean_of(const std::vector<float>& luminance, const std::vector<std::uint32_t>& pixels) {
+  double sum = 0.0;
+  for (const std::uint32_t pixel : pixels) sum += static_cast<double>(luminance[pixel]);
+  return sum / static_cast<double>(pixels.size());
+}
+
+// Root mean square over the target's parts.
+double difference_of(const SightTarget& target, const TargetLight& light,
+                     const std::vector<float>& luminance) {
+  if (target.parts.empty()) return std::abs(light.luminance - *light.surround);
+  double sum = 0.0;
+  for (const SightTarget::Part& part : target.parts) {
+    const double d = mean_of(luminance, part.target) - mean_of(luminance, part.surround);
+    sum += part.share * d * d;
+  }
+  return std::sqrt(sum);
+}
+
+EyeSight eye_sight(const SightTarget& target, const TargetLight& light,
+                   const std::vector<float>& luminance, double mean_luminance,
                    const SightOptions& options) {
   EyeSight eye;
   eye.adaptation = mean_luminance;
   eye.acuity = acuity_cycles_per_deg(mean_luminance);
-  eye.cycles = angle_deg * eye.acuity;
+  eye.cycles = target.extent.angle_deg * eye.acuity;
   if (!light.surround) return eye;
   eye.weber = light.contrast;
   // Against a surround brighter than what it is adapted to, the eye needs what that calls for.
@@ -27,7 +46,7 @@ EyeSight eye_sight(const TargetLight& light, double angle_deg, double mean_lumin
                        threshold_difference(std::max(mean_luminance, *light.surround));
   if (*light.surround > 0.0) eye.threshold = least / *light.surround;
   const double seen =
-      seeing_probability(std::abs(light.luminance - *light.surround) / least, options.eye);
+      seeing_probability(difference_of(target, light, luminance) / least, options.eye);
   const Probability johnson = johnson_probability(eye.cycles, options.cycles);
   eye.probability = Probability{std::min(johnson.detect, seen), std::min(johnson.recognise, seen),
                                 std::min(johnson.identify, seen)};
@@ -60,26 +79,6 @@ std::string_view word_of(Verdict verdict) {
   constexpr std::array<std::string_view, 7> words = {
       "identified", "recognised", "detected", "doubtful", "not-seen", "out-of-view", "hidden"};
   return words[static_cast<std::size_t>(verdict)];
-}
-
-SightPlan plan_sight(const scenes::Camera& camera, ObjectMap map, std::vector<TargetView> views) {
-  SightPlan plan;
-  plan.fov_deg = camera.fov_deg;
-  for (TargetView& view : views) {
-    SightTarget target;
-    for (std::size_t i = 0; view.in_view() && i < map.object.size(); ++i) {
-      if (map.object[i] == static_cast<std::int32_t>(view.object)) {
-        target.seen.push_back(static_cast<std::uint32_t>(i));
-      }
-    }
-    if (!target.seen.empty()) {
-      target.extent = least_extent(target.seen, camera, map.columns, map.rows);
-    }
-    target.view = std::move(view);
-    plan.targets.push_back(std::move(target));
-  }
-  plan.map = std::move(map);
-  return plan;
 }
 
 CameraSight measure_sight(const SightPlan& plan, const base::Image& radiance,
@@ -117,7 +116,7 @@ CameraSight measure_sight(const SightPlan& plan, const base::Image& radiance,
       sight.weber = light->contrast;
       sight.angle_deg = target.extent.angle_deg;
       sight.tv_lines = target.extent.pixels;
-      sight.eye = eye_sight(*light, target.extent.angle_deg, found.mean_luminance, options);
+      sight.eye = eye_sight(target, *light, luminance, found.mean_luminance, options);
       sight.probability = sight.eye->probability;
       if (signals[t]) {
         take(sight, *signals[t]);

@@ -35,15 +35,16 @@ enum class Verdict { Identified, Recognised, Detected, Doubtful, NotSeen, OutOfV
 
 // In the line signal v, 0 black and 1 white, with noise: target t and surround b.
 struct SignalSight {
-  double mean = 0.0;               // of t
-  double snr = 0.0;                // mean / sigma of a resel of t in one frame
-  std::optional<double> surround;  // mean of b; all below are empty without one
-  std::optional<double> weber;     // (t - b) / b; none round black
-  std::optional<double> cnr;       // |t - b| / sqrt((sigma_t^2 + sigma_b^2) / 2), one frame
-  std::optional<double> rose;      // k: the same of the whole target in the eye's time
-  std::optional<double> snr_d;     // |t - b| / sigma of that difference in the eye's time
-  std::optional<double> dprime;    // ideal observer that knows the target's shape, in that time
-  std::optional<double> limiting_frequency;  // cycles per resel where C0 MTF(u) = 3 / SNR
+  double mean = 0.0;                 // of t
+  double snr = 0.0;                  // mean / sigma of a resel of t in one frame
+  std::optional<double> surround;    // mean of b; all below are empty without one
+  std::optional<double> weber;       // (t - b) / b; none round black
+  std::optional<double> cnr;         // |t - b| / sqrt((sigma_t^2 + sigma_b^2) / 2), one frame
+  std::optional<double> rose;        // k: the same of the whole target in the eye's time
+  std::optional<double> snr_d;       // |t - b| / sigma of that difference in the eye's time
+  std::optional<double> difference;  // root mean square of t - b over the target's parts
+  std::optional<double> dprime;      // ideal observer that knows the target's shape, in that time
+  std::optional<double> limiting_frequency;  // cycles per resel where C0 MTF(u) = 3 / SNR of a bar
 };
 
 // On the screen, cd/m^2, as a viewer sees it on average: with noise, phosphor spread and room
@@ -90,6 +91,15 @@ struct SightTarget {
   TargetView view;
   std::vector<std::uint32_t> seen;  // pixels in ascending order
   Extent extent;
+  // Parts of view.measured and of the surround beside it, by direction from the target's middle:
+  // up to eight, none with fewer than 16 pixels of either. A large target in sun and shadow may be
+  // as bright as its surround on average and stand out against it everywhere; probabilities go by
+  // the root mean square of the parts' differences. Empty: the target is one part.
+  struct Part {
+    std::vector<std::uint32_t> target, surround;
+    double share = 0.0;  // of the pixels of all parts
+  };
+  std::vector<Part> parts;
 };
 struct SightPlan {
   ObjectMap map;

@@ -47,8 +47,11 @@ Scenario scenario_of(const WhyNotInputs& in, std::size_t index, const SightOptio
 
 std::optional<Change> without_hiding(const WhyNotInputs& in, std::size_t index) {
   const TargetView& view = in.plan.targets[index].view;
-  if (view.hidden_by.empty() || view.pixels_alone == 0) return std::nullopt;
   const auto alone = static_cast<double>(view.pixels_alone);
+  // What hides a corner is no reason.
+  if (view.hidden_by.empty() || static_cast<double>(view.hidden.size()) < 0.1 * alone) {
+    return std::nullopt;
+  }
   Change change;
   change.cause = Cause::Hidden;
   change.by = in.scene.objects[view.hidden_by.front().object].name;
@@ -166,11 +169,11 @@ std::vector<Change> without_limits_of_the_eye(const WhyNotInputs& in, std::size_
   const Sight& sight = in.sight.targets[index];
   Change contrast, small;
   contrast.cause = Cause::Contrast;
-  contrast.text = "too little contrast for the eye";
+  contrast.text = "too little contrast for the eye's threshold";
   const auto tell = [&](const std::optional<double>& weber, const std::optional<double>& least) {
     if (!weber || !least) return;
-    contrast.text += fmt::format(" ({:.1f} % against a threshold of {:.1f} %)",
-                                 100.0 * std::abs(*weber), 100.0 * *least);
+    contrast.text +=
+        fmt::format(" ({:.1f} % against {:.1f} %)", 100.0 * std::abs(*weber), 100.0 * *least);
   };
   if (sight.monitor) {
     tell(sight.monitor->weber, sight.monitor->threshold);

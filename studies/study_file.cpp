@@ -31,7 +31,7 @@ constexpr std::string_view lamps_keys[] = {"name", "set", "others"};
 constexpr std::string_view others_words[] = {"as-they-are", "off"};
 constexpr std::string_view iris_words[] = {"fixed", "peak", "normal", "average"};
 constexpr std::string_view picture_keys[] = {"name",  "title", "camera", "position_deg",
-                                             "lamps", "shows", "lights"};
+                                             "lamps", "shows", "lights", "cctv"};
 constexpr std::string_view shows_words[] = {"clean", "cctv", "distributed", "distributed-cctv"};
 constexpr std::string_view pair_keys[] = {"title", "left", "right"};
 constexpr int most_side = 16384;
@@ -153,6 +153,7 @@ PictureWish read_picture(const TomlNode& node) {
   const auto* found = std::find(std::begin(shows_words), std::end(shows_words), shows);
   wish.shows = static_cast<Shows>(found - std::begin(shows_words));
   wish.lights = table.whole("lights", 2, 65536).value_or(wish.lights);
+  wish.cctv = table.text("cctv").value_or("");
   return wish;
 }
 

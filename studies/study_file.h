@@ -30,7 +30,8 @@ struct PictureWish {
   std::optional<double> position_deg;  // none: the first position
   std::string lamps;                   // a setting's name; empty: the first one
   Shows shows = Shows::Clean;
-  int lights = 64;  // of the distributed ones
+  int lights = 64;   // of the distributed ones
+  std::string cctv;  // another CCTV camera than the camera's own; empty: that
   base::Location where;
 };
 struct PairWish {

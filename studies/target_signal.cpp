@@ -15,6 +15,11 @@ namespace {
 
 struct TargetResels {
   WeightedResels measured, seen, surround;
+  struct Part {
+    WeightedResels target, surround;
+    double share = 0.0;
+  };
+  std::vector<Part> parts;
   std::vector<std::uint32_t> screen;  // whose light reaches measured or surround
 };
 
@@ -64,16 +69,45 @@ double difference(double a, double b) {
   return d <= rounding * (std::abs(a) + std::abs(b)) ? 0.0 : d;
 }
 
+// Root mean square over the target's parts; `whole` of a target that is one part.
+double difference_of_parts(const TargetResels& at, const std::vector<float>& values, double whole) {
+  if (at.parts.empty()) return whole;
+  double sum = 0.0;
+  for (const TargetResels::Part& part : at.parts) {
+    const double d = difference(mean_of(values, part.target), mean_of(values, part.surround));
+    sum += part.share * d * d;
+  }
+  return std::sqrt(sum);
+}
+
 std::optional<double> weber_of(double target, double surround) {
   if (!(surround > 0.0)) return std::nullopt;
   return (target - surround) / surround;
 }
 
-double limiting_frequency(const degrade::Setup& setup, double direction, double least_modulation) {
-  if (least_modulation >= 1.0) return 0.0;
+// What the least modulation that is seen follows from.
+struct Needed {
+  double delta = 0.0;       // of the line signal
+  double of_target = 0.0;   // } variances in the eye's time: of the target's mean
+  double of_resel = 0.0;    // } and of a resel
+  double of_the_eye = 1.0;  // threshold over the difference, on the screen
+  double lines = 0.0;       // across the target
+};
+
+// C0 MTF(u) = 3 / SNR, the SNR of one bar: half a period wide, as long as the target, so that it
+// holds 1 / (2 u lines) of its resels; never less than a resel's.
+double least_modulation(const Needed& needed, double frequency) {
+  const double bars = std::max(1.0, 2.0 * frequency * needed.lines);
+  const double variance = std::min(needed.of_resel, needed.of_target * bars);
+  return std::max(3.0 * std::sqrt(std::max(variance, 0.0)) / needed.delta, needed.of_the_eye);
+}
+
+double limiting_frequency(const degrade::Setup& setup, double direction, const Needed& needed) {
+  if (!(needed.delta > 0.0) || least_modulation(needed, 0.0) >= 1.0) return 0.0;
   constexpr double nyquist = 0.5;
-  return degrade::frequency_at([&](double f) { return chain_modulation(setup, direction, f); },
-                               least_modulation, nyquist);
+  return degrade::frequency_at(
+      [&](double f) { return chain_modulation(setup, direction, f) - least_modulation(needed, f); },
+      0.0, nyquist);
 }
 
 // Shares of the seen pixels whose resel is at white, or within the noise of black.
@@ -113,24 +147,29 @@ void compare(TargetSignal& out, const TargetResels& at, const ShownMoments& mome
   const MeanNoise noise = mean_noise(line, moments, at.seen, at.surround, frames);
   s.cnr = over(delta, both);
   // CNR sqrt(N n / sum r), where N n / sum r is how much less the mean scatters than a resel.
-  s.rose = over(delta, own > 0.0 ? both * noise.variance_a / own : noise.variance_a);
-  s.snr_d = over(delta, noise.variance_a + noise.variance_b - 2.0 * noise.covariance);
+  const double mean_variance = own > 0.0 ? both * noise.variance_a / own : noise.variance_a;
+  s.rose = over(delta, mean_variance);
+  const double difference_variance = noise.variance_a + noise.variance_b - 2.0 * noise.covariance;
+  s.snr_d = over(delta, difference_variance);
   s.dprime = ideal_observer(moments, at.seen, *s.surround, noise.variance_a);
 
-  const double light = difference(m.luminance, *m.surround);
+  // Parts are large, so that the phosphor's spread is nothing to their means.
+  const double light =
+      difference_of_parts(at, moments.luminance, difference(m.luminance, *m.surround));
+  s.difference = difference_of_parts(at, moments.mean, delta);
   const double least = options.eye.threshold_factor *
                        threshold_difference(std::max(line.screen_luminance, *m.surround));
   if (*m.surround > 0.0) m.threshold = least / *m.surround;
 
-  // The noise of a resel in the eye's time, and the eye's own threshold on the screen.
-  const double in_time = over(delta, 0.5 * (mean_of(moments.variance_in_time, at.measured) +
-                                            mean_of(moments.variance_in_time, at.surround)));
-  const double modulation =
-      delta > 0.0 && light > 0.0 ? std::max(3.0 / in_time, least / light) : 1.0;
-  s.limiting_frequency = limiting_frequency(setup, extent.direction_rad, modulation);
-  const double resels = out.lines;
-  out.cycles = resels * *s.limiting_frequency;
-  const double most = std::min(degrade::normal_probability(*s.snr_d - options.even_chance_snr),
+  const double in_time = 0.5 * (mean_of(moments.variance_in_time, at.measured) +
+                                mean_of(moments.variance_in_time, at.surround));
+  const Needed needed{*s.difference, mean_variance, in_time, light > 0.0 ? least / light : 1.0,
+                      out.lines};
+  s.limiting_frequency = limiting_frequency(setup, extent.direction_rad, needed);
+  out.cycles = out.lines * *s.limiting_frequency;
+  // Of the parts together: each has its share of the whole's looks.
+  const double snr_d = over(*s.difference, difference_variance);
+  const double most = std::min(degrade::normal_probability(snr_d - options.even_chance_snr),
                                seeing_probability(light / least, options.eye));
   const Probability johnson = johnson_probability(*out.cycles, options.cycles);
   out.probability = Probability{std::min(johnson.detect, most), std::min(johnson.recognise, most),
@@ -191,6 +230,9 @@ std::vector<std::optional<TargetSignal>> target_signals(const SightPlan& plan,
     at[t].measured = weigh_here(target.view.measured);
     at[t].seen = weigh_here(target.seen);
     at[t].surround = weigh_here(target.view.surround);
+    for (const SightTarget::Part& part : target.parts) {
+      at[t].parts.push_back({weigh_here(part.target), weigh_here(part.surround), part.share});
+    }
     screen = united(screen, spread_sources(line, at[t].measured));
     resels = united(resels, at[t].seen.resel);
     if (at[t].surround.empty()) continue;

@@ -115,30 +115,36 @@ TargetSources sources_on(const LightBasis& basis, const scenes::RayQuery& query,
   const scenes::Scene& scene = basis.scene();
   const scenes::LightGroups& groups = basis.groups();
   Collector all(scene, target);
+  const auto weighed = [&weights](std::size_t first, std::size_t count) {
+    double sum = 0.0;
+    for (std::size_t g = first; g < first + count; ++g) sum += base::luminance(weights.weight[g]);
+    return sum > 0.0;
+  };
   if (sky.sun) {
-    const double share = sun_share_of(sky);
+    const bool parts = basis.in_parts() && groups.sun_parts != no_group;
+    const std::size_t first = parts ? groups.sun_parts : groups.sun;
+    const std::size_t count = basis.sun_parts();
+    const bool shines = sun_share_of(sky) > 0.0;
+    const bool on = first != no_group && weighed(first, count);
+    const double share = on ? sun_share_of(sky) : 0.0;
     all.add("sun",
             reach_of_direction(scene, query, target.points, sky.sun->direction,
                                base::luminance(sky.sun->illuminance_lx)),
             share);
     SourceOnTarget& sun = all.source("sun");
-    if (share <= 0.0) sun.off = "in the Earth's shadow";
-    const bool parts = basis.in_parts() && groups.sun_parts != no_group;
-    const std::size_t first = parts ? groups.sun_parts : groups.sun;
-    if (first != no_group) {
-      sun.luminance = luminance_of_groups(target, weights, first, parts ? basis.sun_parts() : 1);
-    }
+    if (!on) sun.off = shines ? switched_off : "in the Earth's shadow";
+    if (first != no_group) sun.luminance = luminance_of_groups(target, weights, first, count);
   }
   if (sky.earth) {
     const bool lit = scenes::earth_is_lit(bare(sky));
-    SourceOnTarget& earth = all.source("earth");
+    const bool on = groups.earth != no_group && weighed(groups.earth, basis.earth_parts());
+    (void)all.source("earth");
     if (lit) {
       all.add("earth",
               reach_of_earth(scene, query, target.points, *sky.earth, sky.sun, earth_directions),
-              1.0);
-    } else {
-      earth.off = "its night side is below";
+              on ? 1.0 : 0.0);
     }
+    if (!on) all.source("earth").off = lit ? switched_off : "its night side is below";
     if (groups.earth != no_group) {
       all.source("earth").luminance =
           luminance_of_groups(target, weights, groups.earth, basis.earth_parts());
@@ -149,7 +155,7 @@ TargetSources sources_on(const LightBasis& basis, const scenes::RayQuery& query,
     all.add(groups.names[group], reach, share);
     SourceOnTarget& source = all.source(groups.names[group]);
     source.luminance = luminance_of_groups(target, weights, group, 1);
-    if (share <= 0.0) source.off = "switched off";
+    if (share <= 0.0) source.off = switched_off;
   };
   for (std::size_t k = 0; k < target.lamps.size(); ++k) {
     if (target.lamps[k]) add_group(groups.lamp[k], *target.lamps[k]);

@@ -13,6 +13,9 @@ namespace earthshine::studies {
 inline constexpr std::size_t most_source_points = 500;
 inline constexpr int earth_directions = 32;
 
+// SourceOnTarget::off of what the setting has switched off.
+inline constexpr const char* switched_off = "switched off";
+
 // Fills the target's `lamps` and `emitters`.
 void reach_of_lamps(const LightBasis& basis, const scenes::RayQuery& query,
                     BasisView::Target& target);

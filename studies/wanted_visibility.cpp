@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studies/wanted_visibility.h"
 
-#include <algorithm>
-
 namespace earthshine::studies {
 
-double detection(const LightBasis& basis, const BasisView& view, std::size_t index,
-                 std::size_t place, std::size_t setting, double lamps,
-                 const std::optional<degrade::Setup>& cctv, const SightOptions& options) {
+std::vector<double> detections(const LightBasis& basis, const BasisView& view, std::size_t place,
+                               std::size_t setting, double lamps,
+                               const std::optional<degrade::Setup>& cctv,
+                               const SightOptions& options) {
   const GroupWeights weights = basis.weights(place, setting, lamps);
   const base::Image radiance = weighted_sum(view.layers, basis.groups().names, weights);
   const CameraSight sight = measure_sight(view.plan, radiance, cctv, options);
-  const auto& probability = sight.targets[index].probability;
-  return probability ? probability->detect : 0.0;
+  std::vector<double> found;
+  for (const Sight& target : sight.targets) {
+    found.push_back(target.probability ? target.probability->detect : 0.0);
+  }
+  return found;
 }
 
 std::optional<double> least_factor(const std::function<double(double)>& probability,
@@ -23,9 +25,9 @@ std::optional<double> least_factor(const std::function<double(double)>& probabil
     if (high >= most_lamp_factor) return std::nullopt;
     high *= 2.0;
   }
-  double low = high > least_lamp_factor ? high / 2.0 : 0.0;
-  // Where any light will do halving would never end.
-  while (high - low > 0.01 * std::max(high, least_lamp_factor)) {
+  if (high <= least_lamp_factor) return high;
+  double low = high / 2.0;
+  while (high - low > 0.01 * high) {
     const double middle = 0.5 * (low + high);
     (probability(middle) >= wanted ? high : low) = middle;
   }

@@ -12,20 +12,20 @@
 
 namespace earthshine::studies {
 
-// Probability that target `index` of the view is detected; 0 where nothing of it can be told. The
+// Probability that each target of the view is detected; 0 where nothing of it can be told. The
 // lamps of the setting times `lamps`.
-[[nodiscard]] double detection(const LightBasis& basis, const BasisView& view, std::size_t index,
-                               std::size_t place, std::size_t setting, double lamps,
-                               const std::optional<degrade::Setup>& cctv,
-                               const SightOptions& options = {});
+[[nodiscard]] std::vector<double> detections(const LightBasis& basis, const BasisView& view,
+                                             std::size_t place, std::size_t setting, double lamps,
+                                             const std::optional<degrade::Setup>& cctv,
+                                             const SightOptions& options = {});
 
 // Factors that are tried: from 1/128 to 8 by steps of 2. More light need not be better: a bright
 // surround closes the iris.
 inline constexpr double least_lamp_factor = 1.0 / 128.0, most_lamp_factor = 8.0;
 
-// The least factor at which probability(factor) reaches `wanted`, to a hundredth of itself (of the
-// least step where it lies below that): the first step that does, halved down. 0: it does without
-// any; none: it does at no step.
+// The least factor at which probability(factor) reaches `wanted`, to a hundredth of itself: the
+// first step that does, halved down, but no less than the first step. 0: it does without any; none:
+// it does at no step.
 [[nodiscard]] std::optional<double> least_factor(const std::function<double(double)>& probability,
                                                  double wanted);
 

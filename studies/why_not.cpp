@@ -32,11 +32,24 @@ struct Trial {
   double probability = 0.0;
 };
 
-Reason reason_of(const Change& change, std::optional<double> without) {
-  Reason reason{change.cause, change.by, change.share, without, change.text};
-  if (without) {
-    reason.text += fmt::format("{} without it {:.2f}",
-                               change.text.find(':') == std::string::npos ? ":" : ";", *without);
+const char* without(Cause cause) {
+  switch (cause) {
+    case Cause::Unlit:
+      return "with it";
+    case Cause::Contrast:
+      return "to an eye without one";
+    case Cause::Small:
+      return "if it were large";
+    default:
+      return "without it";
+  }
+}
+
+Reason reason_of(const Change& change, std::optional<double> probability) {
+  Reason reason{change.cause, change.by, change.share, probability, change.text};
+  if (probability) {
+    const char* mark = change.text.find(':') == std::string::npos ? ":" : ";";
+    reason.text += fmt::format("{} {} {:.2f}", mark, without(change.cause), *probability);
   }
   return reason;
 }
@@ -180,7 +193,9 @@ WhyNot why_not(const WhyNotInputs& in, std::size_t index,
     return only({Cause::OutOfView, {}, {}, {}, "out of the camera's view"});
   }
   const std::optional<Change> hiding = without_hiding(in, index);
-  if (sight.pixels == 0 && hiding) return only(reason_of(*hiding, {}));
+  if (sight.pixels == 0) {
+    return only(hiding ? reason_of(*hiding, {}) : Reason{Cause::Hidden, {}, 1.0, {}, "hidden"});
+  }
   if (!sight.probability) {
     return only({Cause::Contrast, {}, {}, {}, "fills the picture: nothing to tell it from"});
   }
@@ -201,6 +216,12 @@ WhyNot why_not(const WhyNotInputs& in, std::size_t index,
   }
   keep_best_iris(trials, options.least_gain);
   const auto cures = [&](const Trial& t) { return t.probability >= options.wanted; };
+  // What the viewer lacks says nothing where the picture could be better.
+  const auto is_viewers = [](const Trial& t) { return t.change.cause >= Cause::Contrast; };
+  if (std::any_of(trials.begin(), trials.end(),
+                  [&](const Trial& t) { return cures(t) && !is_viewers(t); })) {
+    trials.erase(std::remove_if(trials.begin(), trials.end(), is_viewers), trials.end());
+  }
   const bool one_is_enough = std::any_of(trials.begin(), trials.end(), cures);
   WhyNot why;
   if (!one_is_enough) why = several(start, trials, task, now, options);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Why a target is not seen better: one cause at a time is taken away and the sight measured again.
 //   out-of-view  it would not show even alone
-//   hidden       what stands in front is taken away, by name
+//   hidden       what stands in front of a tenth of it or more is taken away, by name
 //   unlit        a source reaches all of it that faces the source, or is switched on
 //   iris         the iris stands as it would without a bright thing, by name; its light stays
 //   saturated    exposure so low that target and surround are below white, at least two stops
@@ -11,7 +11,8 @@
 //   small        any number of cycles across it will do
 // A cause is a reason if without it the probability of the first task that fails rises by
 // `least_gain` or over the wanted one; those that bring it over the wanted one drop those that do
-// not. If no single one does, causes are taken away one after the other, the most helpful first,
+// not, and `contrast` and `small`, which are the viewer's, stand back behind the others that do. If
+// no single one does, causes are taken away one after the other, the most helpful first,
 // until the task is done, and all of them are reasons. Reasons stand in the order above.
 #pragma once
 
@@ -47,13 +48,14 @@ struct WhyNot {
 // A light group and what it does to one target.
 struct SourceOnTarget {
   std::string group;
-  std::string off;  // why it gives no light: "switched off", "in the Earth's shadow"; else empty
+  std::string off =
+      {};  // why it gives no light: "switched off", "in the Earth's shadow"; else empty
   double luminance = 0.0;   // of the target by this group, cd/m^2, all paths
   double lit = 0.0;         // share of its seen points that get direct light (0 when off)
   double facing = 0.0;      // share that would if nothing stood between
   double direct = 0.0;      // luminance by its direct light alone (0 when off)
   double unshadowed = 0.0;  // the same if it were on with nothing in between
-  std::vector<std::string> shadow_of;  // objects in between, most first
+  std::vector<std::string> shadow_of = {};  // objects in between, most first
   // The picture with this group on, where it is off and the picture is at hand; otherwise only the
   // target is thought to be lit.
   const base::Image* when_on = nullptr;

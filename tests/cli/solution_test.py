@@ -72,6 +72,7 @@ class Solution(program.Case):
                               "--set=quality.form_factor_rays=128": "quality.form_factor_rays (64, now 128)",
                               "--set=quality.solver_tolerance=1e-6": "quality.solver_tolerance",
                               "--set=material.floor.diffuse=0.1": "the materials changed",
+                              "--set=material.floor.specular=0.1": "the materials changed",
                               "--set=light.lamp.intensity=5": "the lights changed",
                               "--set=sun.illuminance=5": "the Sun or the Earth changed"}.items():
             seed = [] if option.startswith("--seed") else ["--seed", 3]

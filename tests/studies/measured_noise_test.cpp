@@ -90,18 +90,17 @@ TEST(MeasuredNoise, OfAnExactPictureIsNone) {
 }
 
 TEST(MeasuredNoise, CorrectsAPictureThatStatesTheWrongError) {
-  // The error is the same, whichever pixels are looked at: three times as much stated is corrected
-  // by a third.
+  // The same pixels are looked at, and the error is the same: three times as much stated is
+  // corrected by a third.
   const Found right = bench().measure(bench().frame);
   raytrace::Frame boastful = bench().frame;
   for (float& square : boastful.squared_error) {
     if (square != raytrace::shows_source) square *= 9.0F;
   }
   const Found wrong = bench().measure(boastful);
-  EXPECT_NEAR(wrong.squared, right.squared, 4.0 * std::hypot(wrong.error, right.error));
-  const double by_noise = std::sqrt(wrong.squared / right.squared);
-  EXPECT_NEAR(wrong.noise.correction.estimate / right.noise.correction.estimate, by_noise / 3.0,
-              1e-6);
+  EXPECT_NEAR(wrong.noise.correction.estimate / right.noise.correction.estimate, 1.0 / 3.0, 1e-4);
+  EXPECT_NEAR(wrong.noise.correction.bound_95 / right.noise.correction.bound_95, 1.0 / 3.0, 1e-4);
+  EXPECT_NEAR(wrong.squared / right.squared, 1.0, 1e-4);
 }
 
 TEST(MeasuredNoise, IsSharedOutByCause) {

@@ -108,6 +108,23 @@ TEST(TargetView, HiddenTargetCountsOnlyAlone) {
   const TargetView view = only_target(builder.scene, tests::above(2.0, 2.0), 32);
   EXPECT_FALSE(view.in_view());
   EXPECT_EQ(view.pixels_alone, 256U);
+  EXPECT_EQ(view.hidden.size(), 256U);
+  ASSERT_EQ(view.hidden_by.size(), 1U);
+  EXPECT_EQ(view.hidden_by.front().object, 2U);
+  EXPECT_EQ(view.hidden_by.front().pixels, 256U);
+}
+
+TEST(TargetView, WhatHidesMostComesFirst) {
+  // Two screens at half the camera's height: a narrow one over x > 0.3, a wide one over x < 0.
+  auto builder = tests::plate_on_ground(0.4, 0.6);
+  builder.quad(1, {0.15, -3, 1}, {3, -3, 1}, {3, 3, 1}, {0.15, 3, 1});
+  builder.quad(1, {-3, -3, 1}, {0, -3, 1}, {0, 3, 1}, {-3, 3, 1});
+  const TargetView view = only_target(builder.scene, tests::above(2.0, 2.0), 64);
+  ASSERT_EQ(view.hidden_by.size(), 2U);
+  EXPECT_EQ(view.hidden_by[0].object, 3U);
+  EXPECT_EQ(view.hidden_by[1].object, 2U);
+  EXPECT_EQ(view.hidden_by[0].pixels + view.hidden_by[1].pixels, view.hidden.size());
+  EXPECT_EQ(view.pixels + view.hidden.size(), view.pixels_alone);
 }
 
 TEST(TargetView, TargetBeyondTheFrameSaysSo) {
