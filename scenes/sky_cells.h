@@ -29,8 +29,14 @@ class SkyCells {
 
   // Calls visit(direction) for side x side directions spread evenly over a cell's solid angle.
   void visit(std::size_t cell, int side, const std::function<void(const Vec3&)>& visit) const;
+  // The same for (side + 1)^2 directions from edge to edge, the outermost a hair inside.
+  void visit_lattice(std::size_t cell, int side,
+                     const std::function<void(const Vec3&)>& visit) const;
 
  private:
+  // The direction at shares of the cell's height, by 1 - cos, and of its width.
+  [[nodiscard]] Vec3 direction_at(std::size_t cell, double up, double along) const;
+
   Vec3 axis_;
   base::Frame3 frame_;
   std::vector<double> bounds_rad_, least_cosine_;  // of each ring

@@ -17,6 +17,9 @@ using scenes::no_group;
 
 constexpr double same_direction = 1e-9;  // rad
 constexpr int cell_side = 12;            // directions across a cell for its mean radiance
+// What a smooth radiance may reach between two of them over what it reaches there: 1 / 12^2 of a
+// parabola's range over the cell, and a half more for what is none.
+constexpr double between_directions = 1.01;
 
 bool same(const Vec3& a, const Vec3& b) { return glm::length(a - b) < same_direction; }
 
@@ -39,6 +42,15 @@ scenes::Scene bare(const SkyPlace& place) {
   scene.sun = place.sun;
   scene.earth = place.earth;
   return scene;
+}
+
+// A direction beside the Earth's disc moved to its limb.
+Vec3 onto_disc(const scenes::Earth& earth, const Vec3& direction) {
+  const double h = base::radians(earth.half_angle_deg) * (1.0 - 1e-9);
+  const double cosine = glm::dot(direction, earth.direction);
+  const Vec3 across = direction - cosine * earth.direction;
+  if (cosine >= std::cos(h) || glm::length(across) < same_direction) return direction;
+  return std::cos(h) * earth.direction + std::sin(h) * glm::normalize(across);
 }
 
 // Mean illuminance that the scene's lamps could give: their flux over all surfaces.
@@ -211,13 +223,21 @@ void LightBasis::weigh_earth(const SkyPlace& place, const Rgb& factor,
       mean /= static_cast<double>(seen.size());
       double largest = 0.0, squares = 0.0;
       for (const Rgb& value : seen) {
-        const double off = base::luminance(value) - base::luminance(mean);
-        largest = std::max(largest, std::abs(off));
-        squares += off * off;
+        squares += std::pow(base::luminance(value) - base::luminance(mean), 2);
       }
+      // The extremes stand at edges and at the limb.
+      const auto look = [&](const Vec3& direction) {
+        const Rgb value = scenes::earth_radiance(sky, direction) / earth_unit_;
+        largest = std::max(largest, std::abs(base::luminance(value) - base::luminance(mean)));
+      };
+      cells.visit_lattice(cell, cell_side, [&](const Vec3& direction) {
+        look(direction);
+        const Vec3 seen_ground = onto_disc(*sky.earth, direction);
+        if (cells.cell_of(seen_ground) == cell) look(seen_ground);
+      });
       const std::size_t group = groups_.earth + cell;
       weights.weight[group] = mean;
-      weights.largest[group] = largest;
+      weights.largest[group] = between_directions * largest;
       weights.scatter[group] = std::sqrt(squares / static_cast<double>(seen.size()));
     }
   });

@@ -28,13 +28,14 @@ std::vector<double> solid_angles_sr(const SkyCells& cells) {
   return all;
 }
 
-// Caps from a thousandth of a radian to the whole sphere, round axes in every direction.
+// Caps from the Earth as seen from a million kilometres to the whole sphere, round axes in every
+// direction.
 std::vector<SkyCells> many_cells() {
   std::vector<SkyCells> all;
   const Vec3 axes[] = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, -1, 0}, {1, 2, -3}, {-1e-9, 0, -1}};
   for (const Vec3& axis : axes) {
     const Vec3 unit = glm::normalize(axis);
-    for (const double half_angle : {1e-3, 0.3, 1.2, 1.57}) {
+    for (const double half_angle : {6e-3, 0.3, 1.2, 1.57}) {
       for (const std::size_t wanted : {2, 3, 48, 500}) {
         all.push_back(cells_of_disc(unit, half_angle, wanted));
       }
@@ -59,6 +60,28 @@ TEST(SkyCells, WhatACellVisitsBelongsToItAndToTheCap) {
         EXPECT_EQ(cells.cell_of(direction), cell) << cells.count() << ' ' << half_angle;
       });
       EXPECT_EQ(visited, side * side);
+    }
+  }
+}
+
+// From edge to edge: the outermost stand at the rings' bounds, all of them within the cell.
+TEST(SkyCells, TheLatticeReachesTheEdges) {
+  for (const SkyCells& cells : many_cells()) {
+    std::size_t cell = 0;
+    for (std::size_t ring = 0; ring < cells.sectors().size(); ++ring) {
+      for (std::size_t k = 0; k < cells.sectors()[ring]; ++k, ++cell) {
+        double lowest = 1.0, highest = -1.0;
+        int visited = 0;
+        cells.visit_lattice(cell, 3, [&](const Vec3& direction) {
+          ++visited;
+          EXPECT_EQ(cells.cell_of(direction), cell);
+          lowest = std::min(lowest, glm::dot(direction, cells.axis()));
+          highest = std::max(highest, glm::dot(direction, cells.axis()));
+        });
+        EXPECT_EQ(visited, 16);
+        EXPECT_NEAR(lowest, std::cos(cells.bounds_rad()[ring]), 2.1e-8);
+        EXPECT_NEAR(highest, ring == 0 ? 1.0 : std::cos(cells.bounds_rad()[ring - 1]), 2.1e-8);
+      }
     }
   }
 }

@@ -22,8 +22,10 @@ inline scenes::Lamp point_lamp(const std::string& name, const std::string& group
   return lamp;
 }
 
-// A room without a ceiling with a block in it (object 5, a target): lamps "left" and "right" of the
-// group "bay", a disk "spot" of its own group, and a panel of the group "panels" that shines.
+// A room without a ceiling with a plate in it (object 5, a target): a disk "spot" of its own group,
+// lamps "left" and "right" of the group "bay", and a wall of the group "panels" that shines. The
+// random numbers of a lamp follow from how many shine before it in the list: those that stay the
+// same when another fails come first.
 inline scenes::Scene open_room() {
   SceneBuilder builder;
   scenes::Material red = grey(0.5);
@@ -37,10 +39,10 @@ inline scenes::Scene open_room() {
   builder.quad(m, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
   builder.quad(r, {0.3, 0.3, 0.2}, {0.6, 0.3, 0.2}, {0.6, 0.6, 0.2}, {0.3, 0.6, 0.2});
   builder.scene.objects[5].target = true;
-  builder.scene.lamps = {point_lamp("left", "bay", {0.2, 0.5, 0.8}, {30, 20, 10}),
-                         point_lamp("right", "bay", {0.8, 0.5, 0.8}, Rgb(25.0)),
-                         point_lamp("spot", "spot", {0.5, 0.2, 0.9}, Rgb(0.0))};
-  scenes::Lamp& spot = builder.scene.lamps.back();
+  builder.scene.lamps = {point_lamp("spot", "spot", {0.5, 0.2, 0.9}, Rgb(0.0)),
+                         point_lamp("left", "bay", {0.2, 0.5, 0.8}, {30, 20, 10}),
+                         point_lamp("right", "bay", {0.8, 0.5, 0.8}, Rgb(25.0))};
+  scenes::Lamp& spot = builder.scene.lamps.front();
   spot.kind = scenes::LampKind::Disk;
   spot.axis = Vec3(0, 0, -1);
   spot.radius_m = 0.1;

@@ -35,11 +35,11 @@ Rgb weight_of(const LightBasis& basis, const std::string& group, std::size_t set
 TEST(LightBasis, LampsThatAreNamedHaveGroupsOfTheirOwn) {
   const scenes::Scene scene = tests::open_room();
   EXPECT_EQ(one_place(scene, {{"all", false, {}}}).groups().names,
-            (std::vector<std::string>{"bay", "spot", "panels"}));
+            (std::vector<std::string>{"spot", "bay", "panels"}));
   EXPECT_EQ(one_place(scene, {{"x", false, {{"right", Rgb(0.5)}}}}).groups().names,
-            (std::vector<std::string>{"bay", "right", "spot", "panels"}));
+            (std::vector<std::string>{"spot", "bay", "right", "panels"}));
   EXPECT_EQ(one_place(scene, {{"x", false, {{"bay", Rgb(0.5)}}}}).groups().names,
-            (std::vector<std::string>{"bay", "spot", "panels"}));
+            (std::vector<std::string>{"spot", "bay", "panels"}));
 }
 
 TEST(LightBasis, ALampsOwnNameGoesBeforeItsGroups) {
@@ -49,9 +49,9 @@ TEST(LightBasis, ALampsOwnNameGoesBeforeItsGroups) {
   EXPECT_EQ(weight_of(basis, "right", 0), Rgb(2, 1, 0));
   EXPECT_EQ(weight_of(basis, "spot", 0), Rgb(1.0));
   const scenes::Scene there = basis.scene_at(0, 0);
-  EXPECT_EQ(there.lamps[0].intensity_cd, Rgb(7.5, 5, 2.5));
-  EXPECT_EQ(there.lamps[1].intensity_cd, Rgb(50, 25, 0));
-  EXPECT_EQ(there.lamps[2].exitance, Rgb(500.0));
+  EXPECT_EQ(there.lamps[1].intensity_cd, Rgb(7.5, 5, 2.5));
+  EXPECT_EQ(there.lamps[2].intensity_cd, Rgb(50, 25, 0));
+  EXPECT_EQ(there.lamps[0].exitance, Rgb(500.0));
 }
 
 TEST(LightBasis, WhatIsNotNamedStaysOrIsOff) {
@@ -64,7 +64,7 @@ TEST(LightBasis, WhatIsNotNamedStaysOrIsOff) {
   EXPECT_EQ(weight_of(basis, "spot", 0), Rgb(3.0));
   EXPECT_EQ(weight_of(basis, "spot", 1), Rgb(3.0));
   EXPECT_EQ(basis.scene_at(0, 1).materials[2].emit, Rgb(0.0));
-  EXPECT_EQ(basis.scene_at(0, 1).lamps[0].intensity_cd, Rgb(0.0));
+  EXPECT_EQ(basis.scene_at(0, 1).lamps[1].intensity_cd, Rgb(0.0));
 }
 
 TEST(LightBasis, LampsOfASettingMayBeDimmedTogether) {
@@ -88,13 +88,13 @@ TEST(LightBasis, WhatIsOffInAllSettingsHasNoGroup) {
 // A lamp with the name of another's group: in one setting they are dimmed alike, in the other not.
 TEST(LightBasis, ALampNamedLikeAnotherGroupKeepsItsOwnWeight) {
   scenes::Scene scene = tests::open_room();
-  scene.lamps[2].name = "bay";
+  scene.lamps[0].name = "bay";
   const LightBasis basis =
       one_place(scene, {{"a", false, {{"bay", Rgb(0.5)}}}, {"b", false, {{"spot", Rgb(0.25)}}}});
-  EXPECT_NE(basis.groups().lamp[2], basis.groups().lamp[0]);
+  EXPECT_NE(basis.groups().lamp[0], basis.groups().lamp[1]);
   const GroupWeights b = basis.weights(0, 1);
-  EXPECT_EQ(b.weight[basis.groups().lamp[0]], Rgb(1.0));
-  EXPECT_EQ(b.weight[basis.groups().lamp[2]], Rgb(0.25));
+  EXPECT_EQ(b.weight[basis.groups().lamp[1]], Rgb(1.0));
+  EXPECT_EQ(b.weight[basis.groups().lamp[0]], Rgb(0.25));
 }
 
 // The groups of a sky in parts are named by the program; scenes may have lamps of these names.
@@ -158,7 +158,7 @@ TEST(LightBasis, InTheUmbraSunAndEarthWeighNothing) {
                          {{"on", false, {}}});
   const GroupWeights night = basis.weights(1, 0);
   const std::size_t lamps = basis.groups().sun_parts + basis.sun_parts();
-  ASSERT_EQ(lamps, basis.groups().count() - 3);  // "bay", "spot", "panels"
+  ASSERT_EQ(lamps, basis.groups().count() - 3);  // "spot", "bay", "panels"
   for (std::size_t g = 0; g < basis.groups().count(); ++g) {
     EXPECT_EQ(night.weight[g], Rgb(g < lamps ? 0.0 : 1.0)) << basis.groups().names[g];
     EXPECT_EQ(night.largest[g], 0.0);
@@ -209,7 +209,7 @@ TEST(LightBasis, EarthSunOrBothMayBeMissing) {
   EXPECT_EQ(earths.sun_parts(), 0U);
   EXPECT_GT(earths.earth_parts(), 1U);
   const LightBasis none(scene, {SkyPlace{}, SkyPlace{}}, {{"on", false, {}}});
-  EXPECT_EQ(none.groups().names, (std::vector<std::string>{"bay", "spot", "panels"}));
+  EXPECT_EQ(none.groups().names, (std::vector<std::string>{"spot", "bay", "panels"}));
   EXPECT_EQ(none.weights(1, 0).weight.size(), 3U);
   // A Sun that gives nothing.
   auto dark = tests::orbit_places({0, 90}, EarthModel::Lambert);
