@@ -31,7 +31,8 @@ struct Judge {
                            const std::optional<degrade::Setup>& cctv = {},
                            bool explain = false) const {
     ConditionOptions options;
-    options.explain = explain;
+    using Explain = ConditionOptions::Explain;
+    options.explain = explain ? Explain::NotIdentified : Explain::None;
     return judge_condition(basis, query, view, place, setting, cctv, options);
   }
 };

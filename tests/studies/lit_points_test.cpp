@@ -130,8 +130,10 @@ TEST(LitPoints, EmittingPlateReachesWhatItFaces) {
 // mean cosine within 1 %.
 TEST(LitPoints, EarthOverheadGivesTheIlluminanceOfItsDisc) {
   Lit lit;
-  lit.builder.scene.earth =
-      scenes::Earth{Vec3(0, 0, 1), 60.0, 0.0, scenes::EarthModel::Uniform, Rgb(0.3), Rgb(2000.0)};
+  scenes::Earth& uniform = lit.builder.scene.earth.emplace();
+  uniform.half_angle_deg = 60.0;
+  uniform.model = scenes::EarthModel::Uniform;
+  uniform.radiance = Rgb(2000.0);
   const scenes::RayQuery query = lit.look();
   const Reach earth = reach_of_earth(lit.builder.scene, query, lit.points, 256);
   EXPECT_EQ(share_of(earth.lit), 1.0);
@@ -143,8 +145,9 @@ TEST(LitPoints, EarthWithoutASunGivesNothing) {
   Lit lit;
   const scenes::RayQuery query = lit.look();
   EXPECT_EQ(share_of(reach_of_earth(lit.builder.scene, query, lit.points).lit), 0.0);
-  const scenes::Earth earth{Vec3(0, 0, 1), 60.0,    3e5, scenes::EarthModel::Lambert,
-                            Rgb(0.3),      Rgb(0.0)};
+  scenes::Earth earth;
+  earth.half_angle_deg = 60.0;
+  earth.altitude_m = 3e5;
   const Reach night = reach_of_earth(lit.builder.scene, query, lit.points, earth, std::nullopt);
   EXPECT_EQ(night.lit.size(), lit.points.size());
   EXPECT_EQ(share_of(night.facing), 0.0);
