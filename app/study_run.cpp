@@ -130,6 +130,9 @@ Json run_study(StudyTask task, const Common& common, const ViewListener& listen)
   prepare_folder(task.folder, files);
   std::error_code ignored;
   fs::create_directories(fs::path(task.folder) / "pictures", ignored);
+  for (const char* folder : {"", points_folder, "pictures"}) {
+    base::remove_abandoned_files(fs::path(task.folder) / folder);
+  }
 
   Runner runner(task, common, parts, listen);
   runner.run();

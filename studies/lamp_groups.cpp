@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The settings' part of a light basis: what they may name; lamps that one names get a group of their
-// own; what is off in all of them goes.
+// The settings' part of a light basis: what they may name; lamps that one names get a group of
+// their own; what is off in all of them goes.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
