@@ -176,7 +176,10 @@ void run(const VisibilityCall& call, const Common& common) {
   const LoadedScene loaded = load(call.study.scene, true);
   Cameras cameras;
   for (const std::string& name : call.study.cameras) {
-    cameras.push_back(&choose_camera(loaded.scene, name));
+    const scenes::Camera* camera = &choose_camera(loaded.scene, name);
+    if (std::find(cameras.begin(), cameras.end(), camera) == cameras.end()) {
+      cameras.push_back(camera);
+    }
   }
   for (const scenes::Camera& camera : loaded.scene.cameras) {
     if (call.study.cameras.empty()) cameras.push_back(&camera);
