@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <fstream>
 #include <iterator>
@@ -24,12 +25,17 @@ std::string stem_of(const Json& marks) {
   return digest.text();
 }
 
+// Files keep channels by name, whatever their order in memory.
 std::string digest_of(const base::Image& image) {
+  std::vector<const base::Channel*> channels;
+  for (const base::Channel& channel : image.channels) channels.push_back(&channel);
+  std::sort(channels.begin(), channels.end(),
+            [](const auto* a, const auto* b) { return a->name < b->name; });
   base::Digest digest;
   digest.add(std::uint64_t{image.pixel_count()});
-  for (const base::Channel& channel : image.channels) {
-    digest.add(std::string_view(channel.name));
-    for (const float value : channel.values) {
+  for (const base::Channel* channel : channels) {
+    digest.add(std::string_view(channel->name));
+    for (const float value : channel->values) {
       digest.add(std::uint64_t{std::bit_cast<std::uint32_t>(value)});
     }
   }

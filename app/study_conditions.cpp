@@ -95,11 +95,7 @@ Json StudyConditions::marks(const StudyCamera& camera, const Json& frame_marks, 
   }
   if (camera.cctv) {
     marks["cctv"] = settings_json(camera.cctv->chain.camera);
-    const degrade::Monitor& monitor = camera.cctv->chain.monitor;
-    degrade::visit_monitor_fields(
-        monitor, [&](const char* key, const auto& value, const auto&, const auto&, const auto&) {
-          marks["monitor"][key] = setting_json(value);
-        });
+    marks["monitor"] = monitor_json(camera.cctv->chain.monitor);
   }
   marks["targets"] = part_.targets;
   marks["seen"] = study_.seen_probability;

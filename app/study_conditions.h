@@ -26,9 +26,11 @@ class StudyConditions {
   [[nodiscard]] std::optional<std::vector<Json>> find(const StudyCamera& camera,
                                                       const Json& frame_marks);
 
- private:
+  // Everything that the camera's conditions from `first` to before `last` depend on.
   [[nodiscard]] Json marks(const StudyCamera& camera, const Json& frame_marks, std::size_t first,
                            std::size_t last) const;
+
+ private:
   [[nodiscard]] studies::ConditionOptions options() const;
 
   const StudyPart& part_;
