@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <fstream>
 #include <iterator>
@@ -25,15 +26,17 @@ std::string stem_of(const Json& marks) {
   return digest.text();
 }
 
-// Whatever the order of its channels, which a file does not keep.
+// Files keep channels by name, whatever their order in memory.
 std::string digest_of(const base::Image& image) {
+  std::vector<const base::Channel*> channels;
+  for (const base::Channel& channel : image.channels) channels.push_back(&channel);
+  std::sort(channels.begin(), channels.end(),
+            [](const auto* a, const auto* b) { return a->name < b->name; });
   base::Digest digest;
   digest.add(std::uint64_t{image.pixel_count()});
-  std::map<std::string_view, const std::vector<float>*> channels;
-  for (const base::Channel& channel : image.channels) channels[channel.name] = &channel.values;
-  for (const auto& [name, values] : channels) {
-    digest.add(name);
-    for (const float value : *values) {
+  for (const base::Channel* channel : channels) {
+    digest.add(std::string_view(channel->name));
+    for (const float value : channel->values) {
       digest.add(std::uint64_t{std::bit_cast<std::uint32_t>(value)});
     }
   }

@@ -11,8 +11,6 @@
 #include "degrade/read_setting.h"
 
 namespace earthshine::app {
-namespace {
-
 Json monitor_json(const degrade::Monitor& monitor) {
   Json settings;
   degrade::visit_monitor_fields(monitor, [&](const char* name, const auto& value, auto&&...) {
@@ -20,8 +18,6 @@ Json monitor_json(const degrade::Monitor& monitor) {
   });
   return settings;
 }
-
-}  // namespace
 
 Json settings_json(const degrade::CctvCamera& camera) {
   Json settings;

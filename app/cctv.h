@@ -43,6 +43,7 @@ template <class Value>
 }
 // Every setting in use.
 [[nodiscard]] Json settings_json(const degrade::CctvCamera& camera);
+[[nodiscard]] Json monitor_json(const degrade::Monitor& monitor);
 
 // A PNG, or an EXR of what the viewer sees in cd/m^2; both say the settings and the exposure.
 void write_cctv(const std::string& path, const CctvSetup& setup, const degrade::Result& result);

@@ -13,6 +13,7 @@
 #include "base/exr_file.h"
 #include "base/png_file.h"
 #include "base/tone.h"
+#include "scenes/table_reader.h"
 
 namespace earthshine::app {
 namespace {
@@ -26,7 +27,7 @@ struct RelightCall {
 [[noreturn]] void refuse_setting(const std::string& setting) {
   throw base::Error(base::Blame::Input, "--set",
                     fmt::format("\"{}\" is not a group and its factor", setting),
-                    "factors are 0 or more, one or three (R,G,B)",
+                    "factors are from 0 to 1e+15, one or three (R,G,B)",
                     "Write GROUP=FACTOR, for instance bay-lamps=0.5");
 }
 
@@ -38,7 +39,9 @@ double factor_of(const std::string& text, const std::string& setting) {
   } catch (const std::exception&) {
     refuse_setting(setting);
   }
-  if (read != text.size() || !std::isfinite(factor) || factor < 0.0) refuse_setting(setting);
+  if (read != text.size() || !(factor >= 0.0 && factor <= scenes::light_strength.high)) {
+    refuse_setting(setting);
+  }
   return factor;
 }
 

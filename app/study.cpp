@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -65,6 +66,8 @@ studies::StudyFile study_of(const StudyCall& call, const std::vector<std::string
   }
   study.lamps = {studies::lamps_as_they_are()};
   study.iris = iris;
+  std::sort(study.iris.begin(), study.iris.end());
+  study.iris.erase(std::unique(study.iris.begin(), study.iris.end()), study.iris.end());
   for (const std::string& text : wanted) {
     study.wanted.push_back(studies::read_wanted(text, base::Location{"--wanted"}));
   }

@@ -12,13 +12,14 @@
 namespace earthshine::app {
 namespace {
 
-// The place where Sun and Earth give the target least.
-std::size_t darkest_place(const studies::LightBasis& basis, const std::vector<Rgb>& by_group) {
+// The place where Sun and Earth give the target least in a setting.
+std::size_t darkest_place(const studies::LightBasis& basis, std::size_t setting,
+                          const std::vector<Rgb>& by_group) {
   const scenes::LightGroups& groups = basis.groups();
   std::size_t darkest = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t place = 0; place < basis.places().size(); ++place) {
-    const studies::GroupWeights weights = basis.weights(place, 0, 0.0);
+    const studies::GroupWeights weights = basis.weights(place, setting, 0.0);
     double light = 0.0;
     for (std::size_t g = 0; g < groups.count(); ++g) {
       light += base::luminance(weights.weight[g] * by_group[g]);
@@ -46,8 +47,9 @@ std::string arcs_text(const std::vector<studies::Arc>& arcs) {
 }
 
 std::string way_text(const WayOfLooking& way) {
-  return fmt::format("camera {}{}, lamps {}", way.camera,
-                     way.iris.empty() ? "" : " with iris " + way.iris, way.lamps);
+  return fmt::format("camera {}{}, lamps {}{}", way.camera,
+                     way.iris.empty() ? "" : " with iris " + way.iris, way.lamps,
+                     way.scene.empty() ? "" : ", in " + way.scene);
 }
 
 struct Rated {
@@ -70,17 +72,18 @@ Rated rate(const WayOfLooking& way, double wanted, bool closed) {
 
 std::string lamp_text(const std::vector<WayOfLooking>& ways, double wanted) {
   const WayOfLooking* best = nullptr;
-  bool tried = false;
+  const WayOfLooking* tried = nullptr;
   for (const WayOfLooking& way : ways) {
-    tried = tried || way.tried_factors;
+    if (way.tried_factors) tried = &way;
     if (way.least_factor && (best == nullptr || *way.least_factor < *best->least_factor)) {
       best = &way;
     }
   }
-  if (!tried) return "";
-  const std::string where = ways.front().darkest_deg ? fmt::format("Where it is darkest, at {}, ",
-                                                                   at(*ways.front().darkest_deg))
-                                                     : "Here ";
+  if (tried == nullptr) return "";
+  const WayOfLooking& told = best != nullptr ? *best : *tried;
+  const std::string where = told.darkest_deg
+                                ? fmt::format("Where it is darkest, at {}, ", at(*told.darkest_deg))
+                                : "Here ";
   if (best == nullptr) {
     return fmt::format(" {}no lamps up to {:g} times theirs bring it to {:g}.", where,
                        studies::most_lamp_factor, wanted);
@@ -128,21 +131,28 @@ void add_ways(const StudyPart& part, const studies::StudyFile& study, const Stud
           detect[place] = studies::detections(basis, view, place, setting, 1.0, cctv);
         }
       });
-      const bool tries = has_lamps(basis, setting);
+      const bool lamps = has_lamps(basis, setting);
       for (std::size_t w = 0; w < study.wanted.size(); ++w) {
         const auto named =
             std::find(part.targets.begin(), part.targets.end(), study.wanted[w].target);
         const auto target = static_cast<std::size_t>(named - part.targets.begin());
-        const std::size_t darkest = darkest_place(basis, view.targets[target].by_group);
-        WayOfLooking way{part.id, camera.camera->name, iris, basis.settings()[setting].name,
-                         {},      part.positions_deg,  {},   {},
+        const std::size_t darkest = darkest_place(basis, setting, view.targets[target].by_group);
+        const bool tries = lamps && view.plan.targets[target].view.in_view();
+        WayOfLooking way{study.scenes.size() > 1 ? part.path : "",
+                         camera.camera->name,
+                         iris,
+                         basis.settings()[setting].name,
+                         {},
+                         part.positions_deg,
+                         {},
+                         {},
                          tries};
         for (const std::vector<double>& at_place : detect) way.detect.push_back(at_place[target]);
         if (!part.positions_deg.empty()) way.darkest_deg = part.positions_deg[darkest];
         if (tries) {
           way.least_factor = studies::least_factor(
-              [&](double lamps) {
-                return studies::detections(basis, view, darkest, setting, lamps, cctv)[target];
+              [&](double factor) {
+                return studies::detections(basis, view, darkest, setting, factor, cctv)[target];
               },
               study.wanted[w].probability);
         }
@@ -150,6 +160,42 @@ void add_ways(const StudyPart& part, const studies::StudyFile& study, const Stud
       }
     }
   }
+}
+
+Json ways_json(const std::vector<std::vector<WayOfLooking>>& ways) {
+  Json all = Json::array();
+  for (const std::vector<WayOfLooking>& of_wanted : ways) {
+    Json& list = all.emplace_back(Json::array());
+    for (const WayOfLooking& way : of_wanted) {
+      list.push_back({{"scene", way.scene},
+                      {"camera", way.camera},
+                      {"iris", way.iris},
+                      {"lamps", way.lamps},
+                      {"detect", way.detect},
+                      {"positions_deg", way.positions_deg},
+                      {"least_factor", to_json(way.least_factor)},
+                      {"darkest_deg", to_json(way.darkest_deg)},
+                      {"tried_factors", way.tried_factors}});
+    }
+  }
+  return all;
+}
+
+std::vector<std::vector<WayOfLooking>> ways_of(const Json& kept) {
+  const auto number = [](const Json& value) {
+    return value.is_null() ? std::nullopt : std::optional(value.get<double>());
+  };
+  std::vector<std::vector<WayOfLooking>> all;
+  for (const Json& list : kept) {
+    std::vector<WayOfLooking>& ways = all.emplace_back();
+    for (const Json& way : list) {
+      ways.push_back({way["scene"], way["camera"], way["iris"], way["lamps"],
+                      way["detect"].get<std::vector<double>>(),
+                      way["positions_deg"].get<std::vector<double>>(), number(way["least_factor"]),
+                      number(way["darkest_deg"]), way["tried_factors"].get<bool>()});
+    }
+  }
+  return all;
 }
 
 Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& study,
@@ -179,6 +225,7 @@ Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& 
   answer["camera"] = way.camera;
   answer["iris"] = way.iris.empty() ? Json() : Json(way.iris);
   answer["lamps"] = way.lamps;
+  if (!way.scene.empty()) answer["scene"] = way.scene;
   answer["best_probability"] = best.best;
   answer["least_factor"] = to_json(way.least_factor);
   for (const auto& [from, to] : best.arcs) answer["arcs_deg"].push_back({from, to});

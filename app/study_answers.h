@@ -13,7 +13,8 @@ namespace earthshine::app {
 
 // One way of looking: a camera with an iris mode, by one lamp setting.
 struct WayOfLooking {
-  std::string scene, camera, iris, lamps;
+  std::string scene;  // its path in a study of several, else empty
+  std::string camera, iris, lamps;
   std::vector<double> detect;         // by place
   std::vector<double> positions_deg;  // of them; empty: a single place
   // At the place with least light of Sun and Earth: the least factor on the setting's lamps.
@@ -24,6 +25,10 @@ struct WayOfLooking {
 // Adds the ways of one camera to those of each wanted target.
 void add_ways(const StudyPart& part, const studies::StudyFile& study, const StudyCamera& camera,
               const studies::BasisView& view, std::vector<std::vector<WayOfLooking>>& ways);
+
+// To keep them, and back.
+[[nodiscard]] Json ways_json(const std::vector<std::vector<WayOfLooking>>& ways);
+[[nodiscard]] std::vector<std::vector<WayOfLooking>> ways_of(const Json& kept);
 
 // An entry of study.json's "answers".
 [[nodiscard]] Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& study,

@@ -95,15 +95,24 @@ Json StudyConditions::marks(const StudyCamera& camera, const Json& frame_marks, 
   }
   if (camera.cctv) {
     marks["cctv"] = settings_json(camera.cctv->chain.camera);
-    const degrade::Monitor& monitor = camera.cctv->chain.monitor;
-    degrade::visit_monitor_fields(
-        monitor, [&](const char* key, const auto& value, const auto&, const auto&, const auto&) {
-          marks["monitor"][key] = setting_json(value);
-        });
+    marks["monitor"] = monitor_json(camera.cctv->chain.monitor);
   }
   marks["targets"] = part_.targets;
   marks["seen"] = study_.seen_probability;
   return marks;
+}
+
+std::optional<std::vector<Json>> StudyConditions::find(const StudyCamera& camera,
+                                                       const Json& frame_marks) const {
+  std::vector<Json> all;
+  for (std::size_t first = 0; first < part_.conditions(); first += batch) {
+    const std::size_t last = std::min(first + batch, part_.conditions());
+    std::string said;
+    const auto stored = store_.find_facts(marks(camera, frame_marks, first, last), said);
+    if (!stored) return std::nullopt;
+    for (const Json& one : (*stored)["conditions"]) all.push_back(one);
+  }
+  return all;
 }
 
 std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studies::BasisView& view,

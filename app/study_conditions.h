@@ -23,9 +23,14 @@ class StudyConditions {
   [[nodiscard]] std::vector<Json> judge(const StudyCamera& camera, const studies::BasisView& view,
                                         const Json& frame_marks, std::vector<StudyCost>& costs);
 
- private:
+  // The same if all of it was done before, without the picture.
+  [[nodiscard]] std::optional<std::vector<Json>> find(const StudyCamera& camera,
+                                                      const Json& frame_marks) const;
+  // Everything that the camera's conditions from `first` to before `last` depend on.
   [[nodiscard]] Json marks(const StudyCamera& camera, const Json& frame_marks, std::size_t first,
                            std::size_t last) const;
+
+ private:
   [[nodiscard]] studies::ConditionOptions options() const;
 
   const StudyPart& part_;

@@ -118,6 +118,19 @@ const radiosity::Solution& StudyFrames::solution(std::vector<StudyCost>& costs) 
   return *solution_;
 }
 
+std::optional<StudyFrames::Frame> StudyFrames::known(const StudyCamera& camera,
+                                                     std::vector<StudyCost>& costs) const {
+  std::string said;
+  const std::optional<Json> facts = store_.find_facts(marks(camera), said);
+  if (!facts) return std::nullopt;
+  costs.push_back({fmt::format("picture {} {}", part_.id, camera.camera->name),
+                   (*facts)["seconds"].get<double>(), (*facts)["rays"].get<std::uint64_t>(), true});
+  return Frame{{},
+               (*facts)["relative_noise"].get<double>(),
+               (*facts)["seconds"].get<double>(),
+               (*facts)["patches"].get<std::size_t>()};
+}
+
 std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
                                                      std::vector<StudyCost>& costs) {
   const Json key = marks(camera);

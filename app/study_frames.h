@@ -35,6 +35,9 @@ class StudyFrames {
 
   // Everything that a camera's picture depends on.
   [[nodiscard]] Json marks(const StudyCamera& camera) const;
+  // What is known of a picture that is there, without reading it.
+  [[nodiscard]] std::optional<Frame> known(const StudyCamera& camera,
+                                           std::vector<StudyCost>& costs) const;
   [[nodiscard]] bool has(const StudyCamera& camera) const { return store_.has(marks(camera)); }
 
   // Of all light groups; solved or read when it is first asked for.

@@ -40,9 +40,10 @@ std::vector<double> positions_of(const std::string& text) {
                         "allowed are numbers from -360 to 360, with commas between",
                         "Write for instance --at 0,90,180");
     }
-    if (std::find(positions.begin(), positions.end(), value) != positions.end()) {
-      throw base::Error(base::Blame::Input, "--at", fmt::format("{:g} stands there twice", value),
-                        {}, "Name it once");
+    if (studies::stands_among(positions, value)) {
+      throw base::Error(base::Blame::Input, "--at",
+                        fmt::format("the place of {:g} stands there twice", value), {},
+                        "Name it once");
     }
     positions.push_back(value);
   }
@@ -82,7 +83,9 @@ Command add_study_orbit(CLI::App& study) {
   add_whole_number(*parser, "--positions", call->positions, 1, studies::most_positions,
                    "Positions, evenly over one turn from orbit noon");
   parser->add_option("--at", call->at, "Positions in degrees instead, with commas between")
-      ->type_name("LIST");
+      ->type_name("LIST")
+      ->check(not_empty())
+      ->excludes("--positions");
   parser->add_flag("--dry-run", call->dry_run, "Only say what would be done, and its price");
   return {parser, [call](const Common& common) { run_orbit(*call, common); }};
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "app/accuracy_store.h"
 #include "app/console.h"
 #include "app/study.h"
 #include "base/error.h"
@@ -126,13 +127,15 @@ void fill_pictures(studies::StudyFile& study, const StudyPart& part) {
                 positions.empty() ? std::nullopt : std::optional(positions.front()));
       continue;
     }
-    add_place("-noon", fmt::format("orbit {:g} deg", positions.front()), positions.front());
+    const std::string first = fmt::format("-{:g}-deg", positions.front());
+    const std::string last = fmt::format("-{:g}-deg", *midnight);
+    add_place(first, fmt::format("orbit {:g} deg", positions.front()), positions.front());
     if (*midnight == positions.front()) continue;
-    add_place("-night", fmt::format("orbit {:g} deg", *midnight), midnight);
+    add_place(last, fmt::format("orbit {:g} deg", *midnight), midnight);
     const std::string kind = camera.cctv ? "-cctv" : "";
     study.pairs.push_back(
         {fmt::format("Camera {}: orbit {:g} and {:g} deg", name, positions.front(), *midnight),
-         name + "-noon" + kind, name + "-night" + kind});
+         name + first + kind, name + last + kind});
   }
 }
 
@@ -176,33 +179,92 @@ void check_pictures(const studies::StudyFile& study, const std::vector<const Stu
   }
 }
 
-void draw_pictures(const studies::StudyFile& study, const StudyPart& part,
-                   const StudyCamera& camera, const studies::BasisView& view,
-                   const std::filesystem::path& folder, const Common& common, Json& figures) {
-  for (const PictureWish& wish : study.pictures) {
-    if (wish.camera != camera.camera->name) continue;
-    const bool drawn = std::any_of(figures.begin(), figures.end(),
-                                   [&](const Json& one) { return one["name"] == wish.name; });
-    if (drawn) continue;  // by an earlier scene that has a camera of that name
-    const std::string stem = file_of(study, wish);
-    const base::Image radiance =
-        distributed(wish.shows)
-            ? draw_distributed(part, camera, wish, common)
-            : studies::weighted_sum(
-                  view.layers, part.basis->groups().names,
-                  part.basis->weights(place_of(part, wish), setting_of(part, wish)));
-    base::write_exr(folder / (stem + ".exr"), radiance);
-    if (by_cctv(wish.shows)) {
-      const CctvSetup cctv = cctv_of_wish(part, camera, wish, common);
-      write_cctv((folder / (stem + ".png")).string(), cctv, run_chain(cctv, radiance));
-    } else {
-      base::write_png(folder / (stem + ".png"), radiance.width, radiance.height, 3,
-                      base::tone_map(radiance).rgb);
-    }
-    figures.push_back({{"name", wish.name},
+namespace {
+
+// The wishes that this camera of this scene draws.
+std::vector<const PictureWish*> own_wishes(const PictureTask& task) {
+  std::vector<const PictureWish*> wishes;
+  const std::string& name = task.camera.camera->name;
+  const auto first = std::find_if(task.parts.begin(), task.parts.end(), [&](const StudyPart* part) {
+    return camera_of(*part, name) != nullptr;
+  });
+  if (first == task.parts.end() || *first != &task.part) return wishes;
+  for (const PictureWish& wish : task.study.pictures) {
+    if (wish.camera == name) wishes.push_back(&wish);
+  }
+  return wishes;
+}
+
+// Everything that a picture depends on.
+Json marks_of(const PictureTask& task, const PictureWish& wish) {
+  const studies::GroupWeights weights =
+      task.part.basis->weights(place_of(task.part, wish), setting_of(task.part, wish));
+  Json marks = {{"what", "figure"},
+                {"picture", task.frame_marks},
+                {"file", file_of(task.study, wish)},
+                {"shows", static_cast<int>(wish.shows)},
+                {"lights", distributed(wish.shows) ? wish.lights : 0}};
+  for (const Rgb& weight : weights.weight) marks["weights"].push_back(to_json(weight));
+  if (by_cctv(wish.shows)) {
+    const CctvSetup cctv = cctv_of_wish(task.part, task.camera, wish, task.common);
+    marks["cctv"] = settings_json(cctv.chain.camera);
+    marks["monitor"] = monitor_json(cctv.chain.monitor);
+  }
+  return marks;
+}
+
+std::uintmax_t bytes_of(const std::filesystem::path& path) {
+  std::error_code problem;
+  const std::uintmax_t size = std::filesystem::file_size(path, problem);
+  return problem ? 0 : size;
+}
+
+bool is_there(const PictureTask& task, const PictureWish& wish) {
+  std::string said;
+  const auto facts = PartStore(task.folder / "points").find_facts(marks_of(task, wish), said);
+  if (!facts) return false;
+  const std::string stem = file_of(task.study, wish);
+  return (*facts)["png_bytes"] == bytes_of(task.folder / (stem + ".png")) &&
+         (*facts)["exr_bytes"] == bytes_of(task.folder / (stem + ".exr"));
+}
+
+void draw(const PictureTask& task, const PictureWish& wish, const studies::BasisView& view) {
+  const StudyPart& part = task.part;
+  const std::string stem = (task.folder / file_of(task.study, wish)).string();
+  const base::Image radiance =
+      distributed(wish.shows) ? draw_distributed(part, task.camera, wish, task.common)
+                              : studies::weighted_sum(view.layers, part.basis->groups().names,
+                                                      part.basis->weights(place_of(part, wish),
+                                                                          setting_of(part, wish)));
+  base::write_exr(stem + ".exr", radiance);
+  if (by_cctv(wish.shows)) {
+    const CctvSetup cctv = cctv_of_wish(part, task.camera, wish, task.common);
+    write_cctv(stem + ".png", cctv, run_chain(cctv, radiance));
+  } else {
+    base::write_png(stem + ".png", radiance.width, radiance.height, 3,
+                    base::tone_map(radiance).rgb);
+  }
+  PartStore(task.folder / "points")
+      .keep_facts(marks_of(task, wish),
+                  {{"png_bytes", bytes_of(stem + ".png")}, {"exr_bytes", bytes_of(stem + ".exr")}});
+}
+
+}  // namespace
+
+bool pictures_are_there(const PictureTask& task) {
+  const auto wishes = own_wishes(task);
+  return std::all_of(wishes.begin(), wishes.end(),
+                     [&](const PictureWish* wish) { return is_there(task, *wish); });
+}
+
+void draw_pictures(const PictureTask& task, const studies::BasisView* view, Json& figures) {
+  for (const PictureWish* wish : own_wishes(task)) {
+    if (view != nullptr && !is_there(task, *wish)) draw(task, *wish, *view);
+    const std::string stem = file_of(task.study, *wish);
+    figures.push_back({{"name", wish->name},
                        {"file", stem + ".png"},
                        {"exr", stem + ".exr"},
-                       {"caption", wish.title}});
+                       {"caption", wish->title}});
   }
 }
 

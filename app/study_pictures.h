@@ -19,10 +19,21 @@ void fill_pictures(studies::StudyFile& study, const StudyPart& part);
 // study does not have. parts: of all scenes; the first one that has the camera draws it.
 void check_pictures(const studies::StudyFile& study, const std::vector<const StudyPart*>& parts);
 
-// Draws the wishes for one camera into folder/pictures, adds figures of study.json to `figures`.
-void draw_pictures(const studies::StudyFile& study, const StudyPart& part,
-                   const StudyCamera& camera, const studies::BasisView& view,
-                   const std::filesystem::path& folder, const Common& common, Json& figures);
+// Where the wishes for a camera are drawn: the first scene that has it draws them.
+struct PictureTask {
+  const studies::StudyFile& study;
+  const std::vector<const StudyPart*>& parts;
+  const StudyPart& part;
+  const StudyCamera& camera;
+  std::filesystem::path folder;  // of the study; pictures/ and points/ are in it
+  const Json& frame_marks;       // of the camera's picture with all layers
+  const Common& common;
+};
+// Whether all of them are there from an earlier run.
+[[nodiscard]] bool pictures_are_there(const PictureTask& task);
+// Draws those that are not there into folder/pictures, adds figures of study.json to `figures`.
+// view: null where all are there.
+void draw_pictures(const PictureTask& task, const studies::BasisView* view, Json& figures);
 
 // "pairs" of study.json, of the figures that were drawn.
 [[nodiscard]] Json pairs_json(const studies::StudyFile& study, const Json& figures);

@@ -221,8 +221,10 @@ std::string study_text(const Json& study) {
   std::vector<Line> lines;
   for (const Json& result : study["results"]) {
     const Json& condition = *conditions.at(result["condition"].get<std::string>());
-    const std::string camera = result["camera"], target = result["target"],
-                      lamps = condition["lamps"], verdict = result["verdict"];
+    const std::string scene = condition["scene"], name = result["camera"];
+    const std::string camera = study["scenes"].size() > 1 ? scene + " " + name : name;
+    const std::string target = result["target"], lamps = condition["lamps"],
+                      verdict = result["verdict"];
     auto line = std::find_if(lines.begin(), lines.end(), [&](const Line& l) {
       return l.camera == camera && l.target == target && l.lamps == lamps;
     });

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 
 #include "app/console.h"
 #include "app/interrupt.h"
@@ -41,6 +43,14 @@ std::vector<const StudyPart*> pointers(const Parts& parts) {
   return all;
 }
 
+// Whether the folder holds the results of a run that came to its end.
+bool has_finished_results(const fs::path& folder) {
+  std::ifstream file(folder / study_file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const Json study = Json::parse(text, nullptr, false);
+  return study.is_object() && study.value("complete", false);
+}
+
 // A CCTV camera for a camera that no scene has would go unnoticed.
 void check_models(const studies::StudyFile& study, const std::vector<const StudyPart*>& parts) {
   std::vector<std::string> names;
@@ -49,7 +59,7 @@ void check_models(const studies::StudyFile& study, const std::vector<const Study
   }
   for (const auto& [name, model] : study.camera_models) {
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    throw base::Error(base::Blame::Input, "camera_models",
+    throw base::Error(base::Blame::Input, study.place("camera_models"),
                       "no scene has a camera " + scenes::in_quotes(name),
                       "there are " + scenes::listed(names), scenes::did_you_mean(name, names));
   }
@@ -59,7 +69,11 @@ class Runner {
  public:
   Runner(const StudyTask& task, const Common& common, const Parts& parts,
          const ViewListener& listen)
-      : task_(task), common_(common), listen_(listen), findings_(task.study) {
+      : task_(task),
+        common_(common),
+        listen_(listen),
+        store_(fs::path(task.folder) / points_folder),
+        findings_(task.study) {
     findings_.command = task.command;
     findings_.seed = common.seed;
     findings_.parts = pointers(parts);
@@ -76,7 +90,8 @@ class Runner {
         if (!look_through(*part, camera, frames, conditions)) findings_.complete = false;
       }
     }
-    for (std::size_t k = 0; k < ways_.size(); ++k) {
+    // Of a study that was stopped there is nothing to conclude.
+    for (std::size_t k = 0; findings_.complete && k < ways_.size(); ++k) {
       findings_.answers.push_back(answer_json(task_.study.wanted[k], task_.study, ways_[k]));
     }
     findings_.pairs = pairs_json(task_.study, findings_.figures);
@@ -89,20 +104,20 @@ class Runner {
   bool look_through(const StudyPart& part, const StudyCamera& camera, StudyFrames& frames,
                     StudyConditions& conditions) {
     CameraResults found{&part, &camera, 0.0, 0.0, std::vector<Json>(part.conditions())};
-    std::optional<StudyFrames::Frame> frame;
-    if (!Interrupt::asked()) frame = frames.frame(camera, findings_.costs);
-    if (frame) {
-      found.relative_noise = frame->relative_noise;
-      found.render_seconds = frame->seconds;
-      findings_.patches[part.id] = frame->patches;
-      const studies::BasisView view = studies::make_basis_view(
-          *part.basis, *part.query, *camera.camera, std::move(frame->image));
-      found.conditions = conditions.judge(camera, view, frames.marks(camera), findings_.costs);
-      if (!Interrupt::asked()) {
-        draw_pictures(task_.study, part, camera, view, task_.folder, common_, findings_.figures);
-        add_ways(part, task_.study, camera, view, ways_);
-      }
-      if (listen_) listen_(part, camera, view, *frame);
+    const Json frame_marks = frames.marks(camera);
+    const PictureTask pictures{task_.study,  findings_.parts, part,   camera,
+                               task_.folder, frame_marks,     common_};
+    Json ways_marks = conditions.marks(camera, frame_marks, 0, part.conditions());
+    ways_marks["what"] = "answers";
+    for (const studies::WantedTarget& wanted : task_.study.wanted) {
+      ways_marks["wanted"].push_back(wanted.text);
+    }
+    ways_marks["iris"] = task_.study.iris;
+    ways_marks["path"] = part.path;
+    if (!take_finished(pictures, ways_marks, frames, conditions, found)) {
+      std::optional<StudyFrames::Frame> frame;
+      if (!Interrupt::asked()) frame = frames.frame(camera, findings_.costs);
+      if (frame) work(pictures, ways_marks, *frame, conditions, found);
     }
     findings_.cameras.push_back(std::move(found));
     const auto& done = findings_.cameras.back().conditions;
@@ -110,9 +125,62 @@ class Runner {
            std::none_of(done.begin(), done.end(), [](const Json& one) { return one.is_null(); });
   }
 
+  void take(const StudyPart& part, const StudyFrames::Frame& frame, CameraResults& found) {
+    found.relative_noise = frame.relative_noise;
+    found.render_seconds = frame.seconds;
+    findings_.patches[part.id] = frame.patches;
+  }
+
+  void add_all(const std::vector<std::vector<WayOfLooking>>& more) {
+    for (std::size_t k = 0; k < more.size(); ++k) {
+      ways_[k].insert(ways_[k].end(), more[k].begin(), more[k].end());
+    }
+  }
+
+  // Where an earlier run has done all of it, so that not even the picture must be read.
+  bool take_finished(const PictureTask& pictures, const Json& ways_marks, const StudyFrames& frames,
+                     StudyConditions& conditions, CameraResults& found) {
+    if (listen_ || !pictures_are_there(pictures)) return false;
+    std::string said;
+    const auto ways = store_.find_facts(ways_marks, said);
+    const auto judged = conditions.find(pictures.camera, pictures.frame_marks);
+    if (!ways || !judged) return false;
+    const auto frame = frames.known(pictures.camera, findings_.costs);
+    if (!frame) return false;
+    take(pictures.part, *frame, found);
+    found.conditions = *judged;
+    findings_.costs.push_back(
+        {fmt::format("conditions {} {}", pictures.part.id, found.camera->camera->name), 0.0, 0, true});
+    add_all(ways_of((*ways)["ways"]));
+    draw_pictures(pictures, nullptr, findings_.figures);
+    return true;
+  }
+
+  void work(const PictureTask& pictures, const Json& ways_marks, StudyFrames::Frame& frame,
+            StudyConditions& conditions, CameraResults& found) {
+    const StudyPart& part = pictures.part;
+    take(part, frame, found);
+    const studies::BasisView view = studies::make_basis_view(
+        *part.basis, *part.query, *pictures.camera.camera, std::move(frame.image));
+    found.conditions =
+        conditions.judge(pictures.camera, view, pictures.frame_marks, findings_.costs);
+    if (listen_) listen_(part, pictures.camera, view, frame);
+    if (Interrupt::asked()) return;
+    draw_pictures(pictures, &view, findings_.figures);
+    std::string said;
+    if (const auto kept = store_.find_facts(ways_marks, said)) {
+      return add_all(ways_of((*kept)["ways"]));
+    }
+    std::vector<std::vector<WayOfLooking>> ways(task_.study.wanted.size());
+    add_ways(part, task_.study, pictures.camera, view, ways);
+    store_.keep_facts(ways_marks, {{"ways", ways_json(ways)}});
+    add_all(ways);
+  }
+
   const StudyTask& task_;
   const Common& common_;
   const ViewListener& listen_;
+  PartStore store_;
   StudyFindings findings_;
   std::vector<std::vector<WayOfLooking>> ways_;
 };
@@ -136,6 +204,11 @@ Json run_study(StudyTask task, const Common& common, const ViewListener& listen)
 
   Runner runner(task, common, parts, listen);
   runner.run();
+  if (!runner.findings().complete && has_finished_results(task.folder)) {
+    throw base::Error(base::Blame::Work, "study", "interrupted", {},
+                      "The results of the run before stand in " + task.folder +
+                          "; run the same command again to go on");
+  }
   const Json study = study_json(runner.findings());
   base::write_text(fs::path(task.folder) / study_file, dump(study));
   base::write_text(fs::path(task.folder) / results_table, study_csv(study));

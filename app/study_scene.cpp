@@ -47,7 +47,7 @@ void mark_targets(const studies::StudyFile& study, scenes::Scene& scene) {
     }
     std::vector<std::string> names;
     for (const scenes::Object& o : scene.objects) names.push_back(o.name);
-    throw Error(Blame::Input, "targets",
+    throw Error(Blame::Input, study.place("targets"),
                 fmt::format("{} has no object {}", scene.path.string(), scenes::in_quotes(name)),
                 names.empty() ? "it has no objects" : "it has " + scenes::listed(names),
                 scenes::did_you_mean(name, names));
@@ -59,7 +59,7 @@ void check_wanted(const studies::StudyFile& study, const StudyPart& part) {
     if (std::find(part.targets.begin(), part.targets.end(), wanted.target) != part.targets.end()) {
       continue;
     }
-    throw Error(Blame::Input, "wanted",
+    throw Error(Blame::Input, study.place(study.where.contains("wanted") ? "wanted" : "--wanted"),
                 fmt::format("{} names {}, which is no target of {}", scenes::in_quotes(wanted.text),
                             scenes::in_quotes(wanted.target), part.path),
                 part.targets.empty() ? "it has no targets"

@@ -59,7 +59,7 @@ Outcome judge_condition(const LightBasis& basis, const scenes::RayQuery& query,
     found.basis_error = basis_error(weights, target.by_group);
     if (wants_reasons(outcome.sight.targets[t], options)) {
       for (SourceOnTarget& source : found.sources) {
-        if (source.off != switched_off) continue;
+        if (source.off != switched_off && !source.off.starts_with(dimmed_to)) continue;
         auto picture = lit_by.find(source.group);
         if (picture == lit_by.end()) {
           picture = lit_by

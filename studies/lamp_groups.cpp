@@ -63,6 +63,11 @@ void set_apart(scenes::Scene& scene, const std::vector<scenes::Lamp*>& split) {
   }
 }
 
+base::Location place_of(const LampSetting& setting) {
+  if (!setting.where.file.empty()) return setting.where;
+  return base::Location{"lamps \"" + setting.name + "\""};
+}
+
 }  // namespace
 
 void LightBasis::check_settings() const {
@@ -82,13 +87,14 @@ void LightBasis::check_settings() const {
     for (const auto& [name, factor] : setting.factors) {
       if (!known.contains(name)) {
         throw base::Error(
-            base::Blame::Input, "lamps \"" + setting.name + "\"",
-            fmt::format("the scene has no lamp or light group \"{}\"", name),
+            base::Blame::Input, place_of(setting),
+            fmt::format("lamps \"{}\": the scene has no lamp or light group \"{}\"", setting.name,
+                        name),
             known.empty() ? "it has none at all" : fmt::format("it has {}", fmt::join(known, ", ")),
             "Name one of them");
       }
       if (!(factor.r >= 0.0 && factor.g >= 0.0 && factor.b >= 0.0)) {
-        throw base::Error(base::Blame::Input, "lamps \"" + setting.name + "\"",
+        throw base::Error(base::Blame::Input, place_of(setting),
                           fmt::format("\"{}\" has a factor below 0", name), "0 or more",
                           "Write 0 for a lamp that is off");
       }

@@ -36,6 +36,7 @@ struct LampSetting {
   std::string name;
   bool others_off = false;  // lamps and emitters not named; else they stay as the scene has them
   std::map<std::string, Rgb> factors;
+  base::Location where = {};  // in a study's file
 };
 
 struct BasisOptions {

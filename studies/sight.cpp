@@ -54,7 +54,7 @@ EyeSight eye_sight(const SightTarget& target, const TargetLight& light,
 }
 
 Verdict verdict_of(const Sight& sight, const TargetView& view, const SightOptions& options) {
-  if (view.pixels_alone == 0) return Verdict::OutOfView;
+  if (view.pixels_alone == 0) return view.in_frame ? Verdict::NotSeen : Verdict::OutOfView;
   if (!(sight.visible_fraction >= options.hidden_fraction)) return Verdict::Hidden;
   if (!sight.probability) return Verdict::Doubtful;
   const Probability& p = *sight.probability;

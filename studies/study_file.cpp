@@ -104,9 +104,9 @@ void read_positions(StudyFile& study, const TableReader& root) {
       orbit.fail("positions_deg", "holds " + scenes::describe(item),
                  "allowed are numbers from -360 to 360");
     }
-    if (std::find(study.positions_deg.begin(), study.positions_deg.end(), value) !=
-        study.positions_deg.end()) {
-      orbit.fail("positions_deg", fmt::format("holds {:g} twice", value), {}, "Name it once");
+    if (stands_among(study.positions_deg, value)) {
+      orbit.fail("positions_deg", fmt::format("holds the place of {:g} twice", value), {},
+                 "Name it once");
     }
     study.positions_deg.push_back(value);
   }
@@ -122,6 +122,7 @@ LampSetting read_lamps(const TomlNode& node) {
   TableReader table(node, "[[lamps]]", lamps_keys);
   LampSetting setting;
   setting.name = table.read_name();
+  setting.where = table.where();
   setting.others_off = table.choice("others", others_words).value_or("as-they-are") == "off";
   const TomlEntry* set = table.find("set");
   if (set == nullptr) return setting;
@@ -219,6 +220,12 @@ void read_cameras(StudyFile& study, const TableReader& root) {
 
 }  // namespace
 
+bool stands_among(const std::vector<double>& positions_deg, double position_deg) {
+  return std::any_of(positions_deg.begin(), positions_deg.end(), [&](double known) {
+    return std::abs(std::remainder(known - position_deg, 360.0)) < 1e-9;
+  });
+}
+
 WantedTarget read_wanted(const std::string& text, const base::Location& where) {
   const std::size_t at = text.rfind(">=");
   WantedTarget wanted;
@@ -237,6 +244,11 @@ WantedTarget read_wanted(const std::string& text, const base::Location& where) {
   }
   wanted.target = text.substr(0, at);
   return wanted;
+}
+
+base::Location StudyFile::place(const std::string& key) const {
+  const auto found = where.find(key);
+  return found == where.end() ? base::Location{key} : found->second;
 }
 
 std::vector<double> even_positions(int count) {
@@ -258,6 +270,9 @@ StudyFile read_study_file(const std::filesystem::path& path) {
                 "this program reads format = 1", "Begin the file with format = 1");
   }
   StudyFile study;
+  for (const TomlEntry& entry : std::get<TomlTable>(tree.value)) {
+    study.where[entry.key] = entry.where;
+  }
   study.name = root.text("name").value_or(path.stem().string());
   const std::optional<std::string> scene = root.text("scene");
   if (scene && root.has("scenes")) {

@@ -54,8 +54,12 @@ struct StudyFile {
   std::vector<WantedTarget> wanted;
   std::vector<PictureWish> pictures;
   std::vector<PairWish> pairs;
-  double seen_probability = 0.5;  // from which on a target counts as seen
+  std::map<std::string, base::Location> where;  // of the file's keys; none of a study without one
+  double seen_probability = 0.5;                // from which on a target counts as seen
   BasisOptions basis;
+
+  // Where a key stands, or its name.
+  [[nodiscard]] base::Location place(const std::string& key) const;
 };
 
 // Most positions of a study.
@@ -66,6 +70,9 @@ inline constexpr int most_positions = 3600;
 
 // `count` positions over one turn from 0.
 [[nodiscard]] std::vector<double> even_positions(int count);
+
+// Whether that place of the orbit is among them, whole turns apart or not.
+[[nodiscard]] bool stands_among(const std::vector<double>& positions_deg, double position_deg);
 
 // The lamps as the scene has them.
 [[nodiscard]] LampSetting lamps_as_they_are();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studies/target_sources.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
@@ -155,7 +157,11 @@ TargetSources sources_on(const LightBasis& basis, const scenes::RayQuery& query,
     all.add(groups.names[group], reach, share);
     SourceOnTarget& source = all.source(groups.names[group]);
     source.luminance = luminance_of_groups(target, weights, group, 1);
-    if (share <= 0.0) source.off = switched_off;
+    if (share <= 0.0) {
+      source.off = switched_off;
+    } else if (share < dimmed_share) {
+      source.off = fmt::format("{}{:.2g}", dimmed_to, share);
+    }
   };
   for (std::size_t k = 0; k < target.lamps.size(); ++k) {
     if (target.lamps[k]) add_group(groups.lamp[k], *target.lamps[k]);

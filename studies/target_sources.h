@@ -15,6 +15,9 @@ inline constexpr int earth_directions = 32;
 
 // SourceOnTarget::off of what the setting has switched off.
 inline constexpr const char* switched_off = "switched off";
+// And of what it leaves less than this share of, with that share behind it.
+inline constexpr double dimmed_share = 0.5;
+inline constexpr const char* dimmed_to = "dimmed to ";
 
 // Fills the target's `lamps` and `emitters`.
 void reach_of_lamps(const LightBasis& basis, const scenes::RayQuery& query,

@@ -112,6 +112,23 @@ void find_blockers(TargetView& view, const ObjectMap& map, const Mask& alone) {
                    [](const auto& a, const auto& b) { return a.pixels > b.pixels; });
 }
 
+// Whether any corner of the object projects into the picture.
+bool reaches_frame(const scenes::Scene& scene, const raytrace::CameraModel& model,
+                   std::uint32_t object) {
+  const scenes::Object& record = scene.objects[object];
+  for (std::uint32_t k = 0; k < record.triangle_count; ++k) {
+    for (const std::uint32_t v : scene.triangles[record.first_triangle + k].vertex) {
+      const Vec3 way = scene.vertices[v] - model.position;
+      const double depth = glm::dot(way, model.forward);
+      if (depth > 0.0 && std::abs(glm::dot(way, model.right)) <= model.half_width * depth &&
+          std::abs(glm::dot(way, model.up)) <= model.half_height * depth) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 bool touches_border(const Mask& mask, int columns, int rows) {
   for (std::size_t i = 0; i < mask.size(); ++i) {
     const int x = static_cast<int>(i) % columns, y = static_cast<int>(i) / columns;
@@ -167,6 +184,9 @@ std::vector<TargetView> find_targets(const scenes::Scene& scene, const scenes::C
     }
     view.pixels_alone = static_cast<std::size_t>(std::count(alone.begin(), alone.end(), 1));
     find_blockers(view, map, alone);
+    view.in_frame =
+        view.pixels_alone > 0 ||
+        reaches_frame(scene, raytrace::make_camera_model(camera, map.columns, map.rows), object);
     view.cut_by_frame = touches_border(alone, map.columns, map.rows);
     views.push_back(std::move(view));
   }

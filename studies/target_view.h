@@ -35,6 +35,7 @@ struct TargetView {
   std::string name;
   std::size_t pixels = 0;        // seen
   std::size_t pixels_alone = 0;  // never fewer than seen
+  bool in_frame = false;         // some corner of it lies within the picture, seen or not
   bool cut_by_frame = false;  // alone it reaches the picture's border: more of it may lie outside
   // Pixels that would show it alone and show something else: indices in ascending order.
   std::vector<std::uint32_t> hidden;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studies/wanted_visibility.h"
 
+#include <cmath>
+
 namespace earthshine::studies {
 
 std::vector<double> detections(const LightBasis& basis, const BasisView& view, std::size_t place,
@@ -12,7 +14,8 @@ std::vector<double> detections(const LightBasis& basis, const BasisView& view, s
   const CameraSight sight = measure_sight(view.plan, radiance, cctv, options);
   std::vector<double> found;
   for (const Sight& target : sight.targets) {
-    found.push_back(target.probability ? target.probability->detect : 0.0);
+    const bool told = target.probability && target.verdict != Verdict::Hidden;
+    found.push_back(told ? target.probability->detect : 0.0);
   }
   return found;
 }
@@ -23,12 +26,12 @@ std::optional<double> least_factor(const std::function<double(double)>& probabil
   double high = least_lamp_factor;
   while (probability(high) < wanted) {
     if (high >= most_lamp_factor) return std::nullopt;
-    high *= 2.0;
+    high *= lamp_factor_step;
   }
   if (high <= least_lamp_factor) return high;
-  double low = high / 2.0;
+  double low = high / lamp_factor_step;
   while (high - low > 0.01 * high) {
-    const double middle = 0.5 * (low + high);
+    const double middle = std::sqrt(low * high);
     (probability(middle) >= wanted ? high : low) = middle;
   }
   return high;

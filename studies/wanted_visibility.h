@@ -12,16 +12,16 @@
 
 namespace earthshine::studies {
 
-// Probability that each target of the view is detected; 0 where nothing of it can be told. The
-// lamps of the setting times `lamps`.
+// Probability that each target of the view is detected; 0 where nothing of it can be told and where
+// it counts as hidden. The lamps of the setting times `lamps`.
 [[nodiscard]] std::vector<double> detections(const LightBasis& basis, const BasisView& view,
                                              std::size_t place, std::size_t setting, double lamps,
                                              const std::optional<degrade::Setup>& cctv,
                                              const SightOptions& options = {});
 
-// Factors that are tried: from 1/128 to 8 by steps of 2. More light need not be better: a bright
+// Factors that are tried: from 2^-21 to 8 by steps of 4. More light need not be better: a bright
 // surround closes the iris.
-inline constexpr double least_lamp_factor = 1.0 / 128.0, most_lamp_factor = 8.0;
+inline constexpr double least_lamp_factor = 0x1p-21, most_lamp_factor = 8.0, lamp_factor_step = 4.0;
 
 // The least factor at which probability(factor) reaches `wanted`, to a hundredth of itself: the
 // first step that does, halved down, but no less than the first step. 0: it does without any; none:

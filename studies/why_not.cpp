@@ -189,6 +189,9 @@ WhyNot why_not(const WhyNotInputs& in, std::size_t index,
                const std::vector<SourceOnTarget>& sources, const WhyNotOptions& options) {
   const TargetView& view = in.plan.targets[index].view;
   const Sight& sight = in.sight.targets[index];
+  if (view.pixels_alone == 0 && view.in_frame) {
+    return only({Cause::Small, {}, {}, {}, "smaller than a pixel of the picture"});
+  }
   if (view.pixels_alone == 0) {
     return only({Cause::OutOfView, {}, {}, {}, "out of the camera's view"});
   }

@@ -38,7 +38,7 @@ TEST(LeastFactor, IsNotThereWhereNoLightWillDo) {
       },
       0.5));
   EXPECT_EQ(most, most_lamp_factor);
-  EXPECT_EQ(asked, 12);  // 0, and 2^-7 to 2^3
+  EXPECT_EQ(asked, 14);  // 0, and 2^-21 to 2^3 by 2^2
   EXPECT_TRUE(least_factor([](double x) { return x >= 8.0 ? 1.0 : 0.0; }, 0.5));
 }
 
