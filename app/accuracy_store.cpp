@@ -7,6 +7,7 @@
 #include <bit>
 #include <fstream>
 #include <iterator>
+#include <map>
 
 #include "base/digest.h"
 #include "base/error.h"

@@ -103,13 +103,12 @@ Json StudyConditions::marks(const StudyCamera& camera, const Json& frame_marks, 
 }
 
 std::optional<std::vector<Json>> StudyConditions::find(const StudyCamera& camera,
-                                                       const Json& frame_marks) {
+                                                       const Json& frame_marks) const {
   std::vector<Json> all;
   for (std::size_t first = 0; first < part_.conditions(); first += batch) {
     const std::size_t last = std::min(first + batch, part_.conditions());
     std::string said;
-    const std::optional<Json> stored =
-        store_.find_facts(marks(camera, frame_marks, first, last), said);
+    const auto stored = store_.find_facts(marks(camera, frame_marks, first, last), said);
     if (!stored) return std::nullopt;
     for (const Json& one : (*stored)["conditions"]) all.push_back(one);
   }
@@ -124,6 +123,7 @@ std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studie
   std::optional<degrade::Setup> cctv;
   if (camera.cctv) cctv = camera.cctv->chain;
   std::vector<Json> all(part_.conditions());
+  bool found = true;
   for (std::size_t first = 0; first < all.size(); first += batch) {
     const std::size_t last = std::min(first + batch, all.size());
     if (progress) progress(first, all.size());
@@ -135,6 +135,7 @@ std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studie
       continue;
     }
     if (!said.empty()) note("note: " + said);
+    found = false;
     if (Interrupt::asked()) break;
     base::parallel_chunks(last - first, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = first + begin; k < first + end; ++k) {
@@ -148,7 +149,8 @@ std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studie
                                                all.begin() + static_cast<std::ptrdiff_t>(last))}});
   }
   const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;
-  costs.push_back({fmt::format("conditions {} {}", part_.id, camera.camera->name), gone.count()});
+  costs.push_back(
+      {fmt::format("conditions {} {}", part_.id, camera.camera->name), gone.count(), 0, found});
   return all;
 }
 

@@ -22,10 +22,10 @@ class StudyConditions {
   // before an interruption. frame_marks: of the picture that the view was made of.
   [[nodiscard]] std::vector<Json> judge(const StudyCamera& camera, const studies::BasisView& view,
                                         const Json& frame_marks, std::vector<StudyCost>& costs);
+
   // The same if all of it was done before, without the picture.
   [[nodiscard]] std::optional<std::vector<Json>> find(const StudyCamera& camera,
-                                                      const Json& frame_marks);
-
+                                                      const Json& frame_marks) const;
   // Everything that the camera's conditions from `first` to before `last` depend on.
   [[nodiscard]] Json marks(const StudyCamera& camera, const Json& frame_marks, std::size_t first,
                            std::size_t last) const;

@@ -51,21 +51,17 @@ bool has_finished_results(const fs::path& folder) {
   return study.is_object() && study.value("complete", false);
 }
 
-void check_models(const studies::StudyFile& study, const Parts& parts) {
+// A CCTV camera for a camera that no scene has would go unnoticed.
+void check_models(const studies::StudyFile& study, const std::vector<const StudyPart*>& parts) {
+  std::vector<std::string> names;
+  for (const StudyPart* part : parts) {
+    for (const scenes::Camera& camera : part->loaded.scene.cameras) names.push_back(camera.name);
+  }
   for (const auto& [name, model] : study.camera_models) {
-    const bool known = std::any_of(parts.begin(), parts.end(), [&](const auto& part) {
-      const auto& cameras = part->loaded.scene.cameras;
-      return std::any_of(cameras.begin(), cameras.end(),
-                         [&](const scenes::Camera& camera) { return camera.name == name; });
-    });
-    if (known) continue;
-    std::vector<std::string> names;
-    for (const scenes::Camera& camera : parts.front()->loaded.scene.cameras) {
-      names.push_back(camera.name);
-    }
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
     throw base::Error(base::Blame::Input, study.place("camera_models"),
-                      fmt::format("names camera {}, which no scene has", scenes::in_quotes(name)),
-                      "the cameras are " + scenes::listed(names));
+                      "no scene has a camera " + scenes::in_quotes(name),
+                      "there are " + scenes::listed(names), scenes::did_you_mean(name, names));
   }
 }
 
@@ -191,13 +187,18 @@ class Runner {
 
 Json run_study(StudyTask task, const Common& common, const ViewListener& listen) {
   const Parts parts = prepare_parts(task.study, common);
-  check_models(task.study, parts);
+  check_models(task.study, pointers(parts));
   fill_pictures(task.study, *parts.front());
   check_pictures(task.study, pointers(parts));
   if (task.dry_run) return plan_json(task.study, pointers(parts), task.folder, common);
-  prepare_folder(task.folder, {study_file, results_table, report_file});
+  std::vector<std::string> files = {study_file, results_table, report_file};
+  files.insert(files.end(), task.more_files.begin(), task.more_files.end());
+  prepare_folder(task.folder, files);
   std::error_code ignored;
   fs::create_directories(fs::path(task.folder) / "pictures", ignored);
+  for (const char* folder : {"", points_folder, "pictures"}) {
+    base::remove_abandoned_files(fs::path(task.folder) / folder);
+  }
 
   Runner runner(task, common, parts, listen);
   runner.run();

@@ -22,6 +22,7 @@ struct StudyTask {
   std::string folder;
   std::string command;  // what was called, for the report
   bool dry_run = false;
+  std::vector<std::string> more_files = {};  // that the listener writes in the folder
 };
 
 // The content of study.json; of a dry run what would be done and its price. Throws base::Error for

@@ -184,7 +184,7 @@ void run(const VisibilityCall& call, const Common& common) {
   for (const scenes::Camera& camera : loaded.scene.cameras) {
     if (call.study.cameras.empty()) cameras.push_back(&camera);
   }
-  prepare_folder(call.study.folder, file_names(loaded.scene, cameras));
+  task.more_files = file_names(loaded.scene, cameras);
   Tables tables(call.study, common);
   const Json study = run_study(
       std::move(task), common,

@@ -6,9 +6,12 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "base/error.h"
@@ -105,6 +108,24 @@ void OutputFile::commit() {
 void remove_unfinished_files() noexcept {
   for (const std::atomic<const char*>& place : unfinished) {
     if (const char* name = place.load()) ::unlink(name);
+  }
+}
+
+void remove_abandoned_files(const fs::path& folder) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    // ".NAME.PID-NUMBER.part", as temporary_beside has it
+    const std::string name = entry.path().filename().string();
+    constexpr std::string_view suffix = ".part";
+    if (name.size() <= suffix.size() || name[0] != '.' || !name.ends_with(suffix)) continue;
+    const std::string stem = name.substr(0, name.size() - suffix.size());
+    const std::size_t dot = stem.rfind('.');
+    pid_t process = 0;
+    const char* const end = stem.data() + stem.size();
+    const auto read = std::from_chars(stem.data() + dot + 1, end, process);
+    if (read.ec != std::errc() || read.ptr == end || *read.ptr != '-' || process <= 0) continue;
+    if (::kill(process, 0) == 0 || errno != ESRCH) continue;
+    fs::remove(entry.path(), ignored);
   }
 }
 

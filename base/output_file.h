@@ -32,6 +32,10 @@ class OutputFile {
 // nothing but unlink.
 void remove_unfinished_files() noexcept;
 
+// Removes the temporary files in a folder of processes of this machine that are gone: runs that
+// were killed had no time to.
+void remove_abandoned_files(const std::filesystem::path& folder);
+
 // Writes text to a file, aside and renamed. Throws as OutputFile does, and base::Error (Work) on a
 // full disk.
 void write_text(const std::filesystem::path& path, std::string_view text);

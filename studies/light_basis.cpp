@@ -17,6 +17,7 @@ using scenes::no_group;
 
 constexpr double same_direction = 1e-9;  // rad
 constexpr int cell_side = 12;            // directions across a cell for its mean radiance
+constexpr double no_sun = 1e-12;         // factor of a Sun that is off while the Earth shines by it
 // What a smooth radiance may reach between two of them over what it reaches there: 1 / 12^2 of a
 // parabola's range over the cell, and a half more for what is none.
 constexpr double between_directions = 1.01;
@@ -133,10 +134,13 @@ scenes::Scene LightBasis::scene_at(std::size_t place, std::size_t setting) const
   scenes::Scene scene = original_;
   scene.sun = places_[place].sun;
   scene.earth = places_[place].earth;
-  // The Earth shines by the Sun, which its own factor leaves alone.
+  const Rgb sun = glm::max(sky_factor(settings_[setting], "sun"), Rgb(no_sun));
+  const Rgb earth = sky_factor(settings_[setting], "earth");
+  if (scene.sun) scene.sun->illuminance_lx *= sun;
+  // The Earth shines by the Sun: what the Sun's factor takes from it its albedo gives back.
   if (scene.earth) {
-    scene.earth->albedo *= sky_factor(settings_[setting], "earth");
-    scene.earth->radiance *= sky_factor(settings_[setting], "earth");
+    scene.earth->albedo *= earth / sun;
+    scene.earth->radiance *= earth;
   }
   for (scenes::Lamp& lamp : scene.lamps) {
     const Rgb times = factor(settings_[setting], lamp.name, lamp.group);
@@ -202,8 +206,9 @@ GroupWeights LightBasis::weigh(std::size_t place, const LampSetting& setting, do
           unit[c] > 0.0 ? sun[c] * share * wanted / unit[c] : 0.0;
     }
   }
-  if (groups_.earth != no_group && places_[place].earth)
+  if (groups_.earth != no_group && places_[place].earth) {
     weigh_earth(places_[place], earth, weights);
+  }
   return weights;
 }
 
@@ -227,7 +232,7 @@ void LightBasis::weigh_earth(const SkyPlace& place, const Rgb& factor,
       }
       // The extremes stand at edges and at the limb.
       const auto look = [&](const Vec3& direction) {
-        const Rgb value = scenes::earth_radiance(sky, direction) / earth_unit_;
+        const Rgb value = factor * scenes::earth_radiance(sky, direction) / earth_unit_;
         largest = std::max(largest, std::abs(base::luminance(value) - base::luminance(mean)));
       };
       cells.visit_lattice(cell, cell_side, [&](const Vec3& direction) {

@@ -82,5 +82,23 @@ TEST(OutputFile, VeryLongNamesAreWritten) {
   EXPECT_EQ(read_bytes(folder / name), "x");
 }
 
+TEST(OutputFile, WhatKilledProcessesLeftIsCleared) {
+  const TemporaryFolder folder;
+  // No process has this number: Linux stops at 2^22.
+  for (const char* name : {".a.json.999999999-0.part", ".b.c.exr.999999999-12.part"}) {
+    write_bytes(folder / name, "half");
+  }
+  const std::string own = ".a.json." + std::to_string(::getpid()) + "-7.part";
+  for (const std::string& name : {own, std::string("a.json.999999999-0.part"),
+                                  std::string(".a.part"), std::string(".a.json.999999999-0"),
+                                  std::string(".a.json.x-0.part"), std::string(".part")}) {
+    write_bytes(folder / name, "kept");
+  }
+  remove_abandoned_files(folder.path());
+  EXPECT_EQ(folder.file_count(), 6U);
+  EXPECT_TRUE(std::filesystem::exists(folder / own));
+  remove_abandoned_files(folder / "none");
+}
+
 }  // namespace
 }  // namespace earthshine::base

@@ -67,7 +67,12 @@ TEST(BasisSum, OnePlaceKeepsTheScenesSunAndEarth) {
   scene.earth = noon.earth;
   scene.earth->direction = glm::normalize(Vec3(-1, 0, 0.1));
   expect_exact(LightBasis(scene, {sky_of(scene)},
-                          {{"all", false, {}}, {"off", true, {}}, {"x", true, {{"spot", Rgb(9)}}}}),
+                          {{"all", false, {}},
+                           {"off", true, {}},
+                           {"x", true, {{"spot", Rgb(9)}}},
+                           {"dim Sun", true, {{"sun", Rgb(0.5, 0.3, 1)}}},
+                           {"no Sun", true, {{"sun", Rgb(0.0)}}},
+                           {"no Earth", true, {{"earth", Rgb(0.0)}, {"sun", Rgb(2.0)}}}}),
                tests::into_the_room());
 }
 

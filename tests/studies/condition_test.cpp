@@ -60,7 +60,8 @@ TEST(Condition, LuminanceByGroupAddsUpToTheTargets) {
   auto builder = plate_and_lamp();
   builder.quad(1, {0.7, -0.5, 0}, {0.7, -0.5, 0.5}, {0.7, 0.5, 0.5},
                {0.7, 0.5, 0});  // throws light
-  const Judge judge(builder.scene, tests::orbit_places({0, 60, 180}, EarthModel::Lambert));
+  // At 260 deg the Sun stands over the limb, on the side of the Earth.
+  const Judge judge(builder.scene, tests::orbit_places({60, 260, 180}, EarthModel::Lambert));
   const Judge still(builder.scene, {judge.basis.places()[1]});
   for (const auto& [of, place, setting] :
        {std::tuple{&judge, 0, 0}, {&judge, 1, 0}, {&judge, 1, 1}, {&judge, 2, 0}, {&still, 0, 0}}) {
@@ -69,6 +70,10 @@ TEST(Condition, LuminanceByGroupAddsUpToTheTargets) {
     double sum = 0.0;
     for (const SourceOnTarget& source : outcome.targets[0].sources) sum += source.luminance;
     ASSERT_TRUE(outcome.sight.targets[0].luminance);
+    if (of == &judge && place == 1) {
+      EXPECT_GT(source_of(outcome.targets[0], "sun").luminance, 0.1 * sum);
+      EXPECT_GT(source_of(outcome.targets[0], "earth").luminance, 1e-4 * sum);
+    }
     // Weighted floats against weighted means of floats: a rounding for each of some 60 groups.
     EXPECT_NEAR(sum / *outcome.sight.targets[0].luminance, 1.0, 60 * 0x1p-24) << place << setting;
   }

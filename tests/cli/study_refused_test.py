@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Visibility studies that cannot be: one clear line, and nothing is begun."""
+import os
+import unittest
+
+from tiny_bay import BAY, STUDY, Case
+
+
+class Refused(Case):
+    def orbit(self, *more, scene="bay.toml"):
+        return self.refused_cleanly("study", "orbit", scene, *more)
+
+    def test_wrong_calls(self):
+        self.says(self.orbit("--camera", "Z"), '"Z"', "A", "B")
+        self.says(self.orbit("--wanted", "lid>=0.5"), '"lid"', "box", "far")
+        self.says(self.orbit("--wanted", "box"), "TARGET>=P")
+        self.says(self.orbit("--iris", "wide"), "wide")
+        for positions in ("0", "-3", "3601", "x", "1.5"):
+            self.says(self.orbit(f"--positions={positions}"), "--positions")
+        for at in ("361", "x", "0,0", "1,", "nan", "inf"):
+            self.says(self.orbit(f"--at={at}"), "--at")
+        self.says(self.orbit("--size", "0x4"), "--size")
+        self.refused_cleanly("study", "orbit", "none.toml")
+        self.refused_cleanly("study", "visibility", "bay.toml", "--wanted", "lid>=0.5")
+        self.refused_cleanly("study", "visibility", "bay.toml", "--camera", "Z")
+
+    def test_scenes_that_will_not_do(self):
+        self.write("still.toml", BAY.replace('[orbit]\naltitude_km = 425\nattitude = "bay-to-space"\n', "")
+                   .replace("[sun]", "[sun]\ndirection = [0, 0, 1]").replace("[earth]\n", ""))
+        self.says(self.orbit(scene="still.toml"), "[orbit]", "altitude_km")
+        self.write("inside.toml", BAY.replace("position = [0, 0, 6]", "position = [0, 0, 0.3]"))
+        self.says(self.orbit(scene="inside.toml"), "box")
+        self.write("blind.toml", BAY.split("[[camera]]")[0])
+        self.says(self.orbit(scene="blind.toml"), "camera")
+        for altitude in ("0", "-400", "nan"):
+            self.write("low.toml", BAY.replace("altitude_km = 425", f"altitude_km = {altitude}"))
+            self.says(self.orbit(scene="low.toml"), "low.toml:", "altitude_km")
+
+    def test_study_files_that_will_not_do(self):
+        def run(text, *words):
+            self.write("bad.toml", text)
+            self.says(self.refused_cleanly("study", "run", "bad.toml"), *words)
+        run(STUDY.replace('targets = ["box"]', 'targets = ["bok"]'), '"bok"', '"box"')
+        run(STUDY.replace("set = { right = 0.5 }", "set = { moon = 0.5 }"), '"moon"', "left")
+        run(STUDY.replace("position_deg = 180", "position_deg = 90"), "bad.toml:", "90", "positions")
+        run(STUDY.replace('lamps = "right alone"', 'lamps = "none"'), "bad.toml:", '"none"', "right alone")
+        run(STUDY.replace('camera = "A"', 'camera = "Z"'), "bad.toml:", '"Z"')
+        run(STUDY.replace('"box>=0.5"', '"lid>=0.5"'), '"lid"')
+        run(STUDY.replace('wanted = ["box>=0.5"]', 'cameras = ["Z"]'), '"Z"')
+        run(STUDY.replace("size =", "camera_models = { Z = \"sit-monochrome\" }\nsize ="), '"Z"', "A, B")
+        run(STUDY.replace("size =", "camera_models = { A = \"betacam\" }\nsize ="), "betacam")
+        run(STUDY.replace('shows = "cctv"', 'shows = "cctv"\n').replace('camera = "A"\nposition_deg = 180',
+                                                                        'camera = "B"\nposition_deg = 180'), '"B"', "CCTV")
+        run(STUDY.replace("bay.toml", "none.toml"), "none.toml")
+        self.says(self.refused_cleanly("study", "run", "gone.toml"), "gone.toml")
+
+    def test_folder_that_cannot_be(self):
+        self.says(self.refused("study", "run", "s.toml", "-o", "bay.toml"), "bay.toml", "folder")
+        (self.folder / "o" / "study.json").mkdir(parents=True)
+        self.says(self.refused("study", "run", "s.toml", "-o", "o"), "study.json", "folder")
+        self.assertEqual(self.all_files("o"), ["study.json"])
+
+    @unittest.skipIf(os.geteuid() == 0, "the superuser may write anywhere")
+    def test_folder_that_is_not_writable(self):
+        (self.folder / "o").mkdir(mode=0o500)
+        self.says(self.refused("study", "run", "s.toml", "-o", "o", code=1), "cannot be written")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Visibility studies that are ended go on from what is finished."""
+import os
+import random
+import signal
+import subprocess
+import time
+import unittest
+
+import program
+from tiny_bay import Case
+
+
+class Resume(Case):
+    CALL = ("study", "orbit", "bay.toml", "--positions", "12", "--wanted", "box>=0.5")
+
+    def started(self, *arguments):
+        run = subprocess.Popen([program.PROGRAM, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(run.stderr.close)
+        self.addCleanup(run.wait)
+        self.addCleanup(run.kill)
+        return run
+
+    def test_a_killed_run_goes_on(self):
+        begin = time.monotonic()
+        self.done(*self.CALL, "-o", "whole")
+        took = time.monotonic() - begin
+        # What a write that was cut short leaves, and one that is still at work.
+        points = self.folder / "o" / "points"
+        points.mkdir(parents=True)
+        gone = self.started("--version")
+        gone.wait()
+        torn = [points.parent / f".study.json.{gone.pid}-3.part", points / f".0123.exr.{gone.pid}-0.part"]
+        at_work = points / f".4567.exr.{os.getpid()}-0.part"
+        for path in (*torn, at_work):
+            path.write_bytes(b"half")
+        chance = random.Random(1)
+        ended = 0
+        for _ in range(5):
+            run = self.started(*self.CALL, "-o", "o")
+            time.sleep(took * chance.random())
+            run.send_signal(signal.SIGKILL)
+            run.wait()
+            ended += run.returncode == -signal.SIGKILL
+        self.assertGreater(ended, 0)
+        whole_pictures = [path.stem for path in (self.folder / "o" / "points").glob("*.exr")
+                          if path.with_suffix(".json").exists()]
+        last = self.run_program(*self.CALL, "-o", "o")
+        self.assertEqual(last.returncode, 0, last.stderr)
+        self.assertNotIn("done again", last.stderr)
+        self.assertEqual(self.without_times(self.study("o")), self.without_times(self.study("whole")))
+        found = [stage for stage, found in self.costs("o").items() if found and stage.startswith("picture")]
+        self.assertEqual(len(found), len(whole_pictures))
+        at_work.unlink()
+        self.assertEqual(self.all_files("o"), self.all_files("whole"))  # nothing torn or temporary beside them
+
+    def test_torn_parts_are_done_again(self):
+        self.done(*self.CALL, "-o", "o")
+        whole = self.without_times(self.study("o"))
+        points = self.folder / "o" / "points"
+        for path in points.glob("*"):
+            path.write_bytes(path.read_bytes()[:100])
+        run = self.run_program(*self.CALL, "-o", "o")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.says(run.stderr, "done again")
+        self.assertEqual(self.without_times(self.study("o")), whole)
+        self.assertEqual(set(self.costs("o").values()), {False})
+
+    def test_an_interrupted_run_says_so_and_goes_on(self):
+        call = ("study", "orbit", "bay.toml", "--positions", "4", "-o", "o", "--wanted", "box>=0.5",
+                "--set", "quality.gather=per-sample", "--set", "quality.gather_rays=2048")
+        run = self.started(*call)
+        while run.poll() is None and not (self.folder / "o" / "points").exists():
+            time.sleep(0.01)
+        time.sleep(0.3)
+        run.send_signal(signal.SIGINT)
+        _, errors = run.communicate()
+        self.assertEqual(run.returncode, 1, errors)
+        self.says(errors, "interrupted", "again")
+        study = self.no_nonsense("o")
+        self.assertFalse(study["complete"])
+        self.assertEqual(len(study["conditions"]), 4)
+        self.done("report", "o")
+        self.says((self.folder / "o" / "report.html").read_text(encoding="utf-8"), "stopped")
+        self.done(*call)
+        self.assertTrue(self.study("o")["complete"])
+        self.assertEqual(len(self.study("o")["results"]), 4 * 2 * 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: Apache-2.0
+"""study orbit, study run and study visibility: what they write."""
+import csv
+import unittest
+
+from tiny_bay import BAY, STUDY, VERDICTS, Case
+
+
+class Orbit(Case):
+    CALL = ("study", "orbit", "bay.toml", "--positions", "6", "--wanted", "box>=0.5", "--iris", "fixed,peak")
+
+    def test_folder_and_results(self):
+        printed = self.json(*self.CALL, "-o", "o")
+        study = self.no_nonsense("o")
+        self.assertEqual(printed, study)
+        self.assertEqual(self.files("o"), ["pictures", "points", "report.html", "results.csv", "study.json"])
+        self.assertEqual((study["format"], study["study"], study["complete"], study["targets"]),
+                         (1, "visibility", True, ["box", "far"]))
+        self.assertEqual([camera["name"] for camera in study["cameras"]], ["A", "B"])
+        self.assertEqual([camera["cctv"] for camera in study["cameras"]], ["sit-monochrome", None])
+        positions = [condition["position_deg"] for condition in study["conditions"]]
+        self.assertEqual(positions, [0, 60, 120, 180, 240, 300])
+        phases = [condition["phase"] for condition in study["conditions"]]
+        self.assertEqual(phases, ["day", "day", "eclipse", "eclipse", "eclipse", "day"])
+        for condition in study["conditions"]:
+            self.assertGreaterEqual(set(condition), {"id", "scene", "name", "lamps", "time_s", "sun_share",
+                                                     "factors", "earth_error"})
+        self.assertEqual(len(study["results"]), 6 * 2 * 2)
+        ids = {condition["id"] for condition in study["conditions"]}
+        for result in study["results"]:
+            self.assertIn(result["condition"], ids)
+            self.assertIn(result["verdict"], VERDICTS)
+            cctv = result["camera"] == "A"
+            if result["target"] == "far":
+                self.assertEqual((result["verdict"], result["luminance"], result["lit_fraction"], result["signal"]),
+                                 ("out-of-view", None, None, None))
+                self.assertEqual(set(result["probability"].values()), {None})
+                continue
+            self.assertEqual((result["signal"] is not None, result["monitor"] is not None), (cctv, cctv))
+            self.assertGreater(result["pixels"], 0)
+            self.assertTrue(all(0 <= p <= 1 for p in result["probability"].values()))
+            light = sum(source["luminance"] for source in result["light_by"])
+            self.assertAlmostEqual(light / result["luminance"], 1, places=4)
+            self.assertLessEqual(result["luminance_error"], result["luminance_bound"])
+        # Under the same lamps and the same sky on either side of noon there is the same light.
+        detect = {(line["camera"], line["target"]): line["detect"] for line in study["timelines"]}
+        self.assertEqual(set(detect), {(c, t) for c in "AB" for t in ("box", "far")})
+        self.assertEqual(detect["A", "far"], [None] * 6)
+        self.assertEqual(study["timelines"][0]["position_deg"], positions)
+        for figure in study["figures"]:
+            self.assertTrue((self.folder / "o" / figure["file"]).is_file())
+            self.assertTrue((self.folder / "o" / figure["exr"]).is_file())
+        self.assertGreater(len(study["pairs"]), 0)
+        answer, = study["answers"]
+        self.assertTrue(answer["found"])
+        self.assertIn(answer["camera"], "AB")
+        for begin, end in answer["arcs_deg"]:
+            self.assertLess(begin, end)
+        rows = list(csv.DictReader((self.folder / "o" / "results.csv").read_text(encoding="utf-8").splitlines()))
+        self.assertEqual([(row["camera"], row["target"], row["verdict"]) for row in rows],
+                         [(result["camera"], result["target"], result["verdict"]) for result in study["results"]])
+
+    def test_same_results_on_any_number_of_threads_and_again(self):
+        for threads in ("1", "2"):
+            self.done(*self.CALL, "-o", threads, "-j", threads)
+        first = self.study("1")
+        self.assertEqual(self.without_times(first), self.without_times(self.study("2")))
+        self.assertEqual(set(self.costs("1").values()), {False})
+        run = self.run_program(*self.CALL, "-o", "1")
+        self.assertEqual((run.returncode, run.stderr.count("done again")), (0, 0), run.stderr)
+        self.assertEqual(self.without_times(self.study("1")), self.without_times(first))
+        self.assertEqual(self.costs("1"), {f"{what} s0 {camera}": True for what in ("picture", "conditions")
+                                           for camera in "AB"})
+
+    def test_positions_may_be_listed_in_any_order(self):
+        study = self.json("study", "orbit", "bay.toml", "-o", "o", "--at", "180,0,90", "--camera", "B",
+                          "--wanted", "box>=0.5")
+        self.assertEqual([condition["position_deg"] for condition in study["conditions"]], [0, 90, 180])
+        for begin, end in study["answers"][0]["arcs_deg"]:
+            self.assertLessEqual(begin, end)
+
+    def test_dry_run_writes_nothing_and_knows_what_is_there(self):
+        text = self.done(*self.CALL, "-o", "o", "--dry-run")
+        self.says(text, "6 places", "camera A", "camera B")
+        self.assertFalse((self.folder / "o").exists())
+        self.done(*self.CALL, "-o", "o", "--camera", "A")
+        before = self.all_files("o")
+        plan = self.json(*self.CALL, "-o", "o", "--dry-run")
+        self.assertEqual([camera["found"] for camera in plan["scenes"][0]["cameras"]], [True, False])
+        self.assertEqual(self.all_files("o"), before)
+
+    def test_what_changed_is_done_again(self):
+        call = ("study", "orbit", "bay.toml", "-o", "o", "--at", "0", "--camera", "B")
+        self.done(*call)
+        for more in (("--set", "quality.gather_rays=32"), ("--set", "light.left.intensity=10"), ("--seed", "2"),
+                     ("--size", "40x40"), ("--set", "camera.B.fov_deg=51"), ("--set", "orbit.altitude_km=500")):
+            self.done(*call, *more)
+            self.assertFalse(self.costs("o")["picture s0 B"], more)
+        # Another position has the picture of another sky.
+        self.done(*call[:5], "--at", "10", "--camera", "B")
+        self.assertFalse(self.costs("o")["picture s0 B"])
+        # What is asked about the picture does not change it.
+        self.done(*call, "--wanted", "box>=0.9")
+        self.assertTrue(self.costs("o")["picture s0 B"])
+
+
+class Run(Case):
+    def test_a_study_file(self):
+        text = self.done("study", "run", "s.toml", "-o", "o")
+        self.says(text, "box", "right alone", "box>=0.5")
+        study = self.no_nonsense("o")
+        self.assertEqual(study["name"], "day and night")
+        self.assertEqual([(c["position_deg"], c["lamps"]) for c in study["conditions"]],
+                         [(0, "on"), (180, "on"), (0, "right alone"), (180, "right alone")])
+        self.assertEqual(study["targets"], ["box"])
+        self.assertEqual([figure["name"] for figure in study["figures"]], ["noon", "few lights", "night"])
+        self.assertEqual([pair["title"] for pair in study["pairs"]], ["both"])
+        self.assertEqual(len(study["results"]), 4 * 2)
+        light = {source["group"]: source["luminance"] for source in study["results"][3]["light_by"]}
+        self.assertEqual(light["bay"], 0)
+        self.assertGreater(light["right"], 0)
+        self.says(self.done("study", "run", "s.toml", "-o", "o", "--dry-run"), "picture found")
+
+    def test_two_scenes_with_cameras_of_the_same_names(self):
+        self.write("dim.toml", BAY.replace("intensity = 500", "intensity = 5"))
+        self.write("two.toml", STUDY.replace('scene = "bay.toml"', 'scenes = ["bay.toml", "dim.toml"]'))
+        study = self.json("study", "run", "two.toml", "-o", "o")
+        self.assertEqual([scene["id"] for scene in study["scenes"]], ["s0", "s1"])
+        self.assertEqual([(c["scene"], c["name"]) for c in study["cameras"]],
+                         [("s0", "A"), ("s0", "B"), ("s1", "A"), ("s1", "B")])
+        self.assertEqual([figure["name"] for figure in study["figures"]], ["noon", "few lights", "night"])
+        self.assertEqual(len(study["results"]), 2 * 4 * 2)
+        # The pictures are those of the first scene.
+        self.done("study", "run", "s.toml", "-o", "one")
+        for figure in study["figures"]:
+            self.assertEqual((self.folder / "o" / figure["file"]).read_bytes(),
+                             (self.folder / "one" / figure["file"]).read_bytes())
+
+
+class Visibility(Case):
+    def test_wanted_and_iris(self):
+        printed = self.json("study", "visibility", "bay.toml", "-o", "v", "--wanted", "box>=0.9", "--iris", "peak,average")
+        answer, = printed["answers"]
+        self.assertEqual((answer["wanted"], answer["target"], answer["least"]), ("box>=0.9", "box", 0.9))
+        self.assertEqual(answer["arcs_deg"], [])
+        self.assertIn(answer["iris"], (None, "peak", "average"))
+        self.assertEqual([(row["camera"], row["target"]) for row in printed["targets"]],
+                         [(c, t) for c in "AB" for t in ("box", "far")])
+        self.assertTrue(all(row["verdict"] in VERDICTS for row in printed["targets"]))
+        self.no_nonsense("v")
+        self.says(self.done("study", "visibility", "bay.toml", "-o", "w", "--dry-run"), "1 places", "camera B")
+        self.assertFalse((self.folder / "w").exists())
+
+
+class Empty(Case):
+    def judged(self, scene, *more):
+        self.write("empty.toml", scene)
+        self.done("study", "orbit", "empty.toml", "-o", "o", "--at", "0,180", *more)
+        return self.no_nonsense("o")
+
+    def test_a_camera_that_sees_nothing(self):
+        study = self.judged(BAY.replace("look_at = [0, 0, 0]", "look_at = [0.5, 0.5, 12]"), "--camera", "B",
+                            "--wanted", "box>=0.5")
+        self.assertEqual({result["verdict"] for result in study["results"]}, {"out-of-view"})
+        answer, = study["answers"]
+        self.assertEqual((answer["found"], answer["least_factor"], answer["arcs_deg"]), (False, None, []))
+
+    def test_a_scene_without_targets(self):
+        study = self.judged(BAY.replace("target = true\n", ""))
+        self.assertEqual((study["targets"], study["results"], study["timelines"]), ([], [], []))
+        self.assertEqual((self.folder / "o" / "results.csv").read_text(), "")
+        self.says(self.done("study", "orbit", "empty.toml", "-o", "o", "--at", "0,180"), "No object is a target")
+
+    def test_a_target_that_is_hidden(self):
+        lid = BAY.replace('[[light]]\nname = "left"', '[[object]]\nname = "lid"\nshape = "box"\nmin = [-1, -1, 1]\n'
+                          'max = [1, 1, 1.2]\nmaterial = "white"\n\n[[light]]\nname = "left"')
+        study = self.judged(lid, "--camera", "B", "--wanted", "box>=0.5")
+        for result in study["results"]:
+            if result["target"] == "box":
+                self.assertEqual((result["verdict"], result["pixels"], result["visible_fraction"]), ("hidden", 0, 0))
+                self.says(result["why"], "lid")
+
+    def test_no_light_at_all(self):
+        dark = BAY.replace("[900, 800, 700]", "0").replace("intensity = 500", "intensity = 0")
+        study = self.judged(dark, "--wanted", "box>=0.5")
+        for result in study["results"]:
+            if result["condition"] == "s0-c1" and result["target"] == "box":
+                self.assertEqual((result["verdict"], result["luminance"], result["lit_fraction"]), ("not-seen", 0, 0))
+                self.assertIsNone(result["luminance_error"])
+
+
+if __name__ == "__main__":
+    unittest.main()
