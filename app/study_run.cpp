@@ -150,7 +150,8 @@ class Runner {
     take(pictures.part, *frame, found);
     found.conditions = *judged;
     findings_.costs.push_back(
-        {fmt::format("conditions {} {}", pictures.part.id, found.camera->camera->name), 0.0, 0, true});
+        {fmt::format("conditions {} {}", pictures.part.id, found.camera->camera->name), 0.0, 0,
+         true});
     add_all(ways_of((*ways)["ways"]));
     draw_pictures(pictures, nullptr, findings_.figures);
     return true;
