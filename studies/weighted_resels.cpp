@@ -150,8 +150,17 @@ void add_noise(MeanNoise& noise, const Seen& g, Variance v, const TimeFactors& t
 
 WeightedResels weigh(const std::vector<std::uint32_t>& pixels, int picture_columns,
                      int picture_rows, int grid_columns, int grid_rows) {
+  if (pixels.empty()) return {};
   const std::size_t wide = static_cast<std::size_t>(grid_columns);
-  std::vector<double> cover(wide * static_cast<std::size_t>(grid_rows), 0.0);
+  // Only the rows of the grid that the pixels can reach: most sets are small.
+  const auto row_of = [&](std::uint32_t pixel, std::uint32_t below) {
+    const double row = pixel / static_cast<std::uint32_t>(picture_columns) + below;
+    return std::min(static_cast<std::size_t>(row * grid_rows / picture_rows) + below,
+                    static_cast<std::size_t>(grid_rows));
+  };
+  const auto [top, bottom] = std::minmax_element(pixels.begin(), pixels.end());
+  const std::size_t first_row = row_of(*top, 0), rows = row_of(*bottom, 1) - first_row;
+  std::vector<double> cover(wide * rows, 0.0);
   struct Part {
     std::size_t at;
     double share;
@@ -171,13 +180,13 @@ WeightedResels weigh(const std::vector<std::uint32_t>& pixels, int picture_colum
     parts(pixel % width, picture_columns, grid_columns, along);
     parts(pixel / width, picture_rows, grid_rows, across);
     for (const Part& y : across) {
-      for (const Part& x : along) cover[y.at * wide + x.at] += x.share * y.share;
+      for (const Part& x : along) cover[(y.at - first_row) * wide + x.at] += x.share * y.share;
     }
   }
   WeightedResels set;
   for (std::size_t i = 0; i < cover.size(); ++i) {
     if (cover[i] == 0.0) continue;
-    set.resel.push_back(static_cast<std::uint32_t>(i));
+    set.resel.push_back(static_cast<std::uint32_t>(first_row * wide + i));
     set.weight.push_back(cover[i]);
     set.area += cover[i];
   }
