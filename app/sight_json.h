@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entries of a visibility study's study.json (docs/studies.md lists the keys).
+// Entries of a visibility study's study.json (docs/visibility.md lists the keys).
 #pragma once
 
 #include <string>
