@@ -80,7 +80,6 @@ Json AccuracyParts::marks_of(const studies::AccuracyStep& step, std::uint64_t se
                    {"gather_rays", picture.gather_rays},
                    {"share_gather", picture.shared.on},
                    {"smooth_share", picture.shared.smooth_share},
-                   {"gather_noise", picture.shared.gather_noise},
                    {"picture_noise", picture.shared.noise}};
   if (step.indirect == raytrace::Indirect::Radiosity) {
     marks["solve"] = {{"patch_edge_m", solver.patch_edge_m},

@@ -105,7 +105,7 @@ class Study {
     result_.wanted_resolution = finest / task_.call.reference_factor;
     std::vector<PathReference> references(1);
     if (studies::leaves_paths_out(task_.loaded.effects)) {
-      references.push_back({raytrace::PathSet::Gathered, {}, {}});
+      references.push_back({raytrace::PathSet::NoCaustics, {}, {}});
     }
     trace_round(references, 0, first_paths);
     full_ = references.front().pair();

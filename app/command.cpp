@@ -244,13 +244,24 @@ std::string dump(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-void note_balance(const radiosity::BalanceReport& balance) {
+void note_balance(const radiosity::Solution& solution) {
+  const radiosity::BalanceReport& balance = solution.report.balance;
+  if (balance.held > 0.001) {
+    note(
+        fmt::format("warning: so few form-factor rays that patches keep {:.1g} of their light for "
+                    "themselves, as no other patch has room for it; raise quality.form_factor_rays",
+                    balance.held));
+  }
   if (balance.balanced || balance.sweeps == 0) return;
+  std::string where;
+  if (balance.worst < solution.patches.count()) {
+    const std::uint32_t object = solution.patches.object(balance.worst);
+    where = fmt::format(", worst at \"{}\"", solution.report.objects.at(object).name);
+  }
   note(
       fmt::format("warning: the form factors conserve energy to {:.1e} of the surface only, after "
-                  "{} sweeps; raise "
-                  "quality.form_factor_rays to come nearer",
-                  balance.after, balance.sweeps));
+                  "{} sweeps{}; raise quality.form_factor_rays to come nearer",
+                  balance.after, balance.sweeps, where));
 }
 
 void note_backs(const radiosity::SolveReport& report) {

@@ -101,8 +101,9 @@ struct LoadedScene {
 [[nodiscard]] const scenes::Camera& choose_camera(const scenes::Scene& scene,
                                                   const std::string& name);
 
-// A line on stderr where the form factors could not be balanced, with how near they came.
-void note_balance(const radiosity::BalanceReport& balance);
+// A line on stderr where the form factors could not be balanced, with how near they came and which
+// object is furthest off; and one where that took more than a thousandth of the light.
+void note_balance(const radiosity::Solution& solution);
 
 // A line on stderr for each object that is seen from behind more than from the front.
 void note_backs(const radiosity::SolveReport& report);

@@ -16,11 +16,9 @@ struct NamedPart {
 using Parts = std::vector<NamedPart>;
 
 Parts parts_of(const studies::ErrorParts& parts) {
-  return {{"form_factor_noise", "form factors", parts.form_factor_noise},
-          {"patch_size", "patches", parts.patch_size},
-          {"solver_residual", "solver", parts.solver_residual},
-          {"gather_noise", "gather", parts.gather_noise},
-          {"lamp_sampling", "lamps", parts.lamp_sampling},
+  return {{"gather_noise", "gather", parts.gather},
+          {"interreflection", "interreflection", parts.interreflection},
+          {"lobes", "lobes", parts.lobes},
           {"camera_samples", "camera samples", parts.camera_samples}};
 }
 Parts parts_of(const studies::SolutionError& parts) {
@@ -100,7 +98,7 @@ void add_steps(Json& json, studies::Limit limit, const std::vector<studies::Step
     }
     if (step.gather_rays > 0) one["gather_rays"] = step.gather_rays;
     one["asked"] = step.asked;
-    one["estimate"] = step.estimate;
+    if (step.estimate > 0.0) one["estimate"] = step.estimate;
     json["steps"].push_back(one);
   }
 }
@@ -116,7 +114,8 @@ std::string choice_text(studies::Limit limit, const std::vector<studies::Step>& 
       text += fmt::format(" {} patches, {} rays each,", step.patches, step.form_factor_rays);
     }
     if (step.gather_rays > 0) text += fmt::format(" {} gather rays a pixel,", step.gather_rays);
-    text += fmt::format(" leaves {:.2g} %", 100.0 * step.estimate);
+    if (step.estimate > 0.0) text += fmt::format(" leaves {:.2g} %,", 100.0 * step.estimate);
+    text.pop_back();
   }
   if (limit != studies::Limit::None) {
     text +=
@@ -129,8 +128,8 @@ std::string choice_text(studies::Limit limit, const std::vector<studies::Step>& 
 
 Json error_json(const Drawn& drawn, std::optional<double> wanted) {
   const studies::ErrorBudget& budget = drawn.errors;
-  Json json = json_of(budget.parts.total(), budget.pixels > 0, parts_of(budget.parts), wanted,
-                      budget.not_captured);
+  Json json =
+      json_of(budget.total, budget.pixels > 0, parts_of(budget.parts), wanted, budget.not_captured);
   add_steps(json, drawn.limit, drawn.steps);
   json["targets"] = Json::array();
   for (const auto& target : budget.targets) json["targets"].push_back(json_of(target));
@@ -151,7 +150,7 @@ void add_errors(base::ExrHeader& header, const Drawn& drawn) {
     header.numbers.emplace_back("earthshine:error." + name, static_cast<float>(value));
   };
   if (budget.pixels > 0) {
-    const Doubt total = budget.parts.total();
+    const Doubt total = budget.total;
     number("estimate", total.estimate);
     number("bound_95", total.bound_95);
     for (const NamedPart& part : parts_of(budget.parts)) number(part.name, part.part.estimate);
@@ -165,8 +164,7 @@ void add_errors(base::ExrHeader& header, const Drawn& drawn) {
 
 std::string error_text(const Drawn& drawn, std::optional<double> wanted) {
   const studies::ErrorBudget& budget = drawn.errors;
-  return text_of(budget.parts.total(), budget.pixels > 0, parts_of(budget.parts),
-                 budget.not_captured) +
+  return text_of(budget.total, budget.pixels > 0, parts_of(budget.parts), budget.not_captured) +
          choice_text(drawn.limit, drawn.steps, wanted, budget.pixels > 0);
 }
 

@@ -7,6 +7,8 @@
 #include "app/console.h"
 #include "app/memory.h"
 #include "app/solution.h"
+#include "studies/picture_solver.h"
+#include "studies/reach_surfaces.h"
 
 namespace earthshine::app {
 namespace {
@@ -36,20 +38,22 @@ bool says_how_exact(const scenes::Quality& quality) {
   return quality.error || quality.patch_edge_m || quality.max_patches || quality.form_factor_rays;
 }
 
+radiosity::SolveOptions solver_for(const RenderCall& call, const scenes::Scene& scene,
+                                   const Common& common) {
+  // A solution that is read is told by the settings that it was made with.
+  if (!call.solution.empty() || !steers(call, scene)) return solve_options(scene, common);
+  return studies::picture_solver(scene, scene.quality, common.seed);
+}
+
 Solved solve_or_take(const LightCall& wanted, StageTimes& times) {
   const RenderCall& call = wanted.call;
   const LoadedScene& loaded = wanted.loaded;
   Solved light;
-  light.solver = solve_options(loaded.scene, wanted.common);
+  light.solver = solver_for(call, loaded.scene, wanted.common);
   if (call.indirect != raytrace::Indirect::Radiosity) return light;
   if (!loaded.effects.solution && call.solution.empty()) {
     if (loaded.groups.count() == 0) note("note: nothing gives light, the picture is black");
     return light;
-  }
-  if (call.solution.empty() && steers(call, loaded.scene)) {
-    std::vector<studies::WatchedPicture> whole = wanted.pictures;
-    for (studies::WatchedPicture& picture : whole) picture.options.crop = {};
-    return solve_as_exactly({loaded, wanted.common, wanted.query, whole, call.time_limit_s}, times);
   }
   if (call.time_limit_s > 0.0 && call.solution.empty() && !says_how_exact(loaded.scene.quality)) {
     return solve_within(wanted, call.time_limit_s, times);
@@ -66,23 +70,25 @@ Solved solve_as_exactly(const ExactCall& call, StageTimes& times) {
   const studies::StudyScene scene{loaded.scene, loaded.groups, loaded.effects, call.query};
   const auto start = std::chrono::steady_clock::now();
   double in_stages = 0.0;
-  studies::SteeredSolution found = studies::reach_solution(
-      scene, wanted_error(loaded, call.common, call.time_limit_s, times), call.common.seed,
-      call.pictures, [&](const radiosity::SolveReport& report) {
-        times.add(report.seconds);
-        for (const auto& [stage, seconds] : report.seconds) in_stages += seconds;
+  const studies::Wanted wanted = wanted_error(loaded, call.common, call.time_limit_s, times);
+  const studies::SolveListener listen = [&](const radiosity::SolveReport& report) {
+    times.add(report.seconds);
+    for (const auto& [stage, seconds] : report.seconds) in_stages += seconds;
+  };
+  studies::SteeredSolution found = studies::reach_surfaces(
+      scene, wanted, call.common.seed, listen, [&](const std::string& stage) -> raytrace::Progress {
+        const auto bar = std::make_shared<Progress>(stage, call.common.quiet);
+        return [bar](std::size_t done, std::size_t total) { (*bar)(done, total); };
       });
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  times.add({{"second opinion", std::max(0.0, taken.count() - in_stages)}});
-  note_balance(found.solution.report.balance);
+  times.add({{"residual", std::max(0.0, taken.count() - in_stages)}});
+  note_balance(found.solution);
   Solved light;
   light.solution = std::move(found.solution);
   light.solver = found.solver;
   light.solved = light.steered = true;
-  light.errors = std::move(found.opinion.pictures);
   light.surface = std::move(found.surface);
   light.steps = std::move(found.steps);
-  light.trials = std::move(found.trials);
   light.limit = found.limit;
   return light;
 }
@@ -113,13 +119,6 @@ studies::Wanted wanted_error(const LoadedScene& loaded, const Common& common, do
 Solved find_light(const LightCall& wanted, StageTimes& times) {
   Solved light = solve_or_take(wanted, times);
   if (light.solved && !wanted.common.quiet) note_backs(light.solution.report);
-  if (!light.errors.empty()) return light;
-  const LoadedScene& loaded = wanted.loaded;
-  light.errors = times.measure("second opinion", [&] {
-    return studies::second_opinion({loaded.scene, loaded.groups, loaded.effects, wanted.query},
-                                   light.solution, light.solver, wanted.pictures)
-        .pictures;
-  });
   return light;
 }
 

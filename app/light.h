@@ -12,18 +12,15 @@ struct LightCall {
   const Common& common;
   const LoadedScene& loaded;
   const scenes::RayQuery& query;
-  const std::vector<studies::WatchedPicture>& pictures;
 };
 [[nodiscard]] Solved find_light(const LightCall& wanted, StageTimes& times);
 
-// Solves until what the pictures, or without pictures the surfaces, owe to the solution is within
-// the scene's `quality.error`.
+// Solves until the error over the surfaces is within the scene's `quality.error`.
 struct ExactCall {
   const LoadedScene& loaded;
   const Common& common;
   const scenes::RayQuery& query;
-  std::vector<studies::WatchedPicture> pictures;  // whole ones
-  double time_limit_s = 0.0;                      // 0: none
+  double time_limit_s = 0.0;  // 0: none
 };
 [[nodiscard]] Solved solve_as_exactly(const ExactCall& call, StageTimes& times);
 

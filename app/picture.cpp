@@ -7,6 +7,7 @@
 #include "app/draw.h"
 #include "app/error_json.h"
 #include "app/interrupt.h"
+#include "app/light.h"
 #include "app/provenance.h"
 #include "app/render_call.h"
 #include "base/exr_file.h"
@@ -144,6 +145,8 @@ raytrace::RenderOptions picture_options(const RenderCall& call, const Common& co
   if (alone && !loaded.scene.quality.gather_rays) {
     options.gather_rays *= scenes::rays_alone_per_shared;
   }
+  if (steers(call, loaded.scene)) options.error = *loaded.scene.quality.error;
+  options.fills_time = !steers(call, loaded.scene);
   if (call.crop) options.crop = *call.crop;
   options.indirect = call.indirect;
   options.distributed_lights = static_cast<int>(call.distributed_lights);

@@ -163,11 +163,7 @@ void run(RenderCall call, const Common& common) {
     expected = times.measure("pilot", [&] { return expect(loaded, call, common, asked, query); });
   }
   const double cpu_before = base::cpu_seconds();
-  std::vector<studies::WatchedPicture> watched;
-  for (const Wanted& picture : pictures) {
-    watched.push_back({picture.camera, picture_options(call, common, loaded, *picture.camera)});
-  }
-  const Solved light = find_light({call, common, loaded, query, watched}, times);
+  const Solved light = find_light({call, common, loaded, query}, times);
   Studio studio{call, common, loaded, query, light};
   Json reports = Json::array();
   std::vector<Picture> taken;

@@ -12,6 +12,7 @@
 #include "raytrace/render.h"
 #include "scenes/idle.h"
 #include "scenes/ray_query.h"
+#include "studies/error_budget.h"
 #include "studies/wanted_error.h"
 
 namespace earthshine::app {
@@ -65,12 +66,10 @@ struct Solved {
   radiosity::Solution solution;
   radiosity::SolveOptions solver;
   bool solved = false;
-  std::vector<studies::WatchedErrors> errors;  // of each picture, due to the solution
-  studies::SurfaceError surface;               // without pictures
+  studies::SurfaceError surface;  // where the solution is what is asked for
   // Where an error was asked for: how it was reached.
   bool steered = false;
   std::vector<studies::Step> steps;
-  std::vector<studies::Trial> trials;  // of each picture
   studies::Limit limit = studies::Limit::None;
 };
 

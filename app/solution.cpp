@@ -36,7 +36,7 @@ radiosity::Solution solve_or_read(const LoadedScene& loaded, const scenes::RayQu
       return radiosity::read_solution(path, origin_of(loaded, options));
     });
   }
-  note_balance(solution.report.balance);
+  note_balance(solution);
   return solution;
 }
 

@@ -2,7 +2,12 @@
 // earthshine solve: radiosity alone, and where the light went.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "app/command.h"
 #include "app/console.h"
@@ -15,6 +20,7 @@
 #include "radiosity/solution.h"
 #include "scenes/quality.h"
 #include "scenes/ray_query.h"
+#include "studies/reach_surfaces.h"
 
 namespace earthshine::app {
 namespace {
@@ -30,6 +36,9 @@ Json groups_of(const radiosity::SolveReport& report) {
   Json groups = Json::array();
   for (const radiosity::GroupLedger& group : report.groups) {
     groups.push_back({{"name", group.name},
+                      {"given_lm", to_json(group.given_lm)},
+                      {"escaped_at_once_lm", to_json(group.escaped_at_once_lm)},
+                      {"lost_at_once_lm", to_json(group.lost_at_once_lm)},
                       {"emitted_lm", to_json(group.emitted_lm)},
                       {"landed_lm", to_json(group.landed_lm)},
                       {"absorbed_lm", to_json(group.absorbed_lm)},
@@ -58,6 +67,7 @@ Json sources_of(const radiosity::SolveReport& report, const scenes::LightGroups&
     sources.push_back({{"name", source.name},
                        {"group", named ? Json(groups.names[source.group]) : Json()},
                        {"emitted_lm", to_json(source.emitted_lm)},
+                       {"landed_lm", to_json(source.landed_lm)},
                        {"escaped_share", source.escaped_share},
                        {"black_share", source.black_share},
                        {"share_std_error", source.share_std_error},
@@ -88,10 +98,9 @@ Json json_of(const LoadedScene& loaded, const radiosity::SolveReport& report,
   json["residual"] = report.residual;
   json["solver_error"] = report.solver_error;
   json["back_share"] = report.back_share;
-  json["balance"] = {{"sweeps", report.balance.sweeps},
-                     {"before", report.balance.before},
-                     {"after", report.balance.after},
-                     {"borrowed", report.balance.borrowed},
+  json["balance"] = {{"sweeps", report.balance.sweeps},    {"before", report.balance.before},
+                     {"after", report.balance.after},      {"borrowed", report.balance.borrowed},
+                     {"filled", report.balance.filled},    {"held", report.balance.held},
                      {"balanced", report.balance.balanced}};
   json["groups"] = groups_of(report);
   json["sources"] = sources_of(report, loaded.groups);
@@ -102,6 +111,39 @@ Json json_of(const LoadedScene& loaded, const radiosity::SolveReport& report,
 
 double luminous(const Json& rgb) {
   return base::luminance({rgb[0].get<double>(), rgb[1].get<double>(), rgb[2].get<double>()});
+}
+
+// From what is given to where it ends. Columns in which no group has anything are left out.
+std::string ledger_text(const Json& groups) {
+  constexpr std::array<std::array<const char*, 2>, 7> all = {{{"given_lm", "given lm"},
+                                                              {"escaped_at_once_lm", "out at once"},
+                                                              {"lost_at_once_lm", "black backs"},
+                                                              {"emitted_lm", "emitted lm"},
+                                                              {"landed_lm", "landed lm"},
+                                                              {"absorbed_lm", "absorbed lm"},
+                                                              {"escaped_lm", "escaped lm"}}};
+  if (groups.empty()) return "\nlight group\nnone: nothing gives light\n";
+  std::string head = fmt::format("\n{:<20}", "light group");
+  std::vector<std::string> lines;
+  for (const Json& group : groups) {
+    lines.push_back(fmt::format("{:<20}", group["name"].get<std::string>()));
+  }
+  for (const auto& [key, title] : all) {
+    const auto shown = [&, name = key](const Json& group) {
+      const double lm = luminous(group[name]);
+      return std::abs(lm) <= 1e-9 * luminous(group["given_lm"]) ? 0.0 : lm;
+    };
+    if (std::none_of(groups.begin(), groups.end(), shown)) continue;
+    head += fmt::format(" {:>12}", title);
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      lines[k] += fmt::format(" {:>12.6g}", shown(groups[k]));
+    }
+  }
+  std::string text = head + fmt::format(" {:>10}\n", "imbalance");
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    text += lines[k] + fmt::format(" {:>10.2g}\n", groups[k]["imbalance"].get<double>());
+  }
+  return text;
 }
 
 // Luminous amounts (Y of the three channels); the channels are in the JSON.
@@ -120,15 +162,7 @@ std::string text_of(const Json& json) {
                         short_count(json["refinement"]["rays"].get<double>()),
                         rounds.back()["error"].get<double>());
   }
-  text += fmt::format("\n{:<20} {:>12} {:>12} {:>12} {:>12} {:>10}\n", "light group", "emitted lm",
-                      "landed lm", "absorbed lm", "escaped lm", "imbalance");
-  for (const Json& g : json["groups"]) {
-    text += fmt::format("{:<20} {:>12.6g} {:>12.6g} {:>12.6g} {:>12.6g} {:>10.2g}\n",
-                        g["name"].get<std::string>(), luminous(g["emitted_lm"]),
-                        luminous(g["landed_lm"]), luminous(g["absorbed_lm"]),
-                        luminous(g["escaped_lm"]), g["imbalance"].get<double>());
-  }
-  if (json["groups"].empty()) text += "none: nothing gives light\n";
+  text += ledger_text(json["groups"]);
   text += fmt::format("\n{:<24} {:>12} {:>14} {:>16}\n", "object", "area m2", "illuminance lx",
                       "radiosity lm/m2");
   for (const Json& o : json["objects"]) {
@@ -141,6 +175,16 @@ std::string text_of(const Json& json) {
     text += fmt::format("{:<20} {:>10}\n", stage, duration(seconds.get<double>()));
   }
   return text;
+}
+
+// What the wanted error would still take where a limit came first: time goes with the inverse of
+// the squared error, patches and rays alike.
+std::string price_text(const Solved& light, std::optional<double> wanted, double seconds) {
+  if (!wanted || light.limit == studies::Limit::None || light.steps.empty()) return "";
+  const double over = light.steps.back().estimate / *wanted;
+  if (over <= 1.0 || light.limit == studies::Limit::Settings) return "";
+  return fmt::format("\n  {:.2g} % needs about {} more, or more", 100.0 * *wanted,
+                     duration(seconds * (over * over - 1.0)));
 }
 
 bool is_json(const std::string& path) { return path.ends_with(".json"); }
@@ -162,9 +206,8 @@ void check_call(const SolveCall& call) {
 Solved solve_alone(const SolveCall& call, const Common& common, const LoadedScene& loaded,
                    const scenes::RayQuery& query, const radiosity::SolveOptions& options,
                    StageTimes& times) {
-  const bool reads = !call.solution.empty();
-  if (!reads && loaded.scene.quality.error && loaded.effects.solution) {
-    return solve_as_exactly({loaded, common, query, {}, call.time_limit_s}, times);
+  if (call.solution.empty() && loaded.scene.quality.error) {
+    return solve_as_exactly({loaded, common, query, call.time_limit_s}, times);
   }
   Solved light;
   light.solver = options;
@@ -184,7 +227,11 @@ void run(const SolveCall& call, const Common& common) {
   const scenes::RayQuery query =
       times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
   const radiosity::SolveOptions options = solve_options(loaded.scene, common);
-  check_memory(loaded, query, options, nullptr, call.solution.empty());
+  const std::optional<double> error = loaded.scene.quality.error;
+  const bool steers = error && call.solution.empty();
+  check_memory(loaded, query,
+               steers ? studies::first_surface_options(loaded.scene, *error, common.seed) : options,
+               nullptr, call.solution.empty());
   const Solved light = solve_alone(call, common, loaded, query, options, times);
   const radiosity::Solution& solution = light.solution;
   if (!common.quiet) note_backs(solution.report);
@@ -200,7 +247,8 @@ void run(const SolveCall& call, const Common& common) {
   if (writes_report) base::write_text(call.output, dump(json));
   if (call.json) print(dump(json));
   if (!call.json && !writes_report)
-    print(text_of(json) + "\n" + error_text(light, loaded.scene.quality.error) + "\n");
+    print(text_of(json) + "\n" + error_text(light, loaded.scene.quality.error) +
+          price_text(light, loaded.scene.quality.error, times.total()) + "\n");
 }
 
 }  // namespace

@@ -95,10 +95,6 @@ std::string lamp_text(const std::vector<WayOfLooking>& ways, double wanted) {
       less ? "below " : "", *best->least_factor, best->lamps, best->camera);
 }
 
-}  // namespace
-
-namespace {
-
 // The camera's CCTV with that iris mode; its own for an empty one.
 std::optional<degrade::Setup> cctv_with(const StudyCamera& camera, const std::string& mode) {
   if (!camera.cctv) return std::nullopt;

@@ -97,6 +97,11 @@ Json StudyConditions::marks(const StudyCamera& camera, const Json& frame_marks, 
     marks["cctv"] = settings_json(camera.cctv->chain.camera);
     marks["monitor"] = monitor_json(camera.cctv->chain.monitor);
   }
+  // Reasons name objects, and how many there are of them depends on what is explained.
+  for (const scenes::Object& object : part_.loaded.scene.objects) {
+    marks["objects"].push_back(object.name);
+  }
+  marks["explain"] = static_cast<int>(options().explain);
   marks["targets"] = part_.targets;
   marks["seen"] = study_.seen_probability;
   return marks;

@@ -74,8 +74,7 @@ Json StudyFrames::marks(const StudyCamera& camera) const {
   marks["columns"] = how.columns;
   marks["rows"] = how.rows;
   marks["gather_rays"] = how.gather_rays;
-  marks["shared"] = {how.shared.on, how.shared.smooth_share, how.shared.gather_noise,
-                     how.shared.noise};
+  marks["shared"] = {how.shared.on, how.shared.smooth_share, how.error, how.shared.noise};
   marks["seed"] = how.seed;
   return marks;
 }
@@ -108,7 +107,7 @@ const radiosity::Solution& StudyFrames::solution(std::vector<StudyCost>& costs) 
       return radiosity::solve(basis.scene, basis.groups, basis.effects, *part_.query, solver_,
                               std::move(refined.patches));
     });
-    note_balance(solution_->report.balance);
+    note_balance(*solution_);
     cost.found = false;
     cost.rays = solution_->report.form_factor_rays + solution_->report.shadow_rays;
     radiosity::write_solution(file, *solution_, origin);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "app/accuracy_store.h"
 #include "app/console.h"

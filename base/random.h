@@ -27,7 +27,8 @@ enum class Stream : std::uint32_t {
   Refinement,
   Path,
   RangeNoise,
-  ErrorBudget
+  ErrorBudget,
+  Residual
 };
 
 // A 64-bit mix of the key's parts (SplitMix64 finaliser, Steele et al. 2014).

@@ -41,18 +41,22 @@ SobolSet4::SobolSet4(std::uint32_t count) {
   }
 }
 
-SobolSet4::Scramble::Scramble(Key key) : seed{} {
+SobolSet4::Scramble::Scramble(Key key) : seed{}, run{} {
   for (std::uint32_t d = 0; d < 4; ++d) {
     seed[d] = static_cast<std::uint32_t>(mix64(key.value ^ (d + 1)) >> 32);
   }
 }
 
+void SobolSet4::go_to_run(std::uint32_t run, Scramble& scramble) const {
+  for (std::size_t d = 0; d < 4; ++d) scramble.run[d] = reverse_bits(sobol(d, run * count()));
+}
+
 void SobolSet4::points(std::uint32_t first, const Scramble& scramble, Points& out) const {
   for (std::size_t d = 0; d < 4; ++d) {
     const std::uint32_t* bits = &bits_[d][first];
-    const std::uint32_t seed = scramble.seed[d];
+    const std::uint32_t seed = scramble.seed[d], run = scramble.run[d];
     for (std::uint32_t k = 0; k < width; ++k) {
-      out.x[d][k] = to_open_unit(reverse_bits(laine_karras(bits[k], seed)));
+      out.x[d][k] = to_open_unit(reverse_bits(laine_karras(bits[k] ^ run, seed)));
     }
   }
 }

@@ -23,8 +23,13 @@ class SobolSet4 {
   // One random scrambling of each dimension.
   struct Scramble {
     std::uint32_t seed[4];
+    std::uint32_t run[4];  // bits by which the points of a later run differ, lowest first
     explicit Scramble(Key key);
   };
+  // From now on the points of the sequence from run * count() on, in place of its first ones: runs
+  // 0 to m - 1, m a power of two, are together the set of m * count() points. Sobol numbers are
+  // linear in the index's bits, so that a run differs from the first by one XOR per dimension.
+  void go_to_run(std::uint32_t run, Scramble& scramble) const;
 
   struct alignas(32) Points {
     float x[4][width];  // [dimension][point], in (0, 1)

@@ -4,6 +4,8 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "radiosity/column_sums.h"
+#include "radiosity/filled_hits.h"
 #include "radiosity/form_factors.h"
 
 namespace earthshine::radiosity {
@@ -12,81 +14,6 @@ namespace {
 constexpr int most_sweeps = 500;  // passes over the matrix there and back
 constexpr int plain_sweeps = 4;
 constexpr double largest_scale = 1e6;
-
-// column_scale_j sum_i weight_i F_raw,ij with F_raw = row_scale n. Rows are split in a fixed number
-// of bands with sums of their own, added in order: the same bits on any number of threads.
-template <class Weight>
-std::vector<double> weighted_column_sums(const FormFactors& f, Weight weight) {
-  constexpr std::size_t bands = 16;
-  const std::size_t count = f.count();
-  std::vector<double> partial(bands * count, 0.0);
-  base::parallel_chunks(bands, 1, [&](std::size_t band, std::size_t) {
-    double* sums = &partial[band * count];
-    for (std::size_t i = band * count / bands; i < (band + 1) * count / bands; ++i) {
-      const double w = weight(i) * f.row_scale[i];
-      if (w == 0.0) continue;
-      for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
-        sums[f.column[e]] += w * double(f.hits[e]);
-      }
-    }
-  });
-  std::vector<double> total(count);
-  base::parallel_chunks(count, 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t j = begin; j < end; ++j) {
-      double sum = 0.0;
-      for (std::size_t band = 0; band < bands; ++band) sum += partial[band * count + j];
-      total[j] = f.column_scale[j] * sum;
-    }
-  });
-  return total;
-}
-
-// A patch that no ray reached has an empty column, which no scaling can fill; one that only a
-// speck's rays reached would need a scale of a million. Reciprocity gives its entries: n_ij = n_ji
-// A_j / A_i for the patches i that it saw itself.
-std::size_t fill_empty_columns(FormFactors& f, std::span<const double> area_m2) {
-  constexpr double starved = 0.01;  // share of what a column should hold by its own row
-  const std::size_t count = f.count();
-  const std::vector<double> sums =
-      weighted_column_sums(f, [&](std::size_t i) { return area_m2[i] * f.kept[i]; });
-  const auto reached = [&](std::size_t j) {
-    return sums[j] >= starved * area_m2[j] * (1.0 - f.sky[j] - f.black[j]);
-  };
-  std::vector<std::vector<std::pair<std::uint32_t, float>>> borrowed(count);
-  std::size_t patches = 0;
-  for (std::size_t j = 0; j < count; ++j) {
-    if (reached(j) || f.row_start[j] == f.row_start[j + 1]) continue;
-    ++patches;
-    for (std::uint64_t e = f.row_start[j]; e < f.row_start[j + 1]; ++e) {
-      const std::uint32_t i = f.column[e];
-      if (area_m2[i] <= 0.0) continue;
-      const double hits = double(f.hits[e]) * area_m2[j] / area_m2[i];
-      borrowed[i].emplace_back(static_cast<std::uint32_t>(j), static_cast<float>(hits));
-    }
-  }
-  if (patches == 0) return 0;
-
-  FormFactors old;
-  old.row_start.swap(f.row_start);
-  old.column.swap(f.column);
-  old.hits.swap(f.hits);
-  f.row_start.assign(count + 1, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    std::uint64_t e = old.row_start[i];
-    auto extra = borrowed[i].begin();  // ascending, since j ran upward
-    while (e < old.row_start[i + 1] || extra != borrowed[i].end()) {
-      const bool has_old = e < old.row_start[i + 1], has_extra = extra != borrowed[i].end();
-      const bool take_old = has_old && (!has_extra || old.column[e] <= extra->first);
-      const bool take_extra = has_extra && (!has_old || extra->first <= old.column[e]);
-      f.column.push_back(take_old ? old.column[e] : extra->first);
-      f.hits.push_back((take_old ? old.hits[e] : 0.0F) + (take_extra ? extra->second : 0.0F));
-      if (take_old) ++e;
-      if (take_extra) ++extra;
-    }
-    f.row_start[i + 1] = f.column.size();
-  }
-  return patches;
-}
 
 // The scaling in progress. In logarithms of the scales the two laws are the gradient of a convex
 // function (Sinkhorn's problem with the sky and the black backs as one more row and column); rows
@@ -105,11 +32,46 @@ class Scaling {
     update_sums();
   }
 
+  // From the hits as they are now, without scales.
+  void start() {
+    f_.row_scale = raw_row_scale_;
+    std::fill(f_.column_scale.begin(), f_.column_scale.end(), 1.0);
+    close_rows();
+  }
+
+  // Gives the matrix more hits and starts anew. Returns how many.
+  std::size_t fill() {
+    f_.row_scale = raw_row_scale_;
+    const std::size_t filled = fill_both_ways(f_, area_m2_);
+    start();
+    return filled;
+  }
+
   // sum_j |what the columns hold - A_j| / sum_j A_j.
   [[nodiscard]] double defect() const {
     double sum = 0.0;
     for (std::size_t j = 0; j < sums_.size(); ++j) sum += std::abs(sums_[j] - area_m2_[j]);
     return total_m2_ > 0.0 ? sum / total_m2_ : 0.0;
+  }
+
+  // The patch whose column is furthest from its sum.
+  [[nodiscard]] std::uint32_t worst() const {
+    std::size_t worst = 0;
+    const auto defect = [&](std::size_t j) { return std::abs(sums_[j] - area_m2_[j]); };
+    for (std::size_t j = 1; j < sums_.size(); ++j) {
+      if (defect(j) > defect(worst)) worst = j;
+    }
+    return static_cast<std::uint32_t>(worst);
+  }
+
+  // After fill(): what the patches keep for themselves, of sum_j A_j.
+  [[nodiscard]] double held() const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < row_.size(); ++i) {
+      if (!keeps_its_own(f_, area_m2_, i)) continue;
+      sum += area_m2_[i] * f_.kept[i] * own_share * row_[i] * f_.column_scale[i];
+    }
+    return sum / total_m2_;
   }
 
   // Iterative proportional fitting: every column to its target, then every row.
@@ -253,32 +215,56 @@ class Scaling {
   double total_m2_;
 };
 
+// When to stop trying.
+struct Patience {
+  int passes_a_step;  // of conjugate gradients; where a scaling exists some ten bring a tenth
+  double least_gain;  // a step that leaves more of the defect than that is the last
+};
+// The hits as cast may admit no scaling: the defect then stays, or shrinks by about e a step, while
+// scales run off and take hits that fit nowhere to nothing.
+constexpr Patience with_hits{60, 0.25};
+// Filled ones do: what ends it is rounding.
+constexpr Patience with_filled{most_sweeps, 0.999};
+
+// Sweeps until the defect is `enough` or patience ends.
+void iterate(Scaling& scaling, double enough, const Patience& patience, BalanceReport& report) {
+  int passes = 0;
+  report.after = scaling.defect();
+  while (passes < most_sweeps && report.after > enough) {
+    const double previous = report.after;
+    if (passes < plain_sweeps) {
+      scaling.sweep();
+      ++passes;
+    } else {
+      passes += scaling.newton_step(std::min(patience.passes_a_step, most_sweeps - passes));
+    }
+    report.after = scaling.defect();
+    if (report.after > patience.least_gain * previous && passes > plain_sweeps) break;
+  }
+  report.sweeps += passes;
+}
+
 }  // namespace
 
 BalanceReport balance(FormFactors& factors, std::span<const double> area_m2, double enough) {
+  constexpr double rounding = 1e-12;
   BalanceReport report;
   if (factors.count() == 0) {
     report.balanced = true;
     return report;
   }
   report.before = Scaling(factors, area_m2).defect();
-  report.borrowed = fill_empty_columns(factors, area_m2);
+  report.borrowed = borrow_starved_columns(factors, area_m2);
   Scaling scaling(factors, area_m2);
-  scaling.close_rows();
-  report.after = scaling.defect();
-  while (report.sweeps < most_sweeps && report.after > enough) {
-    const double previous = report.after;
-    if (report.sweeps < plain_sweeps) {
-      scaling.sweep();
-      ++report.sweeps;
-    } else {
-      report.sweeps += scaling.newton_step(most_sweeps - report.sweeps);
-    }
-    report.after = scaling.defect();
-    // Rounding is reached, or the pattern of hits allows no better.
-    if (report.after > 0.999 * previous && report.sweeps > plain_sweeps) break;
+  scaling.start();
+  iterate(scaling, enough, with_hits, report);
+  if (report.after > std::max(enough, rounding)) {
+    report.filled = scaling.fill();
+    iterate(scaling, enough, with_filled, report);
+    report.held = scaling.held();
   }
-  report.balanced = report.after <= 1e-12;
+  report.balanced = report.after <= rounding;
+  if (!report.balanced) report.worst = scaling.worst();
   scaling.finish();
   return report;
 }

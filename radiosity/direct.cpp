@@ -14,14 +14,19 @@
 namespace earthshine::radiosity {
 namespace {
 
+Rgb landed_as_sampled(const Sampled& sampled, const std::vector<double>& area_m2) {
+  Rgb landed(0.0);
+  for (std::size_t i = 0; i < area_m2.size(); ++i) landed += area_m2[i] * sampled.illuminance_lx[i];
+  return landed;
+}
+
 // What lands is known twice: from the patches' samples, and as the flux less what was found to
 // escape. The mean of the two, weighted by inverse variance, sets the scale: in a closed room
 // nothing escapes and the flux rules exactly; on a small plate under an open sky the samples do.
-double landing_scale(const Sampled& sampled, const std::vector<double>& area_m2,
+double landing_scale(const Sampled& sampled, const std::vector<double>& area_m2, double landed,
                      const SourceFlux& flux) {
-  double landed = 0.0, landed_variance = 0.0;
+  double landed_variance = 0.0;
   for (std::size_t i = 0; i < area_m2.size(); ++i) {
-    landed += area_m2[i] * base::luminance(sampled.illuminance_lx[i]);
     landed_variance += area_m2[i] * area_m2[i] * sampled.variance[i];
   }
   const double all = base::luminance(flux.emitted_lm);
@@ -30,7 +35,19 @@ double landing_scale(const Sampled& sampled, const std::vector<double>& area_m2,
   const double expected_variance = std::pow(all * flux.share_std_error, 2);
   const double both = landed_variance + expected_variance;
   if (both <= 0.0) return expected / landed;  // both are exact: the flux is
-  return (landed * expected_variance + expected * landed_variance) / (both * landed);
+  const double found = (landed * expected_variance + expected * landed_variance) / both;
+  return std::min(found, all) / landed;
+}
+
+// Where nothing escapes, each channel lands as it was emitted: lamps of different colours that are
+// drawn by chance share one scale no more.
+Rgb channel_scales(const SourceFlux& flux, const Rgb& landed) {
+  Rgb scale(flux.scale);
+  if (flux.escaped_share + flux.black_share > 0.0) return scale;
+  for (int c = 0; c < 3; ++c) {
+    if (landed[c] > 0.0) scale[c] = flux.emitted_lm[c] / landed[c];
+  }
+  return scale;
 }
 
 // Shoots rays from a source of known flux to find what escapes and what falls on black backs.
@@ -88,7 +105,7 @@ class DirectStage {
   void add(const Source& source) {
     const Sampled sampled =
         sample_patches(query_, patches_, open_, source, options_.seed, light_.shadow_rays);
-    store(sampled.illuminance_lx, source.group, 1.0);
+    store(sampled.illuminance_lx, source.group, Rgb(1.0));
   }
 
   void add(const Source& source, SourceFlux flux, const Emit& emit) {
@@ -96,12 +113,15 @@ class DirectStage {
         sample_patches(query_, patches_, open_, source, options_.seed, light_.shadow_rays);
     find_shares(scene_, query_, emit, source.key, options_.flux_rays, options_.seed, flux);
     light_.shadow_rays += static_cast<std::uint64_t>(options_.flux_rays);
-    flux.scale = landing_scale(sampled, area_m2_, flux);
-    store(sampled.illuminance_lx, source.group, flux.scale);
+    const Rgb landed = landed_as_sampled(sampled, area_m2_);
+    flux.scale = landing_scale(sampled, area_m2_, base::luminance(landed), flux);
+    const Rgb scale = channel_scales(flux, landed);
+    flux.landed_lm = scale * landed;
+    store(sampled.illuminance_lx, source.group, scale);
     light_.sources.push_back(std::move(flux));
   }
 
-  void store(const std::vector<Rgb>& illuminance, std::size_t group, double scale) {
+  void store(const std::vector<Rgb>& illuminance, std::size_t group, const Rgb& scale) {
     for (std::size_t i = 0; i < illuminance.size(); ++i) add(i, group, scale * illuminance[i]);
   }
 
@@ -131,6 +151,13 @@ class DirectStage {
 };
 
 }  // namespace
+
+Rgb SourceFlux::escaped_lm() const {
+  const double ended = escaped_share + black_share;
+  return ended > 0.0 ? (escaped_share / ended) * (emitted_lm - landed_lm) : Rgb(0.0);
+}
+
+Rgb SourceFlux::lost_lm() const { return emitted_lm - landed_lm - escaped_lm(); }
 
 DirectLight direct_light(const scenes::Scene& scene, const scenes::LightGroups& groups,
                          const scenes::Effects& effects, const scenes::RayQuery& query,

@@ -26,6 +26,12 @@ struct SourceFlux {
   double black_share = 0.0;      // on black backs
   double share_std_error = 0.0;  // of escaped + black, binomial
   double scale = 1.0;            // applied to the patches' sampled illuminance
+  Rgb landed_lm{0.0};            // on patches, scaled; never more luminance than emitted
+
+  // What did not land, by where the rays shot from the source went. In luminance never negative; of
+  // many lamps of different colours in one crowd, a channel may be, by the noise of their choice.
+  [[nodiscard]] Rgb escaped_lm() const;
+  [[nodiscard]] Rgb lost_lm() const;  // on black backs, or where no patch's samples found it
 };
 
 // What finding the light of one kind of source took.

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "radiosity/covered_patches.h"
+#include "radiosity/object_runs.h"
 #include "radiosity/row_caster.h"
 
 namespace earthshine::radiosity {
@@ -23,6 +24,21 @@ std::vector<double> kept_shares(const scenes::Scene& scene, const Patches& patch
                   : 1.0;
   }
   return kept;
+}
+
+// Where bands of about as many rays start, and the end of the last.
+std::vector<std::size_t> cut_in_bands(const Patches& patches, std::span<const std::uint32_t> rows,
+                                      const std::vector<std::uint32_t>& runs) {
+  constexpr std::uint32_t runs_of_a_band = 64;
+  std::vector<std::size_t> start = {0};
+  std::uint32_t in_band = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    in_band += runs.empty() ? 1 : runs[patches.object(rows[i])];
+    if (in_band < runs_of_a_band && i + 1 < rows.size()) continue;
+    start.push_back(i + 1);
+    in_band = 0;
+  }
+  return start;
 }
 
 // Joins the bands and leaves them empty.
@@ -102,16 +118,18 @@ FormFactors cast_rows(const scenes::Scene& scene, const scenes::RayQuery& query,
   factors.row_start.assign(count + 1, 0);
   factors.back_hits.assign(scene.objects.size(), 0.0);
 
-  constexpr std::size_t band_rows = 64;
-  std::vector<Band> bands((count + band_rows - 1) / band_rows);
+  std::vector<std::uint32_t> runs;
+  if (options.know_objects) runs = object_runs(scene, patches, factors.rays_per_patch);
+  const std::vector<std::size_t> band_start = cut_in_bands(patches, rows, runs);
+  std::vector<Band> bands(band_start.size() - 1);
   const RowCaster caster(scene, query, patches, factors.kept, options,
-                         static_cast<std::uint32_t>(factors.rays_per_patch), sky);
+                         static_cast<std::uint32_t>(factors.rays_per_patch), runs, sky);
   base::parallel_chunks(bands.size(), 1, [&](std::size_t begin, std::size_t end) {
     thread_local HitCounter counter(0);
     if (counter.patches() < patches.count()) counter = HitCounter(patches.count());
     for (std::size_t band = begin; band < end; ++band) {
       bands[band].back_hits.assign(scene.objects.size(), 0.0);
-      for (std::size_t i = band * band_rows; i < std::min(count, (band + 1) * band_rows); ++i) {
+      for (std::size_t i = band_start[band]; i < band_start[band + 1]; ++i) {
         caster.cast(rows[i], counter, bands[band]);
       }
     }
@@ -121,7 +139,7 @@ FormFactors cast_rows(const scenes::Scene& scene, const scenes::RayQuery& query,
   bool any_covered = false;
   for (const Band& band : bands) {
     for (const Row& row : band.rows) {
-      any_covered = any_covered || row.open < static_cast<std::uint32_t>(factors.rays_per_patch);
+      any_covered = any_covered || row.open < row.sent;
       close_row(factors, i++, row.sky, row.black);
     }
   }
@@ -129,7 +147,7 @@ FormFactors cast_rows(const scenes::Scene& scene, const scenes::RayQuery& query,
   factors.open.bodies = caster.bodies();
   for (const Band& band : bands) {
     for (const Row& row : band.rows) {
-      factors.open.share.push_back(double(row.open) / factors.rays_per_patch);
+      factors.open.share.push_back(double(row.open) / row.sent);
     }
   }
   return factors;

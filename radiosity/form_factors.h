@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Form factors by rays: F_ij, the share of what leaves patch i that arrives at patch j.
 //
-// Each patch sends N rays, Owen-Sobol in position x cosine direction. Stored are hit counts n_ij
+// Each patch sends N rays, or as many times that as its object needs (know_objects), Owen-Sobol in
+// position x cosine direction. Stored are hit counts n_ij
 // (sparse rows) and two scale vectors, F_ij = row_scale_i n_ij column_scale_j; misses and hits of
 // black backs have columns of their own, so that closure holds in arithmetic:
 //   sum_j a_j F_ij + F_i,sky + F_i,black = 1,    a_j = 1 - mirror_j - transmit_j
@@ -28,11 +29,13 @@ struct FormFactorOptions {
   // Points of a patch that lie in a body (closed_bodies.h) send nothing: its row is the mean over
   // the others, FormFactors::open says how many they are. Else they are as good as any.
   bool leave_out_covered = false;
+  // Patches of objects that have few of them send more rays each (object_runs.h).
+  bool know_objects = false;
   const scenes::SkyCells* sky_cells = nullptr;  // the sky's light is wanted for each of them
 };
 
 struct FormFactors {
-  int rays_per_patch = 0;
+  int rays_per_patch = 0;                // at least
   std::uint64_t ray_count = 0;           // all rays, continuations included
   std::vector<std::uint64_t> row_start;  // count + 1
   std::vector<std::uint32_t> column;     // ascending within a row
@@ -75,14 +78,19 @@ using SkyRadiance = std::function<Rgb(const Vec3& direction)>;
 // The sky and the black backs take part: escape_j is F_j,sky by reciprocity, but keeping one
 // estimate of it per row and one per column makes the two sets of sums agree in open scenes too,
 // whatever the rays' noise. Energy is then neither made nor lost. Patches that no ray reaches
-// borrow the transposed entries of their own row. area_m2 is what takes part of each patch: the
-// open part where points were left out, 0 for those that take none.
+// borrow the transposed entries of their own row. Where no scaling of the hits fits both sums,
+// which happens when rays are few, hits are added in small amounts until one does (filled_hits.h).
+// area_m2 is what takes part of each patch: the open part where points were left out, 0 for those
+// that take none.
 struct BalanceReport {
   int sweeps = 0;
   double before = 0.0;  // sum_j |column defect| / sum_j A_j
   double after = 0.0;
-  std::size_t borrowed = 0;  // patches that no ray had reached
-  bool balanced = false;     // after <= 1e-12
+  std::size_t borrowed = 0;        // patches that no ray had reached
+  std::size_t filled = 0;          // entries added for a scaling to exist
+  double held = 0.0;               // of sum_j A_j: what patches then send to themselves
+  bool balanced = false;           // after <= 1e-12
+  std::uint32_t worst = no_patch;  // else: the patch whose column is furthest from its sum
 };
 // enough: the defect at which it ends.
 inline constexpr double balance_to_rounding = 1e-13;

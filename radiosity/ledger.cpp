@@ -7,7 +7,8 @@
 namespace earthshine::radiosity {
 
 std::vector<GroupLedger> energy_ledger(const LedgerInput& in,
-                                       const std::vector<std::string>& group_names) {
+                                       const std::vector<std::string>& group_names,
+                                       std::span<const SourceFlux> sources) {
   std::vector<GroupLedger> ledger(group_names.size());
   for (std::size_t g = 0; g < group_names.size(); ++g) {
     GroupLedger& line = ledger[g];
@@ -33,6 +34,14 @@ std::vector<GroupLedger> energy_ledger(const LedgerInput& in,
         line.imbalance = std::max(line.imbalance, std::abs(in_all - absorbed - escaped) / in_all);
       }
     }
+  }
+  for (const SourceFlux& source : sources) {
+    ledger[source.group].escaped_at_once_lm += source.escaped_lm();
+    ledger[source.group].lost_at_once_lm += source.lost_lm();
+  }
+  for (GroupLedger& line : ledger) {
+    line.given_lm =
+        line.emitted_lm + line.landed_lm + line.escaped_at_once_lm + line.lost_at_once_lm;
   }
   return ledger;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the energy went. With F balanced (form_factors.h) every line adds up to rounding and the
 // solver's residual:
+//   given   = emitted + landed + what sources lose at once (direct.h)
 //   emitted = sum A M            patches that shine through F
 //   landed  = sum A E0           direct light, as computed
 //   absorbed = sum A ((a - rho) F B + (1 - rho) E0) + sum A B lost
@@ -28,7 +29,8 @@ struct LedgerInput {
 };
 
 [[nodiscard]] std::vector<GroupLedger> energy_ledger(const LedgerInput& input,
-                                                     const std::vector<std::string>& group_names);
+                                                     const std::vector<std::string>& group_names,
+                                                     std::span<const SourceFlux> sources);
 
 // Scales each column of B and of F B so that its energy adds up to rounding. Summed with the areas
 // as weights, (1 - rho F) B = S says emitted + landed = absorbed + escaped; what the solver left of

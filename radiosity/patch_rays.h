@@ -32,6 +32,11 @@ class PatchRays {
   };
   [[nodiscard]] Sender sender(std::uint32_t patch, base::Key key) const;
 
+  // The patch's next `count` rays, in place of the first ones (base::SobolSet4::go_to_run).
+  void go_to_run(std::uint32_t run, Sender& sender) const {
+    samples_.go_to_run(run, sender.scramble);
+  }
+
   // Rays first .. first + width - 1 of the patch.
   void make(const Sender& sender, std::uint32_t first, scenes::RayPacket& rays) const;
 

@@ -160,7 +160,9 @@ class Refinement {
   }
 
   void solve_for(const Patches& patches) {
-    solution_ = solve(scene_, groups_, effects_, query_, cheap_, patches);
+    SolveVariant variant;
+    variant.know_objects = false;  // where to cut is no matter of means
+    solution_ = solve(scene_, groups_, effects_, query_, cheap_, patches, variant);
     refined_.rays += solution_.report.form_factor_rays + solution_.report.shadow_rays;
     light_ = relative_light(solution_);
     uneven_.assign(patches.count(), {});

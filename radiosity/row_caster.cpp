@@ -31,11 +31,13 @@ Vec3 direction(const RayPacket& packet, std::size_t k) {
 
 RowCaster::RowCaster(const scenes::Scene& scene, const scenes::RayQuery& query,
                      const Patches& patches, const std::vector<double>& kept,
-                     const FormFactorOptions& options, std::uint32_t rays, const SkyRadiance& sky)
+                     const FormFactorOptions& options, std::uint32_t rays,
+                     const std::vector<std::uint32_t>& runs, const SkyRadiance& sky)
     : scene_(scene),
       query_(query),
       patches_(patches),
       kept_(kept),
+      runs_(runs),
       sky_(sky),
       sky_cells_(options.sky_cells),
       sky_parts_(sky_cells_ == nullptr ? 1 : sky_cells_->count()),
@@ -62,7 +64,6 @@ void RowCaster::cast(std::uint32_t patch, HitCounter& counter, Band& band) const
               band.sky_illuminance.end(), Rgb(0.0));
     trace(patch, sender, false, near, row, counter, band);
   }
-  row.rays += rays_.count();
   if (row.open > 0 && is_exposed(row.black / row.open)) {
     for (const std::uint32_t object : band.backs_met) band.back_hits[object] += 1.0;
   }
@@ -79,17 +80,21 @@ void RowCaster::cast(std::uint32_t patch, HitCounter& counter, Band& band) const
 // Counts the patch's rays but those from points that the bodies `near` cover. If asked to look out
 // for them it stops at the first black back, with false, where bodies near the patch may be the
 // reason, and names them: what sees no back is not covered, and pays nothing.
-bool RowCaster::trace(std::uint32_t patch, const PatchRays::Sender& sender, bool look_out,
+bool RowCaster::trace(std::uint32_t patch, PatchRays::Sender sender, bool look_out,
                       std::vector<std::uint32_t>& near, Row& row, HitCounter& counter,
                       Band& band) const {
   // A packet's hits are counted after the next packet was traced: by then what they need has come
   // from memory.
   RayPacket packets[2];
   HitPacket hits[2];
-  const std::uint32_t count = rays_.count() / RayPacket::width;
+  const std::uint32_t run = rays_.count() / RayPacket::width;
+  const std::uint32_t count = run * (runs_.empty() ? 1 : runs_[patches_.object(patch)]);
+  row.sent = count * RayPacket::width;
+  row.rays = row.sent;
   for (std::uint32_t n = 0; n <= count; ++n) {
     if (n < count) {
-      rays_.make(sender, n * RayPacket::width, packets[n % 2]);
+      if (n > 0 && n % run == 0) rays_.go_to_run(n / run, sender);
+      rays_.make(sender, n % run * RayPacket::width, packets[n % 2]);
       query_.closest(packets[n % 2], RayPacket::width, hits[n % 2]);
       for (const std::uint32_t triangle : hits[n % 2].triangle) targets_.prefetch(triangle);
     }

@@ -21,7 +21,9 @@ struct Row {
   std::uint32_t entries = 0;
   double black = 0.0, sky = 0.0;  // in rays
   std::uint64_t rays = 0;
-  std::uint32_t open = 0;  // rays that left from points which no body covers: those that count
+  std::uint32_t sent = 0;  // rays that left the patch
+  std::uint32_t open =
+      0;  // of them, those that left from points which no body covers: those that count
 };
 
 // The rows of one chunk of patches, side by side.
@@ -37,10 +39,11 @@ struct Band {
 // Safe on many threads, each with a counter and a band of its own.
 class RowCaster {
  public:
-  // What is given must outlive it. kept: a_j per patch; rays: a power of two.
+  // What is given must outlive it. kept: a_j per patch; rays: a power of two; runs: of so many
+  // rays, per object of the scene, empty for one each.
   RowCaster(const scenes::Scene& scene, const scenes::RayQuery& query, const Patches& patches,
             const std::vector<double>& kept, const FormFactorOptions& options, std::uint32_t rays,
-            const SkyRadiance& sky);
+            const std::vector<std::uint32_t>& runs, const SkyRadiance& sky);
 
   // Appends the patch's row to the band.
   void cast(std::uint32_t patch, HitCounter& counter, Band& band) const;
@@ -49,7 +52,7 @@ class RowCaster {
   [[nodiscard]] std::shared_ptr<const ClosedBodies> bodies() const { return bodies_; }
 
  private:
-  bool trace(std::uint32_t patch, const PatchRays::Sender& sender, bool look_out,
+  bool trace(std::uint32_t patch, PatchRays::Sender sender, bool look_out,
              std::vector<std::uint32_t>& near, Row& row, HitCounter& counter, Band& band) const;
   [[nodiscard]] std::vector<std::uint32_t> bodies_near(std::uint32_t patch) const;
   void count_hits(const scenes::RayPacket& packet, const scenes::HitPacket& hits,
@@ -64,6 +67,7 @@ class RowCaster {
   const scenes::RayQuery& query_;
   const Patches& patches_;
   const std::vector<double>& kept_;
+  const std::vector<std::uint32_t>& runs_;
   const SkyRadiance& sky_;
   const scenes::SkyCells* sky_cells_;
   std::size_t sky_parts_;

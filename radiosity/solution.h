@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "radiosity/direct.h"
+#include "radiosity/explicit_emitters.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/patches.h"
 #include "scenes/effects.h"
@@ -46,9 +47,15 @@ struct RefineRound {
 };
 
 // Where the energy of one light group went, lm per channel.
+//   given = escaped at once + lost at once + emitted + landed
 //   emitted (by patches through F) + landed (directly, as computed) = absorbed + escaped
+// Of the sky only what lands is counted as given. What escapes at once is `escaped_at_once_lm`,
+// `escaped_lm` is what does so after it was reflected or sent by a patch.
 struct GroupLedger {
   std::string name;
+  Rgb given_lm{0.0};            // by lamps, emitting surfaces and the sky
+  Rgb escaped_at_once_lm{0.0};  // of it: by rays from lamps and sampled emitters that met nothing
+  Rgb lost_at_once_lm{0.0};     // by those that met black backs
   Rgb emitted_lm{0.0};
   Rgb landed_lm{0.0};
   Rgb absorbed_lm{0.0};
@@ -71,7 +78,7 @@ struct SolveReport {
   std::vector<RefineRound> rounds;  // of refinement, the last one for the patches solved
   std::uint64_t refinement_rays = 0;
   std::uint64_t form_factor_rays = 0;
-  int rays_per_patch = 0;  // of them, continuations beyond mirrors left out
+  int rays_per_patch = 0;  // of them at least, continuations beyond mirrors left out
   std::uint64_t shadow_rays = 0;
   std::array<SourceCost, scenes::light_kinds> sources_cost{};  // by LightKind; not of a read file
   std::size_t nonzeros = 0;
@@ -99,10 +106,6 @@ struct Solution {
   SolveReport report;
 };
 
-// An emitting material is carried by F when its surfaces are a twentieth or more of all surface
-// area (a whole face, a furnace), else by explicit sampling. The only place where this is decided.
-[[nodiscard]] std::vector<bool> emitter_is_explicit(const scenes::Scene& scene);
-
 // Told how the scene is cut before its form factors are cast; may throw.
 using PatchListener = std::function<void(const Patches& patches)>;
 
@@ -116,6 +119,7 @@ struct SolveVariant {
   std::uint32_t replicate = 0;  // of the form factors: each number is an independent set of rays
   DirectOptions direct = {};    // its seed 0: that of the options
   double balance = balance_to_rounding;
+  bool know_objects = true;  // FormFactorOptions::know_objects
 };
 // On patches that are cut already; options.patch_edge_m and options.refine are not looked at.
 [[nodiscard]] Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,

@@ -60,10 +60,16 @@ void visit_report(Store& store, Report& report) {
   store.value("balance_before", report.balance.before);
   store.value("balance_after", report.balance.after);
   store.value("balance_borrowed", report.balance.borrowed);
+  store.value("balance_filled", report.balance.filled);
+  store.value("balance_held", report.balance.held);
   store.value("balance_balanced", report.balance.balanced);
+  store.value("balance_worst", report.balance.worst);
 
   auto& groups = report.groups;
   store.rows("ledger/group", groups, &GroupLedger::name, "", "light group");
+  store.rows("ledger/given", groups, &GroupLedger::given_lm, "lm", "by all sources");
+  store.rows("ledger/escaped_at_once", groups, &GroupLedger::escaped_at_once_lm, "lm", "");
+  store.rows("ledger/lost_at_once", groups, &GroupLedger::lost_at_once_lm, "lm", "on black backs");
   store.rows("ledger/emitted", groups, &GroupLedger::emitted_lm, "lm", "by patches");
   store.rows("ledger/landed", groups, &GroupLedger::landed_lm, "lm", "directly");
   store.rows("ledger/absorbed", groups, &GroupLedger::absorbed_lm, "lm", "");
@@ -77,6 +83,7 @@ void visit_report(Store& store, Report& report) {
   store.rows("sources/escaped_share", sources, &SourceFlux::escaped_share, "", "");
   store.rows("sources/black_share", sources, &SourceFlux::black_share, "", "on black backs");
   store.rows("sources/share_std_error", sources, &SourceFlux::share_std_error, "", "");
+  store.rows("sources/landed", sources, &SourceFlux::landed_lm, "lm", "on patches");
   store.rows("sources/scale", sources, &SourceFlux::scale, "", "of the sampled illuminance");
 
   auto& objects = report.objects;

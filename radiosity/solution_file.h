@@ -12,7 +12,7 @@
 namespace earthshine::radiosity {
 
 // Raised whenever the file's layout changes.
-inline constexpr std::uint64_t solution_format = 2;
+inline constexpr std::uint64_t solution_format = 3;
 
 // What a solution was or would be found from.
 struct SolutionOrigin {

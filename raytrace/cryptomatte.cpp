@@ -159,14 +159,14 @@ constexpr std::uint32_t least_samples = 16;
 
 // The points are those of shade_samples.
 void cover(const scenes::RayQuery& query, const CameraModel& camera, const PixelFilter& filter,
-           const base::SobolOwen4& points, int x, int y, std::uint32_t count,
+           const PixelPoints& points, int x, int y, std::uint32_t count,
            CryptomatteWriter& writer) {
   scenes::RayPacket packet;
   scenes::HitPacket hits;
   for (std::uint32_t first = 0; first < count; first += scenes::RayPacket::width) {
     const std::size_t lanes = std::min<std::size_t>(scenes::RayPacket::width, count - first);
     for (std::size_t k = 0; k < lanes; ++k) {
-      const auto p = points.point(first + static_cast<std::uint32_t>(k));
+      const auto p = points.point(first + k);
       const auto offset = filter.offset(p[0], p[1]);
       const Ray ray = camera.ray(x + 0.5 + offset[0], y + 0.5 + offset[1], p[2], p[3]);
       query.set(packet, k, ray.origin, ray.direction);
@@ -196,7 +196,7 @@ std::uint64_t fill_cryptomatte(const scenes::Scene& scene, const scenes::RayQuer
             const auto number =
                 static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(camera.columns) +
                 static_cast<std::uint64_t>(x);
-            const base::SobolOwen4 points(base::Key(samples.seed, base::Stream::Pixel, number));
+            const PixelPoints points(samples.seed, number);
             rays += std::max(count, least_samples);
             cover(query, camera, samples.filter, points, x, y, std::max(count, least_samples),
                   writer);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -51,10 +52,7 @@ struct RenderReport {
   RayCounts rays;
   double seconds = 0.0;         // wall
   double gather_seconds = 0.0;  // of them for the gather field
-  // RMS standard error of a pixel's luminance over the mean luminance, both without the pixels that
-  // show a source itself.
-  double relative_noise = 0.0;
-  double gather_noise = 0.0;    // the part of it that gather points have
+  double relative_noise = 0.0;  // the stated error over the mean luminance, root mean square
   double camera_samples = 0.0;  // per pixel, mean
   int most_camera_samples = 0;
   int gather_rays = 0;           // per pixel
@@ -63,6 +61,46 @@ struct RenderReport {
                                  // show a single sample
   bool stopped = false;
 };
+
+// What a picture's error is due to.
+enum class ErrorPart {
+  Gather,    // noise of gather rays that read the solution, and what sharing them blurs
+  Residual,  // the same of paths that find what the solution lacks
+  Lobe,      // and of rays over Phong lobes
+  Camera     // camera samples: edges, lamps, the lens, mirrors
+};
+inline constexpr std::size_t error_parts = 4;
+
+// Per pixel of a window.
+struct StatedError {
+  std::vector<float> luminance;  // without sources that the camera sees itself, cd/m^2
+  std::vector<std::array<float, error_parts>> squared;  // of it, by part, (cd/m^2)^2
+  // 1: shows a surface that reflects, and no edge of a source
+  std::vector<std::uint8_t> counts;
+};
+
+// What an error at a pixel counts, over a picture (or a target) of that mean luminance: pixels
+// brighter than four times the mean count in proportion to their own. A glint or the wall beside a
+// lamp may be a thousand times as bright as the rest; its last per mille is nobody's concern.
+[[nodiscard]] inline double error_weight(double luminance, double mean) {
+  constexpr double bright = 4.0;
+  return mean > 0.0 && luminance > bright * mean ? bright * mean / luminance : 1.0;
+}
+
+// Over some pixels that count.
+struct ErrorSums {
+  std::size_t pixels = 0;
+  double luminance = 0.0;                     // their mean
+  std::array<double, error_parts> squared{};  // mean squared errors, weighted, over luminance^2
+  [[nodiscard]] double squared_error() const {
+    double all = 0.0;
+    for (const double part : squared) all += part;
+    return all;
+  }
+};
+// pixels: numbers in the window.
+[[nodiscard]] ErrorSums add_up(const StatedError& stated, std::span<const std::size_t> pixels);
+[[nodiscard]] ErrorSums add_up(const StatedError& stated);  // all
 
 // image: R, G, B radiance in cd/m^2; with per_light also light_<group>.R/G/B, whose sum is R, G, B;
 // with aovs:
@@ -73,12 +111,8 @@ struct RenderReport {
 //   the unfiltered layers of first_hit.h and the coverages of cryptomatte.h
 struct Frame {
   base::Image image;
-  Window window;  // which part of the picture the image is
-  // Per pixel of the window: of its luminance, as its samples and gather points state it,
-  // (cd/m^2)^2; shows_source where a sample saw a source itself. Not of traced paths.
-  std::vector<float> squared_error;
+  Window window;      // which part of the picture the image is
+  StatedError error;  // empty for traced paths
   RenderReport report;
 };
-inline constexpr float shows_source = -1.0F;
-
 }  // namespace earthshine::raytrace

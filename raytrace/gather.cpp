@@ -14,13 +14,15 @@ namespace {
 // Gather rays of a camera sample that finds no gather point for its surface: a lens out of focus, a
 // wire thinner than a pixel.
 constexpr int rays_without_point = 16;
+// And of one that was met by mirrors or glass.
+constexpr int rays_behind_mirror = 4;
 
 }  // namespace
 
 void PixelShader::diffuse(const Surface& surface, const scenes::Hit& hit, const Rgb& weight,
                           int depth) {
   const bool planned = shared_.diffuse == DiffuseSource::Solution;
-  if ((depth > 0 || planned) && shared_.indirect == Indirect::Radiosity) {
+  if (planned && shared_.indirect == Indirect::Radiosity) {
     if (!shared_.soft_radiance.empty()) read_solution(hit, weight, depth);
     return;
   }
@@ -37,32 +39,50 @@ void PixelShader::read_solution(const scenes::Hit& hit, const Rgb& weight, int d
   for (std::size_t k = 0; k < shared_.layers; ++k) add(k, sample_, part, scratch_[k]);
 }
 
+std::size_t PixelShader::find_point(const Surface& surface) const {
+  return shared_.field->find(x_, y_, glm::vec3(surface.position - shared_.camera_position),
+                             glm::vec3(surface.normal));
+}
+
+FieldTerm& PixelShader::term_of(std::size_t point) {
+  for (FieldTerm& term : terms_) {
+    if (term.point == point) return term;
+  }
+  return terms_.emplace_back(FieldTerm{static_cast<std::uint32_t>(point)});
+}
+
 bool PixelShader::read_field(const Surface& surface, const Rgb& weight) {
-  const GatherField& field = *shared_.field;
-  const std::size_t point = field.find(
-      x_, y_, glm::vec3(surface.position - shared_.camera_position), glm::vec3(surface.normal));
-  if (point == no_point) return false;
-  const std::span<const glm::vec3> radiance = field.at(point);
+  const std::size_t point = find_point(surface);
+  if (point == no_point || shared_.field->points()[point].reflectance <= 0.0F) return false;
+  term_of(point).diffuse += glm::vec3(weight);
+  const std::span<const glm::vec3> radiance = shared_.field->diffuse(point);
   Rgb all(0.0);
-  for (std::size_t k = 0; k < shared_.layers; ++k) {
-    all += Rgb(radiance[k]);
-    add(k, sample_, Part::Indirect, weight * Rgb(radiance[k]));
-  }
-  if (shared_.splits_parts) {
-    // What came straight from the sky is no interreflection; fits of their own may leave it larger
-    // than the whole by their noise.
-    const Rgb sky = weight * glm::min(Rgb(radiance[shared_.layers]), all);
-    sums_[shared_.layers + static_cast<std::size_t>(Part::Direct)] += sky;
-    sums_[shared_.layers + static_cast<std::size_t>(Part::Indirect)] -= sky;
-  }
-  field_error_ += base::luminance(weight) * std::sqrt(double(field.squared_error[point]));
+  for (std::size_t k = 0; k < shared_.layers; ++k) all += Rgb(radiance[k]);
+  sample_luminance_[sample_ - first_sample_] += base::luminance(weight * all);
+  return true;
+}
+
+bool PixelShader::read_lobe(const Surface& surface, const Rgb& weight) {
+  const std::size_t point = find_point(surface);
+  if (point == no_point) return false;
+  const std::uint32_t material = shared_.field->points()[point].material;
+  if (&shared_.scene.materials[material] != &surface.material) return false;
+  const std::span<const glm::vec3> radiance = shared_.field->lobe(point);
+  if (radiance.empty()) return false;
+  const Rgb reflected = weight * surface.material.specular;
+  term_of(point).lobe += glm::vec3(reflected);
+  Rgb all(0.0);
+  for (const glm::vec3& layer : radiance) all += Rgb(layer);
+  sample_luminance_[sample_ - first_sample_] += base::luminance(reflected * all);
   return true;
 }
 
 void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   const base::Frame3 frame = base::frame_around(surface.normal);
   const Vec3 origin = surface.position + surface.normal * shared_.query.surface_offset_m();
-  const int count = depth > 0 ? 1 : shared_.field ? rays_without_point : shared_.gather_rays;
+  const int count = depth > 0       ? rays_behind_mirror
+                    : shared_.field ? rays_without_point
+                                    : shared_.gather_rays;
   const bool shares = depth == 0 && !shared_.incoming.bright().empty();
   GatherRay ray;
   ray.sample = sample_;
@@ -74,9 +94,8 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   for (int k = 0; k < count; ++k) {
     std::array<float, 2> u{};
     if (depth == 0) {
-      u = gather_points_.point2(
-          static_cast<std::uint32_t>(sample_ * static_cast<std::size_t>(count)) +
-          static_cast<std::uint32_t>(k));
+      u = gather_points_[half()].point2(in_half() * static_cast<std::uint32_t>(count) +
+                                        static_cast<std::uint32_t>(k));
     } else {
       u = {static_cast<float>(rng_.next()), static_cast<float>(rng_.next())};
     }
@@ -84,6 +103,7 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
     const float cosine = std::sqrt(std::max(0.0F, 1.0F - u[0]));
     ray.direction = frame.to_world({r * std::cos(phi), r * std::sin(phi), cosine});
     if (shares) ray.share.cosine = double(cosine);
+    ray.number = ++gathered_;
     queue_gather(origin, ray);
   }
   if (!shares) return;
@@ -95,6 +115,7 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   ray.direction = aimed.direction;
   ray.weight = weight * aimed.weight;
   ray.share = aimed.share;
+  ray.number = ++gathered_;
   queue_gather(origin, ray);
 }
 
@@ -127,6 +148,18 @@ void PixelShader::queue_gather(const Vec3& origin, const GatherRay& ray) {
   if (++gather_count_ == width) flush_gather();
 }
 
+// What the solution lacks where the ray ended, by a path that goes on from there.
+void PixelShader::add_lacking(const GatherRay& ray, const scenes::Hit& hit) {
+  const double kept = shared_.incoming.kept_part(hit, ray.direction, ray.share);
+  if (kept <= 0.0) return;
+  base::Rng rng(
+      base::Key(shared_.seed, base::Stream::Residual, pixel_).with(ray.sample).with(ray.number));
+  const auto lacking = walker_->residual(shared_.incoming, {Vec3(0.0), ray.direction}, hit, rng);
+  for (std::size_t layer = 0; layer < shared_.layers; ++layer) {
+    add(layer, ray.sample, ray.part, kept * ray.weight * lacking[layer]);
+  }
+}
+
 void PixelShader::flush_gather() {
   if (gather_count_ == 0) return;
   scenes::HitPacket hits;
@@ -141,6 +174,7 @@ void PixelShader::flush_gather() {
     for (std::size_t layer = 0; layer < shared_.layers; ++layer) {
       add(layer, ray.sample, part, scratch_[layer]);
     }
+    if (walker_ && !hit.missed()) add_lacking(ray, hit);
   }
   gather_count_ = 0;
 }

@@ -1,84 +1,118 @@
 // SPDX-License-Identifier: Apache-2.0
-// The final gather on a grid: at the surface point behind every pixel's centre, the mean of the
-// radiance that cosine-distributed rays bring (the irradiance over pi), shared by all of the
-// pixel's camera samples. Irradiance varies slowly where nothing is near, so that neighbouring
-// points may also share their rays (smooth()); how far is read from the rays' own lengths, as
-// irradiance caching does (Ward et al. 1988).
+// The final gather on a grid: at the surface point behind every pixel's centre, what comes in,
+// shared by all of the pixel's camera samples and by neighbouring points (share.h). Three things
+// are estimated at each point, each with as many samples as it needs:
+//
+//   solution  mean radiance that cosine-distributed rays read from the radiosity solution, the sky
+//             and what mirrors and glass pass on: T L~ over k_d, L~ what the solution says
+//   residual  the same of what the solution lacks, L - L~, by paths that go on from where such rays
+//             end: T (L - L~) over k_d. Whatever the solution is like, the sum has the right mean.
+//   lobe      of a Phong lobe, k_s apart: radiance along rays over it, solution and residual
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "raytrace/camera.h"
 #include "raytrace/incoming_light.h"
+#include "raytrace/path_walker.h"
+#include "raytrace/share.h"
 
 namespace earthshine::raytrace {
 
 inline constexpr std::size_t no_point = static_cast<std::size_t>(-1);
+// From this exponent on the surroundings are shaded ray by ray, not gathered.
+inline constexpr double sharp_lobe = 100.0;
 
-struct GatherPoint {
-  glm::vec3 position{0.0F};  // m, relative to the camera
-  float reach_m = -1.0F;     // harmonic mean length of its rays; negative: nothing gathered here
-  glm::vec3 normal{0.0F};    // unit, on the camera's side
-  float spacing_m = 0.0F;    // how far apart neighbouring pixels are there, across the view
-  float reflectance = 0.0F;  // luminance of the surface's k_d
-  float rays = 0.0F;         // that its radiance is the mean of
-};
-
-struct GatherField {
-  Window window;                     // of the picture, in pixels
-  std::size_t image_layers = 0;      // of radiance, per point
-  std::size_t layers = 0;            // with one more, if wanted: what came straight from the sky
-  std::vector<GatherPoint> points;   // row by row
-  std::vector<glm::vec3> radiance;   // points * layers, cd/m^2
-  std::vector<float> squared_error;  // per point, of the luminance of all image layers together
-  std::uint64_t gather_rays = 0, camera_rays = 0;
-  RayCounts onward;  // from mirrors and glass
-
-  // A point whose irradiance may stand for the surface point that pixel (x, y) meets: the pixel's
-  // own, or the nearest that lies on the same surface within two pixels; no_point if there is none.
-  [[nodiscard]] std::size_t find(int x, int y, const glm::vec3& position,
-                                 const glm::vec3& normal) const;
-  [[nodiscard]] std::span<const glm::vec3> at(std::size_t point) const {
-    return {&radiance[point * layers], layers};
-  }
-};
-
-// Where irradiance is wanted: a point on a diffuse surface of reflectance > 0, on a side that
-// shines.
+// Where light is gathered: on a diffuse or glossy surface, on a side that shines.
 struct GatherRequest {
   Vec3 position, normal;
   double reflectance = 1.0;  // luminance of k_d
+  double lobe = 0.0;         // of k_s; 0 where the exponent is sharp_lobe or more
+  std::uint32_t material = 0;
 };
 using GatherSurface = std::function<bool(const scenes::Hit&, GatherRequest&)>;
 
-struct GatherOptions {
-  int rays = 64;  // per point, a power of two, 8 or more
-  std::uint64_t seed = 1;
-  std::size_t image_layers = 1;
-  bool keeps_sky_apart = false;     // one more layer, see GatherField::layers
-  std::function<bool()> stop = {};  // asked once per tile; true: leave the rest of the points out
-  std::function<void(std::size_t done, std::size_t total)> progress = {};  // tiles; one at a time
+enum class Gathered { Solution, Residual, Lobe };
+inline constexpr std::size_t gathered_kinds = 3;
+
+class GatherField {
+ public:
+  struct Setting {
+    std::size_t image_layers = 1;
+    bool keeps_sky_apart = false;  // one more layer: what came straight from the sky
+    bool gathers_residual = true;
+    bool shares = true;  // between neighbours
+    std::uint64_t seed = 1;
+  };
+  // Finds the points. `world` and `incoming` must outlive it.
+  GatherField(const PathWorld& world, const IncomingLight& incoming, const GatherSurface& surface,
+              const CameraModel& camera, const Window& window, const Setting& setting);
+
+  // Casts samples at every point: more[point], rounded down to fewest_samples(kind) times a power
+  // of two; the `round`-th time.
+  void cast(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
+            const std::function<bool()>& stop);
+  // The least that can be asked for at once: two halves of the fewest.
+  [[nodiscard]] static std::uint32_t fewest_samples(Gathered kind);
+  [[nodiscard]] bool gathers(Gathered kind) const;
+  // Shares what was cast; find() and the values follow it.
+  void share();
+
+  // A point whose values may stand for the surface point that pixel (x, y) meets: the pixel's own,
+  // or the nearest that lies on the same surface within two pixels; no_point if there is none.
+  [[nodiscard]] std::size_t find(int x, int y, const glm::vec3& position,
+                                 const glm::vec3& normal) const;
+  // Radiance to be reflected by k_d, cd/m^2: image layers, then what came straight from the sky.
+  [[nodiscard]] std::span<const glm::vec3> diffuse(std::size_t point) const {
+    return {&diffuse_[point * layers_], layers_};
+  }
+  // Radiance to be reflected by k_s: image layers. Empty where no lobe is gathered for.
+  [[nodiscard]] std::span<const glm::vec3> lobe(std::size_t point) const;
+
+  [[nodiscard]] const Window& window() const { return window_; }
+  [[nodiscard]] std::size_t image_layers() const { return image_layers_; }
+  [[nodiscard]] const std::vector<GatherPoint>& points() const { return points_; }
+  [[nodiscard]] const Shared& shared(Gathered kind) const { return shared_[number(kind)]; }
+  [[nodiscard]] float samples(Gathered kind, std::size_t point) const {
+    return estimate_[number(kind)].samples[point];
+  }
+  // Standard error of what is estimated there, before it is reflected.
+  [[nodiscard]] double error_of(Gathered kind, std::size_t point) const;
+  // The factor from what is estimated to what the camera sees: k_d or k_s.
+  [[nodiscard]] double reflected(Gathered kind, std::size_t point) const;
+  [[nodiscard]] RayCounts rays() const;  // all
+  [[nodiscard]] const RayCounts& rays_of(Gathered kind) const { return rays_of_[number(kind)]; }
+
+ private:
+  static std::size_t number(Gathered kind) { return static_cast<std::size_t>(kind); }
+  void find_points(const GatherSurface& surface, const CameraModel& camera);
+  void cast_solution(const std::vector<std::uint32_t>& more, std::uint32_t round,
+                     const std::function<bool()>& stop);
+  void cast_paths(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
+                  const std::function<bool()>& stop);
+  void lobe_sample(std::size_t p, const std::array<float, 2>& u, PathWalker& walker, base::Rng& rng,
+                   std::vector<Rgb>& sum, RayCounts& counts) const;
+
+  const PathWorld& world_;
+  const IncomingLight& incoming_;
+  Window window_;
+  int picture_columns_;
+  Setting setting_;
+  std::size_t image_layers_, layers_;
+  std::vector<GatherPoint> points_;
+  std::vector<Vec3> origin_;            // lifted off the surface
+  std::vector<double> inverse_length_;  // sum over rays of the solution
+  std::array<Estimate, gathered_kinds> estimate_;
+  std::array<Shared, gathered_kinds> shared_;
+  std::vector<glm::vec3> diffuse_;  // point * layers
+  std::array<RayCounts, gathered_kinds> rays_of_;
+  std::uint64_t camera_rays_ = 0;
+  bool any_lobe_ = false;
+  std::optional<Neighbours> of_surface_, of_material_;  // who shares diffuse light, and lobes
 };
-
-// Rays are cast eight at a time from neighbouring pixels into the same cell of the hemisphere.
-[[nodiscard]] GatherField gather_field(const scenes::RayQuery& query, const IncomingLight& incoming,
-                                       const GatherSurface& surface, const CameraModel& camera,
-                                       const Window& window, const GatherOptions& options);
-
-// The same with other rays for some of the field's points, those with a mark: their radiance is
-// replaced by that of options.rays new rays.
-void gather_again(GatherField& field, const std::vector<std::uint8_t>& marks,
-                  const scenes::RayQuery& query, const IncomingLight& incoming,
-                  const GatherSurface& surface, const CameraModel& camera,
-                  const GatherOptions& options);
-
-// Replaces every point's radiance by the value there of a plane fitted to its neighbours' on the
-// same surface, weighted by their rays and down to nothing at `share` of the reach. Linear in the
-// radiance, and exact where that is linear in position. Errors are estimated from what the fits
-// leave.
-void smooth(GatherField& field, double share, int most_pixels);
 
 }  // namespace earthshine::raytrace

@@ -47,6 +47,10 @@ class IncomingLight {
 
   [[nodiscard]] const BrightPatches& bright() const { return bright_; }
 
+  // The weight of the ray's end, of all rays that may find it, from `share`.
+  [[nodiscard]] double kept_part(const scenes::Hit& hit, const Vec3& direction,
+                                 const RayShare& share) const;
+
   // The ray aimed at a bright patch from a surface point, and its weight for reflected radiance
   // k_d / pi E: (cosine / pi) / (found_rays cosine / pi + aimed_rays density). Weight 0: it leads
   // nowhere.
@@ -62,9 +66,6 @@ class IncomingLight {
   void see_sky(const Vec3& direction, const Rgb& weight, std::span<Rgb> out, bool straight) const;
   void follow_specular(scenes::Hit hit, Vec3 direction, Rgb weight, std::span<Rgb> out,
                        RayCounts& rays) const;
-  [[nodiscard]] double kept_part(const scenes::Hit& hit, const Vec3& direction,
-                                 const RayShare& share) const;
-
   const scenes::Scene& scene_;
   const scenes::RayQuery& query_;
   const RadianceTable& table_;

@@ -19,7 +19,7 @@ Outlook look_ahead(ShadingScene shared, const CameraModel& camera, int samples) 
   const int step = std::max(1, std::min(camera.columns, camera.rows) / planning_grid);
   const int columns = (camera.columns + step - 1) / step, rows = (camera.rows + step - 1) / step;
   const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-  std::vector<PixelSums> looks(count, PixelSums({0, 0, 1, 1}, shared.layers));
+  std::vector<PixelSums> looks(count, PixelSums({0, 0, 1, 1}, shared.layers, false));
   Outlook outlook;
   std::mutex mutex;
   base::parallel_chunks(count, 16, [&](std::size_t begin, std::size_t end) {
@@ -35,7 +35,7 @@ Outlook look_ahead(ShadingScene shared, const CameraModel& camera, int samples) 
   });
   double pixels = 0.0;
   for (const PixelSums& look : looks) {
-    if (look.source_samples[0] > 0) continue;
+    if (!look.counts(0)) continue;
     outlook.luminance += look.luminance[0] / samples;
     pixels += 1.0;
   }

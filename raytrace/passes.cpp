@@ -5,17 +5,24 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "raytrace/outlook.h"
+#include "raytrace/sample_plan.h"
 
 namespace earthshine::raytrace {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int find_pixels = 2;  // how far GatherField::find looks beyond the pixel
 constexpr int most_rounds = 6;  // of camera samples, each at most four times the one before
-constexpr int most_gather_rays = 1 << 16;
+constexpr int most_error_rounds = 24;
+constexpr double most_step = 2.5;  // less squared error a round
+// Of the wanted error, what samples are planned for: the next statement may turn out larger.
+constexpr double aimed_share = 0.97;
+// Time of a ray over that of one of a packet of gather rays (tests/benchmarks/gather_bench.cpp).
+constexpr double ray_cost = 1.5, path_ray_cost = 2.5, camera_cost = 3.0;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -44,214 +51,225 @@ Sampling share_out(int rays_per_pixel, bool gathers) {
 
 class Passes {
  public:
-  Passes(ShadingScene& shared, const CameraModel& camera, const RenderOptions& options,
-         const Progress& progress)
+  Passes(ShadingScene& shared, const PathWorld& world, const CameraModel& camera,
+         const RenderOptions& options, const Progress& progress, RenderReport& report)
       : shared_(shared),
+        world_(world),
         camera_(camera),
         options_(options),
         progress_(progress),
+        report_(report),
         window_(window_of(options)) {}
 
-  PixelSums run(RenderReport& report) {
-    return options_.shared.on ? run_shared(report) : run_per_sample(report);
+  Sampled run() {
+    if (!options_.shared.on) {
+      run_per_sample();
+    } else if (options_.error > 0.0 || (options_.time_limit_s > 0.0 && options_.fills_time)) {
+      run_to_error();
+    } else {
+      run_shared();
+    }
+    if (field_) report_.rays += field_->rays();
+    return {std::move(*sums_), std::move(field_)};
   }
 
  private:
-  [[nodiscard]] std::size_t entries() const {
-    return shared_.layers + (shared_.splits_parts ? part_count : 0);
-  }
   [[nodiscard]] bool out_of_time() const {
     return options_.time_limit_s > 0.0 && seconds_since(start_) > options_.time_limit_s;
   }
   [[nodiscard]] bool stops() const { return options_.stop && options_.stop(); }
+  [[nodiscard]] bool ends() const { return stops() || out_of_time(); }
 
-  PixelSums run_per_sample(RenderReport& report) {
+  void run_per_sample() {
     const Sampling sampling = share_out(options_.gather_rays, shared_.gathers);
     shared_.diffuse = DiffuseSource::Gather;
     shared_.gather_rays = sampling.gather_rays;
-    PixelSums sums(window_, entries());
-    const auto count = static_cast<std::uint32_t>(sampling.camera_samples);
-    expected_ = static_cast<std::uint64_t>(sampling.camera_samples) * window_.pixel_count();
-    first_round(count, sums, report);
-    report.gather_rays = sampling.camera_samples * sampling.gather_rays;
-    return sums;
+    sums_.emplace(window_, shared_.layers, shared_.splits_parts);
+    expected_ =
+        static_cast<double>(sampling.camera_samples) * static_cast<double>(window_.pixel_count());
+    first_round(static_cast<std::uint32_t>(sampling.camera_samples));
+    report_.gather_rays = sampling.camera_samples * sampling.gather_rays;
   }
 
-  PixelSums run_shared(RenderReport& report) {
+  // As many of each as the settings say.
+  void run_shared() {
     const SharedGather& how = options_.shared;
     const Outlook outlook = look_ahead(shared_, camera_, how.least_samples);
-    report.rays.planning += outlook.rays.total();
+    report_.rays.planning += outlook.rays.total();
     // n = deviation / c gives a mean squared error of c times the mean deviation.
     const double wanted_error = how.noise * outlook.luminance;
-    double per_deviation =
+    const double per_deviation =
         outlook.deviation > 0.0 ? wanted_error * wanted_error / outlook.deviation : 1.0;
-    const double mean_samples = std::max(
-        double(how.least_samples), per_deviation > 0.0 ? outlook.deviation / per_deviation : 0.0);
-    // Rounds look at neighbours, the gather at more of them: a crop gets the same pixels as the
-    // whole picture only if what surrounds it is worked out too.
-    PixelSums sums(widened(window_, most_rounds, camera_), entries());
-    if (shared_.gathers) gather(sums.window, outlook.luminance, mean_samples, report);
-    first_round(static_cast<std::uint32_t>(how.least_samples), sums, report);
-    std::vector<std::uint32_t> wanted;
-    for (int round = 1; round < most_rounds && !stops() && !out_of_time(); ++round) {
-      if (per_deviation <= 0.0) break;
-      wanted = wanted_samples(sums, per_deviation, outlook.bright(), how.least_samples,
-                              how.most_samples);
-      shade(wanted, sums, report);
+    // Rounds look at neighbours: a crop gets the same pixels as the whole picture only if what
+    // surrounds it is worked out too.
+    sums_.emplace(widened(window_, most_rounds, camera_), shared_.layers, shared_.splits_parts);
+    const double samples = std::max(double(how.least_samples),
+                                    per_deviation > 0.0 ? outlook.deviation / per_deviation : 0.0);
+    const double gathers = shared_.gathers ? options_.gather_rays : 0;
+    expected_ = static_cast<double>(sums_->samples.size()) * samples + pixels() * 2.0 * gathers;
+    if (shared_.gathers) {
+      const auto start = Clock::now();
+      begin_field();
+      const auto rays = static_cast<std::uint32_t>(options_.gather_rays);
+      cast_evenly(
+          {std::max(rays, GatherField::fewest_samples(Gathered::Solution)), rays / 2, rays / 2});
+      share();
+      report_.gather_seconds += seconds_since(start);
     }
-    while (options_.time_limit_s > 0.0 && options_.fills_time && per_deviation > 0.0 && !stops() &&
-           !out_of_time()) {
-      per_deviation *= 0.5;
-      wanted = wanted_samples(sums, per_deviation, outlook.bright(), how.least_samples,
-                              16 * how.most_samples);
-      const std::uint64_t before = report.rays.camera;
-      shade(wanted, sums, report);
-      if (report.rays.camera == before && per_deviation < 1e-30) break;
+    first_round(static_cast<std::uint32_t>(how.least_samples));
+    for (int round = 1; round < most_rounds && !ends() && per_deviation > 0.0; ++round) {
+      shade(wanted_samples(*sums_, per_deviation, outlook.bright(), how.least_samples,
+                           how.most_samples));
     }
-    return sums;
   }
 
-  void gather(const Window& around, double luminance, double mean_samples, RenderReport& report) {
-    const auto start = Clock::now();
-    const SharedGather& sharing = options_.shared;
-    GatherOptions how;
-    how.rays = static_cast<int>(std::bit_ceil(
-        static_cast<std::uint32_t>(std::clamp(options_.gather_rays, 8, most_gather_rays))));
-    how.seed = options_.seed;
-    how.image_layers = shared_.layers;
-    how.keeps_sky_apart = shared_.splits_parts;
+  // As many of each as the wanted error takes, round by round, told by what is there.
+  void run_to_error() {
+    sums_.emplace(window_, shared_.layers, shared_.splits_parts);
+    expected_ = 1.0;
+    if (shared_.gathers) {
+      const auto start = Clock::now();
+      begin_field();
+      cast_evenly({GatherField::fewest_samples(Gathered::Solution), 4, 2});
+      share();
+      report_.gather_seconds += seconds_since(start);
+    }
+    first_round(static_cast<std::uint32_t>(options_.shared.least_samples));
+    for (int round = 1; round < most_error_rounds && !ends(); ++round) {
+      const SamplePlanner planner(*sums_, field_ ? &*field_ : nullptr, costs());
+      const double error = std::sqrt(planner.squared_error());
+      if (options_.error > 0.0 && error <= options_.error) break;
+      // Step by step: what few samples say of more of them is rough.
+      const double aim = aimed_share * options_.error;
+      const double step = std::max(aim * aim, planner.squared_error() / most_step);
+      const SamplePlan plan = planner.plan(step, affordable());
+      if (plan.cost <= 0.0) break;
+      expected_ = std::max(done_ + plan.cost, done_ * error * error / std::max(aim * aim, 1e-12));
+      if (field_) {
+        const auto start = Clock::now();
+        for (std::size_t k = 0; k < gathered_kinds && !ends(); ++k) {
+          field_->cast(static_cast<Gathered>(k), plan.field[k], static_cast<std::uint32_t>(round),
+                       [this] { return ends(); });
+        }
+        tell(plan.field_cost);
+        share();
+        report_.gather_seconds += seconds_since(start);
+      }
+      shade(plan.camera);
+    }
+  }
+
+  // What one more sample of each kind costs, in rays of a packet; counted, so that every machine
+  // chooses alike.
+  [[nodiscard]] SampleCosts costs() const {
+    SampleCosts costs;
+    double samples = 0.0;
+    for (const std::uint32_t n : sums_->samples) samples += n;
+    const RayCounts& rays = report_.rays;
+    const auto others =
+        static_cast<double>(rays.shadow + rays.mirror + rays.refraction + rays.gather + rays.lobe);
+    costs.camera = camera_cost + ray_cost * others / std::max(1.0, samples);
+    if (!field_) return costs;
+    for (const Gathered kind : {Gathered::Residual, Gathered::Lobe}) {
+      double cast = 0.0;
+      for (std::size_t p = 0; field_->gathers(kind) && p < field_->points().size(); ++p) {
+        cast += double(field_->samples(kind, p));
+      }
+      const auto total = static_cast<double>(field_->rays_of(kind).total());
+      costs.field[static_cast<std::size_t>(kind)] =
+          path_ray_cost * (1.0 + total / std::max(1.0, cast));
+    }
+    return costs;
+  }
+
+  // What the time that is left buys; infinite without a limit.
+  [[nodiscard]] double affordable() const {
+    if (options_.time_limit_s <= 0.0) return std::numeric_limits<double>::infinity();
+    const double gone = seconds_since(start_);
+    return std::max(0.0, options_.time_limit_s - gone) * done_ / std::max(gone, 1e-3);
+  }
+
+  [[nodiscard]] double pixels() const {
+    return static_cast<double>(camera_.columns) * camera_.rows;
+  }
+
+  void begin_field() {
     const GatherSurface surface = [this](const scenes::Hit& hit, GatherRequest& request) {
       return gathers_at(shared_.scene, hit, request);
     };
-    const auto cast = [&](const Window& window) {
-      return gather_field(shared_.query, shared_.incoming, surface, camera_, window, how);
-    };
-    const bool limited = options_.time_limit_s > 0.0;
-    // Points look at neighbours twice: to find out who needs more rays, and to share.
-    const Window wide = widened(
-        around, 2 * sharing.smooth_pixels + find_pixels + shared_.filter.reach_px(), camera_);
-    if (limited) {
-      const int wanted = how.rays;
-      how.rays = 8;
-      how.rays = affordable_rays(wide, cast);
-      if (!options_.fills_time) how.rays = std::min(how.rays, wanted);
-    }
-    how.stop = [this] { return stops() || out_of_time(); };
-    const auto pixels = static_cast<double>(around.pixel_count());
-    const double rays = pixels * how.rays, samples = pixels * mean_samples;
-    expected_ = static_cast<std::uint64_t>(
-        rays + samples * (1.0 + static_cast<double>(shared_.lights.count())));
-    how.progress = [&](std::size_t, std::size_t total) {
-      tell(static_cast<std::uint64_t>(rays / static_cast<double>(total)));
-    };
-    GatherField plain = cast(wide);
-    field_ = plain;
-    smooth(field_, sharing.smooth_share, sharing.smooth_pixels);
-    report.gather_rays = how.rays;
-    if (sharing.gather_noise > 0.0 && !(limited && options_.fills_time)) {
-      how.progress = {};
-      bool again = false;
-      const int first_rays = how.rays;
-      for (const int factor : {4, 16}) {
-        how.rays = factor * first_rays;
-        const auto marks = noisy_points(field_, factor, luminance);
-        if (how.rays > most_gather_rays || how.stop() || marks.empty()) continue;
-        gather_again(plain, marks, shared_.query, shared_.incoming, surface, camera_, how);
-        again = true;
-      }
-      if (again) {
-        field_ = std::move(plain);
-        smooth(field_, sharing.smooth_share, sharing.smooth_pixels);
-      }
-    }
+    field_.emplace(
+        world_, shared_.incoming, surface, camera_, Window{0, 0, camera_.columns, camera_.rows},
+        GatherField::Setting{shared_.layers, shared_.splits_parts, shared_.world != nullptr,
+                             options_.shared.smooth_share > 0.0, options_.seed});
     shared_.diffuse = DiffuseSource::Field;
-    shared_.field = &field_;
-    report.rays.gather += field_.gather_rays;
-    report.rays += field_.onward;
-    report.rays.camera += field_.camera_rays;
-    report.gather_seconds = seconds_since(start);
+    shared_.field = &*field_;
   }
 
-  // Points whose share in the picture is less exact than wanted, by more than the sharing can
-  // mend: those for which `factor` times as many rays are about right. Empty if there are none.
-  [[nodiscard]] std::vector<std::uint8_t> noisy_points(const GatherField& field, int factor,
-                                                       double luminance) const {
-    const double wanted = options_.shared.gather_noise;
-    std::vector<std::uint8_t> marks(field.points.size(), 0);
-    bool any = false;
-    for (std::size_t p = 0; p < marks.size(); ++p) {
-      const GatherPoint& point = field.points[p];
-      if (point.reach_m <= 0.0F) continue;
-      Rgb gathered(0.0);
-      for (std::size_t k = 0; k < field.image_layers; ++k) {
-        gathered += Rgb(field.radiance[p * field.layers + k]);
-      }
-      const double reflectance = double(point.reflectance);
-      const double scale = wanted * std::max(luminance, reflectance * base::luminance(gathered));
-      const double excess =
-          reflectance * reflectance * double(field.squared_error[p]) / (scale * scale);
-      const bool many = excess > 6.0;
-      if (excess <= 1.0 || many != (factor > 4)) continue;
-      marks[p] = 1;
-      any = true;
+  void cast_evenly(const std::array<std::uint32_t, gathered_kinds>& each) {
+    const std::size_t count = field_->points().size();
+    for (std::size_t k = 0; k < gathered_kinds; ++k) {
+      const auto kind = static_cast<Gathered>(k);
+      field_->cast(kind, std::vector<std::uint32_t>(count, each[k]), 0, [this] { return stops(); });
+      tell(pixels() * each[k]);
+      if (stops()) cast_fewest(kind);
     }
-    return any ? marks : std::vector<std::uint8_t>{};
   }
 
-  // As many as half of the time that is left allows, from the time that a few rays take in four
-  // small windows.
-  template <class Cast>
-  int affordable_rays(const Window& wide, const Cast& cast) const {
-    constexpr int probe_px = 16;
-    const auto start = Clock::now();
-    double rays = 1.0;
-    for (const double x : {0.3, 0.7}) {
-      for (const double y : {0.3, 0.7}) {
-        const Window probe{wide.x + static_cast<int>(x * std::max(0, wide.columns - probe_px)),
-                           wide.y + static_cast<int>(y * std::max(0, wide.rows - probe_px)),
-                           std::min(wide.columns, probe_px), std::min(wide.rows, probe_px)};
-        const GatherField field = cast(probe);
-        rays += static_cast<double>(field.gather_rays + field.camera_rays);
-      }
+  // Where a stop left nothing: a quick look.
+  void cast_fewest(Gathered kind) {
+    if (!field_->gathers(kind)) return;
+    std::vector<std::uint32_t> missing(field_->points().size(), 0U);
+    for (std::size_t p = 0; p < missing.size(); ++p) {
+      if (field_->samples(kind, p) <= 0.0F) missing[p] = GatherField::fewest_samples(kind);
     }
-    const double per_ray = seconds_since(start) / rays;
-    const double left = options_.time_limit_s - seconds_since(start_);
-    const double count = 0.5 * left / (per_ray * static_cast<double>(wide.pixel_count()));
-    return static_cast<int>(std::bit_floor(
-        static_cast<std::uint32_t>(std::clamp(count, 8.0, double(most_gather_rays)))));
+    field_->cast(kind, missing, 0, {});
+  }
+
+  void share() {
+    field_->share();
+    double rays = 0.0, points = 0.0;
+    for (std::size_t p = 0; p < field_->points().size(); ++p) {
+      const float samples = field_->samples(Gathered::Solution, p);
+      rays += double(samples);
+      points += samples > 0.0F ? 1.0 : 0.0;
+    }
+    report_.gather_rays = static_cast<int>(std::lround(rays / std::max(1.0, points)));
   }
 
   // What was not reached when it was stopped gets a single sample all the same: a quick look.
-  void first_round(std::uint32_t samples, PixelSums& sums, RenderReport& report) {
-    report.least_camera_samples = static_cast<int>(samples);
-    const std::size_t pixels = sums.samples.size();
-    shade(std::vector<std::uint32_t>(pixels, samples), sums, report);
-    if (!stops() && !out_of_time()) return;
-    shade_samples(shared_, camera_, std::vector<std::uint32_t>(pixels, 1U), sums, report.rays, {},
+  void first_round(std::uint32_t samples) {
+    report_.least_camera_samples = static_cast<int>(samples);
+    const std::size_t count = sums_->samples.size();
+    shade(std::vector<std::uint32_t>(count, samples));
+    if (!ends()) return;
+    shade_samples(shared_, camera_, std::vector<std::uint32_t>(count, 1U), *sums_, report_.rays, {},
                   {});
   }
 
-  void shade(const std::vector<std::uint32_t>& wanted, PixelSums& sums, RenderReport& report) {
+  void shade(const std::vector<std::uint32_t>& wanted) {
     shade_samples(
-        shared_, camera_, wanted, sums, report.rays, [&] { return stops() || out_of_time(); },
-        [&](std::uint64_t samples) { tell(samples * (1 + shared_.lights.count())); });
+        shared_, camera_, wanted, *sums_, report_.rays, [&] { return ends(); },
+        [&](std::uint64_t samples) { tell(static_cast<double>(samples)); });
   }
 
-  void tell(std::uint64_t more) {
-    if (!progress_) return;
+  void tell(double more) {
     done_ += more;
+    if (!progress_) return;
     progress_(static_cast<std::size_t>(std::min(done_, expected_)),
-              static_cast<std::size_t>(expected_));
+              static_cast<std::size_t>(std::max(1.0, expected_)));
   }
 
   ShadingScene& shared_;
+  const PathWorld& world_;
   const CameraModel& camera_;
   const RenderOptions& options_;
   const Progress& progress_;
+  RenderReport& report_;
   Window window_;
-  GatherField field_;
+  std::optional<GatherField> field_;
+  std::optional<PixelSums> sums_;
   Clock::time_point start_ = Clock::now();
-  std::uint64_t done_ = 0, expected_ = 1;
+  double done_ = 0.0, expected_ = 1.0;
 };
 
 }  // namespace
@@ -268,10 +286,10 @@ Window window_of(const RenderOptions& options) {
                         std::to_string(options.rows) + " pixels");
 }
 
-PixelSums sample_picture(ShadingScene& shared, const CameraModel& camera,
-                         const RenderOptions& options, const Progress& progress,
-                         RenderReport& report) {
-  return Passes(shared, camera, options, progress).run(report);
+Sampled sample_picture(ShadingScene& shared, const PathWorld& world, const CameraModel& camera,
+                       const RenderOptions& options, const Progress& progress,
+                       RenderReport& report) {
+  return Passes(shared, world, camera, options, progress, report).run();
 }
 
 }  // namespace earthshine::raytrace

@@ -3,6 +3,8 @@
 // samples.
 #pragma once
 
+#include <optional>
+
 #include "raytrace/pixel_sums.h"
 
 namespace earthshine::raytrace {
@@ -10,10 +12,17 @@ namespace earthshine::raytrace {
 // Throws base::Error (Input) if the crop leaves the picture.
 [[nodiscard]] Window window_of(const RenderOptions& options);
 
-// The sums cover the window and some pixels around it. Sets how surfaces are gathered at
-// (`diffuse`, `gather_rays`) in `shared`; fills the report's rays and seconds of the gather.
-[[nodiscard]] PixelSums sample_picture(ShadingScene& shared, const CameraModel& camera,
-                                       const RenderOptions& options, const Progress& progress,
-                                       RenderReport& report);
+// What the rays of a picture brought. The sums cover the window and perhaps some pixels around it;
+// the field, if there is one, the whole picture.
+struct Sampled {
+  PixelSums sums;
+  std::optional<GatherField> field;
+};
+
+// Sets how surfaces are gathered at (`diffuse`, `gather_rays`) in `shared`; fills the report's rays
+// and seconds of the gather. All but the options and the report must outlive what is returned.
+[[nodiscard]] Sampled sample_picture(ShadingScene& shared, const PathWorld& world,
+                                     const CameraModel& camera, const RenderOptions& options,
+                                     const Progress& progress, RenderReport& report);
 
 }  // namespace earthshine::raytrace

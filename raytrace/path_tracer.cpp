@@ -9,7 +9,6 @@
 
 #include "base/parallel.h"
 #include "raytrace/path_walker.h"
-#include "scenes/spread_reflectance.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -33,14 +32,7 @@ void check(const PathOptions& options) {
 PathWorld make_world(const scenes::Scene& scene, const scenes::LightGroups& groups,
                      const scenes::Effects& effects, const scenes::RayQuery& query,
                      const LightSampler& lights, const PathOptions& options) {
-  PathWorld world{scene,
-                  groups,
-                  effects,
-                  query,
-                  lights,
-                  scenes::spread_reflectances(scene),
-                  radiosity::emitter_is_explicit(scene),
-                  {}};
+  PathWorld world{scene, groups, effects, query, lights, radiosity::emitter_is_explicit(scene), {}};
   for (std::size_t g = 0; g < groups.count(); ++g) {
     world.layer.push_back(options.per_light ? g : 0);
   }

@@ -28,9 +28,7 @@ namespace earthshine::raytrace {
 
 enum class PathSet {
   All,
-  // As render() has them, for tests of it: behind a diffuse bounce or one off a lobe of an exponent
-  // below 100 surfaces reflect all as if it were diffuse, and there are no caustics.
-  Gathered
+  NoCaustics  // as render() has them: mirrors and glass throw no light onto other surfaces
 };
 
 struct PathOptions {

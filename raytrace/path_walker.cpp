@@ -23,71 +23,67 @@ constexpr double sure_weight = 0.25;
 // are so small that the variance stays finite up to reflectances of 0.9999^(1/2).
 constexpr int long_path = 1000;
 constexpr double long_path_survival = 0.9999;
-constexpr double sharp_lobe = 100.0;  // as shading.cpp has it; matters for PathSet::Gathered alone
-
 bool lit(const Rgb& c) { return base::max_component(c) > 0.0; }
 
 }  // namespace
 
-struct PathWalker::Surface {
-  const scenes::Material& material;
-  Rgb diffuse;
-  Vec3 position;
-  Vec3 outward;   // unit normal of the front
-  Vec3 normal;    // the same on the side that the path arrives from
-  Vec3 mirrored;  // the path's direction reflected
-  bool shines;    // reflects and emits: false inside glass
-  bool glossy;    // its lobe counts
-};
-
-std::span<const Rgb> PathWalker::walk(const Ray& start, base::Rng& rng) {
+void PathWalker::begin(const Ray& start, base::Rng& rng) {
   std::fill(radiance_.begin(), radiance_.end(), Rgb(0.0));
   rng_ = &rng;
   ray_ = start;
   weight_ = Rgb(1.0);
-  sees_sampled_ = from_camera_ = glossy_ = true;
+  share_ = {};
+}
+
+std::span<const Rgb> PathWalker::walk(const Ray& start, base::Rng& rng) {
+  begin(start, rng);
+  sees_sampled_ = from_camera_ = true;
   ++rays_.camera;
   for (int bounce = 0; step() && survives(bounce); ++bounce) {
   }
   return radiance_;
 }
 
+PathWalker::Surface PathWalker::surface_at(const scenes::Hit& hit) const {
+  const scenes::Scene& scene = world_.scene;
+  const scenes::Material& material = scene.materials[scene.triangles[hit.triangle].material];
+  const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
+  return {material,
+          scenes::hit_position(scene, hit),
+          outward,
+          hit.front ? outward : -outward,
+          glm::reflect(ray_.direction, outward),
+          hit.front || material.two_sided};
+}
+
+bool PathWalker::is_black(const Surface& surface) {
+  return !surface.shines && !lit(surface.material.transmit);
+}
+
 // Adds what the ray's end sends along it and turns the ray; false where the path ends.
 bool PathWalker::step() {
-  const scenes::Scene& scene = world_.scene;
   const scenes::Hit hit = world_.query.closest(ray_.origin, ray_.direction);
   if (sees_sampled_ && see_lamp(hit)) return false;
   if (hit.missed()) {
     see_sky();
     return false;
   }
-  const scenes::Triangle& triangle = scene.triangles[hit.triangle];
-  const scenes::Material& material = scene.materials[triangle.material];
-  const bool shines = hit.front || material.two_sided;
-  if (!shines && !lit(material.transmit)) return false;  // the black back
+  const Surface surface = surface_at(hit);
+  if (is_black(surface)) return false;
+  shine(surface, hit);
+  return go_on(surface, nullptr);
+}
 
-  const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
-  const auto& v = triangle.vertex;
-  const bool spread = world_.paths == PathSet::Gathered && !glossy_;
-  const Surface surface{material,
-                        spread ? world_.spread[triangle.material] : material.diffuse,
-                        (1.0 - hit.u - hit.v) * scene.vertices[v[0]] +
-                            hit.u * scene.vertices[v[1]] + hit.v * scene.vertices[v[2]],
-                        outward,
-                        hit.front ? outward : -outward,
-                        glm::reflect(ray_.direction, outward),
-                        shines,
-                        shines && glossy_ && lit(material.specular)};
-  if (shines) {
-    if (sees_sampled_ || !world_.sampled_emitter[triangle.material]) {
-      add(world_.groups.material[triangle.material], material.emit / pi);
-    }
-    if (from_camera_) {
-      add(world_.groups.ambient, material.diffuse * scene.ambient_radiance);
-    }
-    if (lit(surface.diffuse) || surface.glossy) light_directly(surface);
+// What the surface emits, and reflects straight from the sources.
+void PathWalker::shine(const Surface& surface, const scenes::Hit& hit) {
+  if (!surface.shines) return;
+  const scenes::Material& material = surface.material;
+  const std::uint32_t number = world_.scene.triangles[hit.triangle].material;
+  if (sees_sampled_ || !world_.sampled_emitter[number]) {
+    add(world_.groups.material[number], material.emit / pi);
   }
-  return go_on(surface);
+  if (from_camera_) add(world_.groups.ambient, material.diffuse * world_.scene.ambient_radiance);
+  if (lit(material.diffuse) || lit(material.specular)) light_directly(surface);
 }
 
 void PathWalker::add(std::size_t group, const Rgb& radiance) {
@@ -145,15 +141,18 @@ void PathWalker::light_directly(const Surface& surface) {
     }
     count = 0;
   };
+  // Each light has numbers of its own, so that a lamp that is switched off moves no other's light.
+  const base::Key key(static_cast<std::uint64_t>(rng_->next() * 0x1p53), base::Stream::LightSample,
+                      0);
   for (std::size_t k = 0; k < world_.lights.count(); ++k) {
-    const double u = rng_->next();
-    const double v = rng_->next();
+    const double u = base::uniform(key.with(k), 0);
+    const double v = base::uniform(key.with(k), 1);
     const scenes::LightSample light = world_.lights.sample(k, surface.position, u, v);
     const double cosine = glm::dot(light.direction, surface.normal);
     if (cosine <= 0.0 || !lit(light.normal_illuminance_lx)) continue;
-    Rgb reflectance = surface.diffuse;
+    Rgb reflectance = surface.material.diffuse;
     const double cos_alpha = glm::dot(light.direction, surface.mirrored);
-    if (surface.glossy && cos_alpha > 0.0) {
+    if (lit(surface.material.specular) && cos_alpha > 0.0) {
       reflectance += surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
     }
     // Short of the source, which may be a surface of the scene.
@@ -168,14 +167,15 @@ void PathWalker::light_directly(const Surface& surface) {
   trace();
 }
 
-// Chooses a mechanism in proportion to what it reflects and turns the ray by it.
-bool PathWalker::go_on(const Surface& surface) {
+// Chooses a mechanism in proportion to what it reflects and turns the ray by it. Some of the rays
+// are aimed where `solution` is bright.
+bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
   const scenes::Material& material = surface.material;
   const double n = material.shininess;
   enum : std::size_t { Diffuse, Lobe, Mirror, Glass };
   const std::array<double, 4> share = {
-      surface.shines ? base::max_component(surface.diffuse) : 0.0,
-      surface.glossy ? base::max_component(material.specular) * 2.0 / (n + 2.0) : 0.0,
+      surface.shines ? base::max_component(material.diffuse) : 0.0,
+      surface.shines ? base::max_component(material.specular) * 2.0 / (n + 2.0) : 0.0,
       base::max_component(material.mirror), base::max_component(material.transmit)};
   const double all = share[Diffuse] + share[Lobe] + share[Mirror] + share[Glass];
   if (all <= 0.0) return false;
@@ -184,8 +184,14 @@ bool PathWalker::go_on(const Surface& surface) {
   while (way < Glass && (choice -= share[way]) >= 0.0) ++way;
   while (share[way] <= 0.0) --way;  // rounding took the choice past the last that has a share
   weight_ *= all / share[way];
+  share_ = {};
 
-  if (way == Mirror || way == Glass) {
+  if (way == Diffuse && solution != nullptr) {
+    const Vec3 origin = surface.position + surface.normal * world_.query.surface_offset_m();
+    weight_ *= material.diffuse;
+    const double u = rng_->next(), v = rng_->next();
+    if (!turn_diffusely(*solution, origin, surface.normal, u, v)) return false;
+  } else if (way == Mirror || way == Glass) {
     pass_on(surface, way == Glass);
   } else {
     scatter(surface, way == Lobe);
@@ -220,11 +226,10 @@ void PathWalker::scatter(const Surface& surface, bool by_lobe) {
     const double cosine = std::max(0.0, glm::dot(direction, surface.normal));
     weight_ *= surface.material.specular * (2.0 * cosine / (n + 1.0));
   } else {
-    weight_ *= surface.diffuse;
+    weight_ *= surface.material.diffuse;
   }
   ray_ = {surface.position + surface.normal * world_.query.surface_offset_m(), direction};
   sees_sampled_ = from_camera_ = false;
-  if (world_.paths == PathSet::Gathered) glossy_ = glossy_ && by_lobe && n >= sharp_lobe;
   ++(by_lobe ? rays_.lobe : rays_.gather);
 }
 

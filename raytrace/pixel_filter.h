@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/random.h"
 #include "scenes/scene.h"
 
 namespace earthshine::raytrace {
@@ -40,6 +41,21 @@ class PixelFilter {
   scenes::FilterShape shape_;
   double width_px_;
   std::vector<double> inverse_;  // x / w, see invert(); of the smooth shapes
+};
+
+// Where in a pixel and on the lens its camera samples lie: even and odd ones are two independent
+// sets, each of low discrepancy.
+class PixelPoints {
+ public:
+  PixelPoints(std::uint64_t seed, std::uint64_t pixel)
+      : halves_{base::SobolOwen4(base::Key(seed, base::Stream::Pixel, pixel).with(0)),
+                base::SobolOwen4(base::Key(seed, base::Stream::Pixel, pixel).with(1))} {}
+  [[nodiscard]] std::array<float, 4> point(std::size_t sample) const {
+    return halves_[sample % 2].point(static_cast<std::uint32_t>(sample / 2));
+  }
+
+ private:
+  std::array<base::SobolOwen4, 2> halves_;
 };
 
 }  // namespace earthshine::raytrace

@@ -12,6 +12,7 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr int tile_edge_px = 16;
+constexpr std::size_t few_pixels = 64;
 
 void shade_pixel(const ShadingScene& shared, const CameraModel& camera, int x, int y,
                  std::uint32_t first, std::uint32_t end, PixelShader& shader) {
@@ -19,7 +20,7 @@ void shade_pixel(const ShadingScene& shared, const CameraModel& camera, int x, i
       static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(camera.columns) +
       static_cast<std::uint64_t>(x);
   shader.begin_pixel(number, first, end - first);
-  const base::SobolOwen4 points(base::Key(shared.seed, base::Stream::Pixel, number));
+  const PixelPoints points(shared.seed, number);
   scenes::RayPacket packet;
   scenes::HitPacket hits;
   std::array<Ray, scenes::RayPacket::width> rays;
@@ -27,7 +28,7 @@ void shade_pixel(const ShadingScene& shared, const CameraModel& camera, int x, i
   for (std::size_t from = first; from < end; from += rays.size()) {
     const std::size_t count = std::min<std::size_t>(rays.size(), end - from);
     for (std::size_t k = 0; k < count; ++k) {
-      const auto p = points.point(static_cast<std::uint32_t>(from + k));
+      const auto p = points.point(from + k);
       const auto offset = shared.filter.offset(p[0], p[1]);
       at[k] = {x + 0.5 + offset[0], y + 0.5 + offset[1]};
       rays[k] = camera.ray(at[k][0], at[k][1], p[2], p[3]);
@@ -44,30 +45,54 @@ void shade_pixel(const ShadingScene& shared, const CameraModel& camera, int x, i
   shader.end_pixel();
 }
 
-void store(const PixelShader& shader, std::uint32_t count, std::size_t pixel, PixelSums& sums) {
-  for (std::size_t k = 0; k < sums.entries; ++k) {
-    sums.radiance[pixel * sums.entries + k] += shader.sums()[k];
-  }
-  for (const double y : shader.sample_luminance()) {
-    sums.luminance[pixel] += y;
-    sums.luminance2[pixel] += y * y;
-  }
-  sums.field_error[pixel] += shader.field_error();
-  sums.source_samples[pixel] += static_cast<std::uint32_t>(shader.source_samples());
-  sums.samples[pixel] += count;
-}
-
 }  // namespace
 
-PixelSums::PixelSums(const Window& of, std::size_t entries_per_pixel)
+PixelSums::PixelSums(const Window& of, std::size_t layers, bool splits_parts)
     : window(of),
-      entries(entries_per_pixel),
-      radiance(of.pixel_count() * entries_per_pixel, glm::dvec3(0.0)),
+      image_layers(layers),
+      entries(layers + (splits_parts ? part_count : 0)),
+      radiance(of.pixel_count() * entries, glm::dvec3(0.0)),
+      terms(of.pixel_count()),
       samples(of.pixel_count(), 0U),
-      source_samples(of.pixel_count(), 0U),
       luminance(of.pixel_count(), 0.0),
       luminance2(of.pixel_count(), 0.0),
-      field_error(of.pixel_count(), 0.0) {}
+      half_difference(of.pixel_count(), 0.0),
+      source(of.pixel_count()) {}
+
+void PixelSums::add(std::size_t pixel, const PixelShader& shader, std::uint32_t first,
+                    std::uint32_t count) {
+  for (std::size_t k = 0; k < entries; ++k) radiance[pixel * entries + k] += shader.sums()[k];
+  for (std::size_t k = 0; k < count; ++k) {
+    const double y = shader.sample_luminance()[k];
+    luminance[pixel] += y;
+    luminance2[pixel] += y * y;
+    half_difference[pixel] += (first + k) % 2 == 0 ? y : -y;
+  }
+  source[pixel].luminance += shader.source().luminance;
+  source[pixel].luminance2 += shader.source().luminance2;
+  source[pixel].reflecting += shader.source().reflecting;
+  samples[pixel] += count;
+  std::vector<FieldTerm>& of_pixel = terms[pixel];
+  for (const FieldTerm& more : shader.field_terms()) {
+    const auto same = std::find_if(of_pixel.begin(), of_pixel.end(),
+                                   [&](const FieldTerm& term) { return term.point == more.point; });
+    if (same == of_pixel.end()) {
+      of_pixel.push_back(more);
+    } else {
+      same->diffuse += more.diffuse;
+      same->lobe += more.lobe;
+    }
+  }
+}
+
+bool PixelSums::counts(std::size_t pixel) const {
+  const double n = samples[pixel];
+  const SourceSeen& seen = source[pixel];
+  if (n == 0.0 || seen.reflecting == 0.0) return false;
+  if (seen.luminance == 0.0) return true;
+  const double spread = seen.luminance2 - seen.luminance * seen.luminance / n;
+  return seen.reflecting == n && spread <= 1e-6 * seen.luminance2;
+}
 
 double PixelSums::sample_variance(std::size_t pixel) const {
   const double n = samples[pixel];
@@ -85,14 +110,12 @@ double PixelSums::deviation(std::size_t pixel, double bright) const {
   return std::sqrt(sample_variance(pixel) * n) * (mean > bright ? bright / mean : 1.0);
 }
 
-double PixelSums::squared_field_error(std::size_t pixel) const {
-  if (samples[pixel] == 0) return 0.0;
-  const double field = field_error[pixel] / samples[pixel];
-  return field * field;
-}
-
 double PixelSums::squared_error(std::size_t pixel) const {
-  return sample_variance(pixel) + squared_field_error(pixel);
+  if (samples[pixel] < 2) return 0.0;
+  // Of few pixels the halves tell little: there their samples' spread, which is an upper bound.
+  if (window.pixel_count() < few_pixels) return sample_variance(pixel);
+  const double off = half_difference[pixel] / samples[pixel];
+  return off * off;
 }
 
 void shade_samples(const ShadingScene& shared, const CameraModel& camera,
@@ -116,7 +139,7 @@ void shade_samples(const ShadingScene& shared, const CameraModel& camera,
         const std::uint32_t first = sums.samples[pixel];
         if (wanted[pixel] <= first) continue;
         shade_pixel(shared, camera, window.x + x, window.y + y, first, wanted[pixel], shader);
-        store(shader, wanted[pixel] - first, pixel, sums);
+        sums.add(pixel, shader, first, wanted[pixel] - first);
         count += wanted[pixel] - first;
       }
     }

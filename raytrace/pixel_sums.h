@@ -12,23 +12,30 @@ namespace earthshine::raytrace {
 
 struct PixelSums {
   Window window;
-  std::size_t entries = 0;           // image layers, then parts
-  std::vector<glm::dvec3> radiance;  // pixel * entries, summed over samples
-  std::vector<std::uint32_t> samples, source_samples;
-  std::vector<double> luminance, luminance2;  // sums over samples, of the luminance and its square
-  std::vector<double> field_error;            // sum of the gather points' standard errors
+  std::size_t image_layers = 0, entries = 0;  // with parts behind the layers
+  // pixel * entries, summed over samples, without what they read from gather points
+  std::vector<glm::dvec3> radiance;
+  std::vector<std::vector<FieldTerm>> terms;  // that
+  std::vector<std::uint32_t> samples;
+  // Sums over samples, of the luminance and its square, gather points included and sources that the
+  // camera sees itself left out.
+  std::vector<double> luminance, luminance2;
+  std::vector<double> half_difference;  // of the sums of even and odd samples' luminance
+  std::vector<SourceSeen> source;
 
-  PixelSums(const Window& of, std::size_t entries_per_pixel);
+  PixelSums(const Window& of, std::size_t image_layers, bool splits_parts);
   // Of the mean luminance, from the spread of the samples alone.
   [[nodiscard]] double sample_variance(std::size_t pixel) const;
   // Standard deviation of one sample's luminance. Pixels brighter than `bright` are wanted as exact
   // in proportion, not more: theirs is scaled down to that luminance, or glints and lamps would
   // take all samples.
   [[nodiscard]] double deviation(std::size_t pixel, double bright) const;
-  // The same with what the gather points' own errors add. All samples of a pixel share a point,
-  // hence the errors of its samples do not average out.
+  // The squared error of the mean, from the pixel's two halves alone: right on average over pixels.
   [[nodiscard]] double squared_error(std::size_t pixel) const;
-  [[nodiscard]] double squared_field_error(std::size_t pixel) const;
+  // Whether the pixel shows a surface that reflects and no edge of a source itself.
+  [[nodiscard]] bool counts(std::size_t pixel) const;
+  // Samples into the sums of a pixel.
+  void add(std::size_t pixel, const PixelShader& shader, std::uint32_t first, std::uint32_t count);
 };
 
 // Brings every pixel up to wanted[pixel] samples. Sample k of a pixel is the same whatever came

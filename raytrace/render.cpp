@@ -10,13 +10,46 @@
 #include "raytrace/layers.h"
 #include "raytrace/passes.h"
 #include "raytrace/shading_setup.h"
+#include "raytrace/stated_error.h"
 
 namespace earthshine::raytrace {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-void fill_layers(const PixelSums& sums, const Layout& layout, std::size_t image_layers,
+// Image layers, then parts, of one pixel: its own sums and what it reads from gather points.
+void pixel_radiance(const Sampled& sampled, std::size_t pixel, std::vector<Rgb>& out) {
+  const PixelSums& sums = sampled.sums;
+  const double n = sums.samples[pixel];
+  for (std::size_t k = 0; k < sums.entries; ++k) {
+    out[k] = sums.radiance[pixel * sums.entries + k] / n;
+  }
+  const std::size_t layers = sums.image_layers;
+  const bool by_part = sums.entries > layers;
+  const auto part = [&](Part which) -> Rgb& {
+    return out[layers + static_cast<std::size_t>(which)];
+  };
+  for (const FieldTerm& term : sums.terms[pixel]) {
+    const Rgb diffuse = Rgb(term.diffuse) / n, specular = Rgb(term.lobe) / n;
+    const std::span<const glm::vec3> radiance = sampled.field->diffuse(term.point);
+    for (std::size_t k = 0; k < layers; ++k) {
+      out[k] += diffuse * Rgb(radiance[k]);
+      if (by_part) part(Part::Indirect) += diffuse * Rgb(radiance[k]);
+    }
+    if (by_part) {  // what came straight from the sky is no interreflection
+      part(Part::Direct) += diffuse * Rgb(radiance[layers]);
+      part(Part::Indirect) -= diffuse * Rgb(radiance[layers]);
+    }
+    if (base::max_component(specular) <= 0.0) continue;
+    const std::span<const glm::vec3> lobe = sampled.field->lobe(term.point);
+    for (std::size_t k = 0; k < layers; ++k) {
+      out[k] += specular * Rgb(lobe[k]);
+      if (by_part) part(Part::Specular) += specular * Rgb(lobe[k]);
+    }
+  }
+}
+
+void fill_layers(const Sampled& sampled, const StatedError& error, const Layout& layout,
                  const Window& window, base::Image& image) {
   const auto put = [&](std::size_t first, std::size_t pixel, const Rgb& value) {
     for (int c = 0; c < 3; ++c) {
@@ -24,34 +57,36 @@ void fill_layers(const PixelSums& sums, const Layout& layout, std::size_t image_
           static_cast<float>(value[c]);
     }
   };
+  const PixelSums& sums = sampled.sums;
+  std::vector<Rgb> radiance(sums.entries);
   for (int y = window.y; y < window.y + window.rows; ++y) {
     for (int x = window.x; x < window.x + window.columns; ++x) {
       const std::size_t from = sums.window.index(x, y), to = window.index(x, y);
       if (sums.samples[from] == 0) continue;
-      const double n = sums.samples[from];
-      const glm::dvec3* radiance = &sums.radiance[from * sums.entries];
+      pixel_radiance(sampled, from, radiance);
       glm::vec3 total(0.0F);
-      for (std::size_t k = 0; k < image_layers; ++k) {
-        const glm::vec3 layer(radiance[k] / n);  // rounded first: the layers add up to the last bit
+      for (std::size_t k = 0; k < sums.image_layers; ++k) {
+        const glm::vec3 layer(radiance[k]);  // rounded first: the layers add up to the last bit
         total += layer;
         if (!layout.radiance.empty()) put(layout.radiance[k], to, Rgb(layer));
       }
       put(0, to, Rgb(total));
       for (std::size_t part = 0; part < layout.parts.size(); ++part) {
         if (layout.parts[part] == Layout::none_wanted) continue;
-        put(layout.parts[part], to, radiance[image_layers + part] / n);
+        put(layout.parts[part], to, radiance[sums.image_layers + part]);
       }
-      if (layout.variance != Layout::none_wanted) {
-        image.channels[layout.variance].values[to] = static_cast<float>(sums.squared_error(from));
-      }
+      if (layout.variance == Layout::none_wanted) continue;
+      const auto& squared = error.squared[to];
+      double variance = sums.sample_variance(from);
+      for (std::size_t kind = 0; kind < gathered_kinds; ++kind) variance += double(squared[kind]);
+      image.channels[layout.variance].values[to] = static_cast<float>(variance);
     }
   }
 }
 
 void summarise(const PixelSums& sums, const Window& window, Frame& frame) {
   RenderReport& report = frame.report;
-  frame.squared_error.assign(window.pixel_count(), shows_source);
-  double error = 0.0, field_error = 0.0, mean = 0.0, pixels = 0.0, samples = 0.0, finished = 0.0;
+  double samples = 0.0, finished = 0.0;
   for (int y = window.y; y < window.y + window.rows; ++y) {
     for (int x = window.x; x < window.x + window.columns; ++x) {
       const std::size_t p = sums.window.index(x, y);
@@ -59,20 +94,12 @@ void summarise(const PixelSums& sums, const Window& window, Frame& frame) {
       report.most_camera_samples =
           std::max(report.most_camera_samples, static_cast<int>(sums.samples[p]));
       if (static_cast<int>(sums.samples[p]) >= report.least_camera_samples) finished += 1.0;
-      if (sums.source_samples[p] > 0) continue;
-      frame.squared_error[window.index(x, y)] = static_cast<float>(sums.squared_error(p));
-      error += sums.squared_error(p);
-      field_error += sums.squared_field_error(p);
-      mean += sums.luminance[p] / sums.samples[p];
-      pixels += 1.0;
     }
   }
   const auto all = static_cast<double>(window.pixel_count());
   report.camera_samples = samples / all;
   report.finished_share = finished / all;
-  if (mean <= 0.0) return;
-  report.relative_noise = std::sqrt(error / pixels) / (mean / pixels);
-  report.gather_noise = std::sqrt(field_error / pixels) / (mean / pixels);
+  report.relative_noise = std::sqrt(add_up(frame.error).squared_error());
 }
 
 }  // namespace
@@ -83,7 +110,6 @@ RenderOptions render_options(const scenes::QualityKnobs& knobs) {
   options.shared.on = knobs.share_gather;
   options.shared.smooth_share = knobs.smooth_share;
   options.shared.noise = knobs.picture_noise;
-  options.shared.gather_noise = knobs.gather_noise;
   return options;
 }
 
@@ -96,7 +122,6 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
   ShadingSetup setup(scene, groups, effects, query, solution, camera, options);
   ShadingScene& shared = setup.shared();
   const CameraModel& model = setup.camera();
-  const std::size_t layers = shared.layers;
   const Window window = window_of(options);
   frame.window = window;
   frame.image = base::make_rgb_image(window.columns, window.rows);
@@ -104,8 +129,11 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
       frame.image, options.per_light ? groups.names : std::vector<std::string>{}, options.aovs);
   shared.splits_parts = layout.splits_parts();
 
-  const PixelSums sums = sample_picture(shared, model, options, progress, frame.report);
-  fill_layers(sums, layout, layers, window, frame.image);
+  const Sampled sampled =
+      sample_picture(shared, setup.world(), model, options, progress, frame.report);
+  const PixelSums& sums = sampled.sums;
+  frame.error = state_error(sums, sampled.field ? &*sampled.field : nullptr, window);
+  fill_layers(sampled, frame.error, layout, window, frame.image);
   frame.report.rays.layers += fill_first_hit(scene, query, model, window, frame.image);
   frame.report.rays.layers += fill_cryptomatte(
       scene, query, model, {options.seed, window, sums.window, sums.samples, shared.filter},

@@ -42,11 +42,7 @@ struct SharedGather {
   // wanted. Off: every camera sample has gather rays of its own and every pixel equally many of
   // both: unbiased given the solution, slow, the oracle of the former.
   bool on = false;
-  double smooth_share = 0.25;  // of the mean ray length, how far points share; 0: not at all
-  int smooth_pixels = 16;      // but no further than that
-  // Points that are left with more noise than this, over the mean luminance or their own, are
-  // gathered at again with 4 or 16 times the rays; 0: never.
-  double gather_noise = 0.02;
+  double smooth_share = 0.25;  // 0: neighbouring points share nothing
   double noise = 0.02;  // wanted RMS standard error from camera samples, over the mean luminance
   int least_samples = 4, most_samples = 1024;  // per pixel, powers of two
 };
@@ -63,6 +59,9 @@ struct RenderOptions {
   bool per_light = false;
   std::vector<std::string> aovs;  // of aov_names()
   std::uint64_t seed = 1;
+  // With SharedGather: samples of all kinds go where they help most until the picture's stated
+  // error, over its mean luminance, is no more than this; 0: as many as the settings say.
+  double error = 0.0;
   // With SharedGather: goes on until these seconds have passed, however exact the picture is by
   // then, with as many gather rays as half of them allow; 0: no limit. The bytes then differ
   // between runs.

@@ -17,18 +17,20 @@ using scenes::no_group;
 constexpr int roulette_depth = 3;       // from here on paths end by chance, without bias
 constexpr double most_survival = 0.95;  // even between perfect mirrors
 constexpr int lobe_rays = 4;            // per camera sample
-constexpr double sharp_lobe = 100.0;  // from this exponent on the surroundings are shaded, not read
 
 bool lit(const Rgb& c) { return base::max_component(c) > 0.0; }
 
 }  // namespace
 
 bool gathers_at(const scenes::Scene& scene, const scenes::Hit& hit, GatherRequest& request) {
-  const scenes::Material& material = scene.materials[scene.triangles[hit.triangle].material];
-  if (!(hit.front || material.two_sided) || !lit(material.diffuse)) return false;
+  const std::uint32_t number = scene.triangles[hit.triangle].material;
+  const scenes::Material& material = scene.materials[number];
+  const bool glossy = lit(material.specular) && material.shininess < sharp_lobe;
+  if (!(hit.front || material.two_sided) || !(lit(material.diffuse) || glossy)) return false;
   const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
   request = {scenes::hit_position(scene, hit), hit.front ? outward : -outward,
-             base::luminance(material.diffuse)};
+             base::luminance(material.diffuse), glossy ? base::luminance(material.specular) : 0.0,
+             number};
   return true;
 }
 
@@ -36,24 +38,38 @@ PixelShader::PixelShader(const ShadingScene& shared)
     : shared_(shared),
       sums_(shared.layers + (shared.splits_parts ? part_count : 0)),
       scratch_(shared.layers),
-      gather_points_(base::Key(0, base::Stream::FinalGather, 0)),
-      rng_(base::Key(0, base::Stream::Roulette, 0)) {}
+      gather_points_{base::SobolOwen4(base::Key(0, base::Stream::FinalGather, 0)),
+                     base::SobolOwen4(base::Key(0, base::Stream::FinalGather, 0))},
+      rng_(base::Key(0, base::Stream::Roulette, 0)) {
+  if (shared.world != nullptr) walker_.emplace(*shared.world);
+}
 
 void PixelShader::begin_pixel(std::uint64_t pixel, std::size_t first, std::size_t count) {
   pixel_ = pixel;
   first_sample_ = first;
-  source_samples_ = 0;
-  field_error_ = 0.0;
+  source_ = {};
+  terms_.clear();
   std::fill(sums_.begin(), sums_.end(), Rgb(0.0));
   sample_luminance_.assign(count, 0.0);
-  gather_points_ = base::SobolOwen4(base::Key(shared_.seed, base::Stream::FinalGather, pixel));
+  const base::Key key(shared_.seed, base::Stream::FinalGather, pixel);
+  gather_points_ = {base::SobolOwen4(key.with(0)), base::SobolOwen4(key.with(1))};
 }
 
 void PixelShader::add_sample(std::size_t sample, const Ray& ray, const scenes::Hit& hit) {
   sample_ = sample;
+  gathered_ = 0;
+  source_of_sample_ = 0.0;
   rng_ = base::Rng(base::Key(shared_.lamp_seed, base::Stream::Roulette, pixel_).with(sample));
   ++rays_.camera;
+  if (!hit.missed()) {
+    const auto& material = shared_.scene.materials[shared_.scene.triangles[hit.triangle].material];
+    const bool shines = hit.front || material.two_sided;
+    const bool reflects = shines && (lit(material.diffuse) || lit(material.specular));
+    if (reflects || material.passes_light_on()) source_.reflecting += 1.0;
+  }
   shade(ray, hit, Rgb(1.0), 0, Seen::ByCamera);
+  source_.luminance += source_of_sample_;
+  source_.luminance2 += source_of_sample_ * source_of_sample_;
 }
 
 void PixelShader::end_pixel() {
@@ -80,8 +96,13 @@ void PixelShader::trace(const Ray& ray, const Rgb& weight, int depth, Seen seen,
 }
 
 void PixelShader::see_source(std::size_t group, const Rgb& radiance, int depth) {
-  add(shared_.layer[group], sample_, depth == 0 ? Part::Direct : Part::Specular, radiance);
-  if (depth == 0 && lit(radiance)) ++source_samples_;
+  const std::size_t layer = shared_.layer[group];
+  if (depth > 0) return add(layer, sample_, Part::Specular, radiance);
+  sums_[layer] += radiance;
+  if (shared_.splits_parts) {
+    sums_[shared_.layers + static_cast<std::size_t>(Part::Direct)] += radiance;
+  }
+  source_of_sample_ += base::luminance(radiance);
 }
 
 void PixelShader::see_sky(const Vec3& direction, const Rgb& weight, int depth, Seen seen) {
@@ -152,9 +173,10 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
   const Vec3 origin = surface.position + surface.normal * offset;
   const Vec3 mirrored =
       2.0 * glm::dot(surface.view, surface.normal) * surface.normal - surface.view;
-  const base::Key light_key(shared_.lamp_seed, base::Stream::LightSample, pixel_);
+  const base::Key light_key =
+      base::Key(shared_.lamp_seed, base::Stream::LightSample, pixel_).with(half());
   const auto light_point = [&](std::size_t k) {
-    return base::SobolOwen4(light_key.with(k)).point2(static_cast<std::uint32_t>(sample_));
+    return base::SobolOwen4(light_key.with(k)).point2(in_half());
   };
   const auto choice = light_point(shared_.lights.count());
   chosen_.clear();
@@ -187,6 +209,9 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
 
 void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
   const double n = surface.material.shininess;
+  if (depth == 0 && n < sharp_lobe && shared_.field != nullptr && read_lobe(surface, weight)) {
+    return;
+  }
   const Vec3 mirrored =
       2.0 * glm::dot(surface.view, surface.normal) * surface.normal - surface.view;
   const base::Frame3 frame = base::frame_around(mirrored);
@@ -205,7 +230,7 @@ void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
       trace({origin, direction}, value, depth + 1, Seen::ByLobe, rays_.lobe);
     } else {
       ++rays_.lobe;
-      queue_gather(origin, {direction, value, {}, Part::Specular, sample_});
+      queue_gather(origin, {direction, value, {}, Part::Specular, sample_, ++gathered_});
     }
   }
 }

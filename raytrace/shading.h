@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,9 @@ struct ShadingScene {
   bool splits_parts = false;  // sums also by Part
   Indirect indirect = Indirect::Radiosity;
   bool gathers = false;  // cosine rays carry light in this render
+  // Of paths that go on from where gather and lobe rays end, to find what the solution lacks there;
+  // nullptr: there is no solution.
+  const PathWorld* world = nullptr;
   DiffuseSource diffuse = DiffuseSource::Gather;
   const GatherField* field = nullptr;  // with DiffuseSource::Field
   Vec3 camera_position{0.0};
@@ -53,11 +57,24 @@ enum class Part {
 };
 inline constexpr std::size_t part_count = 3;
 
-// Whether a surface that the camera meets there reflects diffusely, and where to gather for it.
+// Whether a surface that the camera meets there is gathered for, and how.
 [[nodiscard]] bool gathers_at(const scenes::Scene& scene, const scenes::Hit& hit,
                               GatherRequest& request);
 
-// Shades the samples of one pixel after another; one object per thread.
+// Light of a gather point that a pixel's samples reflect: sums over samples of k_d and k_s.
+struct FieldTerm {
+  std::uint32_t point = 0;
+  glm::vec3 diffuse{0.0F}, lobe{0.0F};
+};
+
+// Luminance of the sources that a pixel's samples saw themselves, and its square; how many samples
+// met a surface that reflects.
+struct SourceSeen {
+  double luminance = 0.0, luminance2 = 0.0, reflecting = 0.0;
+};
+
+// Shades the samples of one pixel after another; one object per thread. Samples with even and odd
+// numbers are two halves, independent of each other.
 class PixelShader {
  public:
   explicit PixelShader(const ShadingScene& shared);
@@ -76,12 +93,13 @@ class PixelShader {
 
   // Sum over samples of radiance, per image layer; then, with splits_parts, per Part.
   [[nodiscard]] std::span<const Rgb> sums() const { return sums_; }
-  // Luminance of each sample, all layers together.
+  // Luminance of each sample, all layers together, but for sources that the camera sees itself.
   [[nodiscard]] std::span<const double> sample_luminance() const { return sample_luminance_; }
-  // How many samples saw a source itself.
-  [[nodiscard]] std::size_t source_samples() const { return source_samples_; }
-  // Sum over samples of the standard error of luminance that their gather points carry.
-  [[nodiscard]] double field_error() const { return field_error_; }
+  // Sums over samples of the light that comes straight from a source that the camera sees; their
+  // luminance is without it.
+  [[nodiscard]] const SourceSeen& source() const { return source_; }
+  // What the samples read from gather points, which is in their luminance but not in sums().
+  [[nodiscard]] std::span<const FieldTerm> field_terms() const { return terms_; }
   [[nodiscard]] const RayCounts& rays() const { return rays_; }
 
  private:
@@ -98,12 +116,19 @@ class PixelShader {
   // counter: the kind of ray it is.
   void trace(const Ray& ray, const Rgb& weight, int depth, Seen seen, std::uint64_t& counter);
   void shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weight, int depth, Seen seen);
+  // The half of the current sample, and its number in it.
+  [[nodiscard]] std::size_t half() const { return sample_ % 2; }
+  [[nodiscard]] std::uint32_t in_half() const { return static_cast<std::uint32_t>(sample_ / 2); }
+
   void see_source(std::size_t group, const Rgb& radiance, int depth);
   void see_sky(const Vec3& direction, const Rgb& weight, int depth, Seen seen);
   bool see_lamp(const Ray& ray, double nearer_than_m, const Rgb& weight, int depth);
   void direct(const Surface& surface, const Rgb& weight, int depth);
   void diffuse(const Surface& surface, const scenes::Hit& hit, const Rgb& weight, int depth);
+  [[nodiscard]] std::size_t find_point(const Surface& surface) const;
   bool read_field(const Surface& surface, const Rgb& weight);
+  bool read_lobe(const Surface& surface, const Rgb& weight);
+  FieldTerm& term_of(std::size_t point);
   void read_solution(const scenes::Hit& hit, const Rgb& weight, int depth);
   void gather(const Surface& surface, const Rgb& weight, int depth);
   void lobe(const Surface& surface, const Rgb& weight, int depth);
@@ -125,9 +150,11 @@ class PixelShader {
     RayShare share;
     Part part = Part::Indirect;
     std::size_t sample = 0;
+    std::uint64_t number = 0;  // in the sample: the key of what follows it
   };
   void queue_gather(const Vec3& origin, const GatherRay& ray);
   void flush_shadow();
+  void add_lacking(const GatherRay& ray, const scenes::Hit& hit);
   void flush_gather();
   void add(std::size_t layer, std::size_t sample, Part part, const Rgb& radiance);
 
@@ -136,11 +163,14 @@ class PixelShader {
   std::vector<Rgb> sums_;
   std::vector<Rgb> scratch_;  // one per layer, and what came straight from the sky
   std::vector<double> sample_luminance_;
-  std::size_t sample_ = 0, first_sample_ = 0, source_samples_ = 0;
-  double field_error_ = 0.0;
+  std::size_t sample_ = 0, first_sample_ = 0;
+  SourceSeen source_;
+  double source_of_sample_ = 0.0;
+  std::vector<FieldTerm> terms_;
+  std::optional<PathWalker> walker_;
   int x_ = 0, y_ = 0;
-  std::uint64_t pixel_ = 0;
-  base::SobolOwen4 gather_points_;
+  std::uint64_t pixel_ = 0, gathered_ = 0;
+  std::array<base::SobolOwen4, 2> gather_points_;  // by half
   std::vector<scenes::LightChoice> chosen_;
   base::Rng rng_;
 

@@ -50,6 +50,7 @@ ShadingSetup::ShadingSetup(const scenes::Scene& scene, const scenes::LightGroups
       bright_(bright_of(aimed_at != nullptr ? *aimed_at : solution, options)),
       incoming_(scene, query, effects, all_, bright_, image_layers(groups, options),
                 earth_layer(groups, options), effects.mirror || effects.refraction),
+      world_{scene, groups, effects, query, lights_, {}, {}, 1, PathSet::NoCaustics},
       shared_{scene, groups, effects, query, lights_, soft_, incoming_} {
   shared_.indirect = options.indirect;
   shared_.layers = image_layers(groups, options);
@@ -62,6 +63,10 @@ ShadingSetup::ShadingSetup(const scenes::Scene& scene, const scenes::LightGroups
   if (options.indirect == Indirect::Radiosity) {
     shared_.sampled_emitter = radiosity::emitter_is_explicit(scene);
   }
+  world_.sampled_emitter = shared_.sampled_emitter;
+  world_.layer = shared_.layer;
+  world_.layers = shared_.layers;
+  if (reads(solution, options)) shared_.world = &world_;
   shared_.seed = shared_.lamp_seed = options.seed;
   shared_.camera_position = camera_.position;
   shared_.filter = PixelFilter(camera);

@@ -18,6 +18,8 @@ class ShadingSetup {
   ShadingSetup& operator=(const ShadingSetup&) = delete;
 
   [[nodiscard]] ShadingScene& shared() { return shared_; }
+  // For paths that find what the solution lacks, or gather points whose lobes have none.
+  [[nodiscard]] const PathWorld& world() const { return world_; }
   [[nodiscard]] const CameraModel& camera() const { return camera_; }
 
  private:
@@ -27,6 +29,7 @@ class ShadingSetup {
   LightSampler lights_;
   BrightPatches bright_;
   IncomingLight incoming_;
+  PathWorld world_;
   ShadingScene shared_;
 };
 

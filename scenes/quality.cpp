@@ -37,7 +37,6 @@ QualityKnobs resolve_quality(const Scene& scene, const Quality& given) {
   knobs.gather_rays =
       given.gather_rays.value_or(power_of_two_at_least(rays, knobs.share_gather ? 8 : 16, 1 << 16));
   knobs.smooth_share = given.smooth_share.value_or(std::clamp(0.25 / std::sqrt(ratio), 0.05, 0.5));
-  knobs.gather_noise = given.gather_rays ? 0.0 : reference_error / ratio;
   knobs.picture_noise = given.picture_noise.value_or(std::min(1.0, 1.5 * reference_error / ratio));
   if (!scene.vertices.empty()) {
     const double diagonal_m = diagonal(scene);

@@ -22,7 +22,6 @@ struct QualityKnobs {
   int gather_rays = 256;           // per pixel
   bool share_gather = false;       // between a pixel's camera samples and neighbouring pixels
   double smooth_share = 0.0;       // of the mean gather ray, how far neighbours share
-  double gather_noise = 0.0;       // above which a point is gathered at again; 0: never
   double picture_noise = 0.01;     // wanted of the camera samples, relative to the mean luminance
   double solver_tolerance = 1e-8;  // relative residual
 };
@@ -30,7 +29,6 @@ struct QualityKnobs {
 // A knob that the scene sets wins. Otherwise a wanted relative error e sets it by the measured laws
 //   gather noise   ~ gather_rays^-1/2     32 rays for 0.02 if shared, else 256
 //   sharing        ~ smooth_share^2       a quarter of the mean ray for 0.02
-//   points noisier than e                 get 4 or 16 times the rays, unless gather_rays is set
 //   camera samples to a noise of 1.5 e    their spread overstates what low-discrepancy samples
 //   leave radiosity      ~ form_factor_rays^-0.6  1024 rays for 0.02 patch size     ~ patch_edge
 //   (scene diagonal)/48 for 0.02

@@ -12,7 +12,7 @@
 #include "scenes/quality.h"
 #include "studies/error_budget.h"
 #include "studies/memory.h"
-#include "studies/wanted_error.h"
+#include "studies/picture_solver.h"
 
 namespace earthshine::studies {
 namespace {
@@ -155,53 +155,42 @@ std::optional<StepResult> run_plain(const Work& work, SolutionShelf& shelf) {
   add_picture_facts(cost, frame.report);
   cost.memory_bytes = memory_of(study, asked, solver, options, solves ? &solution : nullptr);
   const Clock statement;
-  const WatchedPicture picture{&view.camera, options};
-  const SecondOpinion opinion = second_opinion(scene, solution, solver, {picture});
-  cost.stated =
-      error_budget(scene, opinion.pictures.front(), solution, picture, frame).parts.total();
+  cost.stated = error_budget(scene, {&view.camera, options}, frame).total;
   cost.statement_cpu_seconds = statement.cpu();
   return result;
 }
 
-// As `render --error` does: settings are chosen until the picture says that it is as exact as
-// wanted. The statements that decide about that are part of the cost.
+// As `render --error` does: samples go where they help until the picture says that it is as exact
+// as wanted. The statements that decide about that are part of the cost.
 std::optional<StepResult> run_steered(const Work& work) {
   const auto& [study, view, step, asked, progress] = work;
-  scenes::Scene wishes = study.scene;
-  wishes.quality = step.quality;
-  const StudyScene scene{wishes, asked.groups, asked.effects, study.query};
+  const StudyScene scene{study.scene, asked.groups, asked.effects, study.query};
+  const radiosity::SolveOptions solver = picture_solver(study.scene, step.quality, view.seed);
+  raytrace::RenderOptions options = picture_of(study, view, step);
+  options.error = *step.quality.error;
   const Clock clock;
-  Wanted wanted;
-  wanted.error = *step.quality.error;
-  wanted.now = [&clock] { return clock.wall(); };
-  wanted.fits = view.fits;
-  const WatchedPicture watched{&view.camera, picture_of(study, view, step)};
   StepResult result;
   StepCost& cost = result.cost;
-  SteeredSolution found;
-  const bool solves = asked.effects.solution;
-  if (solves) {
-    found = reach_solution(
-        scene, wanted, view.seed, {watched},
-        [&cost](const radiosity::SolveReport& report) { cost.solve_rays += solve_rays(report); });
+  radiosity::Solution solution;
+  if (asked.effects.solution) {
+    solution = radiosity::solve(study.scene, asked.groups, asked.effects, study.query, solver);
+    cost.solve_rays = solve_rays(solution.report);
     cost.solve_wall_seconds = clock.wall();
     cost.solve_cpu_seconds = clock.cpu();
-    cost.patches = found.solution.report.patches;
-    cost.form_factor_rays = found.solver.form_factor_rays;
-  } else {
-    found.opinion = second_opinion(scene, found.solution, found.solver, {watched});
+    cost.patches = solution.report.patches;
+    cost.form_factor_rays = solver.form_factor_rays;
   }
-  const Trial trial = found.trials.empty() ? Trial{} : found.trials.front();
-  const SteeredPicture picture = reach_picture(
-      scene, wanted, found.solution, found.opinion.pictures.front(), watched, trial, progress);
+  const raytrace::Frame frame =
+      raytrace::render(study.scene, asked.groups, asked.effects, study.query, solution, view.camera,
+                       options, progress);
   cost.wall_seconds = clock.wall();
   cost.cpu_seconds = clock.cpu();
-  if (picture.frame.report.stopped) return std::nullopt;
-  result.luminance = base::luminance_of(picture.frame.image);
-  add_picture_facts(cost, picture.frame.report);
-  cost.stated = picture.budget.parts.total();
+  if (frame.report.stopped) return std::nullopt;
+  result.luminance = base::luminance_of(frame.image);
+  add_picture_facts(cost, frame.report);
+  cost.stated = error_budget(scene, {&view.camera, options}, frame).total;
   cost.memory_bytes =
-      memory_of(study, asked, found.solver, picture.options, solves ? &found.solution : nullptr);
+      memory_of(study, asked, solver, options, asked.effects.solution ? &solution : nullptr);
   return result;
 }
 

@@ -79,7 +79,6 @@ class PictureDrawer {
     // whole.
     const double coarser = 1.0 / std::sqrt(scale);
     options.shared.noise *= coarser;
-    options.shared.gather_noise *= coarser;
     options.crop = {};
     options.time_limit_s = 0.0;
     if (options.indirect == raytrace::Indirect::Paths) {

@@ -1,136 +1,96 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studies/error_budget.h"
 
-#include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <map>
+#include <numeric>
 
-#include "base/random.h"
-#include "raytrace/first_hit.h"
-#include "studies/measured_noise.h"
 #include "studies/pixel_choice.h"
 
 namespace earthshine::studies {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using raytrace::ErrorPart;
+using raytrace::ErrorSums;
+using raytrace::StatedError;
 
-constexpr std::size_t watched_pixels = 1024, watched_of_target = 128;
+constexpr double one_sided_95 = 1.645;
+constexpr int tile_px = 32;  // samples are shared no further than about that
+// Tiles' squares are most often small and now and then large, so that their spread, found from
+// some of them, is too small as a rule (docs/validation.md).
+constexpr double unseen_spread = 1.5;
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// Pixels of one camera that are watched: some of the whole picture, some more of each target.
-struct Watched {
-  std::vector<std::uint32_t> pixels;
-  std::vector<std::uint32_t> whole;  // numbers into pixels
-  std::map<std::uint32_t, std::vector<std::uint32_t>> targets;
-};
-
-Watched choose_watched(const scenes::Scene& scene, const SurfacePixels& seen,
-                       const raytrace::RenderOptions& options) {
-  Watched watched;
-  const auto take = [&](const std::vector<std::uint32_t>& from, std::size_t count,
-                        std::uint64_t salt) {
-    std::vector<std::uint32_t> numbers;
-    for (const std::uint32_t pixel : spread_evenly(from, count, base::mix64(options.seed ^ salt))) {
-      numbers.push_back(static_cast<std::uint32_t>(watched.pixels.size()));
-      watched.pixels.push_back(pixel);
-    }
-    return numbers;
-  };
-  watched.whole = take(seen.all(), watched_pixels, 0);
-  for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
-    if (!scene.objects[object].target) continue;
-    const std::vector<std::uint32_t> pixels = seen.of_object(object);
-    if (!pixels.empty()) watched.targets[object] = take(pixels, watched_of_target, object + 1);
+// Over the mean square, the bound of it that holds 95 times of 100.
+double bound_ratio(const StatedError& stated, const std::vector<std::size_t>& pixels, int columns) {
+  const ErrorSums whole = raytrace::add_up(stated, pixels);
+  if (whole.squared_error() <= 0.0) return 1.0;
+  std::map<std::size_t, double> tiles;
+  for (const std::size_t p : pixels) {
+    if (stated.counts[p] == 0) continue;
+    const double weight = raytrace::error_weight(double(stated.luminance[p]), whole.luminance);
+    double square = 0.0;
+    for (const float part : stated.squared[p]) square += double(part);
+    const std::size_t x = p % static_cast<std::size_t>(columns) / tile_px;
+    const std::size_t y = p / static_cast<std::size_t>(columns) / tile_px;
+    tiles[y * static_cast<std::size_t>(columns) + x] += weight * weight * square;
   }
-  return watched;
+  const auto count = static_cast<double>(tiles.size());
+  double sum = 0.0, squares = 0.0;
+  for (const auto& [tile, value] : tiles) {
+    sum += value;
+    squares += value * value;
+  }
+  // Of one tile nothing is known: as if its error were all in one place.
+  if (count < 2.0) return 1.0 + one_sided_95 * unseen_spread;
+  const double spread =
+      std::sqrt(std::max(0.0, squares - sum * sum / count) * count / (count - 1.0));
+  return 1.0 + one_sided_95 * unseen_spread * spread / sum;
 }
 
-TargetError target_error(const StudyScene& scene, std::uint32_t object, const SurfacePixels& seen,
-                         const raytrace::Frame& frame, const WatchedErrors& solution,
-                         const MeasuredNoise& noise) {
-  TargetError target;
-  target.name = scene.scene.objects[object].name;
-  const std::vector<std::uint32_t> pixels = seen.of_object(object);
-  target.pixels = pixels.size();
-  if (frame.squared_error.empty()) return target;
-  const PixelMeans means = pixel_means(frame, seen, pixels);
-  target.luminance = means.luminance;
-  if (means.pixels == 0 || means.luminance <= 0.0) return target;
-  const double stated = std::sqrt(means.squared_error) / means.luminance;
-  target.error = Doubt{noise.correction.estimate * stated, noise.correction.bound_95 * stated};
-  const auto found = solution.targets.find(object);
-  if (found != solution.targets.end()) target.error = target.error + found->second.total();
-  return target;
+Doubt total_of(const StatedError& stated, const std::vector<std::size_t>& pixels, int columns) {
+  const double square = raytrace::add_up(stated, pixels).squared_error();
+  return {std::sqrt(square), std::sqrt(square * bound_ratio(stated, pixels, columns))};
 }
 
 }  // namespace
 
-Doubt ErrorParts::total() const {
-  return form_factor_noise + patch_size + solver_residual + gather_noise + lamp_sampling +
-         camera_samples;
-}
-
-SecondOpinion second_opinion(const StudyScene& scene, const radiosity::Solution& solution,
-                             const radiosity::SolveOptions& solver,
-                             const std::vector<WatchedPicture>& pictures) {
-  const auto start = Clock::now();
-  SecondOpinion opinion;
-  opinion.pictures.resize(pictures.size());
-  if (solution.columns == 0 || solution.patches.count() == 0) return opinion;
-  std::vector<Watched> watched;
-  std::vector<PictureWatch> watches;
-  for (const WatchedPicture& picture : pictures) {
-    const SurfacePixels seen(scene, *picture.camera, picture.options);
-    watched.push_back(choose_watched(scene.scene, seen, picture.options));
-    watches.emplace_back(scene, solution, *picture.camera, picture.options, watched.back().pixels);
-    opinion.rays += seen.rays();
-  }
-  opinion.looks =
-      radiosity::look_again(scene.scene, scene.groups, scene.effects, scene.query, solver, solution,
-                            [&](radiosity::Look look, const radiosity::Solution& other) {
-                              for (PictureWatch& watch : watches) watch.add(look, other);
-                            });
-  for (std::size_t k = 0; k < watches.size(); ++k) {
-    const auto error = [&](const std::vector<std::uint32_t>& which) {
-      return weighed_error(some_of(watches[k].looks(), which), opinion.looks,
-                           solution.report.solver_error);
-    };
-    opinion.pictures[k].whole = error(watched[k].whole);
-    for (const auto& [object, which] : watched[k].targets) {
-      opinion.pictures[k].targets[object] = error(which);
-    }
-    opinion.rays += watches[k].rays();
-  }
-  opinion.rays += opinion.looks.rays;
-  opinion.seconds = seconds_since(start);
-  return opinion;
-}
-
-ErrorBudget error_budget(const StudyScene& scene, const WatchedErrors& solution,
-                         const radiosity::Solution& read, const WatchedPicture& picture,
+ErrorBudget error_budget(const StudyScene& scene, const WatchedPicture& picture,
                          const raytrace::Frame& frame) {
-  const auto start = Clock::now();
   ErrorBudget budget;
   budget.not_captured = not_captured(scene, picture.options);
   const SurfacePixels seen(scene, *picture.camera, picture.options);
-  const MeasuredNoise noise = measure_noise(scene, read, picture, frame, seen);
-  budget.pixels = noise.pixels;
-  budget.parts.form_factor_noise = solution.whole.form_factors;
-  budget.parts.patch_size = solution.whole.patches;
-  budget.parts.solver_residual = solution.whole.solver;
-  budget.parts.gather_noise = noise.gather;
-  budget.parts.lamp_sampling = noise.lamps + solution.whole.lamps;
-  budget.parts.camera_samples = noise.camera;
+  const StatedError& stated = frame.error;
+  if (stated.luminance.empty()) {  // paths: independent samples that state their own spread
+    const double noise = frame.report.relative_noise;
+    budget.total = budget.parts.camera_samples = {noise, noise};
+    budget.pixels = noise > 0.0 ? seen.all().size() : 0;
+  } else {
+    std::vector<std::size_t> all(stated.luminance.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    const ErrorSums whole = raytrace::add_up(stated, all);
+    budget.pixels = whole.luminance > 0.0 ? whole.pixels : 0;
+    budget.total = total_of(stated, all, frame.window.columns);
+    const double bound =
+        budget.total.estimate > 0.0 ? budget.total.bound_95 / budget.total.estimate : 1.0;
+    const auto part = [&](ErrorPart which) {
+      const double off = std::sqrt(whole.squared[static_cast<std::size_t>(which)]);
+      return Doubt{off, bound * off};
+    };
+    budget.parts = {part(ErrorPart::Gather), part(ErrorPart::Residual), part(ErrorPart::Lobe),
+                    part(ErrorPart::Camera)};
+  }
   for (std::uint32_t object = 0; object < scene.scene.objects.size(); ++object) {
     if (!scene.scene.objects[object].target) continue;
-    budget.targets.push_back(target_error(scene, object, seen, frame, solution, noise));
+    TargetError& target = budget.targets.emplace_back();
+    target.name = scene.scene.objects[object].name;
+    std::vector<std::size_t> pixels;
+    for (const std::uint32_t pixel : seen.of_object(object))
+      pixels.push_back(seen.in_window(pixel));
+    target.pixels = pixels.size();
+    if (stated.luminance.empty()) continue;
+    target.luminance = raytrace::add_up(stated, pixels).luminance;
+    target.error = total_of(stated, pixels, frame.window.columns);
   }
-  budget.rays = noise.rays + seen.rays();
-  budget.seconds = seconds_since(start);
   return budget;
 }
 

@@ -169,6 +169,12 @@ GroupWeights LightBasis::weights(std::size_t place, std::size_t setting, double 
 
 GroupWeights LightBasis::weights_with(std::size_t place, std::size_t setting,
                                       const std::string& light) const {
+  const auto group = std::find(groups_.names.begin(), groups_.names.end(), light);
+  if (group != groups_.names.end()) {
+    GroupWeights weights = weigh(place, settings_[setting], 1.0);
+    weights.weight[static_cast<std::size_t>(group - groups_.names.begin())] = Rgb(1.0);
+    return weights;
+  }
   LampSetting changed = settings_[setting];
   changed.factors[light] = Rgb(1.0);
   return weigh(place, changed, 1.0);

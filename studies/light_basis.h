@@ -77,7 +77,8 @@ class LightBasis {
   // lamps: times all factors of the setting.
   [[nodiscard]] GroupWeights weights(std::size_t place, std::size_t setting,
                                      double lamps = 1.0) const;
-  // The same with the light of one name ("sun", "earth", a lamp or a group) as the scene has it.
+  // The same with one light as the scene has it: a light group by its name, or the parts of the
+  // "sun" or the "earth".
   [[nodiscard]] GroupWeights weights_with(std::size_t place, std::size_t setting,
                                           const std::string& light) const;
 

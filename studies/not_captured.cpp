@@ -33,11 +33,6 @@ std::vector<std::string> not_captured(const StudyScene& scene,
       missing.emplace_back("light from surface to surface");
       break;
     case raytrace::Indirect::Radiosity:
-      if (effects.phong && effects.interreflection) {
-        missing.emplace_back(
-            "the direction of highlights and glossy reflection behind a diffuse bounce: spread as "
-            "if diffuse");
-      }
       break;
   }
   if (throws_light) {

@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "raytrace/frame.h"
 #include "raytrace/light_sampler.h"
 #include "scenes/sky.h"
-#include "studies/pixel_choice.h"
 
 namespace earthshine::studies {
 namespace {
@@ -23,7 +23,7 @@ struct Sums {
   // d1, d2: two looks at one difference, of variances v1 and v2.
   void add(double d1, double v1, double d2, double v2, double truth) {
     ++pixels;
-    const double weight = std::pow(error_weight(truth, whole_mean), 2);
+    const double weight = std::pow(raytrace::error_weight(truth, whole_mean), 2);
     v1 *= weight;
     v2 *= weight;
     product += weight * d1 * d2;
@@ -129,7 +129,7 @@ double resolution(const ReferencePair& truth, const std::vector<bool>& counted) 
   double squares = 0.0, pixels = 0.0;
   for (std::size_t p = 0; p < counted.size(); ++p) {
     if (!counted[p]) continue;
-    const double weight = std::pow(error_weight(middle(truth, p), mean), 4);
+    const double weight = std::pow(raytrace::error_weight(middle(truth, p), mean), 4);
     squares += weight * truth.first.variance[p] * truth.second.variance[p];
     pixels += 1.0;
   }

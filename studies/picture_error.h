@@ -8,7 +8,7 @@
 // of the references' pixels:
 //   s^2 = sum of [ (L - T)^2 (v1 + v2) + v1 v2 ] / pixels^2
 // Differences of pixels brighter than four times the mean count in proportion, as in the errors
-// that pictures state of themselves (error_weight, pixel_choice.h).
+// that pictures state of themselves (error_weight, raytrace/frame.h).
 #pragma once
 
 #include <cstddef>

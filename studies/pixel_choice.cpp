@@ -41,11 +41,6 @@ std::size_t SurfacePixels::in_window(std::uint32_t pixel) const {
   return window_.index(static_cast<int>(pixel % columns_), static_cast<int>(pixel / columns_));
 }
 
-double error_weight(double luminance, double mean) {
-  constexpr double bright = 4.0;
-  return luminance > bright * mean ? bright * mean / luminance : 1.0;
-}
-
 std::vector<std::uint32_t> spread_evenly(std::span<const std::uint32_t> pixels, std::size_t count,
                                          std::uint64_t seed) {
   if (pixels.size() <= count) return {pixels.begin(), pixels.end()};

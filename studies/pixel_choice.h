@@ -32,12 +32,6 @@ class SurfacePixels {
   std::uint64_t rays_ = 0;
 };
 
-// What an error at a pixel counts, over a picture (or a target) of that mean luminance: pixels
-// brighter than four times the mean count in proportion to their own. A glint or the wall beside a
-// lamp may be a thousand times as bright as the rest; its last per mille is nobody's concern, and
-// no estimate from some of the pixels would be any good.
-[[nodiscard]] double error_weight(double luminance, double mean);
-
 // At most `count` of them: one at random from each of as many equal runs, which are rows or parts
 // of rows.
 [[nodiscard]] std::vector<std::uint32_t> spread_evenly(std::span<const std::uint32_t> pixels,

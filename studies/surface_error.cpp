@@ -1,16 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studies/surface_error.h"
 
-#include <algorithm>
 #include <chrono>
+#include <numeric>
 
+#include "scenes/sky.h"
+#include "scenes/sky_parts.h"
 #include "studies/error_budget.h"
-#include "studies/surface_points.h"
+#include "studies/residual_error.h"
 
 namespace earthshine::studies {
 namespace {
 
-constexpr std::size_t points = 8192;
+constexpr double points = 8192.0;
+constexpr int matrix_rays = 64;  // per patch: the error goes through it, not the light
+constexpr std::uint32_t replicate = 0x5E57;
+
+// What carries the error on, cast anew: a solution does not keep its form factors.
+radiosity::FormFactors matrix_of(const StudyScene& scene, const radiosity::Solution& solution,
+                                 std::uint64_t seed) {
+  radiosity::SkyRadiance sky;
+  if (scene.effects.earth_by_gather) {
+    sky = [&scene](const Vec3& direction) {
+      return scenes::earth_radiance(scene.scene, direction);
+    };
+  }
+  radiosity::FormFactorOptions options{matrix_rays, seed, replicate};
+  options.leave_out_covered = true;
+  const auto& parts = scene.scene.sky_parts;
+  if (parts && parts->cells) options.sky_cells = &*parts->cells;
+  return radiosity::cast_form_factors(scene.scene, scene.query, solution.patches, options, sky);
+}
 
 }  // namespace
 
@@ -21,17 +41,24 @@ SurfaceError surface_error(const StudyScene& scene, const radiosity::Solution& s
   SurfaceError error;
   error.not_captured = not_captured(scene, {});
   if (solution.columns == 0 || solution.patches.count() == 0) return error;
-  const std::vector<scenes::Hit> where = spread_over_surfaces(scene.scene, points, solver.seed);
-  Looks looks;
-  looks.own = radiosity_at(scene.query, solution, where);
-  const radiosity::SecondLooks made =
-      radiosity::look_again(scene.scene, scene.groups, scene.effects, scene.query, solver, solution,
-                            [&](radiosity::Look look, const radiosity::Solution& other) {
-                              looks.add(look, radiosity_at(scene.query, other, where));
-                            });
-  error.known = std::any_of(looks.own.begin(), looks.own.end(), [](double b) { return b > 0.0; });
-  error.parts = weighed_error(std::move(looks), made, solution.report.solver_error);
-  error.rays = made.rays;
+  radiosity::FormFactors matrix = matrix_of(scene, solution, solver.seed);
+  error.rays = matrix.ray_count;
+  const LightOnSurfaces light(scene, solution, std::move(matrix),
+                              2.0 * solution.report.rays_per_patch);
+  const double mean = light.mean_radiosity();
+  error.known = mean > 0.0;
+  if (!error.known) return error;
+  std::vector<std::uint32_t> all(light.patches().count());
+  std::iota(all.begin(), all.end(), 0U);
+  const std::vector<Effort> effort = even_effort(light.patches(), points);
+  const SurfaceSampler sampler(scene, solver.seed);
+  const SurfaceSamples samples =
+      sampler.sample(light.light(), all, effort, 1, mean, light.bodies());
+  const LightNoise noise = noise_of(light, ray_variance(light.patches(), samples, effort), samples);
+  error.parts = residual_error(light, samples, noise, sampler.reflectances(), mean,
+                               solution.report.solver_error)
+                    .parts;
+  error.rays += samples.rays;
   error.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return error;
 }

@@ -2,7 +2,13 @@
 // The error of a radiosity solution over the surfaces themselves.
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "radiosity/solution.h"
 #include "studies/solution_error.h"
+#include "studies/study.h"
 
 namespace earthshine::studies {
 
@@ -17,7 +23,7 @@ struct SurfaceError {
   double seconds = 0.0;
 };
 
-// Solves again (radiosity/second_looks.h) and compares at some thousand points.
+// By the residual of the solution (residual_error.h).
 [[nodiscard]] SurfaceError surface_error(const StudyScene& scene,
                                          const radiosity::Solution& solution,
                                          const radiosity::SolveOptions& solver);

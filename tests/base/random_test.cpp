@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -94,6 +95,30 @@ TEST(Random, TheSobolSetIsANetInEachPairOfItsDimensionsThatSobolMakesOne) {
   }
   for (const auto& seen : boxes) EXPECT_EQ(seen.size(), 1U << m);
   for (const auto& seen : strata) EXPECT_EQ(seen.size(), 1U << m);
+}
+
+TEST(Random, TheRunsOfASobolSetAreTogetherTheLargerSet) {
+  const Key key(7, Stream::Test, 3);
+  using Point = std::array<float, 4>;
+  const auto add = [](const SobolSet4& set, const SobolSet4::Scramble& scramble,
+                      std::multiset<Point>& found) {
+    SobolSet4::Points p;
+    for (std::uint32_t first = 0; first < set.count(); first += SobolSet4::width) {
+      set.points(first, scramble, p);
+      for (std::size_t k = 0; k < SobolSet4::width; ++k) {
+        found.insert({p.x[0][k], p.x[1][k], p.x[2][k], p.x[3][k]});
+      }
+    }
+  };
+  std::multiset<Point> whole, in_runs;
+  add(SobolSet4(256), SobolSet4::Scramble(key), whole);
+  const SobolSet4 part(32);
+  SobolSet4::Scramble scramble(key);
+  for (std::uint32_t run = 0; run < 8; ++run) {
+    part.go_to_run(run, scramble);
+    add(part, scramble, in_runs);
+  }
+  EXPECT_EQ(in_runs, whole);
 }
 
 TEST(Random, SobolValuesStayInsideTheOpenUnitIntervalAndStratifyEachAxis) {

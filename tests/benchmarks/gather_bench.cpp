@@ -7,7 +7,7 @@
 #include "radiosity/solution.h"
 #include "raytrace/gather_field.h"
 #include "raytrace/gather_rays.h"
-#include "raytrace/shading.h"
+#include "raytrace/shading_setup.h"
 #include "tests/benchmarks/payload_bay.h"
 
 namespace earthshine {
@@ -33,14 +33,20 @@ bool surface(const scenes::Hit& hit, raytrace::GatherRequest& request) {
   return raytrace::gathers_at(payload_bay().scene, hit, request);
 }
 
+raytrace::RenderOptions view() {
+  raytrace::RenderOptions options;
+  options.columns = options.rows = edge_px;
+  options.shared.on = true;
+  return options;
+}
+
 struct Setup {
   const PayloadBay& bay = payload_bay();
-  raytrace::CameraModel camera =
-      raytrace::make_camera_model(bay.scene.cameras[1], edge_px, edge_px);
-  raytrace::CellSight sight{bay.query, solution().patches};
-  raytrace::RadianceTable table{solution(), solution().radiosity, false, sight};
-  raytrace::BrightPatches bright{solution()};
-  raytrace::IncomingLight incoming{bay.scene, bay.query, bay.effects, table, bright, 1, 0, true};
+  raytrace::ShadingSetup shading{bay.scene,  bay.groups,           bay.effects, bay.query,
+                                 solution(), bay.scene.cameras[1], view()};
+  const raytrace::CameraModel& camera = shading.camera();
+  const raytrace::IncomingLight& incoming = shading.shared().incoming;
+  const raytrace::PathWorld& world = shading.world();
 };
 
 const Setup& setup() {
@@ -73,14 +79,15 @@ std::vector<TilePoints> tiles() {
 
 void gather(benchmark::State& state) {
   const Setup& s = setup();
-  raytrace::GatherOptions options;
-  options.rays = static_cast<int>(state.range(0));
+  const std::size_t points = static_cast<std::size_t>(edge_px) * edge_px;
+  const std::vector<std::uint32_t> each(points, static_cast<std::uint32_t>(state.range(0)));
   double rays = 0.0;
   for (auto round : state) {
-    const raytrace::GatherField field = raytrace::gather_field(
-        s.bay.query, s.incoming, surface, s.camera, {0, 0, edge_px, edge_px}, options);
-    rays = static_cast<double>(field.gather_rays);
-    benchmark::DoNotOptimize(field.radiance.data());
+    raytrace::GatherField field(s.world, s.incoming, surface, s.camera, {0, 0, edge_px, edge_px},
+                                {});
+    field.cast(raytrace::Gathered::Solution, each, 0, {});
+    rays = static_cast<double>(field.rays().gather);
+    benchmark::DoNotOptimize(field.points().data());
   }
   state.counters["rays"] = benchmark::Counter(
       rays, benchmark::Counter::kIsRate | benchmark::Counter::kIsIterationInvariant);

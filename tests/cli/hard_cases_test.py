@@ -73,7 +73,7 @@ class HardCases(program.Case):
         report, light = self.picture(hard)
         for value in light:
             self.assertAlmostEqual(value, hard.light, delta=1e-4 * hard.light)
-        self.assertFalse(report["error"]["estimate"])  # every pixel shows a source itself
+        self.assertLess(report["error"]["estimate"], 1e-4)
         self.mean_is_known(hard)
 
     def test_a_hundred_reflections_of_a_lamp(self):

@@ -36,6 +36,23 @@ class Solve(program.Case):
                 self.assertGreater(into, 0)
                 self.assertLessEqual(abs(into - out), 1e-9 * into)
 
+    def test_the_ledger_closes_from_what_lamps_give(self):
+        self.write("ball.toml", program.BALL)
+        solved = self.json("solve", "ball.toml")
+        flux = {source["group"]: source for source in solved["sources"]}
+        for group in solved["groups"]:
+            for channel in range(3):
+                given = group["given_lm"][channel]
+                at_once = group["escaped_at_once_lm"][channel] + group["lost_at_once_lm"][channel]
+                ends = at_once + group["absorbed_lm"][channel] + group["escaped_lm"][channel]
+                self.assertLessEqual(abs(given - ends), 1e-9 * given)
+                if group["name"] in flux:
+                    self.assertAlmostEqual(given, flux[group["name"]]["emitted_lm"][channel])
+                    self.assertAlmostEqual(group["landed_lm"][channel], flux[group["name"]]["landed_lm"][channel])
+        lamp, = [group for group in solved["groups"] if group["name"] == "lamp"]
+        self.assertGreater(lamp["escaped_at_once_lm"][1], 0)
+        self.says(self.done("solve", "ball.toml"), "given lm", "out at once", "landed lm", "absorbed lm")
+
     def test_keys(self):
         self.write("ball.toml", program.BALL)
         solved = self.json("solve", "ball.toml")

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <string_view>
+#include <tuple>
 
 #include "scenes/scene_file.h"
 #include "tests/support/scene_builder.h"
@@ -21,6 +23,34 @@ radiosity::Solution solve_library_scene(const char* name, double edge_m, int ray
   options.form_factor_rays = rays;
   return tests::Prepared(scene).solve(options);
 }
+
+using SceneAndRays = std::tuple<const char*, int>;
+class EveryScene : public testing::TestWithParam<SceneAndRays> {};
+
+TEST_P(EveryScene, BalancesToRoundingAtAnyNumberOfRays) {
+  // By few rays no scaling of the hits fits rows and columns: the bay's were 3e-3 of the surface
+  // off at 16 rays, 4e-4 at 64, the still life's 8e-4 at 16.
+  const auto [name, rays] = GetParam();
+  const bool bay = std::string_view(name).starts_with("sts46");
+  const radiosity::SolveReport report = solve_library_scene(name, bay ? 1.0 : 0.1, rays).report;
+  EXPECT_TRUE(report.balance.balanced) << report.balance.after;
+  EXPECT_LE(report.balance.held, 5e-4);
+  for (const radiosity::GroupLedger& line : report.groups) {
+    EXPECT_LE(line.imbalance, 1e-12) << line.name;
+    const Rgb ended =
+        line.escaped_at_once_lm + line.lost_at_once_lm + line.absorbed_lm + line.escaped_lm;
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(ended[c], line.given_lm[c], 1e-12 * line.given_lm[c]) << line.name;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, EveryScene,
+    testing::Combine(testing::Values("closed-box/scene.toml", "cornell-box/scene.toml",
+                                     "furnace/scene.toml", "still-life/scene.toml",
+                                     "sts46/day-earthshine.toml", "sts46/night-lamps.toml"),
+                     testing::Values(16, 32, 64)));
 
 class Sts46 : public testing::TestWithParam<const char*> {};
 

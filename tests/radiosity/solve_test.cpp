@@ -115,6 +115,27 @@ TEST(Solve, SceneWithoutLightCastsNoRays) {
   EXPECT_GT(solution.report.patches, 0U);
 }
 
+TEST(Solve, WhereNothingReflectsMoreRaysChangeAndCostNothing) {
+  // All light is direct, and F B = 0 whatever F is.
+  tests::SceneBuilder builder;
+  const std::uint32_t black = builder.material(tests::grey(0.0));
+  builder.room({black, black, black, black, black, black});
+  scenes::Lamp lamp;
+  lamp.name = lamp.group = "lamp";
+  lamp.position = Vec3(0.3, 0.5, 0.5);
+  lamp.intensity_cd = Rgb(7.0);
+  builder.scene.lamps.push_back(lamp);
+  const tests::Prepared made(builder.scene);
+  SolveOptions options = coarse();
+  options.form_factor_rays = 256;
+  const Solution few = made.solve(options);
+  options.form_factor_rays = 1 << 18;
+  const Solution many = made.solve(options);
+  EXPECT_EQ(many.report.form_factor_rays, few.report.form_factor_rays);
+  EXPECT_EQ(many.direct_lx, few.direct_lx);
+  for (const float light : many.indirect_lx) EXPECT_EQ(light, 0.0F);
+}
+
 TEST(Solve, CubeWithSixFacesMatchesTheExactSixSurfaceSystem) {
   // Faces z0 z1 x0 x1 y0 y1 of a unit cube in one patch each: values from view-factors.json (exact
   // F by closed forms). Rays give F with a standard error of 0.4 / sqrt(N) per entry; with N =

@@ -170,7 +170,7 @@ TEST(PathTracer, CausticsAreLeftOutOfTheGatheredPaths) {
   const double form_factor = 4.0 / base::pi * x * std::atan(x);
   expect_mean(picture(builder.scene, above(0.5), options),
               0.5 * 0.9 * 100.0 / base::pi * form_factor);
-  options.paths = PathSet::Gathered;
+  options.paths = PathSet::NoCaustics;
   EXPECT_EQ(estimate(picture(builder.scene, above(0.5), options)).mean, 0.0);
 }
 

@@ -244,7 +244,7 @@ TEST(SharedGather, AStoppedPictureKeepsWhatIsFinished) {
 
 TEST(SharedGather, SamplesGoWhereNeighboursScatter) {
   // A pixel's own scatter does not count, that of its neighbours does; four times at most a round.
-  PixelSums sums(Window{0, 0, 7, 7}, 1);
+  PixelSums sums(Window{0, 0, 7, 7}, 1, false);
   for (std::size_t p = 0; p < sums.samples.size(); ++p) {
     sums.samples[p] = 4;
     sums.luminance[p] = 4.0;

@@ -42,10 +42,10 @@ TEST(SpreadByWeight, NothingIsChosenOfNothing) {
 }
 
 TEST(ErrorWeight, IsOneUpToFourTimesTheMean) {
-  EXPECT_EQ(error_weight(0.0, 1.0), 1.0);
-  EXPECT_EQ(error_weight(4.0, 1.0), 1.0);
-  EXPECT_DOUBLE_EQ(error_weight(400.0, 2.0), 0.02);
-  EXPECT_EQ(error_weight(0.0, 0.0), 1.0);
+  EXPECT_EQ(raytrace::error_weight(0.0, 1.0), 1.0);
+  EXPECT_EQ(raytrace::error_weight(4.0, 1.0), 1.0);
+  EXPECT_DOUBLE_EQ(raytrace::error_weight(400.0, 2.0), 0.02);
+  EXPECT_EQ(raytrace::error_weight(0.0, 0.0), 1.0);
 }
 
 TEST(SpreadEvenly, OneOfEachRunAndAllAlike) {

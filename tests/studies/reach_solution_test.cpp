@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "studies/wanted_error.h"
+#include "studies/reach_surfaces.h"
 #include "tests/studies/room.h"
 
 namespace earthshine::studies {
@@ -13,7 +13,7 @@ SteeredSolution reached(const scenes::Scene& scene, double error) {
   const tests::Prepared prepared(scene);
   Wanted wanted;
   wanted.error = error;
-  return reach_solution({scene, prepared.groups, prepared.effects, prepared.query}, wanted, 1, {});
+  return reach_surfaces({scene, prepared.groups, prepared.effects, prepared.query}, wanted, 1, {});
 }
 
 // What was reached has no limit, however little the last solve brought, and what was not has one.

@@ -54,13 +54,13 @@ double true_error(const scenes::Scene& scene, const radiosity::Solution& solutio
     }
   };
   at_all_points([&](const scenes::Hit& hit, double part) {
-    mean += part * own(hit);
+    mean += part * truth(hit);
     area += part;
   });
   mean /= area;
   at_all_points([&](const scenes::Hit& hit, double part) {
-    const double b = own(hit), weight = error_weight(b, mean);
-    off += part * std::pow(weight * (b - truth(hit)), 2.0);
+    const double right = truth(hit), weight = raytrace::error_weight(right, mean);
+    off += part * std::pow(weight * (own(hit) - right), 2.0);
   });
   return std::sqrt(off / area) / mean;
 }

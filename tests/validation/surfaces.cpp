@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Radiosity at the same points of several stored solutions of one scene, for error_truth.py:
 //   earthshine_surfaces SCENE POINTS {FILE.h5 SEED KEY=VALUE...} -- {FILE.h5 SEED KEY=VALUE...} ...
-// SEED and KEY=VALUE (scene overrides) as they were given to "solve". A line per point: luminances.
+// SEED and KEY=VALUE (scene overrides) as they were given to "solve". A line per point that no body
+// covers: luminances.
 #include <fmt/format.h>
 
 #include <exception>
 #include <string>
 #include <vector>
 
+#include "radiosity/closed_bodies.h"
 #include "radiosity/solution_file.h"
 #include "scenes/light_groups.h"
 #include "scenes/quality.h"
@@ -27,12 +29,30 @@ radiosity::Solution read(const std::string& path, const std::vector<std::string>
       words[1], {scene, scenes::find_light_groups(scene), options, EARTHSHINE_VERSION});
 }
 
+// Those of the points that light can reach.
+std::vector<scenes::Hit> open_points(const scenes::Scene& scene, const scenes::RayQuery& query,
+                                     const std::vector<scenes::Hit>& all) {
+  const radiosity::ClosedBodies bodies(scene, query.centre());
+  const radiosity::Patches patches = radiosity::subdivide(scene, 1e9);
+  std::vector<scenes::Hit> open;
+  for (const scenes::Hit& hit : all) {
+    const std::uint32_t patch = patches.find(hit.triangle, hit.u, hit.v, hit.front);
+    const double lift = query.surface_offset_m();
+    const Vec3 at = scenes::hit_position(scene, hit) + lift * patches.normal(patch);
+    if (!bodies.cover(at - bodies.centre(), bodies.near(patches, patch, 2.0 * lift))) {
+      open.push_back(hit);
+    }
+  }
+  return open;
+}
+
 void print(const std::vector<std::string>& arguments) {
   constexpr std::uint64_t seed = 20261121;  // not one that the program is called with
   const std::string& path = arguments.at(0);
   const scenes::Scene scene = scenes::read_scene(path);
   const scenes::RayQuery query(scene);
-  const auto where = studies::spread_over_surfaces(scene, std::stoul(arguments.at(1)), seed);
+  const auto where = open_points(
+      scene, query, studies::spread_over_surfaces(scene, std::stoul(arguments.at(1)), seed));
   std::vector<std::vector<double>> columns;
   std::vector<std::string> words = {"--"};
   const auto end = [&] {

@@ -13,7 +13,7 @@ struct Options {
   bool quick = false;  // fewer seeds and rays, under a minute
   bool cost = false;   // the cost tables and no others: minutes, and gigabytes
   std::uint64_t seed = 1;
-  std::string only;  // cases whose name starts so, and no other table
+  std::string only;  // tables whose heading starts so, or else cases of the library whose name does
 };
 
 struct Verdict {
@@ -27,6 +27,7 @@ struct Verdict {
 };
 
 void case_table(const Options& options, Verdict& verdict);
+void cie_table(const Options& options, Verdict& verdict);
 void cube_table(const Options& options, Verdict& verdict);
 void leak_table(const Options& options, Verdict& verdict);
 void honesty_table(const Options& options, Verdict& verdict);

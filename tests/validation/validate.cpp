@@ -2,7 +2,10 @@
 // Prints the tables of docs/validation.md. `./dev validate` runs it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
+#include <string_view>
 
 #include "tests/validation/tables.h"
 
@@ -20,6 +23,7 @@ using namespace earthshine::validation;
 constexpr Table tables[] = {{"The library of closed forms", case_table},
                             {"Near, far, tiny, sharp", extreme_table},
                             {"Are the standard errors honest?", honesty_table},
+                            {"CIE 171:2006", cie_table},
                             {"The closed cube", cube_table},
                             {"Leaks", leak_table},
                             {"Furnaces", furnace_table},
@@ -38,7 +42,7 @@ int main(int count, char** words) {
     } else if (std::strcmp(words[k], "--only") == 0 && k + 1 < count) {
       options.only = words[++k];
     } else {
-      fmt::print(stderr, "usage: earthshine_validate [--quick | --cost | --only CASE]\n");
+      fmt::print(stderr, "usage: earthshine_validate [--quick | --cost | --only CASE|TABLE]\n");
       return 2;
     }
   }
@@ -47,8 +51,14 @@ int main(int count, char** words) {
     cost_table();
     return 0;
   }
+  const bool names_tables = !options.only.empty() &&
+                            std::any_of(std::begin(tables), std::end(tables), [&](const Table& t) {
+                              return std::string_view(t.heading).starts_with(options.only);
+                            });
   for (const Table& table : tables) {
-    if (!options.only.empty() && table.print != case_table) continue;
+    const bool wanted = names_tables ? std::string_view(table.heading).starts_with(options.only)
+                                     : options.only.empty() || table.print == case_table;
+    if (!wanted) continue;
     fmt::print("\n### {}\n\n", table.heading);
     table.print(options, verdict);
     std::fflush(stdout);

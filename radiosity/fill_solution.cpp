@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/fill_solution.h"
+
+#include "radiosity/covered_patches.h"
+#include "radiosity/ledger.h"
+#include "scenes/sky_parts.h"
+#include "scenes/spread_reflectance.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+// Means over what is open of each object; over all of it where nothing is.
+std::vector<ObjectLight> object_means(const scenes::Scene& scene, const Patches& patches,
+                                      const std::vector<double>& open_m2, std::size_t columns,
+                                      const std::vector<bool>& is_explicit,
+                                      const std::vector<double>& direct,
+                                      const std::vector<double>& indirect,
+                                      const std::vector<double>& radiosity) {
+  std::vector<ObjectLight> means(scene.objects.size());
+  std::vector<double> open(means.size(), 0.0), weight(means.size(), 0.0);
+  for (std::uint32_t i = 0; i < patches.count(); ++i) open[patches.object(i)] += open_m2[i];
+  for (std::size_t i = 0; i < patches.count(); ++i) {
+    const auto patch = static_cast<std::uint32_t>(i);
+    const std::uint32_t object = patches.object(patch);
+    ObjectLight& mean = means[object];
+    const double area = open[object] > 0.0 ? open_m2[i] : patches.area_m2[i];
+    mean.area_m2 += patches.area_m2[i];
+    weight[object] += area;
+    for (std::size_t k = 0; k < columns; ++k) {
+      const auto c = static_cast<int>(k % 3);
+      mean.illuminance_lx[c] += area * (direct[i * columns + k] + indirect[i * columns + k]);
+      mean.radiosity_lm_m2[c] += area * radiosity[i * columns + k];
+    }
+    const std::uint32_t m = patches.material(patch);
+    if (is_explicit[m]) mean.radiosity_lm_m2 += area * scene.materials[m].emit;
+  }
+  for (std::size_t o = 0; o < means.size(); ++o) {
+    means[o].name = scene.objects[o].name;
+    if (weight[o] > 0.0) {
+      means[o].illuminance_lx /= weight[o];
+      means[o].radiosity_lm_m2 /= weight[o];
+    }
+  }
+  return means;
+}
+
+}  // namespace
+
+std::vector<double> reflectances(const scenes::Scene& scene, const Patches& patches,
+                                 std::size_t groups) {
+  std::vector<double> values(patches.count() * 3 * groups);
+  const std::vector<Rgb> spread = scenes::spread_reflectances(scene);
+  for (std::size_t i = 0; i < patches.count(); ++i) {
+    const Rgb& rho = spread[patches.material(static_cast<std::uint32_t>(i))];
+    for (std::size_t k = 0; k < 3 * groups; ++k) {
+      values[i * 3 * groups + k] = rho[static_cast<int>(k % 3)];
+    }
+  }
+  return values;
+}
+
+std::vector<double> exitances(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                              const Patches& patches) {
+  const std::vector<bool> is_explicit = emitter_is_explicit(scene);
+  const std::size_t columns = 3 * groups.count();
+  std::vector<double> values(patches.count() * columns, 0.0);
+  for (std::size_t i = 0; i < patches.count(); ++i) {
+    const std::uint32_t m = patches.material(static_cast<std::uint32_t>(i));
+    if (is_explicit[m] || groups.material[m] == scenes::no_group) continue;
+    for (int c = 0; c < 3; ++c) {
+      values[i * columns + 3 * groups.material[m] + static_cast<std::size_t>(c)] =
+          scene.materials[m].emit[c];
+    }
+  }
+  return values;
+}
+
+void fill_solution(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                   const scenes::Effects& effects, const FormFactors& factors, bool balanced,
+                   PatchLight& light, Solution& solution) {
+  const Patches& patches = solution.patches;
+  const std::size_t columns = solution.columns;
+  const std::vector<double> open_m2 = open_areas(factors.open, patches.area_m2);
+  const LedgerInput ledger{factors,       open_m2,      columns,        light.reflectance,
+                           light.emitted, light.direct, light.indirect, light.radiosity};
+  close_energy(ledger, balanced, light.radiosity, light.indirect);
+  SolveReport& report = solution.report;
+  report.groups = energy_ledger(ledger, groups.names, report.sources);
+  report.objects = object_means(scene, patches, open_m2, columns, emitter_is_explicit(scene),
+                                light.direct, light.indirect, light.radiosity);
+  solution.radiosity.assign(light.radiosity.begin(), light.radiosity.end());
+  solution.direct_lx.assign(light.direct.begin(), light.direct.end());
+  solution.indirect_lx.assign(light.indirect.begin(), light.indirect.end());
+  solution.soft_radiosity.resize(light.radiosity.size());
+  const std::size_t sky_parts = scenes::earth_parts(scene);
+  for (std::size_t k = 0; k < light.radiosity.size(); ++k) {
+    const std::size_t column = k % columns;
+    const std::uint32_t material = patches.material(static_cast<std::uint32_t>(k / columns));
+    const double diffuse = scene.materials[material].diffuse[static_cast<int>(column % 3)];
+    double soft = diffuse * light.indirect[k];
+    if (effects.earth_by_gather && column / 3 >= groups.earth &&
+        column / 3 < groups.earth + sky_parts) {
+      const std::size_t part = (k / columns) * sky_parts + column / 3 - groups.earth;
+      soft += diffuse * light.sky[part][static_cast<int>(column % 3)];
+    }
+    solution.soft_radiosity[k] = static_cast<float>(soft);
+  }
+  const CoveredPatches covered(patches, factors.open);
+  for (std::vector<float>* values : {&solution.radiosity, &solution.soft_radiosity,
+                                     &solution.direct_lx, &solution.indirect_lx}) {
+    covered.show_neighbours(*values, columns);
+  }
+}
+
+}  // namespace earthshine::radiosity
