@@ -24,7 +24,14 @@ studies::Limit limit_of(const Drawn& drawn, double wanted) {
   if (drawn.errors.pixels == 0 || drawn.errors.total.estimate <= wanted) {
     return studies::Limit::None;
   }
-  return drawn.options.time_limit_s > 0.0 ? studies::Limit::Time : studies::Limit::Settings;
+  if (drawn.frame.report.stopped) return studies::Limit::Stopped;
+  return drawn.options.time_limit_s > 0.0 ? studies::Limit::Time : studies::Limit::Steps;
+}
+
+// The squared error of samples falls as one over their number.
+double seconds_to_go(const Drawn& drawn, double wanted) {
+  const double ratio = drawn.errors.total.estimate / wanted;
+  return drawn.frame.report.seconds * (ratio * ratio - 1.0);
 }
 
 }  // namespace
@@ -43,10 +50,15 @@ Drawn draw_picture(const Studio& studio, const scenes::Camera& camera, StageTime
     return raytrace::render(loaded.scene, loaded.groups, loaded.effects, studio.query,
                             studio.light.solution, camera, options, std::ref(progress));
   });
+  if (studio.call.no_error) {
+    drawn.errors.not_captured = studies::not_captured(studio.scene(), options);
+    return drawn;
+  }
   drawn.errors = studies::error_budget(studio.scene(), {&camera, options}, drawn.frame);
   if (!steers(studio.call, loaded.scene)) return drawn;
   const double wanted = *loaded.scene.quality.error;
   drawn.limit = limit_of(drawn, wanted);
+  if (drawn.limit != studies::Limit::None) drawn.seconds_to_go = seconds_to_go(drawn, wanted);
   if (studio.light.solved) {
     studies::Step solve;
     solve.stage = "solve";

@@ -13,6 +13,7 @@ struct Drawn {
   studies::ErrorBudget errors;
   std::vector<studies::Step> steps;  // with an error to reach: of the solution, then the picture's
   studies::Limit limit = studies::Limit::None;
+  double seconds_to_go = 0.0;  // about, until the wanted error, if it was not reached
 };
 [[nodiscard]] Drawn draw_picture(const Studio& studio, const scenes::Camera& camera,
                                  StageTimes& times);

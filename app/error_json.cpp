@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "app/console.h"
+
 namespace earthshine::app {
 namespace {
 
@@ -83,6 +85,8 @@ const char* words_of(studies::Limit limit) {
       return "the settings that are given, or the scene's own faces, allow no better";
     case studies::Limit::Steps:
       return "no end in sight after several tries";
+    case studies::Limit::Stopped:
+      return "it was stopped";
   }
   return "";
 }
@@ -105,8 +109,8 @@ void add_steps(Json& json, studies::Limit limit, const std::vector<studies::Step
 
 // What was chosen to reach the error, or why it is not reached.
 std::string choice_text(studies::Limit limit, const std::vector<studies::Step>& steps,
-                        std::optional<double> wanted, bool known) {
-  if (!wanted || steps.empty() || !known) return "";
+                        std::optional<double> wanted, double seconds_to_go) {
+  if (!wanted || steps.empty()) return "";
   std::string text;
   for (const studies::Step& step : steps) {
     text += fmt::format("\n  {}:", step.stage);
@@ -121,6 +125,9 @@ std::string choice_text(studies::Limit limit, const std::vector<studies::Step>& 
     text +=
         fmt::format("\n  the wanted {:.2g} % is not reached: {}", 100.0 * *wanted, words_of(limit));
   }
+  if (seconds_to_go > 0.0) {
+    text += fmt::format("; it needs about {} more", duration(seconds_to_go));
+  }
   return text;
 }
 
@@ -131,6 +138,7 @@ Json error_json(const Drawn& drawn, std::optional<double> wanted) {
   Json json =
       json_of(budget.total, budget.pixels > 0, parts_of(budget.parts), wanted, budget.not_captured);
   add_steps(json, drawn.limit, drawn.steps);
+  json["seconds_to_go"] = drawn.seconds_to_go > 0.0 ? Json(drawn.seconds_to_go) : Json();
   json["targets"] = Json::array();
   for (const auto& target : budget.targets) json["targets"].push_back(json_of(target));
   return json;
@@ -165,13 +173,14 @@ void add_errors(base::ExrHeader& header, const Drawn& drawn) {
 std::string error_text(const Drawn& drawn, std::optional<double> wanted) {
   const studies::ErrorBudget& budget = drawn.errors;
   return text_of(budget.total, budget.pixels > 0, parts_of(budget.parts), budget.not_captured) +
-         choice_text(drawn.limit, drawn.steps, wanted, budget.pixels > 0);
+         (budget.pixels > 0 ? choice_text(drawn.limit, drawn.steps, wanted, drawn.seconds_to_go)
+                            : "");
 }
 
 std::string error_text(const Solved& light, std::optional<double> wanted) {
   const studies::SurfaceError& error = light.surface;
   return text_of(error.parts.total(), error.known, parts_of(error.parts), error.not_captured) +
-         choice_text(light.limit, light.steps, wanted, error.known);
+         (error.known ? choice_text(light.limit, light.steps, wanted, 0.0) : "");
 }
 
 }  // namespace earthshine::app

@@ -13,36 +13,36 @@
 namespace earthshine::app {
 namespace {
 
-// With a time limit and no word on accuracy the solve gets about a third of the time: a coarse one
-// tells how fast the machine and the scene are. Cost grows about with error^-2.5 (patches times
-// rays, docs/validation.md).
-Solved solve_within(const LightCall& wanted, double seconds, StageTimes& times) {
-  constexpr double coarse = 0.2, fine = 0.005, share = 0.3, exponent = 2.5;
-  LoadedScene quick = wanted.loaded;
-  quick.scene.quality.error = coarse;
-  const double before = times.total();
-  Solved light;
-  light.solver = solve_options(quick.scene, wanted.common);
-  light.solved = true;
-  light.solution = solve_or_read(quick, wanted.query, light.solver, "", times);
-  const double taken = std::max(1e-3, times.total() - before);
-  const double error = coarse * std::pow(taken / (share * seconds), 1.0 / exponent);
-  if (error > 0.6 * coarse) return light;
-  quick.scene.quality.error = std::max(fine, error);
-  light.solver = solve_options(quick.scene, wanted.common);
-  light.solution = solve_or_read(quick, wanted.query, light.solver, "", times);
-  return light;
-}
-
-bool says_how_exact(const scenes::Quality& quality) {
-  return quality.error || quality.patch_edge_m || quality.max_patches || quality.form_factor_rays;
-}
-
 radiosity::SolveOptions solver_for(const RenderCall& call, const scenes::Scene& scene,
                                    const Common& common) {
   // A solution that is read is told by the settings that it was made with.
   if (!call.solution.empty() || !steers(call, scene)) return solve_options(scene, common);
   return studies::picture_solver(scene, scene.quality, common.seed);
+}
+
+// Within a time limit the solve gets about a fifth of the time: a coarse one tells how fast the
+// machine and the scene are. Patches and rays each grow as one over the error that they serve.
+Solved solve_within(const LightCall& wanted, double seconds, StageTimes& times) {
+  constexpr double coarse = 0.2, share = 0.2, worthwhile = 0.5;
+  scenes::Quality quality = wanted.loaded.scene.quality;
+  const double finest = quality.error.value_or(scenes::default_error);
+  const auto solve = [&](double error) {
+    quality.error = error;
+    Solved light;
+    light.solver = studies::picture_solver(wanted.loaded.scene, quality, wanted.common.seed);
+    light.solution = solve_or_read(wanted.loaded, wanted.query, light.solver, "", times);
+    light.solved = true;
+    return light;
+  };
+  const double before = times.total();
+  Solved light = solve(std::max(coarse, finest));
+  const double taken = std::max(1e-3, times.total() - before);
+  const double error = std::max(finest, coarse * std::sqrt(taken / (share * seconds)));
+  return error < worthwhile * coarse ? solve(error) : std::move(light);
+}
+
+bool says_how_to_solve(const scenes::Quality& quality) {
+  return quality.patch_edge_m || quality.max_patches || quality.form_factor_rays;
 }
 
 Solved solve_or_take(const LightCall& wanted, StageTimes& times) {
@@ -55,7 +55,8 @@ Solved solve_or_take(const LightCall& wanted, StageTimes& times) {
     if (loaded.groups.count() == 0) note("note: nothing gives light, the picture is black");
     return light;
   }
-  if (call.time_limit_s > 0.0 && call.solution.empty() && !says_how_exact(loaded.scene.quality)) {
+  if (call.time_limit_s > 0.0 && call.solution.empty() &&
+      !says_how_to_solve(loaded.scene.quality)) {
     return solve_within(wanted, call.time_limit_s, times);
   }
   light.solution = solve_or_read(loaded, wanted.query, light.solver, call.solution, times);
@@ -94,7 +95,7 @@ Solved solve_as_exactly(const ExactCall& call, StageTimes& times) {
 }
 
 bool steers(const RenderCall& call, const scenes::Scene& scene) {
-  return scene.quality.error && call.indirect != raytrace::Indirect::Paths;
+  return scene.quality.error && !call.no_error && call.indirect != raytrace::Indirect::Paths;
 }
 
 studies::Wanted wanted_error(const LoadedScene& loaded, const Common& common, double time_limit_s,

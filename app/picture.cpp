@@ -196,7 +196,9 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
   });
   Picture picture{json_of(studio, camera, frame, times), !frame.report.stopped, frame.report, {}};
   picture.times = times;
-  picture.report["error"] = error_json(drawn, studio.loaded.scene.quality.error);
+  const std::optional<double> wanted =
+      call.no_error ? std::nullopt : studio.loaded.scene.quality.error;
+  picture.report["error"] = error_json(drawn, wanted);
   if (screen) picture.report["cctv"] = cctv_json(*cctv, *screen);
   if (call.only_pixel) {
     picture.report["pixel"] = pixel_json(studio.loaded.scene, frame);
@@ -204,7 +206,7 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
   }
   if (studio.common.quiet) return picture;
   tell(studio, frame, times);
-  note("  " + error_text(drawn, studio.loaded.scene.quality.error));
+  if (!call.no_error) note("  " + error_text(drawn, wanted));
   if (screen) note("  " + cctv_summary(*cctv, *screen));
   return picture;
 }

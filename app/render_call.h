@@ -25,6 +25,7 @@ struct RenderCall {
   std::optional<raytrace::Window> crop;  // one pixel with only_pixel
   bool only_pixel = false;
   double time_limit_s = 0.0;  // of the whole command; 0: none
+  bool no_error = false;      // none is stated
   raytrace::Indirect indirect = raytrace::Indirect::Radiosity;
   std::uint64_t distributed_lights = 64;
   std::string distributed_over;  // [[area]] of the scene; empty: none

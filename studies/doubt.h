@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far off a value may be that was found by chance, when a few independent tries are all that is
-// known about the chance.
+// How far off a value may be that was found by chance.
 #pragma once
 
-#include <span>
-#include <vector>
+#include <cmath>
 
 namespace earthshine::studies {
 
@@ -15,32 +13,8 @@ struct Doubt {
 };
 
 // Errors of independent causes.
-[[nodiscard]] Doubt operator+(const Doubt& a, const Doubt& b);
-
-// F with P(X < F) = 0.95 for the ratio X of two mean squares of m and n degrees of freedom, both
-// 0.5 or more (Paulson 1942; within 4 % where n is 3 or more, too large where it is less).
-[[nodiscard]] double f_quantile_95(double m, double n);
-
-// Tries of the same values by independent chance.
-struct Spread {
-  double variance = 0.0;  // of one try, mean over the values
-  // How many values could vary on their own: 1 where all go up and down together, and the more of
-  // them the less the mean square of an error strays from its expectation. From the participation
-  // ratio of the tries' products, (tr G)^2 / tr G^2, whose expectation for m independent normal
-  // modes of equal size in n = tries - 1 degrees of freedom is (n m + 2) / (n + m + 1). Two tries
-  // lie on one line and tell nothing of it: 1.
-  double modes = 1.0;
-};
-// At least two tries, all of the same length.
-[[nodiscard]] Spread spread_of(const std::vector<std::vector<double>>& tries);
-
-// As many modes as a bound may count on: their root. One large mode among many small ones is
-// often small in all of a few tries, which then seem to have many; with the count as it is a 95 %
-// bound would hold 86 % of the time where one mode has half the variance, with its root 93 % at
-// worst (tests/studies/doubt_test.cpp).
-[[nodiscard]] double sure_modes(const Spread& spread);
-
-// The error of something whose variance is `share` of that of a try, over `mean`.
-[[nodiscard]] Doubt doubt_of(const Spread& spread, std::size_t tries, double share, double mean);
+[[nodiscard]] inline Doubt operator+(const Doubt& a, const Doubt& b) {
+  return {std::hypot(a.estimate, b.estimate), std::hypot(a.bound_95, b.bound_95)};
+}
 
 }  // namespace earthshine::studies

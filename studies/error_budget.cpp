@@ -5,7 +5,7 @@
 #include <map>
 #include <numeric>
 
-#include "studies/pixel_choice.h"
+#include "studies/surface_pixels.h"
 
 namespace earthshine::studies {
 namespace {

@@ -15,6 +15,8 @@ std::string limit_name(Limit limit) {
       return "settings";
     case Limit::Steps:
       return "steps";
+    case Limit::Stopped:
+      return "stopped";
   }
   return "";
 }

@@ -140,7 +140,7 @@ class Case(unittest.TestCase):
             path.write_text(text, encoding="utf-8")
         return name
 
-    def run_program(self, *arguments, timeout=120, **more):
+    def run_program(self, *arguments, timeout=600, **more):
         return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, timeout=timeout,
                               stdin=subprocess.DEVNULL,
                               **({"capture_output": True, "text": True} | more))

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "radiosity/entry_errors.h"
 #include "tests/support/case_library.h"
 #include "tests/support/cube_errors.h"
+#include "tests/validation/entry_errors.h"
 #include "tests/validation/tables.h"
 
 namespace earthshine::validation {

@@ -14,7 +14,7 @@
 #include "scenes/light_groups.h"
 #include "scenes/quality.h"
 #include "scenes/scene_file.h"
-#include "studies/surface_points.h"
+#include "tests/validation/surface_points.h"
 
 namespace {
 
@@ -52,11 +52,11 @@ void print(const std::vector<std::string>& arguments) {
   const scenes::Scene scene = scenes::read_scene(path);
   const scenes::RayQuery query(scene);
   const auto where = open_points(
-      scene, query, studies::spread_over_surfaces(scene, std::stoul(arguments.at(1)), seed));
+      scene, query, validation::spread_over_surfaces(scene, std::stoul(arguments.at(1)), seed));
   std::vector<std::vector<double>> columns;
   std::vector<std::string> words = {"--"};
   const auto end = [&] {
-    columns.push_back(studies::radiosity_at(query, read(path, words), where));
+    columns.push_back(validation::radiosity_at(query, read(path, words), where));
     words = {"--"};
   };
   for (std::size_t k = 2; k < arguments.size(); ++k) {

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "studies/pixel_choice.h"
+#include "studies/surface_pixels.h"
 
 #include <cmath>
-#include <numeric>
 
-#include "base/random.h"
 #include "raytrace/first_hit.h"
 #include "raytrace/passes.h"
 
@@ -39,33 +37,6 @@ std::vector<std::uint32_t> SurfacePixels::of_object(std::uint32_t object) const 
 
 std::size_t SurfacePixels::in_window(std::uint32_t pixel) const {
   return window_.index(static_cast<int>(pixel % columns_), static_cast<int>(pixel / columns_));
-}
-
-std::vector<std::uint32_t> spread_evenly(std::span<const std::uint32_t> pixels, std::size_t count,
-                                         std::uint64_t seed) {
-  if (pixels.size() <= count) return {pixels.begin(), pixels.end()};
-  base::Rng rng(base::Key(seed, base::Stream::ErrorBudget, 0));
-  std::vector<std::uint32_t> some;
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t from = k * pixels.size() / count, to = (k + 1) * pixels.size() / count;
-    some.push_back(pixels[from + static_cast<std::size_t>(rng.next() * double(to - from))]);
-  }
-  return some;
-}
-
-std::vector<std::size_t> spread_by_weight(std::span<const double> weights, std::size_t count,
-                                          std::uint64_t seed) {
-  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-  std::vector<std::size_t> chosen;
-  if (sum <= 0.0) return chosen;
-  const double step = sum / static_cast<double>(count);
-  double next = step * base::Rng(base::Key(seed, base::Stream::ErrorBudget, 1)).next(),
-         so_far = 0.0;
-  for (std::size_t k = 0; k < weights.size(); ++k) {
-    so_far += weights[k];
-    for (; next < so_far && chosen.size() < count; next += step) chosen.push_back(k);
-  }
-  return chosen;
 }
 
 }  // namespace earthshine::studies

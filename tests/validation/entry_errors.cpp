@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "radiosity/entry_errors.h"
+#include "tests/validation/entry_errors.h"
 
 #include <algorithm>
 #include <cmath>

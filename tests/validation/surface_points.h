@@ -7,7 +7,7 @@
 
 #include "radiosity/solution.h"
 
-namespace earthshine::studies {
+namespace earthshine::validation {
 
 // Points spread over the surfaces by area, sheets on both sides: `count` of them.
 [[nodiscard]] std::vector<scenes::Hit> spread_over_surfaces(const scenes::Scene& scene,
@@ -17,4 +17,4 @@ namespace earthshine::studies {
                                                const radiosity::Solution& solution,
                                                const std::vector<scenes::Hit>& where);
 
-}  // namespace earthshine::studies
+}  // namespace earthshine::validation

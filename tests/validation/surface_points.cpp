@@ -1,11 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "studies/surface_points.h"
+#include "tests/validation/surface_points.h"
+
+#include <numeric>
+#include <span>
 
 #include "base/random.h"
 #include "raytrace/radiance_table.h"
-#include "studies/pixel_choice.h"
 
-namespace earthshine::studies {
+namespace earthshine::validation {
+namespace {
+
+// Numbers 0 .. weights.size() - 1, `count` of them, in expectation count * weight / sum times each
+// (systematic sampling). None if all weights are 0.
+std::vector<std::size_t> spread_by_weight(std::span<const double> weights, std::size_t count,
+                                          std::uint64_t seed) {
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  std::vector<std::size_t> chosen;
+  if (sum <= 0.0) return chosen;
+  const double step = sum / static_cast<double>(count);
+  double next = step * base::Rng(base::Key(seed, base::Stream::ErrorBudget, 1)).next(),
+         so_far = 0.0;
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    so_far += weights[k];
+    for (; next < so_far && chosen.size() < count; next += step) chosen.push_back(k);
+  }
+  return chosen;
+}
+
+}  // namespace
 
 std::vector<scenes::Hit> spread_over_surfaces(const scenes::Scene& scene, std::size_t count,
                                               std::uint64_t seed) {
@@ -49,4 +71,4 @@ std::vector<double> radiosity_at(const scenes::RayQuery& query, const radiosity:
   return values;
 }
 
-}  // namespace earthshine::studies
+}  // namespace earthshine::validation

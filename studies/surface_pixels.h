@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which pixels of a picture show what, and some of them for a closer look.
+// Which pixels of a picture show what.
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "raytrace/render.h"
@@ -31,15 +30,5 @@ class SurfacePixels {
   std::vector<std::int32_t> object_;  // of each of them
   std::uint64_t rays_ = 0;
 };
-
-// At most `count` of them: one at random from each of as many equal runs, which are rows or parts
-// of rows.
-[[nodiscard]] std::vector<std::uint32_t> spread_evenly(std::span<const std::uint32_t> pixels,
-                                                       std::size_t count, std::uint64_t seed);
-
-// Numbers 0 .. weights.size() - 1, `count` of them, each as often as its weight deserves: in
-// expectation count * weight / sum (systematic sampling). None if all weights are 0.
-[[nodiscard]] std::vector<std::size_t> spread_by_weight(std::span<const double> weights,
-                                                        std::size_t count, std::uint64_t seed);
 
 }  // namespace earthshine::studies
