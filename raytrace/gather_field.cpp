@@ -5,21 +5,13 @@
 #include <cmath>
 #include <limits>
 
-#include "base/parallel.h"
 #include "raytrace/gather_tiles.h"
-#include "raytrace/same_surface.h"
 
 namespace earthshine::raytrace {
 namespace {
 
-using scenes::HitPacket;
-using scenes::RayPacket;
-
-constexpr std::size_t width = RayPacket::width;
 // Of its mean ray's length: how far off a point may stand for another.
-constexpr float most_found_share = 0.25F;
-
-float slack(const GatherPoint& point) { return 0.02F * point.spacing_m; }
+constexpr float most_found_share = 0.1F;
 
 // How much further apart neighbours are along the surface than across the view.
 float stretch(const GatherPoint& point) {
@@ -38,13 +30,17 @@ GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
       incoming_(incoming),
       window_(window),
       picture_columns_(camera.columns),
+      picture_pixels_(static_cast<std::uint64_t>(camera.columns) *
+                      static_cast<std::uint64_t>(camera.rows)),
       setting_(setting),
+      grid_(window.pixel_count()),
       image_layers_(setting.image_layers),
       layers_(setting.image_layers + (setting.keeps_sky_apart ? 1 : 0)),
       points_(window.pixel_count()),
-      origin_(window.pixel_count(), Vec3(0.0)),
-      inverse_length_(window.pixel_count(), 0.0) {
+      origin_(window.pixel_count(), Vec3(0.0)) {
   find_points(surface, camera);
+  find_strays(surface, camera);
+  inverse_length_.assign(points_.size(), 0.0);
   const std::size_t count = points_.size();
   estimate_[number(Gathered::Solution)] = Estimate(count, layers_, image_layers_);
   if (setting.gathers_residual) {
@@ -53,43 +49,6 @@ GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
   any_lobe_ = std::any_of(points_.begin(), points_.end(),
                           [](const GatherPoint& point) { return point.lobe > 0.0F; });
   if (any_lobe_) estimate_[number(Gathered::Lobe)] = Estimate(count, image_layers_, image_layers_);
-}
-
-void GatherField::find_points(const GatherSurface& surface, const CameraModel& camera) {
-  const double pixel_m = 2.0 * camera.half_height / camera.rows;  // at unit distance
-  base::parallel_chunks(tile_count(window_), 4, [&](std::size_t begin, std::size_t end) {
-    RayPacket packet;
-    HitPacket hits;
-    for (std::size_t t = begin; t < end; ++t) {
-      const Window tile = tile_of(window_, t);
-      for (int y = tile.y; y < tile.y + tile.rows; ++y) {
-        const auto count = static_cast<std::size_t>(tile.columns);
-        for (std::size_t k = 0; k < count; ++k) {
-          const Ray ray = camera.ray(tile.x + static_cast<double>(k) + 0.5, y + 0.5, 0.0, 0.0);
-          world_.query.set(packet, k, ray.origin, ray.direction);
-        }
-        world_.query.closest(packet, count, hits);
-        for (std::size_t k = 0; k < count; ++k) {
-          const scenes::Hit hit{hits.triangle[k], hits.u[k], hits.v[k], hits.t[k],
-                                hits.front[k] != 0};
-          GatherRequest wanted;
-          if (hit.missed() || !surface(hit, wanted)) continue;
-          const std::size_t index = window_.index(tile.x + static_cast<int>(k), y);
-          GatherPoint& point = points_[index];
-          point.position = glm::vec3(wanted.position - camera.position);
-          point.normal = glm::vec3(wanted.normal);
-          point.spacing_m = static_cast<float>(hit.t * pixel_m);
-          point.reach_m = std::numeric_limits<float>::max();
-          point.reflectance = static_cast<float>(wanted.reflectance);
-          point.lobe = static_cast<float>(wanted.lobe);
-          point.material = wanted.material;
-          point.triangle = hit.triangle;
-          origin_[index] = wanted.position + wanted.normal * world_.query.surface_offset_m();
-        }
-      }
-    }
-  });
-  camera_rays_ = window_.pixel_count();
 }
 
 std::uint32_t GatherField::fewest_samples(Gathered kind) {
@@ -122,6 +81,7 @@ void GatherField::share() {
     if (!gathers(kind)) continue;
     Shared& shared = shared_[number(kind)];
     shared = raytrace::share(*of_surface_, estimate_[number(kind)]);
+    add_strays(strays_, estimate_[number(kind)], shared);
     for (std::size_t p = 0; p < points_.size(); ++p) {
       for (std::size_t layer = 0; layer < shared.layers; ++layer) {
         diffuse_[p * layers_ + layer] += shared.radiance[p * shared.layers + layer];
@@ -132,6 +92,7 @@ void GatherField::share() {
   if (!of_material_) of_material_ = of_surface_->of_like_material(points_);
   shared_[number(Gathered::Lobe)] =
       raytrace::share(*of_material_, estimate_[number(Gathered::Lobe)]);
+  add_strays(strays_, estimate_[number(Gathered::Lobe)], shared_[number(Gathered::Lobe)]);
 }
 
 std::span<const glm::vec3> GatherField::lobe(std::size_t point) const {
@@ -151,35 +112,18 @@ double GatherField::error_of(Gathered kind, std::size_t point) const {
 
 std::size_t GatherField::find(int x, int y, const glm::vec3& position,
                               const glm::vec3& normal) const {
-  const auto fits = [&](std::size_t index, float& distance) {
+  // Further off, irradiance may be another: a gap in a wall, the foot of a box.
+  const auto if_near = [&](std::size_t index) {
     const GatherPoint& point = points_[index];
-    if (point.reach_m <= 0.0F) return false;
-    const glm::vec3 way = position - point.position;
-    distance = glm::length(way);
-    // Further off, irradiance may be another: a gap in a wall, the foot of a box.
-    return distance <= std::min(3.0F * point.spacing_m * stretch(point),
-                                most_found_share * point.reach_m) &&
-           same_surface(point.position, point.normal, position, normal, slack(point));
+    const float most =
+        std::min(3.0F * point.spacing_m * stretch(point), most_found_share * point.reach_m);
+    return glm::length(position - point.position) <= most ? index : no_point;
   };
-  float distance = 0.0F;
-  if (window_.contains(x, y)) {
-    const std::size_t own = window_.index(x, y);
-    if (fits(own, distance)) return own;
-  }
-  for (int ring = 1; ring <= 2; ++ring) {
-    std::size_t nearest = no_point;
-    float least = std::numeric_limits<float>::infinity();
-    for (int qy = y - ring; qy <= y + ring; ++qy) {
-      for (int qx = x - ring; qx <= x + ring; ++qx) {
-        if (!window_.contains(qx, qy)) continue;
-        if (std::max(std::abs(qx - x), std::abs(qy - y)) != ring) continue;
-        if (fits(window_.index(qx, qy), distance) && distance < least) {
-          least = distance;
-          nearest = window_.index(qx, qy);
-        }
-      }
-    }
-    if (nearest != no_point) return nearest;
+  if (!window_.contains(x, y)) return no_point;
+  const std::size_t own = window_.index(x, y);
+  if (stands_for(points_[own], position, normal)) return if_near(own);
+  for (std::size_t k = first_stray_[own]; k < first_stray_[own + 1]; ++k) {
+    if (stands_for(points_[grid_ + k], position, normal)) return if_near(grid_ + k);
   }
   return no_point;
 }

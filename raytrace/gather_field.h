@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The final gather on a grid: at the surface point behind every pixel's centre, what comes in,
 // shared by all of the pixel's camera samples and by neighbouring points (share.h). Three things
-// are estimated at each point, each with as many samples as it needs:
+// are estimated at each point, each with as many samples as it needs. Where the pixel shows other
+// surfaces beside the one behind its centre, each of these has a point of its own, a stray
+// (strays.h), which lies on no grid.
+//
 //
 //   solution  mean radiance that cosine-distributed rays read from the radiosity solution, the sky
 //             and what mirrors and glass pass on: T L~ over k_d, L~ what the solution says
@@ -20,6 +23,7 @@
 #include "raytrace/incoming_light.h"
 #include "raytrace/path_walker.h"
 #include "raytrace/share.h"
+#include "raytrace/strays.h"
 
 namespace earthshine::raytrace {
 
@@ -36,6 +40,11 @@ struct GatherRequest {
 };
 using GatherSurface = std::function<bool(const scenes::Hit&, GatherRequest&)>;
 
+// Whether the point lies on the surface that is met at a place nearby, and what is seen from it by
+// its lobe, if it has one, is alike.
+[[nodiscard]] bool stands_for(const GatherPoint& point, const glm::vec3& position,
+                              const glm::vec3& normal);
+
 enum class Gathered { Solution, Residual, Lobe };
 inline constexpr std::size_t gathered_kinds = 3;
 
@@ -48,7 +57,8 @@ class GatherField {
     bool shares = true;  // between neighbours
     std::uint64_t seed = 1;
   };
-  // Finds the points. `world` and `incoming` must outlive it.
+  // Finds the points: one for each pixel of the window, row by row, then the strays. `world` and
+  // `incoming` must outlive it.
   GatherField(const PathWorld& world, const IncomingLight& incoming, const GatherSurface& surface,
               const CameraModel& camera, const Window& window, const Setting& setting);
 
@@ -62,8 +72,8 @@ class GatherField {
   // Shares what was cast; find() and the values follow it.
   void share();
 
-  // A point whose values may stand for the surface point that pixel (x, y) meets: the pixel's own,
-  // or the nearest that lies on the same surface within two pixels; no_point if there is none.
+  // A point whose values may stand for the surface point that pixel (x, y) meets: one of the
+  // pixel's own, on the same surface and near for its surroundings; no_point if there is none.
   [[nodiscard]] std::size_t find(int x, int y, const glm::vec3& position,
                                  const glm::vec3& normal) const;
   // Radiance to be reflected by k_d, cd/m^2: image layers, then what came straight from the sky.
@@ -74,6 +84,13 @@ class GatherField {
   [[nodiscard]] std::span<const glm::vec3> lobe(std::size_t point) const;
 
   [[nodiscard]] const Window& window() const { return window_; }
+  // Where a point lies in the window, and about how much of the pixel it stands for.
+  [[nodiscard]] std::size_t pixel_of(std::size_t point) const {
+    return point < grid_ ? point : strays_[point - grid_].pixel;
+  }
+  [[nodiscard]] double cover_of(std::size_t point) const {
+    return point < grid_ ? 1.0 : double(strays_[point - grid_].cover);
+  }
   [[nodiscard]] std::size_t image_layers() const { return image_layers_; }
   [[nodiscard]] const std::vector<GatherPoint>& points() const { return points_; }
   [[nodiscard]] const Shared& shared(Gathered kind) const { return shared_[number(kind)]; }
@@ -90,6 +107,14 @@ class GatherField {
  private:
   static std::size_t number(Gathered kind) { return static_cast<std::size_t>(kind); }
   void find_points(const GatherSurface& surface, const CameraModel& camera);
+  void find_strays(const GatherSurface& surface, const CameraModel& camera);
+  // Of what camera rays met: true where light is gathered there.
+  bool place(const GatherSurface& surface, const CameraModel& camera, const scenes::Hit& hit,
+             GatherPoint& point, Vec3& origin) const;
+  // All points of a tile, pixel by pixel.
+  [[nodiscard]] std::vector<std::size_t> points_of_tile(std::size_t tile) const;
+  // Tells each point's random numbers apart, whatever the crop.
+  [[nodiscard]] std::uint64_t random_number_of(std::size_t point) const;
   void cast_solution(const std::vector<std::uint32_t>& more, std::uint32_t round,
                      const std::function<bool()>& stop);
   void cast_paths(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
@@ -101,11 +126,15 @@ class GatherField {
   const IncomingLight& incoming_;
   Window window_;
   int picture_columns_;
+  std::uint64_t picture_pixels_;
   Setting setting_;
+  std::size_t grid_;  // points that are pixels' centres
   std::size_t image_layers_, layers_;
   std::vector<GatherPoint> points_;
-  std::vector<Vec3> origin_;            // lifted off the surface
-  std::vector<double> inverse_length_;  // sum over rays of the solution
+  std::vector<Stray> strays_;               // those after the grid
+  std::vector<std::uint32_t> first_stray_;  // of a pixel, and behind its last
+  std::vector<Vec3> origin_;                // lifted off the surface
+  std::vector<double> inverse_length_;      // sum over rays of the solution
   std::array<Estimate, gathered_kinds> estimate_;
   std::array<Shared, gathered_kinds> shared_;
   std::vector<glm::vec3> diffuse_;  // point * layers

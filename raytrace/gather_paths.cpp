@@ -23,41 +23,35 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
     PathWalker walker(world_);
     RayCounts counts;
     std::vector<Rgb> sum(image_layers_);
-    const Window tile = tile_of(window_, t);
-    for (int y = tile.y; y < tile.y + tile.rows; ++y) {
-      for (int x = tile.x; x < tile.x + tile.columns; ++x) {
-        const std::size_t p = window_.index(x, y);
-        const GatherPoint& point = points_[p];
-        const std::uint32_t each = more[p] / 2;
-        if (point.reach_m <= 0.0F || each == 0) continue;
-        if ((lobe ? point.lobe : point.reflectance) <= 0.0F) continue;
-        const auto pixel =
-            static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(picture_columns_) +
-            static_cast<std::uint64_t>(x);
-        for (std::uint32_t half = 0; half < 2; ++half) {
-          std::fill(sum.begin(), sum.end(), Rgb(0.0));
-          const base::Key key =
-              base::Key(setting_.seed, lobe ? base::Stream::Lobe : base::Stream::Residual, pixel)
-                  .with(2 * std::uint64_t{round} + half);
-          const base::SobolOwen4 directions(key);
-          for (std::uint32_t k = 0; k < each; ++k) {
-            base::Rng rng(key.with(k));
-            const auto u = directions.point2(k);
-            if (lobe) {
-              lobe_sample(p, u, walker, rng, sum, counts);
-              continue;
-            }
-            const auto found = walker.residual_at(incoming_, origin_[p], Vec3(point.normal),
-                                                  double(u[0]), double(u[1]), rng);
-            for (std::size_t layer = 0; layer < image_layers_; ++layer) sum[layer] += found[layer];
+    for (const std::size_t p : points_of_tile(t)) {
+      const GatherPoint& point = points_[p];
+      const std::uint32_t each = more[p] / 2;
+      if (point.reach_m <= 0.0F || each == 0) continue;
+      if ((lobe ? point.lobe : point.reflectance) <= 0.0F) continue;
+      for (std::uint32_t half = 0; half < 2; ++half) {
+        std::fill(sum.begin(), sum.end(), Rgb(0.0));
+        const base::Key key =
+            base::Key(setting_.seed, lobe ? base::Stream::Lobe : base::Stream::Residual,
+                      random_number_of(p))
+                .with(2 * std::uint64_t{round} + half);
+        const base::SobolOwen4 directions(key);
+        for (std::uint32_t k = 0; k < each; ++k) {
+          base::Rng rng(key.with(k));
+          const auto u = directions.point2(k);
+          if (lobe) {
+            lobe_sample(p, u, walker, rng, sum, counts);
+            continue;
           }
-          for (std::size_t layer = 0; layer < image_layers_; ++layer) {
-            estimate.sum[p * image_layers_ + layer] += glm::vec3(sum[layer]);
-          }
-          estimate.luminance[p][half] += static_cast<float>(luminance_of(sum));
+          const auto found = walker.residual_at(incoming_, origin_[p], Vec3(point.normal),
+                                                double(u[0]), double(u[1]), rng);
+          for (std::size_t layer = 0; layer < image_layers_; ++layer) sum[layer] += found[layer];
         }
-        estimate.samples[p] += static_cast<float>(2 * each);
+        for (std::size_t layer = 0; layer < image_layers_; ++layer) {
+          estimate.sum[p * image_layers_ + layer] += glm::vec3(sum[layer]);
+        }
+        estimate.luminance[p][half] += static_cast<float>(luminance_of(sum));
       }
+      estimate.samples[p] += static_cast<float>(2 * each);
     }
     counts += walker.rays();
     const std::lock_guard lock(mutex);

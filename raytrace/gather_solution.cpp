@@ -108,35 +108,33 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
     const GatherRays rays(of_class);
     base::parallel_chunks(tile_count(window_), 1, [&](std::size_t t, std::size_t) {
       if (stop && stop()) return;
-      const Window tile = tile_of(window_, t);
       TilePoints points;
-      for (int y = tile.y; y < tile.y + tile.rows; ++y) {
-        for (int x = tile.x; x < tile.x + tile.columns; ++x) {
-          const std::size_t index = window_.index(x, y);
-          if (rays_for(index) != of_class) continue;
-          points.add(index,
-                     static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(picture_columns_) +
-                         static_cast<std::uint64_t>(x),
-                     origin_[index], Vec3(points_[index].normal), world_.query.centre());
-        }
-      }
-      if (points.count == 0) return;
-      for (std::size_t half = 0; half < 2; ++half) {
-        SolutionRays cast(world_.query, incoming_, rays, layers_, points);
-        cast.run(base::mix64(setting_.seed ^ base::mix64(2 * std::uint64_t{round} + half)));
-        for (std::size_t k = 0; k < points.count; ++k) {
-          const std::size_t p = points.index[k];
-          inverse_length_[p] += cast.inverse_length[k];
-          for (std::size_t layer = 0; layer < layers_; ++layer) {
-            estimate.sum[p * layers_ + layer] += glm::vec3(cast.sums[k * layers_ + layer]);
+      const auto cast = [&] {
+        for (std::size_t half = 0; half < 2; ++half) {
+          SolutionRays found(world_.query, incoming_, rays, layers_, points);
+          found.run(base::mix64(setting_.seed ^ base::mix64(2 * std::uint64_t{round} + half)));
+          for (std::size_t k = 0; k < points.count; ++k) {
+            const std::size_t p = points.index[k];
+            inverse_length_[p] += found.inverse_length[k];
+            for (std::size_t layer = 0; layer < layers_; ++layer) {
+              estimate.sum[p * layers_ + layer] += glm::vec3(found.sums[k * layers_ + layer]);
+            }
+            estimate.luminance[p][half] +=
+                static_cast<float>(luminance_of({&found.sums[k * layers_], image_layers_}));
+            estimate.samples[p] += static_cast<float>(of_class);
           }
-          estimate.luminance[p][half] +=
-              static_cast<float>(luminance_of({&cast.sums[k * layers_], image_layers_}));
-          estimate.samples[p] += static_cast<float>(of_class);
+          const std::lock_guard lock(mutex);
+          rays_of_[number(Gathered::Solution)] += found.counts;
         }
-        const std::lock_guard lock(mutex);
-        rays_of_[number(Gathered::Solution)] += cast.counts;
+        points.count = 0;
+      };
+      for (const std::size_t p : points_of_tile(t)) {
+        if (rays_for(p) != of_class) continue;
+        points.add(p, random_number_of(p), origin_[p], Vec3(points_[p].normal),
+                   world_.query.centre());
+        if (points.count == most_tile_points) cast();
       }
+      if (points.count > 0) cast();
     });
   }
   for (std::size_t p = 0; p < points_.size(); ++p) {

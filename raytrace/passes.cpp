@@ -18,7 +18,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int most_rounds = 6;  // of camera samples, each at most four times the one before
 constexpr int most_error_rounds = 24;
-constexpr double most_step = 2.5;  // less squared error a round
+constexpr double most_step = 2.0;  // less squared error a round
+// What planning by few samples promises is off by that much.
+constexpr double least_kept = 0.7, most_kept = 2.0;
 // Of the wanted error, what samples are planned for: the next statement may turn out larger.
 constexpr double aimed_share = 0.97;
 // Time of a ray over that of one of a packet of gather rays (tests/benchmarks/gather_bench.cpp).
@@ -135,15 +137,18 @@ class Passes {
       report_.gather_seconds += seconds_since(start);
     }
     first_round(static_cast<std::uint32_t>(options_.shared.least_samples));
+    double before = 0.0, promised = 0.0, kept = 1.0;  // of what the last plan promised
     for (int round = 1; round < most_error_rounds && !ends(); ++round) {
       const SamplePlanner planner(*sums_, field_ ? &*field_ : nullptr, costs());
-      const double error = std::sqrt(planner.squared_error());
+      const double now = planner.squared_error(), error = std::sqrt(now);
       if (options_.error > 0.0 && error <= options_.error) break;
       // Step by step: what few samples say of more of them is rough.
       const double aim = aimed_share * options_.error;
-      const double step = std::max(aim * aim, planner.squared_error() / most_step);
+      if (promised > 0.0) kept = std::clamp((before - now) / promised, least_kept, most_kept);
+      const double step = now - (now - std::max(aim * aim, now / most_step)) / kept;
       const SamplePlan plan = planner.plan(step, affordable());
       if (plan.cost <= 0.0) break;
+      before = now, promised = now - plan.squared_error;
       expected_ = std::max(done_ + plan.cost, done_ * error * error / std::max(aim * aim, 1e-12));
       if (field_) {
         const auto start = Clock::now();

@@ -12,8 +12,9 @@ namespace {
 constexpr auto camera_kind = static_cast<std::uint8_t>(gathered_kinds);
 constexpr int bisections = 48;
 constexpr double greatest_price = 1e6;  // squared error per ray
-// Where so much less is gained for a ray than all rays so far have brought, nothing is.
-constexpr double least_gain = 0.02;
+// Where a ray gains so much less than a ray so far has on the average, nothing is cast, as long as
+// others gain more: what few samples promise there is often wrong, and the next look tells better.
+constexpr double least_gain = 0.2, least_gain_of_all = 1e-6;
 
 }  // namespace
 
@@ -36,24 +37,26 @@ void SamplePlanner::look_at_field(const StatedError& stated, double scale) {
   for (std::size_t k = 0; k < gathered_kinds; ++k) {
     const auto kind = static_cast<Gathered>(k);
     if (!field_->gathers(kind)) continue;
-    for (int y = window.y; y < window.y + window.rows; ++y) {
-      for (int x = window.x; x < window.x + window.columns; ++x) {
-        const std::size_t p = field_->window().index(x, y);
-        const float samples = field_->samples(kind, p);
-        const double reflected = field_->reflected(kind, p);
-        if (samples <= 0.0F || reflected <= 0.0) continue;
-        const double weight =
-            error_weight(double(stated.luminance[window.index(x, y)]), mean) * reflected;
-        const double factor = weight * weight * scale;
-        const Shared& shared = field_->shared(kind);
-        const double one = shared.squared_error_with(p, 1.0);
-        const double two = shared.squared_error_with(p, 2.0);
-        const double four = shared.squared_error_with(p, 4.0);
-        if (factor * (one - four) <= 0.0) continue;
-        gains_.push_back({static_cast<std::uint32_t>(p), static_cast<std::uint8_t>(k), samples,
-                          static_cast<float>(factor * (one - two)),
-                          static_cast<float>(factor * (two - four))});
-      }
+    for (std::size_t p = 0; p < field_->points().size(); ++p) {
+      const std::size_t pixel = field_->pixel_of(p);
+      const auto columns = static_cast<std::size_t>(field_->window().columns);
+      const int x = field_->window().x + static_cast<int>(pixel % columns);
+      const int y = field_->window().y + static_cast<int>(pixel / columns);
+      if (!window.contains(x, y)) continue;
+      const float samples = field_->samples(kind, p);
+      const double reflected = field_->reflected(kind, p);
+      if (samples <= 0.0F || reflected <= 0.0) continue;
+      const double weight = error_weight(double(stated.luminance[window.index(x, y)]), mean) *
+                            reflected * field_->cover_of(p);
+      const double factor = weight * weight * scale;
+      const Shared& shared = field_->shared(kind);
+      const double one = shared.squared_error_with(p, 1.0);
+      const double two = shared.squared_error_with(p, 2.0);
+      const double four = shared.squared_error_with(p, 4.0);
+      if (factor * (one - four) <= 0.0) continue;
+      gains_.push_back({static_cast<std::uint32_t>(p), static_cast<std::uint8_t>(k), samples,
+                        static_cast<float>(factor * (one - two)),
+                        static_cast<float>(factor * (two - four))});
     }
   }
 }
@@ -119,6 +122,7 @@ SamplePlanner::Outcome SamplePlanner::outcome(double per_cost) const {
 
 SamplePlan SamplePlanner::plan(double wanted, double most_cost) const {
   SamplePlan plan;
+  plan.squared_error = now_;
   for (std::size_t k = 0; k < gathered_kinds && field_ != nullptr; ++k) {
     plan.field[k].assign(field_->points().size(), 0U);
   }
@@ -130,7 +134,10 @@ SamplePlan SamplePlanner::plan(double wanted, double most_cost) const {
   if (all <= 0.0 || now_ <= 0.0) {
     return plan;
   }
-  double low = std::log(least_gain * now_ / all), high = std::log(greatest_price);
+  const double mean_gain = now_ / all;
+  const bool any = outcome(least_gain * mean_gain).cost > 0.0;
+  double low = std::log((any ? least_gain : least_gain_of_all) * mean_gain);
+  double high = std::log(greatest_price);
   for (int k = 0; k < bisections; ++k) {
     const double middle = 0.5 * (low + high);
     const Outcome found = outcome(std::exp(middle));
@@ -138,6 +145,7 @@ SamplePlan SamplePlanner::plan(double wanted, double most_cost) const {
     (dearer ? low : high) = middle;
   }
   const double per_cost = std::exp(outcome(std::exp(low)).cost <= most_cost ? low : high);
+  plan.squared_error = outcome(per_cost).squared_error;
   for (const Gain& gain : gains_) {
     const int times = factor(gain, per_cost);
     if (times == 1) continue;

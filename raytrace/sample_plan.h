@@ -21,6 +21,7 @@ struct SamplePlan {
   std::array<std::vector<std::uint32_t>, gathered_kinds> field;  // more, per point
   std::vector<std::uint32_t> camera;                             // in all, per pixel
   double cost = 0.0, field_cost = 0.0;  // of it, and of the field's part of it
+  double squared_error = 0.0;           // expected after it
 };
 
 class SamplePlanner {

@@ -4,11 +4,15 @@
 //
 // The estimates are split into details of 1, 2, 4, 8 and 16 pixels and a rest (a wavelet transform
 // with holes over the points of one surface; Dammertz et al. 2010). Every estimate comes in two
-// halves of independent samples, a and b. Of a detail d = s + noise the halves tell, as means over
-// its surroundings,
-//   noise   q = <((d_a - d_b) / 2)^2>        signal   s = <((d_a + d_b) / 2)^2> - q
-// and the detail is kept by the share that leaves the least squared error, s / (s + q) (Wiener):
-//   (1 - keep)^2 s + keep^2 q.
+// halves of independent samples, a and b. (a - b) / 2 has the noise of their mean, and has it still
+// where each point's sign is drawn anew: so many fields of noise as are wanted, whose means over
+// small surfaces are known better than one (the wild bootstrap; Wu 1986). Of a detail d, means over
+// its surroundings are
+//   noise  q = <n^2> over these fields' details n     energy  D = <d^2>, signal s = D - q
+// and the detail is kept by c = s / (s + q) or less (Wiener), which leaves, in the mean and with
+// what choosing c by the same d makes it look better (Stein 1981; N: how many details the means
+// are over),
+//   (1 - c)^2 s + c^2 q + 4 q D c'(D) / N.
 // That sum over the levels, and the noise of the rest, is the squared error that is stated. It goes
 // to nothing with more samples, and with it what sharing blurs.
 #pragma once
@@ -34,6 +38,9 @@ struct GatherPoint {
 };
 
 inline constexpr std::size_t share_levels = 5;
+// Mean squares are taken over three blurs, the last of which reaches four times as far as the
+// detail.
+inline constexpr std::size_t window_blurs = 3;
 
 // Sums of samples at every point.
 struct Estimate {
@@ -64,6 +71,7 @@ class Neighbours {
   // times `weight` (nullptr: 1), of some values a point: values[k] and means[k] hold the k-th of
   // all points.
   using Planes = std::vector<std::vector<float>>;
+  [[nodiscard]] std::size_t count() const { return masks_.front().size(); }
   void blur(std::size_t level, const Planes& values, const std::vector<float>* weight,
             Planes& means) const;
 
@@ -82,8 +90,8 @@ struct Shared {
   std::size_t layers = 0;
   std::vector<glm::vec3> radiance;  // as Estimate::sum, the shared means
   // Per point, of its luminance: mean squares of signal (found by chance: it may be negative) and
-  // noise, by level; noise of the rest.
-  std::vector<std::array<float, share_levels>> signal, noise;
+  // noise, and 1 / N, by level; noise of the rest.
+  std::vector<std::array<float, share_levels>> signal, noise, few;
   std::vector<float> rest;
   std::vector<float> squared_error;  // stated
 
@@ -91,6 +99,10 @@ struct Shared {
   [[nodiscard]] double squared_error_with(std::size_t point, double factor) const;
 };
 
+// The points of the grid, which come first in the estimate.
 [[nodiscard]] Shared share(const Neighbours& neighbours, const Estimate& estimate);
+
+// The share of a detail of signal s and noise q that is kept, mean squares.
+[[nodiscard]] float kept_share(float s, float q);
 
 }  // namespace earthshine::raytrace

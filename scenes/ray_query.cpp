@@ -107,6 +107,7 @@ RayQuery::RayQuery(const Scene& source) : embree_(std::make_unique<Embree>()) {
   embree_->scene = rtcNewScene(embree_->device);
   // Robust: without it two in ten million rays slip through shared edges of a closed room.
   rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(embree_->scene, RTC_BUILD_QUALITY_HIGH);
 
   if (!source.triangles.empty()) {
     Vec3 low = source.vertices.front(), high = low;
