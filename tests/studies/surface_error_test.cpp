@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "raytrace/radiance_table.h"
-#include "studies/pixel_choice.h"
+#include "studies/surface_pixels.h"
 #include "tests/studies/plates.h"
 #include "tests/studies/room.h"
 

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: Apache-2.0
+"""CPU seconds to a true error, beside those of the program's own path tracer. Prints a table as Markdown.
+
+    to_error.py PROGRAM [--scene NAME]... [--camera C]... [--size 256x256] [--errors 0.05,0.02] [--paths 512] [--cache DIR]
+
+Truth: two path-traced pictures of independent noise, of all light paths (error_truth.py); they are kept in DIR. Their
+difference tells the path tracer's own noise, by the same weights, and with it what it needs for the same error:
+its seconds times (its noise / the error)^2. Both sides are timed in the same run and on the same machine.
+"""
+import argparse
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TOP / "tests" / "validation"))
+import error_truth  # noqa: E402
+
+SCENES = ("night-lamps", "day-sun", "day-earthshine")
+SEEDS = (11, 12)
+
+
+def run(*words):
+    """(standard output, CPU seconds)"""
+    process = subprocess.Popen(list(map(str, words)), stdout=subprocess.PIPE, text=True)
+    out = process.stdout.read()
+    _, status, used = os.wait4(process.pid, 0)
+    if status != 0:
+        raise SystemExit(f"to_error: {' '.join(map(str, words))} ended with status {status}")
+    return out, used.ru_utime + used.ru_stime
+
+
+def references(call, scene, camera):
+    """Two luminances, and the CPU seconds of one."""
+    found, seconds = [], []
+    for seed in SEEDS:
+        stem = call.cache / f"{scene}-{camera}-{call.size}-{call.paths}-{seed}"
+        if not stem.with_suffix(".json").exists():
+            _, used = run(call.program, "render", TOP / "scenes/library/sts46" / f"{scene}.toml", "--camera", camera, "--size", call.size,
+                          "--indirect", "paths", "--set", f"quality.gather_rays={call.paths}", "--seed", seed, "-q",
+                          "-o", stem.with_suffix(".exr"))
+            stem.with_suffix(".json").write_text(json.dumps(used))
+        found.append(error_truth.picture(stem.with_suffix(".exr"))[0])
+        seconds.append(json.loads(stem.with_suffix(".json").read_text()))
+    return found, sum(seconds) / len(seconds)
+
+
+def noise(first, second):
+    """Of one of the two, relative to their mean, with the weights of compare()."""
+    mean = sum(map(sum, zip(first, second))) / (2 * len(first))
+    square = sum((error_truth.weight((a + b) / 2, mean) * (a - b))**2 for a, b in zip(first, second)) / (2 * len(first))
+    return math.sqrt(square) / mean
+
+
+def rows(call, scene, camera):
+    (first, second), path_seconds = references(call, scene, camera)
+    of_paths = noise(first, second)
+    for asked in call.errors:
+        picture = call.cache / "picture.exr"
+        out, seconds = run(call.program, "render", TOP / "scenes/library/sts46" / f"{scene}.toml", "--camera", camera, "--size", call.size,
+                           "--error", asked, "-q", "--json", "-o", picture)
+        error = json.loads(out)["error"]
+        truth = error_truth.compare(error_truth.picture(picture)[0], first, second)
+        unsure = truth.doubt / (2 * truth.error) if truth.error > 0 else math.sqrt(truth.doubt)
+        paths = path_seconds * (of_paths / truth.error)**2
+        yield (f"| {scene} {camera} | {100 * asked:g} % | {100 * error['estimate']:.1f}, {100 * error['bound_95']:.1f} % | "
+               f"{100 * truth.error:.1f} ± {100 * unsure:.1f} % | {100 * truth.bias:+.2f} % | {seconds:.1f} | {paths:.0f} | "
+               f"{seconds / paths:.3f} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description="CPU seconds to a true error, beside a path tracer's")
+    parser.add_argument("program", type=pathlib.Path)
+    parser.add_argument("--scene", action="append", choices=SCENES)
+    parser.add_argument("--camera", action="append")
+    parser.add_argument("--size", default="256x256")
+    parser.add_argument("--errors", type=lambda text: [float(one) for one in text.split(",")], default=[0.05, 0.02])
+    parser.add_argument("--paths", type=int, default=512, help="a pixel, of each reference")
+    parser.add_argument("--cache", type=pathlib.Path, default=TOP / "out" / "error-references")
+    call = parser.parse_args()
+    call.program = call.program.resolve()
+    call.cache.mkdir(parents=True, exist_ok=True)
+    print("| sts46 | asked | stated, bound | true | bias | CPU s | paths, CPU s | ratio |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    for scene in call.scene or SCENES:
+        for camera in call.camera or ["B"]:
+            for row in rows(call, scene, camera):
+                print(row, flush=True)
+
+
+if __name__ == "__main__":
+    main()
