@@ -13,7 +13,7 @@ namespace {
 
 // Gather rays of a camera sample that finds no gather point for its surface: a lens out of focus, a
 // wire thinner than a pixel.
-constexpr int rays_without_point = 16;
+constexpr int rays_without_point = 4;
 // And of one that was met by mirrors or glass.
 constexpr int rays_behind_mirror = 4;
 

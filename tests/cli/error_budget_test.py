@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The error budget that render and solve state: JSON, EXR header, what is not captured."""
+import json
 import math
 import unittest
 
@@ -36,7 +37,8 @@ class ErrorBudget(program.Case):
 
     def test_a_picture_states_its_error(self):
         error = self.check(self.render("--set", "quality.patch_edge=0.25")["error"])
-        self.assertEqual(sorted(error), ["bound_95", "estimate", "limit", "not_captured", "parts", "steps", "targets", "wanted"])
+        self.assertEqual(sorted(error), ["bound_95", "estimate", "limit", "not_captured", "parts", "seconds_to_go", "steps", "targets",
+                                         "wanted"])
         self.assertIsNone(error["wanted"])
         self.assertLess(error["estimate"], 0.5)
         for part in PARTS:
@@ -56,6 +58,14 @@ class ErrorBudget(program.Case):
         self.assertAlmostEqual(stated["estimate"], error["estimate"], delta=1e-6)
         self.assertAlmostEqual(stated["bound_95"], error["bound_95"], delta=1e-6)
         self.assertEqual(stated["not_captured"], "; ".join(error["not_captured"]))
+
+    def test_none_is_stated_where_none_is_wanted(self):
+        run = self.run_program("render", "ball.toml", "-o", "a.exr", "--no-error", "--set", "quality.error=0.05", "--json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertNotIn("95 % sure", run.stderr)
+        error = json.loads(run.stdout)["error"]
+        self.assertEqual((error["estimate"], error["bound_95"], error["wanted"], error["targets"]), (None, None, None, []))
+        self.assertEqual(error["not_captured"], self.render()["error"]["not_captured"])
 
     def test_a_target_is_judged_by_its_own_pixels(self):
         self.write("two.toml", program.BALL.replace(

@@ -103,5 +103,25 @@ class HardCases(program.Case):
             self.assertFalse(report["error"]["bound_95"])
 
 
+class Edges(program.Case):
+    def test_no_pixel_of_the_bay_is_off_by_more_than_its_noise(self):
+        """At the feet of walls and across facets of foil light changes within a pixel. Where neighbours share nothing, noise is
+        all that is stated, and the true error is no more than that (four standard errors of its square)."""
+        library = program.TOP / "scenes" / "library" / "sts46"
+        (self.folder / "meshes").symlink_to(library / "meshes")
+        self.write("bay.toml", (library / "day-sun.toml").read_text().replace("error = 0.05", "# error"))
+        view = ("render", "bay.toml", "--camera", "B", "--size", "48x48", "-q")
+        paths = []
+        for seed in (71, 72):
+            self.done(*view, "--indirect", "paths", "--set", "quality.gather_rays=1024", "--seed", seed, "-o", "paths.exr")
+            paths.append(error_truth.picture(self.folder / "paths.exr")[0])
+        keys = ("smooth=0", "gather_rays=1024", "picture_noise=0.005", "patch_edge=0.45", "form_factor_rays=64", "refine=false")
+        settings = [word for key in keys for word in ("--set", f"quality.{key}")]
+        stated = self.json(*view, *settings, "-o", "bay.exr")["error"]["estimate"]
+        truth = error_truth.compare(error_truth.picture(self.folder / "bay.exr")[0], *paths)
+        self.assertLess(truth.error**2 - stated**2, 4 * truth.doubt)
+        self.assertLess(stated, 0.03)
+
+
 if __name__ == "__main__":
     unittest.main()

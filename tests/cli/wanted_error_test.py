@@ -50,6 +50,10 @@ class WantedError(program.Case):
         error = self.rendered("--error", 0.0005, "--time-limit", 0.7)
         self.assertEqual(error["limit"], "time")
         self.assertGreater(error["estimate"], 0.0005)
+        self.assertGreater(error["seconds_to_go"], 0)
+        run = self.run_program("render", "scene.toml", "-o", "out.exr", "--size", "48x36", "--error", 0.0005,
+                               "--time-limit", 0.7)
+        self.assertRegex(run.stderr, r"not reached: --time-limit came first; it needs about [\d.]+ \w+.* more")
 
     def test_memory_comes_first_and_is_named(self):
         self.write("scene.toml", OPEN)
