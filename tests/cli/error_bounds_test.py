@@ -105,8 +105,8 @@ material = "panel"
         self.assertTrue(0 < sum(seen) < len(seen) / 2)
 
     def test_a_room_from_end_to_end(self):
-        error_bounds.REFERENCE_GATHER, kept = 64, error_bounds.REFERENCE_GATHER
-        self.addCleanup(setattr, error_bounds, "REFERENCE_GATHER", kept)
+        error_bounds.REFERENCE_PATHS, kept = 64, error_bounds.REFERENCE_PATHS
+        self.addCleanup(setattr, error_bounds, "REFERENCE_PATHS", kept)
         case = ("room 5", error_scenes.room(5), ["--size", "24x24"], ["coarse patches"])
         rows = self.bench.rows(*case)
         self.assertEqual([row.kind for row in rows], ["solve", "picture"])

@@ -4,8 +4,8 @@
     error_bounds.py PROGRAM [--quick] [--only NAME] [--cache DIR] [--seed N]
 
 Renders and solves shipped scenes, hard ones and random rooms by many settings, and compares what the program states with the
-true error: against two independent references with ten times the patches and 64 camera samples of 16 gather rays a pixel,
-not shared (error_truth.py; their noise drops out). Ends with code 1 unless at least 90 % of the true errors lie within the
+true error against two independent references (error_truth.py; their noise drops out): pictures against path-traced ones, of
+all light paths, radiosities against solutions of ten times the patches. Ends with code 1 unless at least 90 % of the true errors lie within the
 bounds and the median of bound over true error is 3 or less. References are kept in DIR (out/error-references).
 """
 import argparse
@@ -30,7 +30,7 @@ import hard_scenes
 TOP = pathlib.Path(__file__).resolve().parents[2]
 FINER = 10  # of the references, in patches
 REFERENCE_RAYS = 512  # form-factor rays per patch of a reference, or as many as the settings have
-REFERENCE_GATHER = 1024  # gather rays per pixel of a reference: 16 from each of 64 camera samples
+REFERENCE_PATHS = 1024  # per pixel of a reference picture
 SHARE, MEDIAN = 0.9, 3.0  # asked for
 # Of a true error: below, the references' own noise and rounding decide, and a ratio says nothing.
 LEAST = 1e-3
@@ -106,26 +106,27 @@ class Bench:
                 black += ["--set", f"material.{material['name']}.{key}=0"]
         out = self.folder / f"{path.parent.name}-{path.stem}-black.exr"
         self.json("render", path, "-o", out, "--indirect", "none", *more, *black,
-                  *error_scenes.knobs(gather="per-sample", gather_rays=REFERENCE_GATHER))
+                  *error_scenes.knobs(gather="per-sample", gather_rays=REFERENCE_PATHS))
         return [light > 0 for light in error_truth.picture(out)[0]]
 
     def references(self, path, text, more, patches, rays):
         """(solutions, luminances of both references, pixels that count), from the cache if they are there."""
         fine = error_scenes.knobs(max_patches=rounded_up(FINER * patches), form_factor_rays=max(REFERENCE_RAYS, rays))
-        fine += error_scenes.knobs(refine="true", gather="per-sample", gather_rays=REFERENCE_GATHER)
-        folder = self.cache / hash_of(text, *fine)[:16]
+        fine += error_scenes.knobs(refine="true")
+        paths = ["--indirect", "paths", *error_scenes.knobs(gather_rays=REFERENCE_PATHS)]
+        folder = self.cache / hash_of(text, *fine, *paths)[:16]
         if not (folder / "done").exists():
             shutil.rmtree(folder, ignore_errors=True)
             folder.mkdir(parents=True)
             for k in (1, 2):
                 seed = ["--seed", 9000 + k]
                 self.json("solve", path, *fine, *seed, "-o", folder / f"{k}.h5")
-                self.json("render", path, *fine, *seed, *more, "--solution", folder / f"{k}.h5", "--aov", "object",
-                          "-o", folder / f"{k}.exr")
+                self.json("render", path, *paths, *seed, *more, "-o", folder / f"{k}.exr")
+            self.json("render", path, *more, "--indirect", "none", "--aov", "object", "-o", folder / "objects.exr")
             (folder / "seen").write_text(json.dumps([int(seen) for seen in self.sources_seen(path, more)]))
             (folder / "done").touch()
-        first, things = error_truth.picture(folder / "1.exr", "object")
-        second, _ = error_truth.picture(folder / "2.exr")
+        first, second = (error_truth.picture(folder / f"{k}.exr")[0] for k in (1, 2))
+        _, things = error_truth.picture(folder / "objects.exr", "object")
         seen = with_neighbours(json.loads((folder / "seen").read_text()), error_truth.columns(folder / "1.exr"))
         solutions = [[folder / f"{k}.h5", 9000 + k, *overrides(fine)] for k in (1, 2)]
         return solutions, first, second, [float(o >= 0 and not s) for o, s in zip(things, seen)]
