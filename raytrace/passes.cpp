@@ -93,7 +93,6 @@ class Passes {
     report_.gather_rays = sampling.camera_samples * sampling.gather_rays;
   }
 
-  // As many of each as the settings say.
   void run_shared() {
     const SharedGather& how = options_.shared;
     const Outlook outlook = look_ahead(shared_, camera_, how.least_samples);
@@ -132,7 +131,8 @@ class Passes {
     if (shared_.gathers) {
       const auto start = Clock::now();
       begin_field();
-      cast_evenly({GatherField::fewest_samples(Gathered::Solution), 4, 2});
+      const bool early = options_.time_limit_s > 0.0;  // a first look at all of the picture
+      cast_evenly({GatherField::fewest_samples(Gathered::Solution), early ? 2U : 4U, 2U});
       share();
       report_.gather_seconds += seconds_since(start);
     }
