@@ -54,6 +54,7 @@ class SurfaceSearch {
       mean_ = light_->mean_radiosity();
       if (may_cut()) cut_shadows();
       improve();
+      if (may_cast() && is_exact()) return land();
     }
     result_.solution = light_->finished();
     result_.solution.report.shadow_rays += rays_;
@@ -63,6 +64,20 @@ class SurfaceSearch {
  private:
   [[nodiscard]] bool may_cut() const { return may_cut_cells(given_); }
   [[nodiscard]] bool may_cast() const { return !given_.form_factor_rays; }
+
+  // What reflects was lit by shadow rays alone, and evenly.
+  [[nodiscard]] bool is_exact() const {
+    return result_.steps.size() == 1 && result_.steps.back().estimate == 0.0 &&
+           light_->patches().count() == first_patches_;
+  }
+  // Light that lands where nothing reflects is still only as exact as the form factors: as many
+  // rays as the error wants of any scene.
+  SteeredSolution land() {
+    result_.solver.form_factor_rays = scenes::resolve_quality(scene_.scene).form_factor_rays;
+    result_.solution =
+        radiosity::solve(scene_.scene, scene_.groups, scene_.effects, scene_.query, result_.solver);
+    return std::move(result_);
+  }
 
   void solve(const SolveListener& listen) {
     const raytrace::Progress progress = stage("solve");
