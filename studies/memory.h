@@ -20,10 +20,11 @@ namespace earthshine::studies {
 // Per pixel of a picture beside its channels: what the renderer keeps until the picture is whole
 // (raytrace/pixel_sums.h, gather_field.h).
 struct PixelRecordBytes {
-  double sums = 64.0;              // samples, moments of the luminance, wanted samples
-  double sums_per_entry = 24.0;    // radiance of an image layer or part
-  double gather_point = 60.0;      // with SharedGather; its error, luminance, a mark
-  double gather_per_layer = 36.0;  // radiance, as cast, smoothed, and a copy meanwhile
+  double sums = 64.0;            // samples, moments of the luminance, wanted samples
+  double sums_per_entry = 24.0;  // radiance of an image layer or part
+  double gather_point = 700.0;   // with SharedGather and a stray now and then: place, halves, what
+                                 // is told of its details, fields of noise meanwhile
+  double gather_per_layer = 150.0;  // of three kinds, as cast and shared; details meanwhile
 };
 inline constexpr PixelRecordBytes pixel_record_bytes;
 
