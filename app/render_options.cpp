@@ -101,8 +101,10 @@ void add_window_options(CLI::App& parser, RenderCall& call) {
           "Replays one pixel and prints all of it; -o is not needed")
       ->type_name("X,Y")
       ->excludes("--crop");
-  parser.add_flag("--no-error", call.no_error,
-                  "State no error: as many samples as the settings say, each one for the picture");
+  parser
+      .add_flag("--no-error", call.no_error,
+                "State no error: as many samples as the settings say, each one for the picture")
+      ->excludes("--error");
   add_time_limit(parser, call.time_limit_s,
                  "The best picture in that time, or no longer than that for --error; the bytes "
                  "then differ between runs");

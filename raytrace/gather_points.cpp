@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // GatherField's points: what lies behind the pixels' centres, and beside it.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -98,6 +99,7 @@ void GatherField::find_strays(const GatherSurface& surface, const CameraModel& c
     Vec3 origin;
   };
   std::vector<std::vector<Found>> found(tile_count(window_));
+  std::atomic<std::uint64_t> rays{0};
   const auto alike = [](const GatherPoint& a, const GatherPoint& b) {
     return a.material == b.material && stands_for(a, b.position, b.normal);
   };
@@ -118,6 +120,7 @@ void GatherField::find_strays(const GatherSurface& surface, const CameraModel& c
       world_.query.set(packet, k, ray.origin, ray.direction);
     }
     world_.query.closest(packet, width, hits);
+    rays += width;
     for (std::size_t k = 0; k < width; ++k) {
       Found more;
       if (!place(surface, camera, hit_of(hits, k), more.point, more.origin)) continue;
@@ -138,7 +141,8 @@ void GatherField::find_strays(const GatherSurface& surface, const CameraModel& c
     for (std::size_t k = first; k < of_tile.size(); ++k) {
       Stray& stray = of_tile[k].stray;
       stray.base = no_base;
-      for (int ring = 1; ring <= 2 && stray.base == no_base; ++ring) {
+      const int rings = setting_.shares ? 2 : 0;
+      for (int ring = 1; ring <= rings && stray.base == no_base; ++ring) {
         each_neighbour(window_, x, y, ring, [&](std::size_t q) {
           if (stray.base == no_base && points_[q].reach_m > 0.0F &&
               alike(of_tile[k].point, points_[q])) {
@@ -156,6 +160,7 @@ void GatherField::find_strays(const GatherSurface& surface, const CameraModel& c
       for (int x = tile.x; x < tile.x + tile.columns; ++x) look(x, y, found[t]);
     }
   });
+  camera_rays_ += rays;
   std::vector<std::uint32_t> of_pixel(grid_ + 1, 0U);
   for (const auto& tile : found) {
     for (const Found& one : tile) ++of_pixel[one.stray.pixel + 1U];

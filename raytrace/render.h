@@ -63,7 +63,7 @@ struct RenderOptions {
   // error, over its mean luminance, is no more than this; 0: as many as the settings say.
   double error = 0.0;
   // With SharedGather: goes on until these seconds have passed, however exact the picture is by
-  // then, with as many gather rays as half of them allow; 0: no limit. The bytes then differ
+  // then, with samples of all kinds where they help most; 0: no limit. The bytes then differ
   // between runs.
   double time_limit_s = 0.0;
   // Off: the limit is one alone, and the picture is done when it is as exact as wanted.

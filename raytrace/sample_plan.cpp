@@ -27,13 +27,12 @@ SamplePlanner::SamplePlanner(const PixelSums& sums, const GatherField* field,
   now_ = whole.squared_error();
   const double scale =
       1.0 / (static_cast<double>(whole.pixels) * whole.luminance * whole.luminance);
-  if (field != nullptr) look_at_field(stated, scale);
-  look_at_pixels(stated, scale);
+  if (field != nullptr) look_at_field(stated, whole.luminance, scale);
+  look_at_pixels(stated, whole.luminance, scale);
 }
 
-void SamplePlanner::look_at_field(const StatedError& stated, double scale) {
+void SamplePlanner::look_at_field(const StatedError& stated, double mean, double scale) {
   const Window& window = sums_.window;
-  const double mean = add_up(stated).luminance;
   for (std::size_t k = 0; k < gathered_kinds; ++k) {
     const auto kind = static_cast<Gathered>(k);
     if (!field_->gathers(kind)) continue;
@@ -64,9 +63,8 @@ void SamplePlanner::look_at_field(const StatedError& stated, double scale) {
 // Samples of a pixel have the deviation of the noisiest of the pixels around it: its own would stop
 // where they happen to agree, and its mean would be biased. What the halves of all pixels differ by
 // tells how much less the samples scatter than if they were independent.
-void SamplePlanner::look_at_pixels(const StatedError& stated, double scale) {
+void SamplePlanner::look_at_pixels(const StatedError& stated, double mean, double scale) {
   const Window& window = sums_.window;
-  const double mean = add_up(stated).luminance;
   std::vector<double> variance(stated.luminance.size());  // of one sample, weighted
   double found = 0.0, independent = 0.0;
   for (std::size_t p = 0; p < variance.size(); ++p) {

@@ -43,8 +43,8 @@ class SamplePlanner {
     float first = 0.0F, second = 0.0F;  // squared error that twice, four times as many take off
     float found = 1.0F;  // of what they promise, as much as the point or pixel itself has shown
   };
-  void look_at_field(const StatedError& stated, double scale);
-  void look_at_pixels(const StatedError& stated, double scale);
+  void look_at_field(const StatedError& stated, double mean, double scale);
+  void look_at_pixels(const StatedError& stated, double mean, double scale);
   [[nodiscard]] double cost_of(const Gain& gain) const;
   [[nodiscard]] int factor(const Gain& gain, double per_cost) const;
   struct Outcome {

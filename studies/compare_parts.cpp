@@ -144,7 +144,6 @@ raytrace::RenderOptions at_rung(raytrace::RenderOptions options, int rung) {
                                                    options.shared.least_samples, 1 << 16);
   if (!gathers) return options;
   options.gather_rays = times_power_of_two(options.gather_rays, rung, 8, 1 << 16);
-  options.shared.smooth_share = std::min(0.5, options.shared.smooth_share / std::pow(work, 0.25));
   return options;
 }
 

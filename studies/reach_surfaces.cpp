@@ -42,10 +42,11 @@ class SurfaceSearch {
         wanted_(wanted),
         given_(scene.scene.quality),
         sampler_(scene, seed),
+        listen_(listen),
         progress_(progress) {
     result_.solver = first_surface_options(scene.scene, wanted.error, seed);
     result_.surface.known = false;
-    solve(listen);
+    solve();
   }
 
   SteeredSolution run() {
@@ -54,7 +55,7 @@ class SurfaceSearch {
       mean_ = light_->mean_radiosity();
       if (may_cut()) cut_shadows();
       improve();
-      if (may_cast() && is_exact()) return land();
+      if (may_cast() && is_exact()) return with_exact_form_factors();
     }
     result_.solution = light_->finished();
     result_.solution.report.shadow_rays += rays_;
@@ -72,14 +73,19 @@ class SurfaceSearch {
   }
   // Light that lands where nothing reflects is still only as exact as the form factors: as many
   // rays as the error wants of any scene.
-  SteeredSolution land() {
+  SteeredSolution with_exact_form_factors() {
+    const raytrace::Progress progress = stage("solve");
+    if (progress) progress(0, 1);
     result_.solver.form_factor_rays = scenes::resolve_quality(scene_.scene).form_factor_rays;
+    result_.steps.back().form_factor_rays = result_.solver.form_factor_rays;
     result_.solution =
         radiosity::solve(scene_.scene, scene_.groups, scene_.effects, scene_.query, result_.solver);
+    if (listen_) listen_(result_.solution.report);
+    result_.solution.report.shadow_rays += rays_;
     return std::move(result_);
   }
 
-  void solve(const SolveListener& listen) {
+  void solve() {
     const raytrace::Progress progress = stage("solve");
     if (progress) progress(0, 1);
     radiosity::Patches patches = radiosity::subdivide(scene_.scene, result_.solver.patch_edge_m);
@@ -87,7 +93,7 @@ class SurfaceSearch {
     radiosity::Solution coarse =
         radiosity::solve_keeping(scene_.scene, scene_.groups, scene_.effects, scene_.query,
                                  result_.solver, std::move(patches), {}, factors);
-    if (listen) listen(coarse.report);
+    if (listen_) listen_(coarse.report);
     if (coarse.columns == 0 || coarse.patches.count() == 0) {
       result_.solution = std::move(coarse);
       return;
@@ -250,6 +256,7 @@ class SurfaceSearch {
   const Wanted& wanted_;
   const scenes::Quality& given_;
   SurfaceSampler sampler_;
+  const SolveListener& listen_;
   const StageListener& progress_;
   SteeredSolution result_;
   std::optional<LightOnSurfaces> light_;
