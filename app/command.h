@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the commands share: options, reading the scene, checking what will be written, stage times.
+// What the commands share: the scene as read, warnings about a solution, stage times.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "base/units.h"
+#include "app/json.h"
 #include "radiosity/solution.h"
-#include "scenes/effects.h"
-#include "scenes/light_groups.h"
+#include "scenes/effects/effects.h"
+#include "scenes/effects/light_groups.h"
 #include "scenes/scene.h"
 
-namespace earthshine::app {
+namespace CLI {
+class App;
+}
 
-using Json = nlohmann::ordered_json;
+namespace earthshine::app {
 
 // Options of every command.
 struct Common {
@@ -56,39 +56,10 @@ struct SceneInput {
   std::string path;
   std::vector<std::string> overrides;  // key=value
 };
-void add_scene_options(CLI::App& command, SceneInput& input);
 
 struct Size {
   int columns = 0, rows = 0;
 };
-// --size CxR; stays empty where the camera's own size is meant.
-void add_size_option(CLI::App& command, std::optional<Size>& size);
-
-// The words between the commas, also empty ones.
-[[nodiscard]] std::vector<std::string> split_at_commas(const std::string& text);
-
-// A whole number within [least, most], read strictly: no sign for unsigned, no octal, no rounding.
-// Throws CLI::ValidationError with the option's name.
-[[nodiscard]] std::uint64_t read_whole_number(const std::string& option, const std::string& text,
-                                              std::uint64_t least, std::uint64_t most);
-
-// An option that takes such a number.
-void add_whole_number(CLI::App& command, const std::string& flags, std::uint64_t& value,
-                      std::uint64_t least, std::uint64_t most, const std::string& help);
-
-// An option that takes a finite number within [least, most].
-void add_number(CLI::App& command, const std::string& flags, std::optional<double>& value,
-                double least, double most, const std::string& help);
-
-// --max-memory SIZE, with a unit: 500MiB, 2GiB.
-void add_memory_option(CLI::App& command, std::uint64_t& bytes);
-
-// --time-limit SECONDS above 0.
-void add_time_limit(CLI::App& command, double& seconds, const std::string& help);
-
-// Refuses an empty word, such as that of a variable that the shell does not know.
-[[nodiscard]] CLI::Validator not_empty();
-
 // A scene with what follows from it alone. Warnings go to standard error unless `quiet`.
 struct LoadedScene {
   scenes::Scene scene;
@@ -111,10 +82,6 @@ void note_backs(const radiosity::SolveReport& report);
 // The scene's accuracy knobs as the solver wants them.
 [[nodiscard]] radiosity::SolveOptions solve_options(const scenes::Scene& scene,
                                                     const Common& common);
-
-// Throws base::Error before any work is done if one of the files (empty names are left out) cannot
-// be written or two are the same.
-void check_outputs(const std::vector<std::string>& paths, const std::vector<std::string>& inputs);
 
 // Wall seconds per stage, in order.
 class StageTimes {
@@ -148,11 +115,5 @@ class StageTimes {
 
 // Largest memory the process has used so far.
 [[nodiscard]] double peak_memory_mib();
-
-[[nodiscard]] inline Json to_json(const Rgb& value) {
-  return Json::array({value.r, value.g, value.b});
-}
-// Indented text with a final newline. Numbers that are not finite become null.
-[[nodiscard]] std::string dump(const Json& json);
 
 }  // namespace earthshine::app

@@ -11,9 +11,10 @@
 
 #include "app/command.h"
 #include "app/console.h"
+#include "app/options.h"
 #include "base/error.h"
+#include "base/files/output_file.h"
 #include "base/free_memory.h"
-#include "base/output_file.h"
 #include "base/parallel.h"
 
 namespace earthshine::app {

@@ -11,8 +11,6 @@
 namespace earthshine::app {
 namespace {
 
-constexpr double mib = 1024.0 * 1024.0;
-
 std::string size_text(double in_mib) {
   if (in_mib < 1000.0) return fmt::format("{:.0f} MiB", in_mib);
   return fmt::format("{:.{}f} GiB", in_mib / 1024.0, in_mib < 10240.0 ? 1 : 0);

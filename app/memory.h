@@ -6,9 +6,11 @@
 #include <string>
 
 #include "app/command.h"
-#include "studies/memory.h"
+#include "studies/cost/memory.h"
 
 namespace earthshine::app {
+
+inline constexpr double mib = 1024.0 * 1024.0;
 
 // Throws base::Error (Work) with the figures when a run needs more than is free. Only where the
 // most it could take would not fit are a few rows cast to know better. Where refinement ends at an

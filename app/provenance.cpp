@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/camera_header.h"
-#include "raytrace/cryptomatte.h"
+#include "raytrace/camera/header.h"
+#include "raytrace/frame/cryptomatte.h"
 
 namespace earthshine::app {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/command.h"
-#include "base/exr_file.h"
+#include "base/files/exr_file.h"
 #include "radiosity/solution.h"
 #include "raytrace/render.h"
 #include "scenes/scene.h"

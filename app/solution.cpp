@@ -2,8 +2,9 @@
 #include "app/solution.h"
 
 #include "app/memory.h"
-#include "base/output_file.h"
-#include "radiosity/solution_mesh.h"
+#include "app/options.h"
+#include "base/files/output_file.h"
+#include "radiosity/store/solution_mesh.h"
 
 namespace earthshine::app {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "app/command.h"
-#include "radiosity/solution_file.h"
+#include "radiosity/store/solution_file.h"
 #include "scenes/ray_query.h"
 
 namespace earthshine::app {

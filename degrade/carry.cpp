@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "degrade/line.h"
-#include "degrade/point_moments.h"
-#include "degrade/sensor.h"
+#include "degrade/moments/point_moments.h"
+#include "degrade/parts/line.h"
+#include "degrade/parts/sensor.h"
 
 namespace earthshine::degrade {
 namespace {

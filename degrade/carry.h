@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "degrade/chain.h"
-#include "degrade/noise_moments.h"
-#include "degrade/point_map.h"
+#include "degrade/moments/noise_moments.h"
+#include "degrade/stage/point_map.h"
 
 namespace earthshine::degrade {
 

@@ -13,12 +13,12 @@
 #include <vector>
 
 #include "base/image.h"
-#include "degrade/camera.h"
-#include "degrade/electronics.h"
-#include "degrade/iris.h"
-#include "degrade/monitor.h"
-#include "degrade/noise.h"
-#include "degrade/picture.h"
+#include "degrade/parts/electronics.h"
+#include "degrade/parts/iris.h"
+#include "degrade/parts/monitor.h"
+#include "degrade/parts/noise.h"
+#include "degrade/stage/camera.h"
+#include "degrade/stage/picture.h"
 
 namespace earthshine::degrade {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "degrade/point_moments.h"
+#include "degrade/moments/point_moments.h"
 
 namespace earthshine::degrade {
 namespace {

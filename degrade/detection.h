@@ -14,7 +14,7 @@
 // is no signal.
 #pragma once
 
-#include "degrade/noise_moments.h"
+#include "degrade/moments/noise_moments.h"
 
 namespace earthshine::degrade {
 

@@ -5,9 +5,9 @@
 #include "base/error.h"
 #include "degrade/carry.h"
 #include "degrade/chain.h"
-#include "degrade/line.h"
-#include "degrade/optics.h"
-#include "degrade/sensor.h"
+#include "degrade/parts/line.h"
+#include "degrade/parts/optics.h"
+#include "degrade/parts/sensor.h"
 
 namespace earthshine::degrade {
 namespace {

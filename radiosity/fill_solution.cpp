@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "radiosity/fill_solution.h"
 
-#include "radiosity/covered_patches.h"
+#include "radiosity/factors/covered_patches.h"
 #include "radiosity/ledger.h"
-#include "scenes/sky_parts.h"
-#include "scenes/spread_reflectance.h"
+#include "scenes/reflect/spread_reflectance.h"
+#include "scenes/sky/sky_parts.h"
 
 namespace earthshine::radiosity {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <span>
 
-#include "radiosity/form_factors.h"
-#include "radiosity/patches.h"
+#include "radiosity/factors/form_factors.h"
+#include "radiosity/patches/patches.h"
 
 namespace earthshine::radiosity {
 

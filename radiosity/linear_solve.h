@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "radiosity/form_factors.h"
+#include "radiosity/factors/form_factors.h"
 
 namespace earthshine::radiosity {
 

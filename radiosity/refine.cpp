@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "radiosity/split.h"
+#include "radiosity/patches/split.h"
 #include "radiosity/variation.h"
 
 namespace earthshine::radiosity {

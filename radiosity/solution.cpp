@@ -9,9 +9,9 @@
 #include "radiosity/light_ends.h"
 #include "radiosity/linear_solve.h"
 #include "radiosity/refine.h"
-#include "scenes/sky.h"
-#include "scenes/sky_parts.h"
-#include "scenes/spread_reflectance.h"
+#include "scenes/reflect/spread_reflectance.h"
+#include "scenes/sky/sky.h"
+#include "scenes/sky/sky_parts.h"
 
 namespace earthshine::radiosity {
 namespace {

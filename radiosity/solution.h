@@ -11,13 +11,13 @@
 #include <utility>
 #include <vector>
 
-#include "radiosity/direct.h"
-#include "radiosity/explicit_emitters.h"
-#include "radiosity/form_factors.h"
-#include "radiosity/patches.h"
-#include "scenes/effects.h"
-#include "scenes/light_groups.h"
-#include "scenes/quality.h"
+#include "radiosity/direct/direct.h"
+#include "radiosity/direct/explicit_emitters.h"
+#include "radiosity/factors/form_factors.h"
+#include "radiosity/patches/patches.h"
+#include "scenes/effects/effects.h"
+#include "scenes/effects/light_groups.h"
+#include "scenes/effects/quality.h"
 #include "scenes/ray_query.h"
 
 namespace earthshine::radiosity {

@@ -6,11 +6,11 @@
 #include <bit>
 #include <cmath>
 
+#include "base/numbers/random.h"
 #include "base/parallel.h"
-#include "base/random.h"
-#include "scenes/sky.h"
-#include "scenes/sky_parts.h"
-#include "scenes/spread_reflectance.h"
+#include "scenes/reflect/spread_reflectance.h"
+#include "scenes/sky/sky.h"
+#include "scenes/sky/sky_parts.h"
 
 namespace earthshine::radiosity {
 namespace {

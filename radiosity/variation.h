@@ -13,8 +13,8 @@
 #include <span>
 #include <vector>
 
+#include "radiosity/direct/sources.h"
 #include "radiosity/solution.h"
-#include "radiosity/sources.h"
 
 namespace earthshine::radiosity {
 

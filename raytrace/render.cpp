@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "raytrace/cryptomatte.h"
-#include "raytrace/first_hit.h"
-#include "raytrace/layers.h"
-#include "raytrace/passes.h"
-#include "raytrace/shading_setup.h"
-#include "raytrace/stated_error.h"
+#include "raytrace/frame/cryptomatte.h"
+#include "raytrace/frame/first_hit.h"
+#include "raytrace/frame/layers.h"
+#include "raytrace/passes/passes.h"
+#include "raytrace/passes/stated_error.h"
+#include "raytrace/shade/shading_setup.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -103,15 +103,6 @@ void summarise(const PixelSums& sums, const Window& window, Frame& frame) {
 }
 
 }  // namespace
-
-RenderOptions render_options(const scenes::QualityKnobs& knobs) {
-  RenderOptions options;
-  options.gather_rays = knobs.gather_rays;
-  options.shared.on = knobs.share_gather;
-  options.shared.smooth_share = knobs.smooth_share;
-  options.shared.noise = knobs.picture_noise;
-  return options;
-}
 
 Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
              const scenes::Effects& effects, const scenes::RayQuery& query,

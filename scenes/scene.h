@@ -117,7 +117,7 @@ struct Earth {
   std::optional<LatitudeAlbedo> by_latitude;  // lambert model: `albedo` times this
 };
 
-// Attitudes against time; scenes/attitude_file.h says how a turn is to be read.
+// Attitudes against time; scenes/sky/attitude_file.h says how a turn is to be read.
 struct AttitudeTable {
   std::string file;
   bool by_time = true;     // `at` is the time since orbit noon, s; otherwise the position, deg
@@ -139,7 +139,8 @@ struct Orbit {
   double noon_argument_deg = 0.0;  // argument of latitude at orbit noon
 };
 
-// How the light around a pixel's centre is weighed; raytrace/pixel_filter.h has the formulas.
+// How the light around a pixel's centre is weighed; raytrace/camera/pixel_filter.h has the
+// formulas.
 enum class FilterShape { Box, Triangle, Gaussian, BlackmanHarris };
 [[nodiscard]] std::string_view filter_name(FilterShape shape);  // as scene files have it
 

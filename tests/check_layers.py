@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Keeps the layers apart: base < scenes < radiosity < raytrace < degrade < studies < app.
+"""Keeps the layers apart: base < scenes < radiosity < raytrace < degrade < studies < app, and their rooms.
 
 usage: check_layers.py [ROOT]
 
-Fails on an upward include, a library used outside its owner, a library that prints or exits, a file
+Fails on an upward include, a room that is too full or unknown, a library used outside its owner, a library that prints or exits, a file
 that is too long, and a missing licence line. Prints one line per fault.
 """
 import fnmatch
@@ -12,19 +12,33 @@ import pathlib
 import re
 import sys
 
-# Each may include itself and those before it.
-LAYERS = ["base", "scenes", "radiosity", "raytrace", "degrade", "studies", "app"]
+# Floors, and the rooms of each: a file may include its own room and those before it. "." is the floor's own
+# folder.
+ROOMS = {
+    "base": [".", "numbers", "files"],
+    "scenes": [".", "text", "reflect", "light", "mesh/gltf", "mesh", "sky", "effects", "read"],
+    "radiosity": ["patches", "bodies", "factors", "objects", "direct", ".", "store", "exact/polygon",
+                  "exact/occlusion", "exact"],
+    "raytrace": ["camera", "frame", "light", "incoming", "paths", "share", "gather", "shade", "passes",
+                 "."],
+    "degrade": ["stage", "parts", "moments", ".", "settings", "range", "certify"],
+    "studies": [".", "cost", "error", "surfaces", "steer", "targets", "light", "sight", "why", "orbit",
+                "compare", "accuracy"],
+    "app": [".", "cctv", "render", "tools", "study", "report", "visibility", "compare", "accuracy"],
+}
+LAYERS = list(ROOMS)
+MOST_FILES = 20  # in a room
 
 # Library -> (what its includes look like, the files that may use it).
 OWNERS = {
     "Embree": (r"embree[34]?/", ["scenes/ray_query.cpp"]),
     "Eigen": (r"Eigen/", ["radiosity/*", "degrade/*"]),
-    "OpenEXR": (r"(OpenEXR/|Imath/|Imf|Imath|Iex|half\.h)", ["base/exr_*"]),
+    "OpenEXR": (r"(OpenEXR/|Imath/|Imf|Imath|Iex|half\.h)", ["base/files/exr_*"]),
     "oneTBB": (r"(tbb|oneapi)/", ["base/parallel.cpp"]),
-    "toml++": (r"toml(\+\+|plusplus)", ["scenes/toml_file.cpp"]),
-    "libpng": (r"png\.h", ["base/png_file.cpp", "base/png_reader.cpp"]),
-    "tinygltf": (r"tiny_?gltf", ["scenes/gltf_model.cpp", "scenes/gltf_writer.cpp"]),
-    "HDF5": (r"(hdf5(_hl)?|H5\w*)\.h", ["base/hdf5_handle.h"]),
+    "toml++": (r"toml(\+\+|plusplus)", ["scenes/text/toml_file.cpp"]),
+    "libpng": (r"png\.h", ["base/files/png_file.cpp", "base/files/png_reader.cpp"]),
+    "tinygltf": (r"tiny_?gltf", ["scenes/mesh/gltf/model.cpp", "scenes/mesh/gltf/writer.cpp"]),
+    "HDF5": (r"(hdf5(_hl)?|H5\w*)\.h", ["base/files/hdf5_handle.h"]),
     "CLI11": (r"CLI/", ["app/*"]),
     "nlohmann-json": (r"nlohmann/", ["app/*"]),
 }
@@ -54,7 +68,12 @@ def owner_fault(name, include):
     return None
 
 
-def include_fault(layer, quote, include):
+def room_of(name):
+    """The folder of a file below its floor; "." for the floor's own."""
+    return "/".join(name.split("/")[1:-1]) or "."
+
+
+def include_fault(layer, name, quote, include):
     if quote == "<":
         return None
     top = include.split("/")[0]
@@ -62,6 +81,11 @@ def include_fault(layer, quote, include):
         return f'"{include}": name it from the top, as "{layer}/…"'
     if LAYERS.index(top) > LAYERS.index(layer):
         return f"{layer} may not include {include}"
+    if top == layer:
+        here, there = room_of(name), room_of(include)
+        rooms = ROOMS[layer]
+        if here in rooms and there in rooms and rooms.index(there) > rooms.index(here):
+            return f"room {layer}/{here} may not include {include}"
     return None
 
 
@@ -71,7 +95,7 @@ def check_layer_file(layer, name, text):
         found = INCLUDE.match(line)
         if not found:
             continue
-        for fault in (include_fault(layer, *found.groups()), owner_fault(name, found.group(2))):
+        for fault in (include_fault(layer, name, *found.groups()), owner_fault(name, found.group(2))):
             if fault:
                 faults.append(f"{name}:{number}: {fault}")
     if layer != "app":
@@ -94,6 +118,23 @@ def check_form(name, text):
     return faults
 
 
+def check_rooms(names):
+    """Every source file stands in a known room that is not too full; tests stand where what they test does."""
+    faults = []
+    files = {}
+    for name in names:
+        floor, room = name.removeprefix("tests/").split("/")[0], room_of(name.removeprefix("tests/"))
+        if floor not in ROOMS:
+            continue
+        files.setdefault(name.rsplit("/", 1)[0], []).append(name)
+        if room not in ROOMS[floor]:
+            faults.append(f"{name}: {floor} has no room {room}; its rooms are {', '.join(ROOMS[floor])}")
+    for folder, inside in files.items():
+        if len(inside) > MOST_FILES:
+            faults.append(f"{folder}: {len(inside)} files; at most {MOST_FILES}: divide it")
+    return faults
+
+
 def check(root):
     faults = []
     scripts = [path for path in (root / "dev", root / ".ci" / "run") if path.exists()]
@@ -106,7 +147,8 @@ def check(root):
         layer = name.split("/")[0]
         if layer in LAYERS and path.suffix in (".cpp", ".h"):
             faults += check_layer_file(layer, name, text)
-    return faults, len(sources)
+    names = [path.relative_to(root).as_posix() for path in sources if path.suffix in (".cpp", ".h")]
+    return faults + check_rooms(names), len(sources)
 
 
 def main():

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <string>
 
-#include "base/random.h"
+#include "base/numbers/random.h"
 #include "degrade/chain.h"
-#include "degrade/presets.h"
+#include "degrade/settings/presets.h"
 
 namespace earthshine {
 namespace {

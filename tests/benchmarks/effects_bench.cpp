@@ -9,12 +9,12 @@
 #include <string>
 
 #include "degrade/chain.h"
-#include "degrade/presets.h"
+#include "degrade/settings/presets.h"
 #include "payload_bay.h"
 #include "radiosity/solution.h"
 #include "raytrace/render.h"
-#include "scenes/photometry.h"
-#include "scenes/quality.h"
+#include "scenes/effects/quality.h"
+#include "scenes/light/photometry.h"
 
 namespace earthshine {
 namespace {

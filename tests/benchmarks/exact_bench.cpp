@@ -4,7 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include "base/parallel.h"
-#include "radiosity/exact_form_factors.h"
+#include "radiosity/exact/form_factors.h"
 #include "tests/support/boxes.h"
 
 namespace earthshine {

@@ -7,10 +7,10 @@
 #include <limits>
 #include <vector>
 
+#include "base/numbers/random.h"
 #include "base/parallel.h"
-#include "base/random.h"
-#include "radiosity/form_factors.h"
-#include "radiosity/patch_rays.h"
+#include "radiosity/factors/form_factors.h"
+#include "radiosity/factors/patch_rays.h"
 #include "tests/benchmarks/payload_bay.h"
 #include "tests/support/scene_builder.h"
 

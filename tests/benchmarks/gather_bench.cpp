@@ -5,9 +5,9 @@
 
 #include "base/parallel.h"
 #include "radiosity/solution.h"
-#include "raytrace/gather_field.h"
-#include "raytrace/gather_rays.h"
-#include "raytrace/shading_setup.h"
+#include "raytrace/gather/gather_field.h"
+#include "raytrace/gather/gather_rays.h"
+#include "raytrace/shade/shading_setup.h"
 #include "tests/benchmarks/payload_bay.h"
 
 namespace earthshine {

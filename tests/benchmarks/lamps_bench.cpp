@@ -8,9 +8,9 @@
 
 #include <cmath>
 
-#include "raytrace/light_sampler.h"
-#include "scenes/effects.h"
-#include "scenes/light_groups.h"
+#include "raytrace/light/light_sampler.h"
+#include "scenes/effects/effects.h"
+#include "scenes/effects/light_groups.h"
 #include "tests/benchmarks/many_lamps.h"
 
 namespace earthshine {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "base/random.h"
+#include "base/numbers/random.h"
 #include "scenes/ray_query.h"
 #include "scenes/scene.h"
 

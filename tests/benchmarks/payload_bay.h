@@ -3,10 +3,10 @@
 // short.
 #pragma once
 
-#include "scenes/effects.h"
-#include "scenes/light_groups.h"
+#include "scenes/effects/effects.h"
+#include "scenes/effects/light_groups.h"
 #include "scenes/ray_query.h"
-#include "scenes/scene_file.h"
+#include "scenes/read/scene_file.h"
 
 namespace earthshine {
 

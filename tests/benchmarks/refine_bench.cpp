@@ -17,8 +17,8 @@
 #include <iostream>
 #include <sstream>
 
-#include "raytrace/radiance_table.h"
-#include "scenes/scene_file.h"
+#include "raytrace/incoming/radiance_table.h"
+#include "scenes/read/scene_file.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "radiosity/form_factors.h"
+#include "radiosity/factors/form_factors.h"
 #include "radiosity/linear_solve.h"
 #include "tests/benchmarks/payload_bay.h"
 

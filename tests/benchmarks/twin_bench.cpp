@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "degrade/detection.h"
-#include "degrade/monitor.h"
-#include "degrade/noise_moments.h"
-#include "degrade/point_moments.h"
+#include "degrade/moments/noise_moments.h"
+#include "degrade/moments/point_moments.h"
+#include "degrade/parts/monitor.h"
 
 namespace earthshine {
 namespace {

@@ -36,8 +36,8 @@ class CheckLayers(unittest.TestCase):
         self.assertEqual(self.outcome({})[0], 1)
 
     def test_upward_include(self):
-        self.faulty("radiosity/a.cpp", '\n#include "degrade/iris.h"\n',
-                    "a.cpp:3: radiosity may not include degrade/iris.h")
+        self.faulty("radiosity/a.cpp", '\n#include "degrade/parts/iris.h"\n',
+                    "a.cpp:3: radiosity may not include degrade/parts/iris.h")
 
     def test_relative_include(self):
         self.faulty("radiosity/a.cpp", '#include "patches.h"\n', "name it from the top")

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "degrade/certificate.h"
+#include "degrade/certify/certificate.h"
 
 namespace earthshine::test {
 

@@ -10,9 +10,9 @@
 #include <ostream>
 #include <string>
 
-#include "base/random.h"
+#include "base/numbers/random.h"
 #include "base/units.h"
-#include "degrade/certificate.h"
+#include "degrade/certify/certificate.h"
 
 namespace earthshine::test {
 

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "degrade/chain.h"
-#include "degrade/presets.h"
+#include "degrade/settings/presets.h"
 #include "tests/degrade/fields.h"
 
 namespace earthshine::degrade {

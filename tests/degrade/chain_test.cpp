@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "degrade/presets.h"
+#include "degrade/settings/presets.h"
 #include "tests/degrade/fields.h"
 
 namespace earthshine::degrade {

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "degrade/noise_moments.h"
+#include "degrade/moments/noise_moments.h"
 
 namespace earthshine::test {
 

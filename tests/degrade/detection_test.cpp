@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "degrade/noise.h"
-#include "degrade/point_moments.h"
+#include "degrade/moments/point_moments.h"
+#include "degrade/parts/noise.h"
 #include "tests/degrade/fields.h"
 
 namespace earthshine::degrade {

@@ -6,8 +6,8 @@
 #include <cstddef>
 
 #include "base/image.h"
-#include "degrade/camera.h"
-#include "degrade/picture.h"
+#include "degrade/stage/camera.h"
+#include "degrade/stage/picture.h"
 
 namespace earthshine::test {
 

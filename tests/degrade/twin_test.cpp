@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "degrade/presets.h"
+#include "degrade/settings/presets.h"
 #include "tests/degrade/fields.h"
 
 namespace earthshine::degrade {

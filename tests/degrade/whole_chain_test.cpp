@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "degrade/chain.h"
-#include "degrade/presets.h"
+#include "degrade/settings/presets.h"
 #include "tests/degrade/fields.h"
 
 namespace earthshine::degrade {

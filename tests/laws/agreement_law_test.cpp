@@ -10,8 +10,8 @@
 
 #include <filesystem>
 
-#include "raytrace/path_tracer.h"
-#include "scenes/scene_file.h"
+#include "raytrace/paths/path_tracer.h"
+#include "scenes/read/scene_file.h"
 #include "tests/support/agreement.h"
 #include "tests/support/scene_builder.h"
 

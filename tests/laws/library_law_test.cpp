@@ -6,7 +6,7 @@
 #include <string_view>
 #include <tuple>
 
-#include "scenes/scene_file.h"
+#include "scenes/read/scene_file.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine {

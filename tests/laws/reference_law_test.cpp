@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "raytrace/path_tracer.h"
-#include "scenes/scene_file.h"
+#include "raytrace/paths/path_tracer.h"
+#include "scenes/read/scene_file.h"
 #include "tests/support/agreement.h"
 #include "tests/support/scene_builder.h"
 

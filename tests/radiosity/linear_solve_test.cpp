@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "base/random.h"
+#include "base/numbers/random.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::radiosity {

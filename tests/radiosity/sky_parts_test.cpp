@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Illuminance of patches by a sky in parts, against the same sky whole and against quadrature.
-#include "scenes/sky_parts.h"
+#include "scenes/sky/sky_parts.h"
 
 #include <gtest/gtest.h>
 

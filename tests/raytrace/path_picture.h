@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "raytrace/path_tracer.h"
+#include "raytrace/paths/path_tracer.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::raytrace {

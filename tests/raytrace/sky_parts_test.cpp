@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures under a sky in parts: with the same rays the layers of the parts add up to the picture
 // under the whole sky.
-#include "scenes/sky_parts.h"
+#include "scenes/sky/sky_parts.h"
 
 #include <gtest/gtest.h>
 

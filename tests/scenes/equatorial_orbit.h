@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // An orbit the way astronomers write it: inclination, node, argument of latitude in the equatorial
 // inertial frame (x to the vernal equinox, z to the north pole), and the Sun by right ascension and
-// declination. It shares no algebra with scenes/orbit.cpp, which knows the local vertical only.
+// declination. It shares no algebra with scenes/sky/orbit.cpp, which knows the local vertical only.
 #pragma once
 
 #include <cmath>
 #include <string_view>
 
-#include "scenes/orbit.h"
+#include "scenes/sky/orbit.h"
 
 namespace earthshine::test {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/idle.h"
+#include "scenes/effects/idle.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::scenes {

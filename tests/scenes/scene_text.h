@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/scene_file.h"
+#include "scenes/read/scene_file.h"
 #include "tests/base/temporary_folder.h"
 
 namespace earthshine::test {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "raytrace/render.h"
-#include "scenes/orbit.h"
-#include "studies/light_basis.h"
+#include "scenes/sky/orbit.h"
+#include "studies/light/light_basis.h"
 #include "tests/studies/plates.h"
 #include "tests/support/scene_builder.h"
 

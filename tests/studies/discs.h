@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "degrade/iris.h"
-#include "studies/sight.h"
+#include "degrade/parts/iris.h"
+#include "studies/sight/sight.h"
 
 namespace earthshine::tests {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/random.h"
+#include "base/numbers/random.h"
 
 namespace earthshine::tests {
 

@@ -2,7 +2,7 @@
 // A cube seen from inside with boxes in it, cut into patches at will.
 #pragma once
 
-#include "radiosity/patches.h"
+#include "radiosity/patches/patches.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::tests {

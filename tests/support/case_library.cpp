@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "radiosity/exact_form_factors.h"
+#include "radiosity/exact/form_factors.h"
 #include "tests/support/case_builders.h"
 #include "tests/support/scene_builder.h"
 

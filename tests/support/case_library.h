@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "radiosity/object_form_factors.h"
+#include "radiosity/objects/form_factors.h"
 #include "tests/support/case_scene.h"
 
 namespace earthshine::tests {

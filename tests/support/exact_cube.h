@@ -9,7 +9,7 @@
 #include <functional>
 #include <vector>
 
-#include "radiosity/patches.h"
+#include "radiosity/patches/patches.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::tests {

@@ -2,8 +2,8 @@
 // Patches with random trees: some cells cut once, some many times, in no order.
 #pragma once
 
-#include "base/random.h"
-#include "radiosity/split.h"
+#include "base/numbers/random.h"
+#include "radiosity/patches/split.h"
 
 namespace earthshine::tests {
 

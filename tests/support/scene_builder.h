@@ -6,8 +6,8 @@
 #include <string>
 
 #include "radiosity/solution.h"
-#include "scenes/effects.h"
-#include "scenes/light_groups.h"
+#include "scenes/effects/effects.h"
+#include "scenes/effects/light_groups.h"
 #include "scenes/ray_query.h"
 #include "scenes/scene.h"
 

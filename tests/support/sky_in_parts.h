@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "scenes/sky_parts.h"
+#include "scenes/sky/sky_parts.h"
 
 namespace earthshine::tests {
 

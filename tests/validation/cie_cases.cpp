@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "scenes/ies_file.h"
+#include "scenes/light/ies_file.h"
 #include "tests/support/ies_text.h"
 #include "tests/support/scene_builder.h"
 

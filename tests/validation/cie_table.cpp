@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
-#include "scenes/quality.h"
-#include "studies/reach_surfaces.h"
+#include "scenes/effects/quality.h"
+#include "studies/steer/reach_surfaces.h"
 #include "tests/support/scene_builder.h"
 #include "tests/validation/cie_cases.h"
 #include "tests/validation/tables.h"

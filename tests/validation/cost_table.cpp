@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "scenes/scene_file.h"
+#include "scenes/read/scene_file.h"
 #include "tests/support/case_scene.h"
 #include "tests/support/scene_builder.h"
 #include "tests/validation/tables.h"

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "radiosity/form_factors.h"
+#include "radiosity/factors/form_factors.h"
 
 namespace earthshine::radiosity {
 

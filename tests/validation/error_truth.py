@@ -35,7 +35,7 @@ class Truth:
         self.error, self.doubt, self.bias, self.mean = error, doubt, bias, mean
 
 
-BRIGHT = 4.0  # times the mean: above, an error counts in proportion (raytrace/frame.h, error_weight)
+BRIGHT = 4.0  # times the mean: above, an error counts in proportion (raytrace/frame/frame.h, error_weight)
 
 
 def compare(values, first, second, counts=None):

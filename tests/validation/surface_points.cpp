@@ -4,8 +4,8 @@
 #include <numeric>
 #include <span>
 
-#include "base/random.h"
-#include "raytrace/radiance_table.h"
+#include "base/numbers/random.h"
+#include "raytrace/incoming/radiance_table.h"
 
 namespace earthshine::validation {
 namespace {

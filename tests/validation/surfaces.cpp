@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "radiosity/closed_bodies.h"
-#include "radiosity/solution_file.h"
-#include "scenes/light_groups.h"
-#include "scenes/quality.h"
-#include "scenes/scene_file.h"
+#include "radiosity/bodies/closed_bodies.h"
+#include "radiosity/store/solution_file.h"
+#include "scenes/effects/light_groups.h"
+#include "scenes/effects/quality.h"
+#include "scenes/read/scene_file.h"
 #include "tests/validation/surface_points.h"
 
 namespace {

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/accuracy/parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+
+#include "app/console.h"
+#include "app/memory.h"
+#include "base/error.h"
+
+namespace earthshine::app {
+namespace {
+
+double cpu_seconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+Json facts_of(const studies::StepCost& cost) {
+  return {{"wall_seconds", cost.wall_seconds},
+          {"cpu_seconds", cost.cpu_seconds},
+          {"solve_wall_seconds", cost.solve_wall_seconds},
+          {"solve_cpu_seconds", cost.solve_cpu_seconds},
+          {"patches", cost.patches},
+          {"solve_rays", cost.solve_rays},
+          {"picture_rays", cost.picture_rays},
+          {"form_factor_rays", cost.form_factor_rays},
+          {"gather_rays", cost.gather_rays},
+          {"camera_samples", cost.camera_samples},
+          {"memory_bytes", cost.memory_bytes},
+          {"estimate", cost.stated.estimate},
+          {"bound_95", cost.stated.bound_95},
+          {"estimate_cpu_seconds", cost.statement_cpu_seconds}};
+}
+
+bool usable(const StoredPart& part, bool step) {
+  try {
+    if (step) return AccuracyParts::cost_of(part.facts).cpu_seconds >= 0.0;
+    return part.facts.at("cpu_seconds").get<double>() >= 0.0;
+  } catch (const Json::exception&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+AccuracyParts::AccuracyParts(const AccuracyTask& task, const studies::StudyScene& scene)
+    : task_(task), scene_(scene), cpu_start_(cpu_seconds()) {
+  common_marks_ = {{"study", "accuracy"},
+                   {"version", EARTHSHINE_VERSION},
+                   {"scene", scene_marks(task.loaded)},
+                   {"camera", camera_marks(task.view.camera)},
+                   {"columns", task.view.columns},
+                   {"rows", task.view.rows}};
+}
+
+Json AccuracyParts::marks_of(const studies::Batch& batch) const {
+  Json marks = common_marks_;
+  marks["seed"] = task_.view.seed;
+  marks["reference"] = {{"paths", batch.paths == raytrace::PathSet::All ? "all" : "gathered"},
+                        {"side", batch.side},
+                        {"index", batch.index},
+                        {"paths_per_pixel", batch.paths_per_pixel}};
+  return marks;
+}
+
+// Every knob that the picture depends on, as resolved: a default that changes has other marks.
+Json AccuracyParts::marks_of(const studies::AccuracyStep& step, std::uint64_t seed) const {
+  Json marks = common_marks_;
+  const radiosity::SolveOptions solver = studies::solver_of(scene_, step, seed);
+  const raytrace::RenderOptions picture = studies::picture_of(scene_, task_.view, step);
+  marks["seed"] = seed;
+  marks["step"] = {{"method", step.method},
+                   {"lights", step.lights},
+                   {"steered", step.steered()},
+                   {"wanted_error", step.quality.error.value_or(0.0)},
+                   {"gather_rays", picture.gather_rays},
+                   {"share_gather", picture.shared.on},
+                   {"smooth_share", picture.shared.smooth_share},
+                   {"picture_noise", picture.shared.noise}};
+  if (step.indirect == raytrace::Indirect::Radiosity) {
+    marks["solve"] = {{"patch_edge_m", solver.patch_edge_m},
+                      {"form_factor_rays", solver.form_factor_rays},
+                      {"tolerance", solver.tolerance},
+                      {"refine", solver.refine.on},
+                      {"start_edge_m", solver.refine.start_edge_m},
+                      {"max_patches", solver.refine.max_patches},
+                      {"error", solver.refine.error}};
+  }
+  return marks;
+}
+
+studies::StepCost AccuracyParts::cost_of(const Json& facts) {
+  studies::StepCost cost;
+  facts.at("wall_seconds").get_to(cost.wall_seconds);
+  facts.at("cpu_seconds").get_to(cost.cpu_seconds);
+  facts.at("solve_wall_seconds").get_to(cost.solve_wall_seconds);
+  facts.at("solve_cpu_seconds").get_to(cost.solve_cpu_seconds);
+  facts.at("patches").get_to(cost.patches);
+  facts.at("solve_rays").get_to(cost.solve_rays);
+  facts.at("picture_rays").get_to(cost.picture_rays);
+  facts.at("form_factor_rays").get_to(cost.form_factor_rays);
+  facts.at("gather_rays").get_to(cost.gather_rays);
+  facts.at("camera_samples").get_to(cost.camera_samples);
+  facts.at("memory_bytes").get_to(cost.memory_bytes);
+  facts.at("estimate").get_to(cost.stated.estimate);
+  facts.at("bound_95").get_to(cost.stated.bound_95);
+  facts.at("estimate_cpu_seconds").get_to(cost.statement_cpu_seconds);
+  return cost;
+}
+
+bool AccuracyParts::has(const studies::Batch& batch) const {
+  return task_.store.has(marks_of(batch));
+}
+
+bool AccuracyParts::has(const studies::AccuracyStep& step, std::uint64_t seed) const {
+  return task_.store.has(marks_of(step, seed));
+}
+
+std::optional<StoredPart> AccuracyParts::stored(const Json& marks, bool step) {
+  std::string said;
+  std::optional<StoredPart> part = task_.store.find(marks, said);
+  if (part && !usable(*part, step)) {
+    said = "a file of the folder points lacks some of its figures; it is done again";
+    part.reset();
+  }
+  if (!said.empty() && !task_.common.quiet) note("note: " + said);
+  if (part) ++finished_;
+  return part;
+}
+
+void AccuracyParts::end_early() const {
+  throw base::Error(base::Blame::Work, "study accuracy", "interrupted", {},
+                    fmt::format("{} parts are finished in {}; the same command goes on from them",
+                                finished_, task_.call.folder));
+}
+
+StoredPart AccuracyParts::batch(const studies::Batch& batch) {
+  const Json marks = marks_of(batch);
+  if (auto part = stored(marks, false)) return *part;
+  if (task_.view.stop()) end_early();
+  Progress progress("reference", task_.common.quiet);
+  const double before = cpu_seconds();
+  auto image = studies::trace_batch(scene_, task_.view, batch, std::ref(progress));
+  if (!image) end_early();
+  StoredPart part{{{"cpu_seconds", cpu_seconds() - before}}, std::move(*image)};
+  task_.store.keep(marks, part);
+  ++finished_;
+  return part;
+}
+
+StoredPart AccuracyParts::point(const studies::AccuracyStep& step, std::uint64_t seed) {
+  const Json marks = marks_of(step, seed);
+  if (auto part = stored(marks, true)) return *part;
+  if (task_.view.stop()) end_early();
+  const radiosity::SolveOptions solver = studies::solver_of(scene_, step, seed);
+  const auto alike = std::count_if(
+      expected_.begin(), expected_.end(),
+      [&](const radiosity::SolveOptions& other) { return studies::same_solver(other, solver); });
+  studies::AccuracyView view = task_.view;
+  view.seed = seed;
+  Progress progress(step.name(), task_.common.quiet);
+  auto result =
+      studies::run_step(scene_, view, step, alike > 1 ? shared_ : single_, std::ref(progress));
+  if (!result) end_early();
+  base::Image image{view.columns, view.rows, {}};
+  image.channels.push_back({"Y", std::move(result->luminance)});
+  StoredPart part{facts_of(result->cost), std::move(image)};
+  task_.store.keep(marks, part);
+  ++finished_;
+  return part;
+}
+
+void AccuracyParts::expect(const std::vector<studies::AccuracyStep>& steps) {
+  for (const studies::AccuracyStep& step : steps) {
+    // A steered one makes its own solutions.
+    if (step.indirect != raytrace::Indirect::Radiosity || step.steered()) continue;
+    expected_.push_back(studies::solver_of(scene_, step, task_.view.seed));
+  }
+}
+
+std::string AccuracyParts::does_not_fit(const studies::AccuracyStep& step) const {
+  const raytrace::RenderOptions picture = studies::picture_of(scene_, task_.view, step);
+  try {
+    check_memory(task_.loaded, task_.query, studies::solver_of(scene_, step, task_.view.seed),
+                 &picture, true);
+  } catch (const base::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+double AccuracyParts::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+double AccuracyParts::wall_per_cpu() const {
+  // Reading what is stored takes little of either.
+  return std::max(1e-3, seconds()) / std::max(1e-3, cpu_seconds() - cpu_start_);
+}
+
+void AccuracyParts::tell(const std::string& what, double seconds_left,
+                         const std::string& found) const {
+  if (task_.common.quiet) return;
+  std::string line = what;
+  if (!found.empty()) line += ": " + found;
+  if (seconds_left > 0.0) line += ", about " + duration(seconds_left) + " to go";
+  note(line);
+}
+
+}  // namespace earthshine::app

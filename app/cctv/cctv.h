@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// The CCTV stage as the commands use it: which camera and monitor, the picture, what to tell about
+// it.
+#pragma once
+
+#include <string>
+#include <type_traits>
+
+#include "app/command.h"
+#include "base/image.h"
+#include "degrade/chain.h"
+#include "degrade/settings/camera_file.h"
+#include "degrade/twin.h"
+#include "scenes/scene.h"
+
+namespace earthshine::app {
+
+inline constexpr std::string_view default_preset = "sit-monochrome";
+
+struct CctvSetup {
+  std::string name;  // of the [[cctv]] table or preset
+  degrade::Setup chain;
+};
+
+// What `camera` of the scene names, or the default preset, which is said on standard error unless
+// `quiet`. The scene's [monitor]; each camera of a scene has noise of its own.
+[[nodiscard]] CctvSetup cctv_of_camera(const scenes::Scene& scene, const scenes::Camera& camera,
+                                       const Common& common);
+[[nodiscard]] CctvSetup cctv_of(const degrade::ResolvedCamera& camera, const Common& common);
+// A camera that ships, with its monitor. Throws base::Error (Input) for an unknown name.
+[[nodiscard]] CctvSetup cctv_of_preset(const std::string& name, const Common& common);
+
+[[nodiscard]] degrade::Result run_chain(const CctvSetup& setup, const base::Image& radiance);
+
+// The value of a setting; an enumerator as its word.
+template <class Value>
+[[nodiscard]] Json setting_json(const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    return degrade::word_of(value);
+  } else {
+    return value;
+  }
+}
+// Every setting in use.
+[[nodiscard]] Json settings_json(const degrade::CctvCamera& camera);
+[[nodiscard]] Json monitor_json(const degrade::Monitor& monitor);
+
+// A PNG, or an EXR of what the viewer sees in cd/m^2; both say the settings and the exposure.
+void write_cctv(const std::string& path, const CctvSetup& setup, const degrade::Result& result);
+
+void write_twin(const std::string& path, const CctvSetup& setup, const degrade::Twin& twin,
+                const degrade::Result& noisy);
+// Medians over the resels, and the share of the picture where a target is seen as often as not.
+[[nodiscard]] Json twin_json(const degrade::Twin& twin);
+
+[[nodiscard]] Json cctv_json(const CctvSetup& setup, const degrade::Result& result);
+// One line for people: f-number, gain, what clips.
+[[nodiscard]] std::string cctv_summary(const CctvSetup& setup, const degrade::Result& result);
+
+}  // namespace earthshine::app

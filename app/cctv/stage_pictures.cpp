@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/cctv/stage_pictures.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <utility>
+
+#include "app/output.h"
+#include "base/files/exr_file.h"
+
+namespace earthshine::app {
+
+StagePictures::StagePictures(std::string folder, degrade::Options& options)
+    : folder_(std::move(folder)), options_(options) {
+  if (folder_.empty()) return;
+  prepare_folder(folder_, {});
+  options_.watch = [this, count = 0](std::string_view stage,
+                                     const degrade::Picture& picture) mutable {
+    base::write_exr(fmt::format("{}/{:02}-{}.exr", folder_, ++count, stage),
+                    degrade::to_image(picture),
+                    {{{"earthshine:cctv.stage", std::string(stage)}}, {}});
+  };
+}
+
+StagePictures::~StagePictures() { options_.watch = {}; }
+
+}  // namespace earthshine::app

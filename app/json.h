@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// JSON and CSV as the program writes them.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "base/units.h"
+
+namespace earthshine::app {
+
+using Json = nlohmann::ordered_json;
+
+[[nodiscard]] inline Json to_json(const Rgb& value) {
+  return Json::array({value.r, value.g, value.b});
+}
+// Indented text with a final newline. Numbers that are not finite become null.
+[[nodiscard]] std::string dump(const Json& json);
+
+// A number, or null.
+template <class Number>
+[[nodiscard]] Json to_json(const std::optional<Number>& value) {
+  return value ? Json(*value) : Json();
+}
+
+// Comma-separated values (RFC 4180): `rows` are flat objects with the keys of the first, which
+// become the header. null is an empty field.
+[[nodiscard]] std::string csv_of(const Json& rows);
+
+}  // namespace earthshine::app

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/options.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <system_error>
+
+namespace earthshine::app {
+namespace {
+
+constexpr int largest_edge_px = 16384;
+
+}  // namespace
+
+void add_scene_options(CLI::App& command, SceneInput& input) {
+  command.add_option("SCENE", input.path, "Scene file (TOML)")->required()->type_name("");
+  command
+      .add_option("--set", input.overrides,
+                  "Change a key of the scene: quality.gather_rays=64, camera.A.fov_deg=30 "
+                  "(may be repeated)")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
+  command
+      .add_option_function<std::string>(
+          "--error",
+          [&input](const std::string& text) {
+            double error = 0.0;
+            const char* end = text.data() + text.size();
+            const auto [stop, problem] = std::from_chars(text.data(), end, error);
+            if (problem != std::errc() || stop != end) {
+              throw CLI::ValidationError("--error", "\"" + text + "\" is not a number");
+            }
+            input.overrides.push_back(fmt::format("quality.error={}", error));
+          },
+          "Wanted relative error; the same as --set quality.error=E")
+      ->type_name("E");
+}
+
+void add_size_option(CLI::App& command, std::optional<Size>& size) {
+  const auto read = [&size](const std::string& text) {
+    Size found;
+    const char* end = text.data() + text.size();
+    const auto columns = std::from_chars(text.data(), end, found.columns);
+    const bool has_x = columns.ec == std::errc() && columns.ptr != end && *columns.ptr == 'x';
+    const auto rows = has_x ? std::from_chars(columns.ptr + 1, end, found.rows) : columns;
+    if (!has_x || rows.ec != std::errc() || rows.ptr != end || found.columns < 1 ||
+        found.rows < 1 || found.columns > largest_edge_px || found.rows > largest_edge_px) {
+      throw CLI::ValidationError(
+          "--size", fmt::format("\"{}\" is not COLUMNSxROWS, each from 1 to {}, such as 512x384",
+                                text, largest_edge_px));
+    }
+    size = found;
+  };
+  command
+      .add_option_function<std::string>("--size", read, "Columns and rows (default: the camera's)")
+      ->type_name("CxR");
+}
+
+std::vector<std::string> split_at_commas(const std::string& text) {
+  std::vector<std::string> words(1);
+  for (const char c : text) {
+    if (c == ',')
+      words.emplace_back();
+    else
+      words.back() += c;
+  }
+  return words;
+}
+
+std::uint64_t read_whole_number(const std::string& option, const std::string& text,
+                                std::uint64_t least, std::uint64_t most) {
+  std::uint64_t number = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, problem] = std::from_chars(text.data(), end, number);
+  if (problem != std::errc() || stop != end || number < least || number > most) {
+    throw CLI::ValidationError(
+        option, fmt::format("\"{}\" is not a whole number from {} to {}", text, least, most));
+  }
+  return number;
+}
+
+void add_whole_number(CLI::App& command, const std::string& flags, std::uint64_t& value,
+                      std::uint64_t least, std::uint64_t most, const std::string& help) {
+  const auto read = [&value, least, most, flags](const std::string& text) {
+    value = read_whole_number(flags, text, least, most);
+  };
+  command.add_option_function<std::string>(flags, read, help)->type_name("N");
+}
+
+void add_number(CLI::App& command, const std::string& flags, std::optional<double>& value,
+                double least, double most, const std::string& help) {
+  const auto read = [&value, least, most, flags](const std::string& text) {
+    double number = 0.0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, problem] = std::from_chars(text.data(), end, number);
+    if (problem != std::errc() || stop != end || !(number >= least && number <= most)) {
+      throw CLI::ValidationError(
+          flags, fmt::format("\"{}\" is not a number from {} to {}", text, least, most));
+    }
+    value = number;
+  };
+  command.add_option_function<std::string>(flags, read, help)->type_name("X");
+}
+
+void add_memory_option(CLI::App& command, std::uint64_t& bytes) {
+  command
+      .add_option_function<std::string>(
+          "--max-memory",
+          [&bytes](const std::string& text) {
+            double size = 0.0;
+            const char* end = text.data() + text.size();
+            const auto read = std::from_chars(text.data(), end, size);
+            const std::string unit(read.ptr, end);
+            const double scale = unit == "MiB" ? 0x1p20 : unit == "GiB" ? 0x1p30 : 0.0;
+            if (read.ec != std::errc() || scale == 0.0 || !(size * scale >= 0x1p20) ||
+                size * scale > 0x1p50) {
+              throw CLI::ValidationError(
+                  "--max-memory",
+                  "\"" + text + "\" is not a size of 1MiB or more, such as 500MiB or 2GiB");
+            }
+            bytes = static_cast<std::uint64_t>(size * scale);
+          },
+          "Memory that the work may take (default: what is free)")
+      ->type_name("SIZE");
+}
+
+void add_time_limit(CLI::App& command, double& seconds, const std::string& help) {
+  command
+      .add_option_function<std::string>(
+          "--time-limit",
+          [&seconds](const std::string& text) {
+            const char* end = text.data() + text.size();
+            const auto read = std::from_chars(text.data(), end, seconds);
+            if (read.ec == std::errc() && read.ptr == end && seconds > 0.0 && seconds <= 1e7) {
+              return;
+            }
+            throw CLI::ValidationError("--time-limit",
+                                       "\"" + text + "\" is not a number of seconds above 0");
+          },
+          help)
+      ->type_name("SECONDS");
+}
+
+CLI::Validator not_empty() {
+  return {[](const std::string& word) { return word.empty() ? "is an empty word" : ""; }, ""};
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// One camera's picture, drawn as the call wants it: with the scene's settings, within a time, or
+// until it is as exact as wanted.
+#pragma once
+
+#include "app/render/render_call.h"
+
+namespace earthshine::app {
+
+struct Drawn {
+  raytrace::Frame frame;
+  raytrace::RenderOptions options;  // that it was drawn with
+  studies::ErrorBudget errors;
+  std::vector<studies::Step> steps;  // with an error to reach: of the solution, then the picture's
+  studies::Limit limit = studies::Limit::None;
+  double seconds_to_go = 0.0;  // about, until the wanted error, if it was not reached
+};
+[[nodiscard]] Drawn draw_picture(const Studio& studio, const scenes::Camera& camera,
+                                 StageTimes& times);
+
+}  // namespace earthshine::app

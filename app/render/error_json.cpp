@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/render/error_json.h"
+
+#include <fmt/format.h>
+
+#include "app/console.h"
+
+namespace earthshine::app {
+namespace {
+
+using studies::Doubt;
+
+struct NamedPart {
+  const char* name;
+  const char* words;
+  Doubt part;
+};
+using Parts = std::vector<NamedPart>;
+
+Parts parts_of(const studies::ErrorParts& parts) {
+  return {{"gather_noise", "gather", parts.gather},
+          {"interreflection", "interreflection", parts.interreflection},
+          {"lobes", "lobes", parts.lobes},
+          {"camera_samples", "camera samples", parts.camera_samples}};
+}
+Parts parts_of(const studies::SolutionError& parts) {
+  return {{"form_factor_noise", "form factors", parts.form_factors},
+          {"patch_size", "patches", parts.patches},
+          {"solver_residual", "solver", parts.solver},
+          {"lamp_sampling", "lamps", parts.lamps}};
+}
+
+Json json_of(const Doubt& doubt) {
+  return {{"estimate", doubt.estimate}, {"bound_95", doubt.bound_95}};
+}
+
+// Null where nothing is seen that could be wrong.
+Json json_of(const Doubt& doubt, bool known) {
+  return known ? json_of(doubt) : Json{{"estimate", nullptr}, {"bound_95", nullptr}};
+}
+
+Json json_of(const studies::TargetError& target) {
+  Json json = json_of(target.error, target.luminance > 0.0);
+  json["name"] = target.name;
+  json["pixels"] = target.pixels;
+  json["luminance_cd_m2"] = target.pixels > 0 ? Json(target.luminance) : Json();
+  return json;
+}
+
+Json json_of(const Doubt& total, bool known, const Parts& parts, std::optional<double> wanted,
+             const std::vector<std::string>& not_captured) {
+  Json json = json_of(total, known);
+  json["wanted"] = wanted ? Json(*wanted) : Json();
+  json["parts"] = Json::object();
+  for (const NamedPart& part : parts) json["parts"][part.name] = json_of(part.part, known);
+  json["not_captured"] = not_captured;
+  return json;
+}
+
+std::string text_of(const Doubt& total, bool known, const Parts& parts,
+                    const std::vector<std::string>& not_captured) {
+  std::string text = "no error can be told: nothing lit is seen";
+  if (known) {
+    text = fmt::format("error {:.2g} %, 95 % sure below {:.2g} %:", 100.0 * total.estimate,
+                       100.0 * total.bound_95);
+    for (const NamedPart& part : parts) {
+      const double percent = 100.0 * part.part.estimate;
+      if (percent >= 0.005) text += fmt::format(" {} {:.2g},", part.words, percent);
+    }
+    text.pop_back();
+  }
+  for (const std::string& missing : not_captured) text += "\n  not in it: " + missing;
+  return text;
+}
+
+const char* words_of(studies::Limit limit) {
+  switch (limit) {
+    case studies::Limit::None:
+      return "";
+    case studies::Limit::Time:
+      return "--time-limit came first";
+    case studies::Limit::Memory:
+      return "memory came first (--max-memory, or what is free)";
+    case studies::Limit::Settings:
+      return "the settings that are given, or the scene's own faces, allow no better";
+    case studies::Limit::Steps:
+      return "no end in sight after several tries";
+    case studies::Limit::Stopped:
+      return "it was stopped";
+  }
+  return "";
+}
+
+void add_steps(Json& json, studies::Limit limit, const std::vector<studies::Step>& steps) {
+  json["limit"] = limit == studies::Limit::None ? Json() : Json(studies::limit_name(limit));
+  json["steps"] = Json::array();
+  for (const studies::Step& step : steps) {
+    Json one = {{"stage", step.stage}};
+    if (step.patches > 0) {
+      one["patches"] = step.patches;
+      one["form_factor_rays"] = step.form_factor_rays;
+    }
+    if (step.gather_rays > 0) one["gather_rays"] = step.gather_rays;
+    one["asked"] = step.asked;
+    if (step.estimate > 0.0) one["estimate"] = step.estimate;
+    json["steps"].push_back(one);
+  }
+}
+
+// What was chosen to reach the error, or why it is not reached.
+std::string choice_text(studies::Limit limit, const std::vector<studies::Step>& steps,
+                        std::optional<double> wanted, double seconds_to_go) {
+  if (!wanted || steps.empty()) return "";
+  std::string text;
+  for (const studies::Step& step : steps) {
+    text += fmt::format("\n  {}:", step.stage);
+    if (step.patches > 0) {
+      text += fmt::format(" {} patches, {} rays each,", step.patches, step.form_factor_rays);
+    }
+    if (step.gather_rays > 0) text += fmt::format(" {} gather rays a pixel,", step.gather_rays);
+    if (step.estimate > 0.0) text += fmt::format(" leaves {:.2g} %,", 100.0 * step.estimate);
+    text.pop_back();
+  }
+  if (limit != studies::Limit::None) {
+    text +=
+        fmt::format("\n  the wanted {:.2g} % is not reached: {}", 100.0 * *wanted, words_of(limit));
+  }
+  if (seconds_to_go > 0.0) {
+    text += fmt::format("; it needs about {} more", duration(seconds_to_go));
+  }
+  return text;
+}
+
+}  // namespace
+
+Json error_json(const Drawn& drawn, std::optional<double> wanted) {
+  const studies::ErrorBudget& budget = drawn.errors;
+  Json json =
+      json_of(budget.total, budget.pixels > 0, parts_of(budget.parts), wanted, budget.not_captured);
+  add_steps(json, drawn.limit, drawn.steps);
+  json["seconds_to_go"] = drawn.seconds_to_go > 0.0 ? Json(drawn.seconds_to_go) : Json();
+  json["targets"] = Json::array();
+  for (const auto& target : budget.targets) json["targets"].push_back(json_of(target));
+  return json;
+}
+
+Json error_json(const Solved& light, std::optional<double> wanted) {
+  const studies::SurfaceError& error = light.surface;
+  Json json =
+      json_of(error.parts.total(), error.known, parts_of(error.parts), wanted, error.not_captured);
+  add_steps(json, light.limit, light.steps);
+  return json;
+}
+
+void add_errors(base::ExrHeader& header, const Drawn& drawn) {
+  const studies::ErrorBudget& budget = drawn.errors;
+  const auto number = [&](const std::string& name, double value) {
+    header.numbers.emplace_back("earthshine:error." + name, static_cast<float>(value));
+  };
+  if (budget.pixels > 0) {
+    const Doubt total = budget.total;
+    number("estimate", total.estimate);
+    number("bound_95", total.bound_95);
+    for (const NamedPart& part : parts_of(budget.parts)) number(part.name, part.part.estimate);
+  }
+  header.text.emplace_back("earthshine:error.not_captured",
+                           fmt::format("{}", fmt::join(budget.not_captured, "; ")));
+  if (drawn.limit != studies::Limit::None) {
+    header.text.emplace_back("earthshine:error.limit", studies::limit_name(drawn.limit));
+  }
+}
+
+std::string error_text(const Drawn& drawn, std::optional<double> wanted) {
+  const studies::ErrorBudget& budget = drawn.errors;
+  return text_of(budget.total, budget.pixels > 0, parts_of(budget.parts), budget.not_captured) +
+         (budget.pixels > 0 ? choice_text(drawn.limit, drawn.steps, wanted, drawn.seconds_to_go)
+                            : "");
+}
+
+std::string error_text(const Solved& light, std::optional<double> wanted) {
+  const studies::SurfaceError& error = light.surface;
+  return text_of(error.parts.total(), error.known, parts_of(error.parts), error.not_captured) +
+         (error.known ? choice_text(light.limit, light.steps, wanted, 0.0) : "");
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// The error of a picture, or of a solution alone, as the commands show it.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "app/command.h"
+#include "app/render/draw.h"
+#include "base/files/exr_file.h"
+#include "studies/error/error_budget.h"
+#include "studies/surfaces/surface_error.h"
+
+namespace earthshine::app {
+
+// {"estimate", "bound_95", "wanted", "limit", "steps", "parts": {name: {"estimate", "bound_95"}},
+// "not_captured", "targets"}; estimates are null where nothing is seen that could be wrong.
+[[nodiscard]] Json error_json(const Drawn& drawn, std::optional<double> wanted);
+
+[[nodiscard]] Json error_json(const Solved& light, std::optional<double> wanted);
+
+void add_errors(base::ExrHeader& header, const Drawn& drawn);
+
+// One line: "error 1.8 % (below 2.4 %): patches 0.6, form factors 0.4, ..."
+[[nodiscard]] std::string error_text(const Drawn& drawn, std::optional<double> wanted);
+[[nodiscard]] std::string error_text(const Solved& light, std::optional<double> wanted);
+
+}  // namespace earthshine::app

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/render/light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/console.h"
+#include "app/memory.h"
+#include "app/solution.h"
+#include "studies/steer/picture_solver.h"
+#include "studies/steer/reach_surfaces.h"
+
+namespace earthshine::app {
+namespace {
+
+radiosity::SolveOptions solver_for(const RenderCall& call, const scenes::Scene& scene,
+                                   const Common& common) {
+  // A solution that is read is told by the settings that it was made with.
+  if (!call.solution.empty() || !steers(call, scene)) return solve_options(scene, common);
+  return studies::picture_solver(scene, scene.quality, common.seed);
+}
+
+// Within a time limit the solve gets about a fifth of the time: a coarse one tells how fast the
+// machine and the scene are. Patches and rays each grow as one over the error that they serve.
+Solved solve_within(const LightCall& wanted, double seconds, StageTimes& times) {
+  constexpr double coarse = 0.2, share = 0.2, worthwhile = 0.5;
+  scenes::Quality quality = wanted.loaded.scene.quality;
+  const double finest = quality.error.value_or(scenes::default_error);
+  const auto solve = [&](double error) {
+    quality.error = error;
+    Solved light;
+    light.solver = studies::picture_solver(wanted.loaded.scene, quality, wanted.common.seed);
+    light.solution = solve_or_read(wanted.loaded, wanted.query, light.solver, "", times);
+    light.solved = true;
+    return light;
+  };
+  const double before = times.total();
+  Solved light = solve(std::max(coarse, finest));
+  const double taken = std::max(1e-3, times.total() - before);
+  const double error = std::max(finest, coarse * std::sqrt(taken / (share * seconds)));
+  return error < worthwhile * coarse ? solve(error) : std::move(light);
+}
+
+bool says_how_to_solve(const scenes::Quality& quality) {
+  return quality.patch_edge_m || quality.max_patches || quality.form_factor_rays;
+}
+
+Solved solve_or_take(const LightCall& wanted, StageTimes& times) {
+  const RenderCall& call = wanted.call;
+  const LoadedScene& loaded = wanted.loaded;
+  Solved light;
+  light.solver = solver_for(call, loaded.scene, wanted.common);
+  if (call.indirect != raytrace::Indirect::Radiosity) return light;
+  if (!loaded.effects.solution && call.solution.empty()) {
+    if (loaded.groups.count() == 0) note("note: nothing gives light, the picture is black");
+    return light;
+  }
+  if (call.time_limit_s > 0.0 && call.solution.empty() &&
+      !says_how_to_solve(loaded.scene.quality)) {
+    return solve_within(wanted, call.time_limit_s, times);
+  }
+  light.solution = solve_or_read(loaded, wanted.query, light.solver, call.solution, times);
+  light.solved = true;
+  return light;
+}
+
+}  // namespace
+
+Solved solve_as_exactly(const ExactCall& call, StageTimes& times) {
+  const LoadedScene& loaded = call.loaded;
+  const studies::StudyScene scene{loaded.scene, loaded.groups, loaded.effects, call.query};
+  const auto start = std::chrono::steady_clock::now();
+  double in_stages = 0.0;
+  const studies::Wanted wanted = wanted_error(loaded, call.common, call.time_limit_s, times);
+  const studies::SolveListener listen = [&](const radiosity::SolveReport& report) {
+    times.add(report.seconds);
+    for (const auto& [stage, seconds] : report.seconds) in_stages += seconds;
+  };
+  studies::SteeredSolution found = studies::reach_surfaces(
+      scene, wanted, call.common.seed, listen, [&](const std::string& stage) -> raytrace::Progress {
+        const auto bar = std::make_shared<Progress>(stage, call.common.quiet);
+        return [bar](std::size_t done, std::size_t total) { (*bar)(done, total); };
+      });
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  times.add({{"residual", std::max(0.0, taken.count() - in_stages)}});
+  note_balance(found.solution);
+  Solved light;
+  light.solution = std::move(found.solution);
+  light.solver = found.solver;
+  light.solved = light.steered = true;
+  light.surface = std::move(found.surface);
+  light.steps = std::move(found.steps);
+  light.limit = found.limit;
+  return light;
+}
+
+bool steers(const RenderCall& call, const scenes::Scene& scene) {
+  return scene.quality.error && !call.no_error && call.indirect != raytrace::Indirect::Paths;
+}
+
+studies::Wanted wanted_error(const LoadedScene& loaded, const Common& common, double time_limit_s,
+                             const StageTimes& times) {
+  studies::Wanted wanted;
+  wanted.error = loaded.scene.quality.error.value_or(wanted.error);
+  wanted.seconds = time_limit_s;
+  const double before = times.total();
+  const auto start = std::chrono::steady_clock::now();
+  wanted.now = [before, start] {
+    const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;
+    return before + gone.count();
+  };
+  wanted.fits = [&loaded, &common](double patches, int rays) {
+    radiosity::SolveOptions options = solve_options(loaded.scene, common);
+    options.form_factor_rays = rays;
+    return patches_fit(loaded, options, static_cast<std::size_t>(patches));
+  };
+  return wanted;
+}
+
+Solved find_light(const LightCall& wanted, StageTimes& times) {
+  Solved light = solve_or_take(wanted, times);
+  if (light.solved && !wanted.common.quiet) note_backs(light.solution.report);
+  return light;
+}
+
+}  // namespace earthshine::app

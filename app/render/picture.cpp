@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+// One camera's picture: rendered, degraded, written, reported.
+#include <fmt/format.h>
+
+#include "app/cctv/cctv.h"
+#include "app/console.h"
+#include "app/interrupt.h"
+#include "app/provenance.h"
+#include "app/render/draw.h"
+#include "app/render/error_json.h"
+#include "app/render/light.h"
+#include "app/render/render_call.h"
+#include "base/files/exr_file.h"
+#include "base/files/png_file.h"
+#include "base/tone.h"
+#include "scenes/effects/quality.h"
+
+namespace earthshine::app {
+namespace {
+
+std::string name_of(std::size_t light_kind) {
+  return std::string(scenes::effect_of(static_cast<scenes::LightKind>(light_kind)));
+}
+Json rays_by_light(const raytrace::RayCounts& rays) {
+  Json counts = Json::object();
+  for (std::size_t k = 0; k < scenes::light_kinds; ++k) counts[name_of(k)] = rays.to_light[k];
+  return counts;
+}
+Json rays_by_light(const radiosity::SolveReport& solved) {
+  Json counts = Json::object();
+  for (std::size_t k = 0; k < scenes::light_kinds; ++k) {
+    counts[name_of(k)] = solved.sources_cost[k].rays;
+  }
+  return counts;
+}
+
+Json json_of(const Studio& studio, const scenes::Camera& camera, const raytrace::Frame& frame,
+             const StageTimes& times) {
+  const raytrace::RenderReport& report = frame.report;
+  const raytrace::RayCounts& rays = report.rays;
+  const radiosity::SolveReport& solved = studio.light.solution.report;
+  Json json = {{"camera", camera.name},
+               {"columns", frame.image.width},
+               {"rows", frame.image.height},
+               {"seconds", times.json()},
+               {"peak_memory_mib", peak_memory_mib()},
+               {"patches", solved.patches},
+               {"iterations", solved.iterations},
+               {"residual", solved.residual},
+               {"rays",
+                {{"form_factors", solved.form_factor_rays},
+                 {"direct", solved.shadow_rays},
+                 {"direct_by", rays_by_light(solved)},
+                 {"camera", rays.camera},
+                 {"shadow", rays.shadow},
+                 {"gather", rays.gather},
+                 {"lobe", rays.lobe},
+                 {"mirror", rays.mirror},
+                 {"refraction", rays.refraction},
+                 {"planning", rays.planning},
+                 {"layers", rays.layers},
+                 {"shadow_by", rays_by_light(rays)}}},
+               {"gather_rays", report.gather_rays},
+               {"camera_samples", report.camera_samples},
+               {"relative_noise", report.relative_noise},
+               {"finished_share", report.finished_share},
+               {"partial", report.stopped}};
+  // What a solution cost by kind of light is not kept in its file.
+  if (!studio.call.solution.empty()) json["rays"].erase("direct_by");
+  return json;
+}
+
+// The single pixel of --only-pixel, layer by layer.
+Json pixel_json(const scenes::Scene& scene, const raytrace::Frame& frame) {
+  const auto value = [&](const char* channel) {
+    return double(frame.image.find(channel)->values.front());
+  };
+  const auto name_of = [](const auto& list, double index) {
+    return index < 0.0 ? Json(nullptr) : Json(list[static_cast<std::size_t>(index)].name);
+  };
+  Json pixel = {{"x", frame.window.x}, {"y", frame.window.y}};
+  pixel["luminance_cd_m2"] = base::luminance({value("R"), value("G"), value("B")});
+  pixel["standard_error_cd_m2"] = std::sqrt(value("variance"));
+  pixel["camera_samples"] = frame.report.camera_samples;
+  pixel["object"] = name_of(scene.objects, value("object"));
+  pixel["material"] = name_of(scene.materials, value("material"));
+  Json channels = Json::object();
+  for (const base::Channel& channel : frame.image.channels) {
+    channels[channel.name] = double(channel.values.front());
+  }
+  pixel["channels"] = channels;
+  return pixel;
+}
+
+std::string pixel_text(const Json& pixel) {
+  std::string text = fmt::format(
+      "pixel {},{}: {:.6g} cd/m2 +- {:.2g}, {:.0f} camera samples, {}\n", pixel["x"].get<int>(),
+      pixel["y"].get<int>(), pixel["luminance_cd_m2"].get<double>(),
+      pixel["standard_error_cd_m2"].get<double>(), pixel["camera_samples"].get<double>(),
+      pixel["object"].is_null()
+          ? std::string("nothing there")
+          : fmt::format("object \"{}\", material \"{}\"", pixel["object"].get<std::string>(),
+                        pixel["material"].get<std::string>()));
+  for (const auto& [name, value] : pixel["channels"].items()) {
+    text += fmt::format("  {:<20} {:.9g}\n", name, value.get<double>());
+  }
+  return text;
+}
+
+void tell(const Studio& studio, const raytrace::Frame& frame, const StageTimes& times) {
+  for (const auto& [stage, seconds] : times.stages()) {
+    note(fmt::format("  {:<16} {:>10}", stage, duration(seconds)));
+  }
+  note(fmt::format("  {:<16} {:>10}, peak memory {:.0f} MiB", "total", duration(times.total()),
+                   peak_memory_mib()));
+  const radiosity::SolveReport& solved = studio.light.solution.report;
+  if (studio.light.solved && solved.patches > 0) {
+    note(fmt::format("  {} patches, {} form-factor and {} shadow rays, {} iterations to {:.1g}",
+                     solved.patches, short_count(static_cast<double>(solved.form_factor_rays)),
+                     short_count(static_cast<double>(solved.shadow_rays)), solved.iterations,
+                     solved.residual));
+  }
+  const raytrace::RenderReport& report = frame.report;
+  const auto rays = static_cast<double>(report.rays.total());
+  note(fmt::format(
+      "  {} rays for the picture, {} rays/s; {} gather rays and {:.1f} camera samples a "
+      "pixel; noise {:.2g} of the mean",
+      short_count(rays), short_count(rays / std::max(1e-9, report.seconds)), report.gather_rays,
+      report.camera_samples, report.relative_noise));
+  if (report.stopped) {
+    note(fmt::format("  stopped: {:.0f} % of the pixels are finished; the file is marked partial",
+                     100.0 * report.finished_share));
+  }
+}
+
+}  // namespace
+
+raytrace::RenderOptions picture_options(const RenderCall& call, const Common& common,
+                                        const LoadedScene& loaded, const scenes::Camera& camera) {
+  raytrace::RenderOptions options = raytrace::render_options(scenes::resolve_quality(loaded.scene));
+  options.columns = call.size ? call.size->columns : camera.columns;
+  options.rows = call.size ? call.size->rows : camera.rows;
+  // Paths share nothing.
+  const bool alone = call.indirect == raytrace::Indirect::Paths && options.shared.on;
+  if (alone && !loaded.scene.quality.gather_rays) {
+    options.gather_rays *= scenes::rays_alone_per_shared;
+  }
+  if (steers(call, loaded.scene)) options.error = *loaded.scene.quality.error;
+  options.fills_time = !steers(call, loaded.scene);
+  if (call.crop) options.crop = *call.crop;
+  options.indirect = call.indirect;
+  options.distributed_lights = static_cast<int>(call.distributed_lights);
+  options.distributed_over = call.distributed_over;
+  options.per_light = call.per_light;
+  options.aovs = call.aovs;
+  if (call.only_pixel) {
+    for (const char* layer : {"object", "material", "range", "variance"}) {
+      options.aovs.emplace_back(layer);
+    }
+  }
+  options.seed = common.seed;
+  options.stop = Interrupt::asked;
+  return options;
+}
+
+Picture take_picture(const Studio& studio, const scenes::Camera& camera, const PictureFiles& files,
+                     StageTimes times) {
+  const RenderCall& call = studio.call;
+  std::optional<CctvSetup> cctv;
+  if (!files.cctv.empty()) cctv = cctv_of_camera(studio.loaded.scene, camera, studio.common);
+  const Drawn drawn = draw_picture(studio, camera, times);
+  const raytrace::Frame& frame = drawn.frame;
+  const raytrace::RenderOptions& options = drawn.options;
+  std::optional<base::ToneMapped> tone;
+  std::optional<degrade::Result> screen;
+  if (!files.png.empty()) {
+    tone = times.measure("tone map", [&] { return base::tone_map(frame.image); });
+  }
+  if (tone && call.photo) {
+    tone->rgb = times.measure("over", [&] {
+      return lay_over(call.over, *call.photo, studio.loaded.scene, studio.query, camera, tone->rgb)
+          .rgb;
+    });
+  }
+  if (cctv) screen = times.measure("cctv", [&] { return run_chain(*cctv, frame.image); });
+  base::ExrHeader header = provenance_header(
+      {studio.loaded.scene, call.scene.overrides, camera, options, studio.light.solver,
+       studio.light.solved ? &studio.light.solution.report : nullptr, frame.report});
+  header.whole = {options.columns, options.rows, frame.window.x, frame.window.y};
+  add_errors(header, drawn);
+  if (call.timings) add_times(header, times);
+  times.measure("write", [&] {
+    if (tone) base::write_png(files.png, frame.image.width, frame.image.height, 3, tone->rgb);
+    if (screen) write_cctv(files.cctv, *cctv, *screen);
+    if (!files.output.empty()) base::write_exr(files.output, frame.image, header);
+  });
+  Picture picture{json_of(studio, camera, frame, times), !frame.report.stopped, frame.report, {}};
+  picture.times = times;
+  const std::optional<double> wanted =
+      call.no_error ? std::nullopt : studio.loaded.scene.quality.error;
+  picture.report["error"] = error_json(drawn, wanted);
+  if (screen) picture.report["cctv"] = cctv_json(*cctv, *screen);
+  if (call.only_pixel) {
+    picture.report["pixel"] = pixel_json(studio.loaded.scene, frame);
+    if (!call.json) print(pixel_text(picture.report["pixel"]));
+  }
+  if (studio.common.quiet) return picture;
+  tell(studio, frame, times);
+  if (!call.no_error) note("  " + error_text(drawn, wanted));
+  if (screen) note("  " + cctv_summary(*cctv, *screen));
+  return picture;
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// earthshine plan: which effects will run and why, how many rays and how much memory that is.
+// Traces a few rows of form factors for the memory, and a small run of the whole for the seconds.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <memory>
+
+#include "app/cctv/cctv_plan.h"
+#include "app/console.h"
+#include "app/memory.h"
+#include "app/options.h"
+#include "app/render/effect_table.h"
+#include "app/render/render_call.h"
+#include "base/free_memory.h"
+#include "base/parallel.h"
+#include "radiosity/refine.h"
+#include "scenes/effects/quality.h"
+
+namespace earthshine::app {
+namespace {
+
+std::vector<const scenes::Camera*> planned_cameras(const RenderCall& call,
+                                                   const scenes::Scene& scene) {
+  if (!call.cameras.empty()) return wanted_cameras(call.cameras, scene);
+  std::vector<const scenes::Camera*> all;
+  for (const scenes::Camera& camera : scene.cameras) all.push_back(&camera);
+  return all;
+}
+
+Json stages_that_run(const Json& planned) {
+  Json names = Json::array();
+  for (const Json& stage : planned) {
+    if (stage["runs"].get<bool>()) names.push_back(stage["stage"]);
+  }
+  return names;
+}
+
+Json images_of(const scenes::Scene& scene, const RenderCall& call, const scenes::Asked& asked,
+               std::uint64_t gather_rays) {
+  Json images = Json::array();
+  for (const scenes::Camera* camera : asked.cameras) {
+    const Size size = call.size.value_or(Size{camera->columns, camera->rows});
+    const auto pixels =
+        static_cast<std::uint64_t>(size.columns) * static_cast<std::uint64_t>(size.rows);
+    images.push_back(
+        {{"camera", camera->name},
+         {"resolution", {size.columns, size.rows}},
+         {"gather_rays", pixels * gather_rays},
+         {"cctv_stages", stages_that_run(plan_cctv(scene, *camera, !call.cctv.empty()))}});
+  }
+  return images;
+}
+
+// Of the solution alone, and of each camera's picture of its own size, the solution included.
+void add_memory(Json& report, const LoadedScene& loaded, const RenderCall& call,
+                const Common& common, const scenes::Asked& asked, const scenes::RayQuery& query) {
+  const radiosity::SolveOptions solver = solve_options(loaded.scene, common);
+  studies::MemoryCase sizes =
+      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
+  if (!loaded.effects.solution) {
+    sizes.solves = false;
+    sizes.columns = 0;
+  }
+  studies::expect_rows(sizes, loaded.scene, query, solver);
+  report["memory"] = memory_json(studies::memory_needed(sizes));
+  for (std::size_t k = 0; k < asked.cameras.size(); ++k) {
+    studies::MemoryCase with_picture = sizes;
+    studies::add_picture(with_picture, loaded.groups, loaded.effects,
+                         picture_options(call, common, loaded, *asked.cameras[k]));
+    report["images"][k]["memory"] = memory_json(studies::memory_needed(with_picture));
+  }
+}
+
+void add_seconds(Json& report, const LoadedScene& loaded, const RenderCall& call,
+                 const Common& common, const scenes::Asked& asked, const scenes::RayQuery& query) {
+  const Expectation expected = expect(loaded, call, common, asked, query);
+  add_expectation(report["effects"], expected);
+  const studies::Bill& bill = expected.pilot.bill;
+  double pictures = 0.0;
+  for (std::size_t k = 0; k < bill.pictures.size(); ++k) {
+    report["images"][k]["rays"] = bill.pictures[k].rays.total();
+    report["images"][k]["seconds"] = bill.pictures[k].seconds;
+    pictures += bill.pictures[k].seconds;
+  }
+  report["expected"] = {{"seconds", studies::total_seconds(bill)},
+                        {"solve_seconds", studies::total_seconds(bill) - pictures},
+                        {"patches", bill.solve.patches},
+                        {"cpu_seconds", studies::total_seconds(bill) * base::available_threads()},
+                        {"pilot_seconds", expected.pilot.seconds},
+                        {"pilot_cpu_seconds", expected.pilot.cpu_seconds}};
+}
+
+Json report_of(const RenderCall& call, const Common& common) {
+  LoadedScene loaded = load(call.scene, common.quiet);
+  const scenes::Asked asked = asked_of(call, planned_cameras(call, loaded.scene));
+  const std::vector<scenes::Idle> idle = decide_effects(loaded, call, asked);
+  const scenes::QualityKnobs knobs = scenes::resolve_quality(loaded.scene);
+  const auto rays_per_patch = std::bit_ceil(static_cast<std::uint64_t>(knobs.form_factor_rays));
+  const bool refines = knobs.refine && radiosity::is_lit(loaded.effects);
+  const std::size_t patches =
+      refines ? radiosity::most_refined_patches(loaded.scene, solve_options(loaded.scene, {}))
+              : radiosity::count_patches(loaded.scene, knobs.patch_edge_m);
+  const bool solves = loaded.effects.solution;
+  Json report;
+  report["scene"] = loaded.scene.path.string();
+  report["name"] = loaded.scene.name;
+  report["effects"] = effect_rows(loaded, call, asked, idle);
+  report["light_groups"] = loaded.groups.names;
+  report["quality"] = {{"patch_edge_m", knobs.patch_edge_m},
+                       {"refine", knobs.refine},
+                       {"form_factor_rays", rays_per_patch},
+                       {"gather_rays", knobs.gather_rays},
+                       {"solver_tolerance", knobs.solver_tolerance}};
+  report["patches"] = patches;
+  report["patches_at_most"] = refines;
+  report["rays"] = solves ? patches * rays_per_patch : 0;
+  report["right_hand_sides"] = 3 * loaded.groups.count();
+  report["images"] = images_of(loaded.scene, call, asked,
+                               solves ? static_cast<std::uint64_t>(knobs.gather_rays) : 0);
+  const scenes::RayQuery query(loaded.scene);
+  add_memory(report, loaded, call, common, asked, query);
+  add_seconds(report, loaded, call, common, asked, query);
+  return report;
+}
+
+// Said, and not refused, as render does: rows may turn out less full.
+std::string too_much_text(const Json& report) {
+  const auto free_bytes = base::free_memory_bytes();
+  if (!free_bytes) return "";
+  const double free_mib = static_cast<double>(*free_bytes) / 1048576.0;
+  double most = report["memory"]["total_mib"].get<double>();
+  for (const Json& image : report["images"]) {
+    most = std::max(most, image["memory"]["total_mib"].get<double>());
+  }
+  if (most <= free_mib) return "";
+  return fmt::format("that may not fit: {:.0f} MiB are {}; render looks closer and refuses\n",
+                     free_mib, base::memory_is_limited() ? "allowed by --max-memory" : "free");
+}
+
+std::string text_of(const Json& report) {
+  std::string text = fmt::format("{} ({})\n\n", report["name"].get<std::string>(),
+                                 report["scene"].get<std::string>());
+  text += effect_text(report["effects"]);
+  const Json& quality = report["quality"];
+  const bool refines = report["patches_at_most"].get<bool>();
+  const bool solves = report["rays"].get<double>() > 0.0;
+  if (solves) {
+    text += fmt::format(
+        "\n{}{} patches {}; {} form-factor rays ({} per patch)\n", refines ? "at most " : "",
+        report["patches"].get<std::size_t>(),
+        refines ? std::string("where light varies")
+                : fmt::format("with edges up to {:g} m", quality["patch_edge_m"].get<double>()),
+        short_count(report["rays"].get<double>()), quality["form_factor_rays"].get<int>());
+    text += fmt::format("{} right-hand sides, solved to {:g}\n",
+                        report["right_hand_sides"].get<std::size_t>(),
+                        quality["solver_tolerance"].get<double>());
+    text += std::string("memory of the solution: ") + (refines ? "at most " : "") +
+            memory_text(report["memory"]) + "\n";
+  } else {
+    text += "\nno radiosity: nothing is cut into patches and solved\n";
+  }
+  text += too_much_text(report);
+  text += fmt::format("expected on this machine: {}",
+                      duration(report["expected"]["seconds"].get<double>()));
+  if (solves) {
+    text += fmt::format(", of them {} for the solution of {} patches",
+                        duration(report["expected"]["solve_seconds"].get<double>()),
+                        report["expected"]["patches"].get<std::size_t>());
+    text += "; second looks, by which the error is stated, come on top";
+  }
+  text += "\n";
+  for (const Json& image : report["images"]) {
+    text += fmt::format(
+        "camera {}: {} x {} pixels, {} gather rays, {}, {:.0f} MiB in all\n",
+        image["camera"].get<std::string>(), image["resolution"][0].get<int>(),
+        image["resolution"][1].get<int>(), short_count(image["gather_rays"].get<double>()),
+        duration(image["seconds"].get<double>()), image["memory"]["total_mib"].get<double>());
+    const auto stages = image["cctv_stages"].get<std::vector<std::string>>();
+    if (!stages.empty()) text += fmt::format("  cctv: {}\n", fmt::join(stages, ", "));
+  }
+  return text;
+}
+
+}  // namespace
+
+Command add_plan(CLI::App& program) {
+  CLI::App* parser = program.add_subcommand(
+      "plan", "Which effects will run, which not and why, and how many rays");
+  const auto call = std::make_shared<RenderCall>();
+  add_scene_options(*parser, call->scene);
+  add_picture_options(*parser, *call);
+  parser->add_flag_callback(
+      "--cctv", [call] { call->cctv = "asked"; },
+      "As if the pictures on the CCTV monitors were asked for");
+  parser->add_flag("--json", call->json, "JSON on standard output");
+  return {parser, [call](const Common& common) {
+            check_aovs(*call);
+            const Json report = report_of(*call, common);
+            print(call->json ? dump(report) : text_of(report));
+          }};
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// earthshine render: scene to linear EXR, a viewable PNG and the CCTV picture, for one camera or
+// several.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "app/cctv/cctv.h"
+#include "app/cctv/range.h"
+#include "app/console.h"
+#include "app/interrupt.h"
+#include "app/memory.h"
+#include "app/options.h"
+#include "app/output.h"
+#include "app/provenance.h"
+#include "app/render/effect_table.h"
+#include "app/render/light.h"
+#include "app/render/render_call.h"
+#include "app/solution.h"
+#include "base/error.h"
+#include "base/files/output_file.h"
+#include "base/files/png_file.h"
+#include "base/parallel.h"
+#include "raytrace/camera/check.h"
+
+namespace earthshine::app {
+namespace {
+
+using base::Blame;
+using base::Error;
+
+void check_call(const RenderCall& call) {
+  check_aovs(call);
+  const auto check_ending = [](const std::string& path, std::string_view option,
+                               std::string_view ending) {
+    if (path.empty() || path.ends_with(ending) || path.starts_with("/dev/")) return;
+    throw Error(Blame::Input, option, fmt::format("\"{}\" is not a {} file", path, ending), {},
+                fmt::format("Name a file that ends in {}", ending));
+  };
+  check_ending(call.output, "-o", ".exr");
+  check_ending(call.png, "--png", ".png");
+  check_ending(call.cctv, "--cctv", ".png");
+  check_ending(call.range, "--range", ".exr");
+  check_ending(call.report, "--report", ".json");
+  check_over(call);
+  const bool range_alone = !call.range.empty() && call.png.empty() && call.cctv.empty();
+  if (call.output.empty() && !call.only_pixel && !call.over.asked() && !range_alone) {
+    throw Error(Blame::Input, "--output", "is missing", {},
+                "Name the picture: -o FILE.exr; only --range does without");
+  }
+  if (call.crop && !call.cctv.empty()) {
+    throw Error(Blame::Input, "--cctv", "the CCTV stage needs the whole picture", {},
+                "Leave out --cctv, --crop or --only-pixel");
+  }
+  if (call.indirect == raytrace::Indirect::Paths && !call.aovs.empty()) {
+    throw Error(Blame::Input, "--aov", "--indirect paths has no further layers", {},
+                "Take them from a render without it");
+  }
+  if (call.indirect == raytrace::Indirect::Paths && (call.crop || call.time_limit_s > 0.0)) {
+    throw Error(Blame::Input, "--indirect paths", "draws whole pictures, however long it takes", {},
+                "Leave out --crop, --only-pixel and --time-limit");
+  }
+  if (!call.solution.empty() && call.indirect != raytrace::Indirect::Radiosity) {
+    throw Error(Blame::Input, "--solution",
+                fmt::format("--indirect {} reads no solution", indirect_name(call.indirect)), {},
+                "Leave one of the two out");
+  }
+  if (!call.distributed_over.empty() && call.indirect != raytrace::Indirect::Distributed) {
+    throw base::Error(base::Blame::Input, "--distributed-over",
+                      fmt::format("--indirect {} spreads no lights", indirect_name(call.indirect)),
+                      {}, "Write --indirect distributed");
+  }
+}
+
+// "views/bay.exr" and camera A give "views/bay-A.exr".
+std::string with_camera(const std::string& path, const std::string& camera) {
+  if (path.empty() || path.starts_with("/dev/")) return path;
+  const std::filesystem::path whole(path);
+  return (whole.parent_path() / (whole.stem().string() + "-" + camera + whole.extension().string()))
+      .string();
+}
+
+struct Wanted {
+  const scenes::Camera* camera;
+  PictureFiles files;
+};
+
+std::vector<Wanted> wanted_pictures(const RenderCall& call, const scenes::Scene& scene,
+                                    bool quiet) {
+  const std::vector<const scenes::Camera*> cameras = wanted_cameras(call.cameras, scene);
+  if (call.cameras.empty() && scene.cameras.size() > 1 && !quiet) {
+    note("note: no --camera, taking the first, \"" + scene.cameras.front().name + "\"");
+  }
+  if ((call.only_pixel || call.over.asked()) && cameras.size() > 1) {
+    throw Error(Blame::Input, call.only_pixel ? "--only-pixel" : "--over", "belongs to one camera",
+                {}, "Name one --camera");
+  }
+  std::vector<Wanted> wanted;
+  std::vector<std::string> outputs;
+  for (const scenes::Camera* camera : cameras) {
+    Wanted picture{camera, {call.output, call.png, call.cctv, call.range}};
+    if (cameras.size() > 1) {
+      for (std::string* path :
+           {&picture.files.output, &picture.files.png, &picture.files.cctv, &picture.files.range}) {
+        *path = with_camera(*path, file_stem(scene, *camera));
+      }
+    }
+    outputs.insert(outputs.end(), {picture.files.output, picture.files.png, picture.files.cctv,
+                                   picture.files.range});
+    wanted.push_back(std::move(picture));
+  }
+  outputs.push_back(call.report);
+  check_outputs(outputs, {scene.path.string(), call.solution, call.over.photo});
+  return wanted;
+}
+
+std::vector<const scenes::Camera*> cameras_of(const std::vector<Wanted>& pictures) {
+  std::vector<const scenes::Camera*> cameras;
+  for (const Wanted& picture : pictures) cameras.push_back(picture.camera);
+  return cameras;
+}
+
+void run(RenderCall call, const Common& common) {
+  check_call(call);
+  StageTimes times;
+  LoadedScene loaded = times.measure("read", [&] { return load(call.scene, common.quiet); });
+  const std::vector<Wanted> pictures = wanted_pictures(call, loaded.scene, common.quiet);
+  const scenes::Asked asked = asked_of(call, cameras_of(pictures));
+  const std::vector<scenes::Idle> idle = decide_effects(loaded, call, asked);
+  const scenes::RayQuery query =
+      times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
+  for (const Wanted& picture : pictures) {
+    raytrace::check_camera(loaded.scene, query, *picture.camera);
+  }
+  if (call.over.asked()) {
+    const scenes::Camera& camera = *pictures.front().camera;
+    call.photo = read_photo(call.over, camera, common.quiet);
+    call.size = Size{call.photo->width, call.photo->height};
+  }
+  std::vector<Json> ranges;
+  for (std::size_t k = 0; k < pictures.size() && !call.range.empty(); ++k) {
+    ranges.push_back(sense_range({loaded.scene, query, *pictures[k].camera, call.size},
+                                 pictures[k].files.range, call.scene.overrides, common, times));
+  }
+  if (call.wire_alone()) {
+    const auto drawn =
+        lay_over(call.over, *call.photo, loaded.scene, query, *pictures.front().camera, {});
+    return base::write_png(call.png, drawn.width, drawn.height, 3, drawn.rgb);
+  }
+  if (call.output.empty() && !call.only_pixel && !call.over.asked()) {
+    // The range sensor alone needs no light.
+    if (call.json) print(dump(ranges.size() == 1 ? ranges.front() : Json(ranges)));
+    return;
+  }
+  for (const Wanted& picture : pictures) {
+    const raytrace::RenderOptions options = picture_options(call, common, loaded, *picture.camera);
+    check_memory(loaded, query, solve_options(loaded.scene, common), &options,
+                 call.solution.empty());
+  }
+  std::optional<Expectation> expected;
+  if (!call.report.empty()) {
+    expected = times.measure("pilot", [&] { return expect(loaded, call, common, asked, query); });
+  }
+  const double cpu_before = base::cpu_seconds();
+  const Solved light = find_light({call, common, loaded, query}, times);
+  Studio studio{call, common, loaded, query, light};
+  Json reports = Json::array();
+  std::vector<Picture> taken;
+  bool whole = true;
+  {
+    const Interrupt interrupt;
+    for (std::size_t k = 0; k < pictures.size() && whole; ++k) {
+      if (call.time_limit_s > 0.0) {
+        const double left = call.time_limit_s - times.total();
+        studio.time_limit_s = std::max(1e-3, left / static_cast<double>(pictures.size() - k));
+      }
+      studio.number = k;
+      Picture picture = take_picture(studio, *pictures[k].camera, pictures[k].files, times);
+      times.add({{"pictures", picture.report["seconds"]["render"].get<double>()}});
+      whole = picture.whole;
+      if (!call.range.empty()) picture.report["range"] = ranges[k]["range"];
+      reports.push_back(picture.report);
+      taken.push_back(std::move(picture));
+    }
+  }
+  if (expected) {
+    base::write_text(call.report,
+                     dump(report_json(loaded, call, asked, idle, *expected, light.solution.report,
+                                      taken, times, base::cpu_seconds() - cpu_before)));
+  }
+  if (call.json) print(dump(reports.size() == 1 ? reports.front() : reports));
+  if (whole) return;
+  const std::string& file = pictures[reports.size() - 1].files.output;
+  throw Error(Blame::Work, "render", "interrupted", {},
+              file.empty() ? "" : "What was finished is in " + file + ", which says it is partial");
+}
+
+}  // namespace
+
+Command add_render(CLI::App& program) {
+  CLI::App* parser = program.add_subcommand("render", "A camera's view: EXR, PNG, CCTV picture");
+  const auto call = std::make_shared<RenderCall>();
+  add_scene_options(*parser, call->scene);
+  const auto file_option = [parser](const char* name, std::string& path, const char* help) {
+    return parser->add_option(name, path, help)->type_name("FILE");
+  };
+  file_option("-o,--output", call->output, "Linear picture in cd/m2 (OpenEXR)");
+  file_option("--png", call->png, "Also a tone-mapped picture");
+  file_option("--cctv", call->cctv, "Also the picture on the camera's CCTV monitor (PNG)");
+  file_option("--range", call->range,
+              "Also, or alone, what the camera's range sensor reports (OpenEXR)");
+  file_option("--report", call->report,
+              "Also the plan's table with what each effect really took, as JSON");
+  add_over_options(*parser, call->over);
+  add_window_options(*parser, *call);
+  add_solution_option(*parser, call->solution);
+  add_picture_options(*parser, *call);
+  parser->add_flag("--timings", call->timings,
+                   "Write seconds per stage into the EXR header (bytes then differ between runs)");
+  parser->add_flag("--json", call->json, "Report as JSON on standard output");
+  return {parser, [call](const Common& common) { run(*call, common); }};
+}
+
+}  // namespace earthshine::app

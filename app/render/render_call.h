@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `earthshine render` was asked for, and one camera's picture of it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/command.h"
+#include "app/render/over.h"
+#include "radiosity/solution.h"
+#include "raytrace/render.h"
+#include "scenes/effects/idle.h"
+#include "scenes/ray_query.h"
+#include "studies/error/error_budget.h"
+#include "studies/steer/wanted_error.h"
+
+namespace earthshine::app {
+
+struct RenderCall {
+  SceneInput scene;
+  std::string output, png, cctv, range, solution, report;
+  std::vector<std::string> cameras;  // empty: the scene's first
+  std::optional<Size> size;
+  std::optional<raytrace::Window> crop;  // one pixel with only_pixel
+  bool only_pixel = false;
+  double time_limit_s = 0.0;  // of the whole command; 0: none
+  bool no_error = false;      // none is stated
+  raytrace::Indirect indirect = raytrace::Indirect::Radiosity;
+  std::uint64_t distributed_lights = 64;
+  std::string distributed_over;  // [[area]] of the scene; empty: none
+  std::vector<std::string> aovs;
+  bool per_light = false, timings = false, json = false;
+  bool all_effects = false;  // also those that cannot matter
+  OverCall over;
+  std::optional<base::Picture8> photo;  // of --over, once it is read
+
+  // Lines over a photograph: no light is computed.
+  [[nodiscard]] bool wire_alone() const {
+    return over.asked() && !over.needs_picture() && output.empty() && cctv.empty();
+  }
+};
+
+// --crop, --only-pixel, --time-limit.
+void add_window_options(CLI::App& parser, RenderCall& call);
+// --camera, --size, --aov, --per-light, --indirect and what belongs to its ways: what a picture's
+// cost depends on.
+void add_picture_options(CLI::App& parser, RenderCall& call);
+// Throws base::Error (Input) for a layer that is not known.
+void check_aovs(const RenderCall& call);
+
+// Names, lists of names with commas between, or "all"; the first of the scene if there are none.
+[[nodiscard]] std::vector<const scenes::Camera*> wanted_cameras(
+    const std::vector<std::string>& texts, const scenes::Scene& scene);
+
+// Decides about the effects for the call; those that cannot matter are switched off and returned,
+// unless the call wants all of them, paths as a reference, or a solution that is there already.
+[[nodiscard]] std::vector<scenes::Idle> decide_effects(LoadedScene& loaded, const RenderCall& call,
+                                                       const scenes::Asked& asked);
+
+// What the call asks of the scene, which decides with it about the effects.
+[[nodiscard]] scenes::Asked asked_of(const RenderCall& call,
+                                     std::vector<const scenes::Camera*> cameras);
+
+// The light of the scene, for all of its cameras.
+struct Solved {
+  radiosity::Solution solution;
+  radiosity::SolveOptions solver;
+  bool solved = false;
+  studies::SurfaceError surface;  // where the solution is what is asked for
+  // Where an error was asked for: how it was reached.
+  bool steered = false;
+  std::vector<studies::Step> steps;
+  studies::Limit limit = studies::Limit::None;
+};
+
+// What all pictures of a call share.
+struct Studio {
+  const RenderCall& call;
+  const Common& common;
+  const LoadedScene& loaded;
+  const scenes::RayQuery& query;
+  const Solved& light;
+  [[nodiscard]] studies::StudyScene scene() const {
+    return {loaded.scene, loaded.groups, loaded.effects, query};
+  }
+  double time_limit_s = 0.0;  // for one picture; 0: none
+  std::size_t number = 0;     // of the picture among the call's
+};
+
+// The size, the layers and the rays of one camera's picture.
+[[nodiscard]] raytrace::RenderOptions picture_options(const RenderCall& call, const Common& common,
+                                                      const LoadedScene& loaded,
+                                                      const scenes::Camera& camera);
+
+struct PictureFiles {
+  std::string output, png, cctv, range;  // empty: not wanted
+};
+
+// Renders, writes the files, tells on standard error unless quiet. Returns the report for --json
+// and whether the picture is whole.
+struct Picture {
+  Json report;
+  bool whole = true;
+  raytrace::RenderReport rendered;
+  StageTimes times;  // of the whole call so far and of this picture
+};
+[[nodiscard]] Picture take_picture(const Studio& studio, const scenes::Camera& camera,
+                                   const PictureFiles& files, StageTimes times);
+
+}  // namespace earthshine::app

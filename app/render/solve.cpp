@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+// earthshine solve: radiosity alone, and where the light went.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/command.h"
+#include "app/console.h"
+#include "app/memory.h"
+#include "app/options.h"
+#include "app/output.h"
+#include "app/render/error_json.h"
+#include "app/render/light.h"
+#include "app/solution.h"
+#include "base/error.h"
+#include "base/files/output_file.h"
+#include "radiosity/solution.h"
+#include "scenes/effects/quality.h"
+#include "scenes/ray_query.h"
+#include "studies/steer/reach_surfaces.h"
+
+namespace earthshine::app {
+namespace {
+
+struct SolveCall {
+  SceneInput scene;
+  std::string output, mesh, solution;
+  double time_limit_s = 0.0;
+  bool json = false;
+};
+
+Json groups_of(const radiosity::SolveReport& report) {
+  Json groups = Json::array();
+  for (const radiosity::GroupLedger& group : report.groups) {
+    groups.push_back({{"name", group.name},
+                      {"given_lm", to_json(group.given_lm)},
+                      {"escaped_at_once_lm", to_json(group.escaped_at_once_lm)},
+                      {"lost_at_once_lm", to_json(group.lost_at_once_lm)},
+                      {"emitted_lm", to_json(group.emitted_lm)},
+                      {"landed_lm", to_json(group.landed_lm)},
+                      {"absorbed_lm", to_json(group.absorbed_lm)},
+                      {"escaped_lm", to_json(group.escaped_lm)},
+                      {"imbalance", group.imbalance}});
+  }
+  return groups;
+}
+
+Json objects_of(const radiosity::SolveReport& report) {
+  Json objects = Json::array();
+  for (const radiosity::ObjectLight& object : report.objects) {
+    objects.push_back({{"name", object.name},
+                       {"area_m2", object.area_m2},
+                       {"illuminance_lx", to_json(object.illuminance_lx)},
+                       {"radiosity_lm_m2", to_json(object.radiosity_lm_m2)},
+                       {"back_share", object.back_share}});
+  }
+  return objects;
+}
+
+Json sources_of(const radiosity::SolveReport& report, const scenes::LightGroups& groups) {
+  Json sources = Json::array();
+  for (const radiosity::SourceFlux& source : report.sources) {
+    const bool named = source.group < groups.names.size();
+    sources.push_back({{"name", source.name},
+                       {"group", named ? Json(groups.names[source.group]) : Json()},
+                       {"emitted_lm", to_json(source.emitted_lm)},
+                       {"landed_lm", to_json(source.landed_lm)},
+                       {"escaped_share", source.escaped_share},
+                       {"black_share", source.black_share},
+                       {"share_std_error", source.share_std_error},
+                       {"scale", source.scale}});
+  }
+  return sources;
+}
+
+Json refinement_of(const radiosity::SolveReport& report) {
+  Json rounds = Json::array();
+  for (const radiosity::RefineRound& round : report.rounds) {
+    rounds.push_back({{"patches", round.patches}, {"error", round.error}});
+  }
+  return {{"rounds", rounds}, {"rays", report.refinement_rays}};
+}
+
+Json json_of(const LoadedScene& loaded, const radiosity::SolveReport& report,
+             const StageTimes& times) {
+  Json json;
+  json["scene"] = loaded.scene.path.string();
+  json["patches"] = report.patches;
+  json["refinement"] = refinement_of(report);
+  json["rays"] = report.form_factor_rays;
+  json["shadow_rays"] = report.shadow_rays;
+  json["nonzeros"] = report.nonzeros;
+  json["seconds"] = times.json();
+  json["iterations"] = report.iterations;
+  json["residual"] = report.residual;
+  json["solver_error"] = report.solver_error;
+  json["back_share"] = report.back_share;
+  json["balance"] = {{"sweeps", report.balance.sweeps},    {"before", report.balance.before},
+                     {"after", report.balance.after},      {"borrowed", report.balance.borrowed},
+                     {"filled", report.balance.filled},    {"held", report.balance.held},
+                     {"balanced", report.balance.balanced}};
+  json["groups"] = groups_of(report);
+  json["sources"] = sources_of(report, loaded.groups);
+  json["objects"] = objects_of(report);
+  json["warnings"] = loaded.scene.warnings;
+  return json;
+}
+
+double luminous(const Json& rgb) {
+  return base::luminance({rgb[0].get<double>(), rgb[1].get<double>(), rgb[2].get<double>()});
+}
+
+// From what is given to where it ends. Columns in which no group has anything are left out.
+std::string ledger_text(const Json& groups) {
+  constexpr std::array<std::array<const char*, 2>, 7> all = {{{"given_lm", "given lm"},
+                                                              {"escaped_at_once_lm", "out at once"},
+                                                              {"lost_at_once_lm", "black backs"},
+                                                              {"emitted_lm", "emitted lm"},
+                                                              {"landed_lm", "landed lm"},
+                                                              {"absorbed_lm", "absorbed lm"},
+                                                              {"escaped_lm", "escaped lm"}}};
+  if (groups.empty()) return "\nlight group\nnone: nothing gives light\n";
+  std::string head = fmt::format("\n{:<20}", "light group");
+  std::vector<std::string> lines;
+  for (const Json& group : groups) {
+    lines.push_back(fmt::format("{:<20}", group["name"].get<std::string>()));
+  }
+  for (const auto& [key, title] : all) {
+    const auto shown = [&, name = key](const Json& group) {
+      const double lm = luminous(group[name]);
+      return std::abs(lm) <= 1e-9 * luminous(group["given_lm"]) ? 0.0 : lm;
+    };
+    if (std::none_of(groups.begin(), groups.end(), shown)) continue;
+    head += fmt::format(" {:>12}", title);
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      lines[k] += fmt::format(" {:>12.6g}", shown(groups[k]));
+    }
+  }
+  std::string text = head + fmt::format(" {:>10}\n", "imbalance");
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    text += lines[k] + fmt::format(" {:>10.2g}\n", groups[k]["imbalance"].get<double>());
+  }
+  return text;
+}
+
+// Luminous amounts (Y of the three channels); the channels are in the JSON.
+std::string solve_text(const Json& json) {
+  std::string text = fmt::format(
+      "{} patches, {} form-factor rays, {} shadow rays\n{} iterations, solved to {:.2g}; column "
+      "defect {:.2g}, balanced to {:.2g} in {} sweeps\n",
+      json["patches"].get<std::size_t>(), short_count(json["rays"].get<double>()),
+      short_count(json["shadow_rays"].get<double>()), json["iterations"].get<int>(),
+      json["solver_error"].get<double>(), json["balance"]["before"].get<double>(),
+      json["balance"]["after"].get<double>(), json["balance"]["sweeps"].get<int>());
+  const Json& rounds = json["refinement"]["rounds"];
+  if (!rounds.empty()) {
+    text += fmt::format("refined in {} rounds from {} patches, {} rays; estimated error {:.2g}\n",
+                        rounds.size() - 1, rounds.front()["patches"].get<std::size_t>(),
+                        short_count(json["refinement"]["rays"].get<double>()),
+                        rounds.back()["error"].get<double>());
+  }
+  text += ledger_text(json["groups"]);
+  text += fmt::format("\n{:<24} {:>12} {:>14} {:>16}\n", "object", "area m2", "illuminance lx",
+                      "radiosity lm/m2");
+  for (const Json& o : json["objects"]) {
+    text += fmt::format("{:<24} {:>12.6g} {:>14.6g} {:>16.6g}\n", o["name"].get<std::string>(),
+                        o["area_m2"].get<double>(), luminous(o["illuminance_lx"]),
+                        luminous(o["radiosity_lm_m2"]));
+  }
+  text += "\n";
+  for (const auto& [stage, seconds] : json["seconds"].items()) {
+    text += fmt::format("{:<20} {:>10}\n", stage, duration(seconds.get<double>()));
+  }
+  return text;
+}
+
+// What the wanted error would still take where a limit came first: time goes with the inverse of
+// the squared error, patches and rays alike.
+std::string price_text(const Solved& light, std::optional<double> wanted, double seconds) {
+  if (!wanted || light.limit == studies::Limit::None || light.steps.empty()) return "";
+  const double over = light.steps.back().estimate / *wanted;
+  if (over <= 1.0 || light.limit == studies::Limit::Settings) return "";
+  return fmt::format("\n  {:.2g} % needs about {} more, or more", 100.0 * *wanted,
+                     duration(seconds * (over * over - 1.0)));
+}
+
+bool is_json(const std::string& path) { return path.ends_with(".json"); }
+
+void check_call(const SolveCall& call) {
+  if (call.output.ends_with(".glb")) {
+    throw base::Error(base::Blame::Input, "-o", fmt::format("\"{}\" is a GLB file", call.output),
+                      {}, "Name it after --glb");
+  }
+  if (!call.mesh.empty() && !call.mesh.ends_with(".glb") && !call.mesh.starts_with("/dev/")) {
+    throw base::Error(base::Blame::Input, "--glb",
+                      fmt::format("\"{}\" is not a .glb file", call.mesh), {},
+                      "Name a file that ends in .glb");
+  }
+  check_outputs({call.output, call.mesh}, {call.scene.path, call.solution});
+}
+
+// By the scene's settings, until an error that it names is reached, or from a file.
+Solved solve_alone(const SolveCall& call, const Common& common, const LoadedScene& loaded,
+                   const scenes::RayQuery& query, const radiosity::SolveOptions& options,
+                   StageTimes& times) {
+  if (call.solution.empty() && loaded.scene.quality.error) {
+    return solve_as_exactly({loaded, common, query, call.time_limit_s}, times);
+  }
+  Solved light;
+  light.solver = options;
+  light.solution = solve_or_read(loaded, query, options, call.solution, times);
+  light.solved = true;
+  light.surface = times.measure("error", [&] {
+    return studies::surface_error({loaded.scene, loaded.groups, loaded.effects, query},
+                                  light.solution, options);
+  });
+  return light;
+}
+
+void run(const SolveCall& call, const Common& common) {
+  check_call(call);
+  StageTimes times;
+  const LoadedScene loaded = times.measure("read", [&] { return load(call.scene, common.quiet); });
+  const scenes::RayQuery query =
+      times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
+  const radiosity::SolveOptions options = solve_options(loaded.scene, common);
+  const std::optional<double> error = loaded.scene.quality.error;
+  const bool steers = error && call.solution.empty();
+  check_memory(loaded, query,
+               steers ? studies::first_surface_options(loaded.scene, *error, common.seed) : options,
+               nullptr, call.solution.empty());
+  const Solved light = solve_alone(call, common, loaded, query, options, times);
+  const radiosity::Solution& solution = light.solution;
+  if (!common.quiet) note_backs(solution.report);
+  const bool writes_report = is_json(call.output);
+  if (!call.output.empty() && !writes_report) {
+    times.measure("write", [&] { write_solution(call.output, solution, loaded, options); });
+  }
+  if (!call.mesh.empty()) {
+    times.measure("write GLB", [&] { write_mesh(call.mesh, solution, loaded); });
+  }
+  Json json = json_of(loaded, solution.report, times);
+  json["error"] = error_json(light, loaded.scene.quality.error);
+  if (writes_report) base::write_text(call.output, dump(json));
+  if (call.json) print(dump(json));
+  if (!call.json && !writes_report)
+    print(solve_text(json) + "\n" + error_text(light, loaded.scene.quality.error) +
+          price_text(light, loaded.scene.quality.error, times.total()) + "\n");
+}
+
+}  // namespace
+
+radiosity::SolveOptions solve_options(const scenes::Scene& scene, const Common& common) {
+  return radiosity::solve_options(scenes::resolve_quality(scene), common.seed);
+}
+
+Command add_solve(CLI::App& program) {
+  CLI::App* parser = program.add_subcommand("solve", "Radiosity alone: where the light goes");
+  const auto call = std::make_shared<SolveCall>();
+  add_scene_options(*parser, call->scene);
+  parser
+      ->add_option("-o,--output", call->output,
+                   "The solution as HDF5, for render --solution and numpy; the report alone, as "
+                   "JSON, if the name ends in .json")
+      ->type_name("FILE");
+  parser->add_option("--glb", call->mesh, "Also the solution as vertex colours for 3D viewers")
+      ->type_name("FILE.glb");
+  add_solution_option(*parser, call->solution);
+  add_time_limit(*parser, call->time_limit_s,
+                 "No longer than that for an error to reach; the numbers then differ between runs");
+  parser->add_flag("--json", call->json, "JSON on standard output");
+  return {parser, [call](const Common& common) { run(*call, common); }};
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every result with its figures.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+#include "app/report/sections.h"
+#include "app/report/text.h"
+
+namespace earthshine::app {
+namespace {
+
+// Of more results than these a page with every figure would be too large to open at once.
+constexpr std::size_t most_in_full = 1200;
+constexpr std::size_t most_open = 40;
+
+struct Columns {
+  std::vector<std::size_t> sight, signal;  // indices into sight_columns, signal_columns
+  bool groups = true;                      // lit by, light by
+};
+
+std::string head(std::span<const FigureColumn> all, const std::vector<std::size_t>& shown,
+                 bool verdict) {
+  std::string html =
+      "<thead><tr><th scope=\"col\">Condition</th><th scope=\"col\" data-key=\"camera\">Camera</th>"
+      "<th scope=\"col\" data-key=\"target\">Target</th>";
+  if (verdict) html += "<th scope=\"col\" data-key=\"verdict\">Verdict</th>";
+  for (const std::size_t k : shown) html += fmt::format("<th scope=\"col\">{}</th>", all[k].title);
+  return html;
+}
+
+std::string lead(const StudyResults& study, const ResultEntry& result) {
+  return "<th scope=row>" + escaped(place_of(study.conditions[result.condition])) + "<td>" +
+         escaped(study.cameras[result.camera].name) + "<td>" +
+         escaped(study.targets[result.target]);
+}
+
+std::string sight_row(const StudyResults& study, std::size_t index, const Columns& columns) {
+  const ResultEntry& result = study.results[index];
+  std::string html = fmt::format("<tr id=r{}>{}<td class=v{}>{}", index, lead(study, result),
+                                 static_cast<int>(result.verdict), words_of(result.verdict).text);
+  for (const std::size_t k : columns.sight) {
+    html += "<td>" + figure(result.sight[k], sight_columns[k].form);
+    if (std::string_view(sight_columns[k].key) == "pixels" && result.cut_by_frame) html += "+";
+  }
+  if (columns.groups) {
+    html += "<td class=t>" + shares_text(result.lit_by, Form::Percent) + "<td class=t>" +
+            shares_text(result.light_by, Form::Plain);
+  }
+  return html + "\n";
+}
+
+std::string signal_row(const StudyResults& study, std::size_t index, const Columns& columns) {
+  const ResultEntry& result = study.results[index];
+  std::string html = "<tr>" + lead(study, result);
+  for (const std::size_t k : columns.signal) {
+    html += "<td>" + figure(result.signal[k], signal_columns[k].form);
+  }
+  return html + "\n";
+}
+
+bool has_signal(const ResultEntry& result) {
+  return std::any_of(result.signal.begin(), result.signal.end(),
+                     [](const Number& value) { return value.has_value(); });
+}
+
+std::string details(const std::string& title, const Block& block, bool open,
+                    const std::string& table) {
+  return fmt::format(
+      "<details class=\"rows\" data-lamps=\"{}\"{}>\n<summary>{}</summary>\n"
+      "<div class=\"scroll\" role=\"region\" aria-label=\"{}\" tabindex=\"0\">\n{}</div>\n"
+      "</details>\n",
+      escaped(block.lamps), open ? " open" : "", title, title, table);
+}
+
+std::string tables(const StudyResults& study, const Block& block, const Columns& columns,
+                   bool open) {
+  const std::vector<std::size_t> results = results_of(study, block);
+  if (results.empty()) return "";
+  const std::string title = block_title(study, block);
+  const auto start = [&](const std::string& what) {
+    return "<table class=\"figures\">\n<caption>" + title + ": " + what + "</caption>\n";
+  };
+  std::string sight = start("what is seen") + head(sight_columns, columns.sight, true);
+  if (columns.groups) {
+    sight += "<th scope=\"col\">lit by</th><th scope=\"col\">light by, cd/m²</th>";
+  }
+  sight += "</tr></thead>\n<tbody>\n";
+  std::string signal;
+  for (const std::size_t k : results) {
+    sight += sight_row(study, k, columns);
+    if (!columns.signal.empty() && has_signal(study.results[k])) {
+      signal += signal_row(study, k, columns);
+    }
+  }
+  std::string html = details(title + ": what is seen, " + counted(results.size(), "row", "rows"),
+                             block, open, sight + "</tbody>\n</table>\n");
+  if (!signal.empty()) {
+    html += details(title + ": signal, monitor and eye", block, false,
+                    start("signal, monitor and eye") + head(signal_columns, columns.signal, false) +
+                        "</tr></thead>\n<tbody>\n" + signal + "</tbody>\n</table>\n");
+  }
+  return html;
+}
+
+}  // namespace
+
+std::string figures_html(const StudyResults& study) {
+  if (study.results.empty()) return "";
+  const bool full = study.results.size() <= most_in_full;
+  Columns columns;
+  columns.groups = full;
+  for (std::size_t k = 0; k < sight_columns.size(); ++k) {
+    if (full || sight_columns[k].brief) columns.sight.push_back(k);
+  }
+  for (std::size_t k = 0; full && k < signal_columns.size(); ++k) columns.signal.push_back(k);
+  std::string html =
+      "<p>Luminances are of the clean picture. P: probability. lit: share of the visible part that "
+      "a lamp or the Sun reaches directly. +: cut by the picture’s border.</p>\n";
+  if (!full) {
+    html += fmt::format(
+        "<p>Of {} results these tables have the columns that decide; study.json and the CSV files "
+        "beside this page have every figure.</p>\n",
+        study.results.size());
+  }
+  for (const Block& block : blocks_of(study)) {
+    html += tables(study, block, columns, study.results.size() <= most_open);
+  }
+  return html;
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// The report's short sections: what to know, answers, what was looked with, where it comes from.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/report/sections.h"
+#include "app/report/text.h"
+
+namespace earthshine::app {
+namespace {
+
+std::string table(const std::string& caption, const std::vector<std::string>& heads,
+                  const std::string& rows) {
+  std::string html = "<div class=\"scroll\" role=\"region\" aria-label=\"" + caption +
+                     "\" tabindex=\"0\">\n<table>\n<caption>" + caption + "</caption>\n<thead><tr>";
+  for (const std::string& head : heads) html += "<th scope=\"col\">" + head + "</th>";
+  return html + "</tr></thead>\n<tbody>\n" + rows + "</tbody>\n</table>\n</div>\n";
+}
+
+std::string text_or_dash(const std::string& text) { return text.empty() ? dash : escaped(text); }
+
+std::string size_text(const CameraEntry& camera) {
+  if (!camera.columns || !camera.rows) return dash;
+  return figure(camera.columns, Form::Count) + " × " + figure(camera.rows, Form::Count);
+}
+
+std::string cameras_table(const StudyResults& study) {
+  std::string rows;
+  for (const CameraEntry& camera : study.cameras) {
+    rows += fmt::format(
+        "<tr><th scope=row>{}<td>{}<td>{}<td>{}<td class=t>{}<td class=t>{}<td>{}<td class=t>{}\n",
+        escaped(camera.name), escaped(study.scenes[camera.scene].name), size_text(camera),
+        figure(camera.fov_deg), camera.cctv.empty() ? "none" : escaped(camera.cctv),
+        text_or_dash(camera.iris), figure(camera.relative_noise, Form::Percent),
+        text_or_dash(camera.error_text));
+  }
+  if (rows.empty()) return "";
+  return table(
+      "Cameras",
+      {"Camera", "Scene", "Pixels", "Field of view, °", "CCTV", "Iris", "Noise, %", "Stated error"},
+      rows);
+}
+
+std::string conditions_table(const StudyResults& study) {
+  std::string rows;
+  for (const ConditionEntry& condition : study.conditions) {
+    rows += fmt::format(
+        "<tr><th scope=row>{}<td class=t>{}<td class=t>{}<td>{}<td>{}<td>{}<td>{}<td "
+        "class=t>{}<td>{}\n",
+        escaped(condition.id), text_or_dash(condition.name), text_or_dash(condition.lamps),
+        figure(condition.position_deg), figure(condition.time_s, Form::Count),
+        condition.phase.empty() ? dash : condition.phase,
+        figure(condition.sun_share, Form::Percent), shares_text(condition.factors, Form::Plain),
+        figure(condition.earth_error, Form::Percent));
+  }
+  if (rows.empty()) return "";
+  return "<details class=\"rows\"><summary>" +
+         counted(study.conditions.size(), "condition", "conditions") + "</summary>\n" +
+         table("Conditions",
+               {"Condition", "Name", "Lamps", "Position, °", "Time, s", "Phase", "Sun free, %",
+                "Lamp factors", "Error of the Earth’s light, %"},
+               rows) +
+         "</details>\n";
+}
+
+// `depth`: of what is nested without end, the rest is not shown.
+std::string value_html(const Json& value, int depth = 0) {
+  if (depth > 6) return "…";
+  if (value.is_null()) return dash;
+  if (value.is_string()) return text_or_dash(value.get<std::string>());
+  if (value.is_object()) {
+    std::string html = "<dl>";
+    for (const auto& [key, inner] : value.items()) {
+      html += "<dt>" + escaped(key) + "</dt><dd>" + value_html(inner, depth + 1) + "</dd>";
+    }
+    return value.empty() ? dash : html + "</dl>";
+  }
+  if (value.is_array()) {
+    std::string html;
+    for (const Json& inner : value)
+      html += (html.empty() ? "" : ", ") + value_html(inner, depth + 1);
+    return html.empty() ? dash : html;
+  }
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  return escaped(value.dump());
+}
+
+std::string key_values(const std::string& caption, const std::string& key, const Json& values) {
+  std::string rows;
+  for (const auto& [name, value] : values.items()) {
+    rows += "<tr><th scope=row>" + escaped(name) + "<td class=t>" + value_html(value) + "\n";
+  }
+  return rows.empty() ? "" : table(caption, {key, "Value"}, rows);
+}
+
+}  // namespace
+
+std::string notes_html(const StudyResults& study) {
+  std::string html;
+  for (const std::string& note : study.notes) html += "<li>" + escaped(note) + "</li>\n";
+  return html.empty() ? "" : "<ul>\n" + html + "</ul>\n";
+}
+
+std::string answers_html(const StudyResults& study) {
+  std::string html;
+  for (const AnswerEntry& answer : study.answers) {
+    html += fmt::format("<li class=\"answer {}\"><strong>{} {}</strong>: {}",
+                        answer.found ? "found" : "not-found", answer.found ? "✓" : "✗",
+                        escaped(answer.wanted), escaped(answer.text));
+    std::string facts;
+    const auto fact = [&facts](const char* name, const std::string& value) {
+      if (!value.empty()) facts += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", name, value);
+    };
+    if (answer.found) {
+      std::string arcs;
+      for (const auto& [from, to] : answer.arcs_deg) {
+        arcs += (arcs.empty() ? "" : ", ") + fmt::format("{:.6g}° to {:.6g}°", from, to);
+      }
+      fact("camera", escaped(answer.camera));
+      fact("iris", escaped(answer.iris));
+      fact("lamps", escaped(answer.lamps));
+      fact("least lamp factor", answer.least_factor ? figure(answer.least_factor) : "");
+      fact("where", arcs);
+    }
+    if (!facts.empty()) html += "<dl>" + facts + "</dl>";
+    html += "</li>\n";
+  }
+  return html.empty() ? "" : "<ul class=\"answers\">\n" + html + "</ul>\n";
+}
+
+std::string setup_html(const StudyResults& study) {
+  std::string scenes;
+  for (const SceneEntry& scene : study.scenes) {
+    scenes += "<tr><th scope=row>" + text_or_dash(scene.name) + "<td class=t>" +
+              text_or_dash(scene.path) + "\n";
+  }
+  return (scenes.empty() ? "" : table("Scenes", {"Scene", "File"}, scenes)) + cameras_table(study) +
+         conditions_table(study) + key_values("Settings", "Setting", study.settings);
+}
+
+std::string provenance_html(const StudyResults& study) {
+  std::string costs;
+  for (const CostEntry& cost : study.costs) {
+    costs += fmt::format("<tr><th scope=row>{}<td>{}<td>{}\n", escaped(cost.stage),
+                         figure(cost.seconds), figure(cost.rays, Form::Count));
+  }
+  return key_values("Provenance", "Of", study.provenance) +
+         (costs.empty() ? "" : table("Cost", {"Stage", "Seconds", "Rays"}, costs));
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs and single pictures, read from the study's folder into the page.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "app/report/sections.h"
+#include "app/report/text.h"
+#include "base/error.h"
+
+namespace earthshine::app {
+namespace {
+
+using base::Blame;
+using base::Error;
+namespace fs = std::filesystem;
+
+constexpr std::string_view png_signature = "\x89PNG\r\n\x1A\n";
+constexpr std::uintmax_t largest_bytes = std::uintmax_t{64} << 20U;
+
+// A study's folder may come from someone else: its pictures are in it, and nothing else is read.
+void check_inside(const std::string& file) {
+  const fs::path path(file);
+  const bool climbs = std::find(path.begin(), path.end(), fs::path("..")) != path.end();
+  if (file.empty() || path.is_absolute() || climbs) {
+    throw Error(Blame::Input, "picture \"" + file + "\"", "is not inside the study's folder",
+                "pictures are named from there, without \"..\"");
+  }
+}
+
+std::string png_bytes(const fs::path& folder, const std::string& file) {
+  check_inside(file);
+  const fs::path path = folder / file;
+  std::error_code problem;
+  const std::uintmax_t size = fs::file_size(path, problem);
+  std::ifstream stream(path, std::ios::binary);
+  if (problem || !stream) {
+    throw Error(Blame::Input, path.string(),
+                "cannot be read: " + (problem ? problem.message() : "no permission"),
+                "study.json names it as a picture of the report", "Run the study again");
+  }
+  if (size > largest_bytes) {
+    throw Error(Blame::Input, path.string(), "is larger than 64 MiB",
+                "pictures are put into the page", "Run the study with smaller pictures");
+  }
+  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  if (bytes.compare(0, png_signature.size(), png_signature) != 0) {
+    throw Error(Blame::Input, path.string(), "is not a PNG file", "pictures of a report are PNG");
+  }
+  return bytes;
+}
+
+class Album {
+ public:
+  explicit Album(const fs::path& folder) : folder_(folder) {}
+  std::string image(const PictureEntry& picture, const std::string& alternative) {
+    const auto [entry, added] = read_.try_emplace(picture.file);
+    if (added) entry->second = base64(png_bytes(folder_, picture.file));
+    return fmt::format("<img alt=\"{}\" src=\"data:image/png;base64,{}\">", escaped(alternative),
+                       entry->second);
+  }
+
+ private:
+  const fs::path& folder_;
+  std::map<std::string, std::string> read_;
+};
+
+}  // namespace
+
+std::string pictures_html(const StudyResults& study, const fs::path& folder) {
+  if (study.pairs.empty() && study.figures.empty()) return "";
+  Album album(folder);
+  std::string html;
+  if (!study.pairs.empty()) html += "<div class=\"pairs\">\n";
+  for (const PairEntry& pair : study.pairs) {
+    html += "<figure class=\"pair\">\n<figcaption>" + escaped(pair.title) +
+            "</figcaption>\n<div class=\"sides\">\n";
+    for (const PictureEntry* side : {&pair.left, &pair.right}) {
+      html += "<figure>" + album.image(*side, pair.title + ": " + side->caption) + "<figcaption>" +
+              escaped(side->caption) + "</figcaption></figure>\n";
+    }
+    html += "</div>\n</figure>\n";
+  }
+  if (!study.pairs.empty()) html += "</div>\n";
+  if (!study.figures.empty()) html += "<div class=\"singles\">\n";
+  for (const PictureEntry& single : study.figures) {
+    html += "<figure>" + album.image(single, single.caption) + "<figcaption>" +
+            escaped(single.caption) + "</figcaption></figure>\n";
+  }
+  if (!study.figures.empty()) html += "</div>\n";
+  return html;
+}
+
+}  // namespace earthshine::app

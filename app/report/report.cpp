@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// earthshine report: draws report.html anew from a study's folder.
+#include <fstream>
+#include <memory>
+#include <system_error>
+
+#include "app/options.h"
+#include "app/report/page.h"
+#include "base/error.h"
+
+namespace earthshine::app {
+namespace {
+
+using base::Blame;
+using base::Error;
+namespace fs = std::filesystem;
+
+struct ReportCall {
+  std::string folder;
+  bool plain = false;
+};
+
+Json read_study(const fs::path& folder) {
+  const std::string name = (folder / study_file).string();
+  std::error_code ignored;
+  std::ifstream file(name, std::ios::binary);
+  if (!file || !fs::is_regular_file(name, ignored)) {
+    throw Error(Blame::Input, name, "cannot be read", "a study's folder has this file",
+                "Name the folder given as -o to study visibility");
+  }
+  try {
+    return Json::parse(file);
+  } catch (const Json::parse_error& error) {
+    throw Error(Blame::Input, name,
+                "is not JSON: at byte " + std::to_string(error.byte) + " it goes wrong", {},
+                "Run the study again, which writes the file anew");
+  }
+}
+
+}  // namespace
+
+Command add_report(CLI::App& program) {
+  CLI::App* parser = program.add_subcommand(
+      "report", "Draw a study's report.html anew, from the study.json in its folder");
+  const auto call = std::make_shared<ReportCall>();
+  parser->add_option("folder", call->folder, "The study's folder")
+      ->type_name("DIR")
+      ->required()
+      ->check(not_empty());
+  parser->add_flag("--plain", call->plain, "Without the script: no plots, no sliders");
+  return {parser, [call](const Common& common) {
+            write_report(call->folder, read_study(call->folder), {call->plain, common.quiet});
+          }};
+}
+
+}  // namespace earthshine::app

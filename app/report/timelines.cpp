@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// Timelines over the orbit: in words here, as plots by the script.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/report/sections.h"
+#include "app/report/text.h"
+
+namespace earthshine::app {
+namespace {
+
+// From here on the target counts as detected in a timeline's words.
+constexpr double likely = 0.5;
+
+bool has_positions(const Timeline& line) {
+  return std::all_of(line.position_deg.begin(), line.position_deg.end(),
+                     [](const Number& x) { return x.has_value(); });
+}
+
+std::string place(const Timeline& line, std::size_t k) {
+  if (line.position_deg[k]) return fmt::format("{:.6g}°", *line.position_deg[k]);
+  if (line.time_s[k]) return fmt::format("{:.6g} s", *line.time_s[k]);
+  return fmt::format("place {}", k + 1);
+}
+
+// "20° to 160°, 200°": runs of places where `holds` does.
+template <class Holds>
+std::string runs(const Timeline& line, Holds holds) {
+  std::string text;
+  const std::size_t count = line.position_deg.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!holds(k)) continue;
+    const std::size_t start = k;
+    while (k + 1 < count && holds(k + 1)) ++k;
+    if (!text.empty()) text += ", ";
+    text += place(line, start);
+    if (k > start) text += " to " + place(line, k);
+  }
+  return text;
+}
+
+std::string in_words(const Timeline& line) {
+  const std::size_t count = line.position_deg.size();
+  std::size_t known = 0, seen = 0, best = count, worst = count;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!line.detect[k]) continue;
+    ++known;
+    if (*line.detect[k] >= likely) ++seen;
+    if (best == count || *line.detect[k] > *line.detect[best]) best = k;
+    if (worst == count || *line.detect[k] < *line.detect[worst]) worst = k;
+  }
+  std::string text;
+  if (known == 0) {
+    text = "Never in view.";
+  } else if (seen == 0) {
+    text = fmt::format("Nowhere likely to be detected; at best {} at {}.",
+                       figure(line.detect[best], Form::Chance), place(line, best));
+  } else {
+    text = fmt::format(
+        "Likely detected (P at least 0.5) at {} of {}: {}. Between {} at {} and {} at {}.", seen,
+        counted(count, "position", "positions"),
+        seen == count ? "everywhere"
+                      : runs(line, [&](std::size_t k) { return line.detect[k] >= likely; }),
+        figure(line.detect[worst], Form::Chance), place(line, worst),
+        figure(line.detect[best], Form::Chance), place(line, best));
+  }
+  const std::string dark = runs(line, [&](std::size_t k) { return line.sun_share[k] == 0.0; });
+  const std::string dusk =
+      runs(line, [&](std::size_t k) { return line.sun_share[k] > 0.0 && line.sun_share[k] < 1.0; });
+  if (!dark.empty()) text += " Eclipse: " + dark + ".";
+  if (!dusk.empty()) text += " Penumbra: " + dusk + ".";
+  return text;
+}
+
+// Rounded to what a plot shows, which keeps the page small.
+Json rounded(const std::vector<Number>& values) {
+  Json list = Json::array();
+  for (const Number& value : values) {
+    if (!value) {
+      list.push_back(nullptr);
+      continue;
+    }
+    const double rounded = std::strtod(fmt::format("{:.4g}", *value).c_str(), nullptr);
+    if (rounded == std::floor(rounded) && std::fabs(rounded) < 1e9) {
+      list.push_back(static_cast<std::int64_t>(rounded));
+    } else {
+      list.push_back(rounded);
+    }
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string timelines_html(const StudyResults& study) {
+  if (study.timelines.empty()) return "";
+  std::string html =
+      "<p>Probabilities of detection, recognition and identification over the orbit, and the "
+      "target’s luminance. The figures are in <a href=\"#figures\">All figures</a>.</p>\n"
+      "<div class=\"timelines\">\n";
+  for (std::size_t k = 0; k < study.timelines.size(); ++k) {
+    const Timeline& line = study.timelines[k];
+    std::string title = fmt::format("Camera {}, {}", escaped(line.camera), escaped(line.target));
+    if (!line.lamps.empty()) title += ", lamps: " + escaped(line.lamps);
+    if (study.scenes.size() > 1) title += " (" + escaped(line.scene) + ")";
+    html += fmt::format(
+        "<figure class=\"timeline\" data-line=\"{}\" data-camera=\"{}\" data-target=\"{}\" "
+        "data-lamps=\"{}\">\n<figcaption>{}</figcaption>\n<p>{}</p>\n</figure>\n",
+        k, escaped(line.camera), escaped(line.target), escaped(line.lamps), title, in_words(line));
+  }
+  return html + "</div>\n";
+}
+
+Json timelines_json(const StudyResults& study) {
+  Json lines = Json::array();
+  for (const Timeline& line : study.timelines) {
+    const bool positions = has_positions(line);
+    lines.push_back({{"axis", positions ? "position" : "time"},
+                     {"x", rounded(positions ? line.position_deg : line.time_s)},
+                     {"sun", rounded(line.sun_share)},
+                     {"detect", rounded(line.detect)},
+                     {"recognise", rounded(line.recognise)},
+                     {"identify", rounded(line.identify)},
+                     {"luminance", rounded(line.luminance)},
+                     {"weber", rounded(line.weber)}});
+  }
+  return lines;
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// earthshine study: questions answered about a scene, each into a folder of files.
+#include "app/study/study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "app/console.h"
+#include "app/options.h"
+#include "base/error.h"
+
+namespace earthshine::app {
+
+using base::Blame;
+using base::Error;
+namespace fs = std::filesystem;
+
+void add_study_options(CLI::App& command, StudyCall& call) {
+  add_scene_options(command, call.scene);
+  command.add_option("-o,--output", call.folder, "Folder for the results; made if it is not there")
+      ->type_name("DIR")
+      ->required();
+  add_size_option(command, call.size);
+  command.add_flag("--json", call.json, "Results as JSON on standard output");
+}
+
+void add_cameras_option(CLI::App& command, StudyCall& call) {
+  command.add_option("--camera", call.cameras, "Camera (may be repeated; default: all)")
+      ->type_name("NAME")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
+}
+
+void add_wanted_options(CLI::App& command, std::vector<std::string>& wanted,
+                        std::vector<std::string>& iris) {
+  command
+      .add_option("--wanted", wanted,
+                  "TARGET>=P: what it takes to detect the target with that probability (may be "
+                  "repeated)")
+      ->type_name("TARGET>=P")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
+  command
+      .add_option("--iris", iris, "Iris modes that --wanted may choose: fixed,peak,normal,average")
+      ->type_name("LIST")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"fixed", "peak", "normal", "average"}));
+}
+
+studies::StudyFile study_of(const StudyCall& call, const std::vector<std::string>& wanted,
+                            const std::vector<std::string>& iris) {
+  studies::StudyFile study;
+  study.scenes = {call.scene.path};
+  study.name = std::filesystem::path(call.scene.path).stem().string();
+  study.overrides = call.scene.overrides;
+  study.cameras = call.cameras;
+  if (call.size) {
+    study.columns = call.size->columns;
+    study.rows = call.size->rows;
+  }
+  study.lamps = {studies::lamps_as_they_are()};
+  study.iris = iris;
+  std::sort(study.iris.begin(), study.iris.end());
+  study.iris.erase(std::unique(study.iris.begin(), study.iris.end()), study.iris.end());
+  for (const std::string& text : wanted) {
+    study.wanted.push_back(studies::read_wanted(text, base::Location{"--wanted"}));
+  }
+  return study;
+}
+
+studies::StageListener progress_of_stages(const Common& common) {
+  return [quiet = common.quiet](const std::string& stage) -> raytrace::Progress {
+    const auto progress = std::make_shared<Progress>(stage, quiet);
+    return [progress](std::size_t done, std::size_t total) { (*progress)(done, total); };
+  };
+}
+
+std::vector<Command> add_study(CLI::App& program) {
+  CLI::App* study = program.add_subcommand(
+      "study", "Questions answered about a scene: visibility, orbit, compare, accuracy, run");
+  study->require_subcommand(1);
+  return {{study, {}},
+          add_study_visibility(*study),
+          add_study_compare(*study),
+          add_study_accuracy(*study),
+          add_study_orbit(*study),
+          add_study_run(*study)};
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/visibility/answers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/study/study.h"
+#include "base/parallel.h"
+#include "studies/orbit/wanted_visibility.h"
+
+namespace earthshine::app {
+namespace {
+
+// The place where Sun and Earth give the target least in a setting.
+std::size_t darkest_place(const studies::LightBasis& basis, std::size_t setting,
+                          const std::vector<Rgb>& by_group) {
+  const scenes::LightGroups& groups = basis.groups();
+  std::size_t darkest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t place = 0; place < basis.places().size(); ++place) {
+    const studies::GroupWeights weights = basis.weights(place, setting, 0.0);
+    double light = 0.0;
+    for (std::size_t g = 0; g < groups.count(); ++g) {
+      light += base::luminance(weights.weight[g] * by_group[g]);
+    }
+    if (light >= least) continue;
+    least = light;
+    darkest = place;
+  }
+  return darkest;
+}
+
+bool has_lamps(const studies::LightBasis& basis, std::size_t setting) {
+  const studies::GroupWeights on = basis.weights(0, setting), off = basis.weights(0, setting, 0.0);
+  return on.weight != off.weight;
+}
+
+std::string at(double position_deg) { return fmt::format("orbit {:g} deg", position_deg); }
+
+std::string arcs_text(const std::vector<studies::Arc>& arcs) {
+  std::string text;
+  for (const auto& [from, to] : arcs) {
+    text += fmt::format("{}{:.0f} to {:.0f} deg", text.empty() ? "" : ", ", from, to);
+  }
+  return text;
+}
+
+std::string way_text(const WayOfLooking& way) {
+  return fmt::format("camera {}{}, lamps {}{}", way.camera,
+                     way.iris.empty() ? "" : " with iris " + way.iris, way.lamps,
+                     way.scene.empty() ? "" : ", in " + way.scene);
+}
+
+struct Rated {
+  const WayOfLooking* way = nullptr;
+  std::vector<studies::Arc> arcs;
+  double reach = -1.0;  // share of the orbit, or whether the one place does
+  double best = 0.0;    // highest probability
+};
+
+Rated rate(const WayOfLooking& way, double wanted, bool closed) {
+  Rated rated{&way, {}, 0.0, *std::max_element(way.detect.begin(), way.detect.end())};
+  const auto seen =
+      std::count_if(way.detect.begin(), way.detect.end(), [&](double p) { return p >= wanted; });
+  rated.reach = static_cast<double>(seen) / static_cast<double>(way.detect.size());
+  if (way.positions_deg.empty()) return rated;
+  rated.arcs = studies::arcs_above(way.positions_deg, way.detect, wanted, closed);
+  if (closed) rated.reach = studies::total_deg(rated.arcs) / 360.0;
+  return rated;
+}
+
+std::string lamp_text(const std::vector<WayOfLooking>& ways, double wanted) {
+  const WayOfLooking* best = nullptr;
+  const WayOfLooking* tried = nullptr;
+  for (const WayOfLooking& way : ways) {
+    if (way.tried_factors) tried = &way;
+    if (way.least_factor && (best == nullptr || *way.least_factor < *best->least_factor)) {
+      best = &way;
+    }
+  }
+  if (tried == nullptr) return "";
+  const WayOfLooking& told = best != nullptr ? *best : *tried;
+  const std::string where = told.darkest_deg
+                                ? fmt::format("Where it is darkest, at {}, ", at(*told.darkest_deg))
+                                : "Here ";
+  if (best == nullptr) {
+    return fmt::format(" {}no lamps up to {:g} times theirs bring it to {:g}.", where,
+                       studies::most_lamp_factor, wanted);
+  }
+  if (*best->least_factor <= 0.0) return fmt::format(" {}no lamps are needed.", where);
+  const bool less = *best->least_factor <= studies::least_lamp_factor;
+  return fmt::format(
+      " {}the least light that does is {}{:.2g} times that of lamps {}, by camera {}.", where,
+      less ? "below " : "", *best->least_factor, best->lamps, best->camera);
+}
+
+// The camera's CCTV with that iris mode; its own for an empty one.
+std::optional<degrade::Setup> cctv_with(const StudyCamera& camera, const std::string& mode) {
+  if (!camera.cctv) return std::nullopt;
+  degrade::Setup cctv = camera.cctv->chain;
+  constexpr auto words = degrade::words_of(degrade::IrisMode{});
+  const auto word = std::find(words.begin(), words.end(), mode);
+  if (word != words.end()) cctv.camera.iris = static_cast<degrade::IrisMode>(word - words.begin());
+  return cctv;
+}
+
+std::vector<std::string> modes_of(const studies::StudyFile& study, const StudyCamera& camera) {
+  if (!camera.cctv || study.iris.empty()) return {""};
+  return study.iris;
+}
+
+}  // namespace
+
+void add_ways(const StudyPart& part, const studies::StudyFile& study, const StudyCamera& camera,
+              const studies::BasisView& view, std::vector<std::vector<WayOfLooking>>& ways) {
+  if (study.wanted.empty()) return;
+  const studies::LightBasis& basis = *part.basis;
+  const std::size_t places = basis.places().size();
+  for (const std::string& mode : modes_of(study, camera)) {
+    const std::optional<degrade::Setup> cctv = cctv_with(camera, mode);
+    const std::string iris = cctv ? std::string(degrade::word_of(cctv->camera.iris)) : "";
+    for (std::size_t setting = 0; setting < basis.settings().size(); ++setting) {
+      std::vector<std::vector<double>> detect(places);  // by place and target
+      base::parallel_chunks(places, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t place = begin; place < end; ++place) {
+          detect[place] = studies::detections(basis, view, place, setting, 1.0, cctv);
+        }
+      });
+      const bool lamps = has_lamps(basis, setting);
+      for (std::size_t w = 0; w < study.wanted.size(); ++w) {
+        const auto named =
+            std::find(part.targets.begin(), part.targets.end(), study.wanted[w].target);
+        const auto target = static_cast<std::size_t>(named - part.targets.begin());
+        const std::size_t darkest = darkest_place(basis, setting, view.targets[target].by_group);
+        const bool tries = lamps && view.plan.targets[target].view.in_view();
+        WayOfLooking way{study.scenes.size() > 1 ? part.path : "",
+                         camera.camera->name,
+                         iris,
+                         basis.settings()[setting].name,
+                         {},
+                         part.positions_deg,
+                         {},
+                         {},
+                         tries};
+        for (const std::vector<double>& at_place : detect) way.detect.push_back(at_place[target]);
+        if (!part.positions_deg.empty()) way.darkest_deg = part.positions_deg[darkest];
+        if (tries) {
+          way.least_factor = studies::least_factor(
+              [&](double factor) {
+                return studies::detections(basis, view, darkest, setting, factor, cctv)[target];
+              },
+              study.wanted[w].probability);
+        }
+        ways[w].push_back(std::move(way));
+      }
+    }
+  }
+}
+
+Json ways_json(const std::vector<std::vector<WayOfLooking>>& ways) {
+  Json all = Json::array();
+  for (const std::vector<WayOfLooking>& of_wanted : ways) {
+    Json& list = all.emplace_back(Json::array());
+    for (const WayOfLooking& way : of_wanted) {
+      list.push_back({{"scene", way.scene},
+                      {"camera", way.camera},
+                      {"iris", way.iris},
+                      {"lamps", way.lamps},
+                      {"detect", way.detect},
+                      {"positions_deg", way.positions_deg},
+                      {"least_factor", to_json(way.least_factor)},
+                      {"darkest_deg", to_json(way.darkest_deg)},
+                      {"tried_factors", way.tried_factors}});
+    }
+  }
+  return all;
+}
+
+std::vector<std::vector<WayOfLooking>> ways_of(const Json& kept) {
+  const auto number = [](const Json& value) {
+    return value.is_null() ? std::nullopt : std::optional(value.get<double>());
+  };
+  std::vector<std::vector<WayOfLooking>> all;
+  for (const Json& list : kept) {
+    std::vector<WayOfLooking>& ways = all.emplace_back();
+    for (const Json& way : list) {
+      ways.push_back({way["scene"], way["camera"], way["iris"], way["lamps"],
+                      way["detect"].get<std::vector<double>>(),
+                      way["positions_deg"].get<std::vector<double>>(), number(way["least_factor"]),
+                      number(way["darkest_deg"]), way["tried_factors"].get<bool>()});
+    }
+  }
+  return all;
+}
+
+Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& study,
+                 const std::vector<WayOfLooking>& ways) {
+  Rated best;
+  for (const WayOfLooking& way : ways) {
+    Rated rated = rate(way, wanted.probability, study.timeline);
+    if (rated.reach > best.reach || (rated.reach == best.reach && rated.best > best.best)) {
+      best = std::move(rated);
+    }
+  }
+  Json answer = {{"wanted", wanted.text},
+                 {"target", wanted.target},
+                 {"least", wanted.probability},
+                 {"found", false},
+                 {"text", ""},
+                 {"camera", Json()},
+                 {"iris", Json()},
+                 {"lamps", Json()},
+                 {"least_factor", Json()},
+                 {"arcs_deg", Json::array()}};
+  if (best.way == nullptr) {
+    answer["text"] = fmt::format("Nothing was looked at for {}.", wanted.target);
+    return answer;
+  }
+  const WayOfLooking& way = *best.way;
+  answer["camera"] = way.camera;
+  answer["iris"] = way.iris.empty() ? Json() : Json(way.iris);
+  answer["lamps"] = way.lamps;
+  if (!way.scene.empty()) answer["scene"] = way.scene;
+  answer["best_probability"] = best.best;
+  answer["least_factor"] = to_json(way.least_factor);
+  for (const auto& [from, to] : best.arcs) answer["arcs_deg"].push_back({from, to});
+  answer["found"] = best.best >= wanted.probability;
+  std::string text;
+  if (best.best < wanted.probability) {
+    text = fmt::format(
+        "None of the cameras, iris modes and lamp settings detects {} with {:g} or more{}: at best "
+        "{:.2g}, by {}.",
+        wanted.target, wanted.probability,
+        way.positions_deg.empty() ? "" : " at any of the positions", best.best, way_text(way));
+  } else if (way.positions_deg.empty()) {
+    text =
+        fmt::format("{} is detected with {:.2g}, by {}.", wanted.target, best.best, way_text(way));
+  } else {
+    text = fmt::format(
+        "{} is detected with {:g} or more best by {}: {}{}.", wanted.target, wanted.probability,
+        way_text(way), arcs_text(best.arcs),
+        study.timeline ? fmt::format(" ({:.0f} % of the orbit)", 100.0 * best.reach) : "");
+  }
+  answer["text"] = text + lamp_text(ways, wanted.probability);
+  return answer;
+}
+
+}  // namespace earthshine::app

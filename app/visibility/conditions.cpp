@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/visibility/conditions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "app/console.h"
+#include "app/interrupt.h"
+#include "app/study/study.h"
+#include "app/visibility/sight_json.h"
+#include "base/parallel.h"
+#include "studies/orbit/target_sources.h"
+
+namespace earthshine::app {
+namespace {
+
+// Conditions that are kept together: a run that is killed loses no more of them.
+constexpr std::size_t batch = 16;
+
+struct Place {
+  std::size_t place, setting;
+};
+Place place_of(const StudyPart& part, std::size_t condition) {
+  const std::size_t places = part.basis->places().size();
+  return {condition % places, condition / places};
+}
+
+std::string phase_of(double sun_share) {
+  if (sun_share <= 0.0) return "eclipse";
+  return sun_share < 1.0 ? "penumbra" : "day";
+}
+
+Json rgb_or_number(const Rgb& factor) {
+  if (factor.r == factor.g && factor.g == factor.b) return factor.r;
+  return to_json(factor);
+}
+
+}  // namespace
+
+Json conditions_json(const StudyPart& part) {
+  Json conditions = Json::array();
+  for (std::size_t k = 0; k < part.conditions(); ++k) {
+    const auto [place, setting] = place_of(part, k);
+    const studies::LampSetting& lamps = part.basis->settings()[setting];
+    const studies::SkyPlace& sky = part.basis->places()[place];
+    const bool along = !part.positions_deg.empty();
+    const double share = studies::sun_share_of(sky);
+    Json factors = Json::object();
+    for (const auto& [name, factor] : lamps.factors) factors[name] = rgb_or_number(factor);
+    const std::string where =
+        along ? fmt::format("orbit {:g} deg, ", part.positions_deg[place]) : "";
+    conditions.push_back({{"id", fmt::format("{}-c{}", part.id, k)},
+                          {"scene", part.id},
+                          {"name", where + "lamps " + lamps.name},
+                          {"lamps", lamps.name},
+                          {"position_deg", along ? Json(part.positions_deg[place]) : Json()},
+                          {"time_s", along ? Json(part.times_s[place]) : Json()},
+                          {"sun_share", sky.sun ? Json(share) : Json()},
+                          {"phase", sky.sun ? Json(phase_of(share)) : Json()},
+                          {"factors", factors},
+                          {"others", lamps.others_off ? "off" : "as-they-are"},
+                          {"earth_error", Json()}});
+  }
+  return conditions;
+}
+
+StudyConditions::StudyConditions(const StudyPart& part, const studies::StudyFile& study,
+                                 const std::filesystem::path& folder, const Common& common)
+    : part_(part), study_(study), common_(common), store_(folder) {}
+
+studies::ConditionOptions StudyConditions::options() const {
+  studies::ConditionOptions options;
+  options.why.wanted = study_.seen_probability;
+  options.why.sight.seen_probability = study_.seen_probability;
+  using Explain = studies::ConditionOptions::Explain;
+  options.explain = part_.conditions() > 1 ? Explain::Unseen : Explain::NotIdentified;
+  return options;
+}
+
+Json StudyConditions::marks(const StudyCamera& camera, const Json& frame_marks, std::size_t first,
+                            std::size_t last) const {
+  Json marks = {{"what", "conditions"}, {"picture", frame_marks}};
+  Json& weights = marks["weights"] = Json::array();
+  for (std::size_t k = first; k < last; ++k) {
+    const auto [place, setting] = place_of(part_, k);
+    const studies::GroupWeights found = part_.basis->weights(place, setting);
+    Json one = Json::array();
+    for (const Rgb& weight : found.weight) one.push_back(to_json(weight));
+    const studies::SkyPlace& sky = part_.basis->places()[place];
+    if (sky.sun) one.push_back(to_json(sky.sun->direction));
+    if (sky.earth) one.push_back(to_json(sky.earth->direction));
+    weights.push_back(one);
+  }
+  if (camera.cctv) {
+    marks["cctv"] = settings_json(camera.cctv->chain.camera);
+    marks["monitor"] = monitor_json(camera.cctv->chain.monitor);
+  }
+  // Reasons name objects, and how many there are of them depends on what is explained.
+  for (const scenes::Object& object : part_.loaded.scene.objects) {
+    marks["objects"].push_back(object.name);
+  }
+  marks["explain"] = static_cast<int>(options().explain);
+  marks["targets"] = part_.targets;
+  marks["seen"] = study_.seen_probability;
+  return marks;
+}
+
+std::optional<std::vector<Json>> StudyConditions::find(const StudyCamera& camera,
+                                                       const Json& frame_marks) const {
+  std::vector<Json> all;
+  for (std::size_t first = 0; first < part_.conditions(); first += batch) {
+    const std::size_t last = std::min(first + batch, part_.conditions());
+    std::string said;
+    const auto stored = store_.find_facts(marks(camera, frame_marks, first, last), said);
+    if (!stored) return std::nullopt;
+    for (const Json& one : (*stored)["conditions"]) all.push_back(one);
+  }
+  return all;
+}
+
+std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studies::BasisView& view,
+                                         const Json& frame_marks, std::vector<StudyCost>& costs) {
+  const auto start = std::chrono::steady_clock::now();
+  const raytrace::Progress progress =
+      progress_of_stages(common_)(fmt::format("conditions of camera {}", camera.camera->name));
+  std::optional<degrade::Setup> cctv;
+  if (camera.cctv) cctv = camera.cctv->chain;
+  std::vector<Json> all(part_.conditions());
+  bool found = true;
+  for (std::size_t first = 0; first < all.size(); first += batch) {
+    const std::size_t last = std::min(first + batch, all.size());
+    if (progress) progress(first, all.size());
+    const Json key = marks(camera, frame_marks, first, last);
+    std::string said;
+    if (const std::optional<Json> stored = store_.find_facts(key, said)) {
+      std::copy((*stored)["conditions"].begin(), (*stored)["conditions"].end(),
+                all.begin() + static_cast<std::ptrdiff_t>(first));
+      continue;
+    }
+    if (!said.empty()) note("note: " + said);
+    found = false;
+    if (Interrupt::asked()) break;
+    base::parallel_chunks(last - first, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = first + begin; k < first + end; ++k) {
+        const auto [place, setting] = place_of(part_, k);
+        all[k] = outcome_json(view, studies::judge_condition(*part_.basis, *part_.query, view,
+                                                             place, setting, cctv, options()));
+      }
+    });
+    store_.keep_facts(
+        key, {{"conditions", std::vector<Json>(all.begin() + static_cast<std::ptrdiff_t>(first),
+                                               all.begin() + static_cast<std::ptrdiff_t>(last))}});
+  }
+  const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;
+  costs.push_back(
+      {fmt::format("conditions {} {}", part_.id, camera.camera->name), gone.count(), 0, found});
+  return all;
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// All conditions of one camera of a visibility study, in parallel, kept as they are finished.
+#pragma once
+
+#include <vector>
+
+#include "app/visibility/frames.h"
+#include "studies/orbit/condition.h"
+
+namespace earthshine::app {
+
+// The entries of study.json's "conditions", in the order of StudyPart: all places of the first lamp
+// setting, then those of the second.
+[[nodiscard]] Json conditions_json(const StudyPart& part);
+
+class StudyConditions {
+ public:
+  StudyConditions(const StudyPart& part, const studies::StudyFile& study,
+                  const std::filesystem::path& folder, const Common& common);
+
+  // One entry per condition: a list with one entry per target. Null for those that were not reached
+  // before an interruption. frame_marks: of the picture that the view was made of.
+  [[nodiscard]] std::vector<Json> judge(const StudyCamera& camera, const studies::BasisView& view,
+                                        const Json& frame_marks, std::vector<StudyCost>& costs);
+
+  // The same if all of it was done before, without the picture.
+  [[nodiscard]] std::optional<std::vector<Json>> find(const StudyCamera& camera,
+                                                      const Json& frame_marks) const;
+  // Everything that the camera's conditions from `first` to before `last` depend on.
+  [[nodiscard]] Json marks(const StudyCamera& camera, const Json& frame_marks, std::size_t first,
+                           std::size_t last) const;
+
+ private:
+  [[nodiscard]] studies::ConditionOptions options() const;
+
+  const StudyPart& part_;
+  const studies::StudyFile& study_;
+  const Common& common_;
+  PartStore store_;
+};
+
+}  // namespace earthshine::app

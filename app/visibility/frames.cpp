@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/visibility/frames.h"
+
+#include <fmt/format.h>
+
+#include "app/console.h"
+#include "app/interrupt.h"
+#include "app/memory.h"
+#include "app/study/study.h"
+#include "base/error.h"
+#include "base/numbers/digest.h"
+#include "radiosity/refine.h"
+#include "radiosity/store/solution_file.h"
+#include "radiosity/store/solution_key.h"
+#include "scenes/effects/quality.h"
+#include "scenes/sky/sky_parts.h"
+
+namespace earthshine::app {
+namespace {
+
+// Suns that the patches are cut for; the shadows of those between fall between theirs.
+constexpr std::size_t most_refined_suns = 4;
+
+// The same lights in few groups: patches are cut where the light of any of them varies, and noise
+// in many would be taken for variation.
+scenes::Scene scene_to_cut(const scenes::Scene& basis) {
+  scenes::Scene scene = basis;
+  if (!basis.sky_parts) return scene;
+  scenes::SkyParts few;
+  const std::vector<scenes::Sun>& suns = basis.sky_parts->suns;
+  const std::size_t count = std::min(suns.size(), most_refined_suns);
+  for (std::size_t k = 0; k < count; ++k) few.suns.push_back(suns[k * suns.size() / count]);
+  scene.sky_parts = std::make_shared<const scenes::SkyParts>(std::move(few));
+  return scene;
+}
+
+}  // namespace
+
+StudyFrames::StudyFrames(const StudyPart& part, const std::filesystem::path& folder,
+                         const Common& common)
+    : part_(part),
+      common_(common),
+      folder_(folder),
+      store_(folder),
+      solver_(solve_options(part.basis_scene.scene, common)) {
+  scene_marks_ = scene_marks(part.basis_scene);
+  Json knobs = Json::object();
+  for (const radiosity::SolveKnob& knob : radiosity::solve_knobs(solver_)) {
+    std::visit([&](const auto& value) { knobs[knob.key] = value; }, knob.value);
+  }
+  scene_marks_["solver"] = knobs;
+  scene_marks_["program"] = EARTHSHINE_VERSION;
+}
+
+raytrace::RenderOptions StudyFrames::options(const StudyCamera& camera) const {
+  raytrace::RenderOptions options =
+      raytrace::render_options(scenes::resolve_quality(part_.basis_scene.scene));
+  options.columns = camera.columns;
+  options.rows = camera.rows;
+  options.seed = common_.seed;
+  options.per_light = true;
+  options.aovs = {"object"};
+  options.stop = [] { return Interrupt::asked(); };
+  return options;
+}
+
+Json StudyFrames::marks(const StudyCamera& camera) const {
+  Json marks = scene_marks_;
+  const raytrace::RenderOptions how = options(camera);
+  marks["what"] = "picture";
+  marks["camera"] = camera_marks(*camera.camera);
+  marks["name"] = camera.camera->name;
+  marks["filter"] = {scenes::filter_name(camera.camera->filter), camera.camera->filter_width_px};
+  marks["columns"] = how.columns;
+  marks["rows"] = how.rows;
+  marks["gather_rays"] = how.gather_rays;
+  marks["shared"] = {how.shared.on, how.shared.smooth_share, how.error, how.shared.noise};
+  marks["seed"] = how.seed;
+  return marks;
+}
+
+const radiosity::Solution& StudyFrames::solution(std::vector<StudyCost>& costs) {
+  if (solution_) return *solution_;
+  const LoadedScene& basis = part_.basis_scene;
+  base::Digest digest;
+  digest.add(std::string_view(dump(scene_marks_)));
+  const std::filesystem::path file = folder_ / ("solution-" + digest.text() + ".h5");
+  const radiosity::SolutionOrigin origin{basis.scene, basis.groups, solver_, EARTHSHINE_VERSION};
+  StudyCost cost{"solve " + part_.id, 0.0, 0, true};
+  StageTimes times;
+  std::error_code ignored;
+  if (std::filesystem::exists(file, ignored)) {
+    try {
+      solution_ = times.measure("read", [&] { return radiosity::read_solution(file, origin); });
+    } catch (const base::Error& error) {
+      note(fmt::format("note: {}; it is done again", error.what()));
+    }
+  }
+  if (!solution_) {
+    const raytrace::Progress progress = progress_of_stages(common_)("solve " + part_.path);
+    if (progress) progress(0, 1);
+    solution_ = times.measure("solve", [&] {
+      const scenes::Scene cut = scene_to_cut(basis.scene);
+      const scenes::LightGroups groups = scenes::find_light_groups(cut);
+      radiosity::Refined refined = radiosity::refine(
+          cut, groups, scenes::find_effects(cut, groups, {}), *part_.query, solver_);
+      return radiosity::solve(basis.scene, basis.groups, basis.effects, *part_.query, solver_,
+                              std::move(refined.patches));
+    });
+    note_balance(*solution_);
+    cost.found = false;
+    cost.rays = solution_->report.form_factor_rays + solution_->report.shadow_rays;
+    radiosity::write_solution(file, *solution_, origin);
+  }
+  cost.seconds = times.total();
+  costs.push_back(cost);
+  return *solution_;
+}
+
+std::optional<StudyFrames::Frame> StudyFrames::known(const StudyCamera& camera,
+                                                     std::vector<StudyCost>& costs) const {
+  std::string said;
+  const std::optional<Json> facts = store_.find_facts(marks(camera), said);
+  if (!facts) return std::nullopt;
+  costs.push_back({fmt::format("picture {} {}", part_.id, camera.camera->name),
+                   (*facts)["seconds"].get<double>(), (*facts)["rays"].get<std::uint64_t>(), true});
+  return Frame{{},
+               (*facts)["relative_noise"].get<double>(),
+               (*facts)["seconds"].get<double>(),
+               (*facts)["patches"].get<std::size_t>()};
+}
+
+std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
+                                                     std::vector<StudyCost>& costs) {
+  const Json key = marks(camera);
+  std::string said;
+  const std::string stage = fmt::format("picture {} {}", part_.id, camera.camera->name);
+  if (std::optional<StoredPart> stored = store_.find(key, said)) {
+    const double seconds = stored->facts["seconds"].get<double>();
+    costs.push_back({stage, seconds, stored->facts["rays"].get<std::uint64_t>(), true});
+    return Frame{std::move(stored->image), stored->facts["relative_noise"].get<double>(), seconds,
+                 stored->facts["patches"].get<std::size_t>()};
+  }
+  if (!said.empty()) note("note: " + said);
+  const LoadedScene& basis = part_.basis_scene;
+  const raytrace::RenderOptions how = options(camera);
+  check_memory(basis, *part_.query, solver_, &how, !solution_.has_value());
+  const radiosity::Solution& light = solution(costs);
+  raytrace::Frame drawn = raytrace::render(
+      basis.scene, basis.groups, basis.effects, *part_.query, light, *camera.camera, how,
+      progress_of_stages(common_)(fmt::format("camera {} of {}", camera.camera->name, part_.path)));
+  if (drawn.report.stopped) return std::nullopt;
+  const Json facts = {{"seconds", drawn.report.seconds},
+                      {"relative_noise", drawn.report.relative_noise},
+                      {"rays", drawn.report.rays.total()},
+                      {"patches", light.report.patches}};
+  store_.keep(key, {facts, drawn.image});
+  costs.push_back({stage, drawn.report.seconds, drawn.report.rays.total(), false});
+  return Frame{std::move(drawn.image), drawn.report.relative_noise, drawn.report.seconds,
+               light.report.patches};
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// earthshine study orbit: all cameras and targets along the orbit; study run: a study file.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <memory>
+
+#include "app/console.h"
+#include "app/options.h"
+#include "app/study/study.h"
+#include "app/visibility/results.h"
+#include "app/visibility/run.h"
+#include "base/error.h"
+
+namespace earthshine::app {
+namespace {
+
+struct OrbitCall {
+  StudyCall study;
+  std::uint64_t positions = 36;
+  std::string at;  // positions in degrees, in any order, with commas between
+  std::vector<std::string> wanted, iris;
+  bool dry_run = false;
+};
+
+struct FileCall {
+  std::string file, folder;
+  bool json = false, dry_run = false;
+};
+
+std::vector<double> positions_of(const std::string& text) {
+  std::vector<double> positions;
+  for (const std::string& word : split_at_commas(text)) {
+    double value = 0.0;
+    const auto read = std::from_chars(word.data(), word.data() + word.size(), value);
+    const bool whole = read.ec == std::errc() && read.ptr == word.data() + word.size();
+    if (!whole || !(std::abs(value) <= 360.0)) {
+      throw base::Error(base::Blame::Input, "--at", fmt::format("\"{}\" is no position", word),
+                        "allowed are numbers from -360 to 360, with commas between",
+                        "Write for instance --at 0,90,180");
+    }
+    if (studies::stands_among(positions, value)) {
+      throw base::Error(base::Blame::Input, "--at",
+                        fmt::format("the place of {:g} stands there twice", value), {},
+                        "Name it once");
+    }
+    positions.push_back(value);
+  }
+  std::sort(positions.begin(), positions.end());
+  return positions;
+}
+
+void tell(const Json& found, bool json, bool dry_run) {
+  if (json) return print(dump(found));
+  print(dry_run ? plan_text(found) : study_text(found));
+}
+
+void run_orbit(const OrbitCall& call, const Common& common) {
+  studies::StudyFile study = study_of(call.study, call.wanted, call.iris);
+  study.positions_deg = call.at.empty() ? studies::even_positions(static_cast<int>(call.positions))
+                                        : positions_of(call.at);
+  study.timeline = call.at.empty() && call.positions > 1;
+  StudyTask task{std::move(study), call.study.folder, "study orbit", call.dry_run};
+  tell(run_study(std::move(task), common), call.study.json, call.dry_run);
+}
+
+void run_file(const FileCall& call, const Common& common) {
+  StudyTask task{studies::read_study_file(call.file), call.folder, "study run " + call.file,
+                 call.dry_run};
+  tell(run_study(std::move(task), common), call.json, call.dry_run);
+}
+
+}  // namespace
+
+Command add_study_orbit(CLI::App& study) {
+  CLI::App* parser = study.add_subcommand(
+      "orbit", "How well each camera sees each target along the scene's orbit, from one solution");
+  const auto call = std::make_shared<OrbitCall>();
+  add_study_options(*parser, call->study);
+  add_cameras_option(*parser, call->study);
+  add_wanted_options(*parser, call->wanted, call->iris);
+  add_whole_number(*parser, "--positions", call->positions, 1, studies::most_positions,
+                   "Positions, evenly over one turn from orbit noon");
+  parser->add_option("--at", call->at, "Positions in degrees instead, with commas between")
+      ->type_name("LIST")
+      ->check(not_empty())
+      ->excludes("--positions");
+  parser->add_flag("--dry-run", call->dry_run, "Only say what would be done, and its price");
+  return {parser, [call](const Common& common) { run_orbit(*call, common); }};
+}
+
+Command add_study_run(CLI::App& study) {
+  CLI::App* parser =
+      study.add_subcommand("run", "A study file: scenes, cameras, targets, lamps, orbit, wishes");
+  const auto call = std::make_shared<FileCall>();
+  parser->add_option("STUDY", call->file, "Study file (TOML)")
+      ->required()
+      ->check(not_empty())
+      ->type_name("");
+  parser->add_option("-o,--output", call->folder, "Folder for the results; made if it is not there")
+      ->type_name("DIR")
+      ->required();
+  parser->add_flag("--dry-run", call->dry_run, "Only say what would be done, and its price");
+  parser->add_flag("--json", call->json, "Results as JSON on standard output");
+  return {parser, [call](const Common& common) { run_file(*call, common); }};
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/visibility/pictures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/console.h"
+#include "app/study/part_store.h"
+#include "app/study/study.h"
+#include "base/error.h"
+#include "base/files/exr_file.h"
+#include "base/files/png_file.h"
+#include "base/tone.h"
+#include "raytrace/render.h"
+#include "scenes/effects/quality.h"
+#include "scenes/text/message_text.h"
+
+namespace earthshine::app {
+namespace {
+
+using studies::PictureWish;
+using studies::Shows;
+
+bool by_cctv(Shows shows) { return shows == Shows::Cctv || shows == Shows::DistributedCctv; }
+bool distributed(Shows shows) {
+  return shows == Shows::Distributed || shows == Shows::DistributedCctv;
+}
+
+const StudyCamera* camera_of(const StudyPart& part, const std::string& name) {
+  const auto found = std::find_if(part.cameras.begin(), part.cameras.end(),
+                                  [&](const StudyCamera& c) { return c.camera->name == name; });
+  return found == part.cameras.end() ? nullptr : &*found;
+}
+
+std::size_t place_of(const StudyPart& part, const PictureWish& wish) {
+  if (!wish.position_deg || part.positions_deg.empty()) return 0;
+  const auto found =
+      std::find(part.positions_deg.begin(), part.positions_deg.end(), *wish.position_deg);
+  return static_cast<std::size_t>(found - part.positions_deg.begin());
+}
+
+std::size_t setting_of(const StudyPart& part, const PictureWish& wish) {
+  const auto& settings = part.basis->settings();
+  if (wish.lamps.empty()) return 0;
+  const auto found =
+      std::find_if(settings.begin(), settings.end(),
+                   [&](const studies::LampSetting& s) { return s.name == wish.lamps; });
+  return static_cast<std::size_t>(found - settings.begin());
+}
+
+// A file name of letters, digits, dots and dashes that no other wish has.
+std::string file_of(const studies::StudyFile& study, const PictureWish& wish) {
+  std::string stem = wish.name;
+  for (char& c : stem) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (!plain && c != '.' && c != '-' && c != '_') c = '_';
+  }
+  const auto number = &wish - study.pictures.data();
+  return fmt::format("pictures/{:02d}-{}", number + 1, stem);
+}
+
+CctvSetup cctv_of_wish(const StudyPart& part, const StudyCamera& camera, const PictureWish& wish,
+                       const Common& common) {
+  if (wish.cctv.empty()) return *camera.cctv;
+  const scenes::Scene& scene = part.loaded.scene;
+  CctvSetup setup = cctv_of_camera(scene, *camera.camera, common);
+  setup.name = wish.cctv;
+  setup.chain.camera = degrade::resolve_camera(scene, wish.cctv);
+  setup.chain.monitor = degrade::resolve_monitor(scene, wish.cctv);
+  return setup;
+}
+
+base::Image draw_distributed(const StudyPart& part, const StudyCamera& camera,
+                             const PictureWish& wish, const Common& common) {
+  const scenes::Scene scene = part.basis->scene_at(place_of(part, wish), setting_of(part, wish));
+  const scenes::LightGroups groups = scenes::find_light_groups(scene);
+  scenes::Asked asked;
+  asked.cameras = {camera.camera};
+  asked.paths = scenes::LightPaths::Distributed;
+  raytrace::RenderOptions options = raytrace::render_options(scenes::resolve_quality(scene));
+  options.columns = camera.columns;
+  options.rows = camera.rows;
+  options.seed = common.seed;
+  options.indirect = raytrace::Indirect::Distributed;
+  options.distributed_lights = wish.lights;
+  return raytrace::render(scene, groups, scenes::find_effects(scene, groups, asked), *part.query,
+                          {}, *camera.camera, options,
+                          progress_of_stages(common)("picture " + wish.name))
+      .image;
+}
+
+}  // namespace
+
+void fill_pictures(studies::StudyFile& study, const StudyPart& part) {
+  if (!study.pictures.empty()) return;
+  const std::vector<double>& positions = part.positions_deg;
+  std::optional<double> midnight;
+  for (const double position : positions) {
+    const auto off = [](double deg) { return std::abs(std::remainder(deg - 180.0, 360.0)); };
+    if (!midnight || off(position) < off(*midnight)) midnight = position;
+  }
+  for (const StudyCamera& camera : part.cameras) {
+    const std::string name = camera.camera->name;
+    const auto add = [&](const std::string& suffix, const std::string& what,
+                         std::optional<double> position, Shows shows) {
+      PictureWish wish;
+      wish.name = name + suffix;
+      wish.title = fmt::format("Camera {}, {}", name, what);
+      wish.camera = name;
+      wish.position_deg = position;
+      wish.shows = shows;
+      study.pictures.push_back(wish);
+    };
+    const auto add_place = [&](const std::string& suffix, const std::string& what,
+                               std::optional<double> position) {
+      add(suffix, what, position, Shows::Clean);
+      if (!camera.cctv) return;
+      add(suffix + "-cctv", what + ", on the monitor", position, Shows::Cctv);
+      study.pairs.push_back({fmt::format("Camera {}, {}: clean and on the monitor", name, what),
+                             name + suffix, name + suffix + "-cctv"});
+    };
+    if (positions.size() < 2) {
+      add_place("", "as the scene has it",
+                positions.empty() ? std::nullopt : std::optional(positions.front()));
+      continue;
+    }
+    const std::string first = fmt::format("-{:g}-deg", positions.front());
+    const std::string last = fmt::format("-{:g}-deg", *midnight);
+    add_place(first, fmt::format("orbit {:g} deg", positions.front()), positions.front());
+    if (*midnight == positions.front()) continue;
+    add_place(last, fmt::format("orbit {:g} deg", *midnight), midnight);
+    const std::string kind = camera.cctv ? "-cctv" : "";
+    study.pairs.push_back(
+        {fmt::format("Camera {}: orbit {:g} and {:g} deg", name, positions.front(), *midnight),
+         name + first + kind, name + last + kind});
+  }
+}
+
+void check_pictures(const studies::StudyFile& study, const std::vector<const StudyPart*>& parts) {
+  for (const PictureWish& wish : study.pictures) {
+    const auto refuse = [&](const std::string& found, const std::string& allowed) {
+      throw base::Error(base::Blame::Input, wish.where,
+                        fmt::format("[[picture]] {} {}", scenes::in_quotes(wish.name), found),
+                        allowed);
+    };
+    const auto part = std::find_if(parts.begin(), parts.end(), [&](const StudyPart* p) {
+      return camera_of(*p, wish.camera) != nullptr;
+    });
+    if (part == parts.end()) {
+      std::vector<std::string> names;
+      for (const StudyCamera& camera : parts.front()->cameras) names.push_back(camera.camera->name);
+      refuse(fmt::format("names camera {}, which the study does not look through",
+                         scenes::in_quotes(wish.camera)),
+             "its cameras are " + scenes::listed(names));
+    }
+    if (by_cctv(wish.shows) && wish.cctv.empty() && !camera_of(**part, wish.camera)->cctv) {
+      refuse(fmt::format("shows camera {} by CCTV, which it does not have",
+                         scenes::in_quotes(wish.camera)),
+             "give it one under camera_models, or show \"clean\"");
+    }
+    if (!wish.cctv.empty()) (void)degrade::resolve_camera((*part)->loaded.scene, wish.cctv);
+    if (setting_of(**part, wish) == (*part)->basis->settings().size()) {
+      std::vector<std::string> names;
+      for (const studies::LampSetting& s : (*part)->basis->settings()) names.push_back(s.name);
+      refuse(fmt::format("names lamps {}", scenes::in_quotes(wish.lamps)),
+             "the study's lamp settings are " + scenes::listed(names));
+    }
+    if (wish.position_deg && place_of(**part, wish) == (*part)->basis->places().size()) {
+      refuse(fmt::format("is at {:g} deg, which is not among the study's positions",
+                         *wish.position_deg),
+             "add it to positions_deg under [orbit]");
+    }
+    if (wish.position_deg && (*part)->positions_deg.empty()) {
+      refuse("has a position_deg", "the study has no [orbit]");
+    }
+  }
+}
+
+namespace {
+
+// The wishes that this camera of this scene draws.
+std::vector<const PictureWish*> own_wishes(const PictureTask& task) {
+  std::vector<const PictureWish*> wishes;
+  const std::string& name = task.camera.camera->name;
+  const auto first = std::find_if(task.parts.begin(), task.parts.end(), [&](const StudyPart* part) {
+    return camera_of(*part, name) != nullptr;
+  });
+  if (first == task.parts.end() || *first != &task.part) return wishes;
+  for (const PictureWish& wish : task.study.pictures) {
+    if (wish.camera == name) wishes.push_back(&wish);
+  }
+  return wishes;
+}
+
+// Everything that a picture depends on.
+Json marks_of(const PictureTask& task, const PictureWish& wish) {
+  const studies::GroupWeights weights =
+      task.part.basis->weights(place_of(task.part, wish), setting_of(task.part, wish));
+  Json marks = {{"what", "figure"},
+                {"picture", task.frame_marks},
+                {"file", file_of(task.study, wish)},
+                {"shows", static_cast<int>(wish.shows)},
+                {"lights", distributed(wish.shows) ? wish.lights : 0}};
+  for (const Rgb& weight : weights.weight) marks["weights"].push_back(to_json(weight));
+  if (by_cctv(wish.shows)) {
+    const CctvSetup cctv = cctv_of_wish(task.part, task.camera, wish, task.common);
+    marks["cctv"] = settings_json(cctv.chain.camera);
+    marks["monitor"] = monitor_json(cctv.chain.monitor);
+  }
+  return marks;
+}
+
+std::uintmax_t bytes_of(const std::filesystem::path& path) {
+  std::error_code problem;
+  const std::uintmax_t size = std::filesystem::file_size(path, problem);
+  return problem ? 0 : size;
+}
+
+bool is_there(const PictureTask& task, const PictureWish& wish) {
+  std::string said;
+  const auto facts = PartStore(task.folder / "points").find_facts(marks_of(task, wish), said);
+  if (!facts) return false;
+  const std::string stem = file_of(task.study, wish);
+  return (*facts)["png_bytes"] == bytes_of(task.folder / (stem + ".png")) &&
+         (*facts)["exr_bytes"] == bytes_of(task.folder / (stem + ".exr"));
+}
+
+void draw(const PictureTask& task, const PictureWish& wish, const studies::BasisView& view) {
+  const StudyPart& part = task.part;
+  const std::string stem = (task.folder / file_of(task.study, wish)).string();
+  const base::Image radiance =
+      distributed(wish.shows) ? draw_distributed(part, task.camera, wish, task.common)
+                              : studies::weighted_sum(view.layers, part.basis->groups().names,
+                                                      part.basis->weights(place_of(part, wish),
+                                                                          setting_of(part, wish)));
+  base::write_exr(stem + ".exr", radiance);
+  if (by_cctv(wish.shows)) {
+    const CctvSetup cctv = cctv_of_wish(part, task.camera, wish, task.common);
+    write_cctv(stem + ".png", cctv, run_chain(cctv, radiance));
+  } else {
+    base::write_png(stem + ".png", radiance.width, radiance.height, 3,
+                    base::tone_map(radiance).rgb);
+  }
+  PartStore(task.folder / "points")
+      .keep_facts(marks_of(task, wish),
+                  {{"png_bytes", bytes_of(stem + ".png")}, {"exr_bytes", bytes_of(stem + ".exr")}});
+}
+
+}  // namespace
+
+bool pictures_are_there(const PictureTask& task) {
+  const auto wishes = own_wishes(task);
+  return std::all_of(wishes.begin(), wishes.end(),
+                     [&](const PictureWish* wish) { return is_there(task, *wish); });
+}
+
+void draw_pictures(const PictureTask& task, const studies::BasisView* view, Json& figures) {
+  for (const PictureWish* wish : own_wishes(task)) {
+    if (view != nullptr && !is_there(task, *wish)) draw(task, *wish, *view);
+    const std::string stem = file_of(task.study, *wish);
+    figures.push_back({{"name", wish->name},
+                       {"file", stem + ".png"},
+                       {"exr", stem + ".exr"},
+                       {"caption", wish->title}});
+  }
+}
+
+Json pairs_json(const studies::StudyFile& study, const Json& figures) {
+  Json pairs = Json::array();
+  const auto figure = [&](const std::string& name) -> Json {
+    for (const Json& one : figures) {
+      if (one["name"] == name) return {{"file", one["file"]}, {"caption", one["caption"]}};
+    }
+    return {};
+  };
+  for (const studies::PairWish& pair : study.pairs) {
+    const Json left = figure(pair.left), right = figure(pair.right);
+    if (left.is_null() || right.is_null()) continue;
+    pairs.push_back({{"title", pair.title}, {"left", left}, {"right", right}});
+  }
+  return pairs;
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/visibility/plan.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "app/console.h"
+#include "app/visibility/frames.h"
+#include "app/visibility/run.h"
+#include "base/parallel.h"
+#include "degrade/chain.h"
+#include "scenes/effects/quality.h"
+#include "studies/cost/cost.h"
+#include "studies/cost/memory.h"
+
+namespace earthshine::app {
+namespace {
+
+// One pass of the CCTV chain over a flat picture: what a condition takes at least.
+double chain_seconds(const StudyCamera& camera) {
+  if (!camera.cctv) return 0.0;
+  base::Image flat = base::make_rgb_image(camera.columns, camera.rows);
+  for (base::Channel& channel : flat.channels) {
+    std::fill(channel.values.begin(), channel.values.end(), 100.0F);
+  }
+  degrade::Options options = camera.cctv->chain.options;
+  options.fov_deg = camera.camera->fov_deg;
+  const auto start = std::chrono::steady_clock::now();
+  (void)degrade::degrade(flat, camera.cctv->chain.camera, camera.cctv->chain.monitor, options);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Json plan_of(const StudyPart& part, const std::filesystem::path& folder, const Common& common) {
+  const LoadedScene& basis = part.basis_scene;
+  std::error_code ignored;
+  const std::filesystem::path points = folder / "points";
+  std::optional<StudyFrames> frames;
+  if (std::filesystem::is_directory(points, ignored)) frames.emplace(part, points, common);
+  std::vector<const scenes::Camera*> cameras;
+  std::vector<raytrace::RenderOptions> pictures;
+  Json listed = Json::array();
+  for (const StudyCamera& camera : part.cameras) {
+    const bool found = frames && frames->has(camera);
+    listed.push_back(
+        {{"camera", camera.camera->name},
+         {"columns", camera.columns},
+         {"rows", camera.rows},
+         {"cctv", camera.cctv ? Json(camera.cctv->name) : Json()},
+         {"found", found},
+         {"seconds", 0.0},
+         {"conditions_seconds", static_cast<double>(part.conditions()) * chain_seconds(camera) /
+                                    base::available_threads()}});
+    if (found) continue;
+    raytrace::RenderOptions options =
+        raytrace::render_options(scenes::resolve_quality(basis.scene));
+    options.columns = camera.columns;
+    options.rows = camera.rows;
+    options.per_light = true;
+    cameras.push_back(camera.camera);
+    pictures.push_back(options);
+  }
+  double solve = 0.0, memory_mib = 0.0;
+  if (!cameras.empty()) {
+    const radiosity::SolveOptions solver = solve_options(basis.scene, common);
+    studies::MemoryCase sizes =
+        studies::memory_case(basis.scene, basis.groups, basis.effects, solver);
+    studies::expect_rows(sizes, basis.scene, *part.query, solver);
+    studies::add_picture(sizes, basis.groups, basis.effects, pictures.front());
+    memory_mib = studies::memory_needed(sizes).total() / 1048576.0;
+    const studies::Pilot pilot = studies::expect_costs(
+        {basis.scene, basis.groups, basis.effects, *part.query, solver, sizes.row_entries}, cameras,
+        pictures);
+    double drawn = 0.0;
+    std::size_t next = 0;
+    for (Json& one : listed) {
+      if (one["found"].get<bool>()) continue;
+      one["seconds"] = pilot.bill.pictures[next].seconds;
+      drawn += pilot.bill.pictures[next++].seconds;
+    }
+    solve = studies::total_seconds(pilot.bill) - drawn;
+  }
+  return {{"id", part.id},
+          {"path", part.path},
+          {"targets", part.targets},
+          {"positions", part.basis->places().size()},
+          {"conditions", part.conditions()},
+          {"light_groups", basis.groups.count()},
+          {"suns", part.basis->in_parts() ? part.basis->sun_parts() : 0},
+          {"earth_cells", part.basis->in_parts() ? part.basis->earth_parts() : 0},
+          {"memory_mib", memory_mib},
+          {"solve_seconds", solve},
+          {"cameras", listed}};
+}
+
+}  // namespace
+
+Json plan_json(const studies::StudyFile& study, const std::vector<const StudyPart*>& parts,
+               const std::filesystem::path& folder, const Common& common) {
+  Json plan = {{"study", "visibility"}, {"name", study.name}, {"dry_run", true}};
+  Json lamps = Json::array();
+  for (const studies::LampSetting& setting : study.lamps) lamps.push_back(setting.name);
+  plan["lamps"] = lamps;
+  plan["scenes"] = Json::array();
+  double seconds = 0.0;
+  for (const StudyPart* part : parts) {
+    const Json one = plan_of(*part, folder, common);
+    seconds += one["solve_seconds"].get<double>();
+    for (const Json& camera : one["cameras"]) {
+      seconds += camera["seconds"].get<double>() + camera["conditions_seconds"].get<double>();
+    }
+    plan["scenes"].push_back(one);
+  }
+  plan["pictures"] = study.pictures.size();
+  plan["seconds"] = seconds;
+  return plan;
+}
+
+std::string plan_text(const Json& plan) {
+  std::string text = plan["name"].get<std::string>() + "\n";
+  for (const Json& scene : plan["scenes"]) {
+    text += fmt::format(
+        "{}: {} places x {} lamp settings = {} conditions; {} light groups ({} Suns, {} cells of "
+        "the "
+        "Earth), {:.0f} MiB; radiosity {}\n",
+        scene["path"].get<std::string>(), scene["positions"].get<std::size_t>(),
+        plan["lamps"].size(), scene["conditions"].get<std::size_t>(),
+        scene["light_groups"].get<std::size_t>(), scene["suns"].get<std::size_t>(),
+        scene["earth_cells"].get<std::size_t>(), scene["memory_mib"].get<double>(),
+        duration(scene["solve_seconds"].get<double>()));
+    for (const Json& camera : scene["cameras"]) {
+      const std::string drawing = camera["found"].get<bool>()
+                                      ? "picture found"
+                                      : "picture " + duration(camera["seconds"].get<double>());
+      text += fmt::format("  camera {}: {} x {}, {}, conditions {}\n",
+                          camera["camera"].get<std::string>(), camera["columns"].get<int>(),
+                          camera["rows"].get<int>(), drawing,
+                          duration(camera["conditions_seconds"].get<double>()));
+    }
+  }
+  return text + fmt::format(
+                    "{} pictures for the report\nabout {} on this machine, without the "
+                    "reasons of targets that fail\n",
+                    plan["pictures"].get<std::size_t>(), duration(plan["seconds"].get<double>()));
+}
+
+}  // namespace earthshine::app

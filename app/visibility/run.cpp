@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/visibility/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "app/console.h"
+#include "app/interrupt.h"
+#include "app/output.h"
+#include "app/report/page.h"
+#include "app/study/study.h"
+#include "app/visibility/answers.h"
+#include "app/visibility/conditions.h"
+#include "app/visibility/pictures.h"
+#include "app/visibility/plan.h"
+#include "app/visibility/results.h"
+#include "base/error.h"
+#include "base/files/output_file.h"
+#include "scenes/text/message_text.h"
+
+namespace earthshine::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* points_folder = "points";
+
+using Parts = std::vector<std::unique_ptr<StudyPart>>;
+
+Parts prepare_parts(const studies::StudyFile& study, const Common& common) {
+  Parts parts;
+  for (std::size_t k = 0; k < study.scenes.size(); ++k) {
+    parts.push_back(prepare_part(study, k, common));
+  }
+  return parts;
+}
+
+std::vector<const StudyPart*> pointers(const Parts& parts) {
+  std::vector<const StudyPart*> all;
+  for (const auto& part : parts) all.push_back(part.get());
+  return all;
+}
+
+// Whether the folder holds the results of a run that came to its end.
+bool has_finished_results(const fs::path& folder) {
+  std::ifstream file(folder / study_file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const Json study = Json::parse(text, nullptr, false);
+  return study.is_object() && study.value("complete", false);
+}
+
+// A CCTV camera for a camera that no scene has would go unnoticed.
+void check_models(const studies::StudyFile& study, const std::vector<const StudyPart*>& parts) {
+  std::vector<std::string> names;
+  for (const StudyPart* part : parts) {
+    for (const scenes::Camera& camera : part->loaded.scene.cameras) names.push_back(camera.name);
+  }
+  for (const auto& [name, model] : study.camera_models) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    throw base::Error(base::Blame::Input, study.place("camera_models"),
+                      "no scene has a camera " + scenes::in_quotes(name),
+                      "there are " + scenes::listed(names), scenes::did_you_mean(name, names));
+  }
+}
+
+class Runner {
+ public:
+  Runner(const StudyTask& task, const Common& common, const Parts& parts,
+         const ViewListener& listen)
+      : task_(task),
+        common_(common),
+        listen_(listen),
+        store_(fs::path(task.folder) / points_folder),
+        findings_(task.study) {
+    findings_.command = task.command;
+    findings_.seed = common.seed;
+    findings_.parts = pointers(parts);
+  }
+
+  void run() {
+    const Interrupt interrupt;
+    ways_.resize(task_.study.wanted.size());
+    for (const StudyPart* part : findings_.parts) {
+      StudyFrames frames(*part, fs::path(task_.folder) / points_folder, common_);
+      StudyConditions conditions(*part, task_.study, fs::path(task_.folder) / points_folder,
+                                 common_);
+      for (const StudyCamera& camera : part->cameras) {
+        if (!look_through(*part, camera, frames, conditions)) findings_.complete = false;
+      }
+    }
+    // Of a study that was stopped there is nothing to conclude.
+    for (std::size_t k = 0; findings_.complete && k < ways_.size(); ++k) {
+      findings_.answers.push_back(answer_json(task_.study.wanted[k], task_.study, ways_[k]));
+    }
+    findings_.pairs = pairs_json(task_.study, findings_.figures);
+  }
+
+  [[nodiscard]] const StudyFindings& findings() const { return findings_; }
+
+ private:
+  // Whether all was done.
+  bool look_through(const StudyPart& part, const StudyCamera& camera, StudyFrames& frames,
+                    StudyConditions& conditions) {
+    CameraResults found{&part, &camera, 0.0, 0.0, std::vector<Json>(part.conditions())};
+    const Json frame_marks = frames.marks(camera);
+    const PictureTask pictures{task_.study,  findings_.parts, part,   camera,
+                               task_.folder, frame_marks,     common_};
+    Json ways_marks = conditions.marks(camera, frame_marks, 0, part.conditions());
+    ways_marks["what"] = "answers";
+    for (const studies::WantedTarget& wanted : task_.study.wanted) {
+      ways_marks["wanted"].push_back(wanted.text);
+    }
+    ways_marks["iris"] = task_.study.iris;
+    ways_marks["path"] = part.path;
+    if (!take_finished(pictures, ways_marks, frames, conditions, found)) {
+      std::optional<StudyFrames::Frame> frame;
+      if (!Interrupt::asked()) frame = frames.frame(camera, findings_.costs);
+      if (frame) work(pictures, ways_marks, *frame, conditions, found);
+    }
+    findings_.cameras.push_back(std::move(found));
+    const auto& done = findings_.cameras.back().conditions;
+    return !Interrupt::asked() &&
+           std::none_of(done.begin(), done.end(), [](const Json& one) { return one.is_null(); });
+  }
+
+  void take(const StudyPart& part, const StudyFrames::Frame& frame, CameraResults& found) {
+    found.relative_noise = frame.relative_noise;
+    found.render_seconds = frame.seconds;
+    findings_.patches[part.id] = frame.patches;
+  }
+
+  void add_all(const std::vector<std::vector<WayOfLooking>>& more) {
+    for (std::size_t k = 0; k < more.size(); ++k) {
+      ways_[k].insert(ways_[k].end(), more[k].begin(), more[k].end());
+    }
+  }
+
+  // Where an earlier run has done all of it, so that not even the picture must be read.
+  bool take_finished(const PictureTask& pictures, const Json& ways_marks, const StudyFrames& frames,
+                     StudyConditions& conditions, CameraResults& found) {
+    if (listen_ || !pictures_are_there(pictures)) return false;
+    std::string said;
+    const auto ways = store_.find_facts(ways_marks, said);
+    const auto judged = conditions.find(pictures.camera, pictures.frame_marks);
+    if (!ways || !judged) return false;
+    const auto frame = frames.known(pictures.camera, findings_.costs);
+    if (!frame) return false;
+    take(pictures.part, *frame, found);
+    found.conditions = *judged;
+    findings_.costs.push_back(
+        {fmt::format("conditions {} {}", pictures.part.id, found.camera->camera->name), 0.0, 0,
+         true});
+    add_all(ways_of((*ways)["ways"]));
+    draw_pictures(pictures, nullptr, findings_.figures);
+    return true;
+  }
+
+  void work(const PictureTask& pictures, const Json& ways_marks, StudyFrames::Frame& frame,
+            StudyConditions& conditions, CameraResults& found) {
+    const StudyPart& part = pictures.part;
+    take(part, frame, found);
+    const studies::BasisView view = studies::make_basis_view(
+        *part.basis, *part.query, *pictures.camera.camera, std::move(frame.image));
+    found.conditions =
+        conditions.judge(pictures.camera, view, pictures.frame_marks, findings_.costs);
+    if (listen_) listen_(part, pictures.camera, view, frame);
+    if (Interrupt::asked()) return;
+    draw_pictures(pictures, &view, findings_.figures);
+    std::string said;
+    if (const auto kept = store_.find_facts(ways_marks, said)) {
+      return add_all(ways_of((*kept)["ways"]));
+    }
+    std::vector<std::vector<WayOfLooking>> ways(task_.study.wanted.size());
+    add_ways(part, task_.study, pictures.camera, view, ways);
+    store_.keep_facts(ways_marks, {{"ways", ways_json(ways)}});
+    add_all(ways);
+  }
+
+  const StudyTask& task_;
+  const Common& common_;
+  const ViewListener& listen_;
+  PartStore store_;
+  StudyFindings findings_;
+  std::vector<std::vector<WayOfLooking>> ways_;
+};
+
+}  // namespace
+
+Json run_study(StudyTask task, const Common& common, const ViewListener& listen) {
+  const Parts parts = prepare_parts(task.study, common);
+  check_models(task.study, pointers(parts));
+  fill_pictures(task.study, *parts.front());
+  check_pictures(task.study, pointers(parts));
+  if (task.dry_run) return plan_json(task.study, pointers(parts), task.folder, common);
+  std::vector<std::string> files = {study_file, results_table, report_file};
+  files.insert(files.end(), task.more_files.begin(), task.more_files.end());
+  prepare_folder(task.folder, files);
+  std::error_code ignored;
+  fs::create_directories(fs::path(task.folder) / "pictures", ignored);
+  for (const char* folder : {"", points_folder, "pictures"}) {
+    base::remove_abandoned_files(fs::path(task.folder) / folder);
+  }
+
+  Runner runner(task, common, parts, listen);
+  runner.run();
+  if (!runner.findings().complete && has_finished_results(task.folder)) {
+    throw base::Error(base::Blame::Work, "study", "interrupted", {},
+                      "The results of the run before stand in " + task.folder +
+                          "; run the same command again to go on");
+  }
+  const Json study = study_json(runner.findings());
+  base::write_text(fs::path(task.folder) / study_file, dump(study));
+  base::write_text(fs::path(task.folder) / results_table, study_csv(study));
+  ReportOptions how;
+  how.quiet = common.quiet;
+  write_report(task.folder, study, how);
+  if (!runner.findings().complete) {
+    throw base::Error(
+        base::Blame::Work, "study", "interrupted", {},
+        "Run the same command again: it goes on with what is finished in " + task.folder);
+  }
+  return study;
+}
+
+}  // namespace earthshine::app

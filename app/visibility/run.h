@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// A visibility study from its plan to its folder: study.json, results.csv, report.html, pictures/.
+// What is finished is kept in points/, so that a run that was ended goes on from there.
+#pragma once
+
+#include <functional>
+
+#include "app/visibility/frames.h"
+#include "studies/orbit/condition.h"
+#include "studies/orbit/study_file.h"
+
+namespace earthshine::app {
+
+inline constexpr const char* results_table = "results.csv";
+
+// Told each camera's view and its rows of study.json, one list of targets per condition.
+using ViewListener = std::function<void(const StudyPart&, const StudyCamera&,
+                                        const studies::BasisView&, const StudyFrames::Frame&)>;
+
+struct StudyTask {
+  studies::StudyFile study;
+  std::string folder;
+  std::string command;  // what was called, for the report
+  bool dry_run = false;
+  std::vector<std::string> more_files = {};  // that the listener writes in the folder
+};
+
+// The content of study.json; of a dry run what would be done and its price. Throws base::Error for
+// bad input before any work is done, and (Work) after everything was written if it was interrupted.
+[[nodiscard]] Json run_study(StudyTask task, const Common& common, const ViewListener& listen = {});
+
+// For people, of what a dry run gives.
+[[nodiscard]] std::string plan_text(const Json& plan);
+
+}  // namespace earthshine::app

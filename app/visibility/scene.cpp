@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/visibility/scene.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "app/console.h"
+#include "base/error.h"
+#include "raytrace/camera/check.h"
+#include "scenes/sky/orbit.h"
+#include "scenes/text/message_text.h"
+
+namespace earthshine::app {
+namespace {
+
+using base::Blame;
+using base::Error;
+
+// The study's own CCTV cameras and monitor go before the scene's.
+void add_cctv(const studies::StudyFile& study, scenes::Scene& scene) {
+  for (const scenes::SettingTable& table : study.cctv.cctv) {
+    std::erase_if(scene.cctv,
+                  [&](const scenes::SettingTable& old) { return old.name == table.name; });
+    scene.cctv.push_back(table);
+  }
+  if (study.cctv.monitor) scene.monitor = study.cctv.monitor;
+  for (const auto& [name, model] : study.camera_models) {
+    const auto camera = std::find_if(scene.cameras.begin(), scene.cameras.end(),
+                                     [&](const scenes::Camera& c) { return c.name == name; });
+    if (camera == scene.cameras.end()) continue;  // another scene of the study may have it
+    camera->cctv = model == "none" ? "" : model;
+  }
+  degrade::check_settings(scene);
+}
+
+void mark_targets(const studies::StudyFile& study, scenes::Scene& scene) {
+  if (study.targets.empty()) return;
+  for (scenes::Object& object : scene.objects) object.target = false;
+  for (const std::string& name : study.targets) {
+    const auto object = std::find_if(scene.objects.begin(), scene.objects.end(),
+                                     [&](const scenes::Object& o) { return o.name == name; });
+    if (object != scene.objects.end()) {
+      object->target = true;
+      continue;
+    }
+    std::vector<std::string> names;
+    for (const scenes::Object& o : scene.objects) names.push_back(o.name);
+    throw Error(Blame::Input, study.place("targets"),
+                fmt::format("{} has no object {}", scene.path.string(), scenes::in_quotes(name)),
+                names.empty() ? "it has no objects" : "it has " + scenes::listed(names),
+                scenes::did_you_mean(name, names));
+  }
+}
+
+void check_wanted(const studies::StudyFile& study, const StudyPart& part) {
+  for (const studies::WantedTarget& wanted : study.wanted) {
+    if (std::find(part.targets.begin(), part.targets.end(), wanted.target) != part.targets.end()) {
+      continue;
+    }
+    throw Error(Blame::Input, study.place(study.where.contains("wanted") ? "wanted" : "--wanted"),
+                fmt::format("{} names {}, which is no target of {}", scenes::in_quotes(wanted.text),
+                            scenes::in_quotes(wanted.target), part.path),
+                part.targets.empty() ? "it has no targets"
+                                     : "its targets are " + scenes::listed(part.targets),
+                "Mark the object with target = true, or list it under targets");
+  }
+}
+
+void find_cameras(const studies::StudyFile& study, const Common& common, StudyPart& part) {
+  const scenes::Scene& scene = part.loaded.scene;
+  std::vector<const scenes::Camera*> chosen;
+  for (const std::string& name : study.cameras) {
+    const scenes::Camera* camera = &choose_camera(scene, name);
+    if (std::find(chosen.begin(), chosen.end(), camera) == chosen.end()) chosen.push_back(camera);
+  }
+  if (study.cameras.empty()) {
+    (void)choose_camera(scene, {});  // refuses a scene without any
+    for (const scenes::Camera& camera : scene.cameras) chosen.push_back(&camera);
+  }
+  for (const scenes::Camera* camera : chosen) {
+    raytrace::check_camera(scene, *part.query, *camera);
+    StudyCamera& made = part.cameras.emplace_back();
+    made.camera = camera;
+    made.columns = study.columns.value_or(camera->columns);
+    made.rows = study.rows.value_or(camera->rows);
+    if (!camera->cctv.empty()) made.cctv = cctv_of_camera(scene, *camera, common);
+  }
+}
+
+// Sun and Earth at each position, and when.
+std::vector<studies::SkyPlace> find_places(const studies::StudyFile& study, StudyPart& part) {
+  const scenes::Scene& scene = part.loaded.scene;
+  if (study.positions_deg.empty()) return {studies::sky_of(scene)};
+  if (!scene.orbit) {
+    throw Error(Blame::Input, part.path, "has no [orbit], so that there is nothing to go along",
+                "a study with positions needs a scene with [orbit]",
+                "Add [orbit] with altitude_km, or leave the positions out");
+  }
+  scenes::Scene sky;  // without surfaces: cheap to move
+  sky.sun = scene.sun;
+  sky.earth = scene.earth;
+  sky.orbit = scene.orbit;
+  std::vector<studies::SkyPlace> places;
+  for (const double position : study.positions_deg) {
+    scenes::move_along_orbit(sky, position);
+    places.push_back(studies::sky_of(sky));
+    part.positions_deg.push_back(position);
+    part.times_s.push_back(scenes::orbit_state(*scene.orbit, position).time_s);
+  }
+  return places;
+}
+
+}  // namespace
+
+std::unique_ptr<StudyPart> prepare_part(const studies::StudyFile& study, std::size_t index,
+                                        const Common& common) {
+  auto part = std::make_unique<StudyPart>();
+  part->id = fmt::format("s{}", index);
+  part->path = study.scenes[index].lexically_normal().string();
+  part->loaded = load({part->path, study.overrides}, common.quiet);
+  scenes::Scene& scene = part->loaded.scene;
+  add_cctv(study, scene);
+  mark_targets(study, scene);
+  for (const scenes::Object& object : scene.objects) {
+    if (object.target) part->targets.push_back(object.name);
+  }
+  check_wanted(study, *part);
+  part->query = std::make_unique<const scenes::RayQuery>(scene);
+  find_cameras(study, common, *part);
+  part->basis = std::make_unique<const studies::LightBasis>(scene, find_places(study, *part),
+                                                            study.lamps, study.basis);
+  scenes::Asked asked;
+  for (const StudyCamera& camera : part->cameras) asked.cameras.push_back(camera.camera);
+  asked.per_light = true;
+  part->basis_scene.scene = part->basis->scene();
+  part->basis_scene.groups = part->basis->groups();
+  part->basis_scene.effects =
+      scenes::find_effects(part->basis->scene(), part->basis->groups(), asked);
+  return part;
+}
+
+}  // namespace earthshine::app

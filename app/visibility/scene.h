@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// One scene of a visibility study, with all that its conditions share.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/cctv/cctv.h"
+#include "app/command.h"
+#include "scenes/ray_query.h"
+#include "studies/light/light_basis.h"
+#include "studies/orbit/study_file.h"
+
+namespace earthshine::app {
+
+struct StudyCamera {
+  const scenes::Camera* camera = nullptr;
+  int columns = 0, rows = 0;
+  std::optional<CctvSetup> cctv;
+};
+
+// Not to be moved once it is made: its parts point at each other.
+struct StudyPart {
+  std::string id;    // "s0", "s1", ...
+  std::string path;  // as the study has it
+  LoadedScene loaded;
+  std::vector<double> positions_deg;  // empty: the scene's own place
+  std::vector<double> times_s;        // since orbit noon, of each position
+  std::unique_ptr<const studies::LightBasis> basis;
+  LoadedScene basis_scene;  // of the basis, with its groups and effects
+  std::unique_ptr<const scenes::RayQuery> query;
+  std::vector<StudyCamera> cameras;
+  std::vector<std::string> targets;
+
+  [[nodiscard]] std::size_t conditions() const {
+    return basis->places().size() * basis->settings().size();
+  }
+};
+
+// Reads and checks everything that the study names in one of its scenes. Throws base::Error (Input)
+// before any light is computed.
+[[nodiscard]] std::unique_ptr<StudyPart> prepare_part(const studies::StudyFile& study,
+                                                      std::size_t index, const Common& common);
+
+}  // namespace earthshine::app

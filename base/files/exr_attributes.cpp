@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/files/exr_attributes.h"
+
+#include <ImathMatrix.h>
+#include <ImfChromaticities.h>
+#include <ImfDoubleAttribute.h>
+#include <ImfFloatAttribute.h>
+#include <ImfIntAttribute.h>
+#include <ImfMatrixAttribute.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "base/error.h"
+
+namespace earthshine::base {
+namespace {
+
+bool is_own_business(std::string_view name) {
+  for (std::string_view standard : {"type", "name", "view", "version", "chunkCount",
+                                    "whiteLuminance", "pixelAspectRatio", "screenWindowWidth"}) {
+    if (name == standard) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void set_exr_attributes(Imf::Header& header, const ExrHeader& attributes) {
+  if (const ExrHeader::Whole& whole = attributes.whole; whole.columns > 0) {
+    const Imath::V2i size = header.dataWindow().size();
+    header.displayWindow() = {{0, 0}, {whole.columns - 1, whole.rows - 1}};
+    header.dataWindow() = {{whole.x, whole.y}, {whole.x + size.x, whole.y + size.y}};
+  }
+  header.compression() = Imf::ZIP_COMPRESSION;
+  Imf::addChromaticities(header, Imf::Chromaticities());  // the default is Rec. 709
+  Imf::addWhiteLuminance(header, 1.0F);
+  for (const auto& [name, value] : attributes.text) {
+    header.insert(name, Imf::StringAttribute(value));
+  }
+  for (const auto& [name, value] : attributes.numbers) {
+    header.insert(name, Imf::FloatAttribute(value));
+  }
+  for (const auto& [name, value] : attributes.matrices) {
+    Imath::M44f matrix;
+    std::copy(value.begin(), value.end(), matrix.getValue());
+    header.insert(name, Imf::M44fAttribute(matrix));
+  }
+}
+
+ExrHeader exr_attributes(const Imf::Header& header) {
+  ExrHeader result;
+  for (auto a = header.begin(); a != header.end(); ++a) {
+    if (is_own_business(a.name())) continue;
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute())) {
+      result.text.emplace_back(a.name(), text->value());
+    } else if (const auto* real = dynamic_cast<const Imf::FloatAttribute*>(&a.attribute())) {
+      result.numbers.emplace_back(a.name(), real->value());
+    } else if (const auto* wide = dynamic_cast<const Imf::DoubleAttribute*>(&a.attribute())) {
+      result.numbers.emplace_back(a.name(), static_cast<float>(wide->value()));
+    } else if (const auto* whole = dynamic_cast<const Imf::IntAttribute*>(&a.attribute())) {
+      result.numbers.emplace_back(a.name(), static_cast<float>(whole->value()));
+    } else if (const auto* matrix = dynamic_cast<const Imf::M44fAttribute*>(&a.attribute())) {
+      ExrMatrix values{};
+      std::copy_n(matrix->value().getValue(), values.size(), values.begin());
+      result.matrices.emplace_back(a.name(), values);
+    }
+  }
+  return result;
+}
+
+float white_luminance(const std::filesystem::path& path, const Imf::Header& header) {
+  if (!Imf::hasWhiteLuminance(header)) return 1.0F;
+  const float white = Imf::whiteLuminance(header);
+  if (std::isfinite(white) && white > 0.0F) return white;
+  throw Error(Blame::Input, path.string(), "has whiteLuminance = " + std::to_string(white),
+              "it is the luminance of (1, 1, 1) in cd/m^2 and must be positive");
+}
+
+Imath::Box2i picture_window(const Imf::Header& header) {
+  const Imath::Box2i& data = header.dataWindow();
+  const Imath::Box2i& display = header.displayWindow();
+  const bool overscan = !display.isEmpty() && data.min.x < display.min.x &&
+                        data.min.y < display.min.y && data.max.x > display.max.x &&
+                        data.max.y > display.max.y;
+  return overscan ? display : data;
+}
+
+void tell_crop(ExrHeader& header, const Imath::Box2i& window, const Imath::Box2i& display) {
+  if (window == display || display.isEmpty() || !display.intersects(window.min) ||
+      !display.intersects(window.max)) {
+    return;
+  }
+  header.whole = {display.max.x - display.min.x + 1, display.max.y - display.min.y + 1,
+                  window.min.x - display.min.x, window.min.y - display.min.y};
+}
+
+}  // namespace earthshine::base

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Between ExrHeader and the library's own header. For exr_file.cpp alone.
+#pragma once
+
+#include <ImathBox.h>
+#include <ImfHeader.h>
+
+#include <filesystem>
+
+#include "base/files/exr_file.h"
+
+namespace earthshine::base {
+
+// Sets ZIP compression, Rec. 709 chromaticities, whiteLuminance = 1 and all of `attributes`.
+void set_exr_attributes(Imf::Header& header, const ExrHeader& attributes);
+
+// Text, numbers (whole ones and doubles as float) and 4 x 4 matrices of a file, so that they can be
+// written again: not what describes the storage or is set by set_exr_attributes.
+[[nodiscard]] ExrHeader exr_attributes(const Imf::Header& header);
+
+// 1 unless the file says otherwise. Throws base::Error (Input) when it is not positive.
+[[nodiscard]] float white_luminance(const std::filesystem::path& path, const Imf::Header& header);
+
+// What of the data window is the picture: of one that reaches beyond all borders of the display
+// window the display window, because overscan is not seen.
+[[nodiscard]] Imath::Box2i picture_window(const Imf::Header& header);
+// Fills header.whole where the window lies within the display window and is not all of it.
+void tell_crop(ExrHeader& header, const Imath::Box2i& window, const Imath::Box2i& display);
+
+}  // namespace earthshine::base

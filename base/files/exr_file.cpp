@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/files/exr_file.h"
+
+#include <Iex.h>
+#include <ImathBox.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+#include <system_error>
+
+#include "base/error.h"
+#include "base/files/exr_attributes.h"
+#include "base/files/output_file.h"
+
+namespace earthshine::base {
+namespace {
+
+constexpr std::int64_t largest_edge_px = 16384;
+constexpr std::int64_t largest_sample_count = std::int64_t{1} << 30;  // 4 GiB as float
+
+// The library's own stream swallows a failure in its destructor, where the offset table is written;
+// this one remembers it.
+class CheckedStream : public Imf::OStream {
+ public:
+  explicit CheckedStream(const std::filesystem::path& path)
+      : Imf::OStream(path.c_str()), file_(std::fopen(path.c_str(), "wb")) {
+    if (file_ == nullptr) problem_ = errno;
+  }
+  ~CheckedStream() override {
+    if (file_ != nullptr) std::fclose(file_);
+  }
+  CheckedStream(const CheckedStream&) = delete;
+  CheckedStream& operator=(const CheckedStream&) = delete;
+
+  void write(const char bytes[], int count) override {
+    const std::size_t size = static_cast<std::size_t>(count);
+    if (problem_ == 0 && std::fwrite(bytes, 1, size, file_) != size) problem_ = errno;
+    if (problem_ != 0) throw Iex::IoExc(reason());
+    position_ += static_cast<std::uint64_t>(count);
+  }
+  std::uint64_t tellp() override { return position_; }
+  void seekp(std::uint64_t position) override {
+    // A device cannot seek; it does not need to unless bytes are rewritten, which write() would
+    // notice.
+    if (problem_ == 0 && ::fseeko(file_, static_cast<off_t>(position), SEEK_SET) != 0) {
+      problem_ = errno;
+      throw Iex::IoExc(reason());
+    }
+    position_ = position;
+  }
+
+  void close() {
+    if (file_ == nullptr) return;
+    if (std::fflush(file_) != 0 && problem_ == 0) problem_ = errno;
+    if (std::fclose(file_) != 0 && problem_ == 0) problem_ = errno;
+    file_ = nullptr;
+  }
+  [[nodiscard]] int problem() const { return problem_; }
+  [[nodiscard]] std::string reason() const {
+    return std::error_code(problem_, std::generic_category()).message();
+  }
+
+ private:
+  std::FILE* file_;
+  std::uint64_t position_ = 0;
+  int problem_ = 0;
+};
+
+[[noreturn]] void refuse_writing(const std::filesystem::path& path, const std::string& why) {
+  throw Error(Blame::Work, path.string(), "cannot be written: " + why, {},
+              "An older file of that name was kept");
+}
+
+}  // namespace
+
+void write_exr(const std::filesystem::path& path, const Image& image, const ExrHeader& attributes) {
+  if (image.width < 1 || image.height < 1 || image.channels.empty()) {
+    refuse_writing(path, "the picture has no pixels");
+  }
+  OutputFile output(path);
+  CheckedStream stream(output.temporary());
+  if (stream.problem() != 0) refuse_writing(path, stream.reason());
+  try {
+    Imf::Header header(image.width, image.height);
+    set_exr_attributes(header, attributes);
+    Imf::FrameBuffer buffer;
+    for (const Channel& channel : image.channels) {
+      if (channel.values.size() != image.pixel_count()) {
+        refuse_writing(path, "channel \"" + channel.name + "\" has a wrong number of values");
+      }
+      if (header.channels().findChannel(channel.name) != nullptr) {
+        refuse_writing(path, "there are two channels \"" + channel.name + "\"");
+      }
+      header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
+      char* values = reinterpret_cast<char*>(const_cast<float*>(channel.values.data()));
+      buffer.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, values, header.dataWindow()));
+    }
+    Imf::OutputFile file(stream, header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(image.height);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    refuse_writing(path, stream.problem() != 0 ? stream.reason() : e.what());
+  }
+  stream.close();
+  if (stream.problem() != 0) refuse_writing(path, stream.reason());
+  output.commit();
+}
+
+namespace {
+
+// What the reader says about a file it will not take.
+[[noreturn]] void refuse_reading(const std::filesystem::path& path, const std::string& found,
+                                 std::string_view allowed = {}, std::string_view remedy = {}) {
+  throw Error(Blame::Input, path.string(), found, allowed, remedy);
+}
+
+// Before anything is allocated for the pixels.
+void check_header(const std::filesystem::path& path, const Imf::Header& header) {
+  if (header.hasType() && Imf::isDeepData(header.type())) {
+    refuse_reading(path, "holds deep data", "only flat pictures can be read",
+                   "Flatten it, for example with oiiotool --flatten");
+  }
+  const Imath::Box2i& window = header.dataWindow();
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+  const std::string size = std::to_string(width) + " x " + std::to_string(height);
+  if (width < 1 || height < 1 || width > largest_edge_px || height > largest_edge_px) {
+    refuse_reading(path, "has " + size + " pixels", "the largest picture read is 16384 x 16384",
+                   "Crop or shrink it");
+  }
+  std::int64_t channels = 0;
+  for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+    ++channels;
+    if (c.channel().xSampling == 1 && c.channel().ySampling == 1) continue;
+    refuse_reading(path, "stores channel \"" + std::string(c.name()) + "\" at reduced resolution",
+                   "every channel must have the full resolution",
+                   "Convert luminance/chroma files to R, G, B");
+  }
+  if (channels == 0) refuse_reading(path, "has no channels");
+  if (width * height * channels > largest_sample_count) {
+    refuse_reading(path, "has " + size + " pixels in " + std::to_string(channels) + " channels",
+                   "at most 1073741824 values are read", "Leave out some channels");
+  }
+}
+
+bool ends_with_word(std::string_view layer, std::string_view word) {
+  return layer == word || (layer.size() > word.size() && layer.ends_with(word) &&
+                           layer[layer.size() - word.size() - 1] == '.');
+}
+
+// The layer whose R, G and B are the picture, or "": the only layer that has all three, or else the
+// only one called Combined, as Blender writes it.
+std::string picture_layer(const Image& image) {
+  if (image.find("R") != nullptr || image.find("Y") != nullptr) return {};
+  std::vector<std::string> layers, combined;
+  for (const Channel& channel : image.channels) {
+    if (!channel.name.ends_with(".R")) continue;
+    const std::string layer = channel.name.substr(0, channel.name.size() - 2);
+    if (image.find(layer + ".G") == nullptr || image.find(layer + ".B") == nullptr) continue;
+    layers.push_back(layer);
+    if (ends_with_word(layer, "Combined")) combined.push_back(layer);
+  }
+  if (layers.size() == 1) return layers.front();
+  return combined.size() == 1 ? combined.front() : std::string();
+}
+
+void drop_picture_layer(Image& image) {
+  const std::string layer = picture_layer(image);
+  if (layer.empty()) return;
+  for (const char* part : {"R", "G", "B", "A"}) {
+    for (Channel& channel : image.channels) {
+      if (channel.name == layer + "." + part && image.find(part) == nullptr) channel.name = part;
+    }
+  }
+}
+
+// Depth and the like may be infinite where nothing was hit; colour may not.
+void check_and_scale_colour(const std::filesystem::path& path, Image& image, float white) {
+  for (Channel& channel : image.channels) {
+    const std::string& name = channel.name;
+    if (name != "R" && name != "G" && name != "B" && name != "Y") continue;
+    for (std::size_t i = 0; i < channel.values.size(); ++i) {
+      float& value = channel.values[i];
+      if (white != 1.0F) value *= white;
+      if (std::isfinite(value)) continue;
+      const std::size_t width = static_cast<std::size_t>(image.width);
+      refuse_reading(path,
+                     "pixel (" + std::to_string(i % width) + ", " + std::to_string(i / width) +
+                         ") of channel \"" + name + "\" is " +
+                         (std::isnan(value) ? "not a number" : "infinite"),
+                     "radiance must be finite", "Render it again or repair the picture");
+    }
+  }
+}
+
+}  // namespace
+
+ExrFile read_exr(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) refuse_reading(path, "is a folder");
+  if (!std::filesystem::exists(path, ignored)) refuse_reading(path, "there is no such file");
+  ExrFile result;
+  float white = 1.0F;
+  try {
+    Imf::MultiPartInputFile file(path.c_str(), 0);
+    const Imf::Header& header = file.header(0);
+    check_header(path, header);
+    if (!file.partComplete(0)) {
+      refuse_reading(path, "is incomplete: some of its pixels are missing", {}, "Copy it again");
+    }
+    white = white_luminance(path, header);
+    result.header = exr_attributes(header);
+    const Imath::Box2i& window = header.dataWindow();
+    Image& image = result.image;
+    image.width = window.max.x - window.min.x + 1;
+    image.height = window.max.y - window.min.y + 1;
+    Imf::FrameBuffer buffer;
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+      buffer.insert(c.name(), Imf::Slice::Make(Imf::FLOAT, image.add(c.name()).data(), window));
+    }
+    Imf::InputPart part(file, 0);
+    part.setFrameBuffer(buffer);
+    part.readPixels(window.min.y, window.max.y);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    refuse_reading(path, std::string("cannot be read as OpenEXR: ") + e.what());
+  }
+  drop_picture_layer(result.image);
+  check_and_scale_colour(path, result.image, white);
+  return result;
+}
+
+}  // namespace earthshine::base

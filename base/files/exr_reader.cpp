@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/files/exr_reader.h"
+
+#include <Iex.h>
+#include <ImathBox.h>
+#include <ImathMatrix.h>
+#include <ImfChannelList.h>
+#include <ImfChromaticities.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <system_error>
+
+#include "base/error.h"
+#include "base/files/exr_attributes.h"
+#include "base/files/exr_picture.h"
+
+namespace earthshine::base {
+namespace {
+
+constexpr std::int64_t largest_edge_px = 65536;
+constexpr std::int64_t largest_pixel_count = std::int64_t{1} << 30;
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& found,
+                         std::string_view allowed = {}, std::string_view remedy = {}) {
+  throw Error(Blame::Input, path.string(), found, allowed, remedy);
+}
+
+std::vector<std::string> channel_names(const Imf::Header& header) {
+  std::vector<std::string> names;
+  for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+    names.emplace_back(c.name());
+  }
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  constexpr std::size_t most = 12;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(words.size(), most); ++i) {
+    text += (i == 0 ? "\"" : ", \"") + words[i] + "\"";
+  }
+  if (words.size() > most) text += " and " + std::to_string(words.size() - most) + " more";
+  return text;
+}
+
+bool is_deep(const Imf::Header& header) {
+  return header.hasType() && Imf::isDeepData(header.type());
+}
+
+int picture_part(const Imf::MultiPartInputFile& file) {
+  for (int part = 0; part < file.parts(); ++part) {
+    if (is_deep(file.header(part))) continue;
+    const auto kind = find_picture(channel_names(file.header(part))).kind;
+    if (kind != ExrPicture::Kind::None) return part;
+  }
+  return 0;
+}
+
+std::string size_text(std::int64_t width, std::int64_t height) {
+  return std::to_string(width) + " x " + std::to_string(height);
+}
+
+void check_size(const std::filesystem::path& path, const Imath::Box2i& window) {
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+  if (width >= 1 && height >= 1 && width <= largest_edge_px && height <= largest_edge_px &&
+      width * height <= largest_pixel_count) {
+    return;
+  }
+  refuse(path, "has " + size_text(width, height) + " pixels",
+         "the largest picture read has 65536 on an edge and 1073741824 in all",
+         "Crop or shrink it");
+}
+
+void check_shape(const std::filesystem::path& path, const Imf::Header& header) {
+  if (is_deep(header)) {
+    refuse(path, "holds deep data", "only flat pictures can be read",
+           "Flatten it, for example with oiiotool --flatten");
+  }
+  check_size(path, header.dataWindow());
+  if (!(std::abs(header.pixelAspectRatio() - 1.0F) < 0.001F)) {
+    refuse(path,
+           "has pixels " + std::to_string(header.pixelAspectRatio()) + " times as wide as high",
+           "pixels must be square", "Resample it");
+  }
+}
+
+ExrPicture checked_picture(const std::filesystem::path& path, const Imf::Header& header) {
+  const std::vector<std::string> names = channel_names(header);
+  for (const char* chroma : {"RY", "BY"}) {
+    if (header.channels().findChannel(chroma) == nullptr) continue;
+    refuse(path, "stores colour as luminance and chroma (channel \"" + std::string(chroma) + "\")",
+           "a picture has R, G, B or Y at full resolution", "Convert it to R, G, B");
+  }
+  ExrPicture picture = find_picture(names);
+  if (picture.kind == ExrPicture::Kind::None) {
+    if (!picture.layers.empty()) {
+      refuse(path, "has a picture in each of the layers " + joined(picture.layers),
+             "one layer, or one called Combined, is the picture", "Write one of them alone");
+    }
+    refuse(path, names.empty() ? "has no channels" : "has the channels " + joined(names),
+           "a picture is R, G and B, or Y, or X, Y and Z",
+           names.empty() ? "" : "Rename those that are radiance in cd/m^2");
+  }
+  for (const std::string& name : picture.channels) {
+    const Imf::Channel& channel = header.channels()[name.c_str()];
+    if (channel.xSampling == 1 && channel.ySampling == 1) continue;
+    refuse(path, "stores channel \"" + name + "\" at reduced resolution",
+           "every channel must have the full resolution", "Resample it");
+  }
+  return picture;
+}
+
+// From the file's colours to Rec. 709, for colours as rows; nothing where they are that already.
+std::optional<Imath::M44f> colour_matrix(const std::filesystem::path& path,
+                                         const Imf::Header& header, ExrPicture::Kind kind) {
+  const Imf::Chromaticities rec709;  // the default
+  if (kind == ExrPicture::Kind::Luminance) return std::nullopt;
+  const Imath::M44f from_xyz = Imf::XYZtoRGB(rec709, 1.0F);
+  if (kind == ExrPicture::Kind::Xyz) return from_xyz;
+  if (!Imf::hasChromaticities(header)) return std::nullopt;
+  const Imf::Chromaticities& own = Imf::chromaticities(header);
+  const auto near = [](const Imath::V2f& a, const Imath::V2f& b) {
+    return (a - b).length() < 2e-4F;
+  };
+  if (near(own.red, rec709.red) && near(own.green, rec709.green) && near(own.blue, rec709.blue) &&
+      near(own.white, rec709.white)) {
+    return std::nullopt;
+  }
+  const Imath::M44f matrix = Imf::RGBtoXYZ(own, 1.0F) * from_xyz;
+  for (int i = 0; i < 16; ++i) {
+    if (!std::isfinite(matrix.getValue()[i])) {
+      refuse(path, "has chromaticities that span no colours", {}, "Correct the attribute");
+    }
+  }
+  return matrix;
+}
+
+}  // namespace
+
+struct ExrReader::Open {
+  std::filesystem::path path;
+  Imf::MultiPartInputFile file;
+  int part = 0;
+  ExrPicture picture;
+  float white = 1.0F;
+  std::optional<Imath::M44f> to_rec709;
+  Imath::Box2i window;
+  ExrHeader header;
+
+  explicit Open(const std::filesystem::path& name)
+      : path(name), file(name.c_str(), 0), part(picture_part(file)) {
+    const Imf::Header& own = file.header(part);
+    check_shape(path, own);
+    picture = checked_picture(path, own);
+    if (!file.partComplete(part)) {
+      refuse(path, "is incomplete: some of its pixels are missing", {}, "Copy it again");
+    }
+    white = white_luminance(path, own);
+    to_rec709 = colour_matrix(path, own, picture.kind);
+    window = picture_window(own);
+    header = exr_attributes(own);
+    tell_crop(header, window, own.displayWindow());
+  }
+
+  [[nodiscard]] int width() const { return window.max.x - window.min.x + 1; }
+  [[nodiscard]] int height() const { return window.max.y - window.min.y + 1; }
+
+  // Every column of the data window, as the library wants it.
+  [[nodiscard]] Image read_lines(int first, int count) {
+    const Imath::Box2i& data = file.header(part).dataWindow();
+    Image lines{data.max.x - data.min.x + 1, count, {}};
+    Imf::FrameBuffer buffer;
+    const int y = window.min.y + first;
+    lines.channels.reserve(picture.channels.size());
+    for (const std::string& name : picture.channels) {
+      float* const values = lines.add(name).data();
+      buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, values, Imath::V2i(data.min.x, y),
+                                           lines.width, count));
+    }
+    Imf::InputPart input(file, part);
+    input.setFrameBuffer(buffer);
+    input.readPixels(y, y + count - 1);
+    return lines;
+  }
+
+  [[nodiscard]] Image without_overscan(Image lines) const {
+    if (lines.width == width()) return lines;
+    Image cut{width(), lines.height, {}};
+    const std::ptrdiff_t left = window.min.x - file.header(part).dataWindow().min.x;
+    for (const Channel& channel : lines.channels) {
+      std::vector<float>& values = cut.add(channel.name);
+      for (std::ptrdiff_t y = 0; y < lines.height; ++y) {
+        const auto from = channel.values.begin() + y * lines.width + left;
+        std::copy(from, from + cut.width, values.begin() + y * cut.width);
+      }
+    }
+    return cut;
+  }
+
+  void check_finite(const Image& rows, int first) const {
+    for (const Channel& channel : rows.channels) {
+      for (std::size_t i = 0; i < channel.values.size(); ++i) {
+        if (std::isfinite(channel.values[i] * white)) continue;
+        const std::size_t columns = static_cast<std::size_t>(rows.width);
+        refuse(path,
+               "pixel (" + std::to_string(i % columns) + ", " +
+                   std::to_string(i / columns + static_cast<std::size_t>(first)) +
+                   ") of channel \"" + channel.name + "\" is " +
+                   (std::isnan(channel.values[i]) ? "not a number" : "infinite"),
+               "radiance must be finite", "Render it again or repair the picture");
+      }
+    }
+  }
+
+  void scale(Image& rows) const {
+    if (to_rec709) {
+      std::vector<float>& r = rows.channels[0].values;
+      std::vector<float>& g = rows.channels[1].values;
+      std::vector<float>& b = rows.channels[2].values;
+      for (std::size_t i = 0; i < r.size(); ++i) {
+        const Imath::V3f colour = Imath::V3f(r[i], g[i], b[i]) * *to_rec709;
+        r[i] = colour.x;
+        g[i] = colour.y;
+        b[i] = colour.z;
+      }
+    }
+    const char* const rgb[] = {"R", "G", "B"};
+    for (std::size_t c = 0; c < rows.channels.size(); ++c) {
+      rows.channels[c].name = rows.channels.size() == 1 ? "Y" : rgb[c];
+      if (white == 1.0F) continue;
+      for (float& value : rows.channels[c].values) value *= white;
+    }
+  }
+};
+
+ExrReader::ExrReader(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) refuse(path, "is a folder");
+  if (!std::filesystem::exists(path, ignored)) refuse(path, "there is no such file");
+  try {
+    open_ = std::make_unique<Open>(path);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    refuse(path, std::string("cannot be read as OpenEXR: ") + e.what());
+  }
+}
+
+ExrReader::~ExrReader() = default;
+
+int ExrReader::width() const { return open_->width(); }
+int ExrReader::height() const { return open_->height(); }
+int ExrReader::channel_count() const { return static_cast<int>(open_->picture.channels.size()); }
+const ExrHeader& ExrReader::header() const { return open_->header; }
+
+Image ExrReader::read_rows(int first, int count) {
+  try {
+    Image rows = open_->without_overscan(open_->read_lines(first, count));
+    open_->check_finite(rows, first);
+    open_->scale(rows);
+    return rows;
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    refuse(open_->path, std::string("cannot be read as OpenEXR: ") + e.what());
+  }
+}
+
+}  // namespace earthshine::base

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/files/png_file.h"
+
+#include <png.h>
+
+#include <algorithm>
+#include <csetjmp>
+#include <new>
+#include <string_view>
+
+#include "base/error.h"
+#include "base/files/output_file.h"
+
+namespace earthshine::base {
+namespace {
+
+using Texts = std::vector<std::pair<std::string, std::string>>;
+
+// libpng reports failure by a long jump, which must not cross a C++ object with a destructor:
+// everything of that kind lives in the caller, and the message is kept here.
+struct Sink {
+  std::string bytes;
+  char message[128] = {};
+};
+
+extern "C" {
+static void append_bytes(png_structp png, png_bytep data, size_t size) {
+  bool stored = true;
+  try {
+    static_cast<Sink*>(png_get_io_ptr(png))
+        ->bytes.append(reinterpret_cast<const char*>(data), size);
+  } catch (...) {
+    stored = false;
+  }
+  if (!stored) png_error(png, "out of memory");
+}
+static void flush_nothing(png_structp) {}
+static void keep_message(png_structp png, png_const_charp message) {
+  Sink* sink = static_cast<Sink*>(png_get_error_ptr(png));
+  std::snprintf(sink->message, sizeof sink->message, "%s", message);
+  png_longjmp(png, 1);
+}
+static void ignore_warning(png_structp, png_const_charp) {}
+}
+
+bool is_ascii(const std::string& text) {
+  return std::all_of(text.begin(), text.end(),
+                     [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+}
+
+std::vector<png_text> text_chunks(const Texts& texts) {
+  std::vector<png_text> chunks;
+  for (const auto& [keyword, value] : texts) {
+    if (keyword.empty() || keyword.size() > 79 || !is_ascii(keyword)) {
+      throw Error(Blame::Work, "PNG text \"" + keyword + "\"", "is not a keyword",
+                  "keywords have 1 to 79 ASCII characters");
+    }
+    png_text chunk{};
+    // tEXt holds Latin-1; other letters need iTXt, which holds UTF-8.
+    chunk.compression = is_ascii(value) ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
+    chunk.key = const_cast<char*>(keyword.c_str());
+    chunk.text = const_cast<char*>(value.c_str());
+    if (is_ascii(value)) {
+      chunk.text_length = value.size();
+    } else {
+      chunk.itxt_length = value.size();
+    }
+    chunks.push_back(chunk);
+  }
+  return chunks;
+}
+
+struct Picture {
+  png_uint_32 width, height;
+  int colour_type;
+  const png_byte* const* rows;
+  const png_text* text;
+  int text_count;
+};
+
+// Holds nothing with a destructor (see Sink). Returns false when libpng failed.
+bool encode(png_structp png, png_infop info, const Picture& picture) {
+  if (setjmp(png_jmpbuf(png)) != 0) return false;
+  png_set_IHDR(png, info, picture.width, picture.height, 8, picture.colour_type, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+  if (picture.text_count > 0) png_set_text(png, info, picture.text, picture.text_count);
+  png_write_info(png, info);
+  for (png_uint_32 y = 0; y < picture.height; ++y) png_write_row(png, picture.rows[y]);
+  png_write_end(png, nullptr);
+  return true;
+}
+
+}  // namespace
+
+void write_png(const std::filesystem::path& path, int width, int height, int channels,
+               std::span<const std::uint8_t> pixels, const Texts& text) {
+  if (width < 1 || height < 1 || (channels != 1 && channels != 3)) {
+    throw Error(Blame::Work, path.string(),
+                "a picture of " + std::to_string(width) + " x " + std::to_string(height) +
+                    " with " + std::to_string(channels) + " channels was to be written",
+                "PNG pictures here have at least one pixel and 1 or 3 channels");
+  }
+  const std::size_t stride = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
+  if (pixels.size() != stride * static_cast<std::size_t>(height)) {
+    throw Error(Blame::Work, path.string(), "the pixel count does not match the picture's size");
+  }
+  std::vector<const png_byte*> rows(static_cast<std::size_t>(height));
+  for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = pixels.data() + y * stride;
+  const std::vector<png_text> chunks = text_chunks(text);
+
+  Sink sink;
+  png_structp png =
+      png_create_write_struct(PNG_LIBPNG_VER_STRING, &sink, keep_message, ignore_warning);
+  if (png == nullptr) throw std::bad_alloc();
+  png_infop info = png_create_info_struct(png);
+  bool encoded = false;
+  if (info != nullptr) {
+    png_set_write_fn(png, &sink, append_bytes, flush_nothing);
+    encoded = encode(png, info,
+                     {static_cast<png_uint_32>(width), static_cast<png_uint_32>(height),
+                      channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, rows.data(),
+                      chunks.data(), static_cast<int>(chunks.size())});
+  }
+  png_destroy_write_struct(&png, &info);
+  if (!encoded) {
+    throw Error(Blame::Work, path.string(),
+                std::string("cannot be written: ") +
+                    (sink.message[0] != '\0' ? sink.message : "out of memory"));
+  }
+  write_text(path, sink.bytes);
+}
+
+}  // namespace earthshine::base

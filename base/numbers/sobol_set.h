@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The first N points of the four-dimensional Sobol sequence as a set, Owen-scrambled per key, eight
+// at a time: the fast form of SobolOwen4 where all N points are used.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/numbers/random.h"
+
+namespace earthshine::base {
+
+// Order: along a Morton curve in the first two dimensions. Owen scrambling maps elementary boxes to
+// elementary boxes, so runs of 2^k points stay neighbours after it: packets of coherent rays.
+class SobolSet4 {
+ public:
+  static constexpr std::uint32_t width = 8;
+
+  // count: a power of two, at least `width`.
+  explicit SobolSet4(std::uint32_t count);
+  [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(bits_[0].size()); }
+
+  // One random scrambling of each dimension.
+  struct Scramble {
+    std::uint32_t seed[4];
+    std::uint32_t run[4];  // bits by which the points of a later run differ, lowest first
+    explicit Scramble(Key key);
+  };
+  // From now on the points of the sequence from run * count() on, in place of its first ones: runs
+  // 0 to m - 1, m a power of two, are together the set of m * count() points. Sobol numbers are
+  // linear in the index's bits, so that a run differs from the first by one XOR per dimension.
+  void go_to_run(std::uint32_t run, Scramble& scramble) const;
+
+  struct alignas(32) Points {
+    float x[4][width];  // [dimension][point], in (0, 1)
+  };
+  // Points first .. first + width - 1; first is a multiple of width.
+  void points(std::uint32_t first, const Scramble& scramble, Points& out) const;
+
+ private:
+  std::vector<std::uint32_t> bits_[4];  // the coordinates' bits, lowest first
+};
+
+}  // namespace earthshine::base

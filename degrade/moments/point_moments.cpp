@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "degrade/moments/point_moments.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "base/numbers/gauss_rule.h"
+#include "base/parallel.h"
+
+namespace earthshine::degrade {
+namespace {
+
+constexpr double reach = 8.5;  // sigma; beyond lie 2e-17 of all signals
+
+// Sums of g = f - reference, g^2, g z and g (z^2 - 1) over the normal distribution of z. The
+// reference is near the mean, so that the variance is no difference of large numbers.
+struct Sums {
+  double g = 0.0, g2 = 0.0, gz = 0.0, gzz = 0.0;
+
+  void add(double value, double z, double weight) {
+    g += weight * value;
+    g2 += weight * value * value;
+    gz += weight * value * z;
+    gzz += weight * value * (z * z - 1.0);
+  }
+  [[nodiscard]] PointMoments moments(double reference, double sigma) const {
+    // The variance holds at least the first two orders, whatever the rounding.
+    return {reference + g, std::max(g2 - g * g, gz * gz + 0.5 * gzz * gzz), gz / sigma,
+            gzz / (sigma * sigma)};
+  }
+};
+
+// A smooth f: the trapezoid rule of step 1 is exact to exp(-2 pi^2) = 3e-9.
+PointMoments far_from_kinks(const PointMap& map, double mean, double sigma, double reference) {
+  static const auto weight = [] {
+    std::array<double, 13> w{};
+    double total = 0.0;
+    for (int k = 0; k < 13; ++k) total += w[static_cast<std::size_t>(k)] = normal_density(k - 6);
+    for (double& value : w) value /= total;
+    return w;
+  }();
+  Sums sums;
+  for (int k = 0; k < 13; ++k) {
+    const double z = k - 6;
+    sums.add(map(mean + sigma * z) - reference, z, weight[static_cast<std::size_t>(k)]);
+  }
+  return sums.moments(reference, sigma);
+}
+
+// A smooth stretch from z = a to b.
+template <class F>
+void add_smooth(Sums& sums, double a, double b, bool kink_at_a, F g) {
+  if (kink_at_a) {
+    // S^(1/gamma) has no finite slope at its kink. z = a + (end - a) t^3 turns S^p into t^(3p + 2),
+    // which Gauss's rule takes like a polynomial.
+    const double end = std::min(b, a + 2.0);
+    const base::GaussRule& rule = base::gauss_rule(14);
+    for (std::size_t k = 0; k < rule.node.size(); ++k) {
+      const double t = rule.node[k], z = a + (end - a) * t * t * t;
+      sums.add(g(z), z, 3.0 * t * t * (end - a) * rule.weight[k] * normal_density(z));
+    }
+    a = end;
+  }
+  const int panels = static_cast<int>(std::ceil((b - a) / 4.0));
+  const base::GaussRule& rule = base::gauss_rule(10);
+  const double width = (b - a) / std::max(1, panels);
+  for (int panel = 0; panel < panels; ++panel) {
+    for (std::size_t k = 0; k < rule.node.size(); ++k) {
+      const double z = a + (panel + rule.node[k]) * width;
+      sums.add(g(z), z, width * rule.weight[k] * normal_density(z));
+    }
+  }
+}
+
+// Of the table: in mean / sigma and, as tails change fast with it, closer in ln sigma.
+constexpr double spacing = 0.2, log_spacing = 0.1;
+constexpr int before = 2, after = 3;  // nodes of the fifth-degree polynomial around a place
+
+// Moments on the nodes mean = i * spacing * sigma of one sigma = exp(level * log_spacing).
+struct Row {
+  double sigma = 0.0;
+  std::int64_t first = 0, last = -1;
+  std::vector<PointMoments> at;
+
+  void cover(double low, double high) {
+    const std::int64_t from =
+        static_cast<std::int64_t>(std::floor(low / (spacing * sigma))) - before;
+    const std::int64_t to = static_cast<std::int64_t>(std::floor(high / (spacing * sigma))) + after;
+    if (last < first) first = from, last = to;
+    first = std::min(first, from);
+    last = std::max(last, to);
+  }
+};
+
+// Weights of the polynomial through the nodes -2 to 3 (Lagrange) at t in [0, 1].
+using Weights = std::array<double, before + 1 + after>;
+Weights lagrange(double t) {
+  const double a = t + 2.0, b = t + 1.0, c = t, d = t - 1.0, e = t - 2.0, f = t - 3.0;
+  return {-b * c * d * e * f / 120.0, a * c * d * e * f / 24.0,  -a * b * d * e * f / 12.0,
+          a * b * c * e * f / 12.0,   -a * b * c * d * f / 24.0, a * b * c * d * e / 120.0};
+}
+
+double row_sigma(int level) { return std::exp(level * log_spacing); }
+int level_of(double sigma) { return static_cast<int>(std::floor(std::log(sigma) / log_spacing)); }
+
+// The moments as smooth functions of (mean / sigma, ln sigma): both scales follow sigma, on which
+// any f is smooth once the noise has gone over it. Only for the levels where it saves work.
+class Table {
+ public:
+  Table(const PointMap& map, const Plane& mean, const Plane& variance) {
+    struct Use {
+      double low = std::numeric_limits<double>::infinity(), high = -low;
+      std::size_t count = 0;
+    };
+    std::map<int, Use> uses;
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      if (!(variance[i] > 0.0F)) continue;
+      Use& use = uses[level_of(std::sqrt(static_cast<double>(variance[i])))];
+      use.low = std::min(use.low, static_cast<double>(mean[i]));
+      use.high = std::max(use.high, static_cast<double>(mean[i]));
+      ++use.count;
+    }
+    for (const auto& [level, use] : uses) {
+      const double nodes =
+          6.0 * ((use.high - use.low) / (spacing * row_sigma(level - before)) + 6.0);
+      if (!(2.0 * nodes < static_cast<double>(use.count))) continue;
+      for (int k = level - before; k <= level + after; ++k) {
+        Row& row = rows_[k];
+        row.sigma = row_sigma(k);
+        row.cover(use.low, use.high);
+      }
+      tabulated_.push_back(level);
+    }
+    for (auto& [level, row] : rows_) {
+      row.at.resize(static_cast<std::size_t>(row.last - row.first + 1));
+      base::parallel_chunks(row.at.size(), 64, [&, r = &row](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const double node = static_cast<double>(r->first + static_cast<std::int64_t>(i));
+          r->at[i] = through(map, node * spacing * r->sigma, r->sigma);
+        }
+      });
+    }
+  }
+
+  [[nodiscard]] std::optional<PointMoments> operator()(double mean, double sigma) const {
+    const int level = level_of(sigma);
+    if (!std::binary_search(tabulated_.begin(), tabulated_.end(), level)) return {};
+    const Weights across = lagrange(std::log(sigma) / log_spacing - level);
+    PointMoments sum;
+    auto row = rows_.find(level - before);
+    for (std::size_t j = 0; j < across.size(); ++j, ++row) {
+      const Row& r = row->second;
+      const double place = mean / (spacing * r.sigma), node = std::floor(place);
+      const Weights along = lagrange(place - node);
+      const PointMoments* at =
+          &r.at[static_cast<std::size_t>(static_cast<std::int64_t>(node) - before - r.first)];
+      for (std::size_t k = 0; k < along.size(); ++k) {
+        const double weight = across[j] * along[k];
+        sum.mean += weight * at[k].mean;
+        sum.variance += weight * at[k].variance;
+        sum.slope += weight * at[k].slope;
+        sum.curvature += weight * at[k].curvature;
+      }
+    }
+    // A polynomial may overshoot where the variance dies away.
+    sum.slope = std::max(sum.slope, 0.0);
+    const double first = sum.slope * sigma, second = sum.curvature * sigma * sigma;
+    sum.variance = std::max(sum.variance, first * first + 0.5 * second * second);
+    return sum;
+  }
+
+ private:
+  std::map<int, Row> rows_;
+  std::vector<int> tabulated_;
+};
+
+}  // namespace
+
+double normal_probability(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
+
+double normal_density(double z) {
+  return 0.5 * std::numbers::inv_sqrtpi * std::numbers::sqrt2 * std::exp(-0.5 * z * z);
+}
+
+PointMoments clamped(double mean, double sigma, double low, double high) {
+  if (!(sigma > 0.0)) return {std::clamp(mean, low, high), 0.0, 0.0, 0.0};
+  const double reference = std::clamp(mean, low, high);
+  const double a = (low - mean) / sigma, b = (high - mean) / sigma;
+  const double r = (reference - mean) / sigma;
+  // Of z - r between the limits, and of the limits themselves, in units of sigma.
+  const double inside = a > 0.0 ? normal_probability(-a) - normal_probability(-b)
+                                : normal_probability(b) - normal_probability(a);
+  const double pa = std::isfinite(a) ? normal_density(a) : 0.0;
+  const double pb = std::isfinite(b) ? normal_density(b) : 0.0;
+  double first = pa - pb - r * inside;
+  double second = inside * (1.0 + r * r) + 2.0 * r * (pb - pa);
+  if (std::isfinite(a)) {
+    second += a * pa;
+    first += (a - r) * normal_probability(a);
+    second += (a - r) * (a - r) * normal_probability(a);
+  }
+  if (std::isfinite(b)) {
+    second -= b * pb;
+    first += (b - r) * normal_probability(-b);
+    second += (b - r) * (b - r) * normal_probability(-b);
+  }
+  return {reference + sigma * first, sigma * sigma * std::max(0.0, second - first * first), inside,
+          (pa - pb) / sigma};
+}
+
+PointMoments through(const PointMap& map, double mean, double sigma) {
+  const double reference = map(mean);
+  if (!(sigma > 0.0)) return {reference, 0.0, 0.0, 0.0};
+  const std::vector<double>& kinks = map.kinks();
+  const auto in_reach = [&](double z) {
+    return static_cast<std::size_t>(std::lower_bound(kinks.begin(), kinks.end(), mean + z * sigma) -
+                                    kinks.begin());
+  };
+  const std::size_t first = in_reach(-reach), last = in_reach(reach);
+  if (first == last) {
+    if (map.stretches()[first].level) return {reference, 0.0, 0.0, 0.0};
+    return far_from_kinks(map, mean, sigma, reference);
+  }
+  Sums sums;
+  double a = -reach, below = 0.0, density = 0.0;
+  for (std::size_t k = first; k <= last; ++k) {
+    const double b = k < last ? (kinks[k] - mean) / sigma : reach;
+    const double below_b = k < last ? normal_probability(b) : 1.0;
+    const double density_b = k < last ? normal_density(b) : 0.0;
+    if (const PointMap::Stretch& stretch = map.stretches()[k]; stretch.level) {
+      const double value = stretch.value - reference;
+      sums.g += value * (below_b - below);
+      sums.g2 += value * value * (below_b - below);
+      sums.gz += value * (density - density_b);
+      sums.gzz += value * (a * density - b * density_b);
+    } else {
+      add_smooth(sums, a, b, k > first,
+                 [&](double z) { return map(mean + sigma * z) - reference; });
+    }
+    a = b;
+    below = below_b;
+    density = density_b;
+  }
+  return sums.moments(reference, sigma);
+}
+
+MomentPlanes through(const PointMap& map, const Plane& mean, const Plane& variance) {
+  const Table table(map, mean, variance);
+  MomentPlanes out{Plane(mean.size()), Plane(mean.size()), Plane(mean.size()), Plane(mean.size())};
+  base::parallel_chunks(mean.size(), 2048, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double mu = static_cast<double>(mean[i]);
+      const double sigma = std::sqrt(std::max(0.0, static_cast<double>(variance[i])));
+      std::optional<PointMoments> m;
+      if (sigma > 0.0) m = table(mu, sigma);
+      if (!m) m = through(map, mu, sigma);
+      out.mean[i] = static_cast<float>(m->mean);
+      out.variance[i] = static_cast<float>(m->variance);
+      out.slope[i] = static_cast<float>(m->slope);
+      out.curvature[i] = static_cast<float>(m->curvature);
+    }
+  });
+  return out;
+}
+
+}  // namespace earthshine::degrade

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "degrade/parts/optics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+
+namespace earthshine::degrade {
+namespace {
+
+// Multiplies every value by factor(u^2 + v^2), u and v its place off the centre in half heights.
+template <class F>
+Picture times_radial(Picture picture, F factor) {
+  const double half = picture.rows / 2.0;
+  const std::size_t width = static_cast<std::size_t>(picture.columns);
+  for_each_run(picture, [&](std::size_t plane, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const std::size_t x = i % width, y = i / width;
+      const double u = (static_cast<double>(x) + 0.5 - picture.columns / 2.0) / half;
+      const double v = (static_cast<double>(y) + 0.5 - half) / half;
+      float& value = picture.planes[plane][i];
+      value = static_cast<float>(static_cast<double>(value) * factor(u * u + v * v));
+    }
+  });
+  return picture;
+}
+
+}  // namespace
+
+Picture through_lens(Picture radiance, const CctvCamera& camera, double f_number) {
+  const double factor = lens_transfer(camera, f_number);
+  return transform(std::move(radiance), [&](double l) { return std::min(l, 1e30) * factor; });
+}
+
+Picture fall_off_from_axis(Picture illuminance, double power, double fov_deg) {
+  const double tan_half = std::tan(base::radians(fov_deg) / 2.0);
+  return times_radial(std::move(illuminance), [&](double r2) {
+    return std::pow(1.0 + r2 * tan_half * tan_half, -power / 2.0);
+  });
+}
+
+Picture add_glare(Picture illuminance, double share) {
+  for (Plane& plane : illuminance.planes) {
+    double sum = 0.0;
+    for (float value : plane) sum += static_cast<double>(value);
+    const double veil = share * sum / static_cast<double>(plane.size());
+    for (float& value : plane)
+      value = static_cast<float>((1.0 - share) * static_cast<double>(value) + veil);
+  }
+  return illuminance;
+}
+
+Picture shade(Picture signal, double droop) {
+  const double aspect = static_cast<double>(signal.columns) / signal.rows;
+  const double corner2 = 1.0 + aspect * aspect;
+  return times_radial(std::move(signal), [&](double r2) { return 1.0 - droop * r2 / corner2; });
+}
+
+}  // namespace earthshine::degrade

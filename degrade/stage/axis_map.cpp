@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "degrade/stage/axis_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "base/parallel.h"
+#include "base/units.h"
+
+namespace earthshine::degrade {
+namespace {
+
+std::size_t mirrored(int index, int size) {
+  const int period = 2 * size;
+  const int m = ((index % period) + period) % period;
+  return static_cast<std::size_t>(m < size ? m : period - 1 - m);
+}
+
+// Rows are taken eight at a time, their values at one place side by side, so that a weight meets
+// eight neighbours in memory whatever the places it applies to.
+constexpr std::size_t side_by_side = 8;
+
+Plane map_rows(const Plane& in, int columns, int rows, const AxisMap& map) {
+  const std::size_t width = static_cast<std::size_t>(columns);
+  const std::size_t out_width = static_cast<std::size_t>(map.out());
+  Plane out(out_width * static_cast<std::size_t>(rows));
+  base::parallel_chunks(static_cast<std::size_t>(rows), side_by_side,
+                        [&](std::size_t begin, std::size_t end) {
+                          std::vector<std::array<float, side_by_side>> block(width);
+                          for (std::size_t y = begin; y < end; ++y) {
+                            const float* const line = in.data() + y * width;
+                            for (std::size_t x = 0; x < width; ++x) block[x][y - begin] = line[x];
+                          }
+                          for (std::size_t x = 0; x < out_width; ++x) {
+                            std::array<double, side_by_side> sum{};
+                            for (std::size_t k = map.start[x]; k < map.start[x + 1]; ++k) {
+                              const std::array<float, side_by_side>& values = block[map.source[k]];
+                              const double weight = map.weight[k];
+                              for (std::size_t r = 0; r < side_by_side; ++r) {
+                                sum[r] += weight * static_cast<double>(values[r]);
+                              }
+                            }
+                            for (std::size_t y = begin; y < end; ++y) {
+                              out[y * out_width + x] = static_cast<float>(sum[y - begin]);
+                            }
+                          }
+                        });
+  return out;
+}
+
+Plane map_columns(const Plane& in, int columns, const AxisMap& map) {
+  const std::size_t width = static_cast<std::size_t>(columns);
+  const std::size_t out_rows = static_cast<std::size_t>(map.out());
+  Plane out(width * out_rows);
+  base::parallel_chunks(out_rows, 8, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> sum(width);
+    for (std::size_t y = begin; y < end; ++y) {
+      std::fill(sum.begin(), sum.end(), 0.0);
+      for (std::size_t k = map.start[y]; k < map.start[y + 1]; ++k) {
+        const float* const line = in.data() + map.source[k] * width;
+        const double weight = map.weight[k];
+        for (std::size_t x = 0; x < width; ++x) sum[x] += weight * static_cast<double>(line[x]);
+      }
+      std::transform(sum.begin(), sum.end(), out.begin() + static_cast<std::ptrdiff_t>(y * width),
+                     [](double value) { return static_cast<float>(value); });
+    }
+  });
+  return out;
+}
+
+}  // namespace
+
+void add_output(AxisMap& map, int first, const std::vector<double>& weight) {
+  std::map<std::size_t, double> folded;
+  double total = 0.0;
+  for (std::size_t k = 0; k < weight.size(); ++k) {
+    folded[mirrored(first + static_cast<int>(k), map.in)] += weight[k];
+    total += weight[k];
+  }
+  for (const auto& [source, value] : folded) {
+    if (value == 0.0) continue;
+    map.source.push_back(source);
+    map.weight.push_back(value / total);
+  }
+  map.start.push_back(map.source.size());
+}
+
+AxisMap area_average(int in, int out) {
+  AxisMap map;
+  map.in = in;
+  const double step = static_cast<double>(in) / out;
+  for (int i = 0; i < out; ++i) {
+    // Both ends by the same formula, so that neighbours meet without gap or overlap.
+    const double begin = i * static_cast<double>(in) / out;
+    const double end = (i + 1) * static_cast<double>(in) / out;
+    const int first = std::min(static_cast<int>(begin), in - 1);
+    std::vector<double> weight;
+    for (int j = first; j < in && (j < end || j == first); ++j) {
+      const double share = std::min(end, j + 1.0) - std::max(begin, static_cast<double>(j));
+      // A sliver is rounding of an end that lies on a pixel's border.
+      weight.push_back(share > 1e-12 * step ? share : 0.0);
+    }
+    add_output(map, first, weight);
+  }
+  return map;
+}
+
+std::vector<double> discrete_gaussian(double sigma) {
+  const double t = sigma * sigma;
+  // e^-t I_n(t) = (1/pi) integral over [0, pi] of exp(-t (1 - cos u)) cos(n u) du. The trapezoid
+  // rule on a periodic function is exact up to terms of order 2 * steps - n, far beyond any kernel
+  // here.
+  const int steps = std::max(512, static_cast<int>(std::ceil(16.0 * sigma)));
+  const auto term = [&](int n) {
+    double sum = 0.0;
+    for (int k = 0; k <= steps; ++k) {
+      const double u = base::pi * k / steps;
+      const double end = k == 0 || k == steps ? 0.5 : 1.0;
+      sum += end * std::exp(-t * (1.0 - std::cos(u))) * std::cos(n * u);
+    }
+    return sum / steps;
+  };
+  std::vector<double> half = {term(0)};
+  while (half.back() > 1e-10 && half.size() < static_cast<std::size_t>(steps) / 2) {
+    half.push_back(std::max(0.0, term(static_cast<int>(half.size()))));
+  }
+  std::vector<double> kernel(half.rbegin(), half.rend());
+  kernel.insert(kernel.end(), half.begin() + 1, half.end());
+  return kernel;
+}
+
+AxisMap symmetric_filter(int size, const std::vector<double>& taps) {
+  AxisMap map;
+  map.in = size;
+  const int radius = static_cast<int>(taps.size() / 2);
+  for (int i = 0; i < size; ++i) add_output(map, i - radius, taps);
+  return map;
+}
+
+AxisMap gaussian_blur(int size, double sigma) {
+  return symmetric_filter(size, sigma > 0.0 ? discrete_gaussian(sigma) : std::vector<double>{1.0});
+}
+
+Picture apply(const Picture& picture, const AxisMap& along, const AxisMap& across) {
+  Picture result{along.out(), across.out(), {}};
+  for (const Plane& plane : picture.planes) {
+    result.planes.push_back(
+        map_columns(map_rows(plane, picture.columns, picture.rows, along), along.out(), across));
+  }
+  return result;
+}
+
+}  // namespace earthshine::degrade

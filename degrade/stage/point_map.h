@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// A map of the signal point by point, put together from the stages that are one: clamp, gain, clip,
+// gamma, quantisation, screen. It never falls. It knows where it has kinks and where it is level,
+// so that the moments of noise behind it can be integrated piece by piece
+// (degrade/moments/point_moments.h).
+#pragma once
+
+#include <vector>
+
+namespace earthshine::degrade {
+
+class PointMap {
+ public:
+  // Each acts on what the steps before it gave and returns the map, so that steps can be chained.
+  // Their meaning is that of the functions in degrade/parts/electronics.h.
+  PointMap& limit_below(double least);  // max(v, least)
+  PointMap& limit_above(double most);   // min(v, most)
+  PointMap& amplify(double gain);       // gain > 0
+  PointMap& shift(double by);
+  PointMap& power(double exponent);  // exponent > 0; 0 where v <= 0
+  PointMap& quantise(int bits);      // nearest of 2^bits levels from 0 to 1
+  // black + (white - black) clamp(v, 0, 1)^gamma: degrade::drive_screen.
+  PointMap& screen(double black, double white, double gamma);
+
+  [[nodiscard]] double operator()(double signal) const;
+
+  // Signals, ascending, between which the map is smooth.
+  [[nodiscard]] const std::vector<double>& kinks() const { return kinks_; }
+
+  // The stretch before kinks()[index], or after the last.
+  struct Stretch {
+    bool level = false;
+    double value = 0.0;  // where level
+  };
+  [[nodiscard]] const std::vector<Stretch>& stretches() const { return stretches_; }
+
+ private:
+  enum class Kind { LimitBelow, LimitAbove, Amplify, Shift, Power, Quantise };
+  struct Step {
+    Kind kind;
+    double parameter;
+  };
+  [[nodiscard]] static double forward(const Step& step, double v);
+  // Kinks of `step` at these inputs of it, traced back to the signal where it gets there.
+  PointMap& append(Step step, const std::vector<double>& at);
+
+  std::vector<Step> steps_;
+  std::vector<double> kinks_;
+  std::vector<Stretch> stretches_{1};
+};
+
+}  // namespace earthshine::degrade

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/bodies/closed_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "radiosity/bodies/closed_parts.h"
+#include "radiosity/bodies/stopped_holes.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+constexpr double least_volume_share = 1e-9;  // of its box: below it a surface holds nothing
+constexpr double most_cells = 512.0;         // per way of the grid
+constexpr std::uint32_t none = 0xFFFFFFFFU;
+constexpr std::uint32_t outside = none;  // stands for a body: all that is in no room
+
+// Whether the half-line from p along +x crosses the edge, +1 upward, -1 downward. The same edge the
+// other way round gives the opposite number to the last bit.
+int crossing(const Vec3& from, const Vec3& to, const Vec3& p) {
+  const bool up = from.y <= p.y && p.y < to.y, down = to.y <= p.y && p.y < from.y;
+  if (!up && !down) return 0;
+  const Vec3& low = up ? from : to;
+  const Vec3& high = up ? to : from;
+  const double left = (high.x - low.x) * (p.y - low.y) - (high.y - low.y) * (p.x - low.x);
+  if (!(left > 0.0)) return 0;
+  return up ? 1 : -1;
+}
+
+}  // namespace
+
+ClosedSurface::ClosedSurface(std::span<const Vec3> corners)
+    : low_(std::numeric_limits<double>::infinity()), high_(-low_) {
+  for (const Vec3& p : corners) {
+    low_ = glm::min(low_, p);
+    high_ = glm::max(high_, p);
+  }
+  const Vec3 size = high_ - low_, middle = 0.5 * (low_ + high_);
+  axis_ = size.x < size.y ? (size.x < size.z ? 0 : 2) : (size.y < size.z ? 1 : 2);
+  const std::size_t count = corners.size() / 3;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec3 &a = corners[3 * k], &b = corners[3 * k + 1], &c = corners[3 * k + 2];
+    volume_m3_ += glm::dot(a - middle, glm::cross(b - middle, c - middle)) / 6.0;
+    triangles_.push_back({turned(a), turned(b), turned(c)});
+  }
+  cells_ = static_cast<std::size_t>(std::clamp(std::sqrt(double(count)), 1.0, most_cells));
+  corner_ = turned(low_);
+  cell_size_ = glm::max(turned(size) / double(cells_), Vec3(std::numeric_limits<double>::min()));
+  std::vector<std::vector<std::uint32_t>> lists(cells_ * cells_);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const Corners& t = triangles_[k];
+    const Vec3 low = glm::min(t.a, glm::min(t.b, t.c)), high = glm::max(t.a, glm::max(t.b, t.c));
+    for (std::size_t i = cell(low.x, 0); i <= cell(high.x, 0); ++i) {
+      for (std::size_t j = cell(low.y, 1); j <= cell(high.y, 1); ++j) {
+        lists[i * cells_ + j].push_back(k);
+      }
+    }
+  }
+  first_.push_back(0);
+  for (const std::vector<std::uint32_t>& list : lists) {
+    of_cell_.insert(of_cell_.end(), list.begin(), list.end());
+    first_.push_back(static_cast<std::uint32_t>(of_cell_.size()));
+  }
+}
+
+std::size_t ClosedSurface::cell(double x, int way) const {
+  const double index = (x - corner_[way]) / cell_size_[way];
+  return static_cast<std::size_t>(std::clamp(index, 0.0, double(cells_ - 1)));
+}
+
+int ClosedSurface::winding(const Vec3& point) const {
+  if (!may_wind(point, point)) return 0;
+  const Vec3 p = turned(point);
+  const std::size_t at = cell(p.x, 0) * cells_ + cell(p.y, 1);
+  int winding = 0;
+  for (std::uint32_t k = first_[at]; k < first_[at + 1]; ++k) {
+    const auto& [a, b, c] = triangles_[of_cell_[k]];
+    const int turns = crossing(a, b, p) + crossing(b, c, p) + crossing(c, a, p);
+    if (turns == 0) continue;
+    // Beyond the point along the axis: the point is behind the face if it winds upward.
+    if (turns * glm::dot(glm::cross(b - a, c - a), p - a) < 0.0) winding += turns;
+  }
+  return winding;
+}
+
+ClosedBodies::ClosedBodies(const scenes::Scene& scene, const Vec3& centre) : centre_(centre) {
+  const ClosedParts parts = find_closed_parts(scene);
+  std::vector<char> walls(parts.of.size(), 0);
+  const std::map<std::uint32_t, std::vector<Vec3>> stoppers = find_stoppers(scene, parts);
+  const auto is_solid = [&](std::uint32_t part) {
+    return parts.closed[part] != 0 || stoppers.contains(part);
+  };
+  for (const auto& triangles : triangles_by_part(parts, is_solid)) {
+    std::vector<Vec3> corners;
+    for (const std::uint32_t t : triangles) {
+      for (const std::uint32_t v : scene.triangles[t].vertex) {
+        corners.push_back(scene.vertices[v] - centre);
+      }
+    }
+    if (const auto stopper = stoppers.find(parts.of[triangles.front()]);
+        stopper != stoppers.end()) {
+      for (const Vec3& p : stopper->second) corners.push_back(p - centre);
+    }
+    ClosedSurface surface(corners);
+    const double least = least_volume_share * surface.box_m3();
+    if (surface.volume_m3() > least) {
+      bodies_.push_back({std::move(surface), {}});
+    } else if (surface.volume_m3() < -least) {
+      for (const std::uint32_t t : triangles) walls[t] = 1;
+      cavities_.push_back(std::move(surface));
+    }
+  }
+  for (Body& body : bodies_) {
+    for (std::uint32_t c = 0; c < cavities_.size(); ++c) {
+      if (cavities_[c].lies_in_box_of(body.surface)) body.cavities.push_back(c);
+    }
+  }
+  leave_out_lit(scene);
+  dark_outside_ = !cavities_.empty() && light_is_in_rooms(scene, parts.of, walls);
+}
+
+// Where a lamp stands light is meant to be: a room whose faces look the wrong way.
+void ClosedBodies::leave_out_lit(const scenes::Scene& scene) {
+  for (auto b = static_cast<std::uint32_t>(bodies_.size()); b-- > 0;) {
+    const bool lit =
+        std::any_of(scene.lamps.begin(), scene.lamps.end(), [&](const scenes::Lamp& lamp) {
+          return cover(lamp.position - centre_, std::span<const std::uint32_t>(&b, 1));
+        });
+    if (lit) bodies_.erase(bodies_.begin() + b);
+  }
+}
+
+bool ClosedBodies::in_room(const Vec3& point) const {
+  return std::any_of(cavities_.begin(), cavities_.end(),
+                     [&](const ClosedSurface& room) { return room.winding(point) < 0; });
+}
+
+// No sky shines, every lamp stands in a room, and everything that shines hangs together with a wall
+// of one or has a corner in one.
+bool ClosedBodies::light_is_in_rooms(const scenes::Scene& scene,
+                                     const std::vector<std::uint32_t>& part_of,
+                                     const std::vector<char>& walls) const {
+  if (scene.sun || scene.earth) return false;
+  for (const scenes::Lamp& lamp : scene.lamps) {
+    if (!in_room(lamp.position - centre_)) return false;
+  }
+  std::vector<char> shines(part_of.size(), 0), inside(part_of.size(), 0);
+  for (std::uint32_t t = 0; t < part_of.size(); ++t) {
+    const scenes::Triangle& triangle = scene.triangles[t];
+    if (scene.materials[triangle.material].emits()) shines[part_of[t]] = 1;
+  }
+  for (std::uint32_t t = 0; t < part_of.size(); ++t) {
+    if (shines[part_of[t]] == 0 || inside[part_of[t]] != 0) continue;
+    bool in = walls[t] != 0;
+    for (const std::uint32_t v : scene.triangles[t].vertex) {
+      in = in || in_room(scene.vertices[v] - centre_);
+    }
+    if (in) inside[part_of[t]] = 1;
+  }
+  return shines == inside;
+}
+
+std::vector<std::uint32_t> ClosedBodies::near(const Patches& patches, std::uint32_t patch,
+                                              double margin_m) const {
+  Vec3 low(std::numeric_limits<double>::infinity()), high = -low;
+  for (const Vec3& p : patches.corners(patch)) {
+    low = glm::min(low, p - centre_);
+    high = glm::max(high, p - centre_);
+  }
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t b = 0; b < bodies_.size(); ++b) {
+    if (bodies_[b].surface.may_wind(low - margin_m, high + margin_m)) found.push_back(b);
+  }
+  if (dark_outside_) found.push_back(outside);
+  return found;
+}
+
+bool ClosedBodies::cover(const Vec3& point, std::span<const std::uint32_t> bodies) const {
+  return std::any_of(bodies.begin(), bodies.end(), [&](std::uint32_t b) {
+    if (b == outside) return !in_room(point);
+    const Body& body = bodies_[b];
+    return body.surface.winding(point) > 0 &&
+           std::none_of(body.cavities.begin(), body.cavities.end(),
+                        [&](std::uint32_t c) { return cavities_[c].winding(point) < 0; });
+  });
+}
+
+}  // namespace earthshine::radiosity

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/bodies/walls.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "radiosity/bodies/closed_bodies.h"
+#include "radiosity/bodies/closed_parts.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+constexpr double rounding = 1e-5;  // of the scene's extent; single precision is off by 1e-7
+
+struct Ball {
+  Vec3 centre;
+  double radius_m;
+};
+
+// Squared distance of a point from a triangle: from the plane where it lies over the triangle, else
+// from the nearest edge.
+double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 normal = glm::cross(b - a, c - a);
+  const auto inside = [&](const Vec3& from, const Vec3& to) {
+    return glm::dot(glm::cross(normal, to - from), p - from) >= 0.0;
+  };
+  const double square = glm::dot(normal, normal);
+  if (square > 0.0 && inside(a, b) && inside(b, c) && inside(c, a)) {
+    const double along = glm::dot(normal, p - a);
+    return along * along / square;
+  }
+  const auto from_edge = [&p](const Vec3& from, const Vec3& to) {
+    const Vec3 edge = to - from, way = p - from;
+    const double length2 = glm::dot(edge, edge);
+    const double t = length2 > 0.0 ? std::clamp(glm::dot(way, edge) / length2, 0.0, 1.0) : 0.0;
+    const Vec3 left = way - t * edge;
+    return glm::dot(left, left);
+  };
+  return std::min({from_edge(a, b), from_edge(b, c), from_edge(c, a)});
+}
+
+struct Wall {
+  std::vector<Vec3> corners;  // three a triangle
+  ClosedSurface surface;
+
+  explicit Wall(std::vector<Vec3> all) : corners(std::move(all)), surface(corners) {}
+  [[nodiscard]] bool meets(const Ball& ball) const {
+    for (std::size_t k = 0; k < corners.size(); k += 3) {
+      if (squared_distance(ball.centre, corners[k], corners[k + 1], corners[k + 2]) <=
+          ball.radius_m * ball.radius_m) {
+        return true;
+      }
+    }
+    return false;
+  }
+};
+
+class Walls {
+ public:
+  explicit Walls(const scenes::Scene& scene) {
+    Vec3 low(std::numeric_limits<double>::infinity()), high = -low;
+    for (const Vec3& p : scene.vertices) {
+      low = glm::min(low, p);
+      high = glm::max(high, p);
+    }
+    margin_m_ = scene.vertices.empty() ? 0.0 : rounding * glm::length(high - low);
+    const ClosedParts parts = find_closed_parts(scene);
+    std::vector<char> holds(parts.closed);
+    for (std::uint32_t t = 0; t < parts.of.size(); ++t) {
+      const scenes::Material& material = scene.materials[scene.triangles[t].material];
+      if (material.passes_light_on() || material.two_sided) holds[parts.of[t]] = 0;
+    }
+    for (const auto& triangles :
+         triangles_by_part(parts, [&](std::uint32_t part) { return holds[part] != 0; })) {
+      std::vector<Vec3> corners;
+      for (const std::uint32_t t : triangles) {
+        for (const std::uint32_t v : scene.triangles[t].vertex) {
+          corners.push_back(scene.vertices[v]);
+        }
+      }
+      walls_.emplace_back(std::move(corners));
+    }
+  }
+
+  [[nodiscard]] Ball ball(const Vec3& centre, double radius_m) const {
+    return {centre, radius_m + margin_m_};
+  }
+  [[nodiscard]] bool keep_apart(const Ball& a, const Ball& b) const {
+    return std::any_of(walls_.begin(), walls_.end(), [&](const Wall& wall) {
+      return wall.surface.winding(a.centre) != wall.surface.winding(b.centre) && !wall.meets(a) &&
+             !wall.meets(b);
+    });
+  }
+  [[nodiscard]] bool keep_out_sky(const Ball& ball) const {
+    return std::any_of(walls_.begin(), walls_.end(), [&](const Wall& wall) {
+      return wall.surface.winding(ball.centre) != 0 && !wall.meets(ball);
+    });
+  }
+
+ private:
+  double margin_m_ = 0.0;
+  std::vector<Wall> walls_;
+};
+
+// Of the ball around the lamp.
+double radius_of(const scenes::Lamp& lamp) {
+  if (lamp.kind == scenes::LampKind::Disk) return lamp.radius_m;
+  if (lamp.kind != scenes::LampKind::Rectangle) return 0.0;
+  return 0.5 *
+         std::max(glm::length(lamp.edge_u + lamp.edge_v), glm::length(lamp.edge_u - lamp.edge_v));
+}
+
+}  // namespace
+
+scenes::HiddenLights hidden_lights(const scenes::Scene& scene,
+                                   std::vector<const scenes::Camera*> cameras) {
+  if (cameras.empty()) {
+    for (const scenes::Camera& camera : scene.cameras) cameras.push_back(&camera);
+  }
+  scenes::HiddenLights hidden;
+  hidden.lamps.assign(scene.lamps.size(), false);
+  if (cameras.empty()) return hidden;
+  const Walls walls(scene);
+  std::vector<Ball> lenses;
+  for (const scenes::Camera* camera : cameras) {
+    lenses.push_back(walls.ball(camera->position, 0.5 * camera->aperture_m));
+  }
+  const auto all = [&lenses](const auto& kept) {
+    return std::all_of(lenses.begin(), lenses.end(), kept);
+  };
+  hidden.sky = all([&](const Ball& lens) { return walls.keep_out_sky(lens); });
+  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
+    const Ball lamp = walls.ball(scene.lamps[k].position, radius_of(scene.lamps[k]));
+    hidden.lamps[k] = all([&](const Ball& lens) { return walls.keep_apart(lamp, lens); });
+  }
+  return hidden;
+}
+
+}  // namespace earthshine::radiosity

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/direct/direct.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/numbers/random.h"
+#include "base/parallel.h"
+#include "radiosity/direct/shadowed_samples.h"
+#include "radiosity/direct/sources.h"
+#include "scenes/light/lamp_light.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+Rgb landed_as_sampled(const Sampled& sampled, const std::vector<double>& area_m2) {
+  Rgb landed(0.0);
+  for (std::size_t i = 0; i < area_m2.size(); ++i) landed += area_m2[i] * sampled.illuminance_lx[i];
+  return landed;
+}
+
+// What lands is known twice: from the patches' samples, and as the flux less what was found to
+// escape. The mean of the two, weighted by inverse variance, sets the scale: in a closed room
+// nothing escapes and the flux rules exactly; on a small plate under an open sky the samples do.
+double landing_scale(const Sampled& sampled, const std::vector<double>& area_m2, double landed,
+                     const SourceFlux& flux) {
+  double landed_variance = 0.0;
+  for (std::size_t i = 0; i < area_m2.size(); ++i) {
+    landed_variance += area_m2[i] * area_m2[i] * sampled.variance[i];
+  }
+  const double all = base::luminance(flux.emitted_lm);
+  const double expected = all * (1.0 - flux.escaped_share - flux.black_share);
+  if (landed <= 0.0 || expected <= 0.0) return 1.0;
+  const double expected_variance = std::pow(all * flux.share_std_error, 2);
+  const double both = landed_variance + expected_variance;
+  if (both <= 0.0) return expected / landed;  // both are exact: the flux is
+  const double found = (landed * expected_variance + expected * landed_variance) / both;
+  return std::min(found, all) / landed;
+}
+
+// Where nothing escapes, each channel lands as it was emitted: lamps of different colours that are
+// drawn by chance share one scale no more.
+Rgb channel_scales(const SourceFlux& flux, const Rgb& landed) {
+  Rgb scale(flux.scale);
+  if (flux.escaped_share + flux.black_share > 0.0) return scale;
+  for (int c = 0; c < 3; ++c) {
+    if (landed[c] > 0.0) scale[c] = flux.emitted_lm[c] / landed[c];
+  }
+  return scale;
+}
+
+// Shoots rays from a source of known flux to find what escapes and what falls on black backs.
+void find_shares(const scenes::Scene& scene, const scenes::RayQuery& query, const Emit& emit,
+                 std::uint64_t key, int rays, std::uint64_t seed, SourceFlux& flux) {
+  struct Shares {
+    double escaped = 0.0, black = 0.0, all = 0.0;
+    Shares& operator+=(const Shares& o) {
+      escaped += o.escaped;
+      black += o.black;
+      all += o.all;
+      return *this;
+    }
+  };
+  const base::SobolOwen4 sobol(base::Key(seed, base::Stream::LampFlux, key));
+  const Shares shares = base::ordered_sum(
+      static_cast<std::size_t>(rays), 4096, Shares{}, [&](std::size_t begin, std::size_t end) {
+        Shares part;
+        for (std::size_t k = begin; k < end; ++k) {
+          const auto p = sobol.point(static_cast<std::uint32_t>(k));
+          const scenes::EmittedRay ray = emit(p[0], p[1], p[2], p[3]);
+          if (ray.weight <= 0.0) continue;
+          part.all += ray.weight;
+          const Vec3 origin = ray.origin + ray.direction * query.surface_offset_m();
+          const scenes::Hit hit = query.closest(origin, ray.direction);
+          if (hit.missed()) {
+            part.escaped += ray.weight;
+          } else if (!hit.front &&
+                     !scene.materials[scene.triangles[hit.triangle].material].two_sided) {
+            part.black += ray.weight;
+          }
+        }
+        return part;
+      });
+  if (shares.all <= 0.0) return;
+  flux.escaped_share = shares.escaped / shares.all;
+  flux.black_share = shares.black / shares.all;
+  const double p = flux.escaped_share + flux.black_share;
+  flux.share_std_error = std::sqrt(p * (1.0 - p) / rays);
+}
+
+class DirectStage {
+ public:
+  DirectStage(const scenes::Scene& scene, const scenes::RayQuery& query, const Patches& patches,
+              const OpenParts& open, const DirectOptions& options, DirectLight& light)
+      : scene_(scene),
+        query_(query),
+        patches_(patches),
+        open_(open),
+        area_m2_(open_areas(open, patches.area_m2)),
+        options_(options),
+        light_(light) {}
+
+  // A source whose flux is not known (the sky): taken as sampled.
+  void add(const Source& source) {
+    const Sampled sampled =
+        sample_patches(query_, patches_, open_, source, options_.seed, light_.shadow_rays);
+    store(sampled.illuminance_lx, source.group, Rgb(1.0));
+  }
+
+  void add(const Source& source, SourceFlux flux, const Emit& emit) {
+    const Sampled sampled =
+        sample_patches(query_, patches_, open_, source, options_.seed, light_.shadow_rays);
+    find_shares(scene_, query_, emit, source.key, options_.flux_rays, options_.seed, flux);
+    light_.shadow_rays += static_cast<std::uint64_t>(options_.flux_rays);
+    const Rgb landed = landed_as_sampled(sampled, area_m2_);
+    flux.scale = landing_scale(sampled, area_m2_, base::luminance(landed), flux);
+    const Rgb scale = channel_scales(flux, landed);
+    flux.landed_lm = scale * landed;
+    store(sampled.illuminance_lx, source.group, scale);
+    light_.sources.push_back(std::move(flux));
+  }
+
+  void store(const std::vector<Rgb>& illuminance, std::size_t group, const Rgb& scale) {
+    for (std::size_t i = 0; i < illuminance.size(); ++i) add(i, group, scale * illuminance[i]);
+  }
+
+  // One of the `parts` values that each patch has.
+  void store_part(const std::vector<Rgb>& illuminance, std::size_t parts, std::size_t part,
+                  std::size_t group) {
+    for (std::size_t i = 0; i * parts < illuminance.size(); ++i) {
+      add(i, group, illuminance[i * parts + part]);
+    }
+  }
+
+ private:
+  void add(std::size_t patch, std::size_t group, const Rgb& illuminance) {
+    for (int c = 0; c < 3; ++c) {
+      light_.illuminance_lx[patch * light_.columns + 3 * group + static_cast<std::size_t>(c)] +=
+          illuminance[c];
+    }
+  }
+
+  const scenes::Scene& scene_;
+  const scenes::RayQuery& query_;
+  const Patches& patches_;
+  const OpenParts& open_;
+  std::vector<double> area_m2_;
+  const DirectOptions& options_;
+  DirectLight& light_;
+};
+
+}  // namespace
+
+Rgb SourceFlux::escaped_lm() const {
+  const double ended = escaped_share + black_share;
+  return ended > 0.0 ? (escaped_share / ended) * (emitted_lm - landed_lm) : Rgb(0.0);
+}
+
+Rgb SourceFlux::lost_lm() const { return emitted_lm - landed_lm - escaped_lm(); }
+
+DirectLight direct_light(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                         const scenes::Effects& effects, const scenes::RayQuery& query,
+                         const Patches& patches, const FormFactors& factors,
+                         const DirectOptions& options) {
+  DirectLight light;
+  light.columns = 3 * groups.count();
+  light.illuminance_lx.assign(patches.count() * light.columns, 0.0);
+  DirectStage stage(scene, query, patches, factors.open, options, light);
+  if (effects.earth_by_gather) {
+    const std::size_t parts = factors.sky_illuminance.size() / patches.count();
+    for (std::size_t part = 0; part < parts; ++part) {
+      stage.store_part(factors.sky_illuminance, parts, part, groups.earth + part);
+    }
+  }
+  for (LightSource& light_source : find_sources(scene, groups, effects, options.points_per_patch)) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::uint64_t before = light.shadow_rays;
+    if (light_source.emit) {
+      SourceFlux flux;
+      flux.name = std::move(light_source.name);
+      flux.group = light_source.source.group;
+      flux.emitted_lm = light_source.flux_lm;
+      stage.add(light_source.source, std::move(flux), light_source.emit);
+    } else {
+      stage.add(light_source.source);
+    }
+    SourceCost& cost = light.cost[static_cast<std::size_t>(light_source.kind)];
+    cost.rays += light.shadow_rays - before;
+    cost.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+  return light;
+}
+
+}  // namespace earthshine::radiosity

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/direct/shadowed_samples.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "base/numbers/random.h"
+#include "base/parallel.h"
+#include "radiosity/bodies/closed_bodies.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+using scenes::LightSample;
+using scenes::RayPacket;
+
+// Per point wanted of a patch that a body covers in part: a sliver left open is not looked for
+// longer.
+constexpr int most_draws = 64;
+
+// Adds up shadowed samples eight at a time.
+class Receiver {
+ public:
+  Receiver(const scenes::RayQuery& query, const Vec3& normal, int points)
+      : query_(query), normal_(normal), by_point_(static_cast<std::size_t>(points), 0.0) {}
+
+  void add(int point, const Vec3& origin, const LightSample& sample) {
+    const double cosine = glm::dot(sample.direction, normal_);
+    if (cosine <= 0.0 || base::max_component(sample.normal_illuminance_lx) <= 0.0) return;
+    // Stops short of the source, which may be a surface of the scene itself.
+    const double reach = sample.distance_m * (1.0 - 1e-5) - 2.0 * query_.surface_offset_m();
+    if (reach <= 0.0) return;
+    query_.set(packet_, count_, origin, sample.direction, reach);
+    point_[count_] = static_cast<std::size_t>(point);
+    contribution_[count_++] = sample.normal_illuminance_lx * cosine;
+    if (count_ == RayPacket::width) flush();
+  }
+
+  void finish() { flush(); }
+  [[nodiscard]] const Rgb& sum() const { return sum_; }
+  [[nodiscard]] double sum_of_squares() const {  // of the points' luminance-weighted values
+    double squares = 0.0;
+    for (const double y : by_point_) squares += y * y;
+    return squares;
+  }
+  [[nodiscard]] std::uint64_t rays() const { return rays_; }
+
+ private:
+  void flush() {
+    if (count_ == 0) return;
+    const std::uint32_t hidden = query_.occluded(packet_, count_);
+    for (std::size_t k = 0; k < count_; ++k) {
+      if (((hidden >> k) & 1U) != 0) continue;
+      sum_ += contribution_[k];
+      by_point_[point_[k]] += base::luminance(contribution_[k]);
+    }
+    rays_ += count_;
+    count_ = 0;
+  }
+
+  const scenes::RayQuery& query_;
+  Vec3 normal_;
+  RayPacket packet_;
+  Rgb contribution_[RayPacket::width];
+  std::size_t count_ = 0;
+  Rgb sum_{0.0};
+  std::size_t point_[RayPacket::width];
+  std::vector<double> by_point_;
+  std::uint64_t rays_ = 0;
+};
+
+// Near a source the illuminance varies across the patch as 1/r^2, and more points are worth their
+// rays.
+int points_for(const Source& source, const Patches& patches, std::uint32_t patch) {
+  if (!source.distance_m) return source.points;
+  const double ratio =
+      source.distance_m(patches.point(patch, 0.5, 0.5)) / std::sqrt(patches.area_m2[patch]);
+  if (ratio < 2.0) return source.points * source.near_factor;
+  return ratio < 6.0 ? source.points * 4 : source.points;
+}
+
+}  // namespace
+
+void take_samples(const Source& source, const Vec3& point, const Vec3& normal, double u, double v,
+                  std::vector<LightSample>& samples) {
+  samples.clear();
+  if (source.crowd) {
+    source.crowd(point, normal, u, v, samples);
+  } else {
+    samples.push_back(source.sample(point, u, v));
+  }
+}
+
+Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, const OpenParts& open,
+                       const Source& source, std::uint64_t seed, std::uint64_t& rays) {
+  Sampled sampled{std::vector<Rgb>(patches.count(), Rgb(0.0)),
+                  std::vector<double>(patches.count(), 0.0)};
+  std::atomic<std::uint64_t> ray_count{0};
+  base::parallel_chunks(patches.count(), 256, [&](std::size_t begin, std::size_t end) {
+    std::uint64_t chunk_rays = 0;
+    std::vector<LightSample> samples;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto patch = static_cast<std::uint32_t>(i);
+      const double share = open.share.empty() ? 1.0 : open.share[i];
+      if (share <= 0.0) continue;
+      std::vector<std::uint32_t> near;
+      if (share < 1.0) near = open.bodies->near(patches, patch, 2.0 * query.surface_offset_m());
+      const Vec3 normal = patches.normal(patch);
+      const Vec3 lift = normal * query.surface_offset_m();
+      const base::SobolOwen4 sobol(base::Key(seed, base::Stream::DirectLight, i).with(source.key));
+      const int points = points_for(source, patches, patch);
+      Receiver receiver(query, normal, points);
+      int taken = 0;
+      for (int k = 0; taken < points && k < most_draws * points; ++k) {
+        const auto p = sobol.point(static_cast<std::uint32_t>(k));
+        const Vec3 at = patches.point(patch, p[0], p[1]);
+        if (!near.empty() && open.bodies->cover(at + lift - open.bodies->centre(), near)) continue;
+        take_samples(source, at, normal, p[2], p[3], samples);
+        for (const LightSample& sample : samples) receiver.add(taken, at + lift, sample);
+        ++taken;
+      }
+      receiver.finish();
+      if (taken == 0) continue;
+      const double n = taken, y = base::luminance(receiver.sum());
+      sampled.illuminance_lx[i] = receiver.sum() / n;
+      sampled.variance[i] =
+          std::max(0.0, receiver.sum_of_squares() - y * y / n) / (n * std::max(1.0, n - 1.0));
+      chunk_rays += receiver.rays();
+    }
+    ray_count += chunk_rays;
+  });
+  rays += ray_count;
+  return sampled;
+}
+
+}  // namespace earthshine::radiosity

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Illuminance of every patch from one source, by shadow rays from points on the patch to points on
+// the source.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "radiosity/patches/open_parts.h"
+#include "radiosity/patches/patches.h"
+#include "scenes/light/lamp_light.h"
+#include "scenes/ray_query.h"
+
+namespace earthshine::radiosity {
+
+// A source as the patches see it.
+struct Source {
+  std::uint64_t key = 0;  // of its random numbers
+  std::size_t group = 0;
+  int points = 16;       // receiver points per patch
+  int near_factor = 64;  // how many times as many near the source
+  std::function<scenes::LightSample(const Vec3& point, double u, double v)> sample;
+  // In place of `sample`: many lamps as one. Adds those that get a shadow ray from a surface.
+  std::function<void(const Vec3& point, const Vec3& normal, double u, double v,
+                     std::vector<scenes::LightSample>& samples)>
+      crowd;
+  std::function<double(const Vec3& point)> distance_m;  // empty for the sky
+};
+
+struct Sampled {
+  std::vector<Rgb> illuminance_lx;  // per patch
+  std::vector<double> variance;     // of its luminance-weighted value, as if the points were random
+};
+
+// The source's samples at a surface, in place of what `samples` held.
+void take_samples(const Source& source, const Vec3& point, const Vec3& normal, double u, double v,
+                  std::vector<scenes::LightSample>& samples);
+
+// Owen-Sobol in four dimensions (point of the patch, point of the source), keyed by patch and
+// source. Points that bodies cover are left out, and the next of the sequence taken; a wholly
+// covered patch gets nothing. Adds the rays cast to `rays`.
+[[nodiscard]] Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches,
+                                     const OpenParts& open, const Source& source,
+                                     std::uint64_t seed, std::uint64_t& rays);
+
+}  // namespace earthshine::radiosity

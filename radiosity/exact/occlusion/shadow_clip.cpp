@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/exact/occlusion/shadow_clip.h"
+
+#include <cmath>
+
+#include "radiosity/direct/lambert.h"
+
+namespace earthshine::radiosity {
+
+ConvexPolygon TargetFrame::polygon(const ConvexPolygon& p) const {
+  ConvexPolygon seen;
+  seen.normal = direction(p.normal);
+  for (int k = 0; k < p.count; ++k) seen.add(point(p[k]));
+  return seen;
+}
+
+void ShadowClip::set(const TargetFrame& frame, const ConvexPolygon& target,
+                     std::span<const Blocker> blockers, double margin_m) {
+  frame_ = &frame;
+  target_.clear();
+  for (int k = 0; k < target.count; ++k) target_.push_back({target[k].x, target[k].y});
+  blockers_ = blockers;
+  margin_m_ = margin_m;
+  area_m2_ = area_m2(target);
+}
+
+// The plane through the point and an edge of the outline, where it meets the target's plane.
+void ShadowClip::add_line(const Vec3& from, const Vec3& to, double turn) {
+  const Vec3 n = turn * glm::cross(from, to);
+  lines_.push_back({n.x, n.y, -glm::dot(n, point_), margin_m_ * (std::abs(n.x) + std::abs(n.y))});
+}
+
+bool ShadowClip::make_lines(const Blocker& blocker) {
+  lines_.clear();
+  if (blocker.body != nullptr) return make_outline(*blocker.body);
+  const ConvexPolygon& face = blocker.shape;
+  const double side = glm::dot(face.normal, point_ - face[0]);
+  // Edge-on it has no width; what hides from behind, the rest of its body hides.
+  if (std::abs(side) <= margin_m_ || (blocker.front_only && side < 0.0)) return false;
+  Vec3 from = face[face.count - 1] - point_;
+  for (int k = 0; k < face.count; ++k) {
+    const Vec3 to = face[k] - point_;
+    add_line(from, to, side > 0.0 ? -1.0 : 1.0);
+    from = to;
+  }
+  return true;
+}
+
+// The edges between faces towards the point and faces away from it.
+bool ShadowClip::make_outline(const ConvexBody& body) {
+  const Vec3 from_here = frame_->to_scene(point_);
+  faces_point_.clear();
+  for (const Plane& face : body.faces) {
+    faces_point_.push_back(face.height(from_here) > margin_m_ ? 1 : 0);
+  }
+  for (const ConvexBody::Edge& edge : body.edges) {
+    const bool left = faces_point_[edge.left] != 0, right = faces_point_[edge.right] != 0;
+    if (left == right) continue;
+    add_line(frame_->direction(edge.from - from_here), frame_->direction(edge.to - from_here),
+             left ? -1.0 : 1.0);
+  }
+  return !lines_.empty();
+}
+
+bool ShadowClip::clear_of_lines(const Piece& piece) const {
+  for (const Line& line : lines_) {
+    bool outside = true;
+    for (std::uint32_t k = 0; k < piece.count && outside; ++k) {
+      outside = line.at(corners_[piece.start + k]) <= line.margin;
+    }
+    if (outside) return true;
+  }
+  return false;
+}
+
+// Splits the piece along the lines: what is outside one of them stays visible, what is inside all
+// of them is hidden.
+void ShadowClip::subtract(const Piece& piece) {
+  Piece inside = piece;
+  for (const Line& line : lines_) {
+    height_.resize(inside.count);
+    bool any_in = false, any_out = false;
+    for (std::uint32_t k = 0; k < inside.count; ++k) {
+      double h = line.at(corners_[inside.start + k]);
+      if (std::abs(h) <= line.margin) h = 0.0;
+      height_[k] = h;
+      any_in = any_in || h > 0.0;
+      any_out = any_out || h < 0.0;
+    }
+    if (!any_out) continue;
+    if (!any_in) {
+      visible_.push_back(inside);
+      return;
+    }
+    // At most two corners more than before in both parts together, and two that both have.
+    const auto start = static_cast<std::uint32_t>(corners_.size());
+    corners_.resize(start + 2 * inside.count + 4);
+    const Corner* from = &corners_[inside.start];
+    Corner* in = &corners_[start];
+    Corner* out = in + inside.count + 2;
+    const Corner *in_start = in, *out_start = out;
+    for (std::uint32_t k = 0; k < inside.count; ++k) {
+      const std::uint32_t next = k + 1 == inside.count ? 0 : k + 1;
+      const double here = height_[k], there = height_[next];
+      if (here >= 0.0) *in++ = from[k];
+      if (here <= 0.0) *out++ = from[k];
+      if (here * there < 0.0) {
+        const double t = here / (here - there);
+        const Corner cross{from[k].u + t * (from[next].u - from[k].u),
+                           from[k].v + t * (from[next].v - from[k].v)};
+        *in++ = *out++ = cross;
+      }
+    }
+    visible_.push_back({start + inside.count + 2, static_cast<std::uint32_t>(out - out_start)});
+    inside = {start, static_cast<std::uint32_t>(in - in_start)};
+  }
+  hidden_.push_back(inside);
+}
+
+void ShadowClip::cut(const Vec3& point) {
+  point_ = point;
+  corners_.assign(target_.begin(), target_.end());
+  visible_.assign(1, {0, static_cast<std::uint32_t>(target_.size())});
+  hidden_.clear();
+  for (const Blocker& blocker : blockers_) {
+    if (visible_.empty()) break;
+    if (!make_lines(blocker)) continue;
+    std::size_t first = 0;
+    while (first < visible_.size() && clear_of_lines(visible_[first])) ++first;
+    if (first == visible_.size()) continue;
+    remaining_.assign(visible_.begin() + static_cast<std::ptrdiff_t>(first), visible_.end());
+    visible_.resize(first);
+    for (std::size_t k = 0; k < remaining_.size(); ++k) {
+      if (k > 0 && clear_of_lines(remaining_[k])) {
+        visible_.push_back(remaining_[k]);
+      } else {
+        subtract(remaining_[k]);
+      }
+    }
+  }
+}
+
+double ShadowClip::share(const std::vector<Piece>& pieces, const Vec3& normal) const {
+  LambertSum sum(normal);
+  for (const Piece& piece : pieces) {
+    const auto seen = [&](std::uint32_t k) {
+      const Corner& p = corners_[piece.start + k];
+      return Vec3(p.u - point_.x, p.v - point_.y, -point_.z);
+    };
+    Vec3 from = seen(piece.count - 1);
+    for (std::uint32_t k = 0; k < piece.count; ++k) {
+      const Vec3 to = seen(k);
+      sum.add(from, to);
+      from = to;
+    }
+  }
+  return std::max(0.0, sum.share());
+}
+
+double ShadowClip::visible_area_share() const {
+  double twice = 0.0;
+  for (const Piece& piece : visible_) {
+    for (std::uint32_t k = 0; k < piece.count; ++k) {
+      const Corner& p = corners_[piece.start + k];
+      const Corner& q = corners_[piece.start + (k + 1 == piece.count ? 0 : k + 1)];
+      twice += p.u * q.v - p.v * q.u;
+    }
+  }
+  return 0.5 * twice / area_m2_;
+}
+
+}  // namespace earthshine::radiosity

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a point sees of a flat polygon past others: their shadows are cut off it exactly.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "radiosity/exact/occlusion/convex_bodies.h"
+
+namespace earthshine::radiosity {
+
+// A face of a closed convex body hides nothing from behind that the body's other faces do not hide,
+// as long as the view starts outside the body.
+struct Blocker {
+  ConvexPolygon shape;
+  bool front_only = false;
+  // The body, if all of it is in front of both polygons: its outline stands for all its faces. In
+  // the scene's coordinates.
+  const ConvexBody* body = nullptr;
+};
+
+// The target's own frame: (u, v) in its plane from its first corner, h the height above it.
+class TargetFrame {
+ public:
+  explicit TargetFrame(const ConvexPolygon& target)
+      : origin_(target[0]), axes_(base::frame_around(target.normal)) {}
+  [[nodiscard]] Vec3 direction(const Vec3& d) const {
+    return {glm::dot(d, axes_.tangent), glm::dot(d, axes_.bitangent), glm::dot(d, axes_.normal)};
+  }
+  [[nodiscard]] Vec3 point(const Vec3& p) const { return direction(p - origin_); }
+  [[nodiscard]] ConvexPolygon polygon(const ConvexPolygon& p) const;
+  [[nodiscard]] Vec3 to_scene(const Vec3& p) const { return origin_ + axes_.to_world(p); }
+
+ private:
+  Vec3 origin_;
+  base::Frame3 axes_;
+};
+
+// All in the target's frame. The parts are disjoint and together make up the target.
+class ShadowClip {
+ public:
+  // Blockers must lie in front of the target (h >= 0) and of the planes of all points used.
+  void set(const TargetFrame& frame, const ConvexPolygon& target, std::span<const Blocker> blockers,
+           double margin_m);
+
+  // Cuts the target as seen from `point` (h > 0).
+  void cut(const Vec3& point);
+  [[nodiscard]] bool wholly_visible() const { return hidden_.empty(); }
+  [[nodiscard]] bool wholly_hidden() const { return visible_.empty(); }
+
+  // Lambert factors at the last point, for the receiver's unit normal there.
+  [[nodiscard]] double visible_share(const Vec3& normal) const { return share(visible_, normal); }
+  [[nodiscard]] double hidden_share(const Vec3& normal) const { return share(hidden_, normal); }
+  // Share of the target's area that is visible from the last point.
+  [[nodiscard]] double visible_area_share() const;
+
+ private:
+  struct Corner {
+    double u, v;
+  };
+  struct Piece {
+    std::uint32_t start, count;
+  };
+  struct Line {  // inside where a u + b v + c > 0
+    double a, b, c, margin;
+    [[nodiscard]] double at(const Corner& p) const { return a * p.u + b * p.v + c; }
+  };
+
+  [[nodiscard]] bool make_lines(const Blocker& blocker);
+  [[nodiscard]] bool make_outline(const ConvexBody& body);
+  void add_line(const Vec3& from, const Vec3& to, double turn);
+  void subtract(const Piece& piece);
+  [[nodiscard]] bool clear_of_lines(const Piece& piece) const;
+  [[nodiscard]] double share(const std::vector<Piece>& pieces, const Vec3& normal) const;
+
+  const TargetFrame* frame_ = nullptr;
+  std::span<const Blocker> blockers_;
+  std::vector<Corner> target_, corners_;
+  std::vector<Piece> visible_, remaining_, hidden_;
+  std::vector<Line> lines_;
+  std::vector<char> faces_point_;
+  std::vector<double> height_;
+  Vec3 point_{0.0};
+  double margin_m_ = 0.0, area_m2_ = 0.0;
+};
+
+}  // namespace earthshine::radiosity

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/factors/form_factors.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "radiosity/factors/covered_patches.h"
+#include "radiosity/factors/object_runs.h"
+#include "radiosity/factors/row_caster.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+// a = 1 - mirror - transmit, as luminance: one matrix serves the three channels.
+std::vector<double> kept_shares(const scenes::Scene& scene, const Patches& patches) {
+  std::vector<double> kept(patches.count());
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const scenes::Material& m = scene.materials[patches.material(static_cast<std::uint32_t>(i))];
+    kept[i] = m.passes_light_on()
+                  ? std::clamp(1.0 - base::luminance(m.mirror + m.transmit), 0.0, 1.0)
+                  : 1.0;
+  }
+  return kept;
+}
+
+// Where bands of about as many rays start, and the end of the last.
+std::vector<std::size_t> cut_in_bands(const Patches& patches, std::span<const std::uint32_t> rows,
+                                      const std::vector<std::uint32_t>& runs) {
+  constexpr std::uint32_t runs_of_a_band = 64;
+  std::vector<std::size_t> start = {0};
+  std::uint32_t in_band = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    in_band += runs.empty() ? 1 : runs[patches.object(rows[i])];
+    if (in_band < runs_of_a_band && i + 1 < rows.size()) continue;
+    start.push_back(i + 1);
+    in_band = 0;
+  }
+  return start;
+}
+
+// Joins the bands and leaves them empty.
+void assemble(std::vector<Band>& bands, FormFactors& factors) {
+  std::size_t i = 0;
+  factors.row_start[0] = 0;
+  for (const Band& band : bands) {
+    for (const Row& row : band.rows) {
+      factors.row_start[i + 1] = factors.row_start[i] + row.entries;
+      factors.ray_count += row.rays;
+      ++i;
+    }
+    factors.sky_illuminance.insert(factors.sky_illuminance.end(), band.sky_illuminance.begin(),
+                                   band.sky_illuminance.end());
+    for (std::size_t o = 0; o < band.back_hits.size(); ++o) {
+      factors.back_hits[o] += band.back_hits[o];
+    }
+  }
+  factors.column.resize(factors.row_start[i]);
+  factors.hits.resize(factors.row_start[i]);
+  std::ptrdiff_t at = 0;
+  for (Band& band : bands) {
+    std::copy(band.column.begin(), band.column.end(), factors.column.begin() + at);
+    std::copy(band.hits.begin(), band.hits.end(), factors.hits.begin() + at);
+    at += static_cast<std::ptrdiff_t>(band.column.size());
+    band.column = {};
+    band.hits = {};
+    band.sky_illuminance = {};
+  }
+}
+
+// The shares of sky and black backs, and the row scale that makes the row close to the last digit.
+void close_row(FormFactors& factors, std::size_t i, double sky_rays, double black_rays) {
+  double landed = 0.0;  // rays that end on patches, mirrors' shares left out
+  for (std::uint64_t e = factors.row_start[i]; e < factors.row_start[i + 1]; ++e) {
+    landed += double(factors.hits[e]) * factors.kept[factors.column[e]];
+  }
+  // Equal to the number of rays but for the rounding of mirrors' weights.
+  const double all = landed + sky_rays + black_rays;
+  if (all <= 0.0) {  // wholly covered
+    factors.black[i] = factors.lost[i] = 1.0;
+    return;
+  }
+  factors.row_scale[i] = 1.0 / all;
+  factors.sky[i] = factors.escape[i] = sky_rays / all;
+  factors.black[i] = factors.lost[i] = black_rays / all;
+}
+
+}  // namespace
+
+FormFactors cast_form_factors(const scenes::Scene& scene, const scenes::RayQuery& query,
+                              const Patches& patches, const FormFactorOptions& options,
+                              const SkyRadiance& sky) {
+  std::vector<std::uint32_t> rows(patches.count());
+  std::iota(rows.begin(), rows.end(), 0U);
+  FormFactors factors = cast_rows(scene, query, patches, rows, options, sky);
+  if (!factors.open.share.empty()) lose_hits_on_covered(factors);
+  return factors;
+}
+
+FormFactors cast_rows(const scenes::Scene& scene, const scenes::RayQuery& query,
+                      const Patches& patches, std::span<const std::uint32_t> rows,
+                      const FormFactorOptions& options, const SkyRadiance& sky) {
+  const std::size_t count = rows.size();
+  FormFactors factors;
+  factors.rays_per_patch = static_cast<int>(
+      std::bit_ceil(std::max(static_cast<std::uint32_t>(std::max(1, options.rays_per_patch)),
+                             static_cast<std::uint32_t>(scenes::RayPacket::width))));
+  factors.kept = kept_shares(scene, patches);
+  factors.sky.assign(count, 0.0);
+  factors.black.assign(count, 0.0);
+  factors.escape.assign(count, 0.0);
+  factors.lost.assign(count, 0.0);
+  factors.row_scale.assign(count, 0.0);
+  factors.column_scale.assign(patches.count(), 1.0);
+
+  factors.row_start.assign(count + 1, 0);
+  factors.back_hits.assign(scene.objects.size(), 0.0);
+
+  std::vector<std::uint32_t> runs;
+  if (options.know_objects) runs = object_runs(scene, patches, factors.rays_per_patch);
+  const std::vector<std::size_t> band_start = cut_in_bands(patches, rows, runs);
+  std::vector<Band> bands(band_start.size() - 1);
+  const RowCaster caster(scene, query, patches, factors.kept, options,
+                         static_cast<std::uint32_t>(factors.rays_per_patch), runs, sky);
+  base::parallel_chunks(bands.size(), 1, [&](std::size_t begin, std::size_t end) {
+    thread_local HitCounter counter(0);
+    if (counter.patches() < patches.count()) counter = HitCounter(patches.count());
+    for (std::size_t band = begin; band < end; ++band) {
+      bands[band].back_hits.assign(scene.objects.size(), 0.0);
+      for (std::size_t i = band_start[band]; i < band_start[band + 1]; ++i) {
+        caster.cast(rows[i], counter, bands[band]);
+      }
+    }
+  });
+  assemble(bands, factors);
+  std::size_t i = 0;
+  bool any_covered = false;
+  for (const Band& band : bands) {
+    for (const Row& row : band.rows) {
+      any_covered = any_covered || row.open < row.sent;
+      close_row(factors, i++, row.sky, row.black);
+    }
+  }
+  if (!any_covered) return factors;
+  factors.open.bodies = caster.bodies();
+  for (const Band& band : bands) {
+    for (const Row& row : band.rows) {
+      factors.open.share.push_back(double(row.open) / row.sent);
+    }
+  }
+  return factors;
+}
+
+}  // namespace earthshine::radiosity

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which patch a ray met: the arithmetic of Patches::find in single precision, half a cache line
+// a triangle.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "radiosity/patches/patches.h"
+
+namespace earthshine::radiosity {
+
+class HitTargets {
+ public:
+  // passes_on: per material, whether rays go on from it (a mirror, glass).
+  HitTargets(const Patches& patches, const std::vector<bool>& passes_on);
+
+  [[nodiscard]] bool passes_on(std::uint32_t triangle) const {
+    return targets_[triangle].passes_on != 0;
+  }
+
+  // Any number will do, also that of no triangle.
+  void prefetch(std::uint32_t triangle) const {
+    if (triangle < targets_.size()) __builtin_prefetch(&targets_[triangle]);
+  }
+
+  // As Patches::find: no_patch for the back of a one-sided surface.
+  [[nodiscard]] std::uint32_t find(std::uint32_t triangle, float u, float v, bool front) const {
+    const Target& target = targets_[triangle];
+    const std::uint32_t first = front ? target.first_front : target.first_back;
+    if (first == no_patch) return no_patch;
+    const Linear& to = linear[target.kind];
+    const float s = to.s[0] + to.s[1] * u + to.s[2] * v;
+    float t = to.t[0] + to.t[1] * u + to.t[2] * v;
+    if (target.kind < triangle_kinds) t = s > 0.0F ? t / s : 0.0F;
+    if (target.tree != no_tree) {
+      const Facet& facet = patches_.facets[patches_.of_triangle[triangle]];
+      return first + patches_.leaf(facet, {s, t});
+    }
+    return first + cell(s, target.s_count) * target.t_count + cell(t, target.t_count);
+  }
+
+ private:
+  struct alignas(32) Target {
+    std::uint32_t s_count, t_count;
+    std::uint32_t first_front, first_back, tree;
+    std::uint8_t kind, passes_on;
+  };
+
+  // s and t as s[0] + s[1] u + s[2] v, per kind: triangles with apex 0, 1, 2 (s t in place of t),
+  // the first and the second half of a parallelogram.
+  struct Linear {
+    float s[3], t[3];
+  };
+  static constexpr std::uint8_t triangle_kinds = 3;
+  static constexpr Linear linear[5] = {{{0, 1, 1}, {0, 0, 1}},
+                                       {{1, -1, 0}, {1, -1, -1}},
+                                       {{1, 0, -1}, {0, 1, 0}},
+                                       {{0, 1, 1}, {0, 0, 1}},
+                                       {{0, 1, 0}, {0, 1, 1}}};
+
+  static std::uint32_t cell(float x, std::uint32_t count) {
+    const auto index = static_cast<std::int32_t>(x * static_cast<float>(count));
+    const auto last = static_cast<std::int32_t>(count) - 1;
+    return static_cast<std::uint32_t>(index < 0 ? 0 : index > last ? last : index);
+  }
+
+  const Patches& patches_;
+  std::vector<Target> targets_;
+};
+
+}  // namespace earthshine::radiosity

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rays that patches send out: points uniform over the patch, directions cosine-distributed
+// about its normal, Owen-Sobol in the four dimensions together, in packets of neighbours.
+#pragma once
+
+#include <cstdint>
+
+#include "base/numbers/random.h"
+#include "base/numbers/sobol_set.h"
+#include "radiosity/patches/patches.h"
+#include "scenes/ray_query.h"
+
+namespace earthshine::radiosity {
+
+// The set of samples is shared by all patches; each scrambles it with a key of its own. Safe on
+// many threads.
+class PatchRays {
+ public:
+  // rays: a power of two, at least RayPacket::width.
+  PatchRays(const Patches& patches, const scenes::RayQuery& query, std::uint32_t rays)
+      : patches_(patches), query_(query), samples_(rays) {}
+
+  [[nodiscard]] std::uint32_t count() const { return samples_.count(); }
+
+  // One patch, in the ray query's single-precision frame.
+  struct Sender {
+    base::SobolSet4::Scramble scramble;
+    glm::vec3 corner, a, b;  // p = corner + s (a + t b), for parallelograms corner + s a + t b
+    glm::vec3 tangent, bitangent, normal;
+    float s0, s_span, t0, t_span;  // of s for parallelograms, of s^2 for triangles
+    bool parallelogram;
+  };
+  [[nodiscard]] Sender sender(std::uint32_t patch, base::Key key) const;
+
+  // The patch's next `count` rays, in place of the first ones (base::SobolSet4::go_to_run).
+  void go_to_run(std::uint32_t run, Sender& sender) const {
+    samples_.go_to_run(run, sender.scramble);
+  }
+
+  // Rays first .. first + width - 1 of the patch.
+  void make(const Sender& sender, std::uint32_t first, scenes::RayPacket& rays) const;
+
+ private:
+  const Patches& patches_;
+  const scenes::RayQuery& query_;
+  base::SobolSet4 samples_;
+};
+
+}  // namespace earthshine::radiosity

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// y = F x for many right-hand sides: the matrix is read once for up to 32 of them.
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "radiosity/factors/form_factors.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+constexpr std::size_t lanes = 4;
+using Lanes [[gnu::vector_size(lanes * sizeof(double))]] = double;
+
+constexpr std::size_t most_blocks = 8;  // of four columns, held in registers
+
+// x with its columns scaled by column_scale and padded to whole blocks, from column `first` on.
+std::vector<Lanes> packed(const FormFactors& factors, std::span<const double> x,
+                          std::size_t columns, std::size_t first, std::size_t blocks) {
+  const std::size_t used = std::min(columns - first, blocks * lanes);
+  std::vector<Lanes> z(factors.count() * blocks);
+  base::parallel_chunks(factors.count(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t j = begin; j < end; ++j) {
+      for (std::size_t c = 0; c < blocks * lanes; ++c) {
+        z[j * blocks + c / lanes][c % lanes] =
+            c < used ? factors.column_scale[j] * x[j * columns + first + c] : 0.0;
+      }
+    }
+  });
+  return z;
+}
+
+// Entries in turn go to this many sums, so that one addition need not wait for the last: four times
+// four columns, fewer the more blocks there are.
+template <std::size_t Blocks>
+constexpr std::size_t chains = Blocks == 1   ? 4
+                               : Blocks <= 3 ? 2
+                                             : 1;
+
+template <std::size_t Blocks>
+void multiply_rows(const FormFactors& factors, const Lanes* z, std::size_t begin, std::size_t end,
+                   std::size_t columns, std::size_t first, std::span<double> y) {
+  constexpr std::size_t parts = chains<Blocks>;
+  const std::uint32_t* column = factors.column.data();
+  const float* hits = factors.hits.data();
+  const std::size_t used = std::min(columns - first, Blocks * lanes);
+  for (std::size_t i = begin; i < end; ++i) {
+    Lanes sum[parts][Blocks] = {};
+    std::uint64_t e = factors.row_start[i];
+    const std::uint64_t stop = factors.row_start[i + 1];
+    for (; e + parts <= stop; e += parts) {
+      for (std::size_t p = 0; p < parts; ++p) {
+        const Lanes* in = &z[column[e + p] * Blocks];
+        const double weight = double(hits[e + p]);
+        for (std::size_t b = 0; b < Blocks; ++b) sum[p][b] += weight * in[b];
+      }
+    }
+    for (; e < stop; ++e) {
+      const Lanes* in = &z[column[e] * Blocks];
+      for (std::size_t b = 0; b < Blocks; ++b) sum[0][b] += double(hits[e]) * in[b];
+    }
+    for (std::size_t p = 1; p < parts; ++p) {
+      for (std::size_t b = 0; b < Blocks; ++b) sum[0][b] += sum[p][b];
+    }
+    for (std::size_t c = 0; c < used; ++c) {
+      y[i * columns + first + c] = factors.row_scale[i] * sum[0][c / lanes][c % lanes];
+    }
+  }
+}
+
+using MultiplyRows = void (*)(const FormFactors&, const Lanes*, std::size_t, std::size_t,
+                              std::size_t, std::size_t, std::span<double>);
+constexpr MultiplyRows multiply_blocks[most_blocks] = {
+    multiply_rows<1>, multiply_rows<2>, multiply_rows<3>, multiply_rows<4>,
+    multiply_rows<5>, multiply_rows<6>, multiply_rows<7>, multiply_rows<8>};
+
+}  // namespace
+
+void multiply(const FormFactors& factors, std::span<const double> x, std::span<double> y,
+              std::size_t columns) {
+  for (std::size_t first = 0; first < columns; first += most_blocks * lanes) {
+    const std::size_t blocks = std::min((columns - first + lanes - 1) / lanes, most_blocks);
+    const std::vector<Lanes> z = packed(factors, x, columns, first, blocks);
+    base::parallel_chunks(factors.count(), 256, [&](std::size_t begin, std::size_t end) {
+      multiply_blocks[blocks - 1](factors, z.data(), begin, end, columns, first, y);
+    });
+  }
+}
+
+}  // namespace earthshine::radiosity

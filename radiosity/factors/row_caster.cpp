@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/factors/row_caster.h"
+
+#include "base/numbers/random.h"
+#include "scenes/reflect/specular.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+using scenes::HitPacket;
+using scenes::RayPacket;
+
+constexpr int most_specular_steps = 64;
+
+std::vector<bool> materials_that_pass_on(const scenes::Scene& scene) {
+  std::vector<bool> passes_on;
+  for (const scenes::Material& m : scene.materials) {
+    passes_on.push_back(m.passes_light_on() || base::max_component(m.transmit) > 0.0);
+  }
+  return passes_on;
+}
+
+Vec3 origin(const RayPacket& packet, std::size_t k) {
+  return {packet.origin_x[k], packet.origin_y[k], packet.origin_z[k]};
+}
+Vec3 direction(const RayPacket& packet, std::size_t k) {
+  return {packet.direction_x[k], packet.direction_y[k], packet.direction_z[k]};
+}
+
+}  // namespace
+
+RowCaster::RowCaster(const scenes::Scene& scene, const scenes::RayQuery& query,
+                     const Patches& patches, const std::vector<double>& kept,
+                     const FormFactorOptions& options, std::uint32_t rays,
+                     const std::vector<std::uint32_t>& runs, const SkyRadiance& sky)
+    : scene_(scene),
+      query_(query),
+      patches_(patches),
+      kept_(kept),
+      runs_(runs),
+      sky_(sky),
+      sky_cells_(options.sky_cells),
+      sky_parts_(sky_cells_ == nullptr ? 1 : sky_cells_->count()),
+      seed_(options.seed),
+      replicate_(options.replicate),
+      leave_out_covered_(options.leave_out_covered),
+      dark_sky_(!scene.sun && !scene.earth),
+      rays_(patches, query, rays),
+      targets_(patches, materials_that_pass_on(scene)) {}
+
+void RowCaster::cast(std::uint32_t patch, HitCounter& counter, Band& band) const {
+  Row row;
+  base::Key key(seed_, base::Stream::FormFactor, patch);
+  if (replicate_ != 0) key = key.with(replicate_);
+  const PatchRays::Sender sender = rays_.sender(patch, key);
+  std::vector<std::uint32_t> near;
+  const std::size_t first_part = band.sky_illuminance.size();
+  band.sky_illuminance.resize(first_part + sky_parts_, Rgb(0.0));
+  if (!trace(patch, sender, leave_out_covered_, near, row, counter, band)) {
+    counter.clear();
+    band.backs_met.clear();
+    row = {};
+    std::fill(band.sky_illuminance.end() - static_cast<std::ptrdiff_t>(sky_parts_),
+              band.sky_illuminance.end(), Rgb(0.0));
+    trace(patch, sender, false, near, row, counter, band);
+  }
+  if (row.open > 0 && is_exposed(row.black / row.open)) {
+    for (const std::uint32_t object : band.backs_met) band.back_hits[object] += 1.0;
+  }
+  band.backs_met.clear();
+  const std::size_t before = band.column.size();
+  counter.take(band.column, band.hits);
+  row.entries = static_cast<std::uint32_t>(band.column.size() - before);
+  for (std::size_t k = first_part; row.open > 0 && k < band.sky_illuminance.size(); ++k) {
+    band.sky_illuminance[k] *= base::pi / row.open;
+  }
+  band.rows.push_back(row);
+}
+
+// Counts the patch's rays but those from points that the bodies `near` cover. If asked to look out
+// for them it stops at the first black back, with false, where bodies near the patch may be the
+// reason, and names them: what sees no back is not covered, and pays nothing.
+bool RowCaster::trace(std::uint32_t patch, PatchRays::Sender sender, bool look_out,
+                      std::vector<std::uint32_t>& near, Row& row, HitCounter& counter,
+                      Band& band) const {
+  // A packet's hits are counted after the next packet was traced: by then what they need has come
+  // from memory.
+  RayPacket packets[2];
+  HitPacket hits[2];
+  const std::uint32_t run = rays_.count() / RayPacket::width;
+  const std::uint32_t count = run * (runs_.empty() ? 1 : runs_[patches_.object(patch)]);
+  row.sent = count * RayPacket::width;
+  row.rays = row.sent;
+  for (std::uint32_t n = 0; n <= count; ++n) {
+    if (n < count) {
+      if (n > 0 && n % run == 0) rays_.go_to_run(n / run, sender);
+      rays_.make(sender, n % run * RayPacket::width, packets[n % 2]);
+      query_.closest(packets[n % 2], RayPacket::width, hits[n % 2]);
+      for (const std::uint32_t triangle : hits[n % 2].triangle) targets_.prefetch(triangle);
+    }
+    if (n == 0) continue;
+    count_hits(packets[(n - 1) % 2], hits[(n - 1) % 2], near, row, counter, band);
+    if (!look_out || !(row.black > 0.0 || (row.sky > 0.0 && dark_sky_))) continue;
+    look_out = false;
+    near = bodies_near(patch);
+    if (!near.empty()) return false;
+  }
+  return true;
+}
+
+std::vector<std::uint32_t> RowCaster::bodies_near(std::uint32_t patch) const {
+  std::call_once(bodies_made_, [this] {
+    bodies_ = std::make_shared<const ClosedBodies>(scene_, query_.centre());
+  });
+  return bodies_->near(patches_, patch, 2.0 * query_.surface_offset_m());
+}
+
+void RowCaster::count_hits(const RayPacket& packet, const HitPacket& hits,
+                           std::span<const std::uint32_t> near, Row& row, HitCounter& counter,
+                           Band& band) const {
+  for (std::size_t k = 0; k < RayPacket::width; ++k) {
+    if (!near.empty() && bodies_->cover(origin(packet, k), near)) continue;
+    ++row.open;
+    const std::uint32_t triangle = hits.triangle[k];
+    if (triangle == scenes::no_triangle) {
+      escape(direction(packet, k), 1.0, row, band);
+      continue;
+    }
+    if (targets_.passes_on(triangle)) {
+      follow(packet, k, {triangle, hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0}, row,
+             counter, band);
+      continue;
+    }
+    const std::uint32_t to = targets_.find(triangle, hits.u[k], hits.v[k], hits.front[k] != 0);
+    if (to == no_patch) {
+      row.black += 1.0;
+      band.backs_met.push_back(scene_.triangles[triangle].object);
+    } else {
+      counter.add(to, 1.0F);
+    }
+  }
+}
+
+void RowCaster::escape(const Vec3& direction, double weight, Row& row, Band& band) const {
+  row.sky += weight;
+  if (!sky_) return;
+  const std::size_t part = sky_cells_ == nullptr ? 0 : sky_cells_->cell_of(direction);
+  band.sky_illuminance[band.sky_illuminance.size() - sky_parts_ + part] += weight * sky_(direction);
+}
+
+// Counts a hit on a mirror or glass and the hits behind it.
+void RowCaster::follow(const RayPacket& packet, std::size_t lane, scenes::Hit hit, Row& row,
+                       HitCounter& counter, Band& band) const {
+  Vec3 way = direction(packet, lane);
+  float weight = 1.0F;
+  for (int step = 0;; ++step) {
+    if (hit.missed()) {
+      return escape(way, double(weight), row, band);
+    }
+    const std::uint32_t to = patches_.find(hit.triangle, hit.u, hit.v, hit.front);
+    const scenes::Material& material = scene_.materials[scene_.triangles[hit.triangle].material];
+    const bool glass = base::max_component(material.transmit) > 0.0;
+    if (to == no_patch && !glass) {
+      row.black += weight;
+      return;
+    }
+    // The inside of a glass body passes light on as its outside does, and is no patch of its own.
+    const double passed_on = to == no_patch ? 1.0 : 1.0 - kept_[to];
+    if (to != no_patch) counter.add(to, weight);
+    weight *= static_cast<float>(passed_on);
+    if (weight <= 0.0F) return;
+    if (step == most_specular_steps) {
+      // What is left of the weight stays where it is: no light may end that nothing absorbs.
+      if (to != no_patch && kept_[to] > 0.0) {
+        counter.add(to, weight / static_cast<float>(kept_[to]));
+      } else {
+        row.black += weight;
+      }
+      return;
+    }
+    const scenes::SpecularStep on =
+        scenes::specular_step(scene_, hit, way, query_.surface_offset_m());
+    way = on.direction;
+    hit = query_.closest(on.origin, way);
+    ++row.rays;
+  }
+}
+
+}  // namespace earthshine::radiosity

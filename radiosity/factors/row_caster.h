@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// One row of the form factors at a time: the rays of a patch and what they meet.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "radiosity/bodies/closed_bodies.h"
+#include "radiosity/factors/form_factors.h"
+#include "radiosity/factors/hit_counter.h"
+#include "radiosity/factors/hit_targets.h"
+#include "radiosity/factors/patch_rays.h"
+
+namespace earthshine::radiosity {
+
+// What one row found beside its hits.
+struct Row {
+  std::uint32_t entries = 0;
+  double black = 0.0, sky = 0.0;  // in rays
+  std::uint64_t rays = 0;
+  std::uint32_t sent = 0;  // rays that left the patch
+  std::uint32_t open =
+      0;  // of them, those that left from points which no body covers: those that count
+};
+
+// The rows of one chunk of patches, side by side.
+struct Band {
+  std::vector<Row> rows;
+  std::vector<double> back_hits;         // per object
+  std::vector<std::uint32_t> backs_met;  // of the row in progress: the objects
+  std::vector<std::uint32_t> column;
+  std::vector<float> hits;
+  std::vector<Rgb> sky_illuminance;  // of each row and cell of the sky
+};
+
+// Safe on many threads, each with a counter and a band of its own.
+class RowCaster {
+ public:
+  // What is given must outlive it. kept: a_j per patch; rays: a power of two; runs: of so many
+  // rays, per object of the scene, empty for one each.
+  RowCaster(const scenes::Scene& scene, const scenes::RayQuery& query, const Patches& patches,
+            const std::vector<double>& kept, const FormFactorOptions& options, std::uint32_t rays,
+            const std::vector<std::uint32_t>& runs, const SkyRadiance& sky);
+
+  // Appends the patch's row to the band.
+  void cast(std::uint32_t patch, HitCounter& counter, Band& band) const;
+
+  // Null unless a row needed to know.
+  [[nodiscard]] std::shared_ptr<const ClosedBodies> bodies() const { return bodies_; }
+
+ private:
+  bool trace(std::uint32_t patch, PatchRays::Sender sender, bool look_out,
+             std::vector<std::uint32_t>& near, Row& row, HitCounter& counter, Band& band) const;
+  [[nodiscard]] std::vector<std::uint32_t> bodies_near(std::uint32_t patch) const;
+  void count_hits(const scenes::RayPacket& packet, const scenes::HitPacket& hits,
+                  std::span<const std::uint32_t> near, Row& row, HitCounter& counter,
+                  Band& band) const;
+  void follow(const scenes::RayPacket& packet, std::size_t lane, scenes::Hit hit, Row& row,
+              HitCounter& counter, Band& band) const;
+  // A ray that met nothing: to the sky's light of the row that comes last.
+  void escape(const Vec3& direction, double weight, Row& row, Band& band) const;
+
+  const scenes::Scene& scene_;
+  const scenes::RayQuery& query_;
+  const Patches& patches_;
+  const std::vector<double>& kept_;
+  const std::vector<std::uint32_t>& runs_;
+  const SkyRadiance& sky_;
+  const scenes::SkyCells* sky_cells_;
+  std::size_t sky_parts_;
+  std::uint64_t seed_;
+  std::uint32_t replicate_;
+  bool leave_out_covered_, dark_sky_;
+  PatchRays rays_;
+  HitTargets targets_;
+  // Made when the first row asks: most scenes have no use for them.
+  mutable std::once_flag bodies_made_;
+  mutable std::shared_ptr<const ClosedBodies> bodies_;
+};
+
+}  // namespace earthshine::radiosity

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// How the facets are cut, without the geometry, which the scene gives: what a file keeps of
+// Patches, and what is believed of it.
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <vector>
+
+#include "radiosity/patches/patches.h"
+
+namespace earthshine::radiosity {
+
+struct PatchLayout {
+  // Per facet, as in Facet.
+  std::vector<std::uint32_t> s_count, t_count, first_front, first_back, leaves, tree_start;
+  std::vector<std::uint32_t> tree;
+  std::vector<double> area_m2;  // per patch
+};
+
+[[nodiscard]] PatchLayout layout_of(const Patches& patches);
+
+// The patches of that layout. Throws std::invalid_argument, saying what is wrong, unless every
+// patch belongs to exactly one leaf of one side, every leaf is reached once, and areas add up to
+// their facets'.
+[[nodiscard]] Patches rebuild_patches(const scenes::Scene& scene, PatchLayout layout);
+
+}  // namespace earthshine::radiosity

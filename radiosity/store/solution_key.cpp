@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/store/solution_key.h"
+
+#include "base/numbers/digest.h"
+#include "scenes/light/photometry.h"
+#include "scenes/sky/sky_parts.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+using base::Digest;
+using scenes::Scene;
+
+// Below, structures are taken apart whole: one that gets another member does not compile until it
+// is decided whether that member belongs in the digest.
+
+std::uint64_t geometry(const Scene& scene) {
+  Digest digest;
+  digest.add(std::uint64_t{scene.triangles.size()});
+  for (const scenes::Triangle& triangle : scene.triangles) {
+    const auto& [vertex, object, material, polygon] = triangle;
+    for (const std::uint32_t v : vertex) digest.add(scene.vertices[v]);
+    digest.add(std::uint64_t{object});
+    digest.add(std::uint64_t{polygon});
+  }
+  return digest.value();
+}
+
+// Of what every triangle wears, in order: materials that nothing wears do not count, nor does the
+// order in which the file lists them.
+template <class Part>
+std::uint64_t of_worn(const Scene& scene, Part part) {
+  std::vector<std::uint64_t> parts;
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) parts.push_back(part(m));
+  Digest digest;
+  for (const scenes::Triangle& triangle : scene.triangles) digest.add(parts[triangle.material]);
+  return digest.value();
+}
+
+std::uint64_t surfaces(const Scene& scene) {
+  return of_worn(scene, [&](std::size_t m) {
+    const auto& [name, diffuse, specular, shininess, mirror, transmit, ior, emit, group, sheet] =
+        scene.materials[m];
+    Digest digest;
+    digest.add(diffuse);
+    digest.add(specular);
+    digest.add(shininess);
+    digest.add(mirror);
+    digest.add(transmit);
+    digest.add(ior);
+    digest.add(std::uint64_t{sheet});
+    return digest.value();
+  });
+}
+
+std::uint64_t lights(const Scene& scene, const scenes::LightGroups& groups) {
+  Digest digest;
+  for (const std::string& name : groups.names) digest.add(std::string_view(name));
+  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
+    const auto& [name, group, kind, position, axis, intensity_cd, beam_deg, field_deg, edge_u,
+                 edge_v, radius_m, exitance, c0, photometry, source] = scene.lamps[k];
+    digest.add(std::uint64_t{groups.lamp[k]});
+    digest.add(static_cast<std::uint64_t>(kind));
+    for (const Vec3& v : {position, axis, intensity_cd, edge_u, edge_v, exitance}) digest.add(v);
+    for (const double x : {beam_deg, field_deg, radius_m}) digest.add(x);
+    if (photometry) {
+      digest.add(c0);
+      for (const auto* list :
+           {&photometry->vertical_rad(), &photometry->horizontal_rad(), &photometry->values()}) {
+        digest.add(std::uint64_t{list->size()});
+        for (const double x : *list) digest.add(x);
+      }
+    }
+  }
+  digest.add(of_worn(scene, [&](std::size_t m) {
+    Digest emission;
+    emission.add(scene.materials[m].emit);
+    emission.add(std::uint64_t{groups.material[m]});
+    return emission.value();
+  }));
+  return digest.value();
+}
+
+std::uint64_t sky(const Scene& scene) {
+  Digest digest;
+  digest.add(std::uint64_t{scene.sun.has_value()});
+  if (scene.sun) {
+    const auto& [direction, illuminance_lx, angular_radius_deg] = *scene.sun;
+    digest.add(direction);
+    digest.add(illuminance_lx);
+    digest.add(angular_radius_deg);
+  }
+  digest.add(std::uint64_t{scene.earth.has_value()});
+  if (scene.earth) {
+    const auto& [direction, half_angle_deg, altitude_m, model, albedo, radiance, by_latitude] =
+        *scene.earth;
+    for (const Vec3& v : {direction, albedo, radiance}) digest.add(v);
+    for (const double x : {half_angle_deg, altitude_m}) digest.add(x);
+    digest.add(static_cast<std::uint64_t>(model));
+    if (by_latitude) {
+      const auto& [a0, a1, a2, north] = *by_latitude;
+      for (const double x : {a0, a1, a2}) digest.add(x);
+      digest.add(north);
+    }
+  }
+  if (!scene.sky_parts) return digest.value();
+  const auto& [suns, cells] = *scene.sky_parts;
+  for (const auto& [direction, illuminance_lx, angular_radius_deg] : suns) {
+    digest.add(direction);
+    digest.add(illuminance_lx);
+    digest.add(angular_radius_deg);
+  }
+  if (cells) {
+    digest.add(cells->axis());
+    for (const double bound : cells->bounds_rad()) digest.add(bound);
+    for (const std::size_t sectors : cells->sectors()) digest.add(std::uint64_t{sectors});
+  }
+  return digest.value();
+}
+
+}  // namespace
+
+std::vector<ScenePart> scene_parts(const Scene& scene, const scenes::LightGroups& groups) {
+  return {{"digest_geometry", "the geometry", geometry(scene)},
+          {"digest_materials", "the materials", surfaces(scene)},
+          {"digest_lights", "the lights", lights(scene, groups)},
+          {"digest_sky", "the Sun or the Earth", sky(scene)}};
+}
+
+std::vector<SolveKnob> solve_knobs(const SolveOptions& options) {
+  const auto& [patch_edge_m, form_factor_rays, tolerance, seed, refine] = options;
+  const auto& [on, start_edge_m, max_patches, error] = refine;
+  return {{"patch_edge_m", "quality.patch_edge in m", patch_edge_m},
+          {"form_factor_rays", "quality.form_factor_rays",
+           static_cast<std::uint64_t>(form_factor_rays)},
+          {"solver_tolerance", "quality.solver_tolerance", tolerance},
+          {"seed", "--seed", seed},
+          {"refine", "quality.refine", std::uint64_t{on ? 1U : 0U}},
+          {"refine_start_edge_m",
+           "the edge that refinement starts from, by quality.patch_edge, in m", start_edge_m},
+          {"max_patches", "quality.max_patches", std::uint64_t{max_patches}},
+          {"refine_error", "quality.error of the patches", error}};
+}
+
+}  // namespace earthshine::radiosity

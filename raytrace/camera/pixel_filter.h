@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where in and around a pixel its camera rays go: offsets drawn from the filter itself, so that
+// every sample has weight 1 and a pixel is the plain mean of its samples.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "base/numbers/random.h"
+#include "scenes/scene.h"
+
+namespace earthshine::raytrace {
+
+// Separable, symmetric, never negative; w is the full width of its support in pixels, x in
+// [-w/2, w/2]:
+//   Box             1
+//   Triangle        1 - 2|x|/w
+//   Gaussian        exp(-x^2 / (2 s^2)), s = w/6: cut at three standard deviations
+//   BlackmanHarris  0.35875 + 0.48829 cos t + 0.14128 cos 2t + 0.01168 cos 3t, t = 2 pi x / w
+//                   (Harris 1978, the 4-term window of -92 dB)
+class PixelFilter {
+ public:
+  PixelFilter(scenes::FilterShape shape, double width_px);
+  explicit PixelFilter(const scenes::Camera& camera)
+      : PixelFilter(camera.filter, camera.filter_width_px) {}
+
+  // (u, v) in [0, 1]^2, each carried by an increasing function, so that stratified points stay
+  // stratified. Pixels from the pixel's centre, x to the right and y down. The box of width 1 gives
+  // (u - 0.5, v - 0.5) exactly.
+  [[nodiscard]] std::array<double, 2> offset(double u, double v) const { return {at(u), at(v)}; }
+  // How many pixels beside its own a pixel's samples may fall into.
+  [[nodiscard]] int reach_px() const {
+    return std::max(0, static_cast<int>(std::ceil(0.5 * (width_px_ - 1.0))));
+  }
+
+ private:
+  [[nodiscard]] double at(double u) const;
+
+  scenes::FilterShape shape_;
+  double width_px_;
+  std::vector<double> inverse_;  // x / w, see invert(); of the smooth shapes
+};
+
+// Where in a pixel and on the lens its camera samples lie: even and odd ones are two independent
+// sets, each of low discrepancy.
+class PixelPoints {
+ public:
+  PixelPoints(std::uint64_t seed, std::uint64_t pixel)
+      : halves_{base::SobolOwen4(base::Key(seed, base::Stream::Pixel, pixel).with(0)),
+                base::SobolOwen4(base::Key(seed, base::Stream::Pixel, pixel).with(1))} {}
+  [[nodiscard]] std::array<float, 4> point(std::size_t sample) const {
+    return halves_[sample % 2].point(static_cast<std::uint32_t>(sample / 2));
+  }
+
+ private:
+  std::array<base::SobolOwen4, 2> halves_;
+};
+
+}  // namespace earthshine::raytrace

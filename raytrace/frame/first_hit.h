@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// The unfiltered layers: what the one ray through a pixel's centre and the lens's meets.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/image.h"
+#include "raytrace/camera/camera.h"
+#include "scenes/ray_query.h"
+
+namespace earthshine::raytrace {
+
+// Where the ray meets nothing: albedo, N and P 0; Z and range infinite; object and material -1.
+struct FirstHitLayer {
+  std::string aov;  // its word in --aov
+  std::vector<std::string> channels;
+};
+
+//   albedo    albedo.R/G/B  diffuse reflectance
+//   normal    N.X/Y/Z       unit, facing the camera
+//   position  P.X/Y/Z       m
+//   depth     Z             m along the camera's axis
+//   range     range         m along the ray
+//   object    object        number in the scene's order
+//   material  material      number in the scene's order
+[[nodiscard]] const std::vector<FirstHitLayer>& first_hit_layers();
+
+// Fills those channels that `image`, `window` of the camera's picture, has. Places are worked out
+// in double precision and rounded once. Returns the rays cast.
+std::uint64_t fill_first_hit(const scenes::Scene& scene, const scenes::RayQuery& query,
+                             const CameraModel& camera, const Window& window, base::Image& image);
+
+}  // namespace earthshine::raytrace

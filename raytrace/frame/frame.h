@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a render gives: named layers and a report.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/image.h"
+#include "raytrace/camera/camera.h"
+#include "scenes/effects/effects.h"
+
+namespace earthshine::raytrace {
+
+// Each ray counts once, as what it was cast for. A lens has no rays of its own: camera rays start
+// on it.
+struct RayCounts {
+  std::uint64_t camera = 0;
+  std::uint64_t shadow = 0;                                   // all of them
+  std::array<std::uint64_t, scenes::light_kinds> to_light{};  // shadow by LightKind
+  std::uint64_t gather = 0;      // over the hemisphere of diffuse surfaces
+  std::uint64_t lobe = 0;        // over the lobe of glossy ones
+  std::uint64_t mirror = 0;      // on from mirrors, whatever ray met them
+  std::uint64_t refraction = 0;  // on from glass
+  std::uint64_t planning = 0;    // of the look ahead, all kinds together
+  std::uint64_t layers = 0;      // for layers alone
+
+  void add_shadow(scenes::LightKind kind, std::uint64_t count = 1) {
+    shadow += count;
+    to_light[static_cast<std::size_t>(kind)] += count;
+  }
+  RayCounts& operator+=(const RayCounts& other) {
+    camera += other.camera;
+    shadow += other.shadow;
+    gather += other.gather;
+    lobe += other.lobe;
+    mirror += other.mirror;
+    refraction += other.refraction;
+    planning += other.planning;
+    layers += other.layers;
+    for (std::size_t k = 0; k < to_light.size(); ++k) to_light[k] += other.to_light[k];
+    return *this;
+  }
+  [[nodiscard]] std::uint64_t total() const {
+    return camera + shadow + gather + lobe + mirror + refraction + planning + layers;
+  }
+};
+
+struct RenderReport {
+  RayCounts rays;
+  double seconds = 0.0;         // wall
+  double gather_seconds = 0.0;  // of them for the gather field
+  double relative_noise = 0.0;  // the stated error over the mean luminance, root mean square
+  double camera_samples = 0.0;  // per pixel, mean
+  int most_camera_samples = 0;
+  int gather_rays = 0;           // per pixel
+  int least_camera_samples = 0;  // of a finished pixel
+  double finished_share = 1.0;   // of the pixels; less than 1 if it was stopped, the others then
+                                 // show a single sample
+  bool stopped = false;
+};
+
+// How light reached the camera, by the last surface before it.
+enum class Part {
+  Direct,    // seen itself, or diffusely reflected straight from a source
+  Indirect,  // diffusely reflected after at least one other surface
+  Specular   // by a highlight, a glossy reflection, a mirror or glass
+};
+inline constexpr std::size_t part_count = 3;
+
+// What a picture's error is due to.
+enum class ErrorPart {
+  Gather,    // noise of gather rays that read the solution, and what sharing them blurs
+  Residual,  // the same of paths that find what the solution lacks
+  Lobe,      // and of rays over Phong lobes
+  Camera     // camera samples: edges, lamps, the lens, mirrors
+};
+inline constexpr std::size_t error_parts = 4;
+
+// Per pixel of a window.
+struct StatedError {
+  std::vector<float> luminance;  // without sources that the camera sees itself, cd/m^2
+  std::vector<std::array<float, error_parts>> squared;  // of it, by part, (cd/m^2)^2
+  // 1: shows a surface that reflects, and no edge of a source
+  std::vector<std::uint8_t> counts;
+};
+
+// What an error at a pixel counts, over a picture (or a target) of that mean luminance: pixels
+// brighter than four times the mean count in proportion to their own. A glint or the wall beside a
+// lamp may be a thousand times as bright as the rest; its last per mille is nobody's concern.
+[[nodiscard]] inline double error_weight(double luminance, double mean) {
+  constexpr double bright = 4.0;
+  return mean > 0.0 && luminance > bright * mean ? bright * mean / luminance : 1.0;
+}
+
+// Over some pixels that count.
+struct ErrorSums {
+  std::size_t pixels = 0;
+  double luminance = 0.0;                     // their mean
+  std::array<double, error_parts> squared{};  // mean squared errors, weighted, over luminance^2
+  [[nodiscard]] double squared_error() const {
+    double all = 0.0;
+    for (const double part : squared) all += part;
+    return all;
+  }
+};
+// pixels: numbers in the window.
+[[nodiscard]] ErrorSums add_up(const StatedError& stated, std::span<const std::size_t> pixels);
+[[nodiscard]] ErrorSums add_up(const StatedError& stated);  // all
+
+// image: R, G, B radiance in cd/m^2; with per_light also light_<group>.R/G/B, whose sum is R, G, B;
+// with aovs:
+//   direct, indirect, specular .R/G/B: what the camera sees of sources themselves and of light
+//   straight from them on diffuse surfaces; light that other surfaces reflected first; highlights,
+//   glossy and mirror reflections, glass. Their sum is R, G, B.
+//   variance: of the mean luminance of the pixel, (cd/m^2)^2
+//   the unfiltered layers of first_hit.h and the coverages of cryptomatte.h
+struct Frame {
+  base::Image image;
+  Window window;      // which part of the picture the image is
+  StatedError error;  // empty for traced paths
+  RenderReport report;
+};
+}  // namespace earthshine::raytrace

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The layers of a frame, by the names that compositing programs know.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "base/image.h"
+#include "raytrace/frame/frame.h"
+#include "raytrace/frame/options.h"
+
+namespace earthshine::raytrace {
+
+// Where the layers of a frame stand among its channels.
+struct Layout {
+  std::vector<std::size_t> radiance;  // first of the three channels of each image layer: with more
+                                      // than one group light_<group>, else none
+  std::vector<std::size_t> parts;     // per Part: its first channel, or none_wanted
+  std::size_t variance = none_wanted;
+
+  static constexpr std::size_t none_wanted = static_cast<std::size_t>(-1);
+  [[nodiscard]] bool splits_parts() const;
+};
+
+// R, G, B come first. The layers of first_hit.h and cryptomatte.h are found by name. Throws
+// base::Error (Input) for a layer that does not exist.
+[[nodiscard]] Layout add_layers(base::Image& image, const std::vector<std::string>& light_groups,
+                                const std::vector<std::string>& aovs);
+
+}  // namespace earthshine::raytrace

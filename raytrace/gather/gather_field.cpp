@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/gather/gather_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "raytrace/gather/gather_tiles.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+// Of its mean ray's length: how far off a point may stand for another.
+constexpr float most_found_share = 0.1F;
+
+// How much further apart neighbours are along the surface than across the view.
+float stretch(const GatherPoint& point) {
+  const float distance = glm::length(point.position);
+  const float cosine =
+      std::abs(glm::dot(point.position, point.normal)) / std::max(distance, 1e-20F);
+  return 1.0F / std::max(cosine, 0.05F);
+}
+
+}  // namespace
+
+GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
+                         const GatherSurface& surface, const CameraModel& camera,
+                         const Window& window, const Setting& setting)
+    : world_(world),
+      incoming_(incoming),
+      window_(window),
+      picture_columns_(camera.columns),
+      picture_pixels_(static_cast<std::uint64_t>(camera.columns) *
+                      static_cast<std::uint64_t>(camera.rows)),
+      setting_(setting),
+      grid_(window.pixel_count()),
+      image_layers_(setting.image_layers),
+      layers_(setting.image_layers + (setting.keeps_sky_apart ? 1 : 0)),
+      points_(window.pixel_count()),
+      origin_(window.pixel_count(), Vec3(0.0)) {
+  find_points(surface, camera);
+  find_strays(surface, camera);
+  inverse_length_.assign(points_.size(), 0.0);
+  const std::size_t count = points_.size();
+  estimate_[number(Gathered::Solution)] = Estimate(count, layers_, image_layers_);
+  if (setting.gathers_residual) {
+    estimate_[number(Gathered::Residual)] = Estimate(count, image_layers_, image_layers_);
+  }
+  any_lobe_ = std::any_of(points_.begin(), points_.end(),
+                          [](const GatherPoint& point) { return point.lobe > 0.0F; });
+  if (any_lobe_) estimate_[number(Gathered::Lobe)] = Estimate(count, image_layers_, image_layers_);
+}
+
+std::uint32_t GatherField::fewest_samples(Gathered kind) {
+  return kind == Gathered::Solution ? 16 : 2;
+}
+
+RayCounts GatherField::rays() const {
+  RayCounts all;
+  all.camera = camera_rays_;
+  for (const RayCounts& kind : rays_of_) all += kind;
+  return all;
+}
+
+bool GatherField::gathers(Gathered kind) const { return !estimate_[number(kind)].samples.empty(); }
+
+void GatherField::cast(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
+                       const std::function<bool()>& stop) {
+  if (!gathers(kind)) return;
+  if (kind == Gathered::Solution) {
+    cast_solution(more, round, stop);
+  } else {
+    cast_paths(kind, more, round, stop);
+  }
+}
+
+void GatherField::share() {
+  if (!of_surface_) of_surface_.emplace(window_, points_, setting_.shares);
+  diffuse_.assign(points_.size() * layers_, glm::vec3(0.0F));
+  for (const Gathered kind : {Gathered::Solution, Gathered::Residual}) {
+    if (!gathers(kind)) continue;
+    Shared& shared = shared_[number(kind)];
+    shared = raytrace::share(*of_surface_, estimate_[number(kind)]);
+    add_strays(strays_, estimate_[number(kind)], shared);
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+      for (std::size_t layer = 0; layer < shared.layers; ++layer) {
+        diffuse_[p * layers_ + layer] += shared.radiance[p * shared.layers + layer];
+      }
+    }
+  }
+  if (!any_lobe_) return;
+  if (!of_material_) of_material_ = of_surface_->of_like_material(points_);
+  shared_[number(Gathered::Lobe)] =
+      raytrace::share(*of_material_, estimate_[number(Gathered::Lobe)]);
+  add_strays(strays_, estimate_[number(Gathered::Lobe)], shared_[number(Gathered::Lobe)]);
+}
+
+std::span<const glm::vec3> GatherField::lobe(std::size_t point) const {
+  if (points_[point].lobe <= 0.0F) return {};
+  const Shared& shared = shared_[number(Gathered::Lobe)];
+  return {&shared.radiance[point * image_layers_], image_layers_};
+}
+
+double GatherField::reflected(Gathered kind, std::size_t point) const {
+  return double(kind == Gathered::Lobe ? points_[point].lobe : points_[point].reflectance);
+}
+
+double GatherField::error_of(Gathered kind, std::size_t point) const {
+  if (!gathers(kind)) return 0.0;
+  return std::sqrt(double(shared_[number(kind)].squared_error[point]));
+}
+
+std::size_t GatherField::find(int x, int y, const glm::vec3& position,
+                              const glm::vec3& normal) const {
+  // Further off, irradiance may be another: a gap in a wall, the foot of a box.
+  const auto if_near = [&](std::size_t index) {
+    const GatherPoint& point = points_[index];
+    const float most =
+        std::min(3.0F * point.spacing_m * stretch(point), most_found_share * point.reach_m);
+    return glm::length(position - point.position) <= most ? index : no_point;
+  };
+  if (!window_.contains(x, y)) return no_point;
+  const std::size_t own = window_.index(x, y);
+  if (stands_for(points_[own], position, normal)) return if_near(own);
+  for (std::size_t k = first_stray_[own]; k < first_stray_[own + 1]; ++k) {
+    if (stands_for(points_[grid_ + k], position, normal)) return if_near(grid_ + k);
+  }
+  return no_point;
+}
+
+}  // namespace earthshine::raytrace

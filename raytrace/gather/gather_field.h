@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// The final gather on a grid: at the surface point behind every pixel's centre, what comes in,
+// shared by all of the pixel's camera samples and by neighbouring points (share.h). Three things
+// are estimated at each point, each with as many samples as it needs. Where the pixel shows other
+// surfaces beside the one behind its centre, each of these has a point of its own, a stray
+// (strays.h), which lies on no grid.
+//
+//
+//   solution  mean radiance that cosine-distributed rays read from the radiosity solution, the sky
+//             and what mirrors and glass pass on: T L~ over k_d, L~ what the solution says
+//   residual  the same of what the solution lacks, L - L~, by paths that go on from where such rays
+//             end: T (L - L~) over k_d. Whatever the solution is like, the sum has the right mean.
+//   lobe      of a Phong lobe, k_s apart: radiance along rays over it, solution and residual
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "raytrace/camera/camera.h"
+#include "raytrace/incoming/incoming_light.h"
+#include "raytrace/paths/path_walker.h"
+#include "raytrace/share/share.h"
+#include "raytrace/share/strays.h"
+
+namespace earthshine::raytrace {
+
+inline constexpr std::size_t no_point = static_cast<std::size_t>(-1);
+// From this exponent on the surroundings are shaded ray by ray, not gathered.
+inline constexpr double sharp_lobe = 100.0;
+
+// Where light is gathered: on a diffuse or glossy surface, on a side that shines.
+struct GatherRequest {
+  Vec3 position, normal;
+  double reflectance = 1.0;  // luminance of k_d
+  double lobe = 0.0;         // of k_s; 0 where the exponent is sharp_lobe or more
+  std::uint32_t material = 0;
+};
+using GatherSurface = std::function<bool(const scenes::Hit&, GatherRequest&)>;
+
+// Whether the point lies on the surface that is met at a place nearby, and what is seen from it by
+// its lobe, if it has one, is alike.
+[[nodiscard]] bool stands_for(const GatherPoint& point, const glm::vec3& position,
+                              const glm::vec3& normal);
+
+enum class Gathered { Solution, Residual, Lobe };
+inline constexpr std::size_t gathered_kinds = 3;
+
+class GatherField {
+ public:
+  struct Setting {
+    std::size_t image_layers = 1;
+    bool keeps_sky_apart = false;  // one more layer: what came straight from the sky
+    bool gathers_residual = true;
+    bool shares = true;  // between neighbours
+    std::uint64_t seed = 1;
+  };
+  // Finds the points: one for each pixel of the window, row by row, then the strays. `world` and
+  // `incoming` must outlive it.
+  GatherField(const PathWorld& world, const IncomingLight& incoming, const GatherSurface& surface,
+              const CameraModel& camera, const Window& window, const Setting& setting);
+
+  // Casts samples at every point: more[point], rounded down to fewest_samples(kind) times a power
+  // of two; the `round`-th time.
+  void cast(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
+            const std::function<bool()>& stop);
+  // The least that can be asked for at once: two halves of the fewest.
+  [[nodiscard]] static std::uint32_t fewest_samples(Gathered kind);
+  [[nodiscard]] bool gathers(Gathered kind) const;
+  // Shares what was cast; find() and the values follow it.
+  void share();
+
+  // A point whose values may stand for the surface point that pixel (x, y) meets: one of the
+  // pixel's own, on the same surface and near for its surroundings; no_point if there is none.
+  [[nodiscard]] std::size_t find(int x, int y, const glm::vec3& position,
+                                 const glm::vec3& normal) const;
+  // Radiance to be reflected by k_d, cd/m^2: image layers, then what came straight from the sky.
+  [[nodiscard]] std::span<const glm::vec3> diffuse(std::size_t point) const {
+    return {&diffuse_[point * layers_], layers_};
+  }
+  // Radiance to be reflected by k_s: image layers. Empty where no lobe is gathered for.
+  [[nodiscard]] std::span<const glm::vec3> lobe(std::size_t point) const;
+
+  [[nodiscard]] const Window& window() const { return window_; }
+  // Where a point lies in the window, and about how much of the pixel it stands for.
+  [[nodiscard]] std::size_t pixel_of(std::size_t point) const {
+    return point < grid_ ? point : strays_[point - grid_].pixel;
+  }
+  [[nodiscard]] double cover_of(std::size_t point) const {
+    return point < grid_ ? 1.0 : double(strays_[point - grid_].cover);
+  }
+  [[nodiscard]] std::size_t image_layers() const { return image_layers_; }
+  [[nodiscard]] const std::vector<GatherPoint>& points() const { return points_; }
+  [[nodiscard]] const Shared& shared(Gathered kind) const { return shared_[number(kind)]; }
+  [[nodiscard]] float samples(Gathered kind, std::size_t point) const {
+    return estimate_[number(kind)].samples[point];
+  }
+  // Standard error of what is estimated there, before it is reflected.
+  [[nodiscard]] double error_of(Gathered kind, std::size_t point) const;
+  // The factor from what is estimated to what the camera sees: k_d or k_s.
+  [[nodiscard]] double reflected(Gathered kind, std::size_t point) const;
+  [[nodiscard]] RayCounts rays() const;  // all
+  [[nodiscard]] const RayCounts& rays_of(Gathered kind) const { return rays_of_[number(kind)]; }
+
+ private:
+  static std::size_t number(Gathered kind) { return static_cast<std::size_t>(kind); }
+  void find_points(const GatherSurface& surface, const CameraModel& camera);
+  void find_strays(const GatherSurface& surface, const CameraModel& camera);
+  // Of what camera rays met: true where light is gathered there.
+  bool place(const GatherSurface& surface, const CameraModel& camera, const scenes::Hit& hit,
+             GatherPoint& point, Vec3& origin) const;
+  // All points of a tile, pixel by pixel.
+  [[nodiscard]] std::vector<std::size_t> points_of_tile(std::size_t tile) const;
+  // Tells each point's random numbers apart, whatever the crop.
+  [[nodiscard]] std::uint64_t random_number_of(std::size_t point) const;
+  void cast_solution(const std::vector<std::uint32_t>& more, std::uint32_t round,
+                     const std::function<bool()>& stop);
+  void cast_paths(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
+                  const std::function<bool()>& stop);
+  void lobe_sample(std::size_t p, const std::array<float, 2>& u, PathWalker& walker, base::Rng& rng,
+                   std::vector<Rgb>& sum, RayCounts& counts) const;
+
+  const PathWorld& world_;
+  const IncomingLight& incoming_;
+  Window window_;
+  int picture_columns_;
+  std::uint64_t picture_pixels_;
+  Setting setting_;
+  std::size_t grid_;  // points that are pixels' centres
+  std::size_t image_layers_, layers_;
+  std::vector<GatherPoint> points_;
+  std::vector<Stray> strays_;               // those after the grid
+  std::vector<std::uint32_t> first_stray_;  // of a pixel, and behind its last
+  std::vector<Vec3> origin_;                // lifted off the surface
+  std::vector<double> inverse_length_;      // sum over rays of the solution
+  std::array<Estimate, gathered_kinds> estimate_;
+  std::array<Shared, gathered_kinds> shared_;
+  std::vector<glm::vec3> diffuse_;  // point * layers
+  std::array<RayCounts, gathered_kinds> rays_of_;
+  std::uint64_t camera_rays_ = 0;
+  bool any_lobe_ = false;
+  std::optional<Neighbours> of_surface_, of_material_;  // who shares diffuse light, and lobes
+};
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// GatherField's paths that find what the solution lacks, and its rays over lobes.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+
+#include "base/parallel.h"
+#include "raytrace/gather/gather_field.h"
+#include "raytrace/gather/gather_tiles.h"
+
+namespace earthshine::raytrace {
+
+using base::pi;
+
+void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& more,
+                             std::uint32_t round, const std::function<bool()>& stop) {
+  Estimate& estimate = estimate_[number(kind)];
+  const bool lobe = kind == Gathered::Lobe;
+  std::mutex mutex;
+  base::parallel_chunks(tile_count(window_), 1, [&](std::size_t t, std::size_t) {
+    if (stop && stop()) return;
+    PathWalker walker(world_);
+    RayCounts counts;
+    std::vector<Rgb> sum(image_layers_);
+    for (const std::size_t p : points_of_tile(t)) {
+      const GatherPoint& point = points_[p];
+      const std::uint32_t each = more[p] / 2;
+      if (point.reach_m <= 0.0F || each == 0) continue;
+      if ((lobe ? point.lobe : point.reflectance) <= 0.0F) continue;
+      for (std::uint32_t half = 0; half < 2; ++half) {
+        std::fill(sum.begin(), sum.end(), Rgb(0.0));
+        const base::Key key =
+            base::Key(setting_.seed, lobe ? base::Stream::Lobe : base::Stream::Residual,
+                      random_number_of(p))
+                .with(2 * std::uint64_t{round} + half);
+        const base::SobolOwen4 directions(key);
+        for (std::uint32_t k = 0; k < each; ++k) {
+          base::Rng rng(key.with(k));
+          const auto u = directions.point2(k);
+          if (lobe) {
+            lobe_sample(p, u, walker, rng, sum, counts);
+            continue;
+          }
+          const auto found = walker.residual_at(incoming_, origin_[p], Vec3(point.normal),
+                                                double(u[0]), double(u[1]), rng);
+          for (std::size_t layer = 0; layer < image_layers_; ++layer) sum[layer] += found[layer];
+        }
+        for (std::size_t layer = 0; layer < image_layers_; ++layer) {
+          estimate.sum[p * image_layers_ + layer] += glm::vec3(sum[layer]);
+        }
+        estimate.luminance[p][half] += static_cast<float>(luminance_of(sum));
+      }
+      estimate.samples[p] += static_cast<float>(2 * each);
+    }
+    counts += walker.rays();
+    const std::lock_guard lock(mutex);
+    rays_of_[number(kind)] += counts;
+  });
+}
+
+// L = integral of L_in (k_s / pi) cos^n alpha cos theta by a ray of density
+// (n + 1) / (2 pi) cos^n alpha about the mirrored view.
+void GatherField::lobe_sample(std::size_t p, const std::array<float, 2>& u, PathWalker& walker,
+                              base::Rng& rng, std::vector<Rgb>& sum, RayCounts& counts) const {
+  const GatherPoint& point = points_[p];
+  const double n = world_.scene.materials[point.material].shininess;
+  const Vec3 normal(point.normal);
+  const double cos_alpha = std::pow(1.0 - double(u[0]), 1.0 / (n + 1.0));
+  const double sine = std::sqrt(std::max(0.0, 1.0 - cos_alpha * cos_alpha));
+  const double phi = 2.0 * pi * double(u[1]);
+  const base::Frame3 frame =
+      base::frame_around(glm::reflect(glm::normalize(Vec3(point.position)), normal));
+  const Vec3 direction = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cos_alpha});
+  const double cosine = glm::dot(direction, normal);
+  if (cosine <= 0.0) return;
+  const Rgb weight(2.0 * cosine / (n + 1.0));
+  ++counts.lobe;
+  const scenes::Hit hit = world_.query.closest(origin_[p], direction);
+  incoming_.add(hit, direction, {}, weight, sum, counts);
+  if (!setting_.gathers_residual || hit.missed()) return;
+  const auto lacking = walker.residual(incoming_, {origin_[p], direction}, hit, rng);
+  for (std::size_t layer = 0; layer < image_layers_; ++layer) sum[layer] += weight * lacking[layer];
+}
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// GatherField's points: what lies behind the pixels' centres, and beside it.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "raytrace/gather/gather_field.h"
+#include "raytrace/gather/gather_tiles.h"
+#include "raytrace/share/same_surface.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+using scenes::HitPacket;
+using scenes::RayPacket;
+
+constexpr std::size_t width = RayPacket::width;
+// Where eight rays cross a pixel: in columns one after another, in these rows (van der Corput).
+constexpr std::array<double, width> stray_rows = {0.0625, 0.5625, 0.3125, 0.8125,
+                                                  0.1875, 0.6875, 0.4375, 0.9375};
+constexpr float least_cover = 0.2F;  // of a pixel
+constexpr int region_px = 32;        // over which strays are held to be alike
+// What a lobe reflects turns twice as far as the surface does.
+constexpr float lobe_cosine = 0.985F;  // 10 degrees
+constexpr float rounding = 0.02F;      // of positions, over the points' spacing
+
+scenes::Hit hit_of(const HitPacket& hits, std::size_t k) {
+  return {hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0};
+}
+
+// The pixels of the window that are `ring` away, across, down or both.
+template <class Visit>
+void each_neighbour(const Window& window, int x, int y, int ring, const Visit& visit) {
+  for (int qy = y - ring; qy <= y + ring; ++qy) {
+    for (int qx = x - ring; qx <= x + ring; ++qx) {
+      if (std::max(std::abs(qx - x), std::abs(qy - y)) != ring || !window.contains(qx, qy))
+        continue;
+      visit(window.index(qx, qy));
+    }
+  }
+}
+
+}  // namespace
+
+bool stands_for(const GatherPoint& point, const glm::vec3& position, const glm::vec3& normal) {
+  return point.reach_m > 0.0F &&
+         same_surface(point.position, point.normal, position, normal, rounding * point.spacing_m) &&
+         (point.lobe <= 0.0F || glm::dot(point.normal, normal) >= lobe_cosine);
+}
+
+bool GatherField::place(const GatherSurface& surface, const CameraModel& camera,
+                        const scenes::Hit& hit, GatherPoint& point, Vec3& origin) const {
+  GatherRequest wanted;
+  if (hit.missed() || !surface(hit, wanted)) return false;
+  const double pixel_m = 2.0 * camera.half_height / camera.rows;  // at unit distance
+  point.position = glm::vec3(wanted.position - camera.position);
+  point.normal = glm::vec3(wanted.normal);
+  point.spacing_m = static_cast<float>(hit.t * pixel_m);
+  point.reach_m = std::numeric_limits<float>::max();
+  point.reflectance = static_cast<float>(wanted.reflectance);
+  point.lobe = static_cast<float>(wanted.lobe);
+  point.material = wanted.material;
+  point.triangle = hit.triangle;
+  origin = wanted.position + wanted.normal * world_.query.surface_offset_m();
+  return true;
+}
+
+void GatherField::find_points(const GatherSurface& surface, const CameraModel& camera) {
+  base::parallel_chunks(tile_count(window_), 4, [&](std::size_t begin, std::size_t end) {
+    RayPacket packet;
+    HitPacket hits;
+    for (std::size_t t = begin; t < end; ++t) {
+      const Window tile = tile_of(window_, t);
+      for (int y = tile.y; y < tile.y + tile.rows; ++y) {
+        const auto count = static_cast<std::size_t>(tile.columns);
+        for (std::size_t k = 0; k < count; ++k) {
+          const Ray ray = camera.ray(tile.x + static_cast<double>(k) + 0.5, y + 0.5, 0.0, 0.0);
+          world_.query.set(packet, k, ray.origin, ray.direction);
+        }
+        world_.query.closest(packet, count, hits);
+        for (std::size_t k = 0; k < count; ++k) {
+          const std::size_t index = window_.index(tile.x + static_cast<int>(k), y);
+          place(surface, camera, hit_of(hits, k), points_[index], origin_[index]);
+        }
+      }
+    }
+  });
+  camera_rays_ = grid_;
+}
+
+// Looks at pixels about which not all centres lie on one surface once more, by eight rays.
+void GatherField::find_strays(const GatherSurface& surface, const CameraModel& camera) {
+  struct Found {
+    Stray stray;
+    GatherPoint point;
+    Vec3 origin;
+  };
+  std::vector<std::vector<Found>> found(tile_count(window_));
+  std::atomic<std::uint64_t> rays{0};
+  const auto alike = [](const GatherPoint& a, const GatherPoint& b) {
+    return a.material == b.material && stands_for(a, b.position, b.normal);
+  };
+  const auto look = [&](int x, int y, std::vector<Found>& of_tile) {
+    const std::size_t own = window_.index(x, y), first = of_tile.size();
+    bool even = true;
+    each_neighbour(window_, x, y, 1, [&](std::size_t q) {
+      const bool gathers = points_[q].reach_m > 0.0F;
+      even = even && gathers == (points_[own].reach_m > 0.0F) &&
+             (!gathers || alike(points_[own], points_[q]));
+    });
+    if (even) return;
+    RayPacket packet;
+    HitPacket hits;
+    for (std::size_t k = 0; k < width; ++k) {
+      const Ray ray =
+          camera.ray(x + (static_cast<double>(k) + 0.5) / width, y + stray_rows[k], 0.0, 0.0);
+      world_.query.set(packet, k, ray.origin, ray.direction);
+    }
+    world_.query.closest(packet, width, hits);
+    rays += width;
+    for (std::size_t k = 0; k < width; ++k) {
+      Found more;
+      if (!place(surface, camera, hit_of(hits, k), more.point, more.origin)) continue;
+      if (points_[own].reach_m > 0.0F && alike(points_[own], more.point)) continue;
+      auto same = std::find_if(of_tile.begin() + static_cast<std::ptrdiff_t>(first), of_tile.end(),
+                               [&](const Found& one) { return alike(one.point, more.point); });
+      if (same == of_tile.end()) {
+        more.stray.pixel = static_cast<std::uint32_t>(own);
+        same = of_tile.insert(same, more);
+      }
+      same->stray.cover += 1.0F / width;
+    }
+    // Slivers are not worth a point of their own.
+    const auto from = of_tile.begin() + static_cast<std::ptrdiff_t>(first);
+    of_tile.erase(std::remove_if(from, of_tile.end(),
+                                 [](const Found& one) { return one.stray.cover < least_cover; }),
+                  of_tile.end());
+    for (std::size_t k = first; k < of_tile.size(); ++k) {
+      Stray& stray = of_tile[k].stray;
+      stray.base = no_base;
+      const int rings = setting_.shares ? 2 : 0;
+      for (int ring = 1; ring <= rings && stray.base == no_base; ++ring) {
+        each_neighbour(window_, x, y, ring, [&](std::size_t q) {
+          if (stray.base == no_base && points_[q].reach_m > 0.0F &&
+              alike(of_tile[k].point, points_[q])) {
+            stray.base = static_cast<std::uint32_t>(q);
+          }
+        });
+      }
+      stray.region = static_cast<std::uint32_t>(y / region_px * (picture_columns_ / region_px + 1) +
+                                                x / region_px);
+    }
+  };
+  base::parallel_chunks(found.size(), 1, [&](std::size_t t, std::size_t) {
+    const Window tile = tile_of(window_, t);
+    for (int y = tile.y; y < tile.y + tile.rows; ++y) {
+      for (int x = tile.x; x < tile.x + tile.columns; ++x) look(x, y, found[t]);
+    }
+  });
+  camera_rays_ += rays;
+  std::vector<std::uint32_t> of_pixel(grid_ + 1, 0U);
+  for (const auto& tile : found) {
+    for (const Found& one : tile) ++of_pixel[one.stray.pixel + 1U];
+  }
+  std::partial_sum(of_pixel.begin(), of_pixel.end(), of_pixel.begin());
+  first_stray_ = of_pixel;
+  strays_.resize(of_pixel.back());
+  points_.resize(grid_ + strays_.size());
+  origin_.resize(points_.size(), Vec3(0.0));
+  for (const auto& tile : found) {
+    for (const Found& one : tile) {
+      const std::size_t at = of_pixel[one.stray.pixel]++;
+      strays_[at] = one.stray;
+      points_[grid_ + at] = one.point;
+      origin_[grid_ + at] = one.origin;
+    }
+  }
+}
+
+std::vector<std::size_t> GatherField::points_of_tile(std::size_t t) const {
+  std::vector<std::size_t> points;
+  const Window tile = tile_of(window_, t);
+  for (int y = tile.y; y < tile.y + tile.rows; ++y) {
+    for (int x = tile.x; x < tile.x + tile.columns; ++x) {
+      const std::size_t pixel = window_.index(x, y);
+      points.push_back(pixel);
+      for (std::size_t k = first_stray_[pixel]; k < first_stray_[pixel + 1]; ++k) {
+        points.push_back(grid_ + k);
+      }
+    }
+  }
+  return points;
+}
+
+std::uint64_t GatherField::random_number_of(std::size_t point) const {
+  const std::size_t pixel = pixel_of(point), columns = static_cast<std::size_t>(window_.columns);
+  const std::uint64_t x = static_cast<std::uint64_t>(window_.x) + pixel % columns;
+  const std::uint64_t y = static_cast<std::uint64_t>(window_.y) + pixel / columns;
+  const std::uint64_t number = y * static_cast<std::uint64_t>(picture_columns_) + x;
+  return point < grid_ ? number
+                       : number + picture_pixels_ * (1 + point - grid_ - first_stray_[pixel]);
+}
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/gather/gather_rays.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "base/turn.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+constexpr std::size_t width = scenes::RayPacket::width;
+constexpr std::size_t most_cells = 64;
+
+}  // namespace
+
+GatherRays::GatherRays(std::uint32_t rays) : set_(rays) {
+  cells_ = std::min<std::size_t>(rays, most_cells);
+  const int log2 = std::countr_zero(static_cast<std::uint32_t>(cells_));
+  columns_ = static_cast<float>(1 << ((log2 + 1) / 2));
+  rows_ = static_cast<float>(1 << (log2 / 2));
+}
+
+std::size_t GatherRays::batch() const {
+  return std::clamp<std::size_t>(65536 / rays(), width, most_tile_points);
+}
+
+void GatherRays::draw(const TilePoints& points, std::size_t first, std::size_t count,
+                      std::uint64_t seed, Samples& samples) const {
+  samples.padded = (count + width - 1) / width * width;
+  samples.u.resize(rays() * samples.padded);
+  samples.v.resize(rays() * samples.padded);
+  for (std::size_t k = 0; k < count; ++k) {
+    // A point that is gathered at again, with more rays, gets other ones.
+    fill(k, base::Key(seed, base::Stream::FinalGather, points.pixel[first + k]).with(rays()),
+         samples);
+  }
+}
+
+// Every power of two of Owen-Sobol points has equally many in each cell.
+void GatherRays::fill(std::size_t point, base::Key key, Samples& samples) const {
+  const base::SobolSet4::Scramble scramble(key);
+  const std::size_t per_cell = rays() / cells_;
+  std::array<std::size_t, most_cells> used{};
+  base::SobolSet4::Points p;
+  for (std::uint32_t first = 0; first < rays(); first += base::SobolSet4::width) {
+    set_.points(first, scramble, p);
+    for (std::size_t k = 0; k < base::SobolSet4::width; ++k) {
+      const auto column = static_cast<std::size_t>(p.x[0][k] * columns_);
+      const auto row = static_cast<std::size_t>(p.x[1][k] * rows_);
+      const std::size_t cell = row * static_cast<std::size_t>(columns_) + column;
+      const std::size_t at = (cell * per_cell + used[cell]++) * samples.padded + point;
+      samples.u[at] = p.x[0][k];
+      samples.v[at] = p.x[1][k];
+    }
+  }
+}
+
+void GatherRays::make(const TilePoints& points, std::size_t first, std::size_t offset,
+                      std::size_t j, const Samples& samples, scenes::RayPacket& rays,
+                      std::array<float, width>& cosine) {
+  const float* u = &samples.u[j * samples.padded + offset];
+  const float* v = &samples.v[j * samples.padded + offset];
+  for (std::size_t k = 0; k < width; ++k) {
+    // Lanes past the last point repeat what stands there; nobody reads their hits.
+    const std::size_t p = first + offset + k;
+    const float radius = std::sqrt(u[k]), z = std::sqrt(1.0F - u[k]);
+    const base::Turned way = base::turn(v[k]);
+    const float x = radius * way.cosine, y = radius * way.sine;
+    cosine[k] = z;
+    rays.origin_x[k] = points.origin_x[p];
+    rays.origin_y[k] = points.origin_y[p];
+    rays.origin_z[k] = points.origin_z[p];
+    rays.direction_x[k] =
+        x * points.tangent_x[p] + y * points.bitangent_x[p] + z * points.normal_x[p];
+    rays.direction_y[k] =
+        x * points.tangent_y[p] + y * points.bitangent_y[p] + z * points.normal_y[p];
+    rays.direction_z[k] =
+        x * points.tangent_z[p] + y * points.bitangent_z[p] + z * points.normal_z[p];
+    rays.t_max[k] = std::numeric_limits<float>::infinity();
+  }
+}
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// GatherField's rays that read the radiosity solution.
+#include <array>
+#include <bit>
+#include <mutex>
+
+#include "base/parallel.h"
+#include "raytrace/gather/gather_field.h"
+#include "raytrace/gather/gather_tiles.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+using scenes::HitPacket;
+using scenes::RayPacket;
+
+constexpr std::size_t width = RayPacket::width;
+constexpr std::uint32_t most_rays = 1U << 14U;  // per half
+constexpr std::size_t most_factors = 32;        // more samples may be any power of two as many
+
+// Rays that read the solution, from some points of a tile: their sums per point.
+class SolutionRays {
+ public:
+  SolutionRays(const scenes::RayQuery& query, const IncomingLight& incoming, const GatherRays& rays,
+               std::size_t layers, const TilePoints& points)
+      : query_(query), incoming_(incoming), rays_(rays), layers_(layers), points_(points) {}
+
+  void run(std::uint64_t seed) {
+    sums.assign(points_.count * layers_, Rgb(0.0));
+    const std::size_t aimed =
+        incoming_.bright().empty() ? 0 : std::max<std::size_t>(1, rays_.rays() / 16);
+    GatherRays::Samples samples;
+    for (std::size_t first = 0; first < points_.count; first += rays_.batch()) {
+      const std::size_t count = std::min(rays_.batch(), points_.count - first);
+      rays_.draw(points_, first, count, seed, samples);
+      for (std::size_t j = 0; j < rays_.rays(); ++j) {
+        for (std::size_t k = 0; k < count; k += width) {
+          cast(first, k, std::min(width, count - k), j, samples, static_cast<double>(aimed));
+        }
+      }
+    }
+    for (std::size_t k = 0; k < points_.count; ++k) aim(k, aimed, seed);
+    counts.gather += points_.count * (rays_.rays() + aimed);
+  }
+
+  std::vector<Rgb> sums;  // point * layers: mean radiance times the rays
+  std::array<double, most_tile_points> inverse_length{};
+  RayCounts counts;
+
+ private:
+  void cast(std::size_t first, std::size_t offset, std::size_t count, std::size_t j,
+            const GatherRays::Samples& samples, double aimed) {
+    RayPacket rays;
+    HitPacket hits;
+    std::array<float, width> cosine;
+    GatherRays::make(points_, first, offset, j, samples, rays, cosine);
+    query_.closest(rays, count, hits);
+    RayShare share;
+    share.found_rays = static_cast<double>(rays_.rays());
+    share.aimed_rays = aimed;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t p = first + offset + k;
+      const Vec3 direction(rays.direction_x[k], rays.direction_y[k], rays.direction_z[k]);
+      if (aimed > 0.0) share.cosine = double(cosine[k]);
+      const scenes::Hit hit{hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0};
+      if (!hit.missed()) inverse_length[p] += 1.0 / std::max(hit.t, 1e-6);
+      incoming_.add(hit, direction, share, Rgb(1.0), {&sums[p * layers_], layers_}, counts);
+    }
+  }
+
+  void aim(std::size_t k, std::size_t count, std::uint64_t seed) {
+    base::Rng rng(
+        base::Key(seed, base::Stream::FinalGather, points_.pixel[k]).with(rays_.rays()).with(1));
+    const auto found = static_cast<double>(rays_.rays());
+    for (std::size_t j = 0; j < count; ++j) {
+      const double choice = rng.next(), x = rng.next(), y = rng.next();
+      const auto aimed = incoming_.aim(points_.origin[k], points_.normal[k], choice, x, y, found,
+                                       static_cast<double>(count));
+      if (aimed.weight <= 0.0) continue;
+      incoming_.add(query_.closest(points_.origin[k], aimed.direction), aimed.direction,
+                    aimed.share, Rgb(aimed.weight * found), {&sums[k * layers_], layers_}, counts);
+    }
+  }
+
+  const scenes::RayQuery& query_;
+  const IncomingLight& incoming_;
+  const GatherRays& rays_;
+  std::size_t layers_;
+  const TilePoints& points_;
+};
+
+}  // namespace
+
+void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uint32_t round,
+                                const std::function<bool()>& stop) {
+  Estimate& estimate = estimate_[number(Gathered::Solution)];
+  std::mutex mutex;
+  const auto rays_for = [&](std::size_t p) {
+    const bool wanted = points_[p].reach_m > 0.0F && points_[p].reflectance > 0.0F;
+    if (!wanted || more[p] < fewest_samples(Gathered::Solution)) return 0U;
+    return std::min(most_rays, std::bit_floor(more[p] / 2));
+  };
+  std::uint32_t classes = 0;  // every power of two that is wanted somewhere
+  for (std::size_t p = 0; p < points_.size(); ++p) classes |= rays_for(p);
+  for (std::size_t factor = 0; factor < most_factors; ++factor) {
+    const std::uint32_t of_class = 1U << factor;
+    if ((classes & of_class) == 0) continue;
+    const GatherRays rays(of_class);
+    base::parallel_chunks(tile_count(window_), 1, [&](std::size_t t, std::size_t) {
+      if (stop && stop()) return;
+      TilePoints points;
+      const auto cast = [&] {
+        for (std::size_t half = 0; half < 2; ++half) {
+          SolutionRays found(world_.query, incoming_, rays, layers_, points);
+          found.run(base::mix64(setting_.seed ^ base::mix64(2 * std::uint64_t{round} + half)));
+          for (std::size_t k = 0; k < points.count; ++k) {
+            const std::size_t p = points.index[k];
+            inverse_length_[p] += found.inverse_length[k];
+            for (std::size_t layer = 0; layer < layers_; ++layer) {
+              estimate.sum[p * layers_ + layer] += glm::vec3(found.sums[k * layers_ + layer]);
+            }
+            estimate.luminance[p][half] +=
+                static_cast<float>(luminance_of({&found.sums[k * layers_], image_layers_}));
+            estimate.samples[p] += static_cast<float>(of_class);
+          }
+          const std::lock_guard lock(mutex);
+          rays_of_[number(Gathered::Solution)] += found.counts;
+        }
+        points.count = 0;
+      };
+      for (const std::size_t p : points_of_tile(t)) {
+        if (rays_for(p) != of_class) continue;
+        points.add(p, random_number_of(p), origin_[p], Vec3(points_[p].normal),
+                   world_.query.centre());
+        if (points.count == most_tile_points) cast();
+      }
+      if (points.count > 0) cast();
+    });
+  }
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    if (inverse_length_[p] > 0.0) {
+      points_[p].reach_m = static_cast<float>(double(estimate.samples[p]) / inverse_length_[p]);
+    }
+  }
+}
+
+}  // namespace earthshine::raytrace

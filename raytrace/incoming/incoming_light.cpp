@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/incoming/incoming_light.h"
+
+#include <cmath>
+
+#include "scenes/reflect/specular.h"
+#include "scenes/sky/sky.h"
+#include "scenes/sky/sky_parts.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+using base::pi;
+
+constexpr int most_specular_steps = 64;  // as many as rays of the form factors take
+
+}  // namespace
+
+void IncomingLight::see_sky(const Vec3& direction, const Rgb& weight, std::span<Rgb> out,
+                            bool straight) const {
+  if (!sees_earth_) return;
+  const Rgb light = weight * scenes::earth_radiance(scene_, direction);
+  out[earth_layer_ + (by_part_ ? scenes::earth_part(scene_, direction) : 0)] += light;
+  if (straight && out.size() > layers_) out.back() += light;
+}
+
+void IncomingLight::follow_specular(scenes::Hit hit, Vec3 direction, Rgb weight, std::span<Rgb> out,
+                                    RayCounts& rays) const {
+  for (int step = 0; step < most_specular_steps; ++step) {
+    const scenes::Material& material = scene_.materials[scene_.triangles[hit.triangle].material];
+    const bool glass = base::max_component(material.transmit) > 0.0;
+    if (!material.passes_light_on() || !(hit.front || material.two_sided || glass)) return;
+    weight *= material.mirror + material.transmit;
+    const scenes::SpecularStep on =
+        scenes::specular_step(scene_, hit, direction, query_.surface_offset_m());
+    direction = on.direction;
+    hit = query_.closest(on.origin, direction);
+    ++(glass ? rays.refraction : rays.mirror);
+    if (hit.missed()) return see_sky(direction, weight, out, false);
+    if (!table_.empty()) table_.add(hit, weight, out);
+  }
+}
+
+double IncomingLight::kept_part(const scenes::Hit& hit, const Vec3& direction,
+                                const RayShare& share) const {
+  if (share.cosine <= 0.0) return 1.0;
+  const radiosity::Patches& patches = bright_.patches();
+  const std::uint32_t patch = patches.find(hit.triangle, hit.u, hit.v, hit.front);
+  if (share.aimed_at != radiosity::no_patch) return patch == share.aimed_at ? 1.0 : 0.0;
+  if (patch == radiosity::no_patch) return 1.0;
+  const double density =
+      bright_.density_per_sr(patch, hit.t, glm::dot(direction, patches.normal(patch)));
+  const double found = share.found_rays * share.cosine / pi;
+  return found / (found + share.aimed_rays * density);
+}
+
+void IncomingLight::add(const scenes::Hit& hit, const Vec3& direction, const RayShare& share,
+                        const Rgb& weight, std::span<Rgb> out, RayCounts& rays) const {
+  const bool aimed = share.aimed_at != radiosity::no_patch;
+  if (hit.missed()) {
+    if (!aimed) see_sky(direction, weight, out, true);
+    return;
+  }
+  if (!table_.empty()) table_.add(hit, weight * kept_part(hit, direction, share), out);
+  // Rays aimed at a patch are for what the patch itself sends.
+  if (follows_specular_ && !aimed) follow_specular(hit, direction, weight, out, rays);
+}
+
+IncomingLight::Aimed IncomingLight::aim(const Vec3& origin, const Vec3& normal, double choice,
+                                        double x, double y, double found_rays,
+                                        double aimed_rays) const {
+  Aimed aimed;
+  const BrightPatches::Aim target = bright_.aim(choice, x, y);
+  const Vec3 way = target.point - origin;
+  const double distance = glm::length(way);
+  if (distance <= 0.0) return aimed;
+  aimed.direction = way / distance;
+  const double cosine = glm::dot(aimed.direction, normal);
+  const double at_patch = -glm::dot(aimed.direction, bright_.patches().normal(target.patch));
+  if (cosine <= 0.0 || at_patch <= 0.0) return aimed;
+  const double density = bright_.density_per_sr(target.patch, distance, at_patch);
+  aimed.weight = (cosine / pi) / (found_rays * cosine / pi + aimed_rays * density);
+  aimed.share = {cosine, target.patch, found_rays, aimed_rays};
+  return aimed;
+}
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a ray that left a diffuse or glossy surface brings back: the radiosity of the patch it
+// meets, the sky it escapes to, what mirrors and glass on its way pass on.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "raytrace/frame/frame.h"
+#include "raytrace/incoming/bright_patches.h"
+#include "raytrace/incoming/radiance_table.h"
+#include "scenes/effects/effects.h"
+#include "scenes/effects/light_groups.h"
+#include "scenes/ray_query.h"
+
+namespace earthshine::raytrace {
+
+// How a ray shares its work with rays aimed at bright patches (multiple importance sampling,
+// balance heuristic).
+struct RayShare {
+  double cosine = 0.0;  // at the surface it left; 0: it shares with no other ray
+  std::uint32_t aimed_at = radiosity::no_patch;  // the patch that an aimed ray must meet to count
+  double found_rays = 1.0, aimed_rays = 1.0;     // cast from that surface point each way
+};
+
+class IncomingLight {
+ public:
+  IncomingLight(const scenes::Scene& scene, const scenes::RayQuery& query,
+                const scenes::Effects& effects, const RadianceTable& table,
+                const BrightPatches& bright, std::size_t layers, std::size_t earth_layer,
+                bool follows_specular)
+      : scene_(scene),
+        query_(query),
+        table_(table),
+        bright_(bright),
+        layers_(layers),
+        earth_layer_(earth_layer),
+        sees_earth_(effects.earth_by_gather),
+        by_part_(layers > 1 && scene.sky_parts != nullptr),
+        follows_specular_(follows_specular) {}
+
+  // Adds weight * radiance along the ray to out[0 .. layers); if out is one longer, what came
+  // straight from the sky is added to its last entry as well.
+  // Rays that go on from mirrors and glass are counted in `rays`.
+  void add(const scenes::Hit& hit, const Vec3& direction, const RayShare& share, const Rgb& weight,
+           std::span<Rgb> out, RayCounts& rays) const;
+
+  [[nodiscard]] const BrightPatches& bright() const { return bright_; }
+
+  // The weight of the ray's end, of all rays that may find it, from `share`.
+  [[nodiscard]] double kept_part(const scenes::Hit& hit, const Vec3& direction,
+                                 const RayShare& share) const;
+
+  // The ray aimed at a bright patch from a surface point, and its weight for reflected radiance
+  // k_d / pi E: (cosine / pi) / (found_rays cosine / pi + aimed_rays density). Weight 0: it leads
+  // nowhere.
+  struct Aimed {
+    Vec3 direction{0.0};
+    double weight = 0.0;
+    RayShare share;
+  };
+  [[nodiscard]] Aimed aim(const Vec3& origin, const Vec3& normal, double choice, double x, double y,
+                          double found_rays, double aimed_rays) const;
+
+ private:
+  void see_sky(const Vec3& direction, const Rgb& weight, std::span<Rgb> out, bool straight) const;
+  void follow_specular(scenes::Hit hit, Vec3 direction, Rgb weight, std::span<Rgb> out,
+                       RayCounts& rays) const;
+  const scenes::Scene& scene_;
+  const scenes::RayQuery& query_;
+  const RadianceTable& table_;
+  const BrightPatches& bright_;
+  std::size_t layers_, earth_layer_;
+  bool sees_earth_, by_part_, follows_specular_;
+};
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/light/light_sampler.h"
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "radiosity/direct/explicit_emitters.h"
+#include "scenes/sky/sky.h"
+#include "scenes/sky/sky_parts.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+// R2 lattice (Roberts 2018): point k of any number, spread evenly over the unit square.
+constexpr double r2_u = 0.7548776662466927;
+constexpr double r2_v = 0.5698402909980532;
+
+// Up to this many lamps all get shadow rays: choosing among them costs more than it saves.
+constexpr std::size_t few_lamps = 32;
+// Lamps that may give more than this share of the light count as ones that matter.
+constexpr double smallest_share = 1.0 / 16.0;
+
+double fraction(double x) { return x - std::floor(x); }
+
+}  // namespace
+
+LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                           const scenes::Effects& effects, Indirect indirect,
+                           int distributed_lights, bool per_group,
+                           std::optional<scenes::Lamp> earth_area)
+    : scene_(scene),
+      distributed_(indirect == Indirect::Distributed),
+      earth_area_(distributed_ ? std::move(earth_area) : std::nullopt) {
+  const int copies = distributed_ ? distributed_lights : 1;
+  if (effects.sun) {
+    sun_illuminance_lx_ = distributed_
+                              ? scene.sun->illuminance_lx * scenes::visible_sun_share(scene)
+                              : scenes::sun_sample_illuminance(scene);
+    add({Kind::Sun, groups.sun}, 1);
+  }
+  for (std::size_t k = 0; effects.sun_parts && k < scene.sky_parts->suns.size(); ++k) {
+    add({Kind::SunPart, groups.sun_parts + k, k}, 1);
+    part_illuminance_lx_.push_back(scenes::sun_sample_illuminance(scene.sky_parts->suns[k]));
+  }
+  if (effects.earth && (distributed_ || !effects.earth_by_gather)) {
+    earth_half_angle_rad_ = base::radians(scene.earth->half_angle_deg);
+    earth_solid_angle_sr_ = scenes::cone_solid_angle_sr(earth_half_angle_rad_);
+    add({earth_area_ ? Kind::EarthArea : Kind::Earth, groups.earth}, copies);
+  }
+  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
+    if (groups.lamp[k] == scenes::no_group) continue;
+    const bool wide = scene.lamps[k].kind == scenes::LampKind::Rectangle ||
+                      scene.lamps[k].kind == scenes::LampKind::Disk;
+    add({Kind::Lamp, groups.lamp[k], k}, wide ? copies : 1);
+    if (wide) surfaces_.lights.push_back(k);
+  }
+  surfaces_.tree = tree_of(surfaces_.lights);
+  // Without interreflection nothing carries emitters through F, so that all of them are sampled.
+  const std::vector<bool> is_explicit = radiosity::emitter_is_explicit(scene);
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    if (groups.material[m] == scenes::no_group) continue;
+    if (indirect == Indirect::Radiosity && !is_explicit[m]) continue;
+    add({Kind::Emitters, groups.material[m], emitters_.size()}, copies);
+    emitters_.emplace_back(scene, m);
+  }
+  gather_crowds(per_group);
+}
+
+void LightSampler::gather_crowds(bool per_group) {
+  std::map<std::size_t, std::vector<std::size_t>> lamps;
+  for (std::size_t k = 0; k < lights_.size(); ++k) {
+    const bool lamp = lights_[k].kind == Kind::Lamp && !distributed_;
+    if (lamp) lamps[per_group ? lights_[k].group : 0].push_back(k);
+    if (!lamp) always_.push_back(k);
+  }
+  for (auto& [group, lights] : lamps) {
+    if (lights.size() <= few_lamps) {
+      always_.insert(always_.end(), lights.begin(), lights.end());
+      continue;
+    }
+    std::vector<std::size_t> of_scene;
+    for (const std::size_t k : lights) of_scene.push_back(lights_[k].index);
+    crowds_.push_back({tree_of(of_scene), std::move(lights)});
+  }
+}
+
+scenes::LightTree LightSampler::tree_of(const std::vector<std::size_t>& lamps) const {
+  std::vector<scenes::LightBounds> bounds;
+  for (const std::size_t k : lamps) bounds.push_back(scenes::bounds_of(scene_.lamps[k]));
+  return scenes::LightTree(bounds);
+}
+
+scenes::LightKind LightSampler::kind(std::size_t index) const {
+  const Light& light = lights_[index];
+  switch (light.kind) {
+    case Kind::Sun:
+    case Kind::SunPart:
+      return scenes::LightKind::Sun;
+    case Kind::Earth:
+    case Kind::EarthArea:
+      return scenes::LightKind::Earth;
+    case Kind::Lamp:
+      return scenes::kind_of(scene_.lamps[light.index].kind);
+    case Kind::Emitters:
+      break;
+  }
+  return scenes::LightKind::Emitter;
+}
+
+std::optional<LightSampler::SeenLamp> LightSampler::seen_lamp(const Vec3& origin,
+                                                              const Vec3& direction,
+                                                              double nearer_than_m) const {
+  std::vector<std::size_t> met;
+  surfaces_.tree.along(origin, direction, nearer_than_m, met);
+  std::optional<SeenLamp> seen;
+  for (const std::size_t k : met) {
+    const std::size_t lamp = surfaces_.lights[k];
+    const auto hit = scenes::hit_lamp(scene_.lamps[lamp], origin, direction);
+    if (!hit || hit->distance_m >= nearer_than_m) continue;
+    nearer_than_m = hit->distance_m;
+    seen = SeenLamp{lamp, *hit};
+  }
+  return seen;
+}
+
+void LightSampler::choose(const scenes::Receiver& receiver, double u,
+                          std::vector<scenes::LightChoice>& chosen) const {
+  for (const std::size_t light : always_) chosen.push_back({light, 1.0});
+  for (const Crowd& crowd : crowds_) {
+    const std::size_t first = chosen.size();
+    crowd.tree.choose(receiver, u, smallest_share, chosen);
+    for (std::size_t k = first; k < chosen.size(); ++k) {
+      chosen[k].light = crowd.lights[chosen[k].light];
+    }
+  }
+}
+
+void LightSampler::add(Light light, int copies) {
+  light.fixed = distributed_;
+  if (!distributed_) {
+    lights_.push_back(light);
+    return;
+  }
+  light.share = 1.0 / copies;
+  for (int k = 0; k < copies; ++k) {
+    light.u = (k + 0.5) / copies;
+    light.v = light.kind == Kind::Earth ? fraction(k * 0.6180339887498949)  // Fibonacci cap
+                                        : fraction(0.5 + k * r2_v);
+    if (light.kind != Kind::Earth) light.u = fraction(0.5 + k * r2_u);
+    lights_.push_back(light);
+  }
+}
+
+bool LightSampler::below_horizon(std::size_t index, const Vec3& normal) const {
+  const Light& light = lights_[index];
+  if (light.kind != Kind::Sun && light.kind != Kind::SunPart) return false;
+  const scenes::Sun& sun =
+      light.kind == Kind::Sun ? *scene_.sun : scene_.sky_parts->suns[light.index];
+  constexpr double rounding = 1e-9;
+  return glm::dot(sun.direction, normal) < -base::radians(sun.angular_radius_deg) - rounding;
+}
+
+scenes::LightSample LightSampler::sample(std::size_t index, const Vec3& point, double u,
+                                         double v) const {
+  const Light& light = lights_[index];
+  if (light.fixed) {
+    u = light.u;
+    v = light.v;
+  }
+  const scenes::Spread spread = light.fixed ? scenes::Spread::OverArea : scenes::Spread::Best;
+  scenes::LightSample sample;
+  switch (light.kind) {
+    case Kind::Sun:
+      // The report's lights have no extent: its Sun casts hard shadows.
+      sample = {distributed_ ? scene_.sun->direction : scenes::sample_sun(scene_, u, v),
+                std::numeric_limits<double>::infinity(), sun_illuminance_lx_};
+      break;
+    case Kind::SunPart: {
+      const scenes::Sun& sun = scene_.sky_parts->suns[light.index];
+      sample = {scenes::sample_cone(sun.direction, base::radians(sun.angular_radius_deg), u, v),
+                std::numeric_limits<double>::infinity(), part_illuminance_lx_[light.index]};
+      break;
+    }
+    case Kind::Earth: {
+      const Vec3 direction =
+          scenes::sample_cone(scene_.earth->direction, earth_half_angle_rad_, u, v);
+      sample = {direction, std::numeric_limits<double>::infinity(),
+                scenes::earth_radiance(scene_, direction) * earth_solid_angle_sr_};
+      break;
+    }
+    case Kind::EarthArea:
+      sample = scenes::sample_lamp(*earth_area_, point, u, v);
+      break;
+    case Kind::Lamp:
+      sample = scenes::sample_lamp(scene_.lamps[light.index], point, u, v, spread);
+      break;
+    case Kind::Emitters:
+      sample = emitters_[light.index].sample(point, u, v, spread);
+      break;
+  }
+  sample.normal_illuminance_lx *= light.share;
+  return sample;
+}
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sources that are reached by shadow rays, in one list.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "raytrace/frame/frame.h"
+#include "raytrace/frame/options.h"
+#include "scenes/light/emitters.h"
+#include "scenes/light/lamp_light.h"
+#include "scenes/light/light_tree.h"
+
+namespace earthshine::raytrace {
+
+// A source with one shadow ray per sample; (u, v) choose the point on it where it has extent.
+class LightSampler {
+ public:
+  // Radiosity and None: each source once, sampled at random. Distributed: wide sources are replaced
+  // by `distributed_lights` fixed points or directions of equal share, the same for every pixel;
+  // the Earth by points of earth_area (distributed_area.h), or by directions to its disc.
+  // per_group: every light group gets an image of its own, so that lamps are chosen within each.
+  LightSampler(const scenes::Scene& scene, const scenes::LightGroups& groups,
+               const scenes::Effects& effects, Indirect indirect, int distributed_lights,
+               bool per_group = false, std::optional<scenes::Lamp> earth_area = std::nullopt);
+
+  // Adds the lights that get a shadow ray at the receiver: of few lamps all, of many those that
+  // matter, with weight 1, and some of the others by chance, with weight 1 / probability
+  // (scenes/light/light_tree.h), for u uniform in [0, 1). Everything that is no lamp is always
+  // among them, and so is every one of the distributed lights, whose number is the point of having
+  // them.
+  void choose(const scenes::Receiver& receiver, double u,
+              std::vector<scenes::LightChoice>& chosen) const;
+
+  // The lamp whose shining surface a ray meets first, nearer than nearer_than_m.
+  struct SeenLamp {
+    std::size_t lamp;  // of the scene
+    scenes::LampHit hit;
+  };
+  [[nodiscard]] std::optional<SeenLamp> seen_lamp(const Vec3& origin, const Vec3& direction,
+                                                  double nearer_than_m) const;
+
+  [[nodiscard]] std::size_t count() const { return lights_.size(); }
+  [[nodiscard]] std::size_t group(std::size_t light) const { return lights_[light].group; }
+  [[nodiscard]] scenes::LightKind kind(std::size_t light) const;
+  // Whether the whole of it is below the horizon of a surface that faces `normal`: known without a
+  // sample for Suns alone.
+  [[nodiscard]] bool below_horizon(std::size_t light, const Vec3& normal) const;
+  [[nodiscard]] scenes::LightSample sample(std::size_t light, const Vec3& point, double u,
+                                           double v) const;
+
+ private:
+  enum class Kind { Sun, SunPart, Earth, EarthArea, Lamp, Emitters };
+  struct Light {
+    Kind kind;
+    std::size_t group;
+    std::size_t index = 0;  // of the lamp, emitter set or Sun of a sky in parts
+    bool fixed = false;     // distributed: always the same (u, v)
+    double u = 0.5, v = 0.5;
+    double share = 1.0;  // of the source's light
+  };
+  struct Crowd {
+    scenes::LightTree tree;
+    std::vector<std::size_t> lights;  // of the tree's numbers
+  };
+  void add(Light light, int copies);
+  void gather_crowds(bool per_group);
+  [[nodiscard]] scenes::LightTree tree_of(const std::vector<std::size_t>& lamps) const;
+
+  const scenes::Scene& scene_;
+  bool distributed_;
+  std::optional<scenes::Lamp> earth_area_;
+  std::vector<Light> lights_;
+  std::vector<std::size_t> always_;  // lights that are not left to chance
+  std::vector<Crowd> crowds_;
+  Crowd surfaces_{scenes::LightTree({}), {}};  // lamps that a ray can meet, by their number there
+  std::vector<scenes::EmitterSet> emitters_;
+  Rgb sun_illuminance_lx_{0.0};
+  std::vector<Rgb> part_illuminance_lx_;  // of a sky in parts
+  double earth_half_angle_rad_ = 0.0;
+  double earth_solid_angle_sr_ = 0.0;
+};
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/passes/passes.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "raytrace/passes/outlook.h"
+#include "raytrace/passes/sample_plan.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int most_rounds = 6;  // of camera samples, each at most four times the one before
+constexpr int most_error_rounds = 24;
+constexpr double most_step = 2.0;  // less squared error a round
+// What planning by few samples promises is off by that much.
+constexpr double least_kept = 0.7, most_kept = 2.0;
+// Of the wanted error, what samples are planned for: the next statement may turn out larger.
+constexpr double aimed_share = 0.97;
+// Time of a ray over that of one of a packet of gather rays (tests/benchmarks/gather_bench.cpp).
+constexpr double ray_cost = 1.5, path_ray_cost = 2.5, camera_cost = 3.0;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+Window widened(const Window& window, int pixels, const CameraModel& camera) {
+  const int x0 = std::max(0, window.x - pixels), y0 = std::max(0, window.y - pixels);
+  const int x1 = std::min(camera.columns, window.x + window.columns + pixels);
+  const int y1 = std::min(camera.rows, window.y + window.rows + pixels);
+  return {x0, y0, x1 - x0, y1 - y0};
+}
+
+struct Sampling {
+  int camera_samples = 16;  // per pixel
+  int gather_rays = 16;     // per camera sample
+};
+
+// Rays per pixel shared out so that the pixel's edge and the hemisphere get about equal attention.
+// Without gather rays the samples serve edges, lamps and lenses alone.
+Sampling share_out(int rays_per_pixel, bool gathers) {
+  const auto rays = std::bit_ceil(static_cast<std::uint32_t>(std::max(1, rays_per_pixel)));
+  const int log2 = static_cast<int>(std::bit_width(rays)) - 1;
+  const int samples = 1 << std::min((log2 + 1) / 2, 6);
+  return {samples, gathers ? static_cast<int>(rays) / samples : 0};
+}
+
+class Passes {
+ public:
+  Passes(ShadingScene& shared, const PathWorld& world, const CameraModel& camera,
+         const RenderOptions& options, const Progress& progress, RenderReport& report)
+      : shared_(shared),
+        world_(world),
+        camera_(camera),
+        options_(options),
+        progress_(progress),
+        report_(report),
+        window_(window_of(options)) {}
+
+  Sampled run() {
+    if (!options_.shared.on) {
+      run_per_sample();
+    } else if (options_.error > 0.0 || (options_.time_limit_s > 0.0 && options_.fills_time)) {
+      run_to_error();
+    } else {
+      run_shared();
+    }
+    if (field_) report_.rays += field_->rays();
+    return {std::move(*sums_), std::move(field_)};
+  }
+
+ private:
+  [[nodiscard]] bool out_of_time() const {
+    return options_.time_limit_s > 0.0 && seconds_since(start_) > options_.time_limit_s;
+  }
+  [[nodiscard]] bool stops() const { return options_.stop && options_.stop(); }
+  [[nodiscard]] bool ends() const { return stops() || out_of_time(); }
+
+  void run_per_sample() {
+    const Sampling sampling = share_out(options_.gather_rays, shared_.gathers);
+    shared_.diffuse = DiffuseSource::Gather;
+    shared_.gather_rays = sampling.gather_rays;
+    sums_.emplace(window_, shared_.layers, shared_.splits_parts);
+    expected_ =
+        static_cast<double>(sampling.camera_samples) * static_cast<double>(window_.pixel_count());
+    first_round(static_cast<std::uint32_t>(sampling.camera_samples));
+    report_.gather_rays = sampling.camera_samples * sampling.gather_rays;
+  }
+
+  void run_shared() {
+    const SharedGather& how = options_.shared;
+    const Outlook outlook = look_ahead(shared_, camera_, how.least_samples);
+    report_.rays.planning += outlook.rays.total();
+    // n = deviation / c gives a mean squared error of c times the mean deviation.
+    const double wanted_error = how.noise * outlook.luminance;
+    const double per_deviation =
+        outlook.deviation > 0.0 ? wanted_error * wanted_error / outlook.deviation : 1.0;
+    // Rounds look at neighbours: a crop gets the same pixels as the whole picture only if what
+    // surrounds it is worked out too.
+    sums_.emplace(widened(window_, most_rounds, camera_), shared_.layers, shared_.splits_parts);
+    const double samples = std::max(double(how.least_samples),
+                                    per_deviation > 0.0 ? outlook.deviation / per_deviation : 0.0);
+    const double gathers = shared_.gathers ? options_.gather_rays : 0;
+    expected_ = static_cast<double>(sums_->samples.size()) * samples + pixels() * 2.0 * gathers;
+    if (shared_.gathers) {
+      const auto start = Clock::now();
+      begin_field();
+      const auto rays = static_cast<std::uint32_t>(options_.gather_rays);
+      cast_evenly(
+          {std::max(rays, GatherField::fewest_samples(Gathered::Solution)), rays / 2, rays / 2});
+      share();
+      report_.gather_seconds += seconds_since(start);
+    }
+    first_round(static_cast<std::uint32_t>(how.least_samples));
+    for (int round = 1; round < most_rounds && !ends() && per_deviation > 0.0; ++round) {
+      shade(wanted_samples(*sums_, per_deviation, outlook.bright(), how.least_samples,
+                           how.most_samples));
+    }
+  }
+
+  // As many of each as the wanted error takes, round by round, told by what is there.
+  void run_to_error() {
+    sums_.emplace(window_, shared_.layers, shared_.splits_parts);
+    expected_ = 1.0;
+    if (shared_.gathers) {
+      const auto start = Clock::now();
+      begin_field();
+      const bool early = options_.time_limit_s > 0.0;  // a first look at all of the picture
+      cast_evenly({GatherField::fewest_samples(Gathered::Solution), early ? 2U : 4U, 2U});
+      share();
+      report_.gather_seconds += seconds_since(start);
+    }
+    first_round(static_cast<std::uint32_t>(options_.shared.least_samples));
+    double before = 0.0, promised = 0.0, kept = 1.0;  // of what the last plan promised
+    for (int round = 1; round < most_error_rounds && !ends(); ++round) {
+      const SamplePlanner planner(*sums_, field_ ? &*field_ : nullptr, costs());
+      const double now = planner.squared_error(), error = std::sqrt(now);
+      if (options_.error > 0.0 && error <= options_.error) break;
+      // Step by step: what few samples say of more of them is rough.
+      const double aim = aimed_share * options_.error;
+      if (promised > 0.0) kept = std::clamp((before - now) / promised, least_kept, most_kept);
+      const double step = now - (now - std::max(aim * aim, now / most_step)) / kept;
+      const SamplePlan plan = planner.plan(step, affordable());
+      if (plan.cost <= 0.0) break;
+      before = now, promised = now - plan.squared_error;
+      expected_ = std::max(done_ + plan.cost, done_ * error * error / std::max(aim * aim, 1e-12));
+      if (field_) {
+        const auto start = Clock::now();
+        for (std::size_t k = 0; k < gathered_kinds && !ends(); ++k) {
+          field_->cast(static_cast<Gathered>(k), plan.field[k], static_cast<std::uint32_t>(round),
+                       [this] { return ends(); });
+        }
+        tell(plan.field_cost);
+        share();
+        report_.gather_seconds += seconds_since(start);
+      }
+      shade(plan.camera);
+    }
+  }
+
+  // What one more sample of each kind costs, in rays of a packet; counted, so that every machine
+  // chooses alike.
+  [[nodiscard]] SampleCosts costs() const {
+    SampleCosts costs;
+    double samples = 0.0;
+    for (const std::uint32_t n : sums_->samples) samples += n;
+    const RayCounts& rays = report_.rays;
+    const auto others =
+        static_cast<double>(rays.shadow + rays.mirror + rays.refraction + rays.gather + rays.lobe);
+    costs.camera = camera_cost + ray_cost * others / std::max(1.0, samples);
+    if (!field_) return costs;
+    for (const Gathered kind : {Gathered::Residual, Gathered::Lobe}) {
+      double cast = 0.0;
+      for (std::size_t p = 0; field_->gathers(kind) && p < field_->points().size(); ++p) {
+        cast += double(field_->samples(kind, p));
+      }
+      const auto total = static_cast<double>(field_->rays_of(kind).total());
+      costs.field[static_cast<std::size_t>(kind)] =
+          path_ray_cost * (1.0 + total / std::max(1.0, cast));
+    }
+    return costs;
+  }
+
+  // What the time that is left buys; infinite without a limit.
+  [[nodiscard]] double affordable() const {
+    if (options_.time_limit_s <= 0.0) return std::numeric_limits<double>::infinity();
+    const double gone = seconds_since(start_);
+    return std::max(0.0, options_.time_limit_s - gone) * done_ / std::max(gone, 1e-3);
+  }
+
+  [[nodiscard]] double pixels() const {
+    return static_cast<double>(camera_.columns) * camera_.rows;
+  }
+
+  void begin_field() {
+    const GatherSurface surface = [this](const scenes::Hit& hit, GatherRequest& request) {
+      return gathers_at(shared_.scene, hit, request);
+    };
+    field_.emplace(
+        world_, shared_.incoming, surface, camera_, Window{0, 0, camera_.columns, camera_.rows},
+        GatherField::Setting{shared_.layers, shared_.splits_parts, shared_.world != nullptr,
+                             options_.shared.smooth_share > 0.0, options_.seed});
+    shared_.diffuse = DiffuseSource::Field;
+    shared_.field = &*field_;
+  }
+
+  void cast_evenly(const std::array<std::uint32_t, gathered_kinds>& each) {
+    const std::size_t count = field_->points().size();
+    for (std::size_t k = 0; k < gathered_kinds; ++k) {
+      const auto kind = static_cast<Gathered>(k);
+      field_->cast(kind, std::vector<std::uint32_t>(count, each[k]), 0, [this] { return stops(); });
+      tell(pixels() * each[k]);
+      if (stops()) cast_fewest(kind);
+    }
+  }
+
+  // Where a stop left nothing: a quick look.
+  void cast_fewest(Gathered kind) {
+    if (!field_->gathers(kind)) return;
+    std::vector<std::uint32_t> missing(field_->points().size(), 0U);
+    for (std::size_t p = 0; p < missing.size(); ++p) {
+      if (field_->samples(kind, p) <= 0.0F) missing[p] = GatherField::fewest_samples(kind);
+    }
+    field_->cast(kind, missing, 0, {});
+  }
+
+  void share() {
+    field_->share();
+    double rays = 0.0, points = 0.0;
+    for (std::size_t p = 0; p < field_->points().size(); ++p) {
+      const float samples = field_->samples(Gathered::Solution, p);
+      rays += double(samples);
+      points += samples > 0.0F ? 1.0 : 0.0;
+    }
+    report_.gather_rays = static_cast<int>(std::lround(rays / std::max(1.0, points)));
+  }
+
+  // What was not reached when it was stopped gets a single sample all the same: a quick look.
+  void first_round(std::uint32_t samples) {
+    report_.least_camera_samples = static_cast<int>(samples);
+    const std::size_t count = sums_->samples.size();
+    shade(std::vector<std::uint32_t>(count, samples));
+    if (!ends()) return;
+    shade_samples(shared_, camera_, std::vector<std::uint32_t>(count, 1U), *sums_, report_.rays, {},
+                  {});
+  }
+
+  void shade(const std::vector<std::uint32_t>& wanted) {
+    shade_samples(
+        shared_, camera_, wanted, *sums_, report_.rays, [&] { return ends(); },
+        [&](std::uint64_t samples) { tell(static_cast<double>(samples)); });
+  }
+
+  void tell(double more) {
+    done_ += more;
+    if (!progress_) return;
+    progress_(static_cast<std::size_t>(std::min(done_, expected_)),
+              static_cast<std::size_t>(std::max(1.0, expected_)));
+  }
+
+  ShadingScene& shared_;
+  const PathWorld& world_;
+  const CameraModel& camera_;
+  const RenderOptions& options_;
+  const Progress& progress_;
+  RenderReport& report_;
+  Window window_;
+  std::optional<GatherField> field_;
+  std::optional<PixelSums> sums_;
+  Clock::time_point start_ = Clock::now();
+  double done_ = 0.0, expected_ = 1.0;
+};
+
+}  // namespace
+
+Window window_of(const RenderOptions& options) {
+  const Window& crop = options.crop;
+  if (crop.columns == 0) return {0, 0, options.columns, options.rows};
+  const bool inside = crop.x >= 0 && crop.y >= 0 && crop.columns > 0 && crop.rows > 0 &&
+                      crop.columns <= options.columns - crop.x &&
+                      crop.rows <= options.rows - crop.y;
+  if (inside) return crop;
+  throw base::Error(base::Blame::Input, "crop", "the window leaves the picture",
+                    "a window within " + std::to_string(options.columns) + " x " +
+                        std::to_string(options.rows) + " pixels");
+}
+
+Sampled sample_picture(ShadingScene& shared, const PathWorld& world, const CameraModel& camera,
+                       const RenderOptions& options, const Progress& progress,
+                       RenderReport& report) {
+  return Passes(shared, world, camera, options, progress, report).run();
+}
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/passes/sample_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+constexpr auto camera_kind = static_cast<std::uint8_t>(gathered_kinds);
+constexpr int bisections = 48;
+constexpr double greatest_price = 1e6;  // squared error per ray
+// Where a ray gains so much less than a ray so far has on the average, nothing is cast, as long as
+// others gain more: what few samples promise there is often wrong, and the next look tells better.
+constexpr double least_gain = 0.2, least_gain_of_all = 1e-6;
+
+}  // namespace
+
+SamplePlanner::SamplePlanner(const PixelSums& sums, const GatherField* field,
+                             const SampleCosts& costs)
+    : sums_(sums), field_(field), costs_(costs) {
+  const StatedError stated = state_error(sums, field, sums.window);
+  const ErrorSums whole = add_up(stated);
+  if (whole.pixels == 0 || whole.luminance <= 0.0) return;
+  now_ = whole.squared_error();
+  const double scale =
+      1.0 / (static_cast<double>(whole.pixels) * whole.luminance * whole.luminance);
+  if (field != nullptr) look_at_field(stated, whole.luminance, scale);
+  look_at_pixels(stated, whole.luminance, scale);
+}
+
+void SamplePlanner::look_at_field(const StatedError& stated, double mean, double scale) {
+  const Window& window = sums_.window;
+  for (std::size_t k = 0; k < gathered_kinds; ++k) {
+    const auto kind = static_cast<Gathered>(k);
+    if (!field_->gathers(kind)) continue;
+    for (std::size_t p = 0; p < field_->points().size(); ++p) {
+      const std::size_t pixel = field_->pixel_of(p);
+      const auto columns = static_cast<std::size_t>(field_->window().columns);
+      const int x = field_->window().x + static_cast<int>(pixel % columns);
+      const int y = field_->window().y + static_cast<int>(pixel / columns);
+      if (!window.contains(x, y)) continue;
+      const float samples = field_->samples(kind, p);
+      const double reflected = field_->reflected(kind, p);
+      if (samples <= 0.0F || reflected <= 0.0) continue;
+      const double weight = error_weight(double(stated.luminance[window.index(x, y)]), mean) *
+                            reflected * field_->cover_of(p);
+      const double factor = weight * weight * scale;
+      const Shared& shared = field_->shared(kind);
+      const double one = shared.squared_error_with(p, 1.0);
+      const double two = shared.squared_error_with(p, 2.0);
+      const double four = shared.squared_error_with(p, 4.0);
+      if (factor * (one - four) <= 0.0) continue;
+      gains_.push_back({static_cast<std::uint32_t>(p), static_cast<std::uint8_t>(k), samples,
+                        static_cast<float>(factor * (one - two)),
+                        static_cast<float>(factor * (two - four))});
+    }
+  }
+}
+
+// Samples of a pixel have the deviation of the noisiest of the pixels around it: its own would stop
+// where they happen to agree, and its mean would be biased. What the halves of all pixels differ by
+// tells how much less the samples scatter than if they were independent.
+void SamplePlanner::look_at_pixels(const StatedError& stated, double mean, double scale) {
+  const Window& window = sums_.window;
+  std::vector<double> variance(stated.luminance.size());  // of one sample, weighted
+  double found = 0.0, independent = 0.0;
+  for (std::size_t p = 0; p < variance.size(); ++p) {
+    const double weight = error_weight(double(stated.luminance[p]), mean);
+    const double of_mean = weight * weight * sums_.sample_variance(p);
+    variance[p] = of_mean * sums_.samples[p];
+    independent += of_mean;
+    found += weight * weight * sums_.squared_error(p);
+  }
+  const double better = independent > 0.0 ? std::min(1.0, found / independent) : 1.0;
+  for (int y = window.y; y < window.y + window.rows; ++y) {
+    for (int x = window.x; x < window.x + window.columns; ++x) {
+      const std::size_t p = window.index(x, y);
+      double around = window.pixel_count() == 1 ? variance[p] : 0.0;
+      for (int qy = std::max(window.y, y - 1); qy <= std::min(window.y + window.rows - 1, y + 1);
+           ++qy) {
+        for (int qx = std::max(window.x, x - 1);
+             qx <= std::min(window.x + window.columns - 1, x + 1); ++qx) {
+          if (qx != x || qy != y) around = std::max(around, variance[window.index(qx, qy)]);
+        }
+      }
+      const double error = around * better * scale / std::max(1U, sums_.samples[p]);
+      if (error <= 0.0) continue;
+      gains_.push_back({static_cast<std::uint32_t>(p), camera_kind,
+                        static_cast<float>(sums_.samples[p]), static_cast<float>(error / 2.0),
+                        static_cast<float>(error / 4.0), static_cast<float>(variance[p] / around)});
+    }
+  }
+}
+
+double SamplePlanner::cost_of(const Gain& gain) const {
+  return double(gain.samples) *
+         (gain.kind == camera_kind ? costs_.camera : costs_.field[gain.kind]);
+}
+
+int SamplePlanner::factor(const Gain& gain, double per_cost) const {
+  const double cost = cost_of(gain), first = double(gain.first), second = double(gain.second);
+  if (second >= 2.0 * cost * per_cost || first + second >= 3.0 * cost * per_cost) return 4;
+  return first >= cost * per_cost ? 2 : 1;
+}
+
+SamplePlanner::Outcome SamplePlanner::outcome(double per_cost) const {
+  Outcome outcome{now_, 0.0};
+  for (const Gain& gain : gains_) {
+    const int times = factor(gain, per_cost);
+    if (times == 1) continue;
+    outcome.squared_error -=
+        double(gain.found) * (double(gain.first) + (times == 4 ? double(gain.second) : 0.0));
+    outcome.cost += (times - 1) * cost_of(gain);
+  }
+  return outcome;
+}
+
+SamplePlan SamplePlanner::plan(double wanted, double most_cost) const {
+  SamplePlan plan;
+  plan.squared_error = now_;
+  for (std::size_t k = 0; k < gathered_kinds && field_ != nullptr; ++k) {
+    plan.field[k].assign(field_->points().size(), 0U);
+  }
+  plan.camera = sums_.samples;
+  // The price of a ray at which the picture is just exact enough; the less it is, the more are
+  // cast.
+  double all = 0.0;
+  for (const Gain& gain : gains_) all += cost_of(gain);
+  if (all <= 0.0 || now_ <= 0.0) {
+    return plan;
+  }
+  const double mean_gain = now_ / all;
+  const bool any = outcome(least_gain * mean_gain).cost > 0.0;
+  double low = std::log((any ? least_gain : least_gain_of_all) * mean_gain);
+  double high = std::log(greatest_price);
+  for (int k = 0; k < bisections; ++k) {
+    const double middle = 0.5 * (low + high);
+    const Outcome found = outcome(std::exp(middle));
+    const bool dearer = found.squared_error <= wanted || found.cost > most_cost;
+    (dearer ? low : high) = middle;
+  }
+  const double per_cost = std::exp(outcome(std::exp(low)).cost <= most_cost ? low : high);
+  plan.squared_error = outcome(per_cost).squared_error;
+  for (const Gain& gain : gains_) {
+    const int times = factor(gain, per_cost);
+    if (times == 1) continue;
+    const double cost = (times - 1) * cost_of(gain);
+    plan.cost += cost;
+    if (gain.kind == camera_kind) {
+      plan.camera[gain.index] *= static_cast<std::uint32_t>(times);
+      continue;
+    }
+    plan.field_cost += cost;
+    // Twice as many by as many again; four times by four times, as sets are powers of two.
+    plan.field[gain.kind][gain.index] =
+        static_cast<std::uint32_t>(gain.samples) * (times == 4 ? 4U : 1U);
+  }
+  return plan;
+}
+
+}  // namespace earthshine::raytrace

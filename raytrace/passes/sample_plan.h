@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where more samples of a picture help most for their price: every point and pixel gets up to four
+// times what it has, as long as a ray spent there takes more off the squared error than elsewhere.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "raytrace/passes/stated_error.h"
+
+namespace earthshine::raytrace {
+
+// Of one more sample, in rays of a packet.
+struct SampleCosts {
+  std::array<double, gathered_kinds> field{1.0, 1.0, 1.0};
+  double camera = 1.0;
+};
+
+struct SamplePlan {
+  std::array<std::vector<std::uint32_t>, gathered_kinds> field;  // more, per point
+  std::vector<std::uint32_t> camera;                             // in all, per pixel
+  double cost = 0.0, field_cost = 0.0;  // of it, and of the field's part of it
+  double squared_error = 0.0;           // expected after it
+};
+
+class SamplePlanner {
+ public:
+  // field: nullptr where nothing is gathered. All must outlive it.
+  SamplePlanner(const PixelSums& sums, const GatherField* field, const SampleCosts& costs);
+
+  // Of the picture as it is: relative to its mean luminance, squared.
+  [[nodiscard]] double squared_error() const { return now_; }
+  // The cheapest that is expected to bring the squared error down to `wanted`, at no more than
+  // most_cost.
+  [[nodiscard]] SamplePlan plan(double wanted, double most_cost) const;
+
+ private:
+  struct Gain {  // of one point or pixel
+    std::uint32_t index = 0;
+    std::uint8_t kind = 0;
+    float samples = 0.0F;               // that it has
+    float first = 0.0F, second = 0.0F;  // squared error that twice, four times as many take off
+    float found = 1.0F;  // of what they promise, as much as the point or pixel itself has shown
+  };
+  void look_at_field(const StatedError& stated, double mean, double scale);
+  void look_at_pixels(const StatedError& stated, double mean, double scale);
+  [[nodiscard]] double cost_of(const Gain& gain) const;
+  [[nodiscard]] int factor(const Gain& gain, double per_cost) const;
+  struct Outcome {
+    double squared_error = 0.0, cost = 0.0;
+  };
+  [[nodiscard]] Outcome outcome(double per_cost) const;
+
+  const PixelSums& sums_;
+  const GatherField* field_;
+  SampleCosts costs_;
+  std::vector<Gain> gains_;
+  double now_ = 0.0;
+};
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/passes/stated_error.h"
+
+#include <cmath>
+#include <numeric>
+
+namespace earthshine::raytrace {
+namespace {
+
+double luminance_of(std::span<const glm::vec3> layers, const glm::vec3& factor) {
+  glm::vec3 sum(0.0F);
+  for (const glm::vec3& layer : layers) sum += layer;
+  return base::luminance(Rgb(sum * factor));
+}
+
+// Adds up what the pixel reads from gather points, and their errors: those of one kind are taken as
+// going the same way.
+class FieldOfPixel {
+ public:
+  FieldOfPixel(const PixelSums& sums, const GatherField& field, std::size_t pixel) {
+    for (const FieldTerm& term : sums.terms[pixel]) {
+      const auto point = std::size_t{term.point};
+      const auto seen = field.diffuse(point).first(field.image_layers());
+      luminance += luminance_of(seen, term.diffuse);
+      const double diffuse = base::luminance(Rgb(term.diffuse));
+      off_[0] += diffuse * field.error_of(Gathered::Solution, point);
+      off_[1] += diffuse * field.error_of(Gathered::Residual, point);
+      if (base::luminance(Rgb(term.lobe)) <= 0.0) continue;
+      luminance += luminance_of(field.lobe(point), term.lobe);
+      off_[2] += base::luminance(Rgb(term.lobe)) * field.error_of(Gathered::Lobe, point);
+    }
+  }
+  [[nodiscard]] float squared(std::size_t kind, double samples) const {
+    return static_cast<float>(off_[kind] * off_[kind] / (samples * samples));
+  }
+  double luminance = 0.0;
+
+ private:
+  std::array<double, gathered_kinds> off_{};
+};
+
+}  // namespace
+
+StatedError state_error(const PixelSums& sums, const GatherField* field, const Window& window) {
+  StatedError stated;
+  const std::size_t layers = field != nullptr ? field->image_layers() : sums.image_layers;
+  stated.luminance.assign(window.pixel_count(), 0.0F);
+  stated.squared.assign(window.pixel_count(), {});
+  stated.counts.assign(window.pixel_count(), 0);
+  for (int y = window.y; y < window.y + window.rows; ++y) {
+    for (int x = window.x; x < window.x + window.columns; ++x) {
+      const std::size_t from = sums.window.index(x, y), to = window.index(x, y);
+      const double n = sums.samples[from];
+      if (n == 0.0) continue;
+      Rgb own(0.0);
+      for (std::size_t k = 0; k < layers; ++k) own += sums.radiance[from * sums.entries + k];
+      double luminance = base::luminance(own) - sums.source[from].luminance;
+      std::array<float, error_parts>& squared = stated.squared[to];
+      if (field != nullptr) {
+        const FieldOfPixel read(sums, *field, from);
+        luminance += read.luminance;
+        for (std::size_t kind = 0; kind < gathered_kinds; ++kind) {
+          squared[kind] = read.squared(kind, n);
+        }
+      }
+      squared[static_cast<std::size_t>(ErrorPart::Camera)] =
+          static_cast<float>(sums.squared_error(from));
+      stated.luminance[to] = static_cast<float>(luminance / n);
+      stated.counts[to] = sums.counts(from) ? 1 : 0;
+    }
+  }
+  return stated;
+}
+
+ErrorSums add_up(const StatedError& stated, std::span<const std::size_t> pixels) {
+  ErrorSums sums;
+  for (const std::size_t p : pixels) {
+    if (stated.counts[p] == 0) continue;
+    sums.luminance += double(stated.luminance[p]);
+    ++sums.pixels;
+  }
+  if (sums.pixels == 0) return sums;
+  sums.luminance /= static_cast<double>(sums.pixels);
+  if (sums.luminance <= 0.0) return sums;
+  const double scale = 1.0 / (static_cast<double>(sums.pixels) * sums.luminance * sums.luminance);
+  for (const std::size_t p : pixels) {
+    if (stated.counts[p] == 0) continue;
+    const double weight = error_weight(double(stated.luminance[p]), sums.luminance);
+    for (std::size_t part = 0; part < error_parts; ++part) {
+      sums.squared[part] += weight * weight * scale * double(stated.squared[p][part]);
+    }
+  }
+  return sums;
+}
+
+ErrorSums add_up(const StatedError& stated) {
+  std::vector<std::size_t> all(stated.counts.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return add_up(stated, all);
+}
+
+}  // namespace earthshine::raytrace

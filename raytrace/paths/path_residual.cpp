@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// PathWalker's walks that find what the radiosity solution lacks.
+#include <algorithm>
+#include <cmath>
+
+#include "raytrace/paths/path_walker.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+using base::pi;
+
+// Of the rays from a diffuse surface, how many are aimed at bright patches if there
+// are any.
+constexpr double aimed_share = 0.25;
+// Walks go on with the probability of what is left of the light, but with this at least:
+// where the solution is wrongly black, a walk that always ended there would never find out.
+constexpr double least_survival = 0.05;
+
+bool lit(const Rgb& c) { return base::max_component(c) > 0.0; }
+
+}  // namespace
+
+std::span<const Rgb> PathWalker::residual(const IncomingLight& solution, const Ray& ray,
+                                          const scenes::Hit& first, base::Rng& rng) {
+  begin(ray, rng);
+  sees_sampled_ = from_camera_ = false;
+  follow(solution, first);
+  return radiance_;
+}
+
+std::span<const Rgb> PathWalker::residual_at(const IncomingLight& solution, const Vec3& origin,
+                                             const Vec3& normal, double u, double v,
+                                             base::Rng& rng) {
+  begin({}, rng);
+  sees_sampled_ = from_camera_ = false;
+  if (!turn_diffusely(solution, origin, normal, u, v)) return radiance_;
+  const scenes::Hit hit = world_.query.closest(ray_.origin, ray_.direction);
+  if (hit.missed()) return radiance_;
+  weight_ *= solution.kept_part(hit, ray_.direction, share_);
+  if (lit(weight_)) follow(solution, hit);
+  return radiance_;
+}
+
+// From a hit on: (S + T L~ - L~) of the surface that was met, T by one ray; what the next surface
+// lacks itself follows in its turn.
+void PathWalker::follow(const IncomingLight& solution, scenes::Hit hit) {
+  while (!hit.missed()) {
+    solution.add(hit, ray_.direction, {}, -weight_, radiance_, rays_);
+    const Surface surface = surface_at(hit);
+    if (is_black(surface)) return;
+    shine(surface, hit);
+    if (!go_on(surface, &solution)) return;
+    hit = world_.query.closest(ray_.origin, ray_.direction);
+    solution.add(hit, ray_.direction, share_, weight_, radiance_, rays_);
+    if (hit.missed()) return;
+    weight_ *= solution.kept_part(hit, ray_.direction, share_);
+    if (!lit(weight_)) return;
+    const double survival = std::clamp(base::max_component(weight_), least_survival, 1.0);
+    if (rng_->next() >= survival) return;
+    weight_ /= survival;
+  }
+}
+
+// A ray off a diffuse surface, cosine-distributed or at a bright patch; false where it leads
+// nowhere.
+bool PathWalker::turn_diffusely(const IncomingLight& solution, const Vec3& origin,
+                                const Vec3& normal, double u, double v) {
+  sees_sampled_ = from_camera_ = false;
+  ++rays_.gather;
+  const bool aims = !solution.bright().empty();
+  if (aims && rng_->next() < aimed_share) {
+    const IncomingLight::Aimed aimed =
+        solution.aim(origin, normal, rng_->next(), u, v, 1.0 - aimed_share, aimed_share);
+    weight_ *= aimed.weight;
+    ray_ = {origin, aimed.direction};
+    share_ = aimed.share;
+    return aimed.weight > 0.0;
+  }
+  const double radius = std::sqrt(u), phi = 2.0 * pi * v, cosine = std::sqrt(1.0 - u);
+  const base::Frame3 frame = base::frame_around(normal);
+  ray_ = {origin, frame.to_world({radius * std::cos(phi), radius * std::sin(phi), cosine})};
+  share_ = {};
+  if (!aims) return true;
+  weight_ /= 1.0 - aimed_share;
+  share_.cosine = cosine;
+  share_.found_rays = 1.0 - aimed_share;
+  share_.aimed_rays = aimed_share;
+  return true;
+}
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/paths/path_tracer.h"
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <string>
+
+#include "base/parallel.h"
+#include "raytrace/paths/path_walker.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+constexpr std::size_t rgb = 3;
+
+void check(const PathOptions& options) {
+  if (options.columns < 1 || options.rows < 1) {
+    throw base::Error(base::Blame::Input, "path tracer",
+                      "a picture of " + std::to_string(options.columns) + " x " +
+                          std::to_string(options.rows) + " pixels",
+                      "at least 1 x 1");
+  }
+  if (options.paths_per_pixel < 2) {
+    throw base::Error(base::Blame::Input, "path tracer",
+                      std::to_string(options.paths_per_pixel) + " paths per pixel",
+                      "2 or more: fewer have no variance", "Raise quality.gather_rays");
+  }
+}
+
+PathWorld make_world(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                     const scenes::Effects& effects, const scenes::RayQuery& query,
+                     const LightSampler& lights, const PathOptions& options) {
+  PathWorld world{scene, groups, effects, query, lights, radiosity::emitter_is_explicit(scene), {}};
+  for (std::size_t g = 0; g < groups.count(); ++g) {
+    world.layer.push_back(options.per_light ? g : 0);
+  }
+  if (options.per_light) world.layers = std::max<std::size_t>(1, groups.count());
+  world.paths = options.paths;
+  return world;
+}
+
+base::Image make_image(const PathOptions& options, const std::vector<std::string>& layers) {
+  base::Image image = base::make_rgb_image(options.columns, options.rows);
+  image.add("variance");
+  for (const std::string& name : layers) {
+    for (const char* channel : {".R", ".G", ".B"}) image.add("light_" + name + channel);
+  }
+  return image;
+}
+
+// Mean of a pixel's paths per layer, and their luminance's variance as it goes (Welford 1962).
+struct PathSums {
+  std::vector<Rgb> layers;
+  double paths = 0.0, mean_luminance = 0.0, squares = 0.0;
+
+  void add(std::span<const Rgb> radiance) {
+    Rgb all(0.0);
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+      layers[k] += radiance[k];
+      all += radiance[k];
+    }
+    paths += 1.0;
+    const double off = base::luminance(all) - mean_luminance;
+    mean_luminance += off / paths;
+    squares += off * (base::luminance(all) - mean_luminance);
+  }
+  [[nodiscard]] double variance_of_mean() const { return squares / (paths - 1.0) / paths; }
+};
+
+void store(const PathSums& sums, std::size_t pixel, base::Image& image) {
+  for (std::size_t c = 0; c < rgb; ++c) {
+    float total = 0.0F;
+    for (std::size_t layer = 0; layer < sums.layers.size(); ++layer) {
+      const auto value = static_cast<float>(sums.layers[layer][static_cast<int>(c)] / sums.paths);
+      total += value;
+      const std::size_t channel = rgb + 1 + rgb * layer + c;
+      if (channel < image.channels.size()) image.channels[channel].values[pixel] = value;
+    }
+    image.channels[c].values[pixel] = total;
+  }
+  image.channels[rgb].values[pixel] = static_cast<float>(sums.variance_of_mean());
+}
+
+double relative_noise(const base::Image& image) {
+  double error = 0.0, mean = 0.0;
+  for (const float v : image.channels[rgb].values) error += double(v);
+  for (const float y : base::luminance_of(image)) mean += double(y);
+  const auto n = static_cast<double>(image.pixel_count());
+  return mean > 0.0 ? std::sqrt(error / n) / (mean / n) : 0.0;
+}
+
+}  // namespace
+
+Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                  const scenes::Effects& effects, const scenes::RayQuery& query,
+                  const scenes::Camera& camera, const PathOptions& options,
+                  const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  check(options);
+  // As for the final gather: emitters that are a large part of the area are met, not sampled.
+  const LightSampler lights(scene, groups, effects, Indirect::Radiosity, 1);
+  const PathWorld world = make_world(scene, groups, effects, query, lights, options);
+  const CameraModel model = make_camera_model(camera, options.columns, options.rows);
+
+  Frame frame;
+  frame.window = {0, 0, options.columns, options.rows};
+  frame.image = make_image(options, options.per_light ? groups.names : std::vector<std::string>{});
+  const auto columns = static_cast<std::size_t>(options.columns);
+  const auto rows = static_cast<std::size_t>(options.rows);
+  std::vector<RayCounts> row_rays(rows);
+  std::size_t done = 0;
+  std::mutex progress_mutex;
+  base::parallel_chunks(rows, 1, [&](std::size_t y, std::size_t) {
+    if (options.stop && options.stop()) return;
+    PathWalker walker(world);
+    for (std::size_t x = 0; x < columns; ++x) {
+      const std::size_t pixel = y * columns + x;
+      const base::Key key(options.seed, base::Stream::Path, pixel);
+      PathSums sums{std::vector<Rgb>(world.layers, Rgb(0.0))};
+      for (int path = 0; path < options.paths_per_pixel; ++path) {
+        base::Rng rng(key.with(static_cast<std::uint64_t>(path)));
+        const double at_x = double(x) + rng.next();
+        const double at_y = double(y) + rng.next();
+        const double lens_u = rng.next();
+        const double lens_v = rng.next();
+        sums.add(walker.walk(model.ray(at_x, at_y, lens_u, lens_v), rng));
+      }
+      store(sums, pixel, frame.image);
+    }
+    row_rays[y] = walker.rays();
+    const std::lock_guard lock(progress_mutex);
+    ++done;
+    if (progress) progress(done, rows);
+  });
+  for (const RayCounts& rays : row_rays) frame.report.rays += rays;
+  frame.report.finished_share = static_cast<double>(done) / static_cast<double>(rows);
+  frame.report.stopped = done < rows;
+  frame.report.camera_samples = options.paths_per_pixel;
+  frame.report.most_camera_samples = options.paths_per_pixel;
+  frame.report.relative_noise = relative_noise(frame.image);
+  frame.report.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return frame;
+}
+
+}  // namespace earthshine::raytrace

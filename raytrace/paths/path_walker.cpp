@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/paths/path_walker.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "scenes/reflect/specular.h"
+#include "scenes/sky/sky.h"
+#include "scenes/sky/sky_parts.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+using base::pi;
+using scenes::no_group;
+
+// Paths go on for sure as long as they carry this share of what a first hit would; below it they go
+// on with the probability that keeps it.
+constexpr double sure_weight = 0.25;
+// Between perfect mirrors nothing is ever lost: from here on every path ends some time. The odds
+// are so small that the variance stays finite up to reflectances of 0.9999^(1/2).
+constexpr int long_path = 1000;
+constexpr double long_path_survival = 0.9999;
+bool lit(const Rgb& c) { return base::max_component(c) > 0.0; }
+
+}  // namespace
+
+void PathWalker::begin(const Ray& start, base::Rng& rng) {
+  std::fill(radiance_.begin(), radiance_.end(), Rgb(0.0));
+  rng_ = &rng;
+  ray_ = start;
+  weight_ = Rgb(1.0);
+  share_ = {};
+}
+
+std::span<const Rgb> PathWalker::walk(const Ray& start, base::Rng& rng) {
+  begin(start, rng);
+  sees_sampled_ = from_camera_ = true;
+  ++rays_.camera;
+  for (int bounce = 0; step() && survives(bounce); ++bounce) {
+  }
+  return radiance_;
+}
+
+PathWalker::Surface PathWalker::surface_at(const scenes::Hit& hit) const {
+  const scenes::Scene& scene = world_.scene;
+  const scenes::Material& material = scene.materials[scene.triangles[hit.triangle].material];
+  const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
+  return {material,
+          scenes::hit_position(scene, hit),
+          outward,
+          hit.front ? outward : -outward,
+          glm::reflect(ray_.direction, outward),
+          hit.front || material.two_sided};
+}
+
+bool PathWalker::is_black(const Surface& surface) {
+  return !surface.shines && !lit(surface.material.transmit);
+}
+
+// Adds what the ray's end sends along it and turns the ray; false where the path ends.
+bool PathWalker::step() {
+  const scenes::Hit hit = world_.query.closest(ray_.origin, ray_.direction);
+  if (sees_sampled_ && see_lamp(hit)) return false;
+  if (hit.missed()) {
+    see_sky();
+    return false;
+  }
+  const Surface surface = surface_at(hit);
+  if (is_black(surface)) return false;
+  shine(surface, hit);
+  return go_on(surface, nullptr);
+}
+
+// What the surface emits, and reflects straight from the sources.
+void PathWalker::shine(const Surface& surface, const scenes::Hit& hit) {
+  if (!surface.shines) return;
+  const scenes::Material& material = surface.material;
+  const std::uint32_t number = world_.scene.triangles[hit.triangle].material;
+  if (sees_sampled_ || !world_.sampled_emitter[number]) {
+    add(world_.groups.material[number], material.emit / pi);
+  }
+  if (from_camera_) add(world_.groups.ambient, material.diffuse * world_.scene.ambient_radiance);
+  if (lit(material.diffuse) || lit(material.specular)) light_directly(surface);
+}
+
+void PathWalker::add(std::size_t group, const Rgb& radiance) {
+  if (group != no_group) radiance_[world_.layer[group]] += weight_ * radiance;
+}
+
+void PathWalker::see_sky() {
+  const scenes::Scene& scene = world_.scene;
+  const bool on_earth = scene.earth && glm::dot(ray_.direction, scene.earth->direction) >=
+                                           std::cos(base::radians(scene.earth->half_angle_deg));
+  if (on_earth) {
+    const bool met = sees_sampled_ || world_.effects.earth_by_gather;
+    if (met && world_.groups.earth != no_group) {
+      add(world_.groups.earth + scenes::earth_part(scene, ray_.direction),
+          scenes::earth_radiance(scene, ray_.direction));
+    }
+  } else if (sees_sampled_) {
+    add(world_.groups.sun, scenes::sky_radiance(scene, ray_.direction));
+  }
+  if (!sees_sampled_ || !world_.effects.sun_parts) return;
+  const std::size_t part = scenes::sun_part(scene, ray_.direction);
+  if (part == scene.sky_parts->suns.size()) return;
+  add(world_.groups.sun_parts + part, scenes::sun_radiance(scene.sky_parts->suns[part]));
+}
+
+bool PathWalker::see_lamp(const scenes::Hit& hit) {
+  scenes::LampHit nearest{hit.missed() ? std::numeric_limits<double>::infinity() : hit.t, Rgb(0.0)};
+  std::size_t group = no_group;
+  for (std::size_t k = 0; k < world_.scene.lamps.size(); ++k) {
+    if (world_.groups.lamp[k] == no_group) continue;
+    const auto lamp = scenes::hit_lamp(world_.scene.lamps[k], ray_.origin, ray_.direction);
+    if (!lamp || lamp->distance_m >= nearest.distance_m) continue;
+    nearest = *lamp;
+    group = world_.groups.lamp[k];
+  }
+  add(group, nearest.radiance);
+  return group != no_group;
+}
+
+// One shadow ray to every source that is reached so: L = (E cos / pi) (k_d + k_s cos^n alpha).
+void PathWalker::light_directly(const Surface& surface) {
+  constexpr std::size_t width = scenes::RayPacket::width;
+  const double offset = world_.query.surface_offset_m();
+  const Vec3 origin = surface.position + surface.normal * offset;
+  scenes::RayPacket packet;
+  std::array<Rgb, width> value;
+  std::array<std::size_t, width> group{};
+  std::array<scenes::LightKind, width> kind{};
+  std::size_t count = 0;
+  const auto trace = [&] {
+    const std::uint32_t hidden = count > 0 ? world_.query.occluded(packet, count) : 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      rays_.add_shadow(kind[k]);
+      if (((hidden >> k) & 1U) == 0) add(group[k], value[k]);
+    }
+    count = 0;
+  };
+  // Each light has numbers of its own, so that a lamp that is switched off moves no other's light.
+  const base::Key key(static_cast<std::uint64_t>(rng_->next() * 0x1p53), base::Stream::LightSample,
+                      0);
+  for (std::size_t k = 0; k < world_.lights.count(); ++k) {
+    const double u = base::uniform(key.with(k), 0);
+    const double v = base::uniform(key.with(k), 1);
+    const scenes::LightSample light = world_.lights.sample(k, surface.position, u, v);
+    const double cosine = glm::dot(light.direction, surface.normal);
+    if (cosine <= 0.0 || !lit(light.normal_illuminance_lx)) continue;
+    Rgb reflectance = surface.material.diffuse;
+    const double cos_alpha = glm::dot(light.direction, surface.mirrored);
+    if (lit(surface.material.specular) && cos_alpha > 0.0) {
+      reflectance += surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
+    }
+    // Short of the source, which may be a surface of the scene.
+    const double reach = light.distance_m * (1.0 - 1e-5) - 2.0 * offset;
+    if (reach <= 0.0) continue;
+    value[count] = reflectance * light.normal_illuminance_lx * (cosine / pi);
+    group[count] = world_.lights.group(k);
+    kind[count] = world_.lights.kind(k);
+    world_.query.set(packet, count, origin, light.direction, reach);
+    if (++count == width) trace();
+  }
+  trace();
+}
+
+// Chooses a mechanism in proportion to what it reflects and turns the ray by it. Some of the rays
+// are aimed where `solution` is bright.
+bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
+  const scenes::Material& material = surface.material;
+  const double n = material.shininess;
+  enum : std::size_t { Diffuse, Lobe, Mirror, Glass };
+  const std::array<double, 4> share = {
+      surface.shines ? base::max_component(material.diffuse) : 0.0,
+      surface.shines ? base::max_component(material.specular) * 2.0 / (n + 2.0) : 0.0,
+      base::max_component(material.mirror), base::max_component(material.transmit)};
+  const double all = share[Diffuse] + share[Lobe] + share[Mirror] + share[Glass];
+  if (all <= 0.0) return false;
+  double choice = rng_->next() * all;
+  std::size_t way = Diffuse;
+  while (way < Glass && (choice -= share[way]) >= 0.0) ++way;
+  while (share[way] <= 0.0) --way;  // rounding took the choice past the last that has a share
+  weight_ *= all / share[way];
+  share_ = {};
+
+  if (way == Diffuse && solution != nullptr) {
+    const Vec3 origin = surface.position + surface.normal * world_.query.surface_offset_m();
+    weight_ *= material.diffuse;
+    const double u = rng_->next(), v = rng_->next();
+    if (!turn_diffusely(*solution, origin, surface.normal, u, v)) return false;
+  } else if (way == Mirror || way == Glass) {
+    pass_on(surface, way == Glass);
+  } else {
+    scatter(surface, way == Lobe);
+  }
+  return lit(weight_);
+}
+
+void PathWalker::pass_on(const Surface& surface, bool through) {
+  weight_ *= through ? surface.material.transmit : surface.material.mirror;
+  Vec3 lift = surface.normal * world_.query.surface_offset_m();
+  Vec3 direction = surface.mirrored;
+  if (through) {
+    const scenes::Refraction refraction =
+        scenes::refract(surface.material, surface.outward, ray_.direction);
+    direction = refraction.direction;
+    if (!refraction.total) lift = -lift;
+  }
+  ray_ = {surface.position + lift, direction};
+  if (world_.paths == PathSet::All) sees_sampled_ = true;
+  ++(through ? rays_.refraction : rays_.mirror);
+}
+
+void PathWalker::scatter(const Surface& surface, bool by_lobe) {
+  const double n = by_lobe ? surface.material.shininess : 1.0;
+  // Density (n + 1) / (2 pi) cos^n about the axis: exact for a diffuse surface (n = 1).
+  const double cos_axis = std::pow(1.0 - rng_->next(), 1.0 / (n + 1.0));
+  const double sine = std::sqrt(std::max(0.0, 1.0 - cos_axis * cos_axis));
+  const double phi = 2.0 * pi * rng_->next();
+  const base::Frame3 frame = base::frame_around(by_lobe ? surface.mirrored : surface.normal);
+  const Vec3 direction = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cos_axis});
+  if (by_lobe) {
+    const double cosine = std::max(0.0, glm::dot(direction, surface.normal));
+    weight_ *= surface.material.specular * (2.0 * cosine / (n + 1.0));
+  } else {
+    weight_ *= surface.material.diffuse;
+  }
+  ray_ = {surface.position + surface.normal * world_.query.surface_offset_m(), direction};
+  sees_sampled_ = from_camera_ = false;
+  ++(by_lobe ? rays_.lobe : rays_.gather);
+}
+
+bool PathWalker::survives(int bounce) {
+  double survival = std::min(1.0, base::max_component(weight_) / sure_weight);
+  if (bounce >= long_path) survival = std::min(survival, long_path_survival);
+  if (survival < 1.0 && rng_->next() >= survival) return false;
+  weight_ /= survival;
+  return true;
+}
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// One light path from the camera, of the path tracer (path_tracer.h says who carries what).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/numbers/random.h"
+#include "raytrace/camera/camera.h"
+#include "raytrace/incoming/incoming_light.h"
+#include "raytrace/light/light_sampler.h"
+#include "raytrace/paths/path_tracer.h"
+
+namespace earthshine::raytrace {
+
+// What all paths share; read only.
+struct PathWorld {
+  const scenes::Scene& scene;
+  const scenes::LightGroups& groups;
+  const scenes::Effects& effects;
+  const scenes::RayQuery& query;
+  const LightSampler& lights;
+  std::vector<bool> sampled_emitter;  // per material: shadow rays carry its light
+  std::vector<std::size_t> layer;     // of a light group: its image layer
+  std::size_t layers = 1;
+  PathSet paths = PathSet::All;
+};
+
+// Follows one path after another; one object per thread.
+class PathWalker {
+ public:
+  explicit PathWalker(const PathWorld& world) : world_(world), radiance_(world.layers) {}
+
+  // Radiance that one path brings, cd/m^2 per layer; valid until the next call. All its random
+  // numbers come from `rng`.
+  [[nodiscard]] std::span<const Rgb> walk(const Ray& start, base::Rng& rng);
+  // An unbiased estimate of L - L~ along a ray that left a diffuse or glossy surface and met
+  // `first`; L~ is what `solution` reads there.
+  [[nodiscard]] std::span<const Rgb> residual(const IncomingLight& solution, const Ray& ray,
+                                              const scenes::Hit& first, base::Rng& rng);
+  // The mean over the cosine-weighted hemisphere of L - L~ that arrives at a surface point, by one
+  // ray; (u, v) in [0, 1)^2 choose its direction, if it is not aimed at a bright patch.
+  [[nodiscard]] std::span<const Rgb> residual_at(const IncomingLight& solution, const Vec3& origin,
+                                                 const Vec3& normal, double u, double v,
+                                                 base::Rng& rng);
+  [[nodiscard]] const RayCounts& rays() const { return rays_; }
+
+ private:
+  struct Surface {
+    const scenes::Material& material;
+    Vec3 position;
+    Vec3 outward;   // unit normal of the front
+    Vec3 normal;    // the same on the side that the path arrives from
+    Vec3 mirrored;  // the path's direction reflected
+    bool shines;    // reflects and emits: false inside glass
+  };
+
+  void begin(const Ray& start, base::Rng& rng);
+  bool step();
+  [[nodiscard]] Surface surface_at(const scenes::Hit& hit) const;
+  [[nodiscard]] static bool is_black(const Surface& surface);
+  void shine(const Surface& surface, const scenes::Hit& hit);
+  bool survives(int bounce);
+  void add(std::size_t group, const Rgb& radiance);
+  void see_sky();
+  bool see_lamp(const scenes::Hit& hit);
+  void light_directly(const Surface& surface);
+  bool go_on(const Surface& surface, const IncomingLight* solution);
+  bool turn_diffusely(const IncomingLight& solution, const Vec3& origin, const Vec3& normal,
+                      double u, double v);
+  void follow(const IncomingLight& solution, scenes::Hit hit);
+  void pass_on(const Surface& surface, bool through);
+  void scatter(const Surface& surface, bool by_lobe);
+
+  const PathWorld& world_;
+  RayCounts rays_;
+  base::Rng* rng_ = nullptr;  // of the current path
+  std::vector<Rgb> radiance_;
+  Ray ray_;
+  Rgb weight_{1.0};
+  bool sees_sampled_ = true;  // no shadow ray of the last surface carried the sources' light
+  bool from_camera_ = true;   // by mirrors and glass alone
+  RayShare share_;            // of the last ray, with those aimed at bright patches
+};
+
+}  // namespace earthshine::raytrace

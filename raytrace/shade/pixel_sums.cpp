@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/shade/pixel_sums.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <mutex>
+
+#include "base/parallel.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+constexpr int tile_edge_px = 16;
+constexpr std::size_t few_pixels = 64;
+
+void shade_pixel(const ShadingScene& shared, const CameraModel& camera, int x, int y,
+                 std::uint32_t first, std::uint32_t end, PixelShader& shader) {
+  const std::uint64_t number =
+      static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(camera.columns) +
+      static_cast<std::uint64_t>(x);
+  shader.begin_pixel(number, first, end - first);
+  const PixelPoints points(shared.seed, number);
+  scenes::RayPacket packet;
+  scenes::HitPacket hits;
+  std::array<Ray, scenes::RayPacket::width> rays;
+  std::array<std::array<double, 2>, scenes::RayPacket::width> at;  // in the picture, px
+  for (std::size_t from = first; from < end; from += rays.size()) {
+    const std::size_t count = std::min<std::size_t>(rays.size(), end - from);
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto p = points.point(from + k);
+      const auto offset = shared.filter.offset(p[0], p[1]);
+      at[k] = {x + 0.5 + offset[0], y + 0.5 + offset[1]};
+      rays[k] = camera.ray(at[k][0], at[k][1], p[2], p[3]);
+      shared.query.set(packet, k, rays[k].origin, rays[k].direction);
+    }
+    shared.query.closest(packet, count, hits);
+    for (std::size_t k = 0; k < count; ++k) {
+      shader.look_near(static_cast<int>(std::floor(at[k][0])),
+                       static_cast<int>(std::floor(at[k][1])));
+      shader.add_sample(from + k, rays[k],
+                        {hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0});
+    }
+  }
+  shader.end_pixel();
+}
+
+}  // namespace
+
+PixelSums::PixelSums(const Window& of, std::size_t layers, bool splits_parts)
+    : window(of),
+      image_layers(layers),
+      entries(layers + (splits_parts ? part_count : 0)),
+      radiance(of.pixel_count() * entries, glm::dvec3(0.0)),
+      terms(of.pixel_count()),
+      samples(of.pixel_count(), 0U),
+      luminance(of.pixel_count(), 0.0),
+      luminance2(of.pixel_count(), 0.0),
+      half_difference(of.pixel_count(), 0.0),
+      source(of.pixel_count()) {}
+
+void PixelSums::add(std::size_t pixel, const PixelShader& shader, std::uint32_t first,
+                    std::uint32_t count) {
+  for (std::size_t k = 0; k < entries; ++k) radiance[pixel * entries + k] += shader.sums()[k];
+  for (std::size_t k = 0; k < count; ++k) {
+    const double y = shader.sample_luminance()[k];
+    luminance[pixel] += y;
+    luminance2[pixel] += y * y;
+    half_difference[pixel] += (first + k) % 2 == 0 ? y : -y;
+  }
+  source[pixel].luminance += shader.source().luminance;
+  source[pixel].luminance2 += shader.source().luminance2;
+  source[pixel].reflecting += shader.source().reflecting;
+  samples[pixel] += count;
+  std::vector<FieldTerm>& of_pixel = terms[pixel];
+  for (const FieldTerm& more : shader.field_terms()) {
+    const auto same = std::find_if(of_pixel.begin(), of_pixel.end(),
+                                   [&](const FieldTerm& term) { return term.point == more.point; });
+    if (same == of_pixel.end()) {
+      of_pixel.push_back(more);
+    } else {
+      same->diffuse += more.diffuse;
+      same->lobe += more.lobe;
+    }
+  }
+}
+
+bool PixelSums::counts(std::size_t pixel) const {
+  const double n = samples[pixel];
+  const SourceSeen& seen = source[pixel];
+  if (n == 0.0 || seen.reflecting == 0.0) return false;
+  if (seen.luminance == 0.0) return true;
+  const double spread = seen.luminance2 - seen.luminance * seen.luminance / n;
+  return seen.reflecting == n && spread <= 1e-6 * seen.luminance2;
+}
+
+double PixelSums::sample_variance(std::size_t pixel) const {
+  const double n = samples[pixel];
+  if (n < 2.0) return 0.0;
+  const double sum = luminance[pixel];
+  // Rounding leaves a few units of double precision where all samples are alike.
+  const double spread = luminance2[pixel] - sum * sum / n;
+  return spread > 1e-12 * luminance2[pixel] ? spread / (n - 1.0) / n : 0.0;
+}
+
+double PixelSums::deviation(std::size_t pixel, double bright) const {
+  const double n = samples[pixel];
+  if (n < 2.0) return 0.0;
+  const double mean = luminance[pixel] / n;
+  return std::sqrt(sample_variance(pixel) * n) * (mean > bright ? bright / mean : 1.0);
+}
+
+double PixelSums::squared_error(std::size_t pixel) const {
+  if (samples[pixel] < 2) return 0.0;
+  // Of few pixels the halves tell little: there their samples' spread, which is an upper bound.
+  if (window.pixel_count() < few_pixels) return sample_variance(pixel);
+  const double off = half_difference[pixel] / samples[pixel];
+  return off * off;
+}
+
+void shade_samples(const ShadingScene& shared, const CameraModel& camera,
+                   const std::vector<std::uint32_t>& wanted, PixelSums& sums, RayCounts& rays,
+                   const std::function<bool()>& stop,
+                   const std::function<void(std::uint64_t samples)>& progress) {
+  const Window& window = sums.window;
+  const int tiles_x = (window.columns + tile_edge_px - 1) / tile_edge_px;
+  const int tiles_y = (window.rows + tile_edge_px - 1) / tile_edge_px;
+  const auto tiles = static_cast<std::size_t>(tiles_x) * static_cast<std::size_t>(tiles_y);
+  std::mutex mutex;
+  base::parallel_chunks(tiles, 1, [&](std::size_t tile, std::size_t) {
+    if (stop && stop()) return;
+    const int x0 = static_cast<int>(tile % static_cast<std::size_t>(tiles_x)) * tile_edge_px;
+    const int y0 = static_cast<int>(tile / static_cast<std::size_t>(tiles_x)) * tile_edge_px;
+    PixelShader shader(shared);
+    std::uint64_t count = 0;
+    for (int y = y0; y < std::min(y0 + tile_edge_px, window.rows); ++y) {
+      for (int x = x0; x < std::min(x0 + tile_edge_px, window.columns); ++x) {
+        const std::size_t pixel = window.index(window.x + x, window.y + y);
+        const std::uint32_t first = sums.samples[pixel];
+        if (wanted[pixel] <= first) continue;
+        shade_pixel(shared, camera, window.x + x, window.y + y, first, wanted[pixel], shader);
+        sums.add(pixel, shader, first, wanted[pixel] - first);
+        count += wanted[pixel] - first;
+      }
+    }
+    const std::lock_guard lock(mutex);
+    rays += shader.rays();
+    if (progress && count > 0) progress(count);
+  });
+}
+
+std::vector<std::uint32_t> wanted_samples(const PixelSums& sums, double per_deviation,
+                                          double bright, int least, int most) {
+  const Window& window = sums.window;
+  std::vector<double> deviation(sums.samples.size());
+  for (std::size_t p = 0; p < deviation.size(); ++p) {
+    deviation[p] = sums.deviation(p, bright);
+  }
+  std::vector<std::uint32_t> wanted(sums.samples.size());
+  for (int y = 0; y < window.rows; ++y) {
+    for (int x = 0; x < window.columns; ++x) {
+      double noisiest = 0.0;
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          const int qx = window.x + x + dx, qy = window.y + y + dy;
+          if ((dx == 0 && dy == 0) || !window.contains(qx, qy)) continue;
+          noisiest = std::max(noisiest, deviation[window.index(qx, qy)]);
+        }
+      }
+      const std::size_t p = window.index(window.x + x, window.y + y);
+      const double ideal = std::clamp(noisiest / per_deviation, double(least), double(most));
+      const auto rounded = std::bit_ceil(static_cast<std::uint32_t>(ideal));
+      const std::uint32_t limit = std::max(static_cast<std::uint32_t>(least), 4 * sums.samples[p]);
+      wanted[p] = std::min({rounded, limit, static_cast<std::uint32_t>(most)});
+    }
+  }
+  return wanted;
+}
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sums that camera samples leave per pixel, and how many more a pixel deserves.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "raytrace/shade/shading.h"
+
+namespace earthshine::raytrace {
+
+struct PixelSums {
+  Window window;
+  std::size_t image_layers = 0, entries = 0;  // with parts behind the layers
+  // pixel * entries, summed over samples, without what they read from gather points
+  std::vector<glm::dvec3> radiance;
+  std::vector<std::vector<FieldTerm>> terms;  // that
+  std::vector<std::uint32_t> samples;
+  // Sums over samples, of the luminance and its square, gather points included and sources that the
+  // camera sees itself left out.
+  std::vector<double> luminance, luminance2;
+  std::vector<double> half_difference;  // of the sums of even and odd samples' luminance
+  std::vector<SourceSeen> source;
+
+  PixelSums(const Window& of, std::size_t image_layers, bool splits_parts);
+  // Of the mean luminance, from the spread of the samples alone.
+  [[nodiscard]] double sample_variance(std::size_t pixel) const;
+  // Standard deviation of one sample's luminance. Pixels brighter than `bright` are wanted as exact
+  // in proportion, not more: theirs is scaled down to that luminance, or glints and lamps would
+  // take all samples.
+  [[nodiscard]] double deviation(std::size_t pixel, double bright) const;
+  // The squared error of the mean, from the pixel's two halves alone: right on average over pixels.
+  [[nodiscard]] double squared_error(std::size_t pixel) const;
+  // Whether the pixel shows a surface that reflects and no edge of a source itself.
+  [[nodiscard]] bool counts(std::size_t pixel) const;
+  // Samples into the sums of a pixel.
+  void add(std::size_t pixel, const PixelShader& shader, std::uint32_t first, std::uint32_t count);
+};
+
+// Brings every pixel up to wanted[pixel] samples. Sample k of a pixel is the same whatever came
+// before. Returns early, between tiles, when stop says so.
+void shade_samples(const ShadingScene& shared, const CameraModel& camera,
+                   const std::vector<std::uint32_t>& wanted, PixelSums& sums, RayCounts& rays,
+                   const std::function<bool()>& stop,
+                   const std::function<void(std::uint64_t samples)>& progress);
+
+// Samples that give the picture the least error for their number are proportional to each pixel's
+// standard deviation: deviation / per_deviation, within [least, most], at most four times what the
+// pixel has. The deviation is that of the noisiest of the eight neighbours: a pixel's own samples
+// would stop where they happen to agree, and its mean would be biased. bright: as in deviation().
+[[nodiscard]] std::vector<std::uint32_t> wanted_samples(const PixelSums& sums, double per_deviation,
+                                                        double bright, int least, int most);
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/shade/shading.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/reflect/specular.h"
+#include "scenes/sky/sky.h"
+#include "scenes/sky/sky_parts.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+using base::pi;
+using scenes::no_group;
+
+constexpr int roulette_depth = 3;       // from here on paths end by chance, without bias
+constexpr double most_survival = 0.95;  // even between perfect mirrors
+constexpr int lobe_rays = 4;            // per camera sample
+
+bool lit(const Rgb& c) { return base::max_component(c) > 0.0; }
+
+}  // namespace
+
+bool gathers_at(const scenes::Scene& scene, const scenes::Hit& hit, GatherRequest& request) {
+  const std::uint32_t number = scene.triangles[hit.triangle].material;
+  const scenes::Material& material = scene.materials[number];
+  const bool glossy = lit(material.specular) && material.shininess < sharp_lobe;
+  if (!(hit.front || material.two_sided) || !(lit(material.diffuse) || glossy)) return false;
+  const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
+  request = {scenes::hit_position(scene, hit), hit.front ? outward : -outward,
+             base::luminance(material.diffuse), glossy ? base::luminance(material.specular) : 0.0,
+             number};
+  return true;
+}
+
+PixelShader::PixelShader(const ShadingScene& shared)
+    : shared_(shared),
+      sums_(shared.layers + (shared.splits_parts ? part_count : 0)),
+      scratch_(shared.layers),
+      gather_points_{base::SobolOwen4(base::Key(0, base::Stream::FinalGather, 0)),
+                     base::SobolOwen4(base::Key(0, base::Stream::FinalGather, 0))},
+      rng_(base::Key(0, base::Stream::Roulette, 0)) {
+  if (shared.world != nullptr) walker_.emplace(*shared.world);
+}
+
+void PixelShader::begin_pixel(std::uint64_t pixel, std::size_t first, std::size_t count) {
+  pixel_ = pixel;
+  first_sample_ = first;
+  source_ = {};
+  terms_.clear();
+  std::fill(sums_.begin(), sums_.end(), Rgb(0.0));
+  sample_luminance_.assign(count, 0.0);
+  const base::Key key(shared_.seed, base::Stream::FinalGather, pixel);
+  gather_points_ = {base::SobolOwen4(key.with(0)), base::SobolOwen4(key.with(1))};
+}
+
+void PixelShader::add_sample(std::size_t sample, const Ray& ray, const scenes::Hit& hit) {
+  sample_ = sample;
+  gathered_ = 0;
+  source_of_sample_ = 0.0;
+  rng_ = base::Rng(base::Key(shared_.lamp_seed, base::Stream::Roulette, pixel_).with(sample));
+  ++rays_.camera;
+  if (!hit.missed()) {
+    const auto& material = shared_.scene.materials[shared_.scene.triangles[hit.triangle].material];
+    const bool shines = hit.front || material.two_sided;
+    const bool reflects = shines && (lit(material.diffuse) || lit(material.specular));
+    if (reflects || material.passes_light_on()) source_.reflecting += 1.0;
+  }
+  shade(ray, hit, Rgb(1.0), 0, Seen::ByCamera);
+  source_.luminance += source_of_sample_;
+  source_.luminance2 += source_of_sample_ * source_of_sample_;
+}
+
+void PixelShader::end_pixel() {
+  flush_shadow();
+  flush_gather();
+}
+
+void PixelShader::add(std::size_t layer, std::size_t sample, Part part, const Rgb& radiance) {
+  sums_[layer] += radiance;
+  if (shared_.splits_parts) sums_[shared_.layers + static_cast<std::size_t>(part)] += radiance;
+  sample_luminance_[sample - first_sample_] += base::luminance(radiance);
+}
+
+void PixelShader::trace(const Ray& ray, const Rgb& weight, int depth, Seen seen,
+                        std::uint64_t& counter) {
+  Rgb kept = weight;
+  if (depth >= roulette_depth) {
+    const double survival = std::min(most_survival, base::max_component(weight));
+    if (rng_.next() >= survival) return;
+    kept /= survival;
+  }
+  ++counter;
+  shade(ray, shared_.query.closest(ray.origin, ray.direction), kept, depth, seen);
+}
+
+void PixelShader::see_source(std::size_t group, const Rgb& radiance, int depth) {
+  const std::size_t layer = shared_.layer[group];
+  if (depth > 0) return add(layer, sample_, Part::Specular, radiance);
+  sums_[layer] += radiance;
+  if (shared_.splits_parts) {
+    sums_[shared_.layers + static_cast<std::size_t>(Part::Direct)] += radiance;
+  }
+  source_of_sample_ += base::luminance(radiance);
+}
+
+void PixelShader::see_sky(const Vec3& direction, const Rgb& weight, int depth, Seen seen) {
+  const scenes::Scene& scene = shared_.scene;
+  const bool on_earth = scene.earth && glm::dot(direction, scene.earth->direction) >=
+                                           std::cos(base::radians(scene.earth->half_angle_deg));
+  if (on_earth) {
+    // A lobe ray reads the Earth only where shadow rays do not already carry its highlight.
+    const bool carried = seen == Seen::ByLobe && !shared_.effects.earth_by_gather;
+    if (shared_.groups.earth != no_group && !carried) {
+      see_source(shared_.groups.earth + scenes::earth_part(scene, direction),
+                 weight * scenes::earth_radiance(scene, direction), depth);
+    }
+  } else if (seen == Seen::ByCamera && shared_.groups.sun != no_group) {
+    see_source(shared_.groups.sun, weight * scenes::sky_radiance(scene, direction), depth);
+  }
+  if (seen != Seen::ByCamera || !shared_.effects.sun_parts) return;
+  const std::size_t part = scenes::sun_part(scene, direction);
+  if (part == scene.sky_parts->suns.size()) return;
+  see_source(shared_.groups.sun_parts + part,
+             weight * scenes::sun_radiance(scene.sky_parts->suns[part]), depth);
+}
+
+bool PixelShader::see_lamp(const Ray& ray, double nearer_than_m, const Rgb& weight, int depth) {
+  const auto seen = shared_.lights.seen_lamp(ray.origin, ray.direction, nearer_than_m);
+  if (!seen) return false;
+  see_source(shared_.groups.lamp[seen->lamp], weight * seen->hit.radiance, depth);
+  return true;
+}
+
+void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weight, int depth,
+                        Seen seen) {
+  const double distance = hit.missed() ? std::numeric_limits<double>::infinity() : hit.t;
+  if (seen == Seen::ByCamera && see_lamp(ray, distance, weight, depth)) return;
+  if (hit.missed()) return see_sky(ray.direction, weight, depth, seen);
+
+  const scenes::Scene& scene = shared_.scene;
+  const scenes::Triangle& triangle = scene.triangles[hit.triangle];
+  const scenes::Material& material = scene.materials[triangle.material];
+  const bool glass = lit(material.transmit);
+  if (!hit.front && !material.two_sided && !glass) return;  // the black back
+
+  const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
+  const Surface surface{material, scenes::hit_position(scene, hit), outward,
+                        hit.front ? outward : -outward, -ray.direction};
+  const bool shines = hit.front || material.two_sided;
+  const bool shows_emission = seen == Seen::ByCamera || !shared_.sampled_emitter[triangle.material];
+  if (shines && shows_emission && shared_.groups.material[triangle.material] != no_group) {
+    see_source(shared_.groups.material[triangle.material], weight * material.emit / pi, depth);
+  }
+  if (shines) {
+    if (lit(material.diffuse) || lit(material.specular)) direct(surface, weight, depth);
+    if (lit(material.diffuse)) {
+      if (shared_.groups.ambient != no_group) {
+        add(shared_.layer[shared_.groups.ambient], sample_,
+            depth == 0 ? Part::Indirect : Part::Specular,
+            weight * material.diffuse * scene.ambient_radiance);
+      }
+      diffuse(surface, hit, weight, depth);
+    }
+    if (lit(material.specular) && shared_.gathers) lobe(surface, weight, depth);
+  }
+  if (glass || lit(material.mirror)) mirror_and_glass(ray, surface, weight, depth, seen);
+}
+
+void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
+  const double offset = shared_.query.surface_offset_m();
+  const Vec3 origin = surface.position + surface.normal * offset;
+  const Vec3 mirrored =
+      2.0 * glm::dot(surface.view, surface.normal) * surface.normal - surface.view;
+  const base::Key light_key =
+      base::Key(shared_.lamp_seed, base::Stream::LightSample, pixel_).with(half());
+  const auto light_point = [&](std::size_t k) {
+    return base::SobolOwen4(light_key.with(k)).point2(in_half());
+  };
+  const auto choice = light_point(shared_.lights.count());
+  chosen_.clear();
+  shared_.lights.choose(
+      {surface.position, surface.normal, mirrored, base::max_component(surface.material.diffuse),
+       base::max_component(surface.material.specular), surface.material.shininess},
+      double(choice[0]) + 0x1p-24 * double(choice[1]), chosen_);
+  for (const auto& [k, chance_weight] : chosen_) {
+    if (shared_.lights.below_horizon(k, surface.normal)) continue;
+    const auto u = light_point(k);
+    const scenes::LightSample light = shared_.lights.sample(k, surface.position, u[0], u[1]);
+    const double cosine = glm::dot(light.direction, surface.normal);
+    if (cosine <= 0.0 || !lit(light.normal_illuminance_lx)) continue;
+    // L = (E cos / pi) (k_d + k_s cos^n alpha): the measured Phong form.
+    Rgb highlight(0.0);
+    const double cos_alpha = glm::dot(light.direction, mirrored);
+    if (cos_alpha > 0.0 && lit(surface.material.specular)) {
+      highlight = surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
+    }
+    const Rgb incident = weight * light.normal_illuminance_lx * (chance_weight * cosine / pi);
+    const Rgb value = incident * (surface.material.diffuse + highlight);
+    if (!lit(value)) continue;
+    const double reach = light.distance_m * (1.0 - 1e-5) - 2.0 * offset;
+    if (reach <= 0.0) continue;
+    queue_shadow(origin, light.direction, reach,
+                 {value, incident * highlight, shared_.layer[shared_.lights.group(k)], sample_,
+                  depth == 0, shared_.lights.kind(k)});
+  }
+}
+
+void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
+  const double n = surface.material.shininess;
+  if (depth == 0 && n < sharp_lobe && shared_.field != nullptr && read_lobe(surface, weight)) {
+    return;
+  }
+  const Vec3 mirrored =
+      2.0 * glm::dot(surface.view, surface.normal) * surface.normal - surface.view;
+  const base::Frame3 frame = base::frame_around(mirrored);
+  const Vec3 origin = surface.position + surface.normal * shared_.query.surface_offset_m();
+  const int count = depth == 0 ? lobe_rays : 1;
+  for (int k = 0; k < count; ++k) {
+    // Density (n + 1) / (2 pi) cos^n alpha; L = integral L_in (k_s / pi) cos^n cos_theta.
+    const double cos_alpha = std::pow(1.0 - rng_.next(), 1.0 / (n + 1.0));
+    const double sine = std::sqrt(std::max(0.0, 1.0 - cos_alpha * cos_alpha));
+    const double phi = 2.0 * pi * rng_.next();
+    const Vec3 direction = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cos_alpha});
+    const double cosine = glm::dot(direction, surface.normal);
+    if (cosine <= 0.0) continue;
+    const Rgb value = weight * surface.material.specular * (2.0 * cosine / ((n + 1.0) * count));
+    if (n >= sharp_lobe) {
+      trace({origin, direction}, value, depth + 1, Seen::ByLobe, rays_.lobe);
+    } else {
+      ++rays_.lobe;
+      queue_gather(origin, {direction, value, {}, Part::Specular, sample_, ++gathered_});
+    }
+  }
+}
+
+void PixelShader::mirror_and_glass(const Ray& ray, const Surface& surface, const Rgb& weight,
+                                   int depth, Seen seen) {
+  const Vec3 lift = surface.normal * shared_.query.surface_offset_m();
+  Rgb reflected = weight * surface.material.mirror, through(0.0);
+  Vec3 bent(0.0);
+  if (lit(surface.material.transmit)) {
+    through = weight * surface.material.transmit;
+    const scenes::Refraction refraction =
+        scenes::refract(surface.material, surface.outward, ray.direction);
+    bent = refraction.direction;
+    if (refraction.total) {
+      reflected += through;
+      through = Rgb(0.0);
+    }
+  }
+  if (depth >= roulette_depth && lit(reflected) && lit(through)) {
+    // Deep paths take one way, or their number would grow without end.
+    const double share = base::max_component(reflected) /
+                         (base::max_component(reflected) + base::max_component(through));
+    const bool goes_back = rng_.next() < share;
+    reflected *= goes_back ? 1.0 / share : 0.0;
+    through *= goes_back ? 0.0 : 1.0 / (1.0 - share);
+  }
+  if (lit(through))
+    trace({surface.position - lift, bent}, through, depth + 1, seen, rays_.refraction);
+  if (lit(reflected)) {
+    trace({surface.position + lift, glm::reflect(ray.direction, surface.normal)}, reflected,
+          depth + 1, seen, rays_.mirror);
+  }
+}
+
+}  // namespace earthshine::raytrace

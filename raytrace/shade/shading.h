@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// Radiance along camera rays. The table of who carries which light path stands in render.h.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/numbers/random.h"
+#include "raytrace/camera/pixel_filter.h"
+#include "raytrace/frame/frame.h"
+#include "raytrace/frame/options.h"
+#include "raytrace/gather/gather_field.h"
+#include "raytrace/light/light_sampler.h"
+
+namespace earthshine::raytrace {
+
+// Where the light of a surface that the camera sees itself is read from.
+enum class DiffuseSource {
+  Field,    // the pixel's gather point; gather rays of its own where there is none
+  Gather,   // gather rays of every camera sample
+  Solution  // the radiosity solution: noise-free and coarse, for planning
+};
+
+// What all pixels share; read only.
+struct ShadingScene {
+  const scenes::Scene& scene;
+  const scenes::LightGroups& groups;
+  const scenes::Effects& effects;
+  const scenes::RayQuery& query;
+  const LightSampler& lights;
+  const RadianceTable& soft_radiance;   // what surfaces seen in mirrors read
+  const IncomingLight& incoming;        // along gather rays
+  std::vector<std::size_t> layer = {};  // of a light group: its image layer
+  std::size_t layers = 1;
+  bool splits_parts = false;  // sums also by Part
+  Indirect indirect = Indirect::Radiosity;
+  bool gathers = false;  // cosine rays carry light in this render
+  // Of paths that go on from where gather and lobe rays end, to find what the solution lacks there;
+  // nullptr: there is no solution.
+  const PathWorld* world = nullptr;
+  DiffuseSource diffuse = DiffuseSource::Gather;
+  const GatherField* field = nullptr;  // with DiffuseSource::Field
+  Vec3 camera_position{0.0};
+  PixelFilter filter{scenes::Camera{}};    // of the camera samples
+  int gather_rays = 16;                    // per camera sample
+  std::uint64_t seed = 1;                  // of camera and gather rays
+  std::uint64_t lamp_seed = 1;             // of shadow and lobe rays
+  std::vector<bool> sampled_emitter = {};  // per material: shadow rays carry its light
+};
+
+// Whether a surface that the camera meets there is gathered for, and how.
+[[nodiscard]] bool gathers_at(const scenes::Scene& scene, const scenes::Hit& hit,
+                              GatherRequest& request);
+
+// Light of a gather point that a pixel's samples reflect: sums over samples of k_d and k_s.
+struct FieldTerm {
+  std::uint32_t point = 0;
+  glm::vec3 diffuse{0.0F}, lobe{0.0F};
+};
+
+// Luminance of the sources that a pixel's samples saw themselves, and its square; how many samples
+// met a surface that reflects.
+struct SourceSeen {
+  double luminance = 0.0, luminance2 = 0.0, reflecting = 0.0;
+};
+
+// Shades the samples of one pixel after another; one object per thread. Samples with even and odd
+// numbers are two halves, independent of each other.
+class PixelShader {
+ public:
+  explicit PixelShader(const ShadingScene& shared);
+
+  // Keys all random numbers to the pixel (its number in the whole picture) and clears the sums.
+  // Samples first .. first + count - 1 of the pixel follow.
+  void begin_pixel(std::uint64_t pixel, std::size_t first, std::size_t count);
+  // The pixel that the next sample falls into (a wide pixel filter puts some beside their own):
+  // there the gather field is looked up.
+  void look_near(int x, int y) {
+    x_ = x;
+    y_ = y;
+  }
+  void add_sample(std::size_t sample, const Ray& ray, const scenes::Hit& hit);
+  void end_pixel();  // traces what is still queued
+
+  // Sum over samples of radiance, per image layer; then, with splits_parts, per Part.
+  [[nodiscard]] std::span<const Rgb> sums() const { return sums_; }
+  // Luminance of each sample, all layers together, but for sources that the camera sees itself.
+  [[nodiscard]] std::span<const double> sample_luminance() const { return sample_luminance_; }
+  // Sums over samples of the light that comes straight from a source that the camera sees; their
+  // luminance is without it.
+  [[nodiscard]] const SourceSeen& source() const { return source_; }
+  // What the samples read from gather points, which is in their luminance but not in sums().
+  [[nodiscard]] std::span<const FieldTerm> field_terms() const { return terms_; }
+  [[nodiscard]] const RayCounts& rays() const { return rays_; }
+
+ private:
+  // What kind of ray asks, which decides what it may see of the sources themselves.
+  enum class Seen { ByCamera, ByLobe };
+  struct Surface {
+    const scenes::Material& material;
+    Vec3 position;
+    Vec3 outward;  // unit normal of the front
+    Vec3 normal;   // the same on the side of the viewer
+    Vec3 view;     // unit, toward the viewer
+  };
+
+  // counter: the kind of ray it is.
+  void trace(const Ray& ray, const Rgb& weight, int depth, Seen seen, std::uint64_t& counter);
+  void shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weight, int depth, Seen seen);
+  // The half of the current sample, and its number in it.
+  [[nodiscard]] std::size_t half() const { return sample_ % 2; }
+  [[nodiscard]] std::uint32_t in_half() const { return static_cast<std::uint32_t>(sample_ / 2); }
+
+  void see_source(std::size_t group, const Rgb& radiance, int depth);
+  void see_sky(const Vec3& direction, const Rgb& weight, int depth, Seen seen);
+  bool see_lamp(const Ray& ray, double nearer_than_m, const Rgb& weight, int depth);
+  void direct(const Surface& surface, const Rgb& weight, int depth);
+  void diffuse(const Surface& surface, const scenes::Hit& hit, const Rgb& weight, int depth);
+  [[nodiscard]] std::size_t find_point(const Surface& surface) const;
+  bool read_field(const Surface& surface, const Rgb& weight);
+  bool read_lobe(const Surface& surface, const Rgb& weight);
+  FieldTerm& term_of(std::size_t point);
+  void read_solution(const scenes::Hit& hit, const Rgb& weight, int depth);
+  void gather(const Surface& surface, const Rgb& weight, int depth);
+  void lobe(const Surface& surface, const Rgb& weight, int depth);
+  void mirror_and_glass(const Ray& ray, const Surface& surface, const Rgb& weight, int depth,
+                        Seen seen);
+
+  struct ShadowRay {
+    Rgb value{0.0};     // what it brings if nothing is in its way
+    Rgb specular{0.0};  // the part of it by a highlight
+    std::size_t layer = 0, sample = 0;
+    bool by_camera = true;  // at a surface that the camera sees itself
+    scenes::LightKind kind = scenes::LightKind::Sun;
+  };
+  void queue_shadow(const Vec3& origin, const Vec3& direction, double reach_m,
+                    const ShadowRay& ray);
+  struct GatherRay {
+    Vec3 direction{0.0};
+    Rgb weight{0.0};
+    RayShare share;
+    Part part = Part::Indirect;
+    std::size_t sample = 0;
+    std::uint64_t number = 0;  // in the sample: the key of what follows it
+  };
+  void queue_gather(const Vec3& origin, const GatherRay& ray);
+  void flush_shadow();
+  void add_lacking(const GatherRay& ray, const scenes::Hit& hit);
+  void flush_gather();
+  void add(std::size_t layer, std::size_t sample, Part part, const Rgb& radiance);
+
+  const ShadingScene& shared_;
+  RayCounts rays_;
+  std::vector<Rgb> sums_;
+  std::vector<Rgb> scratch_;  // one per layer, and what came straight from the sky
+  std::vector<double> sample_luminance_;
+  std::size_t sample_ = 0, first_sample_ = 0;
+  SourceSeen source_;
+  double source_of_sample_ = 0.0;
+  std::vector<FieldTerm> terms_;
+  std::optional<PathWalker> walker_;
+  int x_ = 0, y_ = 0;
+  std::uint64_t pixel_ = 0, gathered_ = 0;
+  std::array<base::SobolOwen4, 2> gather_points_;  // by half
+  std::vector<scenes::LightChoice> chosen_;
+  base::Rng rng_;
+
+  static constexpr std::size_t width = scenes::RayPacket::width;
+  scenes::RayPacket shadow_packet_, gather_packet_;
+  std::array<ShadowRay, width> shadow_rays_;
+  std::array<GatherRay, width> gather_rays_;
+  std::size_t shadow_count_ = 0, gather_count_ = 0;
+};
+
+}  // namespace earthshine::raytrace

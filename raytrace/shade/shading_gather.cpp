@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// PixelShader's diffuse light and its ray queues, eight rays at a time.
+#include <algorithm>
+#include <cmath>
+
+#include "raytrace/shade/shading.h"
+
+namespace earthshine::raytrace {
+
+using base::pi;
+
+namespace {
+
+// Gather rays of a camera sample that finds no gather point for its surface: a lens out of focus, a
+// wire thinner than a pixel.
+constexpr int rays_without_point = 4;
+// And of one that was met by mirrors or glass.
+constexpr int rays_behind_mirror = 4;
+
+}  // namespace
+
+void PixelShader::diffuse(const Surface& surface, const scenes::Hit& hit, const Rgb& weight,
+                          int depth) {
+  const bool planned = shared_.diffuse == DiffuseSource::Solution;
+  if (planned && shared_.indirect == Indirect::Radiosity) {
+    if (!shared_.soft_radiance.empty()) read_solution(hit, weight, depth);
+    return;
+  }
+  if (!shared_.gathers) return;
+  const Rgb reflected = weight * surface.material.diffuse;
+  if (depth == 0 && shared_.field != nullptr && read_field(surface, reflected)) return;
+  gather(surface, reflected, depth);
+}
+
+void PixelShader::read_solution(const scenes::Hit& hit, const Rgb& weight, int depth) {
+  std::fill(scratch_.begin(), scratch_.end(), Rgb(0.0));
+  shared_.soft_radiance.add(hit, weight, scratch_);
+  const Part part = depth == 0 ? Part::Indirect : Part::Specular;
+  for (std::size_t k = 0; k < shared_.layers; ++k) add(k, sample_, part, scratch_[k]);
+}
+
+std::size_t PixelShader::find_point(const Surface& surface) const {
+  return shared_.field->find(x_, y_, glm::vec3(surface.position - shared_.camera_position),
+                             glm::vec3(surface.normal));
+}
+
+FieldTerm& PixelShader::term_of(std::size_t point) {
+  for (FieldTerm& term : terms_) {
+    if (term.point == point) return term;
+  }
+  return terms_.emplace_back(FieldTerm{static_cast<std::uint32_t>(point)});
+}
+
+bool PixelShader::read_field(const Surface& surface, const Rgb& weight) {
+  const std::size_t point = find_point(surface);
+  if (point == no_point || shared_.field->points()[point].reflectance <= 0.0F) return false;
+  term_of(point).diffuse += glm::vec3(weight);
+  const std::span<const glm::vec3> radiance = shared_.field->diffuse(point);
+  Rgb all(0.0);
+  for (std::size_t k = 0; k < shared_.layers; ++k) all += Rgb(radiance[k]);
+  sample_luminance_[sample_ - first_sample_] += base::luminance(weight * all);
+  return true;
+}
+
+bool PixelShader::read_lobe(const Surface& surface, const Rgb& weight) {
+  const std::size_t point = find_point(surface);
+  if (point == no_point) return false;
+  const std::uint32_t material = shared_.field->points()[point].material;
+  if (&shared_.scene.materials[material] != &surface.material) return false;
+  const std::span<const glm::vec3> radiance = shared_.field->lobe(point);
+  if (radiance.empty()) return false;
+  const Rgb reflected = weight * surface.material.specular;
+  term_of(point).lobe += glm::vec3(reflected);
+  Rgb all(0.0);
+  for (const glm::vec3& layer : radiance) all += Rgb(layer);
+  sample_luminance_[sample_ - first_sample_] += base::luminance(reflected * all);
+  return true;
+}
+
+void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
+  const base::Frame3 frame = base::frame_around(surface.normal);
+  const Vec3 origin = surface.position + surface.normal * shared_.query.surface_offset_m();
+  const int count = depth > 0       ? rays_behind_mirror
+                    : shared_.field ? rays_without_point
+                                    : shared_.gather_rays;
+  const bool shares = depth == 0 && !shared_.incoming.bright().empty();
+  GatherRay ray;
+  ray.sample = sample_;
+  ray.part = depth == 0 ? Part::Indirect : Part::Specular;
+  ray.share.found_rays = count;
+  // Cosine-distributed rays: L = (k_d / pi) integral L_in cos = k_d mean(L_in).
+  ray.weight = weight / static_cast<double>(count);
+  rays_.gather += static_cast<std::uint64_t>(count);
+  for (int k = 0; k < count; ++k) {
+    std::array<float, 2> u{};
+    if (depth == 0) {
+      u = gather_points_[half()].point2(in_half() * static_cast<std::uint32_t>(count) +
+                                        static_cast<std::uint32_t>(k));
+    } else {
+      u = {static_cast<float>(rng_.next()), static_cast<float>(rng_.next())};
+    }
+    const float r = std::sqrt(u[0]), phi = 2.0F * static_cast<float>(pi) * u[1];
+    const float cosine = std::sqrt(std::max(0.0F, 1.0F - u[0]));
+    ray.direction = frame.to_world({r * std::cos(phi), r * std::sin(phi), cosine});
+    if (shares) ray.share.cosine = double(cosine);
+    ray.number = ++gathered_;
+    queue_gather(origin, ray);
+  }
+  if (!shares) return;
+  const double choice = rng_.next(), x = rng_.next(), y = rng_.next();
+  const IncomingLight::Aimed aimed =
+      shared_.incoming.aim(origin, surface.normal, choice, x, y, count, 1.0);
+  if (aimed.weight <= 0.0) return;
+  ++rays_.gather;
+  ray.direction = aimed.direction;
+  ray.weight = weight * aimed.weight;
+  ray.share = aimed.share;
+  ray.number = ++gathered_;
+  queue_gather(origin, ray);
+}
+
+void PixelShader::queue_shadow(const Vec3& origin, const Vec3& direction, double reach_m,
+                               const ShadowRay& ray) {
+  shared_.query.set(shadow_packet_, shadow_count_, origin, direction, reach_m);
+  shadow_rays_[shadow_count_] = ray;
+  if (++shadow_count_ == width) flush_shadow();
+}
+
+void PixelShader::flush_shadow() {
+  if (shadow_count_ == 0) return;
+  const std::uint32_t hidden = shared_.query.occluded(shadow_packet_, shadow_count_);
+  for (std::size_t k = 0; k < shadow_count_; ++k) {
+    rays_.add_shadow(shadow_rays_[k].kind);
+    if (((hidden >> k) & 1U) != 0) continue;
+    const ShadowRay& ray = shadow_rays_[k];
+    add(ray.layer, ray.sample, ray.by_camera ? Part::Direct : Part::Specular, ray.value);
+    if (shared_.splits_parts && ray.by_camera) {
+      sums_[shared_.layers + static_cast<std::size_t>(Part::Direct)] -= ray.specular;
+      sums_[shared_.layers + static_cast<std::size_t>(Part::Specular)] += ray.specular;
+    }
+  }
+  shadow_count_ = 0;
+}
+
+void PixelShader::queue_gather(const Vec3& origin, const GatherRay& ray) {
+  shared_.query.set(gather_packet_, gather_count_, origin, ray.direction);
+  gather_rays_[gather_count_] = ray;
+  if (++gather_count_ == width) flush_gather();
+}
+
+// What the solution lacks where the ray ended, by a path that goes on from there.
+void PixelShader::add_lacking(const GatherRay& ray, const scenes::Hit& hit) {
+  const double kept = shared_.incoming.kept_part(hit, ray.direction, ray.share);
+  if (kept <= 0.0) return;
+  base::Rng rng(
+      base::Key(shared_.seed, base::Stream::Residual, pixel_).with(ray.sample).with(ray.number));
+  const auto lacking = walker_->residual(shared_.incoming, {Vec3(0.0), ray.direction}, hit, rng);
+  for (std::size_t layer = 0; layer < shared_.layers; ++layer) {
+    add(layer, ray.sample, ray.part, kept * ray.weight * lacking[layer]);
+  }
+}
+
+void PixelShader::flush_gather() {
+  if (gather_count_ == 0) return;
+  scenes::HitPacket hits;
+  shared_.query.closest(gather_packet_, gather_count_, hits);
+  for (std::size_t k = 0; k < gather_count_; ++k) {
+    const GatherRay& ray = gather_rays_[k];
+    std::fill(scratch_.begin(), scratch_.end(), Rgb(0.0));
+    const scenes::Hit hit{hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0};
+    shared_.incoming.add(hit, ray.direction, ray.share, ray.weight, scratch_, rays_);
+    // What came straight from the sky reached the surface directly.
+    const Part part = ray.part == Part::Indirect && hit.missed() ? Part::Direct : ray.part;
+    for (std::size_t layer = 0; layer < shared_.layers; ++layer) {
+      add(layer, ray.sample, part, scratch_[layer]);
+    }
+    if (walker_ && !hit.missed()) add_lacking(ray, hit);
+  }
+  gather_count_ = 0;
+}
+
+}  // namespace earthshine::raytrace

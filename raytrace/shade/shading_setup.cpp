@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/shade/shading_setup.h"
+
+#include "raytrace/light/distributed_area.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+bool reads(const radiosity::Solution& solution, const RenderOptions& options) {
+  return options.indirect == Indirect::Radiosity && solution.columns > 0;
+}
+
+std::span<const float> values_if(bool read, const std::vector<float>& values) {
+  return read ? std::span<const float>(values) : std::span<const float>();
+}
+
+std::size_t image_layers(const scenes::LightGroups& groups, const RenderOptions& options) {
+  return options.per_light ? std::max<std::size_t>(1, groups.count()) : 1;
+}
+
+std::size_t earth_layer(const scenes::LightGroups& groups, const RenderOptions& options) {
+  return options.per_light && groups.earth != scenes::no_group ? groups.earth : 0;
+}
+
+bool recursive(const scenes::Effects& effects) {
+  return effects.mirror || effects.refraction || effects.phong;
+}
+
+BrightPatches bright_of(const radiosity::Solution& solution, const RenderOptions& options) {
+  return reads(solution, options) ? BrightPatches(solution) : BrightPatches();
+}
+
+}  // namespace
+
+ShadingSetup::ShadingSetup(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                           const scenes::Effects& effects, const scenes::RayQuery& query,
+                           const radiosity::Solution& solution, const scenes::Camera& camera,
+                           const RenderOptions& options, const radiosity::Solution* aimed_at)
+    : camera_(make_camera_model(camera, options.columns, options.rows)),
+      sight_(reads(solution, options) ? CellSight(query, solution.patches) : CellSight()),
+      all_(solution, values_if(reads(solution, options), solution.radiosity), options.per_light,
+           sight_),
+      soft_(solution,
+            values_if(reads(solution, options) &&
+                          (recursive(effects) || options.shared.on || aimed_at != nullptr),
+                      solution.soft_radiosity),
+            options.per_light, sight_),
+      lights_(scene, groups, effects, options.indirect, options.distributed_lights,
+              options.per_light, earth_area(scene, options.distributed_over)),
+      bright_(bright_of(aimed_at != nullptr ? *aimed_at : solution, options)),
+      incoming_(scene, query, effects, all_, bright_, image_layers(groups, options),
+                earth_layer(groups, options), effects.mirror || effects.refraction),
+      world_{scene, groups, effects, query, lights_, {}, {}, 1, PathSet::NoCaustics},
+      shared_{scene, groups, effects, query, lights_, soft_, incoming_} {
+  shared_.indirect = options.indirect;
+  shared_.layers = image_layers(groups, options);
+  for (std::size_t g = 0; g < groups.count(); ++g) {
+    shared_.layer.push_back(options.per_light ? g : 0);
+  }
+  shared_.gathers = options.indirect != Indirect::Distributed &&
+                    (reads(solution, options) || effects.earth_by_gather);
+  shared_.sampled_emitter.assign(scene.materials.size(), true);
+  if (options.indirect == Indirect::Radiosity) {
+    shared_.sampled_emitter = radiosity::emitter_is_explicit(scene);
+  }
+  world_.sampled_emitter = shared_.sampled_emitter;
+  world_.layer = shared_.layer;
+  world_.layers = shared_.layers;
+  if (reads(solution, options)) shared_.world = &world_;
+  shared_.seed = shared_.lamp_seed = options.seed;
+  shared_.camera_position = camera_.position;
+  shared_.filter = PixelFilter(camera);
+}
+
+}  // namespace earthshine::raytrace

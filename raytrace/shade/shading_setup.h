@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tables that shading reads, built once per picture.
+#pragma once
+
+#include "raytrace/shade/shading.h"
+
+namespace earthshine::raytrace {
+
+class ShadingSetup {
+ public:
+  // All arguments must outlive it. aimed_at: the solution whose bright patches get rays aimed at
+  // them, if that is another one than is read.
+  ShadingSetup(const scenes::Scene& scene, const scenes::LightGroups& groups,
+               const scenes::Effects& effects, const scenes::RayQuery& query,
+               const radiosity::Solution& solution, const scenes::Camera& camera,
+               const RenderOptions& options, const radiosity::Solution* aimed_at = nullptr);
+  ShadingSetup(const ShadingSetup&) = delete;
+  ShadingSetup& operator=(const ShadingSetup&) = delete;
+
+  [[nodiscard]] ShadingScene& shared() { return shared_; }
+  // For paths that find what the solution lacks, or gather points whose lobes have none.
+  [[nodiscard]] const PathWorld& world() const { return world_; }
+  [[nodiscard]] const CameraModel& camera() const { return camera_; }
+
+ private:
+  CameraModel camera_;
+  CellSight sight_;
+  RadianceTable all_, soft_;
+  LightSampler lights_;
+  BrightPatches bright_;
+  IncomingLight incoming_;
+  PathWorld world_;
+  ShadingScene shared_;
+};
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which gather points share, and means over them.
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "raytrace/share/same_surface.h"
+#include "raytrace/share/share.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+constexpr std::size_t mask_levels = share_levels + window_blurs - 1;
+constexpr std::array<float, 5> spline = {1.0F / 16, 1.0F / 4, 3.0F / 8, 1.0F / 4, 1.0F / 16};
+constexpr std::uint32_t centre_bit = 1U << 12U, all_bits = (1U << 25U) - 1U;
+
+// Rounding of single-precision positions.
+float slack(const GatherPoint& point) { return 0.02F * point.spacing_m; }
+
+constexpr std::size_t rows_at_once = 4;
+
+}  // namespace
+
+template <class Keep>
+void Neighbours::sift(std::size_t level, const Keep& keep) {
+  std::vector<std::uint32_t>& mask = masks_[level];
+  const int step = 1 << level;
+  base::parallel_chunks(
+      static_cast<std::size_t>(rows_), rows_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin * static_cast<std::size_t>(columns_);
+             p < end * static_cast<std::size_t>(columns_); ++p) {
+          const int x = static_cast<int>(p) % columns_, y = static_cast<int>(p) / columns_;
+          std::uint32_t bit = 1U;
+          for (int dy = -2; dy <= 2; ++dy) {
+            for (int dx = -2; dx <= 2; ++dx, bit <<= 1U) {
+              if ((mask[p] & bit) == 0 || bit == centre_bit) continue;
+              const int qx = x + dx * step, qy = y + dy * step;
+              const bool inside = qx >= 0 && qy >= 0 && qx < columns_ && qy < rows_;
+              if (!inside || !keep(p, static_cast<std::size_t>(qy * columns_ + qx))) {
+                mask[p] &= ~bit;
+              }
+            }
+          }
+        }
+      });
+}
+
+Neighbours::Neighbours(const Window& window, const std::vector<GatherPoint>& points, bool any)
+    : columns_(window.columns), rows_(window.rows), masks_(mask_levels) {
+  for (std::size_t level = 0; level < mask_levels; ++level) {
+    masks_[level].resize(window.pixel_count());
+    for (std::size_t p = 0; p < masks_[level].size(); ++p) {
+      masks_[level][p] = points[p].reach_m <= 0.0F ? 0U : any ? all_bits : centre_bit;
+    }
+    sift(level, [&](std::size_t p, std::size_t q) {
+      const GatherPoint &a = points[p], &b = points[q];
+      return b.reach_m > 0.0F &&
+             (a.triangle == b.triangle ||
+              same_surface(a.position, a.normal, b.position, b.normal, slack(a)));
+    });
+  }
+}
+
+Neighbours Neighbours::of_like_material(const std::vector<GatherPoint>& points) const {
+  Neighbours like = *this;
+  for (std::size_t level = 0; level < mask_levels; ++level) {
+    like.sift(level, [&](std::size_t p, std::size_t q) {
+      return points[p].material == points[q].material;
+    });
+  }
+  return like;
+}
+
+void Neighbours::blur(std::size_t level, const Planes& values, const std::vector<float>* weight,
+                      Planes& means) const {
+  means.resize(values.size());
+  for (std::size_t k = 0; k < values.size(); ++k) means[k].resize(values[k].size());
+  base::parallel_chunks(static_cast<std::size_t>(rows_), rows_at_once,
+                        [&](std::size_t begin, std::size_t end) {
+                          for (std::size_t y = begin; y < end; ++y) {
+                            blur_row(level, y, values, weight, means);
+                          }
+                        });
+}
+
+// One neighbour of all points of the row after another, so that the points go side by side.
+void Neighbours::blur_row(std::size_t level, std::size_t y, const Planes& values,
+                          const std::vector<float>* weight, Planes& means) const {
+  const auto columns = static_cast<std::ptrdiff_t>(columns_);
+  const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(y) * columns;
+  const std::ptrdiff_t step = std::ptrdiff_t{1} << level;
+  const std::uint32_t* mask = &masks_[level][static_cast<std::size_t>(first)];
+  std::vector<float> sum(static_cast<std::size_t>(columns_), 0.0F), share(sum.size());
+  for (std::vector<float>& mean : means) std::fill_n(mean.begin() + first, columns, 0.0F);
+  std::uint32_t bit = 0;
+  for (std::ptrdiff_t dy = -2; dy <= 2; ++dy) {
+    for (std::ptrdiff_t dx = -2; dx <= 2; ++dx, ++bit) {
+      const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(y) + dy * step;
+      const std::ptrdiff_t x0 = std::max<std::ptrdiff_t>(0, -dx * step);
+      const std::ptrdiff_t x1 = std::min(columns, columns - dx * step);
+      if (row < 0 || row >= rows_ || x0 >= x1) continue;
+      const std::ptrdiff_t to =
+          row * columns + dx * step;  // the neighbour of the row's first point
+      const float kernel =
+          spline[static_cast<std::size_t>(dy + 2)] * spline[static_cast<std::size_t>(dx + 2)];
+      for (std::ptrdiff_t x = x0; x < x1; ++x) {
+        share[static_cast<std::size_t>(x)] =
+            kernel * static_cast<float>(static_cast<std::int32_t>((mask[x] >> bit) & 1U));
+      }
+      if (weight != nullptr) {
+        const float* of = weight->data() + to;
+        for (std::ptrdiff_t x = x0; x < x1; ++x) share[static_cast<std::size_t>(x)] *= of[x];
+      }
+      for (std::ptrdiff_t x = x0; x < x1; ++x) {
+        sum[static_cast<std::size_t>(x)] += share[static_cast<std::size_t>(x)];
+      }
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        const float* from = values[k].data() + to;
+        float* mean = means[k].data() + first;
+        const float* w = share.data();
+        for (std::ptrdiff_t x = x0; x < x1; ++x) mean[x] += w[x] * from[x];
+      }
+    }
+  }
+  for (float& of : sum) of = of > 0.0F ? 1.0F / of : 0.0F;
+  for (std::vector<float>& mean : means) {
+    float* of = mean.data() + first;
+    for (std::ptrdiff_t x = 0; x < columns; ++x) of[x] *= sum[static_cast<std::size_t>(x)];
+  }
+}
+
+}  // namespace earthshine::raytrace

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/share/share.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/numbers/random.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+// Noise that is found by chance looks like signal half of the time: only what is well above it
+// counts when details are kept.
+constexpr float doubt = 1.5F;
+constexpr std::size_t noise_fields = 4;
+
+}  // namespace
+
+float kept_share(float s, float q) {
+  const float sure = s - (doubt - 1.0F) * q;
+  return sure > 0.0F ? sure / (sure + q) : 0.0F;
+}
+
+namespace {
+
+// What that leaves: what is kept of the noise, and what is not kept of the signal. few: 1 / N.
+struct Left {
+  float noise = 0.0F, blur = 0.0F;
+  void add(float s, float q, float few) {
+    const float share = kept_share(s, q);
+    noise += share * share * q;
+    blur += (1.0F - share) * (1.0F - share) * s;
+    if (share <= 0.0F) return;
+    const float ratio = 1.0F - share;  // c = 1 - q / (D - k q), so c' = (1 - c)^2 / q
+    noise += 4.0F * (s + q) * ratio * ratio * few;
+  }
+  // Signals that are not there come out as often below zero as above; noise is never undone so.
+  [[nodiscard]] float all() const { return noise + std::max(0.0F, blur); }
+};
+
+}  // namespace
+
+double Shared::squared_error_with(std::size_t point, double factor) const {
+  const auto more = static_cast<float>(factor);
+  Left left{rest[point] / more, 0.0F};
+  for (std::size_t level = 0; level < share_levels; ++level) {
+    left.add(signal[point][level], noise[point][level] / more, few[point][level]);
+  }
+  return double(left.all());
+}
+
+namespace {
+
+class Sharer {
+ public:
+  Sharer(const Neighbours& neighbours, const Estimate& estimate)
+      : neighbours_(neighbours), estimate_(estimate), points_(neighbours.count()) {}
+
+  Shared run() {
+    shared_.layers = estimate_.layers;
+    shared_.signal.assign(points_, {});
+    shared_.noise.assign(points_, {});
+    shared_.few.assign(points_, {});
+    shared_.squared_error.assign(points_, 0.0F);
+    keep_.assign(points_, {});
+    split_halves();
+    take_layers();
+    return std::move(shared_);
+  }
+
+ private:
+  using Planes = Neighbours::Planes;
+
+  // Values of one level become those of the next; the difference is the detail. Where nothing was
+  // sampled there is none. Neighbours count by their samples; at coarser levels by the mean of
+  // those around them.
+  void step(std::size_t level, Planes& values, Planes& detail) {
+    neighbours_.blur(level, values, level == 0 ? &estimate_.samples : &weight_, coarse_);
+    detail.resize(values.size());
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      detail[k].resize(points_);
+      for (std::size_t p = 0; p < points_; ++p) {
+        const bool none = level == 0 && estimate_.samples[p] <= 0.0F;
+        detail[k][p] = none ? 0.0F : values[k][p] - coarse_[k][p];
+      }
+    }
+    values.swap(coarse_);
+  }
+
+  void blur_squares(std::size_t level) {
+    for (std::size_t k = 0; k < window_blurs; ++k) {
+      neighbours_.blur(level + k, squares_, nullptr, coarse_);
+      squares_.swap(coarse_);
+    }
+  }
+
+  void split_halves() {
+    Planes values(1 + noise_fields, std::vector<float>(points_, 0.0F)), detail;
+    for (std::size_t p = 0; p < points_; ++p) {
+      const float n = 0.5F * estimate_.samples[p];
+      if (n <= 0.0F) continue;
+      const float first = estimate_.luminance[p][0] / n, second = estimate_.luminance[p][1] / n;
+      values[0][p] = 0.5F * (first + second);
+      const std::uint64_t signs = base::mix64(p);
+      for (std::size_t k = 0; k < noise_fields; ++k) {
+        values[1 + k][p] =
+            ((signs >> k) & 1U) == 0 ? 0.5F * (first - second) : 0.5F * (second - first);
+      }
+    }
+    Planes weight;
+    neighbours_.blur(0, {estimate_.samples}, nullptr, weight);
+    weight_ = std::move(weight.front());
+    for (std::size_t level = 0; level < share_levels; ++level) {
+      step(level, values, detail);
+      take_squares(detail);
+      blur_squares(level);
+      keep(level);
+    }
+    take_squares(values);
+    blur_squares(share_levels - 1);
+    shared_.rest.resize(points_);
+    for (std::size_t p = 0; p < points_; ++p) shared_.rest[p] = noise_of(p).mean;
+    for (std::size_t p = 0; p < points_; ++p) {
+      shared_.squared_error[p] = static_cast<float>(shared_.squared_error_with(p, 1.0));
+    }
+  }
+
+  void take_squares(const Planes& values) {
+    squares_.resize(values.size());
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      squares_[k].resize(points_);
+      for (std::size_t p = 0; p < points_; ++p) squares_[k][p] = values[k][p] * values[k][p];
+    }
+  }
+
+  struct Noise {
+    float mean = 0.0F, variance = 0.0F;  // of the fields' mean squares; relative
+  };
+  [[nodiscard]] Noise noise_of(std::size_t p) const {
+    Noise noise;
+    for (std::size_t k = 0; k < noise_fields; ++k) noise.mean += squares_[1 + k][p];
+    noise.mean /= float(noise_fields);
+    for (std::size_t k = 0; k < noise_fields; ++k) {
+      const float off = noise.mean > 0.0F ? squares_[1 + k][p] / noise.mean - 1.0F : 0.0F;
+      noise.variance += off * off;
+    }
+    noise.variance /= float(noise_fields - 1);
+    return noise;
+  }
+
+  void keep(std::size_t level) {
+    for (std::size_t p = 0; p < points_; ++p) {
+      const Noise noise = noise_of(p);
+      const float q = noise.mean, s = squares_[0][p] - q;
+      keep_[p][level] = kept_share(s, q);
+      shared_.signal[p][level] = s;
+      shared_.noise[p][level] = q;
+      // The mean of N normal squares has the relative variance 2 / N.
+      shared_.few[p][level] = std::min(1.0F, 0.5F * noise.variance);
+    }
+  }
+
+  void take_layers() {
+    Planes values(3 * estimate_.layers, std::vector<float>(points_, 0.0F)), detail, kept = values;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      for (std::size_t p = 0; p < points_; ++p) {
+        if (estimate_.samples[p] <= 0.0F) continue;
+        values[k][p] = estimate_.sum[p * estimate_.layers + k / 3][static_cast<int>(k % 3)] /
+                       estimate_.samples[p];
+      }
+    }
+    for (std::size_t level = 0; level < share_levels; ++level) {
+      step(level, values, detail);
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        for (std::size_t p = 0; p < points_; ++p) kept[k][p] += keep_[p][level] * detail[k][p];
+      }
+    }
+    shared_.radiance.resize(points_ * estimate_.layers);
+    for (std::size_t k = 0; k < shared_.radiance.size(); ++k) {
+      const std::size_t p = k / estimate_.layers, plane = 3 * (k % estimate_.layers);
+      for (std::size_t c = 0; c < 3; ++c) {
+        shared_.radiance[k][static_cast<int>(c)] = values[plane + c][p] + kept[plane + c][p];
+      }
+    }
+  }
+
+  const Neighbours& neighbours_;
+  const Estimate& estimate_;
+  std::size_t points_;
+  Shared shared_;
+  std::vector<std::array<float, share_levels>> keep_;
+  std::vector<float> weight_;
+  Planes coarse_, squares_;
+};
+
+}  // namespace
+
+Shared share(const Neighbours& neighbours, const Estimate& estimate) {
+  return Sharer(neighbours, estimate).run();
+}
+
+}  // namespace earthshine::raytrace

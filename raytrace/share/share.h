@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is estimated by chance at every gather point of a picture, shared between neighbours on the
+// same surface as far as its own samples allow.
+//
+// The estimates are split into details of 1, 2, 4, 8 and 16 pixels and a rest (a wavelet transform
+// with holes over the points of one surface; Dammertz et al. 2010). Every estimate comes in two
+// halves of independent samples, a and b. (a - b) / 2 has the noise of their mean, and has it still
+// where each point's sign is drawn anew: so many fields of noise as are wanted, whose means over
+// small surfaces are known better than one (the wild bootstrap; Wu 1986). Of a detail d, means over
+// its surroundings are
+//   noise  q = <n^2> over these fields' details n     energy  D = <d^2>, signal s = D - q
+// and the detail is kept by c = s / (s + q) or less (Wiener), which leaves, in the mean and with
+// what choosing c by the same d makes it look better (Stein 1981; N: how many details the means
+// are over),
+//   (1 - c)^2 s + c^2 q + 4 q D c'(D) / N.
+// That sum over the levels, and the noise of the rest, is the squared error that is stated. It goes
+// to nothing with more samples, and with it what sharing blurs.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "base/units.h"
+#include "raytrace/camera/camera.h"
+
+namespace earthshine::raytrace {
+
+struct GatherPoint {
+  glm::vec3 position{0.0F};  // m, relative to the camera
+  float reach_m = -1.0F;     // harmonic mean length of its rays; negative: nothing gathered here
+  glm::vec3 normal{0.0F};    // unit, on the camera's side
+  float spacing_m = 0.0F;    // how far apart neighbouring pixels are there, across the view
+  float reflectance = 0.0F;  // luminance of the surface's k_d
+  float lobe = 0.0F;         // and of its k_s, if its lobe is gathered for
+  std::uint32_t material = 0, triangle = 0;  // of the scene
+};
+
+inline constexpr std::size_t share_levels = 5;
+// Mean squares are taken over three blurs, the last of which reaches four times as far as the
+// detail.
+inline constexpr std::size_t window_blurs = 3;
+
+// Sums of samples at every point.
+struct Estimate {
+  std::size_t layers = 0;                       // per point
+  std::size_t image_layers = 0;                 // the first of them, whose sum the eye sees
+  std::vector<glm::vec3> sum;                   // point * layers + layer
+  std::vector<std::array<float, 2>> luminance;  // of the image layers together, by half
+  std::vector<float> samples;                   // half of them in each half
+
+  Estimate() = default;
+  Estimate(std::size_t points, std::size_t layers_each, std::size_t layers_seen)
+      : layers(layers_each),
+        image_layers(layers_seen),
+        sum(points * layers_each, glm::vec3(0.0F)),
+        luminance(points, {0.0F, 0.0F}),
+        samples(points, 0.0F) {}
+};
+
+// Which points share: those on the same surface, 2 steps of 1, 2, 4 ... pixels away.
+class Neighbours {
+ public:
+  // any: false if every point stays alone. The points lie row by row in the window.
+  Neighbours(const Window& window, const std::vector<GatherPoint>& points, bool any);
+  // The same of those that have like material.
+  [[nodiscard]] Neighbours of_like_material(const std::vector<GatherPoint>& points) const;
+
+  // Means over each point's neighbours that are `1 << level` pixels apart, with B-spline weights
+  // times `weight` (nullptr: 1), of some values a point: values[k] and means[k] hold the k-th of
+  // all points.
+  using Planes = std::vector<std::vector<float>>;
+  [[nodiscard]] std::size_t count() const { return masks_.front().size(); }
+  void blur(std::size_t level, const Planes& values, const std::vector<float>* weight,
+            Planes& means) const;
+
+ private:
+  void blur_row(std::size_t level, std::size_t y, const Planes& values,
+                const std::vector<float>* weight, Planes& means) const;
+  // Tells every point's neighbours apart: keep(p, q) of those of `mask`.
+  template <class Keep>
+  void sift(std::size_t level, const Keep& keep);
+
+  int columns_, rows_;
+  std::vector<std::vector<std::uint32_t>> masks_;  // per level and point: bit 5 dy + dx
+};
+
+struct Shared {
+  std::size_t layers = 0;
+  std::vector<glm::vec3> radiance;  // as Estimate::sum, the shared means
+  // Per point, of its luminance: mean squares of signal (found by chance: it may be negative) and
+  // noise, and 1 / N, by level; noise of the rest.
+  std::vector<std::array<float, share_levels>> signal, noise, few;
+  std::vector<float> rest;
+  std::vector<float> squared_error;  // stated
+
+  // What the squared error would be with `factor` times the samples here and around.
+  [[nodiscard]] double squared_error_with(std::size_t point, double factor) const;
+};
+
+// The points of the grid, which come first in the estimate.
+[[nodiscard]] Shared share(const Neighbours& neighbours, const Estimate& estimate);
+
+// The share of a detail of signal s and noise q that is kept, mean squares.
+[[nodiscard]] float kept_share(float s, float q);
+
+}  // namespace earthshine::raytrace

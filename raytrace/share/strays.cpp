@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/share/strays.h"
+
+#include <algorithm>
+
+namespace earthshine::raytrace {
+namespace {
+
+// Signal over noise of strays that no point of the grid may stand for: all of their own is kept.
+constexpr float alone = 1e6F;
+
+float luminance_at(const std::vector<glm::vec3>& radiance, std::size_t point, std::size_t layers,
+                   std::size_t seen) {
+  glm::vec3 sum(0.0F);
+  for (std::size_t k = 0; k < seen; ++k) sum += radiance[point * layers + k];
+  return static_cast<float>(base::luminance(Rgb(sum)));
+}
+
+// Sums over the strays of a region.
+struct Region {
+  double energy = 0.0, noise = 0.0, count = 0.0;
+};
+
+}  // namespace
+
+void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared& shared) {
+  if (strays.empty()) return;
+  const std::size_t layers = estimate.layers, all = estimate.samples.size();
+  const std::size_t grid = all - strays.size();
+  shared.radiance.resize(all * layers, glm::vec3(0.0F));
+  shared.signal.resize(all);
+  shared.noise.resize(all);
+  shared.few.resize(all);
+  shared.rest.resize(all, 0.0F);
+  shared.squared_error.resize(all, 0.0F);
+
+  std::uint32_t last = 0;
+  for (const Stray& stray : strays) last = std::max(last, stray.region);
+  std::vector<Region> regions(last + 1U);
+  std::vector<float> noise(strays.size(), 0.0F);
+  for (std::size_t k = 0; k < strays.size(); ++k) {
+    const float half = 0.5F * estimate.samples[grid + k];
+    if (half <= 0.0F) continue;
+    const auto& [first, second] = estimate.luminance[grid + k];
+    const float off = 0.5F * (first - second) / half;
+    noise[k] = off * off;
+    if (strays[k].base == no_base) continue;
+    const float more = 0.5F * (first + second) / half -
+                       luminance_at(shared.radiance, strays[k].base, layers, estimate.image_layers);
+    Region& region = regions[strays[k].region];
+    region.energy += double(more * more);
+    region.noise += double(noise[k]);
+    region.count += 1.0;
+  }
+  for (std::size_t k = 0; k < strays.size(); ++k) {
+    const std::size_t point = grid + k;
+    const bool sampled = estimate.samples[point] > 0.0F, has_base = strays[k].base != no_base;
+    float keep = sampled ? 1.0F : 0.0F;
+    shared.signal[point] = shared.noise[point] = shared.few[point] = {};
+    if (has_base) {
+      const Region& region = regions[strays[k].region];
+      const double count = std::max(1.0, region.count);
+      const auto q = static_cast<float>(region.noise / count);
+      const float s = static_cast<float>(region.energy / count) - q;
+      shared.signal[point][0] = s;
+      shared.noise[point][0] = q;
+      shared.few[point][0] = static_cast<float>(1.0 / count);
+      if (sampled) keep = kept_share(s, q);
+    } else {
+      shared.signal[point][0] = alone * noise[k];
+      shared.noise[point][0] = noise[k];
+    }
+    for (std::size_t layer = 0; layer < layers; ++layer) {
+      glm::vec3& value = shared.radiance[point * layers + layer];
+      value = has_base ? shared.radiance[strays[k].base * layers + layer] : glm::vec3(0.0F);
+      if (!sampled) continue;
+      value += keep * (estimate.sum[point * layers + layer] / estimate.samples[point] - value);
+    }
+    shared.squared_error[point] = static_cast<float>(shared.squared_error_with(point, 1.0));
+  }
+}
+
+}  // namespace earthshine::raytrace

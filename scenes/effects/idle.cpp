@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/effects/idle.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scenes/ray_query.h"
+
+namespace earthshine::scenes {
+namespace {
+
+constexpr double rounding = 1e-6;             // of sines, and of the scene's extent
+constexpr double small_share = 1e-3;          // of the wanted error
+constexpr std::size_t most_triangles = 2048;  // of which every pair is looked at
+
+struct Face {
+  std::array<Vec3, 3> corner;
+  Vec3 normal;
+  bool both_sides;  // sheets and glass: light is welcome from behind
+};
+
+double along(const Face& face, const Vec3& point) {
+  return glm::dot(face.normal, point - face.corner[0]);
+}
+
+class IdleFinder {
+ public:
+  explicit IdleFinder(const Scene& scene) : scene_(scene) {
+    for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+      const Triangle& triangle = scene.triangles[t];
+      const Material& material = scene.materials[triangle.material];
+      Face face;
+      for (std::size_t k = 0; k < 3; ++k) face.corner[k] = scene.vertices[triangle.vertex[k]];
+      face.normal = triangle_normal(scene, t);
+      face.both_sides = material.two_sided || base::max_component(material.transmit) > 0.0;
+      faces_.push_back(face);
+      for (const Vec3& corner : face.corner)
+        extent_ = std::max(extent_, glm::length(corner - faces_[0].corner[0]));
+    }
+  }
+
+  // A disc of directions that no surface has above its horizon.
+  [[nodiscard]] bool below_every_horizon(const Vec3& direction, double radius_rad) const {
+    return std::none_of(faces_.begin(), faces_.end(), [&](const Face& face) {
+      return face.both_sides || glm::dot(face.normal, direction) > -std::sin(radius_rad) - rounding;
+    });
+  }
+
+  [[nodiscard]] bool lights_nothing(const Lamp& lamp,
+                                    const std::vector<const Camera*>& cameras) const {
+    const bool wide = lamp.kind == LampKind::Rectangle || lamp.kind == LampKind::Disk;
+    if (wide && std::any_of(cameras.begin(), cameras.end(), [&](const Camera* camera) {
+          return glm::dot(lamp.axis, camera->position - lamp.position) >
+                 -0.5 * camera->aperture_m - slack();
+        })) {
+      return false;
+    }
+    return std::none_of(faces_.begin(), faces_.end(),
+                        [&](const Face& face) { return may_light(lamp, face); });
+  }
+
+  // Whether any surface is in front of one that is in front of it.
+  [[nodiscard]] bool any_facing() const {
+    if (faces_.size() > most_triangles) return true;
+    const auto reaches = [this](const Face& from, const Face& to) {
+      return from.both_sides || std::any_of(to.corner.begin(), to.corner.end(), [&](const Vec3& p) {
+               return along(from, p) > slack();
+             });
+    };
+    for (std::size_t a = 0; a < faces_.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        if (reaches(faces_[a], faces_[b]) && reaches(faces_[b], faces_[a])) return true;
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] double largest_reflectance() const {
+    double largest = 0.0;
+    for (const Triangle& t : scene_.triangles) {
+      largest = std::max(largest, base::max_component(scene_.materials[t.material].diffuse));
+    }
+    return largest;
+  }
+
+ private:
+  [[nodiscard]] double slack() const { return rounding * std::max(extent_, 1e-3); }
+
+  [[nodiscard]] bool may_light(const Lamp& lamp, const Face& face) const {
+    // Half the size of the lamp along the face's normal.
+    double reach = 0.0;
+    if (lamp.kind == LampKind::Rectangle) {
+      reach = 0.5 * (std::abs(glm::dot(face.normal, lamp.edge_u)) +
+                     std::abs(glm::dot(face.normal, lamp.edge_v)));
+    } else if (lamp.kind == LampKind::Disk) {
+      reach = lamp.radius_m;
+    }
+    if (!face.both_sides && along(face, lamp.position) + reach <= -slack()) return false;
+    const bool half_space = lamp.kind == LampKind::Rectangle || lamp.kind == LampKind::Disk ||
+                            (lamp.kind == LampKind::Spot && lamp.field_deg <= 180.0);
+    const bool in_front = std::any_of(face.corner.begin(), face.corner.end(), [&](const Vec3& p) {
+      return glm::dot(lamp.axis, p - lamp.position) > -slack();
+    });
+    if (half_space && !in_front) return false;
+    return lamp.kind != LampKind::Spot || meets_cone(lamp, face);
+  }
+
+  // The ball around the triangle against the cone of the spot.
+  [[nodiscard]] static bool meets_cone(const Lamp& lamp, const Face& face) {
+    const Vec3 middle = (face.corner[0] + face.corner[1] + face.corner[2]) / 3.0;
+    double radius = 0.0;
+    for (const Vec3& p : face.corner) radius = std::max(radius, glm::length(p - middle));
+    const Vec3 way = middle - lamp.position;
+    const double distance = glm::length(way);
+    if (distance <= radius) return true;
+    const double off_axis = std::acos(std::clamp(glm::dot(lamp.axis, way) / distance, -1.0, 1.0));
+    return off_axis - std::asin(radius / distance) <=
+           0.5 * base::radians(lamp.field_deg) + rounding;
+  }
+
+  const Scene& scene_;
+  std::vector<Face> faces_;
+  double extent_ = 0.0;  // m
+};
+
+// Once the others are decided: the bounds of light between surfaces.
+std::vector<Idle> skip_interreflection(const IdleFinder& finder, double wanted_error,
+                                       Effects& effects) {
+  const bool read_otherwise = effects.phong || effects.mirror || effects.refraction ||
+                              effects.emitters || effects.earth_by_gather;
+  if (!effects.solution || read_otherwise) return {};
+  Idle idle{"interreflection", "cannot matter: no surface is in front of another"};
+  const double r = finder.largest_reflectance();
+  const double error = r < 1.0 ? r / (1.0 - r) : 1.0;
+  if (error <= small_share * wanted_error) {
+    idle.error = error;
+    idle.why = fmt::format(
+        "cannot matter: reflectances up to {:.2g} leave out {:.2g} of the "
+        "light at most, the wanted error is {:g}",
+        r, error, wanted_error);
+  } else if (finder.any_facing()) {
+    return {};
+  }
+  effects.interreflection = effects.solution = false;
+  return {idle};
+}
+
+}  // namespace
+
+std::vector<Idle> switch_off_idle(const Scene& scene, const Asked& asked, double wanted_error,
+                                  const HiddenLights& hidden, LightGroups& groups,
+                                  Effects& effects) {
+  std::vector<Idle> idle;
+  const IdleFinder finder(scene);
+  std::vector<const Camera*> cameras = asked.cameras;
+  for (const Camera& camera : scene.cameras) {
+    if (asked.cameras.empty()) cameras.push_back(&camera);
+  }
+  const char* const walled = "cannot matter: closed walls stand between it and every camera";
+  const bool sun_idle =
+      effects.sun &&
+      (hidden.sky || finder.below_every_horizon(scene.sun->direction,
+                                                base::radians(scene.sun->angular_radius_deg)));
+  const bool earth_idle =
+      effects.earth && !asked.earth_on_area &&
+      (hidden.sky || finder.below_every_horizon(scene.earth->direction,
+                                                base::radians(scene.earth->half_angle_deg)));
+  bool lamp_idle = false;
+  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
+    if (groups.lamp[k] == no_group) continue;
+    const Lamp& lamp = scene.lamps[k];
+    const bool shut_in = k < hidden.lamps.size() && hidden.lamps[k];
+    if (!shut_in && !finder.lights_nothing(lamp, cameras)) continue;
+    groups.lamp[k] = no_group;
+    lamp_idle = true;
+    idle.push_back(
+        {std::string(effect_of(kind_of(lamp.kind))),
+         shut_in
+             ? fmt::format("cannot matter: closed walls stand between lamp \"{}\" and every camera",
+                           lamp.name)
+             : fmt::format("cannot matter: no surface and no camera is in reach of lamp \"{}\"",
+                           lamp.name)});
+  }
+  if (lamp_idle) effects = find_effects(scene, groups, asked);
+  if (sun_idle) {
+    if (effects.penumbra) {
+      idle.push_back({"penumbra", "cannot matter: no sunlight reaches what a camera sees"});
+    }
+    effects.sun = effects.penumbra = false;
+    idle.push_back(
+        {"sun", hidden.sky ? walled : "cannot matter: it is below the horizon of every surface"});
+  }
+  if (earth_idle) {
+    effects.earth = effects.earth_by_gather = false;
+    idle.push_back(
+        {"earth",
+         hidden.sky ? walled : "cannot matter: its disc is below the horizon of every surface"});
+  }
+  if (idle.empty()) return skip_interreflection(finder, wanted_error, effects);
+  const bool lit =
+      effects.sun || effects.sun_parts || effects.earth || effects.lamps || effects.emitters;
+  const auto forget = [&](const char* effect, bool& runs, const char* why) {
+    if (runs) idle.push_back({effect, why});
+    runs = false;
+  };
+  const bool goes_on = asked.paths == LightPaths::All || asked.paths == LightPaths::Traced;
+  if (!lit) {
+    const char* const dark = "cannot matter: no light is left that could reach a surface";
+    forget("interreflection", effects.interreflection, dark);
+    forget("phong lobe", effects.phong, dark);
+    forget("glossy reflection", effects.glossy, dark);
+    effects.solution = false;
+  } else if (!goes_on && !effects.earth_by_gather) {
+    forget("glossy reflection", effects.glossy, "cannot matter: it has the Earth alone to show");
+  }
+  for (Idle& row : skip_interreflection(finder, wanted_error, effects)) {
+    idle.push_back(std::move(row));
+  }
+  return idle;
+}
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/effects/quality.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace earthshine::scenes {
+namespace {
+
+int power_of_two_at_least(double value, int low, int high) {
+  const double clamped = std::clamp(std::ceil(value), double(low), double(high));
+  return static_cast<int>(std::bit_ceil(static_cast<std::uint32_t>(clamped)));
+}
+
+double diagonal(const Scene& scene) {
+  Vec3 low = scene.vertices.front(), high = low;
+  for (const Vec3& p : scene.vertices) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  return glm::length(high - low);
+}
+
+}  // namespace
+
+QualityKnobs resolve_quality(const Scene& scene) { return resolve_quality(scene, scene.quality); }
+
+QualityKnobs resolve_quality(const Scene& scene, const Quality& given) {
+  constexpr double reference_error = default_error;  // what the laws were measured at
+  const double ratio = reference_error / given.error.value_or(reference_error);
+  QualityKnobs knobs;
+  knobs.form_factor_rays = given.form_factor_rays.value_or(
+      power_of_two_at_least(1024.0 * std::pow(ratio, 1.0 / 0.6), 64, 1 << 18));
+  knobs.share_gather = given.share_gather.value_or(true);
+  const double rays = 32.0 * (knobs.share_gather ? 1 : rays_alone_per_shared) * ratio * ratio;
+  knobs.gather_rays =
+      given.gather_rays.value_or(power_of_two_at_least(rays, knobs.share_gather ? 8 : 16, 1 << 16));
+  knobs.smooth_share = given.smooth_share.value_or(std::clamp(0.25 / std::sqrt(ratio), 0.05, 0.5));
+  knobs.picture_noise = given.picture_noise.value_or(std::min(1.0, 1.5 * reference_error / ratio));
+  if (!scene.vertices.empty()) {
+    const double diagonal_m = diagonal(scene);
+    knobs.patch_edge_m = diagonal_m / 48.0 / std::clamp(ratio, 0.25, 4.0);
+    knobs.start_edge_m = diagonal_m / 8.0;
+  }
+  if (given.patch_edge_m) knobs.patch_edge_m = knobs.start_edge_m = *given.patch_edge_m;
+  knobs.refine = given.refine.value_or(given.max_patches || !given.patch_edge_m);
+  knobs.max_patches = given.max_patches.value_or(0);
+  if (given.error || !given.max_patches) knobs.refine_error = 1.5 * reference_error / ratio;
+  knobs.solver_tolerance = given.solver_tolerance.value_or(1e-8);
+  return knobs;
+}
+
+}  // namespace earthshine::scenes

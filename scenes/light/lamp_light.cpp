@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/light/lamp_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/light/emitters.h"
+#include "scenes/light/photometry.h"
+
+namespace earthshine::scenes {
+namespace {
+
+using base::pi;
+
+double beam_cosine(const Lamp& lamp) { return std::cos(base::radians(lamp.beam_deg / 2)); }
+double field_cosine(const Lamp& lamp) { return std::cos(base::radians(lamp.field_deg / 2)); }
+
+Vec3 disk_point(const Lamp& lamp, double u, double v) {
+  const base::Frame3 frame = base::frame_around(lamp.axis);
+  const double r = lamp.radius_m * std::sqrt(u), phi = 2.0 * pi * v;
+  return lamp.position + r * (std::cos(phi) * frame.tangent + std::sin(phi) * frame.bitangent);
+}
+
+double surface_area(const Lamp& lamp) {
+  if (lamp.kind == LampKind::Rectangle) return glm::length(glm::cross(lamp.edge_u, lamp.edge_v));
+  return pi * lamp.radius_m * lamp.radius_m;
+}
+
+FlatEmitter rectangle(const Lamp& lamp) {
+  return {lamp.position - 0.5 * (lamp.edge_u + lamp.edge_v),
+          lamp.edge_u,
+          lamp.edge_v,
+          lamp.axis,
+          surface_area(lamp),
+          lamp.exitance,
+          false,
+          FlatShape::Parallelogram};
+}
+
+// Intensity in a unit direction away from the lamp, relative to intensity_cd.
+double relative_intensity(const Lamp& lamp, const Vec3& direction) {
+  if (lamp.kind == LampKind::Point) return 1.0;
+  const double cosine = glm::dot(direction, lamp.axis);
+  if (lamp.kind == LampKind::Spot) return spot_profile(lamp, cosine);
+  const double along_c0 = glm::dot(direction, lamp.c0);
+  const double along_c90 = glm::dot(direction, glm::cross(lamp.c0, lamp.axis));
+  // By the tangent: near the axis the cosine alone has lost half of the angle's digits.
+  return lamp.photometry->relative(std::atan2(std::hypot(along_c0, along_c90), cosine),
+                                   std::atan2(along_c90, along_c0));
+}
+
+}  // namespace
+
+double spot_profile(const Lamp& lamp, double cos_angle) {
+  const double inner = beam_cosine(lamp), outer = field_cosine(lamp);
+  if (cos_angle >= inner) return 1.0;
+  if (cos_angle <= outer) return 0.0;
+  const double x = (cos_angle - outer) / (inner - outer);
+  return x * x * (3.0 - 2.0 * x);
+}
+
+LightSample sample_lamp(const Lamp& lamp, const Vec3& point, double u, double v, Spread spread) {
+  if (lamp.kind == LampKind::Rectangle) return sample_flat(rectangle(lamp), point, u, v, spread);
+  if (lamp.kind == LampKind::Disk) {
+    return toward_area(point, disk_point(lamp, u, v), lamp.axis, false, lamp.exitance,
+                       surface_area(lamp));
+  }
+  LightSample sample;
+  const Vec3 way = lamp.position - point;
+  const double distance2 = glm::dot(way, way);
+  if (distance2 <= 0.0) return sample;
+  sample.distance_m = std::sqrt(distance2);
+  sample.direction = way / sample.distance_m;
+  sample.normal_illuminance_lx =
+      lamp.intensity_cd * (relative_intensity(lamp, -sample.direction) / distance2);
+  return sample;
+}
+
+Rgb lamp_flux_lm(const Lamp& lamp) {
+  switch (lamp.kind) {
+    case LampKind::Point:
+      return lamp.intensity_cd * (4.0 * pi);
+    case LampKind::Spot:
+      return lamp.intensity_cd *
+             (2.0 * pi * (1.0 - 0.5 * (beam_cosine(lamp) + field_cosine(lamp))));
+    case LampKind::Measured:
+      return lamp.intensity_cd * lamp.photometry->solid_angle_sr();
+    case LampKind::Rectangle:
+    case LampKind::Disk:
+      break;
+  }
+  return lamp.exitance * surface_area(lamp);
+}
+
+EmittedRay emit_from_lamp(const Lamp& lamp, double u, double v, double x, double y) {
+  if (lamp.kind == LampKind::Rectangle || lamp.kind == LampKind::Disk) {
+    const Vec3 origin =
+        lamp.kind == LampKind::Disk ? disk_point(lamp, u, v) : point_on(rectangle(lamp), u, v);
+    return {origin, cosine_direction(base::frame_around(lamp.axis), x, y), 1.0};
+  }
+  if (lamp.kind == LampKind::Measured) {
+    const Photometry::Angles angles = lamp.photometry->sample(x, y);
+    const Vec3 across = std::cos(angles.phi_rad) * lamp.c0 +
+                        std::sin(angles.phi_rad) * glm::cross(lamp.c0, lamp.axis);
+    return {lamp.position,
+            glm::normalize(std::cos(angles.theta_rad) * lamp.axis +
+                           std::sin(angles.theta_rad) * across),
+            1.0};
+  }
+  const double half_angle = lamp.kind == LampKind::Spot ? base::radians(lamp.field_deg / 2) : pi;
+  const Vec3 direction = sample_cone(lamp.axis, half_angle, x, y);
+  if (lamp.kind == LampKind::Point) return {lamp.position, direction, 1.0};
+  const double mean_profile = (1.0 - 0.5 * (beam_cosine(lamp) + field_cosine(lamp))) /
+                              std::max(1.0 - field_cosine(lamp), 1e-300);
+  return {lamp.position, direction,
+          spot_profile(lamp, glm::dot(direction, lamp.axis)) / std::max(mean_profile, 1e-300)};
+}
+
+std::optional<LampHit> hit_lamp(const Lamp& lamp, const Vec3& origin, const Vec3& direction) {
+  if (lamp.kind != LampKind::Rectangle && lamp.kind != LampKind::Disk) return std::nullopt;
+  const double cosine = -glm::dot(direction, lamp.axis);
+  if (cosine <= 0.0) return std::nullopt;
+  const double t = glm::dot(origin - lamp.position, lamp.axis) / cosine;
+  if (t <= 0.0) return std::nullopt;
+  const Vec3 from_centre = origin + t * direction - lamp.position;
+  if (lamp.kind == LampKind::Disk) {
+    if (glm::dot(from_centre, from_centre) > lamp.radius_m * lamp.radius_m) return std::nullopt;
+  } else {
+    // Coordinates along the two edges, which need not be perpendicular.
+    const Vec3 cross = glm::cross(lamp.edge_u, lamp.edge_v);
+    const double area2 = glm::dot(cross, cross);
+    const double a = glm::dot(glm::cross(from_centre, lamp.edge_v), cross) / area2;
+    const double b = glm::dot(glm::cross(lamp.edge_u, from_centre), cross) / area2;
+    if (std::abs(a) > 0.5 || std::abs(b) > 0.5) return std::nullopt;
+  }
+  return LampHit{t, lamp.exitance / pi};
+}
+
+Vec3 cosine_direction(const base::Frame3& frame, double x, double y) {
+  const double r = std::sqrt(x), phi = 2.0 * pi * y;
+  return frame.to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0, 1.0 - x))});
+}
+
+Vec3 sample_cone(const Vec3& axis, double half_angle_rad, double u, double v) {
+  // 1 - cos written as 2 sin^2 keeps its digits for the Sun's small disc.
+  const double half_sine = std::sin(half_angle_rad / 2);
+  const double one_minus_cos = u * 2.0 * half_sine * half_sine;
+  const double sine = std::sqrt(std::max(0.0, one_minus_cos * (2.0 - one_minus_cos)));
+  const double phi = 2.0 * pi * v;
+  return glm::normalize(base::frame_around(axis).to_world(
+      {sine * std::cos(phi), sine * std::sin(phi), 1.0 - one_minus_cos}));
+}
+
+double cone_solid_angle_sr(double half_angle_rad) {
+  const double s = std::sin(half_angle_rad / 2);
+  return 4.0 * pi * s * s;
+}
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/mesh/gltf/file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "scenes/mesh/gltf/model.h"
+#include "scenes/text/message_text.h"
+
+namespace earthshine::scenes {
+namespace {
+
+glm::dmat4 node_matrix(const GltfNode& node, const std::filesystem::path& path) {
+  const auto check = [&](const std::vector<double>& values, std::size_t wanted,
+                         std::string_view what) {
+    const bool finite = std::all_of(values.begin(), values.end(),
+                                    [](double x) { return std::abs(x) <= largest_coordinate; });
+    if ((values.empty() || values.size() == wanted) && finite) return;
+    gltf_fail(path, fmt::format("the {} of node {}", what, in_quotes(node.name)),
+              fmt::format("it has {} finite numbers", wanted));
+  };
+  check(node.matrix, 16, "matrix");
+  check(node.translation, 3, "translation");
+  check(node.rotation, 4, "rotation");
+  check(node.scale, 3, "scale");
+  glm::dmat4 matrix(1.0);
+  if (!node.matrix.empty()) {
+    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
+    return matrix;
+  }
+  if (!node.translation.empty()) {
+    matrix =
+        glm::translate(matrix, Vec3(node.translation[0], node.translation[1], node.translation[2]));
+  }
+  if (!node.rotation.empty()) {
+    const glm::dquat turn(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+    if (!(glm::length(turn) > 1e-9)) {
+      gltf_fail(path, fmt::format("the rotation of node {} has no length", in_quotes(node.name)));
+    }
+    matrix = matrix * glm::mat4_cast(glm::normalize(turn));
+  }
+  if (!node.scale.empty()) {
+    matrix = glm::scale(matrix, Vec3(node.scale[0], node.scale[1], node.scale[2]));
+  }
+  return matrix;
+}
+
+class GltfReader {
+ public:
+  GltfReader(const GltfModel& model, const std::filesystem::path& path)
+      : model_(model), path_(path), visited_(model.nodes.size(), 0) {
+    mesh_.path = path;
+  }
+
+  Mesh read() {
+    name_materials();
+    for (const int root : roots()) visit(root, glm::dmat4(1.0), {}, 1);
+    return std::move(mesh_);
+  }
+
+ private:
+  void name_materials() {
+    std::unordered_set<std::string> names;
+    for (std::size_t i = 0; i < model_.materials.size(); ++i) {
+      Material material = model_.materials[i];
+      if (material.name.empty()) material.name = fmt::format("material {}", i);
+      // Materials are told apart by name from here on.
+      if (!names.insert(material.name).second) material.name += fmt::format(" ({})", i);
+      names.insert(material.name);
+      material.light_group = material.name;
+      mesh_.material_names.push_back(material.name);
+      mesh_.materials.push_back(std::move(material));
+      mesh_.material_places.push_back({path_.string()});
+    }
+    if (model_.textured) {
+      mesh_.warnings.push_back(fmt::format(
+          "{}: textures are passed over; materials have their plain colours", path_.string()));
+    }
+  }
+
+  [[nodiscard]] std::vector<int> roots() const {
+    if (!model_.scenes.empty()) {
+      const int chosen = std::max(0, model_.default_scene);
+      if (static_cast<std::size_t>(chosen) >= model_.scenes.size()) {
+        gltf_fail(path_, fmt::format("the default scene {} does not exist", chosen));
+      }
+      return model_.scenes[static_cast<std::size_t>(chosen)];
+    }
+    std::vector<char> is_child(model_.nodes.size(), 0);
+    for (const GltfNode& node : model_.nodes) {
+      for (const int child : node.children) {
+        if (child >= 0 && static_cast<std::size_t>(child) < is_child.size()) {
+          is_child[static_cast<std::size_t>(child)] = 1;
+        }
+      }
+    }
+    std::vector<int> result;
+    for (std::size_t i = 0; i < is_child.size(); ++i) {
+      if (is_child[i] == 0) result.push_back(static_cast<int>(i));
+    }
+    return result;
+  }
+
+  void visit(int number, const glm::dmat4& parent, std::vector<std::uint32_t> parts, int depth) {
+    if (number < 0 || static_cast<std::size_t>(number) >= model_.nodes.size()) {
+      gltf_fail(path_, fmt::format("node {} does not exist", number),
+                fmt::format("the file has {}", model_.nodes.size()));
+    }
+    if (depth > max_node_depth) {
+      gltf_fail(path_, "the nodes are nested too deeply",
+                fmt::format("allowed are {} levels", max_node_depth));
+    }
+    // A tree by the specification. Anything else may be a cycle, or grow without bounds.
+    if (visited_[static_cast<std::size_t>(number)]++ != 0) {
+      gltf_fail(path_, fmt::format("node {} is reached twice", number),
+                "nodes form a tree: none is its own ancestor or has two parents");
+    }
+    const GltfNode& node = model_.nodes[static_cast<std::size_t>(number)];
+    const glm::dmat4 matrix = parent * node_matrix(node, path_);
+    if (!node.name.empty()) parts.push_back(number_of(node.name, mesh_.part_names, part_numbers_));
+    if (node.mesh >= 0) add_mesh(node.mesh, matrix, parts);
+    for (const int child : node.children) visit(child, matrix, parts, depth + 1);
+  }
+
+  void add_mesh(int number, const glm::dmat4& matrix, std::vector<std::uint32_t> parts) {
+    if (static_cast<std::size_t>(number) >= model_.meshes.size()) {
+      gltf_fail(path_, fmt::format("mesh {} does not exist", number),
+                fmt::format("the file has {}", model_.meshes.size()));
+    }
+    const GltfMesh& mesh = model_.meshes[static_cast<std::size_t>(number)];
+    if (!mesh.name.empty()) parts.push_back(number_of(mesh.name, mesh_.part_names, part_numbers_));
+    part_set_ = static_cast<std::uint32_t>(mesh_.part_sets.size());
+    mesh_.part_sets.push_back(std::move(parts));
+    for (const GltfPrimitive& primitive : mesh.primitives) add_primitive(primitive, matrix);
+  }
+
+  void add_primitive(const GltfPrimitive& primitive, const glm::dmat4& matrix) {
+    // Points, lines, or nothing to place.
+    if (primitive.mode == GltfMode::Other || primitive.position < 0) return;
+    std::uint32_t material = no_index;
+    if (primitive.material >= 0) {
+      material = static_cast<std::uint32_t>(primitive.material);
+      if (material >= model_.materials.size()) {
+        gltf_fail(path_, fmt::format("material {} does not exist", material),
+                  fmt::format("the file has {}", model_.materials.size()));
+      }
+    }
+    const std::vector<Vec3> positions = read_gltf_positions(model_, primitive.position, path_);
+    std::vector<std::uint32_t> indices;
+    if (primitive.indices >= 0) {
+      indices = read_gltf_indices(model_, primitive.indices, path_);
+    } else {
+      for (std::uint32_t i = 0; i < positions.size(); ++i) indices.push_back(i);
+    }
+    for (const std::uint32_t index : indices) {
+      if (index >= positions.size()) {
+        gltf_fail(path_, fmt::format("vertex index {} is out of range", index),
+                  fmt::format("the primitive has {} vertices", positions.size()));
+      }
+    }
+    const std::size_t total = std::max(mesh_.vertices.size() + positions.size(),
+                                       mesh_.indices.size() + 3 * indices.size());
+    if (total > 3 * max_gltf_triangles) {
+      gltf_fail(
+          path_, "the meshes of all nodes together are too large",
+          fmt::format("at most {} triangles are read from one glTF file", max_gltf_triangles));
+    }
+    const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
+    for (const Vec3& p : positions) mesh_.vertices.emplace_back(matrix * glm::dvec4(p, 1.0));
+    const bool mirrored = glm::determinant(glm::dmat3(matrix)) < 0.0;
+    add_triangles(primitive.mode, indices, first, material, mirrored);
+  }
+
+  void add_triangles(GltfMode mode, const std::vector<std::uint32_t>& indices, std::uint32_t first,
+                     std::uint32_t material, bool mirrored) {
+    const std::size_t step = mode == GltfMode::Triangles ? 3 : 1;
+    for (std::size_t i = 0; i + 3 <= indices.size(); i += step) {
+      std::array<std::uint32_t, 3> corners{indices[i], indices[i + 1], indices[i + 2]};
+      if (mode == GltfMode::Fan) corners = {indices[0], indices[i + 1], indices[i + 2]};
+      // Every second triangle of a strip runs the other way round, and so does a mirrored mesh.
+      const bool odd = mode == GltfMode::Strip && i % 2 == 1;
+      if (odd != mirrored) std::swap(corners[1], corners[2]);
+      for (std::uint32_t& corner : corners) corner += first;
+      add_polygon(mesh_, corners, part_set_, material);
+    }
+  }
+
+  const GltfModel& model_;
+  const std::filesystem::path& path_;
+  Mesh mesh_;
+  std::vector<int> visited_;
+  std::uint32_t part_set_ = 0;
+  std::unordered_map<std::string, std::uint32_t> part_numbers_;
+};
+
+}  // namespace
+
+Mesh parse_gltf(std::string_view bytes, const std::filesystem::path& path,
+                std::span<const std::filesystem::path> folders) {
+  const GltfModel model = load_gltf_model(bytes, path, folders);
+  return GltfReader(model, path).read();
+}
+
+}  // namespace earthshine::scenes

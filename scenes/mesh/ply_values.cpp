@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/mesh/ply_values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+
+namespace earthshine::scenes {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the byte order below assumes it");
+
+constexpr std::pair<std::string_view, PlyType> types[] = {
+    {"char", PlyType::Int8},      {"int8", PlyType::Int8},       {"uchar", PlyType::Uint8},
+    {"uint8", PlyType::Uint8},    {"short", PlyType::Int16},     {"int16", PlyType::Int16},
+    {"ushort", PlyType::Uint16},  {"uint16", PlyType::Uint16},   {"int", PlyType::Int32},
+    {"int32", PlyType::Int32},    {"uint", PlyType::Uint32},     {"uint32", PlyType::Uint32},
+    {"float", PlyType::Float32},  {"float32", PlyType::Float32}, {"double", PlyType::Float64},
+    {"float64", PlyType::Float64}};
+
+constexpr std::pair<std::string_view, PlyEncoding> encodings[] = {
+    {"ascii", PlyEncoding::Ascii},
+    {"binary_little_endian", PlyEncoding::LittleEndian},
+    {"binary_big_endian", PlyEncoding::BigEndian}};
+
+template <class T>
+double as_double(const std::array<char, 8>& raw) {
+  T value;
+  std::memcpy(&value, raw.data(), sizeof value);
+  return static_cast<double>(value);
+}
+
+std::size_t size_of(PlyType type) {
+  switch (type) {
+    case PlyType::Int8:
+    case PlyType::Uint8:
+      return 1;
+    case PlyType::Int16:
+    case PlyType::Uint16:
+      return 2;
+    case PlyType::Int32:
+    case PlyType::Uint32:
+    case PlyType::Float32:
+      return 4;
+    case PlyType::Float64:
+      return 8;
+  }
+  return 8;
+}
+
+}  // namespace
+
+std::optional<PlyType> ply_type(std::string_view word) {
+  for (const auto& [name, type] : types) {
+    if (name == word) return type;
+  }
+  return std::nullopt;
+}
+
+std::optional<PlyEncoding> ply_encoding(std::string_view word) {
+  for (const auto& [name, encoding] : encodings) {
+    if (name == word) return encoding;
+  }
+  return std::nullopt;
+}
+
+double PlyValues::next(PlyType type) {
+  if (encoding_ == PlyEncoding::Ascii) return next_word();
+  const std::size_t size = size_of(type);
+  if (bytes_left() < size) {
+    throw base::Error(base::Blame::Input, where(), "the file ends before its last number",
+                      "the header announces more", "The file is cut off");
+  }
+  std::array<char, 8> raw{};
+  std::memcpy(raw.data(), bytes_.data() + position_, size);
+  position_ += size;
+  if (encoding_ == PlyEncoding::BigEndian) {
+    std::reverse(raw.begin(), raw.begin() + static_cast<std::ptrdiff_t>(size));
+  }
+  switch (type) {
+    case PlyType::Int8:
+      return as_double<std::int8_t>(raw);
+    case PlyType::Uint8:
+      return as_double<std::uint8_t>(raw);
+    case PlyType::Int16:
+      return as_double<std::int16_t>(raw);
+    case PlyType::Uint16:
+      return as_double<std::uint16_t>(raw);
+    case PlyType::Int32:
+      return as_double<std::int32_t>(raw);
+    case PlyType::Uint32:
+      return as_double<std::uint32_t>(raw);
+    case PlyType::Float32:
+      return as_double<float>(raw);
+    case PlyType::Float64:
+      return as_double<double>(raw);
+  }
+  return 0.0;
+}
+
+double PlyValues::next_word() {
+  if (word_ >= lines_.words().size()) {
+    word_ = 0;
+    if (!lines_.next()) {
+      throw base::Error(base::Blame::Input, where(), "the file ends before its last number",
+                        "the header announces more", "The file is cut off");
+    }
+  }
+  return lines_.number(lines_.words()[word_++]);
+}
+
+std::uint32_t PlyValues::line() const {
+  if (encoding_ != PlyEncoding::Ascii) return 0;
+  return static_cast<std::uint32_t>(lines_.line());
+}
+
+base::Location PlyValues::where() const {
+  if (encoding_ == PlyEncoding::Ascii) return {file_, static_cast<int>(line()), 0};
+  return {fmt::format("{}, byte {} of the data", file_, position_)};
+}
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/read/scene_parts.h"
+
+namespace earthshine::scenes {
+namespace {
+
+constexpr std::string_view camera_keys[] = {
+    "name",     "position", "look_at",    "up",     "fov_deg",      "focus",
+    "aperture", "cctv",     "resolution", "filter", "filter_width", "range_sensor"};
+struct FilterRow {
+  std::string_view name;
+  FilterShape shape;
+  double width_px;  // unless the scene says otherwise
+};
+constexpr FilterRow filters[] = {{"box", FilterShape::Box, 1.0},
+                                 {"triangle", FilterShape::Triangle, 2.0},
+                                 {"gaussian", FilterShape::Gaussian, 3.0},
+                                 {"blackman-harris", FilterShape::BlackmanHarris, 4.0}};
+constexpr Range filter_widths{0.0, 16.0, true};  // px
+// The view of a camera closer to its target than this is made of rounding.
+constexpr double least_relative_view = 1e-9;
+constexpr std::string_view quality_keys[] = {
+    "error",       "patch_edge",       "max_patches", "refine", "form_factor_rays",
+    "gather_rays", "solver_tolerance", "gather",      "smooth", "picture_noise"};
+constexpr int most_pixels = 16384;           // per side
+constexpr std::size_t most_settings = 1000;  // of a CCTV camera or the monitor; a dozen exist
+
+void read_resolution(Camera& camera, const TableReader& table) {
+  const TomlEntry* entry = table.find("resolution");
+  if (entry == nullptr) return;
+  const auto* items = std::get_if<TomlArray>(&entry->node.value);
+  int* const sides[] = {&camera.columns, &camera.rows};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto* side = items != nullptr && items->size() == 2
+                           ? std::get_if<std::int64_t>(&(*items)[i].value)
+                           : nullptr;
+    if (side == nullptr || *side < 1 || *side > most_pixels) {
+      table.fail(
+          "resolution",
+          side != nullptr ? fmt::format("holds {}", *side) : "is " + describe(entry->node),
+          fmt::format("allowed is [columns, rows], whole numbers from 1 to {}", most_pixels));
+    }
+    *sides[i] = static_cast<int>(*side);
+  }
+}
+
+void read_lens(Camera& camera, const TableReader& table) {
+  // focus and aperture are metres whatever the scene's unit (docs/scene-format.md).
+  const auto focus = table.length("focus", 1.0, above_zero);
+  const auto aperture = table.length("aperture", 1.0, at_least_zero);
+  if (focus && !aperture) {
+    table.fail("focus", "stands without \"aperture\"", "depth of field needs both",
+               "Add aperture = ... (m, diameter), or remove focus");
+  }
+  if (aperture.value_or(0.0) > 0.0 && !focus) {
+    table.fail("aperture", "stands without \"focus\"", "depth of field needs both",
+               "Add focus = ... (m), or remove aperture");
+  }
+  camera.focus_m = focus.value_or(0.0);
+  camera.aperture_m = aperture.value_or(0.0);
+}
+
+void read_filter(Camera& camera, const TableReader& table) {
+  std::vector<std::string_view> names;
+  for (const FilterRow& row : filters) names.push_back(row.name);
+  const std::string name = table.choice("filter", names).value_or("box");
+  for (const FilterRow& row : filters) {
+    if (row.name != name) continue;
+    camera.filter = row.shape;
+    camera.filter_width_px = table.number("filter_width", filter_widths).value_or(row.width_px);
+  }
+}
+
+Setting read_setting(const TableReader& table, const TomlEntry& entry) {
+  Setting setting{entry.key, false, entry.where};
+  const TomlNode& node = entry.node;
+  if (const auto* flag = std::get_if<bool>(&node.value)) {
+    setting.value = *flag;
+  } else if (std::holds_alternative<std::string>(node.value)) {
+    setting.value = *table.text(entry.key);
+  } else if (const auto* items = std::get_if<TomlArray>(&node.value)) {
+    std::vector<double> numbers;
+    for (const TomlNode& item : *items) {
+      const auto* whole = std::get_if<std::int64_t>(&item.value);
+      const auto* number = std::get_if<double>(&item.value);
+      if ((whole == nullptr && number == nullptr) ||
+          (number != nullptr && !std::isfinite(*number))) {
+        table.fail(entry.key, "holds " + describe(item), "allowed are finite numbers");
+      }
+      numbers.push_back(whole != nullptr ? static_cast<double>(*whole) : *number);
+    }
+    setting.value = std::move(numbers);
+  } else if (std::holds_alternative<std::int64_t>(node.value) ||
+             std::holds_alternative<double>(node.value)) {
+    setting.value = *table.number(entry.key);
+  } else {
+    table.fail(entry.key, "is " + describe(node),
+               "allowed is true or false, a number, a string or an array of numbers");
+  }
+  return setting;
+}
+
+}  // namespace
+
+std::string_view filter_name(FilterShape shape) {
+  for (const FilterRow& row : filters) {
+    if (row.shape == shape) return row.name;
+  }
+  return "";
+}
+
+Camera read_camera(const TomlNode& node, double unit_m) {
+  TableReader table(node, "[[camera]]", camera_keys);
+  Camera camera;
+  camera.name = table.read_name();
+  camera.position =
+      table.required(table.position("position", unit_m), "position", "position = [x, y, z]");
+  camera.look_at =
+      table.required(table.position("look_at", unit_m), "look_at", "look_at = [x, y, z]");
+  camera.where = table.where("position");
+  const Vec3 view = camera.look_at - camera.position;
+  if (!(glm::length(view) > least_relative_view * std::max(unit_m, glm::length(camera.position)))) {
+    table.fail("look_at", "is the camera's own position",
+               "it is another point, far enough away to give a direction");
+  }
+  camera.up = table.direction("up").value_or(camera.up);
+  if (!(glm::length(glm::cross(glm::normalize(view), camera.up)) > 1e-6)) {
+    table.fail(table.has("up") ? "up" : "look_at", "makes the view parallel to up",
+               "up, [0, 0, 1] unless given, is a direction across the view",
+               "Give another up = [x, y, z]");
+  }
+  camera.fov_deg = table.number("fov_deg", {0.0, 180.0, true, true}).value_or(camera.fov_deg);
+  read_resolution(camera, table);
+  read_lens(camera, table);
+  read_filter(camera, table);
+  camera.cctv = table.text("cctv").value_or("");
+  camera.range_sensor = table.text("range_sensor").value_or("");
+  return camera;
+}
+
+SettingTable read_settings(const TomlNode& node, const std::string& title, bool named) {
+  // degrade/ knows the keys and refuses what it does not know.
+  std::vector<std::string_view> keys;
+  if (const auto* entries = std::get_if<TomlTable>(&node.value)) {
+    if (entries->size() > most_settings) {
+      throw base::Error(base::Blame::Input, node.where,
+                        fmt::format("{} has {} keys", title, entries->size()),
+                        fmt::format("it has at most {}", most_settings));
+    }
+    for (const TomlEntry& entry : *entries) keys.push_back(entry.key);
+  }
+  TableReader table(node, title, keys);
+  SettingTable settings;
+  settings.name = named ? table.read_name() : "monitor";
+  settings.where = node.where;
+  for (const TomlEntry& entry : std::get<TomlTable>(node.value)) {
+    if (named && entry.key == "name") continue;
+    settings.settings.push_back(read_setting(table, entry));
+  }
+  return settings;
+}
+
+void read_gather(Quality& quality, const TableReader& table) {
+  const auto gather = table.text("gather");
+  if (gather && *gather != "shared" && *gather != "per-sample") {
+    table.fail("gather", fmt::format("is \"{}\"", *gather),
+               "allowed is \"shared\" or \"per-sample\"");
+  }
+  if (gather) quality.share_gather = *gather == "shared";
+  quality.smooth_share = table.number("smooth", {0.0, 1.0, false});
+  quality.picture_noise = table.number("picture_noise", {0.0, 1.0, true});
+  if (quality.share_gather.value_or(true)) return;
+  for (const char* key : {"smooth", "picture_noise"}) {
+    if (table.find(key) == nullptr) continue;
+    table.fail(key, "belongs to gather = \"shared\"", "gather is \"per-sample\"",
+               "Leave out one of the two");
+  }
+}
+
+Quality read_quality(const TomlNode& node) {
+  const TableReader table(node, "[quality]", quality_keys);
+  Quality quality;
+  quality.error = table.number("error", {0.0, 1.0, true});
+  quality.patch_edge_m = table.length("patch_edge", 1.0, above_zero);  // metres in any unit
+  quality.max_patches = table.whole("max_patches", 1, 1 << 26);
+  quality.refine = table.flag("refine");
+  if (quality.max_patches && !quality.refine.value_or(true)) {
+    table.fail("max_patches", "is the budget of refinement, which refine = false turns off",
+               "patch_edge sets the size of patches that are all alike",
+               "Leave out max_patches or refine");
+  }
+  quality.form_factor_rays = table.whole("form_factor_rays", 1, 1 << 24);
+  quality.gather_rays = table.whole("gather_rays", 1, 1 << 20);
+  quality.solver_tolerance = table.number("solver_tolerance", {0.0, 0.1, true});
+  read_gather(quality, table);
+  return quality;
+}
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "scenes/read/scene_parts.h"
+
+namespace earthshine::scenes {
+namespace {
+
+constexpr std::string_view all_keys[] = {"name",      "group",  "type",     "position",  "aim",
+                                         "intensity", "flux",   "beam_deg", "field_deg", "center",
+                                         "edge_u",    "edge_v", "normal",   "radius",    "exitance",
+                                         "file",      "up",     "color",    "tilt_deg"};
+constexpr std::string_view types[] = {"point", "spot", "rectangle", "disk", "ies"};
+constexpr std::string_view point_keys[] = {"name",     "group",     "type",
+                                           "position", "intensity", "flux"};
+constexpr std::string_view spot_keys[] = {"name",      "group", "type",     "position", "aim",
+                                          "intensity", "flux",  "beam_deg", "field_deg"};
+constexpr std::string_view rectangle_keys[] = {"name",   "group",  "type",     "center",
+                                               "edge_u", "edge_v", "exitance", "flux"};
+constexpr std::string_view disk_keys[] = {"name",   "group",  "type",     "center",
+                                          "normal", "radius", "exitance", "flux"};
+constexpr std::string_view ies_keys[] = {"name", "group", "type", "file",  "position",
+                                         "aim",  "up",    "flux", "color", "tilt_deg"};
+
+// The lamp's strength: given as such, or as flux that spreads over `flux_per_unit` of it.
+Rgb read_strength(const TableReader& table, std::string_view key, double flux_per_unit) {
+  const auto strength = table.colour(key);
+  const auto flux = table.colour("flux");
+  if (strength && flux) {
+    table.fail("flux", fmt::format("stands beside \"{}\"", key), "a light has one of the two");
+  }
+  if (!strength && !flux) {
+    table.missing(key, fmt::format("{} = ... ({}) or flux = ... (lm)", key,
+                                   key == "intensity" ? "cd" : "lm/m^2"));
+  }
+  return strength ? *strength : *flux / flux_per_unit;
+}
+
+// Position and, toward the aim, the axis.
+void read_aim(Lamp& lamp, const TableReader& table, double unit_m) {
+  lamp.position =
+      table.required(table.position("position", unit_m), "position", "position = [x, y, z]");
+  const Vec3 aim = table.required(table.position("aim", unit_m), "aim", "aim = [x, y, z]");
+  const double distance = glm::length(aim - lamp.position);
+  if (!(distance > 1e-9 * unit_m)) table.fail("aim", "is the light's own position");
+  lamp.axis = (aim - lamp.position) / distance;
+}
+
+void read_point(Lamp& lamp, const TableReader& table, double unit_m) {
+  table.allow_only(point_keys, "a light of type \"point\"");
+  lamp.kind = LampKind::Point;
+  lamp.position =
+      table.required(table.position("position", unit_m), "position", "position = [x, y, z]");
+  lamp.intensity_cd = read_strength(table, "intensity", 4.0 * base::pi);
+}
+
+void read_spot(Lamp& lamp, const TableReader& table, double unit_m) {
+  table.allow_only(spot_keys, "a light of type \"spot\"");
+  lamp.kind = LampKind::Spot;
+  read_aim(lamp, table, unit_m);
+  lamp.field_deg = table.required(table.number("field_deg", {0.0, 180.0, true}), "field_deg",
+                                  "field_deg = ..., the full angle beyond which there is no light");
+  lamp.beam_deg = table.required(table.number("beam_deg", {0.0, 180.0}), "beam_deg",
+                                 "beam_deg = ..., the full angle of the cone of full intensity");
+  if (lamp.beam_deg > lamp.field_deg) {
+    table.fail("beam_deg", fmt::format("is {}", lamp.beam_deg),
+               fmt::format("allowed is at most field_deg, {}", lamp.field_deg));
+  }
+  // Full intensity within the beam, then a smooth step in cos(theta) to nothing at the field's
+  // edge: the step's mean is one half, so Phi = I 2 pi (1 - (cos beam/2 + cos field/2) / 2).
+  const double cos_beam = std::cos(base::radians(lamp.beam_deg / 2.0));
+  const double cos_field = std::cos(base::radians(lamp.field_deg / 2.0));
+  lamp.intensity_cd =
+      read_strength(table, "intensity", 2.0 * base::pi * (1.0 - 0.5 * (cos_beam + cos_field)));
+}
+
+// center, edge_u and edge_v of a lamp or an [[area]].
+Area read_sides(const TableReader& table, double unit_m) {
+  Area sides;
+  sides.center = table.required(table.position("center", unit_m), "center", "center = [x, y, z]");
+  sides.edge_u = table.required(table.position("edge_u", unit_m), "edge_u", "edge_u = [x, y, z]");
+  sides.edge_v = table.required(table.position("edge_v", unit_m), "edge_v", "edge_v = [x, y, z]");
+  const Vec3 normal = glm::cross(sides.edge_u, sides.edge_v);
+  const double area = glm::length(normal);
+  if (!(area > 1e-9 * glm::length(sides.edge_u) * glm::length(sides.edge_v)) || !(area > 0.0)) {
+    table.fail("edge_v", "spans no area with edge_u",
+               "the edges have lengths and are not parallel");
+  }
+  sides.normal = normal / area;
+  return sides;
+}
+
+void read_rectangle(Lamp& lamp, const TableReader& table, double unit_m) {
+  table.allow_only(rectangle_keys, "a light of type \"rectangle\"");
+  const Area sides = read_sides(table, unit_m);
+  lamp.kind = LampKind::Rectangle;
+  lamp.position = sides.center;
+  lamp.edge_u = sides.edge_u;
+  lamp.edge_v = sides.edge_v;
+  lamp.axis = sides.normal;
+  lamp.exitance =
+      read_strength(table, "exitance", glm::length(glm::cross(sides.edge_u, sides.edge_v)));
+}
+
+void read_disk(Lamp& lamp, const TableReader& table, double unit_m) {
+  table.allow_only(disk_keys, "a light of type \"disk\"");
+  lamp.kind = LampKind::Disk;
+  lamp.position = table.required(table.position("center", unit_m), "center", "center = [x, y, z]");
+  lamp.axis = table.required(table.direction("normal"), "normal", "normal = [x, y, z]");
+  lamp.radius_m =
+      table.required(table.length("radius", unit_m, above_zero), "radius", "radius = ...");
+  lamp.exitance = read_strength(table, "exitance", base::pi * lamp.radius_m * lamp.radius_m);
+}
+
+constexpr std::string_view area_keys[] = {"name", "center", "edge_u", "edge_v"};
+
+// Direction of the plane C0: that of "up" as far as it is across the axis.
+Vec3 read_c0(const Lamp& lamp, const TableReader& table) {
+  const auto across = [&](const Vec3& up) { return up - glm::dot(up, lamp.axis) * lamp.axis; };
+  constexpr double nearly_parallel = 1e-6;
+  if (const auto up = table.direction("up")) {
+    const Vec3 c0 = across(*up);
+    if (glm::length(c0) < nearly_parallel) {
+      table.fail("up", "is parallel to the light's axis",
+                 "it gives the direction of the plane C0, across the axis");
+    }
+    return glm::normalize(c0);
+  }
+  const Vec3 c0 = across({1.0, 0.0, 0.0});
+  return glm::normalize(glm::length(c0) < nearly_parallel ? across({0.0, 0.0, 1.0}) : c0);
+}
+
+void read_measured(Lamp& lamp, const TableReader& table, double unit_m, LuminaireShelf& shelf) {
+  table.allow_only(ies_keys, "a light of type \"ies\"");
+  lamp.kind = LampKind::Measured;
+  read_aim(lamp, table, unit_m);
+  lamp.source = table.required(table.text("file"), "file", "file = \"LUMINAIRE.ies\"");
+  const Luminaire& luminaire = shelf.take(lamp.source, table.where("file"));
+  lamp.photometry = luminaire.light;
+  lamp.c0 = read_c0(lamp, table);
+  const auto tilt_deg = table.number("tilt_deg", {0.0, 180.0});
+  if (tilt_deg && !luminaire.tilt) {
+    table.fail("tilt_deg", "has no effect",
+               "the file says TILT=NONE: its output does not depend on tilt", "Leave it out");
+  }
+  const auto flux = table.colour("flux");
+  const auto color = table.colour("color");
+  if (flux && color) {
+    table.fail("color", "stands beside \"flux\"", "a light has one of the two",
+               "Give the flux as [r, g, b]");
+  }
+  if (flux) {
+    lamp.intensity_cd = *flux / lamp.photometry->solid_angle_sr();
+    return;
+  }
+  const double tilt = luminaire.tilt ? luminaire.tilt->factor_at(tilt_deg.value_or(0.0)) : 1.0;
+  lamp.intensity_cd = Rgb(tilt * lamp.photometry->peak_cd());
+  if (!color) return;
+  // Only its hue: the file's candelas are luminous intensity and stay what they are.
+  if (!(base::luminance(*color) > 0.0)) table.fail("color", "is black", "it gives the light's hue");
+  lamp.intensity_cd *= *color / base::luminance(*color);
+}
+
+}  // namespace
+
+Area read_area(const TomlNode& node, double unit_m) {
+  TableReader table(node, "[[area]]", area_keys);
+  const std::string name = table.read_name();
+  Area area = read_sides(table, unit_m);
+  area.name = name;
+  return area;
+}
+
+const Luminaire& LuminaireShelf::take(const std::filesystem::path& named,
+                                      const base::Location& asked_at) {
+  const std::filesystem::path path = scene_folder_ / named;
+  const auto key = path.lexically_normal();
+  const auto found = luminaires_.find(key);
+  if (found != luminaires_.end()) return found->second;
+  return luminaires_.emplace(key, read_ies(path, asked_at)).first->second;
+}
+
+Lamp read_lamp(const TomlNode& node, double unit_m, LuminaireShelf& shelf) {
+  TableReader table(node, "[[light]]", all_keys);
+  Lamp lamp;
+  lamp.name = table.read_name();
+  lamp.group = table.name("group").value_or(lamp.name);
+  const std::string type =
+      table.required(table.choice("type", types), "type",
+                     "type = \"point\", \"spot\", \"rectangle\", \"disk\" or \"ies\"");
+  if (type == "point") read_point(lamp, table, unit_m);
+  if (type == "spot") read_spot(lamp, table, unit_m);
+  if (type == "rectangle") read_rectangle(lamp, table, unit_m);
+  if (type == "disk") read_disk(lamp, table, unit_m);
+  if (type == "ies") read_measured(lamp, table, unit_m, shelf);
+  for (const Rgb& strength : {lamp.intensity_cd, lamp.exitance}) {
+    if (!std::isfinite(base::max_component(strength))) {
+      table.fail("flux", "gives no finite strength",
+                 "the light's solid angle or area is too small");
+    }
+  }
+  return lamp;
+}
+
+}  // namespace earthshine::scenes

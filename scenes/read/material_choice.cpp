@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/read/material_choice.h"
+
+#include <fmt/format.h>
+
+#include "scenes/mesh/mesh_file.h"
+#include "scenes/reflect/energy.h"
+#include "scenes/text/message_text.h"
+
+namespace earthshine::scenes {
+namespace {
+
+std::vector<std::string> names_of(const std::vector<Material>& materials, std::size_t count) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < count; ++i) names.push_back(materials[i].name);
+  return names;
+}
+
+bool same_values(const Material& a, const Material& b) {
+  return a.diffuse == b.diffuse && a.specular == b.specular && a.shininess == b.shininess &&
+         a.mirror == b.mirror && a.transmit == b.transmit && a.ior == b.ior && a.emit == b.emit &&
+         a.light_group == b.light_group && a.two_sided == b.two_sided;
+}
+
+}  // namespace
+
+MaterialChoice::MaterialChoice(Scene& scene, const TableReader& object, ShelvedMesh& shelved,
+                               std::size_t own_material_count)
+    : scene_(scene),
+      object_(object),
+      shelved_(shelved),
+      own_material_count_(own_material_count),
+      chosen_(shelved.mesh.material_names.size(), no_index) {
+  const auto name = object.text("material");
+  if (!name) return;
+  override_ = own_material(*name);
+  if (override_ != no_index) return;
+  const auto names = names_of(scene.materials, own_material_count);
+  object.fail("material", fmt::format("is {}, which nobody defines", in_quotes(*name)),
+              names.empty() ? "the scene has no [[material]]" : "the scene has: " + listed(names),
+              did_you_mean(*name, names));
+}
+
+std::uint32_t MaterialChoice::material_of(const MeshPolygon& polygon) {
+  if (override_ != no_index) return override_;
+  const Mesh& mesh = shelved_.mesh;
+  if (polygon.material == no_index) {
+    if (mesh.path.empty())
+      object_.missing("material", "material = \"NAME\", one of the [[material]]");
+    const base::Location place{mesh.path.string(), static_cast<int>(polygon.line), 0};
+    throw base::Error(base::Blame::Input, object_.where(),
+                      fmt::format("{} has no \"material\", and neither has a face at {}",
+                                  object_.label(), base::to_string(place)),
+                      {}, "Add material = \"NAME\" to the object, or name one in the mesh");
+  }
+  std::uint32_t& number = chosen_[polygon.material];
+  if (number == no_index) {
+    number = find(mesh.material_names[polygon.material],
+                  {mesh.path.string(), static_cast<int>(polygon.line), 0});
+  }
+  return number;
+}
+
+std::uint32_t MaterialChoice::own_material(const std::string& name) const {
+  for (std::size_t i = 0; i < own_material_count_; ++i) {
+    if (scene_.materials[i].name == name) return static_cast<std::uint32_t>(i);
+  }
+  return no_index;
+}
+
+std::uint32_t MaterialChoice::find(const std::string& name, const base::Location& place) {
+  const std::uint32_t own = own_material(name);
+  if (own != no_index) return own;
+  const std::uint32_t of_mesh = find_mesh_material(shelved_.mesh, name, scene_.path.parent_path());
+  if (of_mesh != no_index) return add_to_scene(of_mesh);
+  auto names = names_of(scene_.materials, own_material_count_);
+  const auto more = names_of(shelved_.mesh.materials, shelved_.mesh.materials.size());
+  names.insert(names.end(), more.begin(), more.end());
+  throw base::Error(
+      base::Blame::Input, place,
+      fmt::format("the material {} of {} is one that nobody defines", in_quotes(name),
+                  object_.label()),
+      names.empty() ? "neither the scene nor the mesh defines any"
+                    : "the scene and the mesh define: " + listed(names),
+      fmt::format("Add [[material]] with name = {} to the scene, or material = ... to the object",
+                  in_quotes(name)));
+}
+
+std::uint32_t MaterialChoice::add_to_scene(std::uint32_t mesh_material) {
+  shelved_.scene_material.resize(shelved_.mesh.materials.size(), no_index);
+  std::uint32_t& number = shelved_.scene_material[mesh_material];
+  if (number != no_index) return number;
+  Material material = shelved_.mesh.materials[mesh_material];
+  check_energy(material, shelved_.mesh.material_places[mesh_material],
+               fmt::format("material {}", in_quotes(material.name)));
+  // Meshes may share a library, or use one name for different things; the scene's names stay
+  // unique.
+  for (std::size_t i = own_material_count_; i < scene_.materials.size(); ++i) {
+    if (scene_.materials[i].name != material.name) continue;
+    if (same_values(scene_.materials[i], material)) {
+      number = static_cast<std::uint32_t>(i);
+      return number;
+    }
+    material.name += fmt::format(" ({})", shelved_.mesh.path.string());
+    break;
+  }
+  number = static_cast<std::uint32_t>(scene_.materials.size());
+  scene_.materials.push_back(std::move(material));
+  return number;
+}
+
+}  // namespace earthshine::scenes

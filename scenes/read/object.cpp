@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "scenes/mesh/mesh_file.h"
+#include "scenes/mesh/shapes.h"
+#include "scenes/read/material_choice.h"
+#include "scenes/read/scene_parts.h"
+
+namespace earthshine::scenes {
+namespace {
+
+constexpr std::string_view all_keys[] = {"name",      "mesh",   "part",  "shape",  "material",
+                                         "translate", "rotate", "scale", "target", "inward",
+                                         "corners",   "min",    "max",   "center", "radius",
+                                         "segments",  "from",   "to",    "caps",   "normal"};
+constexpr std::string_view shapes[] = {"quad", "box", "sphere", "cylinder", "disk"};
+constexpr std::string_view common_keys[] = {"name",  "material", "translate", "rotate",
+                                            "scale", "target",   "inward"};
+constexpr Range lengths{-largest_length, largest_length};
+
+void allow_keys(const TableReader& table, std::initializer_list<std::string_view> own,
+                std::string_view of_what) {
+  std::vector<std::string_view> keys(std::begin(common_keys), std::end(common_keys));
+  keys.insert(keys.end(), own);
+  table.allow_only(keys, of_what);
+}
+
+int read_segments(const TableReader& table) {
+  return table.whole("segments", fewest_segments, most_segments).value_or(default_segments);
+}
+
+double read_radius(const TableReader& table) {
+  return table.required(table.number("radius", {0.0, largest_length, true}), "radius",
+                        "radius = ...");
+}
+
+Vec3 read_point(const TableReader& table, std::string_view key) {
+  return table.required(table.vector(key, lengths), key, fmt::format("{} = [x, y, z]", key));
+}
+
+Mesh read_quad(const TableReader& table) {
+  allow_keys(table, {"shape", "corners"}, "the shape \"quad\"");
+  const auto corners =
+      table.required(table.points("corners"), "corners", "corners = [[x, y, z], ...], four points");
+  if (corners.size() != 4) {
+    table.fail("corners", fmt::format("has {} points", corners.size()), "a quad has four");
+  }
+  const std::span<const Vec3, 4> four(corners.data(), 4);
+  switch (check_quad(four)) {
+    case QuadFault::NoArea:
+      table.fail("corners", "span no area", "a quad has four corners, in order round it");
+    case QuadFault::NotFlat:
+      table.fail("corners", "do not lie in one plane", "they do, to 1e-6 of the quad's size",
+                 "Move a corner, or make two quads or a mesh of it");
+    case QuadFault::NotConvex:
+      table.fail("corners", "do not go round a convex quadrilateral",
+                 "they follow its outline in order");
+    case QuadFault::None:
+      break;
+  }
+  return make_quad(four);
+}
+
+Mesh read_box(const TableReader& table) {
+  allow_keys(table, {"shape", "min", "max"}, "the shape \"box\"");
+  const Vec3 low = read_point(table, "min");
+  const Vec3 high = read_point(table, "max");
+  if (!glm::all(glm::lessThan(low, high))) {
+    table.fail("max", fmt::format("is [{}, {}, {}]", high.x, high.y, high.z),
+               fmt::format("each number is above that of min, [{}, {}, {}]", low.x, low.y, low.z));
+  }
+  return make_box(low, high);
+}
+
+Mesh read_cylinder(const TableReader& table) {
+  allow_keys(table, {"shape", "from", "to", "radius", "segments", "caps"},
+             "the shape \"cylinder\"");
+  const Vec3 from = read_point(table, "from");
+  const Vec3 to = read_point(table, "to");
+  if (!(glm::length(to - from) > 0.0)) table.fail("to", "is the same point as from");
+  return make_cylinder(from, to, read_radius(table), read_segments(table),
+                       table.flag("caps").value_or(true));
+}
+
+Mesh read_shape(const TableReader& table, const std::string& shape) {
+  if (shape == "quad") return read_quad(table);
+  if (shape == "box") return read_box(table);
+  if (shape == "cylinder") return read_cylinder(table);
+  if (shape == "sphere") {
+    allow_keys(table, {"shape", "center", "radius", "segments"}, "the shape \"sphere\"");
+    return make_sphere(read_point(table, "center"), read_radius(table), read_segments(table));
+  }
+  allow_keys(table, {"shape", "center", "normal", "radius", "segments"}, "the shape \"disk\"");
+  const Vec3 normal = table.required(table.direction("normal"), "normal", "normal = [x, y, z]");
+  return make_disk(read_point(table, "center"), normal, read_radius(table), read_segments(table));
+}
+
+Placement read_placement(const TableReader& table, double unit_m) {
+  Placement placement;
+  // Of meshes too: glTF means metres by its specification, but here the scene's unit rules whatever
+  // the format, so that one key says what every number of the scene means.
+  placement.unit_m = unit_m;
+  if (table.has("scale")) placement.scale = *table.colour("scale", {0.0, 1e6, true});
+  if (const auto degrees = table.vector("rotate", {-1e6, 1e6})) {
+    placement.rotation = rotation_xyz(*degrees);
+  }
+  placement.translate = table.vector("translate", lengths).value_or(Vec3(0.0));
+  placement.inward = table.flag("inward").value_or(false);
+  return placement;
+}
+
+}  // namespace
+
+ShelvedMesh& MeshShelf::take(const std::filesystem::path& named, const base::Location& asked_at) {
+  const std::filesystem::path path = scene_folder_ / named;
+  std::unique_ptr<ShelvedMesh>& shelved = meshes_[path.lexically_normal()];
+  if (!shelved) {
+    auto fresh = std::make_unique<ShelvedMesh>();
+    fresh->mesh = read_mesh(path, scene_folder_, asked_at);
+    shelved = std::move(fresh);
+  }
+  return *shelved;
+}
+
+void read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& shelf) {
+  TableReader table(node, "[[object]]", all_keys);
+  Object object;
+  object.name = table.read_name();
+  object.target = table.flag("target").value_or(false);
+  const auto named = table.text("mesh");
+  const auto shape = table.choice("shape", shapes);
+  if (named && shape) table.fail("shape", "stands beside \"mesh\"", "an object is one of the two");
+  if (!named && !shape) {
+    table.missing("mesh", "mesh = \"FILE\" or shape = \"quad\", \"box\", \"sphere\", ...");
+  }
+  const Placement placement = read_placement(table, unit_m);
+  ShelvedMesh made;
+  ShelvedMesh* shelved = &made;
+  std::uint32_t part = no_index;
+  if (shape) {
+    made.mesh = read_shape(table, *shape);
+    object.source = *shape;
+  } else {
+    allow_keys(table, {"mesh", "part"}, "an object with a mesh");
+    shelved = &shelf.take(*named, table.where("mesh"));
+    object.source = *named;
+    if (const auto part_name = table.text("part")) {
+      part = find_part(shelved->mesh, *part_name, table.where("part"));
+      object.source += "#" + *part_name;
+    }
+    // Said once, by the first object that uses the file.
+    auto& warnings = shelved->mesh.warnings;
+    scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
+    warnings.clear();
+  }
+  MaterialChoice choice(scene, table, *shelved, shelf.own_material_count());
+  place_mesh(scene, std::move(object), shelved->mesh, part, placement, table.where(),
+             [&](const MeshPolygon& polygon) { return choice.material_of(polygon); });
+}
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/read/place_mesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <span>
+
+#include "scenes/mesh/triangulate.h"
+#include "scenes/text/message_text.h"
+#include "scenes/text/table_reader.h"
+
+namespace earthshine::scenes {
+namespace {
+
+using base::Blame;
+using base::Error;
+
+// Of the box's diagonal squared: smaller polygons are rounding, not surfaces.
+constexpr double smallest_area_share = 1e-12;
+// Triangles of a polygon that is not flat have more area than it has along its normal. A little is
+// how meshes are; that much is not a polygon any more.
+constexpr double warp_worth_a_warning = 1e-4;
+constexpr double largest_warp = 0.05;
+
+class Placer {
+ public:
+  Placer(Scene& scene, Object& object, const Mesh& mesh, const Placement& placement,
+         const base::Location& where)
+      : scene_(scene), object_(object), mesh_(mesh), placement_(placement), where_(where) {}
+
+  void choose(std::uint32_t part) {
+    std::vector<char> wanted(mesh_.part_sets.size(), part == no_index ? 1 : 0);
+    for (std::size_t s = 0; s < wanted.size(); ++s) {
+      const auto& set = mesh_.part_sets[s];
+      if (std::find(set.begin(), set.end(), part) != set.end()) wanted[s] = 1;
+    }
+    for (std::size_t p = 0; p < mesh_.polygons.size(); ++p) {
+      const std::uint32_t set = mesh_.polygons[p].part_set;
+      if (part == no_index || (set < wanted.size() && wanted[set] != 0)) chosen_.push_back(p);
+    }
+  }
+
+  void transform() {
+    placed_at_.assign(mesh_.vertices.size(), no_index);
+    Vec3 low(std::numeric_limits<double>::infinity());
+    Vec3 high(-low);
+    for (const std::size_t p : chosen_) {
+      for (const std::uint32_t index : corners_of(mesh_.polygons[p])) {
+        const Vec3 v = placement_.apply(mesh_.vertices[index]);
+        for (int c = 0; c < 3; ++c) {
+          if (std::abs(v[c]) <= largest_length) continue;
+          throw Error(Blame::Input, place_of(p),
+                      fmt::format("a vertex at ({}, {}, {}) m after the transform", v.x, v.y, v.z),
+                      fmt::format("coordinates are finite and at most {} m", largest_length),
+                      "Check the mesh, and unit, scale and translate");
+        }
+        low = glm::min(low, v);
+        high = glm::max(high, v);
+      }
+    }
+    const double diagonal = chosen_.empty() ? 0.0 : glm::length(high - low);
+    smallest_area_ = smallest_area_share * diagonal * diagonal;
+  }
+
+  void triangulate_all(const std::function<std::uint32_t(const MeshPolygon&)>& material_of) {
+    object_.first_triangle = static_cast<std::uint32_t>(scene_.triangles.size());
+    next_polygon_ = scene_.triangles.empty() ? 0 : scene_.triangles.back().polygon + 1;
+    Triangulation pieces;
+    std::vector<Vec3> corners;
+    for (const std::size_t p : chosen_) {
+      const MeshPolygon& polygon = mesh_.polygons[p];
+      const auto indices = corners_of(polygon);
+      if (indices.size() > max_polygon_corners) {
+        throw Error(Blame::Input, place_of(p),
+                    fmt::format("a polygon of {} corners", indices.size()),
+                    fmt::format("a polygon has at most {}", max_polygon_corners), "Divide it");
+      }
+      corners.clear();
+      for (const std::uint32_t index : indices)
+        corners.push_back(placement_.apply(mesh_.vertices[index]));
+      triangulate(corners, smallest_area_, pieces);
+      if (pieces.kind == PolygonKind::Degenerate) {
+        if (object_.degenerate_count++ == 0) first_degenerate_ = p;
+        continue;
+      }
+      judge(p, pieces);
+      add(pieces, indices, material_of(polygon));
+    }
+    object_.triangle_count =
+        static_cast<std::uint32_t>(scene_.triangles.size()) - object_.first_triangle;
+  }
+
+  void report() {
+    if (object_.polygon_count == 0) {
+      throw Error(Blame::Input, where_,
+                  fmt::format("the object {} has no surface", in_quotes(object_.name)),
+                  chosen_.empty()
+                      ? "its mesh or part has no faces"
+                      : fmt::format("all of its {} polygons are without area", chosen_.size()));
+    }
+    if (object_.degenerate_count > 0) {
+      scene_.warnings.push_back(
+          fmt::format("object {}: {} of {} polygons have no area and are left out, the "
+                      "first at {}",
+                      in_quotes(object_.name), object_.degenerate_count, chosen_.size(),
+                      base::to_string(place_of(first_degenerate_))));
+    }
+    if (warped_count_ > 0) {
+      scene_.warnings.push_back(
+          fmt::format("object {}: {} of {} polygons are not flat; their triangles have up to "
+                      "{:.2g} % more area, the "
+                      "first at {}",
+                      in_quotes(object_.name), warped_count_, chosen_.size(), 100.0 * most_warped_,
+                      base::to_string(place_of(first_warped_))));
+    }
+  }
+
+ private:
+  [[nodiscard]] std::span<const std::uint32_t> corners_of(const MeshPolygon& polygon) const {
+    return std::span(mesh_.indices).subspan(polygon.first, polygon.count);
+  }
+
+  // The polygon's line if the file has lines, else the file and its running number, else the
+  // scene's key.
+  [[nodiscard]] base::Location place_of(std::size_t p) const {
+    if (mesh_.path.empty()) return where_;
+    const std::uint32_t line = mesh_.polygons[p].line;
+    if (line > 0) return {mesh_.path.string(), static_cast<int>(line), 0};
+    return {fmt::format("{}, polygon {}", mesh_.path.string(), p + 1)};
+  }
+
+  void judge(std::size_t p, const Triangulation& pieces) {
+    if (pieces.kind == PolygonKind::Crossing) {
+      throw Error(Blame::Input, place_of(p), "the polygon's outline crosses itself",
+                  "a polygon is simple: its triangles add up to its area",
+                  "Repair the mesh or divide it");
+    }
+    const double warp = pieces.triangle_area / pieces.area - 1.0;
+    if (warp > largest_warp) {
+      throw Error(Blame::Input, place_of(p),
+                  fmt::format("the polygon is far from flat: its triangles have {:.3g} % more area",
+                              100.0 * warp),
+                  fmt::format("allowed are {} %", 100.0 * largest_warp),
+                  "Divide it into triangles");
+    }
+    if (warp > warp_worth_a_warning) {
+      if (warped_count_++ == 0) first_warped_ = p;
+      most_warped_ = std::max(most_warped_, warp);
+    }
+  }
+
+  void add(const Triangulation& pieces, std::span<const std::uint32_t> indices,
+           std::uint32_t material) {
+    if (scene_.triangles.size() + pieces.triangles.size() > max_scene_triangles) {
+      throw Error(Blame::Input, where_, "the scene is too large",
+                  fmt::format("it has at most {} triangles", max_scene_triangles));
+    }
+    const auto number = static_cast<std::uint32_t>(scene_.objects.size());
+    for (const auto& piece : pieces.triangles) {
+      Triangle triangle{{0, 0, 0}, number, material, next_polygon_};
+      for (std::size_t k = 0; k < 3; ++k) {
+        std::uint32_t corner = indices[piece[k]];
+        if (placed_at_[corner] == no_index) {
+          placed_at_[corner] = static_cast<std::uint32_t>(scene_.vertices.size());
+          scene_.vertices.push_back(placement_.apply(mesh_.vertices[corner]));
+        }
+        // Turned about the first corner, so that a parallelogram stays (0,1,2), (0,2,3) of its
+        // corners read the other way round.
+        triangle.vertex[placement_.inward ? (3 - k) % 3 : k] = placed_at_[corner];
+      }
+      scene_.triangles.push_back(triangle);
+    }
+    if (placement_.inward && pieces.triangles.size() == 2) {
+      std::swap(scene_.triangles[scene_.triangles.size() - 1],
+                scene_.triangles[scene_.triangles.size() - 2]);
+    }
+    ++next_polygon_;
+    ++object_.polygon_count;
+    object_.area_m2 += pieces.area;
+  }
+
+  Scene& scene_;
+  Object& object_;
+  const Mesh& mesh_;
+  const Placement& placement_;
+  const base::Location& where_;
+  std::vector<std::size_t> chosen_;
+  std::vector<std::uint32_t> placed_at_;  // scene vertex per mesh vertex
+  double smallest_area_ = 0.0;
+  std::uint32_t next_polygon_ = 0;
+  std::size_t first_degenerate_ = 0;
+  std::size_t first_warped_ = 0;
+  std::size_t warped_count_ = 0;
+  double most_warped_ = 0.0;
+};
+
+}  // namespace
+
+glm::dmat3 rotation_xyz(const Vec3& degrees) {
+  glm::dmat4 matrix(1.0);
+  for (int axis = 2; axis >= 0; --axis) {
+    Vec3 around(0.0);
+    around[axis] = 1.0;
+    matrix = glm::rotate(matrix, base::radians(degrees[axis]), around);
+  }
+  return glm::dmat3(matrix);
+}
+
+void place_mesh(Scene& scene, Object object, const Mesh& mesh, std::uint32_t part,
+                const Placement& placement, const base::Location& where,
+                const std::function<std::uint32_t(const MeshPolygon&)>& material_of) {
+  Placer placer(scene, object, mesh, placement, where);
+  placer.choose(part);
+  placer.transform();
+  placer.triangulate_all(material_of);
+  placer.report();
+  scene.objects.push_back(std::move(object));
+}
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/read/scene_file.h"
+
+#include <fmt/format.h>
+
+#include "scenes/read/override.h"
+#include "scenes/read/scene_parts.h"
+#include "scenes/text/input_file.h"
+#include "scenes/text/toml_guard.h"
+
+namespace earthshine::scenes {
+namespace {
+
+constexpr std::string_view root_keys[] = {
+    "format", "name",  "unit",    "material", "object", "light",   "area",         "sun",
+    "earth",  "orbit", "ambient", "camera",   "cctv",   "monitor", "range_sensor", "quality"};
+constexpr std::string_view camera_file_keys[] = {"cctv", "monitor"};
+constexpr std::string_view ambient_keys[] = {"radiance"};
+constexpr std::string_view units[] = {"m", "cm", "mm", "ft", "in"};
+constexpr double metres_per_unit[] = {1.0, 0.01, 0.001, 0.3048, 0.0254};
+static_assert(std::size(units) == std::size(metres_per_unit));
+
+void check_format(const TableReader& root) {
+  const TomlEntry* entry = root.find("format");
+  if (entry == nullptr) {
+    throw base::Error(base::Blame::Input, base::Location{root.where().file, 1, 1},
+                      "the scene has no \"format\"", "this program reads format = 1",
+                      "Begin the file with format = 1");
+  }
+  const auto* format = std::get_if<std::int64_t>(&entry->node.value);
+  if (format == nullptr || *format != 1) {
+    throw base::Error(base::Blame::Input, entry->where,
+                      fmt::format("\"format\" is {}", describe(entry->node)),
+                      "this program reads format = 1");
+  }
+}
+
+double read_unit(const TableReader& root) {
+  const std::string unit = root.choice("unit", units).value_or("m");
+  for (std::size_t i = 0; i < std::size(units); ++i) {
+    if (units[i] == unit) return metres_per_unit[i];
+  }
+  return 1.0;
+}
+
+const TomlNode* plain_table(const TableReader& root, std::string_view key) {
+  const TomlEntry* entry = root.find(key);
+  return entry == nullptr ? nullptr : &entry->node;
+}
+
+// Reads the entries of [[key]] in their order and checks that no two have one name.
+template <class Read>
+void read_named(const TableReader& root, std::string_view key, Read read) {
+  const auto entries = named_entries(root, key);
+  std::vector<std::string> names;
+  names.reserve(entries.size());
+  for (const TomlNode* entry : entries) names.push_back(read(*entry));
+  check_unique(names, entries, fmt::format("[[{}]]", key));
+}
+
+void read_cctv(Scene& scene, const TableReader& root) {
+  read_named(root, "cctv", [&](const TomlNode& node) {
+    return scene.cctv.emplace_back(read_settings(node, "[[cctv]]", true)).name;
+  });
+  if (const TomlNode* node = plain_table(root, "monitor")) {
+    scene.monitor = read_settings(*node, "[monitor]", false);
+  }
+}
+
+}  // namespace
+
+Scene read_camera_file(const std::filesystem::path& path) {
+  const std::string text = read_input_file(path, max_toml_bytes, base::Location{path.string()});
+  const TomlNode tree = parse_toml(text, path.string());
+  const bool whole_scene = find_entry(std::get<TomlTable>(tree.value), "format") != nullptr;
+  const TableReader root(tree, whole_scene ? "the scene" : "a camera file",
+                         whole_scene ? KeyList(root_keys) : KeyList(camera_file_keys));
+  if (whole_scene) check_format(root);
+  Scene scene;
+  scene.path = path;
+  scene.name = path.stem().string();
+  read_cctv(scene, root);
+  return scene;
+}
+
+Scene read_scene(const std::filesystem::path& path, std::span<const std::string> overrides) {
+  const std::string text = read_input_file(path, max_toml_bytes, base::Location{path.string()});
+  TomlNode tree = parse_toml(text, path.string());
+  for (const std::string& setting : overrides) apply_override(tree, setting);
+
+  const TableReader root(tree, "the scene", root_keys);
+  check_format(root);
+  Scene scene;
+  scene.path = path;
+  scene.name = root.text("name").value_or(path.stem().string());
+  const double unit_m = read_unit(root);
+
+  read_named(root, "material", [&](const TomlNode& node) {
+    return scene.materials.emplace_back(read_material(node)).name;
+  });
+  LuminaireShelf luminaires(path.parent_path());
+  read_named(root, "light", [&](const TomlNode& node) {
+    return scene.lamps.emplace_back(read_lamp(node, unit_m, luminaires)).name;
+  });
+  read_named(root, "area", [&](const TomlNode& node) {
+    return scene.areas.emplace_back(read_area(node, unit_m)).name;
+  });
+  read_sky(scene, plain_table(root, "sun"), plain_table(root, "earth"), plain_table(root, "orbit"));
+  if (const TomlNode* node = plain_table(root, "ambient")) {
+    const TableReader table(*node, "[ambient]", ambient_keys);
+    scene.ambient_radiance = table.colour("radiance").value_or(Rgb(0.0));
+  }
+  read_named(root, "camera", [&](const TomlNode& node) {
+    return scene.cameras.emplace_back(read_camera(node, unit_m)).name;
+  });
+  read_cctv(scene, root);
+  read_named(root, "range_sensor", [&](const TomlNode& node) {
+    return scene.range_sensors.emplace_back(read_settings(node, "[[range_sensor]]", true)).name;
+  });
+  if (const TomlNode* node = plain_table(root, "quality")) scene.quality = read_quality(*node);
+
+  // Objects last: their meshes take the longest to read, and a slip elsewhere shows at once.
+  MeshShelf shelf(path.parent_path(), scene.materials.size());
+  read_named(root, "object", [&](const TomlNode& node) {
+    read_object(scene, node, unit_m, shelf);
+    return scene.objects.back().name;
+  });
+  return scene;
+}
+
+}  // namespace earthshine::scenes

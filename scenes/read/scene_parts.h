@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts of a scene file, one function per table. All throw base::Error (Input) for what is
+// wrong.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scenes/light/ies_file.h"
+#include "scenes/mesh.h"
+#include "scenes/read/place_mesh.h"
+#include "scenes/scene.h"
+#include "scenes/text/table_reader.h"
+
+namespace earthshine::scenes {
+
+[[nodiscard]] Material read_material(const TomlNode& node);
+
+// Measured luminaires are read once however many lamps are of their kind.
+class LuminaireShelf {
+ public:
+  explicit LuminaireShelf(std::filesystem::path scene_folder)
+      : scene_folder_(std::move(scene_folder)) {}
+  [[nodiscard]] const Luminaire& take(const std::filesystem::path& named,
+                                      const base::Location& asked_at);
+
+ private:
+  std::filesystem::path scene_folder_;
+  std::map<std::filesystem::path, Luminaire> luminaires_;
+};
+
+[[nodiscard]] Lamp read_lamp(const TomlNode& node, double unit_m, LuminaireShelf& shelf);
+
+[[nodiscard]] Area read_area(const TomlNode& node, double unit_m);
+
+inline constexpr Range altitudes_km{0.0, 1e6, true};
+
+// [orbit]; a table of attitudes is looked for beside scene.path, warnings go to the scene.
+[[nodiscard]] Orbit read_orbit(Scene& scene, const TomlNode& node);
+
+// [sun], [earth] and [orbit], each null when absent, to scene.sun, scene.earth and scene.orbit.
+void read_sky(Scene& scene, const TomlNode* sun, const TomlNode* earth, const TomlNode* orbit);
+
+[[nodiscard]] Camera read_camera(const TomlNode& node, double unit_m);
+[[nodiscard]] SettingTable read_settings(const TomlNode& node, const std::string& title,
+                                         bool named);
+[[nodiscard]] Quality read_quality(const TomlNode& node);
+
+// A mesh and what the scene has made of its materials.
+struct ShelvedMesh {
+  Mesh mesh;
+  std::vector<std::uint32_t> scene_material;  // per mesh.materials; no_index: not used so far
+};
+
+// Meshes are read once however many objects take parts of them.
+class MeshShelf {
+ public:
+  // own_material_count: the scene file's materials; those of meshes come after them in the scene.
+  MeshShelf(std::filesystem::path scene_folder, std::size_t own_material_count)
+      : scene_folder_(std::move(scene_folder)), own_material_count_(own_material_count) {}
+
+  [[nodiscard]] ShelvedMesh& take(const std::filesystem::path& named,
+                                  const base::Location& asked_at);
+  [[nodiscard]] std::size_t own_material_count() const { return own_material_count_; }
+
+ private:
+  std::filesystem::path scene_folder_;
+  std::size_t own_material_count_;
+  std::map<std::filesystem::path, std::unique_ptr<ShelvedMesh>> meshes_;
+};
+
+// Adds the object's triangles, and the materials that only its mesh defines, to the scene.
+void read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& shelf);
+
+}  // namespace earthshine::scenes

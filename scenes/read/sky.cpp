@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/sky/sky.h"
+
+#include <optional>
+
+#include "scenes/read/scene_parts.h"
+#include "scenes/sky/orbit.h"
+
+namespace earthshine::scenes {
+namespace {
+
+constexpr std::string_view sun_keys[] = {"direction", "illuminance", "angular_radius_deg"};
+constexpr std::string_view earth_keys[] = {"direction", "altitude_km",    "albedo",    "model",
+                                           "radiance",  "half_angle_deg", "albedo_by", "albedo_a0",
+                                           "albedo_a1", "albedo_a2",      "north"};
+constexpr std::string_view models[] = {"lambert", "uniform"};
+constexpr std::string_view albedo_laws[] = {"mean", "latitude"};
+constexpr std::string_view latitude_keys[] = {"albedo_a0", "albedo_a1", "albedo_a2", "north"};
+constexpr std::string_view example_direction = "direction = [x, y, z]";
+
+// What [orbit] determines may not be given a second time.
+void refuse_beside_orbit(const TableReader& table, std::string_view key) {
+  if (!table.has(key)) return;
+  table.fail(key, "stands beside [orbit]", "[orbit] already determines it",
+             "Remove the key, or [orbit]");
+}
+
+Sun read_sun(const TableReader& table, const std::optional<Orbit>& orbit) {
+  Sun sun;
+  if (orbit) {
+    refuse_beside_orbit(table, "direction");
+  } else {
+    sun.direction = table.required(table.direction("direction"), "direction", example_direction);
+  }
+  sun.illuminance_lx = table.colour("illuminance").value_or(sun.illuminance_lx);
+  sun.angular_radius_deg =
+      table.number("angular_radius_deg", {0.0, 45.0}).value_or(sun.angular_radius_deg);
+  return sun;
+}
+
+void read_disc(Earth& earth, const TableReader& table, const std::optional<Orbit>& orbit) {
+  if (orbit) {
+    refuse_beside_orbit(table, "altitude_km");
+    refuse_beside_orbit(table, "half_angle_deg");
+    earth.altitude_m = orbit->altitude_m;
+  } else if (earth.model == EarthModel::Uniform && table.has("half_angle_deg")) {
+    if (table.has("altitude_km")) {
+      table.fail("half_angle_deg", "stands beside \"altitude_km\"",
+                 "the disc is given by one of the two");
+    }
+    earth.half_angle_deg = *table.number("half_angle_deg", {0.0, 90.0, true, true});
+    return;
+  } else {
+    if (table.has("half_angle_deg")) {
+      table.fail("half_angle_deg", "belongs to model \"uniform\"",
+                 "the lit sphere of model \"lambert\" needs altitude_km");
+    }
+    earth.altitude_m =
+        1e3 * table.required(table.number("altitude_km", altitudes_km), "altitude_km",
+                             "altitude_km = ..., the height over the ground");
+  }
+  earth.half_angle_deg = base::degrees(earth_half_angle_rad(earth.altitude_m));
+}
+
+// The share of the light that a Lambert Earth gives back.
+void read_albedo(Earth& earth, const TableReader& table, const std::optional<Orbit>& orbit) {
+  if (table.choice("albedo_by", albedo_laws).value_or("mean") == "mean") {
+    for (const std::string_view key : latitude_keys) {
+      if (!table.has(key)) continue;
+      table.fail(key, "belongs to albedo_by = \"latitude\"", "the mean albedo has no latitudes",
+                 "Write albedo_by = \"latitude\", or remove the key");
+    }
+    earth.albedo = table.colour("albedo", share).value_or(earth.albedo);
+    return;
+  }
+  LatitudeAlbedo law;
+  law.a0 = table.number("albedo_a0", share).value_or(law.a0);
+  law.a1 = table.number("albedo_a1", {-1.0, 1.0}).value_or(law.a1);
+  law.a2 = table.number("albedo_a2", {-1.0, 1.0}).value_or(law.a2);
+  if (orbit) {
+    refuse_beside_orbit(table, "north");
+  } else {
+    law.north = table.required(table.direction("north"), "north",
+                               "north = [x, y, z], toward the Earth's north pole");
+  }
+  earth.by_latitude = law;
+  earth.albedo = table.colour("albedo", share).value_or(Rgb(1.0));
+}
+
+Earth read_earth(const TableReader& table, const std::optional<Orbit>& orbit) {
+  Earth earth;
+  if (table.choice("model", models).value_or("lambert") == "uniform")
+    earth.model = EarthModel::Uniform;
+  if (orbit) {
+    refuse_beside_orbit(table, "direction");
+  } else {
+    earth.direction = table.required(table.direction("direction"), "direction", example_direction);
+  }
+  read_disc(earth, table, orbit);
+  if (earth.model == EarthModel::Uniform) {
+    for (const std::string_view key :
+         {"albedo", "albedo_by", "albedo_a0", "albedo_a1", "albedo_a2", "north"}) {
+      if (!table.has(key)) continue;
+      table.fail(key, "belongs to model \"lambert\"", "model \"uniform\" has radiance");
+    }
+    earth.radiance =
+        table.required(table.colour("radiance"), "radiance", "radiance = ... (cd/m^2)");
+  } else {
+    if (table.has("radiance")) {
+      table.fail("radiance", "belongs to model \"uniform\"", "model \"lambert\" has albedo",
+                 "Write model = \"uniform\", or remove the key");
+    }
+    read_albedo(earth, table, orbit);
+  }
+  return earth;
+}
+
+}  // namespace
+
+void read_sky(Scene& scene, const TomlNode* sun, const TomlNode* earth, const TomlNode* orbit) {
+  if (orbit != nullptr) scene.orbit = read_orbit(scene, *orbit);
+  // With [orbit], Sun and Earth are there, and an absent table stands for its defaults.
+  const TomlNode nothing{orbit != nullptr ? orbit->where : base::Location{}, TomlTable{}};
+  if (orbit != nullptr && sun == nullptr) sun = &nothing;
+  if (orbit != nullptr && earth == nullptr) earth = &nothing;
+  if (sun != nullptr) scene.sun = read_sun(TableReader(*sun, "[sun]", sun_keys), scene.orbit);
+  if (earth == nullptr) return;
+  const TableReader table(*earth, "[earth]", earth_keys);
+  scene.earth = read_earth(table, scene.orbit);
+  if (scene.orbit) move_along_orbit(scene, scene.orbit->position_deg);
+  if (scene.earth->model == EarthModel::Lambert && !scene.sun) {
+    throw base::Error(
+        base::Blame::Input, table.where("model"),
+        "[earth] of model \"lambert\" is lit by the Sun, and the scene has none", {},
+        "Add [sun] or [orbit], or write model = \"uniform\" and radiance = ... (cd/m^2)");
+  }
+}
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/sky/attitude_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scenes/text/input_file.h"
+#include "scenes/text/message_text.h"
+#include "scenes/text/table_reader.h"
+#include "scenes/text/text_lines.h"
+
+namespace earthshine::scenes {
+namespace {
+
+using base::Blame;
+using base::Error;
+
+constexpr std::size_t max_attitude_bytes = std::size_t{16} << 20;
+constexpr double length_slack = 0.01;  // quaternions are often given with three digits
+constexpr const char* wanted_columns =
+    "a header names time_s or position_deg, and qw, qx, qy, qz or yaw_deg, pitch_deg, roll_deg";
+
+enum Column : std::size_t { TimeS, PositionDeg, Qw, Qx, Qy, Qz, Yaw, Pitch, Roll, ColumnCount };
+struct ColumnKind {
+  const char* name;
+  Range range;
+};
+constexpr ColumnKind kinds[] = {{"time_s", {-1e9, 1e9}},      {"position_deg", {-1e7, 1e7}},
+                                {"qw", {-2.0, 2.0}},          {"qx", {-2.0, 2.0}},
+                                {"qy", {-2.0, 2.0}},          {"qz", {-2.0, 2.0}},
+                                {"yaw_deg", {-360.0, 360.0}}, {"pitch_deg", {-360.0, 360.0}},
+                                {"roll_deg", {-360.0, 360.0}}};
+static_assert(std::size(kinds) == ColumnCount);
+
+struct Field {
+  std::string_view text;
+  base::Location where;
+};
+
+// The fields of a line, blanks around them left out; none when it is blank or a comment.
+std::vector<Field> fields_of(std::string_view line, const std::string& file, int number) {
+  const char* const start = line.data();
+  line = line.substr(0, line.find('#'));
+  std::vector<Field> fields;
+  if (trimmed(line).empty()) return fields;
+  while (true) {
+    const std::size_t comma = line.find(',');
+    const std::string_view text = trimmed(line.substr(0, comma));
+    const char* const at = text.empty() ? line.data() : text.data();
+    fields.push_back({text, {file, number, static_cast<int>(at - start) + 1}});
+    if (comma == std::string_view::npos) return fields;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+class AttitudeReader {
+ public:
+  AttitudeReader(std::string_view text, std::string file) : text_(text) {
+    table_.file = std::move(file);
+  }
+
+  AttitudeTable read() {
+    if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
+    bool headed = false;
+    for (int number = 1; !text_.empty(); ++number) {
+      const std::size_t end = text_.find('\n');
+      const auto fields = fields_of(text_.substr(0, end), table_.file, number);
+      text_.remove_prefix(end == std::string_view::npos ? text_.size() : end + 1);
+      if (fields.empty()) continue;
+      if (headed) {
+        read_row(fields);
+      } else {
+        read_header(fields);
+        headed = true;
+      }
+    }
+    if (!headed) throw Error(Blame::Input, table_.file, "has no lines", wanted_columns);
+    if (table_.at.empty()) {
+      throw Error(Blame::Input, table_.file, "has a header and no rows", {},
+                  "Give one row for an attitude that is kept, or several");
+    }
+    return std::move(table_);
+  }
+
+ private:
+  void read_header(const std::vector<Field>& fields) {
+    std::vector<std::string> names;
+    for (const ColumnKind& kind : kinds) names.emplace_back(kind.name);
+    for (const Field& field : fields) {
+      const auto found = std::find(names.begin(), names.end(), field.text);
+      if (found == names.end()) {
+        const bool number = number_in(field.text).has_value();
+        throw Error(
+            Blame::Input, field.where,
+            number ? fmt::format("the first line holds {} and is no header", in_quotes(field.text))
+                   : fmt::format("unknown column {}", in_quotes(field.text)),
+            wanted_columns, number ? "Begin with it" : did_you_mean(field.text, names));
+      }
+      const auto column = static_cast<Column>(found - names.begin());
+      if (has(column)) {
+        throw Error(Blame::Input, field.where,
+                    fmt::format("the column {} is there twice", field.text));
+      }
+      columns_.push_back(column);
+    }
+    const base::Location& where = fields.front().where;
+    if (has(TimeS) == has(PositionDeg)) {
+      throw Error(Blame::Input, where,
+                  has(TimeS) ? "both time_s and position_deg are there"
+                             : "there is no column time_s or position_deg",
+                  wanted_columns);
+    }
+    table_.by_time = has(TimeS);
+    by_quaternion_ = has(Qw) || has(Qx) || has(Qy) || has(Qz);
+    if (by_quaternion_ && (has(Yaw) || has(Pitch) || has(Roll))) {
+      throw Error(Blame::Input, where, "both a quaternion and angles are there", wanted_columns);
+    }
+    for (const Column column : turn_columns()) {
+      if (has(column)) continue;
+      throw Error(Blame::Input, where, fmt::format("there is no column {}", kinds[column].name),
+                  wanted_columns);
+    }
+  }
+
+  void read_row(const std::vector<Field>& fields) {
+    if (fields.size() != columns_.size()) {
+      throw Error(Blame::Input, {table_.file, fields[0].where.line, 0},
+                  fmt::format("a row of {} columns", fields.size()),
+                  fmt::format("the header names {}", columns_.size()));
+    }
+    std::array<double, ColumnCount> value{};
+    base::Location at_place;
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+      const ColumnKind& kind = kinds[columns_[k]];
+      const auto number = number_in(fields[k].text);
+      if (!number || !std::isfinite(*number) || !kind.range.holds(*number)) {
+        throw Error(Blame::Input, fields[k].where,
+                    fmt::format("{} is {}", kind.name, in_quotes(fields[k].text)),
+                    fmt::format("allowed is a number {}", to_string(kind.range)));
+      }
+      value[columns_[k]] = *number;
+      if (columns_[k] == TimeS || columns_[k] == PositionDeg) at_place = fields[k].where;
+    }
+    const double at = value[table_.by_time ? TimeS : PositionDeg];
+    if (!table_.at.empty() && !(at > table_.at.back())) {
+      throw Error(
+          Blame::Input, at_place,
+          fmt::format("{} is {:.10g} after {:.10g}",
+                      kinds[table_.by_time ? TimeS : PositionDeg].name, at, table_.at.back()),
+          "it rises from row to row", "Sort the rows, and keep one of those at one time");
+    }
+    table_.at.push_back(at);
+    table_.turns.push_back(by_quaternion_ ? quaternion(value, fields[0].where.line)
+                                          : turn_by_angles(value));
+  }
+
+  [[nodiscard]] glm::dquat quaternion(const std::array<double, ColumnCount>& value,
+                                      int line) const {
+    const glm::dquat q(value[Qw], value[Qx], value[Qy], value[Qz]);
+    const double length = glm::length(q);
+    if (!(std::abs(length - 1.0) <= length_slack)) {
+      throw Error(Blame::Input, {table_.file, line, 0},
+                  fmt::format("the quaternion has length {:.6g}", length),
+                  "a turn has length 1, within 1 %; qw is the scalar");
+    }
+    return q / length;
+  }
+
+  static glm::dquat turn_by_angles(const std::array<double, ColumnCount>& value) {
+    const auto about = [](const Vec3& axis, double angle_deg) {
+      return glm::angleAxis(base::radians(angle_deg), axis);
+    };
+    return about({0, 0, 1}, value[Yaw]) * about({0, 1, 0}, value[Pitch]) *
+           about({1, 0, 0}, value[Roll]);
+  }
+
+  [[nodiscard]] bool has(Column column) const {
+    return std::find(columns_.begin(), columns_.end(), column) != columns_.end();
+  }
+
+  [[nodiscard]] std::vector<Column> turn_columns() const {
+    return by_quaternion_ ? std::vector{Qw, Qx, Qy, Qz} : std::vector{Yaw, Pitch, Roll};
+  }
+
+  std::string_view text_;
+  AttitudeTable table_;
+  std::vector<Column> columns_;
+  bool by_quaternion_ = false;
+};
+
+}  // namespace
+
+AttitudeTable read_attitudes(const std::filesystem::path& path, const base::Location& asked_at) {
+  const std::string text = read_regular_file(path, max_attitude_bytes, asked_at);
+  return AttitudeReader(text, path.string()).read();
+}
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/accuracy/accuracy.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+
+#include "radiosity/bodies/walls.h"
+#include "raytrace/paths/path_tracer.h"
+#include "scenes/effects/idle.h"
+#include "scenes/effects/quality.h"
+#include "studies/cost/memory.h"
+#include "studies/error/error_budget.h"
+#include "studies/steer/picture_solver.h"
+
+namespace earthshine::studies {
+namespace {
+
+using raytrace::Indirect;
+
+class Clock {
+ public:
+  [[nodiscard]] double wall() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
+  }
+  [[nodiscard]] double cpu() const { return cpu_now() - cpu_; }
+
+ private:
+  static double cpu_now() {
+    timespec now{};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  }
+  std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
+  double cpu_ = cpu_now();
+};
+
+scenes::LightPaths paths_of(Indirect indirect) {
+  switch (indirect) {
+    case Indirect::Paths:
+      return scenes::LightPaths::Traced;
+    case Indirect::None:
+      return scenes::LightPaths::Straight;
+    case Indirect::Distributed:
+      return scenes::LightPaths::Distributed;
+    case Indirect::Radiosity:
+      break;
+  }
+  return scenes::LightPaths::All;
+}
+
+scenes::QualityKnobs knobs_of(const scenes::Scene& scene, const AccuracyStep& step) {
+  return scenes::resolve_quality(scene, step.quality);
+}
+
+// Light groups and effects as `render` has them for the step.
+struct Asked {
+  scenes::LightGroups groups;
+  scenes::Effects effects;
+
+  Asked(const StudyScene& study, const AccuracyView& view, const AccuracyStep& step)
+      : groups(study.groups) {
+    scenes::Asked asked;
+    asked.cameras = {&view.camera};
+    asked.paths = paths_of(step.indirect);
+    effects = scenes::find_effects(study.scene, groups, asked);
+    if (step.indirect == Indirect::Paths) return;
+    (void)scenes::switch_off_idle(
+        study.scene, asked, step.quality.error.value_or(scenes::default_error),
+        radiosity::hidden_lights(study.scene, asked.cameras), groups, effects);
+  }
+};
+
+void fill_shelf(SolutionShelf& shelf, const StudyScene& study, const Asked& asked,
+                const radiosity::SolveOptions& solver) {
+  if (shelf.key && same_solver(*shelf.key, solver)) return;
+  shelf = {};
+  const Clock clock;
+  shelf.solution = radiosity::solve(study.scene, asked.groups, asked.effects, study.query, solver);
+  shelf.wall_seconds = clock.wall();
+  shelf.cpu_seconds = clock.cpu();
+  shelf.key = solver;
+}
+
+double memory_of(const StudyScene& study, const Asked& asked, const radiosity::SolveOptions& solver,
+                 const raytrace::RenderOptions& picture, const radiosity::Solution* solution) {
+  MemoryCase sizes = memory_case(study.scene, asked.groups, asked.effects, solver);
+  if (solution != nullptr) {
+    set_patches(sizes, solution->report.patches, solver);
+    expect_rows(sizes, study.scene, study.query, solver);
+  } else {
+    sizes.solves = false;
+    sizes.columns = 0;
+    sizes.patches = 0;
+  }
+  add_picture(sizes, asked.groups, asked.effects, picture);
+  return memory_needed(sizes).total();
+}
+
+std::uint64_t solve_rays(const radiosity::SolveReport& report) {
+  return report.refinement_rays + report.form_factor_rays + report.shadow_rays;
+}
+
+struct Work {
+  const StudyScene& study;
+  const AccuracyView& view;
+  const AccuracyStep& step;
+  const Asked& asked;
+  const raytrace::Progress& progress;
+};
+
+void add_picture_facts(StepCost& cost, const raytrace::RenderReport& report) {
+  cost.picture_rays = report.rays.total();
+  cost.gather_rays = report.gather_rays;
+  cost.camera_samples = report.camera_samples;
+}
+
+// As `render` does for the step's settings.
+std::optional<StepResult> run_plain(const Work& work, SolutionShelf& shelf) {
+  const auto& [study, view, step, asked, progress] = work;
+  const StudyScene scene{study.scene, asked.groups, asked.effects, study.query};
+  const radiosity::SolveOptions solver = solver_of(study, step, view.seed);
+  const raytrace::RenderOptions options = picture_of(study, view, step);
+  const bool solves = step.indirect == Indirect::Radiosity && asked.effects.solution;
+  const radiosity::Solution none;
+  if (solves) fill_shelf(shelf, study, asked, solver);
+  const radiosity::Solution& solution = solves ? shelf.solution : none;
+
+  StepResult result;
+  StepCost& cost = result.cost;
+  const Clock clock;
+  const raytrace::Frame frame =
+      step.indirect == Indirect::Paths
+          ? raytrace::trace_paths(study.scene, asked.groups, asked.effects, study.query,
+                                  view.camera,
+                                  {options.columns, options.rows, options.gather_rays, false,
+                                   raytrace::PathSet::All, options.seed, options.stop},
+                                  progress)
+          : raytrace::render(study.scene, asked.groups, asked.effects, study.query, solution,
+                             view.camera, options, progress);
+  cost.wall_seconds = clock.wall();
+  cost.cpu_seconds = clock.cpu();
+  if (frame.report.stopped) return std::nullopt;
+  result.luminance = base::luminance_of(frame.image);
+  if (solves) {
+    cost.solve_wall_seconds = shelf.wall_seconds;
+    cost.solve_cpu_seconds = shelf.cpu_seconds;
+    cost.wall_seconds += shelf.wall_seconds;
+    cost.cpu_seconds += shelf.cpu_seconds;
+    cost.patches = solution.report.patches;
+    cost.solve_rays = solve_rays(solution.report);
+    cost.form_factor_rays = solver.form_factor_rays;
+  }
+  add_picture_facts(cost, frame.report);
+  cost.memory_bytes = memory_of(study, asked, solver, options, solves ? &solution : nullptr);
+  const Clock statement;
+  cost.stated = error_budget(scene, {&view.camera, options}, frame).total;
+  cost.statement_cpu_seconds = statement.cpu();
+  return result;
+}
+
+// As `render --error` does: samples go where they help until the picture says that it is as exact
+// as wanted. The statements that decide about that are part of the cost.
+std::optional<StepResult> run_steered(const Work& work) {
+  const auto& [study, view, step, asked, progress] = work;
+  const StudyScene scene{study.scene, asked.groups, asked.effects, study.query};
+  const radiosity::SolveOptions solver = picture_solver(study.scene, step.quality, view.seed);
+  raytrace::RenderOptions options = picture_of(study, view, step);
+  options.error = *step.quality.error;
+  const Clock clock;
+  StepResult result;
+  StepCost& cost = result.cost;
+  radiosity::Solution solution;
+  if (asked.effects.solution) {
+    solution = radiosity::solve(study.scene, asked.groups, asked.effects, study.query, solver);
+    cost.solve_rays = solve_rays(solution.report);
+    cost.solve_wall_seconds = clock.wall();
+    cost.solve_cpu_seconds = clock.cpu();
+    cost.patches = solution.report.patches;
+    cost.form_factor_rays = solver.form_factor_rays;
+  }
+  const raytrace::Frame frame =
+      raytrace::render(study.scene, asked.groups, asked.effects, study.query, solution, view.camera,
+                       options, progress);
+  cost.wall_seconds = clock.wall();
+  cost.cpu_seconds = clock.cpu();
+  if (frame.report.stopped) return std::nullopt;
+  result.luminance = base::luminance_of(frame.image);
+  add_picture_facts(cost, frame.report);
+  cost.stated = error_budget(scene, {&view.camera, options}, frame).total;
+  cost.memory_bytes =
+      memory_of(study, asked, solver, options, asked.effects.solution ? &solution : nullptr);
+  return result;
+}
+
+}  // namespace
+
+bool same_solver(const radiosity::SolveOptions& a, const radiosity::SolveOptions& b) {
+  return a.patch_edge_m == b.patch_edge_m && a.form_factor_rays == b.form_factor_rays &&
+         a.tolerance == b.tolerance && a.seed == b.seed && a.refine.on == b.refine.on &&
+         a.refine.start_edge_m == b.refine.start_edge_m &&
+         a.refine.max_patches == b.refine.max_patches && a.refine.error == b.refine.error;
+}
+
+AccuracyView accuracy_view(const scenes::Camera& camera, int columns, int rows,
+                           std::uint64_t seed) {
+  AccuracyView view{camera, columns, rows, seed, {}};
+  view.camera.filter = scenes::FilterShape::Box;
+  view.camera.filter_width_px = 1.0;
+  return view;
+}
+
+radiosity::SolveOptions solver_of(const StudyScene& study, const AccuracyStep& step,
+                                  std::uint64_t seed) {
+  return radiosity::solve_options(knobs_of(study.scene, step), seed);
+}
+
+raytrace::RenderOptions picture_of(const StudyScene& study, const AccuracyView& view,
+                                   const AccuracyStep& step) {
+  raytrace::RenderOptions options = raytrace::render_options(knobs_of(study.scene, step));
+  options.columns = view.columns;
+  options.rows = view.rows;
+  options.indirect = step.indirect;
+  if (step.lights > 0) options.distributed_lights = step.lights;
+  options.seed = view.seed;
+  options.stop = view.stop;
+  return options;
+}
+
+std::optional<StepResult> run_step(const StudyScene& study, const AccuracyView& view,
+                                   const AccuracyStep& step, SolutionShelf& shelf,
+                                   const raytrace::Progress& progress) {
+  const Asked asked(study, view, step);
+  return step.steered() ? run_steered({study, view, step, asked, progress})
+                        : run_plain({study, view, step, asked, progress}, shelf);
+}
+
+}  // namespace earthshine::studies

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/accuracy/findings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace earthshine::studies {
+namespace {
+
+using WhichError = PictureError MeasuredStep::*;
+
+std::vector<Trade> trades_of(const std::vector<MeasuredStep>& points, double resolution,
+                             WhichError error) {
+  std::vector<Trade> trades;
+  trades.reserve(points.size());
+  for (const MeasuredStep& point : points) {
+    trades.push_back(
+        {point.step.method, point.cost.cpu_seconds, std::max((point.*error).error, resolution)});
+  }
+  return trades;
+}
+
+std::vector<SeriesLaw> laws_of(const std::vector<MeasuredStep>& points, double resolution) {
+  std::vector<SeriesLaw> laws;
+  for (const MeasuredStep& point : points) {
+    const auto same = [&](const SeriesLaw& law) {
+      return law.method == point.step.method && law.series == point.step.series;
+    };
+    auto found = std::find_if(laws.begin(), laws.end(), same);
+    const Spent spent = spent_on(point);
+    if (found == laws.end()) {
+      laws.push_back({point.step.method, point.step.series, spent.what, {}, std::nullopt});
+      found = laws.end() - 1;
+    }
+    const double error = point.setting_error.error;
+    if (spent.amount > 0.0 && error > resolution) found->points.push_back({spent.amount, error});
+  }
+  for (SeriesLaw& law : laws) law.law = fit_power_law(law.points);
+  return laws;
+}
+
+// Error times root of the seconds is the same for any number of paths.
+std::optional<double> seconds_of_paths(const std::vector<Trade>& trades, double wanted) {
+  const Trade* finest = nullptr;
+  for (const Trade& trade : trades) {
+    if (trade.method == "paths" && (finest == nullptr || trade.seconds > finest->seconds)) {
+      finest = &trade;
+    }
+  }
+  if (finest == nullptr || !(wanted > 0.0)) return std::nullopt;
+  return finest->seconds * std::pow(finest->error / wanted, 2);
+}
+
+// Of one method's points.
+std::optional<std::size_t> cheapest_of(const std::vector<Trade>& trades, const std::string& method,
+                                       double wanted) {
+  std::vector<Trade> own;
+  std::vector<std::size_t> place;
+  for (std::size_t k = 0; k < trades.size(); ++k) {
+    if (trades[k].method != method) continue;
+    own.push_back(trades[k]);
+    place.push_back(k);
+  }
+  const auto found = cheapest_within(own, wanted);
+  return found ? std::optional(place[*found]) : std::nullopt;
+}
+
+Answer answer(const std::vector<Trade>& trades, const std::vector<Trade>& settings,
+              const std::vector<Worth>& worth, double wanted, double resolution) {
+  Answer result;
+  result.wanted = wanted;
+  result.told = resolution <= wanted;
+  result.best = cheapest_within(trades, wanted);
+  for (const Worth& method : worth) {
+    Answer::OfMethod of{method.method, cheapest_of(trades, method.method, wanted),
+                        cheapest_of(settings, method.method, wanted), std::nullopt};
+    if (!of.point && method.method == "paths") {
+      of.expected_seconds = seconds_of_paths(trades, wanted);
+    }
+    result.methods.push_back(std::move(of));
+  }
+  return result;
+}
+
+}  // namespace
+
+Spent spent_on(const MeasuredStep& point) {
+  const AccuracyStep& step = point.step;
+  if (step.series == series::patches) return {double(point.cost.patches), "patches"};
+  if (step.series == series::form_factor_rays) return {step.setting, "form-factor rays a patch"};
+  if (step.series == series::gather_rays) return {step.setting, "gather rays a pixel"};
+  if (step.series == series::picture_noise) {
+    return {point.cost.camera_samples, "camera samples a pixel"};
+  }
+  if (step.series == series::lights) return {step.setting, "lights"};
+  if (step.series == series::samples) return {step.setting, "paths a pixel"};
+  return {1.0 / step.setting, "1 / --error"};
+}
+
+Findings find_accuracy(const std::vector<MeasuredStep>& points, const std::vector<double>& wanted,
+                       double resolution) {
+  const std::vector<Trade> trades = trades_of(points, resolution, &MeasuredStep::error);
+  const std::vector<Trade> settings = trades_of(points, resolution, &MeasuredStep::setting_error);
+  Findings findings;
+  findings.front = pareto_front(trades);
+  findings.worth = worth_of_methods(trades);
+  findings.laws = laws_of(points, resolution);
+  for (const double error : wanted) {
+    findings.answers.push_back(answer(trades, settings, findings.worth, error, resolution));
+  }
+  return findings;
+}
+
+}  // namespace earthshine::studies

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/accuracy/power_law.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+
+namespace earthshine::studies {
+namespace {
+
+// Everything in logarithms: t = ln x, y = ln error. Parameters: ln a, p, ln floor.
+struct LogPoint {
+  double t = 0.0, y = 0.0;
+};
+using Parameters = std::array<double, 3>;
+using Matrix = std::array<std::array<double, 3>, 3>;
+
+// y and its derivatives by the parameters. `used` = 2 leaves the floor out.
+double model(const Parameters& at, std::size_t used, double t, Parameters& slope) {
+  const double fall = at[0] - at[1] * t;
+  if (used == 2) {
+    slope = {1.0, -t, 0.0};
+    return fall;
+  }
+  // ln sqrt(e^2u + e^2v) without overflow; s is the falling part's share of the square.
+  const double high = std::max(fall, at[2]), low = std::min(fall, at[2]);
+  const double y = high + 0.5 * std::log1p(std::exp(2.0 * (low - high)));
+  const double s = 1.0 / (1.0 + std::exp(2.0 * (at[2] - fall)));
+  slope = {s, -s * t, 1.0 - s};
+  return y;
+}
+
+double squares(const std::vector<LogPoint>& points, const Parameters& at, std::size_t used) {
+  double sum = 0.0;
+  Parameters slope;
+  for (const LogPoint& point : points) {
+    sum += std::pow(point.y - model(at, used, point.t, slope), 2);
+  }
+  return sum;
+}
+
+// Solves m step = r in place by elimination with pivots; false where m is singular.
+bool solve(Matrix m, Parameters r, std::size_t used, Parameters& step) {
+  for (std::size_t k = 0; k < used; ++k) {
+    std::size_t pivot = k;
+    for (std::size_t i = k + 1; i < used; ++i) {
+      if (std::abs(m[i][k]) > std::abs(m[pivot][k])) pivot = i;
+    }
+    if (!(std::abs(m[pivot][k]) > 1e-14)) return false;
+    std::swap(m[k], m[pivot]);
+    std::swap(r[k], r[pivot]);
+    for (std::size_t i = k + 1; i < used; ++i) {
+      const double share = m[i][k] / m[k][k];
+      for (std::size_t j = k; j < used; ++j) m[i][j] -= share * m[k][j];
+      r[i] -= share * r[k];
+    }
+  }
+  step = {};
+  for (std::size_t k = used; k-- > 0;) {
+    double sum = r[k];
+    for (std::size_t j = k + 1; j < used; ++j) sum -= m[k][j] * step[j];
+    step[k] = sum / m[k][k];
+  }
+  return true;
+}
+
+struct Fit {
+  Parameters at{};
+  double squares = 0.0;
+  Matrix normal{};
+};
+
+Fit descend(const std::vector<LogPoint>& points, const Parameters& start, std::size_t used) {
+  constexpr int rounds = 500;
+  Fit fit{start, squares(points, start, used), {}};
+  double damping = 1e-3;
+  for (int round = 0; round < rounds && damping < 1e12; ++round) {
+    fit.normal = {};
+    Parameters right{}, slope{};
+    for (const LogPoint& point : points) {
+      const double off = point.y - model(fit.at, used, point.t, slope);
+      for (std::size_t i = 0; i < used; ++i) {
+        right[i] += slope[i] * off;
+        for (std::size_t j = 0; j < used; ++j) fit.normal[i][j] += slope[i] * slope[j];
+      }
+    }
+    Matrix damped = fit.normal;
+    for (std::size_t i = 0; i < used; ++i) damped[i][i] *= 1.0 + damping;
+    Parameters step{};
+    if (!solve(damped, right, used, step)) break;
+    Parameters next = fit.at;
+    for (std::size_t i = 0; i < used; ++i) next[i] += step[i];
+    const double sum = squares(points, next, used);
+    if (!(sum <= fit.squares)) {
+      damping *= 4.0;
+      continue;
+    }
+    const bool still = fit.squares - sum <= 1e-15 * fit.squares;
+    fit.at = next;
+    fit.squares = sum;
+    if (still) break;
+    damping = std::max(1e-12, damping / 8.0);
+  }
+  return fit;
+}
+
+// Without a floor the model is a straight line, which one step from anywhere reaches.
+Fit fit_line(const std::vector<LogPoint>& points) { return descend(points, {0.0, 0.5, 0.0}, 2); }
+
+// The floor's place is not convex: several starts below the least error.
+Fit fit_floor(const std::vector<LogPoint>& points, const Fit& line) {
+  double least = points.front().y;
+  for (const LogPoint& point : points) least = std::min(least, point.y);
+  Fit best;
+  best.squares = std::numeric_limits<double>::infinity();
+  for (const double share : {0.999, 0.95, 0.8, 0.5, 0.2}) {
+    for (const double steeper : {1.0, 1.5, 2.5}) {
+      Parameters start = line.at;
+      start[1] *= steeper;
+      start[0] = points.front().y + start[1] * points.front().t;
+      start[2] = least + std::log(share);
+      const Fit fit = descend(points, start, 3);
+      if (fit.squares < best.squares) best = fit;
+    }
+  }
+  return best;
+}
+
+void check(const ErrorAt& point) {
+  const bool good =
+      std::isfinite(point.x) && std::isfinite(point.error) && point.x > 0.0 && point.error >= 0.0;
+  if (good) return;
+  throw base::Error(base::Blame::Work, "power law",
+                    fmt::format("an error of {} at {} cannot be fitted", point.error, point.x),
+                    "positive finite numbers");
+}
+
+}  // namespace
+
+double PowerLaw::error_at(double x) const {
+  return std::hypot(factor * std::pow(x, -exponent), floor);
+}
+
+std::optional<PowerLaw> fit_power_law(const std::vector<ErrorAt>& points) {
+  std::vector<LogPoint> log;
+  for (const ErrorAt& point : points) {
+    check(point);
+    if (point.error > 0.0) log.push_back({std::log(point.x), std::log(point.error)});
+  }
+  std::sort(log.begin(), log.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
+  std::size_t places = log.empty() ? 0 : 1;
+  for (std::size_t k = 1; k < log.size(); ++k) places += log[k].t > log[k - 1].t ? 1 : 0;
+  if (places < 2) return std::nullopt;
+
+  std::size_t used = 2;
+  Fit fit = fit_line(log);
+  const auto n = static_cast<double>(log.size());
+  // Points that fit a line to a millionth have no floor to speak of.
+  if (places >= 4 && fit.squares > 1e-12 * n && fit.at[1] > 0.0) {
+    const Fit floored = fit_floor(log, fit);
+    if (fit.squares - floored.squares > 4.0 * floored.squares / (n - 3.0) && floored.at[1] > 0.0) {
+      fit = floored;
+      used = 3;
+    }
+  }
+  PowerLaw law;
+  law.points = log.size();
+  law.factor = std::exp(fit.at[0]);
+  law.exponent = fit.at[1];
+  law.floor = used == 3 ? std::exp(fit.at[2]) : 0.0;
+  Parameters variance{};
+  const double left = n - static_cast<double>(used);
+  if (left > 0.0 && solve(fit.normal, {0.0, 1.0, 0.0}, used, variance)) {
+    law.exponent_error = std::sqrt(std::max(0.0, variance[1] * fit.squares / left));
+  }
+  return law;
+}
+
+}  // namespace earthshine::studies

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/compare/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <ctime>
+
+#include "base/error.h"
+#include "raytrace/light/distributed_area.h"
+#include "studies/compare/yardstick.h"
+
+namespace earthshine::studies {
+namespace {
+
+using raytrace::Indirect;
+
+// Of all threads of the process: what other programs take meanwhile is not in it.
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+bool shines(const scenes::Scene& scene, std::uint32_t object) {
+  const scenes::Object& o = scene.objects[object];
+  for (std::uint32_t t = o.first_triangle; t < o.first_triangle + o.triangle_count; ++t) {
+    if (scene.materials[scene.triangles[t].material].emits()) return true;
+  }
+  return false;
+}
+
+bool has_wide_sources(const StudyScene& study) {
+  const scenes::Scene& scene = study.scene;
+  return study.effects.earth ||
+         std::any_of(scene.lamps.begin(), scene.lamps.end(),
+                     [](const scenes::Lamp& lamp) {
+                       return lamp.kind == scenes::LampKind::Rectangle ||
+                              lamp.kind == scenes::LampKind::Disk;
+                     }) ||
+         std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const scenes::Material& material) { return material.emits(); });
+}
+
+class Comparing {
+ public:
+  Comparing(const StudyScene& study, const scenes::Camera& camera, const CompareOptions& options,
+            const StageListener& listen)
+      : study_(study), camera_(camera), options_(options), listen_(listen) {}
+
+  Comparison run() {
+    (void)raytrace::earth_area(study_.scene,
+                               options_.distributed_over);  // a wrong one before the work
+    const auto methods = compare_methods(options_.distributed_lights, options_.distributed_over);
+    comparison_.wide_sources = has_wide_sources(study_);
+    take_references(methods.front());
+    for (std::size_t k = 1; k < methods.size(); ++k) at_the_settings(methods[k]);
+    if (options_.equal) compare_equal();
+    return std::move(comparison_);
+  }
+
+ private:
+  [[nodiscard]] raytrace::Progress begin_stage(const std::string& stage) const {
+    return listen_ ? listen_(stage) : raytrace::Progress{};
+  }
+
+  [[nodiscard]] raytrace::RenderOptions render_options(const Method& method) const {
+    raytrace::RenderOptions render;
+    render.columns = options_.columns;
+    render.rows = options_.rows;
+    render.gather_rays = options_.gather_rays;
+    render.shared = options_.shared;
+    render.indirect = method.indirect;
+    if (method.distributed_lights > 0) render.distributed_lights = method.distributed_lights;
+    render.distributed_over = method.distributed_over;
+    render.seed = options_.seed;
+    render.aovs = {"variance"};
+    return render;
+  }
+
+  [[nodiscard]] raytrace::Frame draw(const radiosity::Solution& solution,
+                                     const raytrace::RenderOptions& render,
+                                     const std::string& stage) const {
+    return raytrace::render(study_.scene, study_.groups, study_.effects, study_.query, solution,
+                            camera_, render, begin_stage(stage));
+  }
+  [[nodiscard]] radiosity::Solution solve(const radiosity::SolveOptions& solver,
+                                          const std::string& stage) const {
+    (void)begin_stage(stage);
+    return radiosity::solve(study_.scene, study_.groups, study_.effects, study_.query, solver);
+  }
+
+  void take_references(const Method& method) {
+    MethodResult result;
+    result.method = method;
+    for (const std::uint64_t k : {1, 2}) {
+      const std::string stage = fmt::format("{} {}", reference_name, k);
+      const double begin = cpu_seconds();
+      const radiosity::Solution solution =
+          solve(reference_solver(options_.solver, k), stage + ", solution");
+      comparison_.reference_patches = solution.report.patches;
+      for (const auto& [name, seconds] : solution.report.seconds) result.solve_seconds += seconds;
+      const double solved = cpu_seconds();
+      result.solve_cpu_seconds += solved - begin;
+      raytrace::RenderOptions render = render_options(method);
+      render.shared.on = false;
+      render.gather_rays = options_.rays_of_a_reference();
+      render.seed = options_.seed + k;
+      if (k == 1) render.aovs = {"object"};
+      raytrace::Frame frame = draw(solution, render, stage);
+      result.render_cpu_seconds += cpu_seconds() - solved;
+      result.render_seconds += frame.report.seconds;
+      (k == 1 ? yardstick_.first : yardstick_.second) = base::luminance_of(frame.image);
+      if (k == 1) {
+        result.frame = std::move(frame);
+        continue;
+      }
+      result.frame.report.rays += frame.report.rays;
+      result.frame.report.relative_noise =
+          0.5 * std::hypot(result.frame.report.relative_noise, frame.report.relative_noise);
+      for (const char* colour : {"R", "G", "B"}) average(colour, frame.image, result.frame.image);
+    }
+    base::Image& image = result.frame.image;
+    comparison_.map = object_map(image);
+    comparison_.targets = find_targets(study_.scene, camera_, comparison_.map);
+    for (const TargetView& view : comparison_.targets) {
+      comparison_.target_shines.push_back(shines(study_.scene, view.object));
+    }
+    yardstick_.mean = base::luminance_of(image);
+    comparison_.reference_noise =
+        reference_noise(yardstick_.first, yardstick_.second, comparison_.map);
+    result.difference = picture_difference(image, image, comparison_.map);
+    for (const TargetView& view : comparison_.targets) {
+      const auto light = measure_light(view, yardstick_.mean);
+      result.targets.push_back(light ? std::optional(target_difference(*light, *light))
+                                     : std::nullopt);
+    }
+    comparison_.methods.push_back(std::move(result));
+  }
+
+  static void average(const char* colour, const base::Image& other, base::Image& image) {
+    const std::vector<float>& more = other.find(colour)->values;
+    for (base::Channel& channel : image.channels) {
+      if (channel.name != colour) continue;
+      for (std::size_t i = 0; i < more.size(); ++i) {
+        channel.values[i] = 0.5F * (channel.values[i] + more[i]);
+      }
+    }
+  }
+
+  void at_the_settings(const Method& method) {
+    MethodResult result;
+    result.method = method;
+    radiosity::Solution solution;
+    const double begin = cpu_seconds();
+    if (method.indirect == Indirect::Radiosity) {
+      solution = solve(options_.solver, "radiosity solution");
+      comparison_.solution = solution.report;
+      for (const auto& [stage, seconds] : solution.report.seconds) result.solve_seconds += seconds;
+      result.solve_cpu_seconds = cpu_seconds() - begin;
+    }
+    const double solved = cpu_seconds();
+    result.frame = draw(solution, render_options(method), method.name);
+    result.render_cpu_seconds = cpu_seconds() - solved;
+    result.render_seconds = result.frame.report.seconds;
+    result.difference = difference_of(result.frame.image);
+    result.targets = target_differences(result.frame.image, comparison_.targets, yardstick_);
+    comparison_.methods.push_back(std::move(result));
+  }
+
+  [[nodiscard]] PictureDifference difference_of(const base::Image& image) const {
+    return picture_difference(base::luminance_of(image), yardstick_.first, yardstick_.second,
+                              comparison_.map);
+  }
+
+  [[nodiscard]] Shot shoot(const MethodResult& result, int rung) const {
+    if (rung == 0) {
+      return {result.frame.image, result.cpu_seconds(), result.frame.report.camera_samples,
+              result.difference, result.targets};
+    }
+    const Method& method = result.method;
+    const std::string stage = fmt::format("{}, step {:+}", method.name, rung);
+    radiosity::Solution solution;
+    const double begin = cpu_seconds();
+    if (method.indirect == Indirect::Radiosity) {
+      solution = solve(at_rung(options_.solver, rung), stage + ", solution");
+    }
+    raytrace::Frame frame = draw(solution, at_rung(render_options(method), rung), stage);
+    Shot shot{std::move(frame.image), cpu_seconds() - begin, frame.report.camera_samples, {}, {}};
+    shot.difference = difference_of(shot.image);
+    shot.targets = target_differences(shot.image, comparison_.targets, yardstick_);
+    return shot;
+  }
+
+  // Without gather rays and without sharing there are no more than so many camera samples.
+  [[nodiscard]] int most_rung(const Method& method) const {
+    constexpr int anyhow = LadderLimits().most_rung;
+    if (options_.shared.on || method.indirect == Indirect::Radiosity) return anyhow;
+    const auto rays = static_cast<std::uint32_t>(std::max(1, options_.gather_rays));
+    return std::max(0, (13 - static_cast<int>(std::bit_width(rays))) / 2);
+  }
+
+  [[nodiscard]] EqualResult equal_of(const MethodResult& result, const LadderLimits& wanted) const {
+    std::vector<std::pair<int, Shot>> shots;
+    LadderLimits limits = wanted;
+    limits.most_rung = std::min(limits.most_rung, most_rung(result.method));
+    limits.least_rung = std::min(0, limits.least_rung);
+    EqualResult equal;
+    equal.ladder = climb(
+        [&](int rung) {
+          shots.emplace_back(rung, shoot(result, rung));
+          const Shot& shot = shots.back().second;
+          return LadderPoint{rung, shot.seconds, shot.difference.relative_rmse};
+        },
+        limits);
+    std::sort(shots.begin(), shots.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [rung, shot] : shots) equal.differences.push_back(shot.difference);
+    if (equal.ladder.at_time != Ladder::none) equal.at_time = shots[equal.ladder.at_time].second;
+    equal.at_error = std::move(shots[equal.ladder.at_error].second);
+    return equal;
+  }
+
+  void compare_equal() {
+    const EqualOptions& wanted = *options_.equal;
+    LadderLimits limits;
+    MethodResult& radiosity = comparison_.methods[1];
+    limits.spend = wanted.spend;
+    limits.seconds = wanted.seconds.value_or(radiosity.cpu_seconds());
+    limits.wanted_error = wanted.error;
+    if (!wanted.seconds && !wanted.error) limits.least_rung = limits.most_rung = 0;
+    radiosity.equal = equal_of(radiosity, limits);
+    if (!wanted.error) {
+      // An error that the references' noise hides cannot be told from one that is as small.
+      const Shot& taken =
+          radiosity.equal->at_time ? *radiosity.equal->at_time : radiosity.equal->at_error;
+      limits.wanted_error =
+          std::max(taken.difference.relative_rmse, taken.difference.standard_error);
+      radiosity.equal->at_error = taken;
+      radiosity.equal->ladder.end = LadderEnd::Reached;
+      if (radiosity.equal->at_time)
+        radiosity.equal->ladder.at_error = radiosity.equal->ladder.at_time;
+    }
+    limits.least_rung = LadderLimits().least_rung;
+    limits.most_rung = LadderLimits().most_rung;
+    comparison_.equal_seconds = limits.seconds;
+    comparison_.equal_error = *limits.wanted_error;
+    for (std::size_t k = 2; k < comparison_.methods.size(); ++k) {
+      comparison_.methods[k].equal = equal_of(comparison_.methods[k], limits);
+    }
+  }
+
+  const StudyScene& study_;
+  const scenes::Camera& camera_;
+  const CompareOptions& options_;
+  const StageListener& listen_;
+  Yardstick yardstick_;
+  Comparison comparison_;
+};
+
+}  // namespace
+
+Comparison compare(const StudyScene& study, const scenes::Camera& camera,
+                   const CompareOptions& options, const StageListener& listen) {
+  return Comparing(study, camera, options, listen).run();
+}
+
+}  // namespace earthshine::studies

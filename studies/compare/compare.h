@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+// Radiosity against the distributed-light approximation and against direct light alone, in one
+// camera's view.
+//
+// All are measured against a reference that shares nothing with them: the mean of two pictures,
+// each of a radiosity solution of its own (patches of half the edge, other random numbers),
+// gathered without sharing with `reference_factor` times the rays. Two, because the noise of a
+// single one would count as error of every method: mean (L - R1)(L - R2) is free of it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "raytrace/render.h"
+#include "studies/compare/ladder.h"
+#include "studies/study.h"
+#include "studies/targets/visibility.h"
+
+namespace earthshine::studies {
+
+// Comparison at equal time and at equal error.
+struct EqualOptions {
+  // CPU seconds for each method, the solution included; none: what radiosity takes at the scene's
+  // settings.
+  std::optional<double> seconds;
+  std::optional<double> error;  // relative; none: what radiosity reaches in those seconds
+  double spend = 4.0;           // LadderLimits
+};
+
+struct CompareOptions {
+  int columns = 512;
+  int rows = 512;
+  int gather_rays = 256;  // per pixel; without gathering the camera samples that go with them
+  raytrace::SharedGather shared = {};  // of all pictures but the references
+  int reference_rays = 0;              // of each reference; 0: gather_rays * reference_factor
+  int reference_factor = 4;
+  std::vector<int> distributed_lights = {4, 16, 64, 256};
+  std::string
+      distributed_over;  // an [[area]]: the Earth's lights over it too; empty: its disc only
+  radiosity::SolveOptions solver;
+  std::uint64_t seed = 1;
+  std::optional<EqualOptions> equal;  // none: at the given settings alone
+  [[nodiscard]] int rays_of_a_reference() const {
+    return reference_rays > 0 ? reference_rays : gather_rays * reference_factor;
+  }
+};
+
+// Of luminance, over the pixels whose centre shows an object: the sky is the same in all pictures.
+struct PictureDifference {
+  std::size_t pixels = 0;
+  double relative_rmse = 0.0;  // sqrt(mean (L - L_ref)^2) / mean L_ref; 0 where all is black
+  double bias = 0.0;           // mean (L - L_ref) / mean L_ref
+  double off_share = 0.0;      // pixels off by more than misleading_factor
+  // How much the references' noise may have added to relative_rmse, one standard deviation. Where
+  // the error is nothing against the noise, this is the least error that would be seen.
+  double standard_error = 0.0;
+};
+
+// An approximation would have misled about a target when its luminance is off by more than this
+// factor, up or down, or its contrast by more than this much.
+inline constexpr double misleading_factor = 1.5;
+inline constexpr double misleading_contrast = 0.1;
+
+struct TargetDifference {
+  TargetLight light;
+  double luminance_ratio = 1.0;               // to the reference; infinite where that is black
+  std::optional<double> contrast_difference;  // none where either has no contrast
+  bool misleads = false;
+  // Noise of both pictures, one standard deviation each; 0 if it was not looked at.
+  double ratio_error = 0.0, contrast_error = 0.0;
+  bool decided = true;  // no noise of twice that would turn `misleads` round
+};
+
+inline constexpr const char* reference_name = "reference";
+
+struct Method {
+  std::string name;  // reference_name, "radiosity", "distributed-16", "area-16", "direct"
+  raytrace::Indirect indirect = raytrace::Indirect::Radiosity;
+  int distributed_lights = 0;         // 0: not that method
+  std::string distributed_over = {};  // the [[area]] of "area-16"
+};
+
+// What compare() will run, in its order: the reference, radiosity, distributed by rising N, the
+// same over the area if there is one, direct. Throws base::Error (Input) if `distributed_lights` is
+// empty or holds less than `fewest_lights`: a single light is not distributed, and the renderer
+// takes it for the whole source.
+inline constexpr int fewest_lights = 2;
+[[nodiscard]] std::vector<Method> compare_methods(std::vector<int> distributed_lights,
+                                                  const std::string& distributed_over = {});
+
+// A picture and what there is to say about it.
+struct Shot {
+  base::Image image;
+  double seconds = 0.0;         // CPU, of the solution and the picture
+  double camera_samples = 0.0;  // per pixel
+  PictureDifference difference;
+  std::vector<std::optional<TargetDifference>>
+      targets;  // as Comparison::targets; none: not in view
+};
+
+// A method on its ladder: each rung up has half the squared noise that is wanted of the camera
+// samples, twice the gather rays, and twice the entries of the solution's matrix.
+struct EqualResult {
+  Ladder ladder;
+  std::vector<PictureDifference> differences;  // as ladder.points
+  std::optional<Shot> at_time;                 // none: even the lowest rung takes longer
+  Shot at_error;                               // reached, or with the least error
+};
+
+struct MethodResult {
+  Method method;
+  raytrace::Frame frame;       // the reference's with the layer "object"
+  double solve_seconds = 0.0;  // of the radiosity solution; 0 for methods without
+  double render_seconds = 0.0;
+  double solve_cpu_seconds = 0.0, render_cpu_seconds = 0.0;
+  PictureDifference difference;
+  std::vector<std::optional<TargetDifference>>
+      targets;                       // as Comparison::targets; none: not in view
+  std::optional<EqualResult> equal;  // none for the reference, or if it was not asked for
+  [[nodiscard]] double cpu_seconds() const { return solve_cpu_seconds + render_cpu_seconds; }
+};
+
+struct Comparison {
+  std::vector<MethodResult> methods;  // as compare_methods lists them
+  std::vector<TargetView> targets;    // in the scene's order
+  std::vector<bool> target_shines;    // itself a source
+  ObjectMap map;
+  radiosity::SolveReport solution;  // at the scene's settings
+  std::size_t reference_patches = 0;
+  PictureDifference reference_noise;  // of the reference, from the difference of its two halves
+  bool wide_sources = true;           // anything for distributed lights to stand for
+  double equal_seconds = 0.0;         // CPU; 0 without EqualOptions
+  double equal_error = 0.0;
+  [[nodiscard]] const MethodResult& reference() const { return methods.front(); }
+};
+
+// Seconds apart, the same values for the same options and seed on any number of threads; but for
+// which rungs are drawn and chosen, which follows the seconds. Throws as compare_methods and
+// raytrace::earth_area do.
+[[nodiscard]] Comparison compare(const StudyScene& scene, const scenes::Camera& camera,
+                                 const CompareOptions& options, const StageListener& listen = {});
+
+// map: which pixels show an object.
+[[nodiscard]] PictureDifference picture_difference(const base::Image& image,
+                                                   const base::Image& reference,
+                                                   const ObjectMap& map);
+// Against two pictures of independent noise: e^2 = mean (L - R1)(L - R2), whose mean is that of the
+// noise-free (L - R)^2; below 0, which noise can make it, counts as 0. With Gaussian noise its
+// variance is the mean of (m d)^2 / n, m = L - (R1 + R2) / 2 and d = R1 - R2. Bias and off_share
+// against the mean of the two.
+[[nodiscard]] PictureDifference picture_difference(const std::vector<float>& luminance,
+                                                   const std::vector<float>& first,
+                                                   const std::vector<float>& second,
+                                                   const ObjectMap& map);
+[[nodiscard]] TargetDifference target_difference(const TargetLight& light,
+                                                 const TargetLight& reference);
+
+// Whether luminance or contrast are off by more than the rule allows.
+[[nodiscard]] bool breaks_rule(const TargetDifference& difference);
+
+// The mean of two pictures has the noise of half their difference: relative_rmse; standard_error is
+// its own.
+[[nodiscard]] PictureDifference reference_noise(const std::vector<float>& first,
+                                                const std::vector<float>& second,
+                                                const ObjectMap& map);
+
+// Of the first or second reference: half the edge and four times the patches.
+[[nodiscard]] radiosity::SolveOptions reference_solver(radiosity::SolveOptions options,
+                                                       std::uint64_t number);
+
+// The settings `rung` rungs up the ladder.
+[[nodiscard]] raytrace::RenderOptions at_rung(raytrace::RenderOptions options, int rung);
+[[nodiscard]] radiosity::SolveOptions at_rung(radiosity::SolveOptions options, int rung);
+
+// What the study says of one target. Undecided: the noise of the pictures could turn it round.
+enum class ApproximationVerdict { NotInView, Misled, NotMisled, Undecided };
+struct TargetVerdict {
+  ApproximationVerdict verdict = ApproximationVerdict::NotInView;
+  std::string sentence;
+};
+// The approximation at its best, with the most lights; over the Earth's disc, which is where its
+// light comes from. One sentence for each target.
+[[nodiscard]] std::vector<TargetVerdict> judge_approximation(const Comparison& comparison);
+
+}  // namespace earthshine::studies

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/compare/yardstick.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace earthshine::studies {
+namespace {
+
+double mean_square(const std::vector<std::uint32_t>& pixels, const Yardstick& right) {
+  double sum = 0.0;
+  for (const std::uint32_t i : pixels) {
+    const double apart = double(right.first[i]) - double(right.second[i]);
+    sum += 0.25 * apart * apart;
+  }
+  const auto n = static_cast<double>(std::max<std::size_t>(1, pixels.size()));
+  return sum / (n * n);
+}
+double mean_square(const std::vector<std::uint32_t>& pixels, const base::Image& image) {
+  const base::Channel* variance = image.find("variance");
+  double sum = 0.0;
+  for (const std::uint32_t i : pixels) sum += double(variance->values[i]);
+  const auto n = static_cast<double>(std::max<std::size_t>(1, pixels.size()));
+  return sum / (n * n);
+}
+
+// The noise of both pictures, with pixels taken as independent.
+void add_noise(const TargetView& view, const TargetLight& light, const TargetLight& right,
+               const base::Image& image, const Yardstick& yardstick, TargetDifference& difference) {
+  if (!(right.luminance > 0.0)) return;
+  // Squared standard errors over the squared luminance.
+  const auto relative = [&](const std::vector<std::uint32_t>& pixels, double found, double wanted) {
+    return std::pair{found > 0.0 ? mean_square(pixels, image) / (found * found) : 0.0,
+                     wanted > 0.0 ? mean_square(pixels, yardstick) / (wanted * wanted) : 0.0};
+  };
+  const auto [on, on_right] = relative(view.measured, light.luminance, right.luminance);
+  difference.ratio_error = difference.luminance_ratio * std::sqrt(on + on_right);
+  if (difference.contrast_difference) {
+    const auto [round, round_right] = relative(view.surround, *light.surround, *right.surround);
+    difference.contrast_error =
+        std::hypot((1.0 + *light.contrast) * std::sqrt(on + round),
+                   (1.0 + *right.contrast) * std::sqrt(on_right + round_right));
+  }
+  difference.decided = decided(difference);
+}
+
+}  // namespace
+
+bool decided(const TargetDifference& difference) {
+  const auto verdict = [&](double ratios, double contrasts) {
+    TargetDifference shifted = difference;
+    shifted.luminance_ratio += ratios * difference.ratio_error;
+    if (shifted.contrast_difference) {
+      *shifted.contrast_difference += contrasts * difference.contrast_error;
+    }
+    return breaks_rule(shifted);
+  };
+  // One surround black and the other not breaks the rule whatever the noise is.
+  if (difference.misleads && !breaks_rule(difference)) return true;
+  for (const double ratios : {-2.0, 2.0}) {
+    for (const double contrasts : {-2.0, 2.0}) {
+      if (verdict(ratios, contrasts) != difference.misleads) return false;
+    }
+  }
+  return true;
+}
+
+std::vector<std::optional<TargetDifference>> target_differences(
+    const base::Image& image, const std::vector<TargetView>& targets, const Yardstick& right) {
+  std::vector<std::optional<TargetDifference>> result;
+  const std::vector<float> luminance = base::luminance_of(image);
+  for (const TargetView& view : targets) {
+    const auto light = measure_light(view, luminance);
+    if (!light) {
+      result.emplace_back();
+      continue;
+    }
+    const TargetLight wanted = *measure_light(view, right.mean);
+    TargetDifference difference = target_difference(*light, wanted);
+    add_noise(view, *light, wanted, image, right, difference);
+    result.emplace_back(difference);
+  }
+  return result;
+}
+
+}  // namespace earthshine::studies

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/cost/cost.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "radiosity/refine.h"
+#include "raytrace/paths/path_tracer.h"
+#include "studies/cost/cost_laws.h"
+
+namespace earthshine::studies {
+namespace {
+
+// Pictures are drawn with the fewer pixels; with more if those took hardly any time.
+constexpr double least_pixels = 1024.0, most_pixels = 4096.0, enough_cpu_s = 0.05;
+constexpr int pilot_rays = 64;  // per patch
+constexpr double few_patches = 4096.0;
+constexpr std::size_t pilot_growth = 1024;  // patches that the pilot's refinement may add
+
+class Stopwatch {
+ public:
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(Clock::now() - start_).count();
+  }
+  [[nodiscard]] double cpu_seconds() const { return base::cpu_seconds() - cpu_; }
+  // What it takes when the machine does nothing else.
+  [[nodiscard]] double seconds_alone() const { return cpu_seconds() / base::available_threads(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+  double cpu_ = base::cpu_seconds();
+};
+
+// The coarse solve, scaled; `coarse` receives its solution for the pictures.
+radiosity::SolveReport expect_solve(const PilotCall& call, radiosity::Solution& coarse) {
+  radiosity::SolveOptions cheap = call.solver;
+  cheap.form_factor_rays = std::min(pilot_rays, cheap.form_factor_rays);
+  cheap.tolerance = std::max(cheap.tolerance, 1e-4);
+  const bool refines = call.solver.refine.on;
+  const double most =
+      static_cast<double>(refines ? radiosity::most_refined_patches(call.scene, call.solver)
+                                  : radiosity::count_patches(call.scene, call.solver.patch_edge_m));
+  if (refines) {
+    const std::size_t start = radiosity::count_patches(call.scene, call.solver.refine.start_edge_m);
+    cheap.refine.max_patches = std::min(static_cast<std::size_t>(most), start + pilot_growth);
+  } else {
+    if (most > few_patches) cheap.patch_edge_m *= std::sqrt(most / few_patches);
+  }
+  const Stopwatch watch;
+  coarse = radiosity::solve(call.scene, call.groups, call.effects, call.query, cheap);
+  radiosity::SolveReport& pilot = coarse.report;
+  const double alone = watch.seconds_alone() / std::max(1e-9, watch.seconds());
+  for (auto& [stage, seconds] : pilot.seconds) seconds *= alone;
+  for (radiosity::SourceCost& cost : pilot.sources_cost) cost.seconds *= alone;
+  SolveScale scale;
+  scale.refines = refines;
+  scale.patches = refines ? expected_patches(pilot.rounds, call.solver.refine.error, most) : most;
+  scale.rays = double(call.solver.form_factor_rays) / cheap.form_factor_rays;
+  scale.row_entries = call.row_entries;
+  return scaled(pilot, scale);
+}
+
+class PictureDrawer {
+ public:
+  PictureDrawer(const PilotCall& call, const radiosity::Solution& coarse)
+      : call_(call), coarse_(coarse) {}
+
+  raytrace::Frame draw(const scenes::Camera& camera, raytrace::RenderOptions options,
+                       double pixels) const {
+    const double wanted = double(options.columns) * options.rows;
+    const double scale = std::min(1.0, std::sqrt(pixels / wanted));
+    options.columns = std::max(1, static_cast<int>(std::lround(scale * options.columns)));
+    options.rows = std::max(1, static_cast<int>(std::lround(scale * options.rows)));
+    // Samples and rays gathered again go to edges, whose share of the pixels grows as the picture
+    // shrinks, as 1 / noise^2: with the noise so much larger a pixel costs what it does in the
+    // whole.
+    const double coarser = 1.0 / std::sqrt(scale);
+    options.shared.noise *= coarser;
+    options.crop = {};
+    options.time_limit_s = 0.0;
+    if (options.indirect == raytrace::Indirect::Paths) {
+      return raytrace::trace_paths(call_.scene, call_.groups, call_.effects, call_.query, camera,
+                                   {options.columns,
+                                    options.rows,
+                                    std::max(2, std::min(8, options.gather_rays)),
+                                    options.per_light,
+                                    raytrace::PathSet::All,
+                                    options.seed,
+                                    {}});
+    }
+    return raytrace::render(call_.scene, call_.groups, call_.effects, call_.query, coarse_, camera,
+                            options);
+  }
+
+ private:
+  const PilotCall& call_;
+  const radiosity::Solution& coarse_;
+};
+
+raytrace::RenderReport expect_picture(const PictureDrawer& drawer, const scenes::Camera& camera,
+                                      const raytrace::RenderOptions& options, base::Image& image) {
+  raytrace::Frame frame;
+  for (const double pixels : {least_pixels, most_pixels}) {
+    const Stopwatch watch;
+    frame = drawer.draw(camera, options, pixels);
+    const double alone = watch.seconds_alone() / std::max(1e-9, watch.seconds());
+    frame.report.seconds *= alone;
+    frame.report.gather_seconds *= alone;
+    if (watch.cpu_seconds() > enough_cpu_s) break;
+  }
+  const double pixels = options.crop.columns > 0 ? static_cast<double>(options.crop.pixel_count())
+                                                 : double(options.columns) * options.rows;
+  const raytrace::RenderReport report =
+      scaled(frame.report,
+             {static_cast<double>(frame.image.pixel_count()), pixels,
+              options.indirect == raytrace::Indirect::Paths ? double(options.gather_rays) : 0.0});
+  image = std::move(frame.image);
+  return report;
+}
+
+}  // namespace
+
+Pilot expect_costs(const PilotCall& call, const std::vector<const scenes::Camera*>& cameras,
+                   const std::vector<raytrace::RenderOptions>& pictures) {
+  const Stopwatch watch;
+  Pilot pilot;
+  radiosity::Solution coarse;
+  if (call.effects.solution && !call.scene.triangles.empty()) {
+    pilot.bill.solve = expect_solve(call, coarse);
+  }
+  const PictureDrawer drawer(call, coarse);
+  for (std::size_t k = 0; k < cameras.size(); ++k) {
+    pilot.pictures.emplace_back();
+    pilot.bill.pictures.push_back(
+        expect_picture(drawer, *cameras[k], pictures[k], pilot.pictures.back()));
+  }
+  pilot.seconds = watch.seconds();
+  pilot.cpu_seconds = watch.cpu_seconds();
+  return pilot;
+}
+
+}  // namespace earthshine::studies

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run costs, effect by effect: as expected from a small run of the same code on this
+// machine, and as it was.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "radiosity/solution.h"
+#include "raytrace/render.h"
+#include "scenes/effects/effects.h"
+#include "scenes/effects/light_groups.h"
+#include "scenes/ray_query.h"
+
+namespace earthshine::studies {
+
+// Of one solve and the pictures that read it.
+struct Bill {
+  radiosity::SolveReport solve;                  // patches, rays, seconds by stage
+  std::vector<raytrace::RenderReport> pictures;  // rays and seconds
+};
+
+struct PilotCall {
+  const scenes::Scene& scene;
+  const scenes::LightGroups& groups;
+  const scenes::Effects& effects;
+  const scenes::RayQuery& query;
+  radiosity::SolveOptions solver;
+  double row_entries = 0.0;  // form factors of a mean row (radiosity/factors/row_pilot.h)
+};
+
+// What the run will take: the scene is solved on the coarse patches that refinement starts from,
+// with a sixteenth of the rays, and each picture is drawn with a thousand pixels or, where these
+// are cheap, four; rays and seconds are scaled to the patches, rows and pixels of the run
+// (cost_laws.h). Camera samples beyond the least are spent on edges, whose share of the pixels
+// falls with the picture's size; the small one is drawn to as much more noise. Seconds are those of
+// a machine that does nothing else: CPU seconds over threads. Takes some tenths of a CPU second,
+// more where the scene has more faces than that. Of paths a few per pixel are traced. pictures: of
+// the wanted size.
+struct Pilot {
+  Bill bill;
+  std::vector<base::Image> pictures;        // the small ones
+  double seconds = 0.0, cpu_seconds = 0.0;  // that the pilot took, wall and all threads
+};
+[[nodiscard]] Pilot expect_costs(const PilotCall& call,
+                                 const std::vector<const scenes::Camera*>& cameras,
+                                 const std::vector<raytrace::RenderOptions>& pictures);
+
+// An effect's part of the bill: the rays that were cast for it, and the seconds of its stages. The
+// seconds of shading are shared out by rays.
+struct EffectCost {
+  std::string effect;  // as describe_effects() names it; "camera rays": the picture itself
+  double rays = 0.0;
+  double seconds = 0.0;
+};
+[[nodiscard]] std::vector<EffectCost> effect_costs(const Bill& bill,
+                                                   const scenes::Effects& effects);
+[[nodiscard]] double total_seconds(const Bill& bill);
+
+}  // namespace earthshine::studies

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/cost/cost_laws.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace earthshine::studies {
+namespace {
+
+constexpr double least_power = 0.25, most_power = 1.0;  // of patches, by which errors fall
+
+std::uint64_t times(std::uint64_t count, double by) {
+  return static_cast<std::uint64_t>(std::llround(double(count) * by));
+}
+
+}  // namespace
+
+double expected_patches(const std::vector<radiosity::RefineRound>& rounds, double wanted_error,
+                        double most) {
+  if (rounds.empty()) return most;
+  const radiosity::RefineRound& last = rounds.back();
+  if (last.error <= wanted_error) return static_cast<double>(last.patches);
+  if (rounds.size() < 2) return most;
+  const radiosity::RefineRound& first = rounds.front();
+  const double growth = std::log(double(last.patches) / double(first.patches));
+  const double fall = std::log(first.error / last.error);
+  const double power = std::clamp(growth > 0.0 ? fall / growth : 0.0, least_power, most_power);
+  return std::min(most, double(last.patches) *
+                            std::pow(last.error / std::max(wanted_error, 1e-9), 1.0 / power));
+}
+
+radiosity::SolveReport scaled(const radiosity::SolveReport& small, const SolveScale& scale) {
+  const double more = scale.patches / std::max(1.0, static_cast<double>(small.patches));
+  const double entries = scale.patches * scale.row_entries;
+  const double filled = std::max(1.0, entries / std::max(1.0, double(small.nonzeros)));
+  const double rounds = std::max(1.0, more * std::max(1.0, scale.rays / 8.0));
+  radiosity::SolveReport report;
+  report.patches = static_cast<std::size_t>(scale.patches);
+  report.form_factor_rays = times(small.form_factor_rays, more * scale.rays);
+  report.refinement_rays = times(small.refinement_rays, rounds);
+  report.nonzeros = static_cast<std::size_t>(entries);
+  for (const auto& [name, seconds] : small.seconds) {
+    double by = more;
+    if (name == "form factors") by = more * scale.rays;
+    if (name == "balance" || name == "linear solve") by = filled;
+    if (name == "patches" && scale.refines) by = rounds;
+    report.seconds.emplace_back(name, seconds * by);
+  }
+  report.sources_cost = small.sources_cost;
+  for (radiosity::SourceCost& cost : report.sources_cost) {
+    cost.rays = times(cost.rays, more);
+    cost.seconds *= more;
+    report.shadow_rays += cost.rays;
+  }
+  return report;
+}
+
+raytrace::RenderReport scaled(const raytrace::RenderReport& small, const PictureScale& scale) {
+  raytrace::RenderReport report = small;
+  double more = scale.pixels / scale.small_pixels;
+  if (scale.paths > 0.0) {
+    more *= scale.paths / std::max(1e-9, small.camera_samples);
+    report.camera_samples = scale.paths;
+  }
+  raytrace::RayCounts& rays = report.rays;
+  for (std::uint64_t* count : {&rays.camera, &rays.shadow, &rays.gather, &rays.lobe, &rays.mirror,
+                               &rays.refraction, &rays.layers}) {
+    *count = times(*count, more);
+  }
+  for (std::uint64_t& count : rays.to_light) count = times(count, more);
+  report.gather_seconds *= more;
+  report.seconds *= more;
+  return report;
+}
+
+}  // namespace earthshine::studies

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/cost/memory.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "radiosity/factors/row_pilot.h"
+#include "radiosity/refine.h"
+#include "raytrace/frame/cryptomatte.h"
+#include "raytrace/incoming/knots.h"
+
+namespace earthshine::studies {
+namespace {
+
+constexpr double program_bytes = 18e6;  // code and libraries
+
+constexpr double vertex_bytes = 24.0 + 12.0;          // the scene's, the ray structure's copy
+constexpr double triangle_bytes = 24.0 + 12.0 + 4.0;  // the scene's, the copy, of_triangle
+constexpr double hierarchy_bytes = 150.0;             // per triangle
+// Per triangle where there are patches: its facet, and itself as a target of rays.
+constexpr double facet_bytes = sizeof(radiosity::Facet) + 32.0;
+
+constexpr double patch_bytes = 8.0 + 4.0 + sizeof(radiosity::Cell) + 1.0 + 8.0;
+// Of rows and columns: scales and shares; while they are balanced also sums in 16 bands and the
+// vectors of Newton's step.
+constexpr double row_bytes = 150.0, balance_bytes = 270.0;
+constexpr double counter_bytes = 4.125;  // per patch and thread
+constexpr double entry_bytes = 8.0;      // column and hits
+constexpr double entry_copies = 2.0;  // what bands leave behind, and the matrix they are joined to
+// Doubles per patch and column while the linear system is solved: the right-hand side and what it
+// is made of (7), BiCGSTAB on it (9), one correction (4).
+constexpr double solver_vectors = 20.0;
+constexpr double solution_bytes = 4.0 * sizeof(float);  // per patch and column
+
+constexpr double texel_bytes = 16.0;  // radiance of a patch or knot in a layer
+
+double record_bytes(const MemoryCase& m) {
+  const auto layers = static_cast<double>(m.layers);
+  const double entries = layers + (m.splits_parts ? 3.0 : 0.0);
+  const PixelRecordBytes& b = pixel_record_bytes;
+  return b.sums + b.sums_per_entry * entries +
+         (m.shares_gather ? b.gather_point + b.gather_per_layer * layers : 0.0);
+}
+
+}  // namespace
+
+double MemoryNeed::total() const {
+  double sum = 0.0;
+  for (const MemoryPart& part : parts) sum += part.bytes;
+  return sum;
+}
+
+MemoryNeed memory_needed(const MemoryCase& m) {
+  const auto patches = static_cast<double>(m.patches), columns = static_cast<double>(m.columns);
+  const auto triangles = static_cast<double>(m.triangles);
+  const auto pixels = static_cast<double>(m.pixels), layers = static_cast<double>(m.layers);
+  MemoryNeed standing = {{{"program", program_bytes},
+                          {"scene", double(m.vertices) * vertex_bytes +
+                                        triangles * (triangle_bytes + hierarchy_bytes)}}};
+
+  if (m.solves || m.columns > 0) {
+    standing.parts.push_back({"patches", patches * patch_bytes + triangles * facet_bytes});
+  }
+  // One after the other: the matrix is cast and balanced, the system solved, the picture drawn.
+  MemoryNeed casting = standing, solving = standing;
+  if (m.solves) {
+    const double entries = patches * m.row_entries * entry_bytes;
+    const double rows = patches * (row_bytes + counter_bytes * m.threads);
+    const double copies = entry_copies + (m.copies_matrix ? 1.0 : 0.0);
+    casting.parts.push_back({"form factors", entries * copies + rows + patches * balance_bytes});
+    solving.parts.push_back({"form factors", entries * entry_copies + rows});
+    solving.parts.push_back({"light groups", patches * columns * solver_vectors * sizeof(double)});
+  }
+  MemoryNeed drawing = standing;
+  if (m.columns > 0) {
+    const double texels =
+        (m.refined ? 1.0 + double(raytrace::knots_per_cell) : 1.0) * (m.specular ? 2.0 : 1.0);
+    drawing.parts.push_back(
+        {"solution", patches * columns * solution_bytes + patches * layers * texels * texel_bytes});
+  }
+  if (m.pixels > 0) {
+    drawing.parts.push_back(
+        {"picture", pixels * (double(m.channels) * sizeof(float) + record_bytes(m))});
+  }
+  return std::max({casting, solving, drawing},
+                  [](const MemoryNeed& a, const MemoryNeed& b) { return a.total() < b.total(); });
+}
+
+std::string memory_remedy(const MemoryNeed& need) {
+  const auto largest =
+      std::max_element(need.parts.begin(), need.parts.end(),
+                       [](const MemoryPart& a, const MemoryPart& b) { return a.bytes < b.bytes; });
+  if (largest == need.parts.end()) return "";
+  if (largest->name == "picture") return "Lower --size, or leave out --per-light and layers";
+  if (largest->name == "form factors") {
+    return "Lower quality.max_patches or quality.form_factor_rays, or raise quality.patch_edge";
+  }
+  if (largest->name == "scene") return "Leave out objects, or take meshes of fewer triangles";
+  return "Lower quality.max_patches, raise quality.patch_edge, or give lights a common group";
+}
+
+MemoryCase memory_case(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                       const scenes::Effects& effects, const radiosity::SolveOptions& options) {
+  MemoryCase m;
+  m.vertices = scene.vertices.size();
+  m.triangles = scene.triangles.size();
+  m.threads = base::available_threads();
+  if (!radiosity::is_lit(effects) || scene.triangles.empty()) return m;
+  set_patches(m,
+              options.refine.on ? radiosity::most_refined_patches(scene, options)
+                                : radiosity::count_patches(scene, options.patch_edge_m),
+              options);
+  m.refined = options.refine.on;
+  m.copies_matrix = true;
+  m.columns = 3 * groups.count();
+  m.solves = true;
+  return m;
+}
+
+void set_patches(MemoryCase& m, std::size_t patches, const radiosity::SolveOptions& options) {
+  m.patches = patches;
+  m.row_entries = std::min(double(patches), double(options.form_factor_rays));
+}
+
+void add_picture(MemoryCase& m, const scenes::LightGroups& groups, const scenes::Effects& effects,
+                 const raytrace::RenderOptions& options) {
+  m.pixels = options.crop.columns > 0 ? options.crop.pixel_count()
+                                      : static_cast<std::size_t>(options.columns) *
+                                            static_cast<std::size_t>(options.rows);
+  m.layers = options.per_light ? std::max<std::size_t>(1, groups.count()) : 1;
+  m.channels = 3 + (options.per_light ? 3 * groups.count() : 0);
+  for (const std::string& aov : options.aovs) {
+    // Of the others none has more than a colour's.
+    m.channels += aov.starts_with("crypto_") ? raytrace::cryptomatte_channel_count : 3;
+  }
+  m.specular = effects.mirror || effects.refraction || effects.phong || options.shared.on;
+  const auto is_part = [](const std::string& aov) {
+    return aov == "direct" || aov == "indirect" || aov == "specular";
+  };
+  m.splits_parts = std::any_of(options.aovs.begin(), options.aovs.end(), is_part);
+  m.shares_gather = options.shared.on;
+  if (options.indirect != raytrace::Indirect::Radiosity || !effects.solution) {
+    m.solves = false;
+    m.columns = 0;
+  }
+}
+
+void expect_rows(MemoryCase& m, const scenes::Scene& scene, const scenes::RayQuery& query,
+                 const radiosity::SolveOptions& options) {
+  if (!m.solves || m.patches == 0) return;
+  const radiosity::ExpectedRows rows =
+      radiosity::expected_rows(scene, query, m.patches, options.form_factor_rays);
+  m.row_entries = rows.entries;
+  // Refinement leaves patches small enough to be missed wherever light varies.
+  m.copies_matrix = options.refine.on || rows.meets_backs ||
+                    radiosity::expected_unreached(scene, m.patches, options.form_factor_rays) > 0.5;
+}
+
+}  // namespace earthshine::studies

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Memory that a run will take, by part, before its work starts.
+//
+// Counted are the arrays whose size grows with the scene, the patches or the picture, with what the
+// stages hold beside them while they work. Constants are bytes, named after what they pay for;
+// those that are no sizes of types were measured (docs/validation.md, "Memory").
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "radiosity/solution.h"
+#include "raytrace/render.h"
+#include "scenes/effects/effects.h"
+#include "scenes/effects/light_groups.h"
+
+namespace earthshine::studies {
+
+// Per pixel of a picture beside its channels: what the renderer keeps until the picture is whole
+// (raytrace/shade/pixel_sums.h, gather_field.h).
+struct PixelRecordBytes {
+  double sums = 64.0;            // samples, moments of the luminance, wanted samples
+  double sums_per_entry = 24.0;  // radiance of an image layer or part
+  double gather_point = 700.0;   // with SharedGather and a stray now and then: place, halves, what
+                                 // is told of its details, fields of noise meanwhile
+  double gather_per_layer = 150.0;  // of three kinds, as cast and shared; details meanwhile
+};
+inline constexpr PixelRecordBytes pixel_record_bytes;
+
+// The sizes that decide.
+struct MemoryCase {
+  std::size_t vertices = 0, triangles = 0;
+  std::size_t patches = 0;
+  bool refined = false;        // cut unevenly
+  double row_entries = 0.0;    // form factors of a mean row
+  bool copies_matrix = false;  // some patch no ray reaches borrows: the matrix is there twice
+  std::size_t columns = 0;     // 3 * light groups
+  bool solves = false;         // the matrix is cast; false with columns: the solution is read
+  int threads = 1;
+  std::size_t pixels = 0;      // 0: no picture
+  std::size_t channels = 0;    // of the picture, 4 bytes each
+  std::size_t layers = 0;      // that read the solution: 1, or the light groups
+  bool splits_parts = false;   // layers direct, indirect, specular
+  bool shares_gather = false;  // RenderOptions::shared
+  bool specular = false;       // a second table of the solution for highlights, mirrors, glass
+};
+
+struct MemoryPart {
+  std::string name;
+  double bytes = 0.0;
+};
+
+// The parts that are there together when most is.
+struct MemoryNeed {
+  std::vector<MemoryPart> parts;
+  [[nodiscard]] double total() const;
+};
+[[nodiscard]] MemoryNeed memory_needed(const MemoryCase& sizes);
+
+// What to lower, for the largest part of it.
+[[nodiscard]] std::string memory_remedy(const MemoryNeed& need);
+
+// The case of a scene, with the most patches there can be: refinement to an error may end with far
+// fewer. row_entries is the most there can be, one for each ray or patch, and copies_matrix is
+// true, until expect_rows() looks.
+[[nodiscard]] MemoryCase memory_case(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                                     const scenes::Effects& effects,
+                                     const radiosity::SolveOptions& options);
+void set_patches(MemoryCase& sizes, std::size_t patches, const radiosity::SolveOptions& options);
+void add_picture(MemoryCase& sizes, const scenes::LightGroups& groups,
+                 const scenes::Effects& effects, const raytrace::RenderOptions& options);
+// Casts a few rows (radiosity/factors/row_pilot.h).
+void expect_rows(MemoryCase& sizes, const scenes::Scene& scene, const scenes::RayQuery& query,
+                 const radiosity::SolveOptions& options);
+
+}  // namespace earthshine::studies

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/error/error_budget.h"
+
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "studies/error/surface_pixels.h"
+
+namespace earthshine::studies {
+namespace {
+
+using raytrace::ErrorPart;
+using raytrace::ErrorSums;
+using raytrace::StatedError;
+
+constexpr double one_sided_95 = 1.645;
+constexpr int tile_px = 32;  // samples are shared no further than about that
+// Tiles' squares are most often small and now and then large, so that their spread, found from
+// some of them, is too small as a rule (docs/validation.md).
+constexpr double unseen_spread = 1.5;
+
+// Over the mean square, the bound of it that holds 95 times of 100.
+double bound_ratio(const StatedError& stated, const std::vector<std::size_t>& pixels, int columns) {
+  const ErrorSums whole = raytrace::add_up(stated, pixels);
+  if (whole.squared_error() <= 0.0) return 1.0;
+  std::map<std::size_t, double> tiles;
+  for (const std::size_t p : pixels) {
+    if (stated.counts[p] == 0) continue;
+    const double weight = raytrace::error_weight(double(stated.luminance[p]), whole.luminance);
+    double square = 0.0;
+    for (const float part : stated.squared[p]) square += double(part);
+    const std::size_t x = p % static_cast<std::size_t>(columns) / tile_px;
+    const std::size_t y = p / static_cast<std::size_t>(columns) / tile_px;
+    tiles[y * static_cast<std::size_t>(columns) + x] += weight * weight * square;
+  }
+  const auto count = static_cast<double>(tiles.size());
+  double sum = 0.0, squares = 0.0;
+  for (const auto& [tile, value] : tiles) {
+    sum += value;
+    squares += value * value;
+  }
+  // Of one tile nothing is known: as if its error were all in one place.
+  if (count < 2.0) return 1.0 + one_sided_95 * unseen_spread;
+  const double spread =
+      std::sqrt(std::max(0.0, squares - sum * sum / count) * count / (count - 1.0));
+  return 1.0 + one_sided_95 * unseen_spread * spread / sum;
+}
+
+Doubt total_of(const StatedError& stated, const std::vector<std::size_t>& pixels, int columns) {
+  const double square = raytrace::add_up(stated, pixels).squared_error();
+  return {std::sqrt(square), std::sqrt(square * bound_ratio(stated, pixels, columns))};
+}
+
+}  // namespace
+
+ErrorBudget error_budget(const StudyScene& scene, const WatchedPicture& picture,
+                         const raytrace::Frame& frame) {
+  ErrorBudget budget;
+  budget.not_captured = not_captured(scene, picture.options);
+  const SurfacePixels seen(scene, *picture.camera, picture.options);
+  const StatedError& stated = frame.error;
+  if (stated.luminance.empty()) {  // paths: independent samples that state their own spread
+    const double noise = frame.report.relative_noise;
+    budget.total = budget.parts.camera_samples = {noise, noise};
+    budget.pixels = noise > 0.0 ? seen.all().size() : 0;
+  } else {
+    std::vector<std::size_t> all(stated.luminance.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    const ErrorSums whole = raytrace::add_up(stated, all);
+    budget.pixels = whole.luminance > 0.0 ? whole.pixels : 0;
+    budget.total = total_of(stated, all, frame.window.columns);
+    const double bound =
+        budget.total.estimate > 0.0 ? budget.total.bound_95 / budget.total.estimate : 1.0;
+    const auto part = [&](ErrorPart which) {
+      const double off = std::sqrt(whole.squared[static_cast<std::size_t>(which)]);
+      return Doubt{off, bound * off};
+    };
+    budget.parts = {part(ErrorPart::Gather), part(ErrorPart::Residual), part(ErrorPart::Lobe),
+                    part(ErrorPart::Camera)};
+  }
+  for (std::uint32_t object = 0; object < scene.scene.objects.size(); ++object) {
+    if (!scene.scene.objects[object].target) continue;
+    TargetError& target = budget.targets.emplace_back();
+    target.name = scene.scene.objects[object].name;
+    std::vector<std::size_t> pixels;
+    for (const std::uint32_t pixel : seen.of_object(object))
+      pixels.push_back(seen.in_window(pixel));
+    target.pixels = pixels.size();
+    if (stated.luminance.empty()) continue;
+    target.luminance = raytrace::add_up(stated, pixels).luminance;
+    target.error = total_of(stated, pixels, frame.window.columns);
+  }
+  return budget;
+}
+
+}  // namespace earthshine::studies

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// The error of a picture, part by part, as its own samples state it (raytrace/frame/frame.h).
+//
+// An error is the root mean square difference of luminance to the picture that all light paths but
+// those of not_captured would make, over the pixels that show a surface that reflects and no edge
+// of a source itself, relative to their mean luminance; light straight from a source is left out,
+// and pixels brighter than four times the mean count in proportion (error_weight).
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "raytrace/render.h"
+#include "studies/error/doubt.h"
+#include "studies/study.h"
+
+namespace earthshine::studies {
+
+struct ErrorParts {
+  Doubt gather;           // rays over the hemisphere, and what sharing them blurs
+  Doubt interreflection;  // what the solution lacks, found by paths: their noise and blur
+  Doubt lobes;            // the same of rays over Phong lobes
+  Doubt camera_samples;   // edges, lamps, the lens, mirrors and glass
+};
+
+struct TargetError {
+  std::string name;
+  std::size_t pixels = 0;  // seen
+  double luminance = 0.0;  // their mean, cd/m^2
+  Doubt error;             // as of the whole picture, over the target's pixels and their mean
+};
+
+struct ErrorBudget {
+  Doubt total;
+  ErrorParts parts;
+  std::size_t pixels = 0;  // that the errors are over; 0: no surface is seen or all are black
+  std::vector<TargetError> targets;
+  std::vector<std::string> not_captured;
+};
+
+struct WatchedPicture {
+  const scenes::Camera* camera = nullptr;
+  raytrace::RenderOptions options;
+};
+
+// What `frame`, drawn so, states. Its 95 % bound is that of a mean square known from some tiles of
+// the picture: 1.645 standard errors of their mean above it.
+[[nodiscard]] ErrorBudget error_budget(const StudyScene& scene, const WatchedPicture& picture,
+                                       const raytrace::Frame& frame);
+
+// Light that no setting brings into a picture drawn so.
+[[nodiscard]] std::vector<std::string> not_captured(const StudyScene& scene,
+                                                    const raytrace::RenderOptions& options);
+
+}  // namespace earthshine::studies

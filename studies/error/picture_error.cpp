@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/error/picture_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "raytrace/frame/frame.h"
+#include "raytrace/light/light_sampler.h"
+#include "scenes/sky/sky.h"
+
+namespace earthshine::studies {
+namespace {
+
+// Sums over the counted pixels of products and their variance.
+struct Sums {
+  std::size_t pixels = 0;
+  double product = 0.0, variance = 0.0, difference = 0.0, right = 0.0;
+
+  double whole_mean = 0.0;  // of the truth, for the weights
+
+  // d1, d2: two looks at one difference, of variances v1 and v2.
+  void add(double d1, double v1, double d2, double v2, double truth) {
+    ++pixels;
+    const double weight = std::pow(raytrace::error_weight(truth, whole_mean), 2);
+    v1 *= weight;
+    v2 *= weight;
+    product += weight * d1 * d2;
+    variance += weight * d1 * d2 * (v1 + v2) + v1 * v2;
+    // The square of the difference is known from the product alone, which may come out negative.
+    least += v1 * v2;
+    difference += (d1 + d2) / 2.0;
+    right += truth;
+  }
+
+  [[nodiscard]] PictureError error() const {
+    PictureError result;
+    result.pixels = pixels;
+    if (pixels == 0 || !(right > 0.0)) return result;
+    const auto n = static_cast<double>(pixels);
+    const double mean = right / n, square = product / n;
+    const double spread = 2.0 * std::sqrt(std::max(variance, least)) / n;
+    result.error = std::sqrt(std::max(0.0, square)) / mean;
+    result.low = std::sqrt(std::max(0.0, square - spread)) / mean;
+    result.high = std::sqrt(std::max(0.0, square + spread)) / mean;
+    result.bias = difference / right;
+    return result;
+  }
+
+ private:
+  double least = 0.0;
+};
+
+double middle(const ReferencePair& pair, std::size_t p) {
+  return (pair.first.luminance[p] + pair.second.luminance[p]) / 2.0;
+}
+
+constexpr int places = 4;  // along each side of a pixel
+
+struct Look {
+  const StudyScene& study;
+  const raytrace::LightSampler& lamps;
+  const raytrace::CameraModel& camera;
+
+  [[nodiscard]] bool meets_source(double x, double y) const {
+    const raytrace::Ray ray = camera.ray(x, y, 0.0, 0.0);
+    const scenes::Hit hit = study.query.closest(ray.origin, ray.direction);
+    const double range = hit.missed() ? std::numeric_limits<double>::infinity() : hit.t;
+    if (lamps.seen_lamp(ray.origin, ray.direction, range)) return true;
+    if (hit.missed()) {
+      return base::max_component(scenes::sky_radiance(study.scene, ray.direction)) > 0.0;
+    }
+    return study.scene.materials[study.scene.triangles[hit.triangle].material].emits();
+  }
+  [[nodiscard]] bool counts(int column, int row) const {
+    const raytrace::Ray ray = camera.ray(column + 0.5, row + 0.5, 0.0, 0.0);
+    if (study.query.closest(ray.origin, ray.direction).missed()) return false;
+    for (int k = 0; k < places * places; ++k) {
+      const double x = column + (k % places + 0.5) / places;
+      const double y = row + (k / places + 0.5) / places;
+      if (meets_source(x, y)) return false;
+    }
+    return true;
+  }
+};
+
+}  // namespace
+
+PictureError picture_error(const std::vector<float>& luminance, const ReferencePair& truth,
+                           const std::vector<bool>& counted) {
+  Sums sums;
+  sums.whole_mean = mean_luminance(truth, counted);
+  for (std::size_t p = 0; p < counted.size(); ++p) {
+    if (!counted[p]) continue;
+    const auto value = double(luminance[p]);
+    sums.add(value - truth.first.luminance[p], truth.first.variance[p],
+             value - truth.second.luminance[p], truth.second.variance[p], middle(truth, p));
+  }
+  return sums.error();
+}
+
+PictureError limit_error(const ReferencePair& limit, const ReferencePair& truth,
+                         const std::vector<bool>& counted) {
+  Sums sums;
+  sums.whole_mean = mean_luminance(truth, counted);
+  for (std::size_t p = 0; p < counted.size(); ++p) {
+    if (!counted[p]) continue;
+    sums.add(limit.first.luminance[p] - truth.first.luminance[p],
+             limit.first.variance[p] + truth.first.variance[p],
+             limit.second.luminance[p] - truth.second.luminance[p],
+             limit.second.variance[p] + truth.second.variance[p], middle(truth, p));
+  }
+  return sums.error();
+}
+
+double mean_luminance(const ReferencePair& truth, const std::vector<bool>& counted) {
+  double sum = 0.0, pixels = 0.0;
+  for (std::size_t p = 0; p < counted.size(); ++p) {
+    if (!counted[p]) continue;
+    sum += middle(truth, p);
+    pixels += 1.0;
+  }
+  return pixels > 0.0 ? sum / pixels : 0.0;
+}
+
+double resolution(const ReferencePair& truth, const std::vector<bool>& counted) {
+  const double mean = mean_luminance(truth, counted);
+  double squares = 0.0, pixels = 0.0;
+  for (std::size_t p = 0; p < counted.size(); ++p) {
+    if (!counted[p]) continue;
+    const double weight = std::pow(raytrace::error_weight(middle(truth, p), mean), 4);
+    squares += weight * truth.first.variance[p] * truth.second.variance[p];
+    pixels += 1.0;
+  }
+  if (!(mean > 0.0)) return 0.0;
+  return std::sqrt(2.0 * std::sqrt(squares) / pixels) / mean;
+}
+
+std::vector<bool> surface_pixels(const StudyScene& study, const raytrace::CameraModel& camera) {
+  const raytrace::LightSampler lamps(study.scene, study.groups, study.effects,
+                                     raytrace::Indirect::None, 2);
+  const Look look{study, lamps, camera};
+  const auto columns = static_cast<std::size_t>(camera.columns);
+  const auto rows = static_cast<std::size_t>(camera.rows);
+  std::vector<char> found(columns * rows);  // bits of a vector<bool> cannot be owned by threads
+  base::parallel_chunks(rows, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin * columns; p < end * columns; ++p) {
+      found[p] = look.counts(static_cast<int>(p % columns), static_cast<int>(p / columns)) ? 1 : 0;
+    }
+  });
+  return {found.begin(), found.end()};
+}
+
+}  // namespace earthshine::studies

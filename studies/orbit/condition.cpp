@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/orbit/condition.h"
+
+#include <map>
+#include <string>
+
+#include "studies/orbit/target_sources.h"
+
+namespace earthshine::studies {
+
+namespace {
+
+bool wants_reasons(const Sight& sight, const ConditionOptions& options) {
+  using Explain = ConditionOptions::Explain;
+  if (options.explain == Explain::None || sight.verdict == Verdict::Identified) return false;
+  const bool seen = sight.verdict == Verdict::Recognised || sight.verdict == Verdict::Detected;
+  return options.explain == Explain::NotIdentified || !seen;
+}
+
+}  // namespace
+
+BasisView make_basis_view(const LightBasis& basis, const scenes::RayQuery& query,
+                          const scenes::Camera& camera, base::Image layers) {
+  BasisView view;
+  view.camera = &camera;
+  view.layers = std::move(layers);
+  const scenes::Scene& scene = basis.scene();
+  ObjectMap map = object_map(view.layers);
+  std::vector<TargetView> targets = find_targets(scene, camera, map);
+  view.plan = plan_sight(camera, std::move(map), std::move(targets));
+  for (const SightTarget& target : view.plan.targets) {
+    BasisView::Target seen;
+    seen.points = seen_points(scene, query, camera, view.layers.width, view.layers.height,
+                              target.seen, most_source_points);
+    seen.by_group = mean_by_group(view.layers, basis.groups().names, target.view.measured);
+    reach_of_lamps(basis, query, seen);
+    view.targets.push_back(std::move(seen));
+  }
+  return view;
+}
+
+Outcome judge_condition(const LightBasis& basis, const scenes::RayQuery& query,
+                        const BasisView& view, std::size_t place, std::size_t setting,
+                        const std::optional<degrade::Setup>& cctv,
+                        const ConditionOptions& options) {
+  Outcome outcome;
+  const GroupWeights weights = basis.weights(place, setting, options.lamps);
+  outcome.radiance = weighted_sum(view.layers, basis.groups().names, weights);
+  outcome.sight = measure_sight(view.plan, outcome.radiance, cctv, options.why.sight);
+  const SkyPlace& sky = basis.places()[place];
+  outcome.sun_share = sun_share_of(sky);
+  std::map<std::string, base::Image> lit_by;  // the picture with a source on that is off
+  for (std::size_t t = 0; t < view.targets.size(); ++t) {
+    const BasisView::Target& target = view.targets[t];
+    TargetOutcome found;
+    const TargetSources sources = sources_on(basis, query, target, weights, sky);
+    found.sources = sources.sources;
+    if (!target.points.empty()) found.lit_fraction = sources.lit_fraction;
+    found.basis_error = basis_error(weights, target.by_group);
+    if (wants_reasons(outcome.sight.targets[t], options)) {
+      for (SourceOnTarget& source : found.sources) {
+        if (source.off != switched_off && !source.off.starts_with(dimmed_to)) continue;
+        auto picture = lit_by.find(source.group);
+        if (picture == lit_by.end()) {
+          picture = lit_by
+                        .emplace(source.group,
+                                 weighted_sum(view.layers, basis.groups().names,
+                                              basis.weights_with(place, setting, source.group)))
+                        .first;
+        }
+        source.when_on = &picture->second;
+      }
+      found.why = why_not({basis.scene(), *view.camera, view.plan, outcome.radiance, cctv,
+                           outcome.sight, sky.sun, sky.earth},
+                          t, found.sources, options.why);
+      for (SourceOnTarget& source : found.sources) source.when_on = nullptr;
+    }
+    outcome.targets.push_back(std::move(found));
+  }
+  return outcome;
+}
+
+}  // namespace earthshine::studies

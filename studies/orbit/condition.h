@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one camera makes of its targets in one condition: a place in the orbit and a lamp setting,
+// as a weighted sum of the layers of one picture.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "degrade/chain.h"
+#include "scenes/ray_query.h"
+#include "studies/light/light_basis.h"
+#include "studies/sight/sight.h"
+#include "studies/why/lit_points.h"
+#include "studies/why/why_not.h"
+
+namespace earthshine::studies {
+
+// Of a camera, whatever the condition.
+struct BasisView {
+  const scenes::Camera* camera = nullptr;
+  base::Image layers;  // of the basis' scene, a layer per light group, with the layer "object"
+  SightPlan plan;
+  // Of each target: points of its seen surface, its mean light by group over the pixels that it is
+  // measured over, and what each lamp of the scene and each emitting material does to it.
+  struct Target {
+    std::vector<SeenPoint> points;
+    std::vector<Rgb> by_group;
+    std::vector<std::optional<Reach>> lamps, emitters;
+  };
+  std::vector<Target> targets;
+};
+// layers: as raytrace::render gives them for basis.scene() with per_light and the layer "object".
+// query: of the scene, whose geometry the basis does not change.
+[[nodiscard]] BasisView make_basis_view(const LightBasis& basis, const scenes::RayQuery& query,
+                                        const scenes::Camera& camera, base::Image layers);
+
+struct TargetOutcome {
+  std::vector<SourceOnTarget> sources;  // "sun", "earth", lamps and emitters by light group
+  std::optional<double> lit_fraction;   // by any source that is on; none out of view
+  WhyNot why;                           // empty unless asked for
+  std::optional<BasisError> basis_error;
+};
+
+struct Outcome {
+  base::Image radiance;  // R, G, B
+  CameraSight sight;
+  std::vector<TargetOutcome> targets;  // as sight.targets
+  double sun_share = 0.0;              // of the Sun's disc, that the Earth leaves free
+};
+
+struct ConditionOptions {
+  double lamps = 1.0;  // times all lamps of the setting
+  // For which targets TargetOutcome::why is filled: each costs about as much as ten conditions.
+  enum class Explain { None, Unseen, NotIdentified } explain = Explain::NotIdentified;
+  WhyNotOptions why;
+};
+
+[[nodiscard]] Outcome judge_condition(const LightBasis& basis, const scenes::RayQuery& query,
+                                      const BasisView& view, std::size_t place, std::size_t setting,
+                                      const std::optional<degrade::Setup>& cctv,
+                                      const ConditionOptions& options);
+
+}  // namespace earthshine::studies

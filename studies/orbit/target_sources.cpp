@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/orbit/target_sources.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "scenes/sky/sky.h"
+
+namespace earthshine::studies {
+namespace {
+
+using scenes::no_group;
+
+scenes::Scene bare(const SkyPlace& sky) {
+  scenes::Scene scene;
+  scene.sun = sky.sun;
+  scene.earth = sky.earth;
+  return scene;
+}
+
+// Gathers what several lamps of one group do.
+class Collector {
+ public:
+  explicit Collector(const scenes::Scene& scene, const BasisView::Target& target)
+      : scene_(scene), target_(target), lit_(target.points.size(), 0) {}
+
+  SourceOnTarget& source(const std::string& group) {
+    const auto found = std::find_if(sources_.begin(), sources_.end(),
+                                    [&](const Entry& entry) { return entry.of.group == group; });
+    if (found != sources_.end()) return found->of;
+    Entry entry;
+    entry.of.group = group;
+    entry.lit.assign(target_.points.size(), 0);
+    entry.facing.assign(target_.points.size(), 0);
+    return sources_.emplace_back(std::move(entry)).of;
+  }
+
+  // share: what the source gives in this condition, 0 when off.
+  void add(const std::string& group, const Reach& reach, double share) {
+    SourceOnTarget& of = source(group);
+    Entry& entry = *std::find_if(sources_.begin(), sources_.end(),
+                                 [&](const Entry& e) { return &e.of == &of; });
+    for (std::size_t k = 0; k < lit_.size(); ++k) {
+      entry.facing[k] |= reach.facing[k];
+      if (share <= 0.0) continue;
+      entry.lit[k] |= reach.lit[k];
+      lit_[k] |= reach.lit[k];
+    }
+    of.direct += share * reach.luminance;
+    of.unshadowed += reach.unshadowed;
+    for (const Reach::Shadow& shadow : reach.shadows) entry.shadows[shadow.object] += shadow.rays;
+  }
+
+  [[nodiscard]] TargetSources finish() {
+    TargetSources all;
+    all.lit_fraction = share_of(lit_);
+    for (Entry& entry : sources_) {
+      entry.of.lit = share_of(entry.lit);
+      entry.of.facing = share_of(entry.facing);
+      std::vector<std::pair<std::size_t, std::uint32_t>> by_rays;
+      for (const auto& [object, rays] : entry.shadows) by_rays.emplace_back(rays, object);
+      std::sort(by_rays.rbegin(), by_rays.rend());
+      for (const auto& [rays, object] : by_rays) {
+        entry.of.shadow_of.push_back(scene_.objects[object].name);
+      }
+      all.sources.push_back(std::move(entry.of));
+    }
+    return all;
+  }
+
+ private:
+  struct Entry {
+    SourceOnTarget of;
+    std::vector<std::uint8_t> lit, facing;
+    std::map<std::uint32_t, std::size_t> shadows;
+  };
+  const scenes::Scene& scene_;
+  const BasisView::Target& target_;
+  std::vector<std::uint8_t> lit_;
+  std::vector<Entry> sources_;
+};
+
+double luminance_of_groups(const BasisView::Target& target, const GroupWeights& weights,
+                           std::size_t first, std::size_t count) {
+  double sum = 0.0;
+  for (std::size_t g = first; g < first + count; ++g) {
+    sum += base::luminance(weights.weight[g] * target.by_group[g]);
+  }
+  return sum;
+}
+
+}  // namespace
+
+double sun_share_of(const SkyPlace& sky) { return scenes::visible_sun_share(bare(sky)); }
+
+void reach_of_lamps(const LightBasis& basis, const scenes::RayQuery& query,
+                    BasisView::Target& target) {
+  const scenes::Scene& scene = basis.scene();
+  target.lamps.resize(scene.lamps.size());
+  target.emitters.resize(scene.materials.size());
+  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
+    if (basis.groups().lamp[k] == no_group) continue;
+    target.lamps[k] = reach_of_lamp(scene, query, target.points, scene.lamps[k]);
+  }
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    if (basis.groups().material[m] == no_group) continue;
+    const scenes::EmitterSet emitters(scene, m);
+    target.emitters[m] = reach_of_emitters(scene, query, target.points, emitters);
+  }
+}
+
+TargetSources sources_on(const LightBasis& basis, const scenes::RayQuery& query,
+                         const BasisView::Target& target, const GroupWeights& weights,
+                         const SkyPlace& sky) {
+  const scenes::Scene& scene = basis.scene();
+  const scenes::LightGroups& groups = basis.groups();
+  Collector all(scene, target);
+  const auto weighed = [&weights](std::size_t first, std::size_t count) {
+    double sum = 0.0;
+    for (std::size_t g = first; g < first + count; ++g) sum += base::luminance(weights.weight[g]);
+    return sum > 0.0;
+  };
+  if (sky.sun) {
+    const bool parts = basis.in_parts() && groups.sun_parts != no_group;
+    const std::size_t first = parts ? groups.sun_parts : groups.sun;
+    const std::size_t count = basis.sun_parts();
+    const bool shines = sun_share_of(sky) > 0.0;
+    const bool on = first != no_group && weighed(first, count);
+    const double share = on ? sun_share_of(sky) : 0.0;
+    all.add("sun",
+            reach_of_direction(scene, query, target.points, sky.sun->direction,
+                               base::luminance(sky.sun->illuminance_lx)),
+            share);
+    SourceOnTarget& sun = all.source("sun");
+    if (!on) sun.off = shines ? switched_off : "in the Earth's shadow";
+    if (first != no_group) sun.luminance = luminance_of_groups(target, weights, first, count);
+  }
+  if (sky.earth) {
+    const bool lit = scenes::earth_is_lit(bare(sky));
+    const bool on = groups.earth != no_group && weighed(groups.earth, basis.earth_parts());
+    (void)all.source("earth");
+    if (lit) {
+      all.add("earth",
+              reach_of_earth(scene, query, target.points, *sky.earth, sky.sun, earth_directions),
+              on ? 1.0 : 0.0);
+    }
+    if (!on) all.source("earth").off = lit ? switched_off : "its night side is below";
+    if (groups.earth != no_group) {
+      all.source("earth").luminance =
+          luminance_of_groups(target, weights, groups.earth, basis.earth_parts());
+    }
+  }
+  const auto add_group = [&](std::size_t group, const Reach& reach) {
+    const double share = base::luminance(weights.weight[group]);
+    all.add(groups.names[group], reach, share);
+    SourceOnTarget& source = all.source(groups.names[group]);
+    source.luminance = luminance_of_groups(target, weights, group, 1);
+    if (share <= 0.0) {
+      source.off = switched_off;
+    } else if (share < dimmed_share) {
+      source.off = fmt::format("{}{:.2g}", dimmed_to, share);
+    }
+  };
+  for (std::size_t k = 0; k < target.lamps.size(); ++k) {
+    if (target.lamps[k]) add_group(groups.lamp[k], *target.lamps[k]);
+  }
+  for (std::size_t m = 0; m < target.emitters.size(); ++m) {
+    if (target.emitters[m]) add_group(groups.material[m], *target.emitters[m]);
+  }
+  return all.finish();
+}
+
+}  // namespace earthshine::studies

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/sight/cctv_signal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string_view>
+
+#include "base/units.h"
+#include "degrade/carry.h"
+#include "degrade/moments/point_moments.h"
+#include "degrade/parts/line.h"
+
+namespace earthshine::studies {
+namespace {
+
+using degrade::AxisMap;
+using degrade::Picture;
+using degrade::Plane;
+
+// Taps below this share add less than a millionth to any variance and cost most of the time.
+constexpr double least_tap = 1e-5;
+
+AxisMap without_far_taps(const AxisMap& map) {
+  AxisMap near;
+  near.in = map.in;
+  for (std::size_t i = 0; i + 1 < map.start.size(); ++i) {
+    for (std::size_t k = map.start[i]; k < map.start[i + 1]; ++k) {
+      if (std::abs(map.weight[k]) < least_tap) continue;
+      near.source.push_back(map.source[k]);
+      near.weight.push_back(map.weight[k]);
+    }
+    near.start.push_back(near.source.size());
+  }
+  return near;
+}
+
+// `first`, then `second`.
+AxisMap chained(const AxisMap& first, const AxisMap& second) {
+  AxisMap both;
+  both.in = first.in;
+  std::vector<double> sum(static_cast<std::size_t>(first.in), 0.0);
+  std::vector<std::size_t> touched;
+  for (std::size_t i = 0; i + 1 < second.start.size(); ++i) {
+    touched.clear();
+    for (std::size_t k = second.start[i]; k < second.start[i + 1]; ++k) {
+      const std::size_t j = second.source[k];
+      for (std::size_t m = first.start[j]; m < first.start[j + 1]; ++m) {
+        touched.push_back(first.source[m]);
+        sum[first.source[m]] += second.weight[k] * first.weight[m];
+      }
+    }
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    for (const std::size_t source : touched) {
+      both.source.push_back(source);
+      both.weight.push_back(sum[source]);
+      sum[source] = 0.0;
+    }
+    both.start.push_back(both.source.size());
+  }
+  return both;
+}
+
+AxisMap squared(AxisMap map) {
+  for (double& weight : map.weight) weight *= weight;
+  return map;
+}
+
+AxisMap nothing(int size) { return degrade::gaussian_blur(size, 0.0); }
+
+// The mean over each resel's pixels of the light that the phosphor spreads.
+AxisMap mean_spread(const degrade::Monitor& monitor, int resels) {
+  const int pixels = monitor.pixels_per_resel;
+  return without_far_taps(
+      chained(degrade::spread_map(monitor.spread, monitor.spread_width, resels, pixels),
+              degrade::area_average(resels * pixels, resels)));
+}
+
+// The rest of the noise that comes with the light, once its filters are known.
+void carry_light_noise(CctvSignal& line, SignalPlane& plane, const Plane& exposed,
+                       const AxisMap& along, const AxisMap& across, double lag_factor, bool on) {
+  const degrade::NoiseLaw& law = line.report.noise;
+  const auto filtered = [&](const Plane& variance) {
+    return apply(Picture{line.columns, line.rows, {variance}}, along, across).planes.front();
+  };
+  plane.grain.assign(exposed.size(), 0.0F);
+  if (on) {
+    const double c_grain = law.c_is_fixed_pattern ? 0.0 : law.c;
+    std::transform(exposed.begin(), exposed.end(), plane.grain.begin(), [&](float value) {
+      const double s = std::max(static_cast<double>(value), 0.0);
+      return static_cast<float>(lag_factor * (law.dark + (law.b + c_grain * s) * s));
+    });
+  }
+  plane.grain_at_line = filtered(plane.grain);
+  if (!on || !law.c_is_fixed_pattern || !(law.c > 0.0)) return;
+  plane.pattern.resize(exposed.size());
+  std::transform(exposed.begin(), exposed.end(), plane.pattern.begin(),
+                 [&](float value) { return static_cast<float>(law.c) * value * value; });
+  plane.pattern_at_line = filtered(plane.pattern);
+}
+
+// A saturated target passes no fluctuations on. full: the signal before it saturates. Near `most`
+// the share is the chance to be below (Bussgang's gain of a clamp).
+void saturate_noise(SignalPlane& plane, const Plane& full, double most, double noise_factor) {
+  plane.passed.resize(full.size());
+  for (std::size_t i = 0; i < full.size(); ++i) {
+    const double variance =
+        noise_factor *
+        static_cast<double>(plane.grain[i] + (plane.pattern.empty() ? 0.0F : plane.pattern[i]));
+    const double room = most - static_cast<double>(full[i]);
+    double share = room > 0.0 ? 1.0 : 0.0;
+    if (room * room < 64.0 * variance) {
+      share = degrade::normal_probability(room / std::sqrt(variance));
+    }
+    plane.passed[i] = static_cast<float>(share);
+    const auto power = static_cast<float>(share * share);
+    plane.grain_at_line[i] *= power;
+    if (!plane.pattern.empty()) plane.pattern_at_line[i] *= power;
+  }
+}
+
+double sum_of_squares(const AxisMap& map) {  // of the taps in the middle, away from the border
+  const std::size_t middle = (map.start.size() - 1) / 2;
+  double sum = 0.0;
+  for (std::size_t k = map.start[middle]; k < map.start[middle + 1]; ++k) {
+    sum += map.weight[k] * map.weight[k];
+  }
+  return sum;
+}
+
+double mean_screen_luminance(const CctvSignal& line) {
+  double sum = 0.0, count = 0.0;
+  const std::size_t step = std::max<std::size_t>(1, line.resel_count() / 4096);
+  for (std::size_t p = 0; p < line.planes.size(); ++p) {
+    for (std::size_t i = step / 2; i < line.resel_count(); i += step) {
+      sum += line.luminance_share[p] * line.screen(static_cast<double>(line.planes[p].signal[i]));
+      if (p == 0) count += 1.0;
+    }
+  }
+  return sum / count + line.room_luminance;
+}
+
+}  // namespace
+
+CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup) {
+  const degrade::CctvCamera& camera = setup.camera;
+  CctvSignal line;
+  degrade::Report& report = line.report;
+  degrade::Memory memory;
+  Picture picture = degrade::take_in(radiance, camera.colour, report.negative_pixels);
+  report.noise = degrade::noise_law(camera);
+  report.sensor = {picture.columns, picture.rows};
+  report.exposure.f_number = camera.f_number;
+  line.has_fields = degrade::has_fields(setup, report);
+  const degrade::Passing at{setup, report, memory, 0, line.has_fields ? 2U : 1U};
+
+  const auto is_on = [&](std::string_view name) {
+    const auto stages = degrade::stages();
+    const auto found = std::find_if(stages.begin(), stages.end(),
+                                    [&](const degrade::Stage& s) { return s.name == name; });
+    return degrade::runs(*found, setup, &report);
+  };
+  // A picture of one resel, on which the maps point by point leave what they are.
+  degrade::Moments maps = degrade::still({1, 1, {{0.0F}}});
+  Picture exposed, full;
+  bool at_maps = false;
+  for (const degrade::Stage& stage : degrade::stages()) {
+    const bool sensor = stage.part == degrade::Part::Sensor;
+    if (sensor && exposed.planes.empty()) exposed = picture;
+    at_maps = at_maps || stage.name == "black-clamp";
+    if (stage.name == "levels") {
+      line.level = luminance_plane(transform(picture, maps.pending));
+    }
+    if (stage.name == "screen") line.line = maps.pending;
+    if (stage.name == "bloom") full = picture;  // and saturation after it
+    if (!degrade::runs(stage, setup, &report)) continue;
+    if (stage.name == "spread" || stage.name == "room-light" || stage.merge != nullptr) continue;
+    if (stage.name == "signal-noise" || stage.name == "lag" || stage.name == "read-noise") continue;
+    if (at_maps) {
+      if (stage.carry != nullptr) maps = stage.carry(std::move(maps), at);
+    } else {
+      picture = stage.apply(std::move(picture), at);
+    }
+  }
+  line.screen = maps.pending;
+  line.columns = picture.columns;
+  line.rows = picture.rows;
+  const bool blurs = is_on("blur"), limits = is_on("bandwidth"), spreads = is_on("spread");
+  line.blur_along =
+      without_far_taps(degrade::gaussian_blur(line.columns, blurs ? camera.blur_h : 0.0));
+  line.blur_across =
+      without_far_taps(degrade::gaussian_blur(line.rows, blurs ? camera.blur_v : 0.0));
+  line.bandwidth = limits ? without_far_taps(degrade::line_filter(
+                                line.columns, camera.bandwidth_mhz, camera.aperture_correction,
+                                setup.monitor.columns))
+                          : nothing(line.columns);
+  line.spread_along = spreads ? mean_spread(setup.monitor, line.columns) : nothing(line.columns);
+  line.spread_across = spreads ? mean_spread(setup.monitor, line.rows) : nothing(line.rows);
+  if (is_on("room-light")) line.room_luminance = degrade::room_luminance(setup.monitor);
+
+  const double lag = is_on("lag") ? degrade::lag_of(at) : 0.0;
+  line.lag_per_field = is_on("lag") ? camera.lag : 0.0;
+  const AxisMap along = squared(chained(line.blur_along, line.bandwidth)),
+                across = squared(line.blur_across), read = squared(line.bandwidth);
+  if (is_on("read-noise")) {
+    line.amplifier = report.noise.a;
+    line.amplifier_pattern = report.noise.black_pattern;
+  }
+  const std::size_t columns = static_cast<std::size_t>(line.columns);
+  line.amplifier_at_line.resize(columns);
+  for (std::size_t x = 0; x < columns; ++x) {
+    double sum = 0.0;
+    for (std::size_t k = read.start[x]; k < read.start[x + 1]; ++k) sum += read.weight[k];
+    line.amplifier_at_line[x] = static_cast<float>(sum);
+  }
+  line.luminance_share = {1.0};
+  if (picture.planes.size() == 3) {
+    line.luminance_share = {base::luminance({1.0, 0.0, 0.0}), base::luminance({0.0, 1.0, 0.0}),
+                            base::luminance({0.0, 0.0, 1.0})};
+  }
+  for (std::size_t p = 0; p < picture.planes.size(); ++p) {
+    SignalPlane plane;
+    plane.signal = std::move(picture.planes[p]);
+    carry_light_noise(line, plane, exposed.planes[p], along, across, (1.0 - lag) / (1.0 + lag),
+                      is_on("signal-noise"));
+    if (is_on("saturation")) {
+      saturate_noise(plane, full.planes[p], camera.saturation,
+                     sum_of_squares(line.blur_along) * sum_of_squares(line.blur_across));
+    }
+    line.planes.push_back(std::move(plane));
+  }
+  line.screen_luminance = mean_screen_luminance(line);
+  return line;
+}
+
+}  // namespace earthshine::studies

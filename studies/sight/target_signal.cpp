@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/sight/target_signal.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+#include "degrade/certify/slanted_edge.h"
+#include "degrade/detection.h"
+#include "degrade/moments/point_moments.h"
+#include "degrade/parts/transfer_law.h"
+
+namespace earthshine::studies {
+namespace {
+
+struct TargetResels {
+  WeightedResels measured, seen, surround;
+  struct Part {
+    WeightedResels target, surround;
+    double share = 0.0;
+  };
+  std::vector<Part> parts;
+  std::vector<std::uint32_t> screen;  // whose light reaches measured or surround
+};
+
+std::vector<std::uint32_t> united(const std::vector<std::uint32_t>& a,
+                                  const std::vector<std::uint32_t>& b) {
+  std::vector<std::uint32_t> both;
+  both.reserve(a.size() + b.size());
+  std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
+  return both;
+}
+
+double mean_of(const std::vector<float>& values, const WeightedResels& set) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < set.resel.size(); ++i) {
+    sum += set.weight[i] * static_cast<double>(values[set.resel[i]]);
+  }
+  return sum;
+}
+
+double over(double signal, double variance) {
+  if (signal == 0.0) return 0.0;
+  const double sigma = std::sqrt(std::max(variance, 0.0));
+  return sigma * degrade::most_snr > std::abs(signal) ? signal / sigma
+                                                      : std::copysign(degrade::most_snr, signal);
+}
+
+// sum over the target of (v - b)^2 / variance, with as many independent looks as its mean has.
+double ideal_observer(const ShownMoments& moments, const WeightedResels& seen, double surround,
+                      double variance_of_mean) {
+  double sum = 0.0, variance = 0.0;
+  for (std::size_t i = 0; i < seen.resel.size(); ++i) {
+    const double v = static_cast<double>(moments.variance_in_time[seen.resel[i]]);
+    const double delta = static_cast<double>(moments.mean[seen.resel[i]]) - surround;
+    variance += seen.weight[i] * v;
+    if (delta == 0.0) continue;
+    if (!(v > 0.0)) return degrade::most_snr;
+    sum += seen.weight[i] * delta * delta / v;
+  }
+  if (sum == 0.0) return 0.0;
+  return std::min(degrade::most_snr, std::sqrt(sum * variance / variance_of_mean));
+}
+
+// A difference of two means of floats that is below this share of them is rounding.
+constexpr double rounding = 1e-6;
+double difference(double a, double b) {
+  const double d = std::abs(a - b);
+  return d <= rounding * (std::abs(a) + std::abs(b)) ? 0.0 : d;
+}
+
+// Root mean square over the target's parts; `whole` of a target that is one part.
+double difference_of_parts(const TargetResels& at, const std::vector<float>& values, double whole) {
+  if (at.parts.empty()) return whole;
+  double sum = 0.0;
+  for (const TargetResels::Part& part : at.parts) {
+    const double d = difference(mean_of(values, part.target), mean_of(values, part.surround));
+    sum += part.share * d * d;
+  }
+  return std::sqrt(sum);
+}
+
+std::optional<double> weber_of(double target, double surround) {
+  if (!(surround > 0.0)) return std::nullopt;
+  return (target - surround) / surround;
+}
+
+// What the least modulation that is seen follows from.
+struct Needed {
+  double delta = 0.0;       // of the line signal
+  double of_target = 0.0;   // } variances in the eye's time: of the target's mean
+  double of_resel = 0.0;    // } and of a resel
+  double of_the_eye = 1.0;  // threshold over the difference, on the screen
+  double lines = 0.0;       // across the target
+};
+
+// C0 MTF(u) = 3 / SNR, the SNR of one bar: half a period wide, as long as the target, so that it
+// holds 1 / (2 u lines) of its resels; never less than a resel's.
+double least_modulation(const Needed& needed, double frequency) {
+  const double bars = std::max(1.0, 2.0 * frequency * needed.lines);
+  const double variance = std::min(needed.of_resel, needed.of_target * bars);
+  return std::max(3.0 * std::sqrt(std::max(variance, 0.0)) / needed.delta, needed.of_the_eye);
+}
+
+double limiting_frequency(const degrade::Setup& setup, double direction, const Needed& needed) {
+  if (!(needed.delta > 0.0) || least_modulation(needed, 0.0) >= 1.0) return 0.0;
+  constexpr double nyquist = 0.5;
+  return degrade::frequency_at(
+      [&](double f) { return chain_modulation(setup, direction, f) - least_modulation(needed, f); },
+      0.0, nyquist);
+}
+
+// Shares of the seen pixels whose resel is at white, or within the noise of black.
+void count_levels(const SightPlan& plan, const SightTarget& target, const CctvSignal& line,
+                  TargetSignal& out) {
+  const double black = line.report.exposure.gain * std::sqrt(line.report.noise.at_black());
+  const auto along = [](std::uint32_t at, int of, int onto) {
+    return static_cast<std::size_t>((at + 0.5) * onto / of);
+  };
+  const auto width = static_cast<std::uint32_t>(plan.map.columns);
+  double saturated = 0.0, crushed = 0.0;
+  for (const std::uint32_t pixel : target.seen) {
+    const double level =
+        static_cast<double>(line.level[along(pixel / width, plan.map.rows, line.rows) *
+                                           static_cast<std::size_t>(line.columns) +
+                                       along(pixel % width, plan.map.columns, line.columns)]);
+    if (level >= degrade::white_signal) saturated += 1.0;
+    if (level <= black) crushed += 1.0;
+  }
+  out.saturated = saturated / static_cast<double>(target.seen.size());
+  out.crushed = crushed / static_cast<double>(target.seen.size());
+}
+
+// The rest of the figures, where there is a surround.
+void compare(TargetSignal& out, const TargetResels& at, const ShownMoments& moments,
+             const CctvSignal& line, const degrade::Setup& setup, const SightOptions& options,
+             int frames, const Extent& extent) {
+  SignalSight& s = out.signal;
+  MonitorSight& m = out.monitor;
+  s.surround = mean_of(moments.mean, at.surround);
+  m.surround = screen_mean(line, moments, at.surround);
+  s.weber = weber_of(s.mean, *s.surround);
+  m.weber = weber_of(m.luminance, *m.surround);
+  const double delta = difference(s.mean, *s.surround);
+  const double own = mean_of(moments.variance, at.measured),
+               both = 0.5 * (own + mean_of(moments.variance, at.surround));
+  const MeanNoise noise = mean_noise(line, moments, at.seen, at.surround, frames);
+  s.cnr = over(delta, both);
+  // CNR sqrt(N n / sum r), where N n / sum r is how much less the mean scatters than a resel.
+  const double mean_variance = own > 0.0 ? both * noise.variance_a / own : noise.variance_a;
+  s.rose = over(delta, mean_variance);
+  const double difference_variance = noise.variance_a + noise.variance_b - 2.0 * noise.covariance;
+  s.snr_d = over(delta, difference_variance);
+  s.dprime = ideal_observer(moments, at.seen, *s.surround, noise.variance_a);
+
+  // Parts are large, so that the phosphor's spread is nothing to their means.
+  const double light =
+      difference_of_parts(at, moments.luminance, difference(m.luminance, *m.surround));
+  s.difference = difference_of_parts(at, moments.mean, delta);
+  const double least = options.eye.threshold_factor *
+                       threshold_difference(std::max(line.screen_luminance, *m.surround));
+  if (*m.surround > 0.0) m.threshold = least / *m.surround;
+
+  const double in_time = 0.5 * (mean_of(moments.variance_in_time, at.measured) +
+                                mean_of(moments.variance_in_time, at.surround));
+  const Needed needed{*s.difference, mean_variance, in_time, light > 0.0 ? least / light : 1.0,
+                      out.lines};
+  s.limiting_frequency = limiting_frequency(setup, extent.direction_rad, needed);
+  out.cycles = out.lines * *s.limiting_frequency;
+  // Of the parts together: each has its share of the whole's looks.
+  const double snr_d = over(*s.difference, difference_variance);
+  const double most = std::min(degrade::normal_probability(snr_d - options.even_chance_snr),
+                               seeing_probability(light / least, options.eye));
+  const Probability johnson = johnson_probability(*out.cycles, options.cycles);
+  out.probability = Probability{std::min(johnson.detect, most), std::min(johnson.recognise, most),
+                                std::min(johnson.identify, most)};
+}
+
+}  // namespace
+
+double chain_modulation(const degrade::Setup& setup, double direction_rad, double frequency) {
+  degrade::CctvCamera camera = setup.camera;
+  degrade::Monitor monitor = setup.monitor;
+  for (const std::string& name : setup.options.off) {
+    if (name == "lens-spread") camera.lens_blur = 0.0;
+    if (name == "blur") camera.blur_h = camera.blur_v = 0.0;
+    if (name == "bandwidth") camera.bandwidth_mhz = camera.aperture_correction = 0.0;
+    if (name == "spread") monitor.spread = degrade::Spread::None;
+  }
+  const auto sinc = [](double x) {
+    return x == 0.0 ? 1.0 : std::sin(base::pi * x) / (base::pi * x);
+  };
+  const auto phosphor = [&](double f) {
+    switch (monitor.spread) {
+      case degrade::Spread::Gaussian: {
+        const double sigma = monitor.spread_width / (2.0 * std::sqrt(2.0 * std::log(2.0)));
+        return std::exp(-2.0 * std::pow(base::pi * sigma * f, 2.0));
+      }
+      case degrade::Spread::Triangle:
+        return std::pow(sinc(monitor.spread_width * f), 2.0);
+      case degrade::Spread::Sinc:  // without its window
+        return 2.0 * monitor.spread_width * f < 1.0 ? 1.0 : 0.0;
+      case degrade::Spread::None:
+        break;
+    }
+    return 1.0;
+  };
+  const auto axis = [&](degrade::Axis which, double f) {
+    return transfer(camera, monitor, degrade::Travels::Picture, which, f) * std::pow(sinc(f), 2.0) *
+           phosphor(f);
+  };
+  return axis(degrade::Axis::Along, std::abs(frequency * std::cos(direction_rad))) *
+         axis(degrade::Axis::Across, std::abs(frequency * std::sin(direction_rad)));
+}
+
+std::vector<std::optional<TargetSignal>> target_signals(const SightPlan& plan,
+                                                        const CctvSignal& line,
+                                                        const degrade::Setup& setup,
+                                                        const SightOptions& options) {
+  const int frames =
+      std::max(1, static_cast<int>(std::lround(options.eye_integration_s / options.frame_s)));
+  const auto weigh_here = [&](const std::vector<std::uint32_t>& pixels) {
+    return weigh(pixels, plan.map.columns, plan.map.rows, line.columns, line.rows);
+  };
+  std::vector<TargetResels> at(plan.targets.size());
+  std::vector<std::uint32_t> resels, screen;
+  for (std::size_t t = 0; t < at.size(); ++t) {
+    const SightTarget& target = plan.targets[t];
+    if (target.seen.empty()) continue;
+    at[t].measured = weigh_here(target.view.measured);
+    at[t].seen = weigh_here(target.seen);
+    at[t].surround = weigh_here(target.view.surround);
+    for (const SightTarget::Part& part : target.parts) {
+      at[t].parts.push_back({weigh_here(part.target), weigh_here(part.surround), part.share});
+    }
+    screen = united(screen, spread_sources(line, at[t].measured));
+    resels = united(resels, at[t].seen.resel);
+    if (at[t].surround.empty()) continue;
+    screen = united(screen, spread_sources(line, at[t].surround));
+    resels = united(resels, at[t].surround.resel);
+  }
+  const ShownMoments moments = moments_at(line, resels, screen, frames);
+  std::vector<std::optional<TargetSignal>> signals(plan.targets.size());
+  for (std::size_t t = 0; t < at.size(); ++t) {
+    const SightTarget& target = plan.targets[t];
+    if (target.seen.empty()) continue;
+    TargetSignal& out = signals[t].emplace();
+    out.signal.mean = mean_of(moments.mean, at[t].measured);
+    out.signal.snr = over(out.signal.mean, mean_of(moments.variance, at[t].measured));
+    out.monitor.luminance = screen_mean(line, moments, at[t].measured);
+    out.lines = target.extent.pixels * line.rows / plan.map.rows;
+    count_levels(plan, target, line, out);
+    if (at[t].surround.empty()) continue;
+    compare(out, at[t], moments, line, setup, options, frames, target.extent);
+  }
+  return signals;
+}
+
+}  // namespace earthshine::studies

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// The figures of studies/sight/sight.h that a CCTV is needed for.
+#pragma once
+
+#include <optional>
+
+#include "studies/sight/sight.h"
+#include "studies/sight/weighted_resels.h"
+
+namespace earthshine::studies {
+
+struct TargetSignal {
+  SignalSight signal;
+  MonitorSight monitor;
+  std::optional<double> cycles;            // none without a surround
+  std::optional<Probability> probability;  // none without a surround
+  double saturated = 0.0, crushed = 0.0;
+  double lines = 0.0;  // TV lines across the least extent
+};
+
+// Targets of which no pixel is seen get nothing.
+[[nodiscard]] std::vector<std::optional<TargetSignal>> target_signals(const SightPlan& plan,
+                                                                      const CctvSignal& line,
+                                                                      const degrade::Setup& setup,
+                                                                      const SightOptions& options);
+
+// Modulation that the chain leaves of `frequency` cycles per resel in a direction of the picture
+// (radians from along to across): lens, area average of the resel, tube, video line, and on the
+// screen the resel held over its width and the phosphor. Stages that are off leave all.
+[[nodiscard]] double chain_modulation(const degrade::Setup& setup, double direction_rad,
+                                      double frequency);
+
+}  // namespace earthshine::studies

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/steer/reach_surfaces.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "radiosity/fill_solution.h"
+#include "studies/error/error_budget.h"
+#include "studies/surfaces/residual_error.h"
+#include "studies/surfaces/surface_cuts.h"
+
+namespace earthshine::studies {
+namespace {
+
+constexpr int most_passes = 24;
+constexpr int coarse_rays = 64;
+constexpr double coarse_error = 0.2;  // that the first cut is meant for
+constexpr double aim = 0.85;          // of the wanted error
+constexpr double noise_share = 0.25;  // of the wanted squared error, left to the rays
+constexpr std::uint64_t many_rays = std::uint64_t{1} << 23;
+constexpr double most_times_more = 16.0;                   // the rays cast so far
+constexpr double most_growth = 4.0;                        // of the rays of a pass
+constexpr double cut_share = 0.6;                          // to what is uneven within patches
+constexpr std::size_t largest_cut = std::size_t{1} << 17;  // patches
+constexpr std::uint32_t fewest_points = 8192;
+
+double squared(double x) { return x * x; }
+
+bool may_cut_cells(const scenes::Quality& given) {
+  return !given.patch_edge_m && given.refine.value_or(true);
+}
+
+class SurfaceSearch {
+ public:
+  SurfaceSearch(const StudyScene& scene, const Wanted& wanted, std::uint64_t seed,
+                const SolveListener& listen, const StageListener& progress)
+      : scene_(scene),
+        wanted_(wanted),
+        given_(scene.scene.quality),
+        sampler_(scene, seed),
+        listen_(listen),
+        progress_(progress) {
+    result_.solver = first_surface_options(scene.scene, wanted.error, seed);
+    result_.surface.known = false;
+    solve();
+  }
+
+  SteeredSolution run() {
+    if (!light_) return std::move(result_);
+    if (light_->mean_radiosity() > 0.0) {
+      mean_ = light_->mean_radiosity();
+      if (may_cut()) cut_shadows();
+      improve();
+      if (may_cast() && is_exact()) return with_exact_form_factors();
+    }
+    result_.solution = light_->finished();
+    result_.solution.report.shadow_rays += rays_;
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] bool may_cut() const { return may_cut_cells(given_); }
+  [[nodiscard]] bool may_cast() const { return !given_.form_factor_rays; }
+
+  // What reflects was lit by shadow rays alone, and evenly.
+  [[nodiscard]] bool is_exact() const {
+    return result_.steps.size() == 1 && result_.steps.back().estimate == 0.0 &&
+           light_->patches().count() == first_patches_;
+  }
+  // Light that lands where nothing reflects is still only as exact as the form factors: as many
+  // rays as the error wants of any scene.
+  SteeredSolution with_exact_form_factors() {
+    const raytrace::Progress progress = stage("solve");
+    if (progress) progress(0, 1);
+    result_.solver.form_factor_rays = scenes::resolve_quality(scene_.scene).form_factor_rays;
+    result_.steps.back().form_factor_rays = result_.solver.form_factor_rays;
+    result_.solution =
+        radiosity::solve(scene_.scene, scene_.groups, scene_.effects, scene_.query, result_.solver);
+    if (listen_) listen_(result_.solution.report);
+    result_.solution.report.shadow_rays += rays_;
+    return std::move(result_);
+  }
+
+  void solve() {
+    const raytrace::Progress progress = stage("solve");
+    if (progress) progress(0, 1);
+    radiosity::Patches patches = radiosity::subdivide(scene_.scene, result_.solver.patch_edge_m);
+    radiosity::FormFactors factors;
+    radiosity::Solution coarse =
+        radiosity::solve_keeping(scene_.scene, scene_.groups, scene_.effects, scene_.query,
+                                 result_.solver, std::move(patches), {}, factors);
+    if (listen_) listen_(coarse.report);
+    if (coarse.columns == 0 || coarse.patches.count() == 0) {
+      result_.solution = std::move(coarse);
+      return;
+    }
+    first_patches_ = coarse.patches.count();
+    solver_error_ = coarse.report.solver_error;
+    light_.emplace(scene_, std::move(coarse), std::move(factors), result_.solver.form_factor_rays);
+  }
+
+  // By shadow rays alone: the edges of shadows and the surroundings of lamps.
+  void cut_shadows() {
+    std::vector<std::uint32_t> which(light_->patches().count());
+    std::iota(which.begin(), which.end(), 0U);
+    CutChoice choice(light_->patches());
+    const double enough = cut_share * squared(aim * wanted_.error * mean_);
+    for (int round = 0; round < most_passes && !which.empty(); ++round) {
+      std::vector<Effort> effort;
+      for (const std::uint32_t i : which) {
+        const double area = light_->patches().area_m2[i];
+        const double points = 4.0 + fewest_points * area / choice.area_m2();
+        effort.push_back({static_cast<std::uint16_t>(
+                              std::bit_floor(static_cast<std::uint32_t>(std::min(points, 1024.0)))),
+                          0});
+      }
+      const SurfaceSamples samples =
+          sampler_.sample(light_->light(), which, effort, ++pass_, mean_, light_->bodies(),
+                          stage(fmt::format("shadows, {} patches", light_->patches().count())));
+      rays_ += samples.rays;
+      light_->correct(samples, which, effort);
+      choice.see(light_->patches(), samples, which);
+      const std::vector<radiosity::Cut> cuts =
+          choice.worst(light_->patches(), enough, most_patches());
+      if (cuts.empty()) break;
+      const std::vector<std::uint32_t> parent = light_->cut(cuts);
+      which = choice.follow(light_->patches(), parent);
+    }
+  }
+
+  void improve() {
+    double before = 0.0;
+    std::vector<Effort> effort = even_effort(light_->patches(), points_wanted_);
+    for (int pass = 0;; ++pass) {
+      std::vector<std::uint32_t> all(light_->patches().count());
+      std::iota(all.begin(), all.end(), 0U);
+      const SurfaceSamples samples = sampler_.sample(light_->light(), all, effort, ++pass_, mean_,
+                                                     light_->bodies(), stage(under_way()));
+      const std::vector<double> variance = ray_variance(light_->patches(), samples, effort);
+      const LightNoise noise = noise_of(*light_, variance, samples);
+      const ResidualError found =
+          residual_error(*light_, samples, noise, sampler_.reflectances(), mean_, solver_error_);
+      rays_ += samples.rays;
+      state(found, samples, effort);
+      const double error = found.parts.total().estimate;
+      if (error <= wanted_.error) return;
+      if (!may_cut() && !may_cast()) return stop(Limit::Settings);
+      if (pass + 1 == most_passes) return stop(Limit::Steps);
+      if (is_hopeless(error)) return stop(Limit::Steps);
+      if (wanted_.seconds > 0.0 && seconds() > 0.5 * wanted_.seconds) return stop(Limit::Time);
+      mean_ = found.mean;
+      if (may_cast()) light_->correct(samples, all, effort);
+      if (found.doubt > 0.3 * squared(wanted_.error)) points_wanted_ *= 2.0;
+      const double enough = squared(aim * wanted_.error * mean_);
+      bool cuts = false;
+      std::vector<std::uint32_t> parent;
+      const std::size_t patches = light_->patches().count();
+      if (may_cut() && found.patches > 0.8 * cut_share * squared(aim * wanted_.error)) {
+        CutChoice choice(light_->patches());
+        choice.see(light_->patches(), samples, all, noise.rays);
+        const auto wanted = choice.worst(light_->patches(), cut_share * enough, most_patches());
+        if (!wanted.empty()) {
+          parent = light_->cut(wanted);
+          cuts = light_->patches().count() > patches;
+        }
+      }
+      if (parent.empty()) {
+        parent.resize(patches);
+        std::iota(parent.begin(), parent.end(), 0U);
+      }
+      if (!cuts && pass > 4 && error > 0.97 * before) {
+        return stop(full_ ? Limit::Memory : Limit::Steps);
+      }
+      before = error;
+      effort = next_effort(variance, parent, noise_share * enough);
+    }
+  }
+
+  // Rays go with the inverse of the squared error: what is left would take many times what is done.
+  [[nodiscard]] bool is_hopeless(double error) const {
+    return wanted_.seconds <= 0.0 && rays_ > many_rays &&
+           squared(error / wanted_.error) > most_times_more;
+  }
+
+  // Rays in proportion to the root of area times variance, so that the noise that is left in all
+  // is `target`; at most four times as many as in the pass before, and at least so many points that
+  // the error can be stated.
+  [[nodiscard]] std::vector<Effort> next_effort(const std::vector<double>& variance,
+                                                const std::vector<std::uint32_t>& parent,
+                                                double target) {
+    const std::vector<double>& area = light_->patches().area_m2;
+    double roots = 0.0, all = 0.0, wanted = 0.0;
+    for (const double a : area) all += a;
+    std::vector<double> rays(parent.size());
+    for (std::size_t i = 0; i < parent.size(); ++i) {
+      rays[i] = std::sqrt(area[i] / all * variance[parent[i]]);
+      roots += rays[i];
+    }
+    for (std::uint32_t i = 0; i < parent.size(); ++i) {
+      rays[i] = std::max(0.0, rays[i] * roots / std::max(1e-300, target) - light_->gather_rays(i));
+      wanted += rays[i];
+    }
+    const double most = std::max(most_growth * last_rays_, double(1 << 20));
+    const double scale = std::min(1.0, most / std::max(1.0, wanted));
+    std::vector<Effort> next;
+    for (std::uint32_t i = 0; i < parent.size(); ++i) {
+      next.push_back(effort_of(std::max(scale * rays[i], 16.0 * points_wanted_ * area[i] / all)));
+    }
+    return next;
+  }
+
+  void state(const ResidualError& found, const SurfaceSamples& samples,
+             const std::vector<Effort>& effort) {
+    result_.surface.parts = found.parts;
+    result_.surface.known = found.mean > 0.0;
+    result_.surface.rays += samples.rays;
+    double rays = 0.0;
+    for (const Effort& e : effort) rays += e.all_rays();
+    last_rays_ = rays;
+    Step step;
+    step.stage = "solve";
+    step.patches = light_->patches().count();
+    step.form_factor_rays = static_cast<int>(rays / static_cast<double>(effort.size()));
+    step.asked = wanted_.error;
+    step.estimate = found.parts.total().estimate;
+    result_.steps.push_back(step);
+  }
+
+  std::size_t most_patches() {
+    std::size_t most = std::max<std::size_t>(first_patches_, largest_cut);
+    if (given_.max_patches)
+      most = std::min<std::size_t>(most, static_cast<std::size_t>(*given_.max_patches));
+    if (wanted_.fits && !wanted_.fits(static_cast<double>(most), 16)) {
+      full_ = true;
+      most = light_->patches().count();
+    }
+    return most;
+  }
+
+  void stop(Limit limit) { result_.limit = limit; }
+  [[nodiscard]] double seconds() const { return wanted_.now ? wanted_.now() : 0.0; }
+  [[nodiscard]] raytrace::Progress stage(const std::string& name) const {
+    return progress_ ? progress_(name) : raytrace::Progress();
+  }
+  [[nodiscard]] std::string under_way() const {
+    if (result_.steps.empty()) return fmt::format("{} patches", light_->patches().count());
+    return fmt::format("{} patches, error {:.2g} % of {:.2g} % wanted", light_->patches().count(),
+                       100.0 * result_.steps.back().estimate, 100.0 * wanted_.error);
+  }
+
+  const StudyScene scene_;
+  const Wanted& wanted_;
+  const scenes::Quality& given_;
+  SurfaceSampler sampler_;
+  const SolveListener& listen_;
+  const StageListener& progress_;
+  SteeredSolution result_;
+  std::optional<LightOnSurfaces> light_;
+  double mean_ = 0.0, solver_error_ = 0.0;
+  std::uint32_t pass_ = 0;
+  std::uint64_t rays_ = 0;
+  double points_wanted_ = fewest_points, last_rays_ = 0.0;
+  std::size_t first_patches_ = 0;
+  bool full_ = false;
+};
+
+}  // namespace
+
+radiosity::SolveOptions first_surface_options(const scenes::Scene& scene, double error,
+                                              std::uint64_t seed) {
+  scenes::Quality quality = scene.quality;
+  const bool cuts = may_cut_cells(quality);
+  quality.error = cuts ? std::max(coarse_error, error) : error;
+  radiosity::SolveOptions options =
+      radiosity::solve_options(scenes::resolve_quality(scene, quality), seed);
+  if (cuts) options.patch_edge_m = options.refine.start_edge_m;
+  if (!quality.form_factor_rays) options.form_factor_rays = coarse_rays;
+  options.refine.on = false;
+  return options;
+}
+
+SteeredSolution reach_surfaces(const StudyScene& scene, const Wanted& wanted, std::uint64_t seed,
+                               const SolveListener& listen, const StageListener& progress) {
+  SurfaceSearch search(scene, wanted, seed, listen, progress);
+  SteeredSolution found = search.run();
+  found.surface.not_captured = not_captured(scene, {});
+  return found;
+}
+
+}  // namespace earthshine::studies

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is asked for where a result is to be as exact as wanted, and what came of it.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "scenes/effects/quality.h"
+#include "studies/surfaces/surface_error.h"
+
+namespace earthshine::studies {
+
+struct Wanted {
+  double error = 0.02;               // relative, of what the budget estimates
+  double seconds = 0.0;              // since `now` was 0; 0: no limit
+  std::function<double()> now = {};  // seconds so far
+  std::function<bool(double patches, int rays)> fits = {};  // into memory; empty: anything does
+};
+
+// What stopped it before the wanted error.
+enum class Limit { None, Time, Memory, Settings, Steps, Stopped };
+[[nodiscard]] std::string limit_name(Limit limit);
+
+// One try: what was chosen and what came of it.
+struct Step {
+  std::string stage;  // "solve", "picture"
+  std::size_t patches = 0;
+  int form_factor_rays = 0;
+  int gather_rays = 0;
+  double asked = 0.0;     // relative error that the settings were meant for
+  double estimate = 0.0;  // found; 0: not looked at
+};
+
+struct SteeredSolution {
+  radiosity::Solution solution;
+  radiosity::SolveOptions solver;  // of the last solve
+  SurfaceError surface;
+  std::vector<Step> steps;
+  Limit limit = Limit::None;
+};
+
+// Called before each solve; gives the listener for what the solve takes, which may be empty.
+using SolveListener = std::function<void(const radiosity::SolveReport&)>;
+
+}  // namespace earthshine::studies

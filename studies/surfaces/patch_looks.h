@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rays of one patch of surface_samples.h.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "raytrace/incoming/radiance_table.h"
+#include "scenes/light/lamp_light.h"
+#include "studies/study.h"
+
+namespace earthshine::studies {
+
+// Rays of one patch, and what they bring to its points: per point, half and group.
+class PatchLooks {
+ public:
+  // All must outlive it. kept: per material, 1 - mirror - transmit; table: what cosine rays read.
+  PatchLooks(const StudyScene& scene, const std::vector<double>& kept,
+             const raytrace::RadianceTable& table, std::size_t groups, std::size_t sky_parts)
+      : scene_(scene), kept_(kept), table_(table), groups_(groups), sky_parts_(sky_parts) {}
+
+  void start(std::size_t points);
+  std::span<Rgb> lamps(std::size_t look) { return {&lamps_[look * groups_], groups_}; }
+  std::span<Rgb> gathered(std::size_t look) { return {&gathered_[look * groups_], groups_}; }
+  std::span<Rgb> sky(std::size_t look) { return {&sky_[look * sky_parts_], sky_parts_}; }
+  // Of all looks, in looks.
+  [[nodiscard]] double escaped() const { return escaped_; }
+  [[nodiscard]] double lost() const { return lost_; }
+  [[nodiscard]] std::uint64_t rays() const { return rays_; }
+
+  // twice: the next look's ray is the same.
+  void add_shadow_ray(const Vec3& origin, const scenes::LightSample& sample, const Rgb& lx,
+                      std::size_t look, std::size_t group, bool twice);
+  void finish_shadows();
+
+  // A packet of cosine rays, each of `weight` of the look's.
+  void gather(const Vec3& origin, const std::array<Vec3, scenes::RayPacket::width>& directions,
+              double weight, std::size_t look);
+
+ private:
+  void follow(scenes::Hit hit, Vec3 way, double weight, std::size_t look);
+  void escape(const Vec3& way, double weight, std::size_t look);
+
+  const StudyScene& scene_;
+  const std::vector<double>& kept_;
+  const raytrace::RadianceTable& table_;
+  std::size_t groups_, sky_parts_;
+  std::vector<Rgb> lamps_, gathered_, sky_;
+  scenes::RayPacket packet_;
+  std::size_t count_ = 0;
+  double escaped_ = 0.0, lost_ = 0.0;
+  std::uint64_t rays_ = 0;
+  std::array<Rgb, scenes::RayPacket::width> lx_{};
+  std::array<std::size_t, scenes::RayPacket::width> to_{};
+  std::array<bool, scenes::RayPacket::width> twice_{};
+};
+
+}  // namespace earthshine::studies

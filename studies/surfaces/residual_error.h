@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// The error of a solution over all surfaces, from samples of its residual and the matrix at hand:
+//   L - L~ = e = r + rho F e + ...        the second part from (1 - rho F) e = r, by patches
+// so that at a point of patch p  e = r + g_p,  and the mean square over the patch is
+//   <r^2> + 2 <r> g_p + g_p^2,
+// each square as a product of two halves of the samples that share no chance.
+#pragma once
+
+#include "studies/surfaces/solution_error.h"
+#include "studies/surfaces/surface_light.h"
+
+namespace earthshine::studies {
+
+struct ResidualError {
+  SolutionError parts;
+  double mean = 0.0;     // of the radiosity as it should be, luminance, lm/m^2
+  double square = 0.0;   // all relative to the mean's square: of the error
+  double patches = 0.0;  // of it, what is no noise: patches too large
+  double doubt = 0.0;    // standard error of `square`
+};
+
+// Of the light itself, expected of the samples it was made from: mean squares over a patch, lm/m^2.
+struct LightNoise {
+  std::vector<double> rays, lamps;  // per patch
+};
+
+// Points and rays of a patch for so many cosine rays, at least 32: two points with ever more rays
+// first, since what two halves agree on is told best by exact points.
+[[nodiscard]] Effort effort_of(double rays);
+// So many points over all patches by area, two on each at least.
+[[nodiscard]] std::vector<Effort> even_effort(const radiosity::Patches& patches, double points);
+
+// The variance of r as one ray finds it, per patch: half its own guess, half the mean of all.
+[[nodiscard]] std::vector<double> ray_variance(const radiosity::Patches& patches,
+                                               const SurfaceSamples& samples,
+                                               const std::vector<Effort>& effort);
+[[nodiscard]] LightNoise noise_of(const LightOnSurfaces& light,
+                                  const std::vector<double>& ray_variance,
+                                  const SurfaceSamples& samples);
+
+// samples: of all patches. mean: that they were weighed by.
+[[nodiscard]] ResidualError residual_error(const LightOnSurfaces& light,
+                                           const SurfaceSamples& samples, const LightNoise& noise,
+                                           const std::vector<Rgb>& reflectances, double mean,
+                                           double solver_error);
+
+}  // namespace earthshine::studies

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which patches are halved: those that hold most of what is uneven within them.
+#pragma once
+
+#include "radiosity/patches/split.h"
+#include "studies/surfaces/surface_samples.h"
+
+namespace earthshine::studies {
+
+class CutChoice {
+ public:
+  explicit CutChoice(const radiosity::Patches& patches);
+
+  // What samples of some patches showed; noise: of the mean square of r, what is the light's own
+  // noise, per patch, or empty.
+  void see(const radiosity::Patches& patches, const SurfaceSamples& samples,
+           std::span<const std::uint32_t> which, std::span<const double> noise = {});
+  // The worst patches, as many as leave `enough` of the mean square over all area if halves hold
+  // half of it, and no more patches than `most`. Empty: there is nothing left to cut that is not
+  // noise, or no need.
+  [[nodiscard]] std::vector<radiosity::Cut> worst(const radiosity::Patches& patches, double enough,
+                                                  std::size_t most) const;
+  // After the cut: the patches that are new, which have nothing to say yet.
+  std::vector<std::uint32_t> follow(const radiosity::Patches& patches,
+                                    const std::vector<std::uint32_t>& parent);
+  [[nodiscard]] double area_m2() const { return area_m2_; }
+  // Of the mean square over all area.
+  [[nodiscard]] double total() const;
+
+ private:
+  struct Uneven {
+    double error = 0.0, along_s = 0.0, along_t = 0.0;  // times area over all area
+  };
+  std::vector<Uneven> uneven_;    // per patch
+  std::vector<double> patch_m2_;  // area per patch
+  double area_m2_ = 0.0;
+};
+
+}  // namespace earthshine::studies

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/surfaces/surface_error.h"
+
+#include <chrono>
+#include <numeric>
+
+#include "scenes/sky/sky.h"
+#include "scenes/sky/sky_parts.h"
+#include "studies/error/error_budget.h"
+#include "studies/surfaces/residual_error.h"
+
+namespace earthshine::studies {
+namespace {
+
+constexpr double points = 8192.0;
+constexpr int matrix_rays = 64;  // per patch: the error goes through it, not the light
+constexpr std::uint32_t replicate = 0x5E57;
+
+// What carries the error on, cast anew: a solution does not keep its form factors.
+radiosity::FormFactors matrix_of(const StudyScene& scene, const radiosity::Solution& solution,
+                                 std::uint64_t seed) {
+  radiosity::SkyRadiance sky;
+  if (scene.effects.earth_by_gather) {
+    sky = [&scene](const Vec3& direction) {
+      return scenes::earth_radiance(scene.scene, direction);
+    };
+  }
+  radiosity::FormFactorOptions options{matrix_rays, seed, replicate};
+  options.leave_out_covered = true;
+  const auto& parts = scene.scene.sky_parts;
+  if (parts && parts->cells) options.sky_cells = &*parts->cells;
+  return radiosity::cast_form_factors(scene.scene, scene.query, solution.patches, options, sky);
+}
+
+}  // namespace
+
+SurfaceError surface_error(const StudyScene& scene, const radiosity::Solution& solution,
+                           const radiosity::SolveOptions& solver) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  SurfaceError error;
+  error.not_captured = not_captured(scene, {});
+  if (solution.columns == 0 || solution.patches.count() == 0) return error;
+  radiosity::FormFactors matrix = matrix_of(scene, solution, solver.seed);
+  error.rays = matrix.ray_count;
+  const LightOnSurfaces light(scene, solution, std::move(matrix),
+                              2.0 * solution.report.rays_per_patch);
+  const double mean = light.mean_radiosity();
+  error.known = mean > 0.0;
+  if (!error.known) return error;
+  std::vector<std::uint32_t> all(light.patches().count());
+  std::iota(all.begin(), all.end(), 0U);
+  const std::vector<Effort> effort = even_effort(light.patches(), points);
+  const SurfaceSampler sampler(scene, solver.seed);
+  const SurfaceSamples samples =
+      sampler.sample(light.light(), all, effort, 1, mean, light.bodies());
+  const LightNoise noise = noise_of(light, ray_variance(light.patches(), samples, effort), samples);
+  error.parts = residual_error(light, samples, noise, sampler.reflectances(), mean,
+                               solution.report.solver_error)
+                    .parts;
+  error.rays += samples.rays;
+  error.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  return error;
+}
+
+}  // namespace earthshine::studies

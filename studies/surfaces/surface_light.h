@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// A solution that is made better without another matrix: the matrix stays on the coarse patches
+// that were solved for, light is kept on patches as fine as wanted. What samples find
+// (surface_samples.h) goes into each patch; what it changes elsewhere, e = (1 - rho F)^-1 r, goes
+// through the matrix (the equation of the error; Lischinski, Smits and Greenberg 1994 bound it,
+// here it is solved with the residual itself).
+#pragma once
+
+#include "radiosity/fill_solution.h"
+#include "radiosity/patches/split.h"
+#include "studies/surfaces/surface_samples.h"
+
+namespace earthshine::studies {
+
+class LightOnSurfaces {
+ public:
+  // coarse: solved with those factors, balanced or not; `rays` of them a patch.
+  LightOnSurfaces(const StudyScene& scene, radiosity::Solution coarse,
+                  radiosity::FormFactors factors, double rays);
+
+  [[nodiscard]] const SurfaceLight& light() const { return light_; }
+  [[nodiscard]] const radiosity::Patches& patches() const { return light_.solution.patches; }
+  [[nodiscard]] const radiosity::ClosedBodies* bodies() const { return factors_.open.bodies.get(); }
+  [[nodiscard]] double mean_radiosity() const;  // luminance, over what no body covers
+  // Samples that are in the light of a patch already.
+  [[nodiscard]] double lamp_points(std::uint32_t patch) const { return lamp_points_[patch]; }
+  [[nodiscard]] double gather_rays(std::uint32_t patch) const { return gather_rays_[patch]; }
+
+  // The illuminance, per coarse patch and column, that a residual of the radiosity (per patch and
+  // column) brings there by all its bounces: F (1 - rho F)^-1 r.
+  [[nodiscard]] std::vector<double> brought(const std::vector<double>& residual,
+                                            std::size_t columns) const;
+  [[nodiscard]] std::uint32_t coarse(std::uint32_t patch) const { return coarse_[patch]; }
+
+  // Takes in samples, each patch by the share of its samples in all that it has seen.
+  void correct(const SurfaceSamples& samples, std::span<const std::uint32_t> which,
+               std::span<const Effort> effort);
+  // Halves take what is interpolated at their middle; they have the samples of their parent for
+  // what gathers, none for shadows. Returns the parent of each patch.
+  std::vector<std::uint32_t> cut(const std::vector<radiosity::Cut>& wanted);
+
+  [[nodiscard]] radiosity::Solution finished() const;
+
+ private:
+  void sum_up();
+  void close_energy(radiosity::PatchLight& found) const;
+
+  StudyScene scene_;
+  SurfaceLight light_;
+  radiosity::FormFactors factors_;
+  std::vector<Rgb> reflectances_;  // per material
+  std::vector<double> emitted_;    // per coarse patch and column
+  std::vector<double> coarse_open_m2_;
+  std::vector<std::uint32_t> coarse_;                           // per patch
+  std::vector<std::uint32_t> coarse_material_;                  // per coarse patch
+  std::vector<double> lamp_points_, gather_rays_, open_share_;  // per patch
+  std::vector<double> escape_, lost_;  // per patch: shares of what leaves it
+};
+
+}  // namespace earthshine::studies

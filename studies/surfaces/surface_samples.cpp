@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/surfaces/surface_samples.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "base/numbers/random.h"
+#include "base/parallel.h"
+#include "radiosity/bodies/closed_bodies.h"
+#include "scenes/reflect/spread_reflectance.h"
+#include "scenes/sky/sky_parts.h"
+#include "studies/surfaces/patch_looks.h"
+#include "studies/surfaces/residual_sums.h"
+
+namespace earthshine::studies {
+namespace {
+
+using scenes::RayPacket;
+
+constexpr int source_points = 16;  // that radiosity::find_sources() gives a small distant source
+constexpr std::size_t wide_source_samples = 4;
+constexpr std::size_t told_after = 1024;  // patches
+
+// A number of its own for a patch, wherever it stands in the list.
+std::uint64_t identity(const radiosity::Patches& patches, std::uint32_t patch) {
+  const radiosity::Cell& cell = patches.cell[patch];
+  const std::uint64_t place = (std::uint64_t{cell.s} << 32) | cell.t;
+  const std::uint64_t facet =
+      (std::uint64_t{patches.facet[patch]} << 16) | (std::uint64_t{cell.s_cuts} << 8) | cell.t_cuts;
+  return base::mix64(base::mix64(facet) ^ place) ^ patches.is_back[patch];
+}
+
+}  // namespace
+
+scenes::Hit hit_at(const radiosity::Patches& patches, std::uint32_t patch, double x, double y) {
+  const radiosity::Facet& facet = patches.facets[patches.facet[patch]];
+  const radiosity::Rectangle r = patches.rectangle(patch);
+  const double t = r.t0 + y * (r.t1 - r.t0);
+  scenes::Hit hit;
+  hit.triangle = facet.triangle;
+  hit.front = patches.is_back[patch] == 0;
+  if (facet.parallelogram) {
+    hit.u = r.s0 + x * (r.s1 - r.s0) - t;
+    hit.v = t;
+    return hit;
+  }
+  const double s = std::sqrt(r.s0 * r.s0 + x * (r.s1 * r.s1 - r.s0 * r.s0));
+  std::array<double, 3> weight{};
+  weight[facet.apex] = 1.0 - s;
+  weight[(facet.apex + 1U) % 3U] = s * (1.0 - t);
+  weight[(facet.apex + 2U) % 3U] = s * t;
+  hit.u = weight[1];
+  hit.v = weight[2];
+  return hit;
+}
+
+namespace {
+
+// Of a source without size, both halves see the same.
+bool same(const std::vector<scenes::LightSample>& a, const std::vector<scenes::LightSample>& b) {
+  return a.size() == 1 && b.size() == 1 && a[0].direction == b[0].direction &&
+         a[0].normal_illuminance_lx == b[0].normal_illuminance_lx;
+}
+
+}  // namespace
+
+SurfaceSampler::SurfaceSampler(const StudyScene& scene, std::uint64_t seed)
+    : scene_(scene),
+      seed_(seed),
+      sources_(radiosity::find_sources(scene.scene, scene.groups, scene.effects, source_points)),
+      reflectances_(scenes::spread_reflectances(scene.scene)),
+      is_explicit_(radiosity::emitter_is_explicit(scene.scene)) {
+  for (const scenes::Material& m : scene.scene.materials) {
+    kept_.push_back(m.passes_light_on()
+                        ? std::clamp(1.0 - base::luminance(m.mirror + m.transmit), 0.0, 1.0)
+                        : 1.0);
+  }
+}
+
+SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
+                                      std::span<const std::uint32_t> which,
+                                      std::span<const Effort> effort, std::uint32_t pass,
+                                      double mean, const radiosity::ClosedBodies* bodies,
+                                      const raytrace::Progress& progress) const {
+  const radiosity::Patches& patches = light.solution.patches;
+  const std::size_t groups = light.columns() / 3, columns = light.columns();
+  const std::size_t sky_parts =
+      scene_.effects.earth_by_gather ? scenes::earth_parts(scene_.scene) : 0;
+  const bool gathers =
+      std::any_of(effort.begin(), effort.end(), [](const Effort& e) { return e.rays > 0; });
+  const raytrace::CellSight sight(scene_.query, patches);
+  raytrace::RadianceTable table;
+  if (gathers) table = {light.solution, light.solution.radiosity, true, sight};
+  // Alone, joined: what each part of L~ is at a point.
+  const raytrace::RadianceTable lamps_table(light.solution, light.lamps, false, sight),
+      gathered_table(light.solution, light.gathered, false, sight);
+
+  SurfaceSamples found;
+  found.lamps.assign(light.count() * columns, 0.0);
+  found.gathered.assign(light.count() * columns, 0.0);
+  found.sky.assign(light.count() * sky_parts, Rgb(0.0));
+  found.escaped.assign(light.count(), 0.0);
+  found.lost.assign(light.count(), 0.0);
+  found.residual.resize(light.count());
+  std::atomic<std::uint64_t> all_rays{sight.rays()};
+  const auto look_at = [&](std::size_t begin, std::size_t end) {
+    PatchLooks looks(scene_, kept_, table, groups, sky_parts);
+    std::array<std::vector<scenes::LightSample>, 2> taken;
+    std::vector<std::uint32_t> near;
+    ResidualSums sums;
+    for (std::size_t n = begin; n < end; ++n) {
+      const std::uint32_t patch = which[n];
+      const Effort& work = effort[n];
+      const std::uint32_t material = patches.material(patch);
+      const Rgb &rho = reflectances_[material],
+                emitted = is_explicit_[material] ? Rgb(0.0) : scene_.scene.materials[material].emit;
+      PatchResidual& residual = found.residual[patch];
+      residual.tried = residual.taken = work.points;
+      if (base::max_component(rho) <= 0.0) continue;  // B = M, whatever falls on it
+      const base::Key key =
+          base::Key(seed_, base::Stream::ErrorBudget, identity(patches, patch)).with(pass);
+      const base::SobolOwen4 where(key);
+      const base::Frame3 frame = base::frame_around(patches.normal(patch));
+      const Vec3 lift = frame.normal * scene_.query.surface_offset_m();
+      near.clear();
+      if (bodies != nullptr) {
+        near = bodies->near(patches, patch, 2.0 * scene_.query.surface_offset_m());
+      }
+      looks.start(work.points);
+      sums.start(work.points);
+      residual.taken = 0;
+      for (std::size_t point = 0; point < work.points; ++point) {
+        const auto p = where.point2(static_cast<std::uint32_t>(point));
+        const Vec3 at = patches.point(patch, double(p[0]), double(p[1]));
+        if (!near.empty() && bodies->cover(at + lift - bodies->centre(), near)) continue;
+        ++residual.taken;
+        for (std::size_t k = 0; k < sources_.size(); ++k) {
+          const radiosity::Source& source = sources_[k].source;
+          const std::size_t samples = source.points > source_points ? wide_source_samples : 1;
+          const base::SobolOwen4 toward[2] = {base::SobolOwen4(key.with(4 + 2 * k)),
+                                              base::SobolOwen4(key.with(5 + 2 * k))};
+          for (std::size_t m = 0; m < samples; ++m) {
+            for (std::size_t half = 0; half < 2; ++half) {
+              const auto u = toward[half].point2(static_cast<std::uint32_t>(point * samples + m));
+              radiosity::take_samples(source, at, frame.normal, double(u[0]), double(u[1]),
+                                      taken[half]);
+            }
+            const bool twice = same(taken[0], taken[1]);
+            for (std::size_t half = 0; half < (twice ? 1U : 2U); ++half) {
+              for (const scenes::LightSample& sample : taken[half]) {
+                const double cosine =
+                    glm::dot(sample.direction, frame.normal) / static_cast<double>(samples);
+                looks.add_shadow_ray(at + lift, sample, cosine * sample.normal_illuminance_lx,
+                                     2 * point + half, source.group, twice);
+              }
+            }
+          }
+        }
+        for (std::size_t half = 0; half < 2; ++half) {
+          const std::size_t look = 2 * point + half;
+          const base::SobolOwen4 out(key.with(2 + half));
+          std::array<Vec3, RayPacket::width> directions;
+          for (std::size_t first = 0; first < work.rays; first += RayPacket::width) {
+            for (std::size_t k = 0; k < RayPacket::width; ++k) {
+              const auto u = out.point2(static_cast<std::uint32_t>(point * work.rays + first + k));
+              const double r = std::sqrt(double(u[0])), phi = 2.0 * base::pi * double(u[1]);
+              directions[k] = frame.to_world(
+                  {r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0 - double(u[0]))});
+            }
+            looks.gather(at + lift, directions, 1.0 / work.rays, look);
+          }
+        }
+        std::array<Rgb, 1> lamps{Rgb(0.0)}, gathered{Rgb(0.0)};
+        const scenes::Hit here = hit_at(patches, patch, double(p[0]), double(p[1]));
+        lamps_table.add(here, Rgb(base::pi), lamps);
+        gathered_table.add(here, Rgb(base::pi), gathered);
+        sums.place(point, double(p[0]), double(p[1]), rho, emitted + rho * (lamps[0] + gathered[0]),
+                   lamps[0], work.rays > 0 ? gathered[0] : Rgb(0.0));
+      }
+      looks.finish_shadows();
+      if (residual.taken == 0) continue;
+      const double share = 0.5 / residual.taken;
+      found.escaped[patch] = share * looks.escaped();
+      found.lost[patch] = share * looks.lost();
+      for (std::size_t point = 0; point < work.points; ++point) {
+        if (!sums.is_placed(point)) continue;
+        for (std::size_t half = 0; half < 2; ++half) {
+          const std::size_t look = 2 * point + half;
+          Rgb lamps(0.0), gathered(0.0);
+          for (std::size_t g = 0; g < groups; ++g) {
+            const Rgb &l = looks.lamps(look)[g], &t = looks.gathered(look)[g];
+            lamps += l;
+            gathered += t;
+            for (int c = 0; c < 3; ++c) {
+              const std::size_t at = patch * columns + 3 * g + static_cast<std::size_t>(c);
+              found.lamps[at] += share * l[c];
+              found.gathered[at] += share * t[c];
+            }
+          }
+          for (std::size_t s = 0; s < sky_parts; ++s) {
+            found.sky[patch * sky_parts + s] += share * looks.sky(look)[s];
+          }
+          sums.set(point, half, lamps, gathered);
+        }
+      }
+      sums.finish(mean, residual);
+    }
+    all_rays += looks.rays();
+  };
+  for (std::size_t first = 0; first < which.size(); first += told_after) {
+    const std::size_t count = std::min(told_after, which.size() - first);
+    base::parallel_chunks(count, 32, [&](std::size_t begin, std::size_t end) {
+      look_at(first + begin, first + end);
+    });
+    if (progress) progress(first + count, which.size());
+  }
+  found.rays = all_rays;
+  return found;
+}
+
+}  // namespace earthshine::studies

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light sampled at points of all patches, to be set against what a solution says there:
+//   r = S + T L~ - L~
+// S: emission and the light of Sun, Earth, lamps and small emitters by shadow rays; T L~: what
+// cosine rays bring that read the solution L~ as pictures do (raytrace/incoming/radiance_table.h),
+// and the sky; all reflected as radiosity has it (scenes/reflect/spread_reflectance.h). Every point
+// is looked at twice, by two halves of independent rays: the mean of their product is that of r^2,
+// whatever noise each has. Nothing is sampled where bodies cover a patch.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "radiosity/direct/sources.h"
+#include "radiosity/factors/form_factors.h"
+#include "radiosity/solution.h"
+#include "raytrace/incoming/radiance_table.h"
+#include "studies/study.h"
+
+namespace earthshine::studies {
+
+// What L~ is made of: emission M and illuminances. Per patch and column (3 * groups) but `sky`.
+struct SurfaceLight {
+  radiosity::Solution solution;        // patches, columns, radiosity = M + rho (lamps + gathered)
+  std::vector<float> lamps, gathered;  // lx: by shadow rays; by cosine rays, the sky with it
+  std::vector<Rgb> sky;                // per patch and part of the sky, within `gathered`
+  [[nodiscard]] std::size_t columns() const { return solution.columns; }
+  [[nodiscard]] std::size_t count() const { return solution.patches.count(); }
+};
+
+// How much is sampled on a patch.
+struct Effort {
+  std::uint16_t points = 2;  // an even number
+  std::uint16_t rays = 8;    // cosine rays of each half at each point, a multiple of 8, or none
+  [[nodiscard]] std::uint32_t all_rays() const { return 2U * points * rays; }
+};
+
+// Of one patch. r as luminance of the radiosity, lm/m^2, times error_weight() at the point.
+struct PatchResidual {
+  int tried = 0, taken = 0;                    // points; some may be covered
+  double square = 0.0, square_variance = 0.0;  // mean of r^2 over the patch
+  double mean_square = 0.0;                    // of r's mean, without its noise
+  double mean_variance = 0.0;                  // of the mean of the taken points, due to rays
+  double lamps_mean_square = 0.0, lamps_mean_variance = 0.0;  // of S's part of r
+  double along_s = 0.0, along_t = 0.0;          // of r^2, what halving the patch takes away
+  std::array<Rgb, 2> half{Rgb(0.0), Rgb(0.0)};  // means of r, not weighted, of every other point
+};
+
+struct SurfaceSamples {
+  std::vector<double> lamps, gathered;  // mean illuminance per patch and column, lx
+  std::vector<Rgb> sky;
+  std::vector<double> escaped, lost;    // per patch: of its rays, to the sky, to black backs
+  std::vector<PatchResidual> residual;  // per patch
+  std::uint64_t rays = 0;
+};
+
+// The hit of a ray that meets the patch at (x, y), as Patches::point() has it.
+[[nodiscard]] scenes::Hit hit_at(const radiosity::Patches& patches, std::uint32_t patch, double x,
+                                 double y);
+
+class SurfaceSampler {
+ public:
+  // The scene must outlive it.
+  explicit SurfaceSampler(const StudyScene& scene, std::uint64_t seed);
+
+  // which: patches; effort: of each of them. The others' entries stay empty. `pass` numbers
+  // independent sets of samples. mean: of the radiosity, that error_weight() goes by. `bodies` may
+  // cover points; null: nothing is covered. progress: told how many patches are done.
+  [[nodiscard]] SurfaceSamples sample(const SurfaceLight& light,
+                                      std::span<const std::uint32_t> which,
+                                      std::span<const Effort> effort, std::uint32_t pass,
+                                      double mean, const radiosity::ClosedBodies* bodies,
+                                      const raytrace::Progress& progress = {}) const;
+
+  [[nodiscard]] const std::vector<Rgb>& reflectances() const { return reflectances_; }
+  [[nodiscard]] const std::vector<bool>& is_explicit() const { return is_explicit_; }
+
+ private:
+  StudyScene scene_;
+  std::uint64_t seed_;
+  std::vector<radiosity::LightSource> sources_;
+  std::vector<Rgb> reflectances_;  // per material
+  std::vector<bool> is_explicit_;  // per material: emission by shadow rays
+  std::vector<double> kept_;       // per material: 1 - mirror - transmit
+};
+
+}  // namespace earthshine::studies

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/targets/target_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "raytrace/camera/camera.h"
+#include "scenes/ray_query.h"
+
+namespace earthshine::studies {
+namespace {
+
+using Mask = std::vector<std::uint8_t>;
+
+// Calls visit(index) for the neighbours of a pixel that lie in the picture.
+template <class Visit>
+void for_neighbours(int columns, int rows, std::uint32_t pixel, bool diagonal, Visit visit) {
+  const int x = static_cast<int>(pixel) % columns, y = static_cast<int>(pixel) / columns;
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      if ((dx == 0 && dy == 0) || (!diagonal && dx != 0 && dy != 0)) continue;
+      if (x + dx < 0 || x + dx >= columns || y + dy < 0 || y + dy >= rows) continue;
+      visit(static_cast<std::uint32_t>((y + dy) * columns + x + dx));
+    }
+  }
+}
+
+std::vector<std::uint32_t> core_of(const ObjectMap& map, const std::vector<std::uint32_t>& seen,
+                                   std::int32_t object) {
+  std::vector<std::uint32_t> core;
+  for (const std::uint32_t pixel : seen) {
+    bool inside = true;  // the picture's border is no outline
+    for_neighbours(map.columns, map.rows, pixel, true,
+                   [&](std::uint32_t next) { inside = inside && map.object[next] == object; });
+    if (inside) core.push_back(pixel);
+  }
+  return core;
+}
+
+// Grows outward pixel by pixel, by 4 and by 8 neighbours in turn: octagons, nearly round.
+std::vector<std::uint32_t> surround_of(const ObjectMap& map,
+                                       const std::vector<std::uint32_t>& seen) {
+  Mask reached(map.object.size(), 0);
+  for (const std::uint32_t pixel : seen) reached[pixel] = 1;
+  const auto grow = [&](const std::vector<std::uint32_t>& from, bool diagonal) {
+    std::vector<std::uint32_t> shell;
+    for (const std::uint32_t pixel : from) {
+      for_neighbours(map.columns, map.rows, pixel, diagonal, [&](std::uint32_t next) {
+        if (reached[next] != 0) return;
+        reached[next] = 1;
+        shell.push_back(next);
+      });
+    }
+    return shell;
+  };
+  const std::vector<std::uint32_t> outline = grow(seen, true);
+  std::vector<std::uint32_t> surround, shell = outline;
+  for (bool diagonal = false;; diagonal = !diagonal) {
+    shell = grow(shell, diagonal);
+    if (shell.empty()) break;
+    // The last shell is taken if it brings the count nearer to that of the target.
+    const std::size_t before = surround.size(), after = before + shell.size();
+    const bool nearer = after <= seen.size() || after - seen.size() < seen.size() - before;
+    if (before > 0 && !nearer) break;
+    surround.insert(surround.end(), shell.begin(), shell.end());
+    if (after >= seen.size()) break;
+  }
+  std::sort(surround.begin(), surround.end());
+  return surround;
+}
+
+// The pixels whose centre shows `object` when nothing else is there.
+Mask cast_alone(const scenes::Scene& scene, const scenes::Camera& camera, std::uint32_t object,
+                int columns, int rows) {
+  scenes::Scene alone;
+  alone.vertices = scene.vertices;  // all of them, so that rays are rounded as in the whole scene
+  const scenes::Object& record = scene.objects[object];
+  const auto first = scene.triangles.begin() + record.first_triangle;
+  alone.triangles.assign(first, first + record.triangle_count);
+  Mask mask(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 0);
+  if (alone.triangles.empty()) return mask;
+  const scenes::RayQuery query(alone);
+  const raytrace::CameraModel model = raytrace::make_camera_model(camera, columns, rows);
+  base::parallel_chunks(static_cast<std::size_t>(rows), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) {
+      for (int x = 0; x < columns; ++x) {
+        const raytrace::Ray ray = model.ray(x + 0.5, static_cast<double>(y) + 0.5, 0.0, 0.0);
+        mask[y * static_cast<std::size_t>(columns) + static_cast<std::size_t>(x)] =
+            query.closest(ray.origin, ray.direction).missed() ? 0 : 1;
+      }
+    }
+  });
+  return mask;
+}
+
+// What the map shows where the target would be seen alone.
+void find_blockers(TargetView& view, const ObjectMap& map, const Mask& alone) {
+  std::map<std::int32_t, std::size_t> counts;
+  for (std::size_t i = 0; i < alone.size(); ++i) {
+    const std::int32_t shown = map.object[i];
+    if (alone[i] == 0 || shown == static_cast<std::int32_t>(view.object)) continue;
+    view.hidden.push_back(static_cast<std::uint32_t>(i));
+    if (shown != no_object) ++counts[shown];
+  }
+  for (const auto& [object, pixels] : counts) {
+    view.hidden_by.push_back({static_cast<std::uint32_t>(object), pixels});
+  }
+  std::stable_sort(view.hidden_by.begin(), view.hidden_by.end(),
+                   [](const auto& a, const auto& b) { return a.pixels > b.pixels; });
+}
+
+// Whether any corner of the object projects into the picture.
+bool reaches_frame(const scenes::Scene& scene, const raytrace::CameraModel& model,
+                   std::uint32_t object) {
+  const scenes::Object& record = scene.objects[object];
+  for (std::uint32_t k = 0; k < record.triangle_count; ++k) {
+    for (const std::uint32_t v : scene.triangles[record.first_triangle + k].vertex) {
+      const Vec3 way = scene.vertices[v] - model.position;
+      const double depth = glm::dot(way, model.forward);
+      if (depth > 0.0 && std::abs(glm::dot(way, model.right)) <= model.half_width * depth &&
+          std::abs(glm::dot(way, model.up)) <= model.half_height * depth) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+bool touches_border(const Mask& mask, int columns, int rows) {
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    const int x = static_cast<int>(i) % columns, y = static_cast<int>(i) / columns;
+    if (mask[i] != 0 && (x == 0 || y == 0 || x == columns - 1 || y == rows - 1)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+ObjectMap object_map(const base::Image& image) {
+  const base::Channel* layer = image.find("object");
+  if (layer == nullptr) {
+    throw base::Error(base::Blame::Input, "study", "the picture has no layer \"object\"", {},
+                      "Render it with that layer");
+  }
+  ObjectMap map{image.width, image.height, {}};
+  map.object.reserve(layer->values.size());
+  for (const float value : layer->values) {
+    map.object.push_back(static_cast<std::int32_t>(std::lround(value)));
+  }
+  return map;
+}
+
+TargetView find_target(const ObjectMap& map, std::uint32_t object) {
+  TargetView view;
+  view.object = object;
+  const auto wanted = static_cast<std::int32_t>(object);
+  std::vector<std::uint32_t> seen;
+  for (std::size_t i = 0; i < map.object.size(); ++i) {
+    if (map.object[i] == wanted) seen.push_back(static_cast<std::uint32_t>(i));
+  }
+  view.pixels = seen.size();
+  if (seen.empty()) return view;
+  view.surround = surround_of(map, seen);
+  view.measured = core_of(map, seen, wanted);
+  if (4 * view.measured.size() < seen.size()) view.measured = std::move(seen);
+  return view;
+}
+
+std::vector<TargetView> find_targets(const scenes::Scene& scene, const scenes::Camera& camera,
+                                     const ObjectMap& map) {
+  std::vector<TargetView> views;
+  for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
+    if (!scene.objects[object].target) continue;
+    TargetView view = find_target(map, object);
+    view.name = scene.objects[object].name;
+    Mask alone = cast_alone(scene, camera, object, map.columns, map.rows);
+    // The same ray may pass a silhouette on the other side by a rounding error; what is seen is
+    // there.
+    for (std::size_t i = 0; i < alone.size(); ++i) {
+      if (map.object[i] == static_cast<std::int32_t>(object)) alone[i] = 1;
+    }
+    view.pixels_alone = static_cast<std::size_t>(std::count(alone.begin(), alone.end(), 1));
+    find_blockers(view, map, alone);
+    view.in_frame =
+        view.pixels_alone > 0 ||
+        reaches_frame(scene, raytrace::make_camera_model(camera, map.columns, map.rows), object);
+    view.cut_by_frame = touches_border(alone, map.columns, map.rows);
+    views.push_back(std::move(view));
+  }
+  return views;
+}
+
+}  // namespace earthshine::studies

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/why/lit_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "base/units.h"
+#include "raytrace/camera/camera.h"
+#include "scenes/sky/sky.h"
+
+namespace earthshine::studies {
+namespace {
+
+// Light that may come to a point: E_normal from a direction, nothing in between.
+struct Beam {
+  Vec3 direction{0.0};
+  double distance_m = std::numeric_limits<double>::infinity();
+  double illuminance_lx = 0.0;  // on a plate that faces it; of this sample, of `count` to add up
+};
+
+Beam no_beam(const SeenPoint&, int) { return {}; }
+
+// beam(point, k) for k < count.
+template <class BeamOf>
+Reach reach_of(const scenes::Scene& scene, const scenes::RayQuery& query,
+               std::span<const SeenPoint> points, int count, BeamOf beam) {
+  Reach reach;
+  reach.lit.assign(points.size(), 0);
+  reach.facing.assign(points.size(), 0);
+  std::map<std::uint32_t, std::size_t> between;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const SeenPoint& point = points[i];
+    const Vec3 origin = point.position + query.surface_offset_m() * point.normal;
+    for (int k = 0; k < count; ++k) {
+      const Beam light = beam(point, k);
+      const double cosine = glm::dot(light.direction, point.normal);
+      if (!(cosine > 0.0) || !(light.illuminance_lx > 0.0)) continue;
+      const double luminance = point.reflectance * light.illuminance_lx * cosine / base::pi;
+      reach.facing[i] = 1;
+      reach.unshadowed += luminance;
+      const scenes::Hit hit = query.closest(origin, light.direction);
+      // A lamp's own surface, at the end of the way, is not in it.
+      if (!hit.missed() && hit.t < light.distance_m * (1.0 - 1e-4) - query.surface_offset_m()) {
+        ++between[scene.triangles[hit.triangle].object];
+        continue;
+      }
+      reach.lit[i] = 1;
+      reach.luminance += luminance;
+    }
+  }
+  if (!points.empty()) {
+    reach.luminance /= static_cast<double>(points.size());
+    reach.unshadowed /= static_cast<double>(points.size());
+  }
+  for (const auto& [object, rays] : between) reach.shadows.push_back({object, rays});
+  std::stable_sort(reach.shadows.begin(), reach.shadows.end(),
+                   [](const auto& a, const auto& b) { return a.rays > b.rays; });
+  return reach;
+}
+
+// Even over the unit square: the plastic number's additive sequence (Roberts 2018).
+struct Place {
+  double u, v;
+};
+Place place_of(int k) {
+  const auto fraction = [](double x) { return x - std::floor(x); };
+  return {fraction(0.5 + 0.7548776662466927 * (k + 1)),
+          fraction(0.5 + 0.5698402909980532 * (k + 1))};
+}
+
+Beam beam_of(const scenes::LightSample& sample, int samples) {
+  return {sample.direction, sample.distance_m,
+          base::luminance(sample.normal_illuminance_lx) / samples};
+}
+
+}  // namespace
+
+std::vector<SeenPoint> seen_points(const scenes::Scene& scene, const scenes::RayQuery& query,
+                                   const scenes::Camera& camera, int columns, int rows,
+                                   std::span<const std::uint32_t> pixels, std::size_t most) {
+  const raytrace::CameraModel model = raytrace::make_camera_model(camera, columns, rows);
+  const std::size_t count = std::min(pixels.size(), most);
+  std::vector<SeenPoint> points;
+  points.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t pixel = pixels[i * pixels.size() / count];
+    const std::uint32_t width = static_cast<std::uint32_t>(columns);
+    const raytrace::Ray ray = model.ray(pixel % width + 0.5, pixel / width + 0.5, 0.0, 0.0);
+    const scenes::Hit hit = query.closest(ray.origin, ray.direction);
+    if (hit.missed()) continue;
+    const scenes::Material& material = scene.materials[scene.triangles[hit.triangle].material];
+    const Vec3 normal = scenes::triangle_normal(scene, hit.triangle);
+    points.push_back({scenes::hit_position(scene, hit), hit.front ? normal : -normal,
+                      hit.front || material.two_sided ? base::luminance(material.diffuse) : 0.0});
+  }
+  return points;
+}
+
+Reach reach_of_direction(const scenes::Scene& scene, const scenes::RayQuery& query,
+                         std::span<const SeenPoint> points, const Vec3& direction,
+                         double illuminance_lx) {
+  const Beam light{direction, std::numeric_limits<double>::infinity(), illuminance_lx};
+  return reach_of(scene, query, points, 1, [&](const SeenPoint&, int) { return light; });
+}
+
+Reach reach_of_lamp(const scenes::Scene& scene, const scenes::RayQuery& query,
+                    std::span<const SeenPoint> points, const scenes::Lamp& lamp, int samples) {
+  return reach_of(scene, query, points, samples, [&](const SeenPoint& point, int k) {
+    const Place place = place_of(k);
+    return beam_of(scenes::sample_lamp(lamp, point.position, place.u, place.v), samples);
+  });
+}
+
+Reach reach_of_emitters(const scenes::Scene& scene, const scenes::RayQuery& query,
+                        std::span<const SeenPoint> points, const scenes::EmitterSet& emitters,
+                        int samples) {
+  return reach_of(scene, query, points, samples, [&](const SeenPoint& point, int k) {
+    const Place place = place_of(k);
+    return beam_of(emitters.sample(point.position, place.u, place.v), samples);
+  });
+}
+
+Reach reach_of_earth(const scenes::Scene& scene, const scenes::RayQuery& query,
+                     std::span<const SeenPoint> points, const scenes::Earth& earth,
+                     const std::optional<scenes::Sun>& sun, int directions) {
+  scenes::Scene sky;  // radiance of the Earth depends on nothing else
+  sky.sun = sun;
+  sky.earth = earth;
+  if (!scenes::earth_is_lit(sky)) return reach_of(scene, query, points, 0, no_beam);
+  const double half_angle = base::radians(earth.half_angle_deg);
+  const double solid_angle = scenes::cone_solid_angle_sr(half_angle) / directions;
+  std::vector<Beam> beams;
+  for (int k = 0; k < directions; ++k) {
+    const Place place = place_of(k);
+    const Vec3 direction = scenes::sample_cone(earth.direction, half_angle, place.u, place.v);
+    const double radiance = base::luminance(scenes::earth_radiance(sky, direction));
+    if (!(radiance > 0.0)) continue;
+    beams.push_back({direction, std::numeric_limits<double>::infinity(), radiance * solid_angle});
+  }
+  return reach_of(scene, query, points, static_cast<int>(beams.size()),
+                  [&](const SeenPoint&, int k) { return beams[static_cast<std::size_t>(k)]; });
+}
+
+Reach reach_of_earth(const scenes::Scene& scene, const scenes::RayQuery& query,
+                     std::span<const SeenPoint> points, int directions) {
+  if (!scene.earth) return reach_of(scene, query, points, 0, no_beam);
+  return reach_of_earth(scene, query, points, *scene.earth, scene.sun, directions);
+}
+
+double share_of(const std::vector<std::uint8_t>& mask) {
+  if (mask.empty()) return 0.0;
+  return static_cast<double>(std::count(mask.begin(), mask.end(), 1)) /
+         static_cast<double>(mask.size());
+}
+
+double lit_share(std::span<const Reach* const> sources) {
+  if (sources.empty()) return 0.0;
+  std::vector<std::uint8_t> any(sources.front()->lit.size(), 0);
+  for (const Reach* source : sources) {
+    for (std::size_t i = 0; i < any.size(); ++i) any[i] |= source->lit[i];
+  }
+  return share_of(any);
+}
+
+}  // namespace earthshine::studies

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which parts of what a camera sees get direct light, source by source, by shadow rays from points
+// of the surface. Glass throws a shadow like any other surface.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenes/light/emitters.h"
+#include "scenes/ray_query.h"
+#include "studies/targets/target_view.h"
+
+namespace earthshine::studies {
+
+struct SeenPoint {
+  Vec3 position{0.0};
+  Vec3 normal{0.0};          // unit, on the side that the camera sees
+  double reflectance = 0.0;  // diffuse, of luminance; 0 on the black back of a surface
+};
+
+// Of at most `most` of the pixels, spread evenly over them: what the rays through their centres hit
+// first. pixels: indices into the camera's picture of columns x rows.
+[[nodiscard]] std::vector<SeenPoint> seen_points(const scenes::Scene& scene,
+                                                 const scenes::RayQuery& query,
+                                                 const scenes::Camera& camera, int columns,
+                                                 int rows, std::span<const std::uint32_t> pixels,
+                                                 std::size_t most = 2000);
+
+// What a source does to the points. Masks have an entry per point, 1 or 0.
+struct Reach {
+  std::vector<std::uint8_t> lit;     // gets light of it
+  std::vector<std::uint8_t> facing;  // would, if nothing stood between
+  // Mean luminance by its direct light, cd/m^2, diffuse: as it is, and with nothing in between.
+  double luminance = 0.0, unshadowed = 0.0;
+  // What stands between, and in how many of the points' rays: most first.
+  struct Shadow {
+    std::uint32_t object = 0;
+    std::size_t rays = 0;
+  };
+  std::vector<Shadow> shadows;
+};
+
+// A distant source that gives `illuminance_lx` to a plate facing it: the Sun (not dimmed by the
+// Earth; the caller multiplies). direction: unit, toward it.
+[[nodiscard]] Reach reach_of_direction(const scenes::Scene& scene, const scenes::RayQuery& query,
+                                       std::span<const SeenPoint> points, const Vec3& direction,
+                                       double illuminance_lx);
+
+// A lamp, by `samples` points of it each; lit: by any of them.
+[[nodiscard]] Reach reach_of_lamp(const scenes::Scene& scene, const scenes::RayQuery& query,
+                                  std::span<const SeenPoint> points, const scenes::Lamp& lamp,
+                                  int samples = 4);
+
+// The emitting surfaces of a material.
+[[nodiscard]] Reach reach_of_emitters(const scenes::Scene& scene, const scenes::RayQuery& query,
+                                      std::span<const SeenPoint> points,
+                                      const scenes::EmitterSet& emitters, int samples = 4);
+
+// The Earth, by `directions` fixed directions of equal solid angle over its disc, those of its
+// night left out; lit: by any of them.
+[[nodiscard]] Reach reach_of_earth(const scenes::Scene& scene, const scenes::RayQuery& query,
+                                   std::span<const SeenPoint> points, int directions = 64);
+// The same for an Earth and a Sun that are not the scene's.
+[[nodiscard]] Reach reach_of_earth(const scenes::Scene& scene, const scenes::RayQuery& query,
+                                   std::span<const SeenPoint> points, const scenes::Earth& earth,
+                                   const std::optional<scenes::Sun>& sun, int directions = 64);
+
+// Share of the points set in the mask; 0 for none.
+[[nodiscard]] double share_of(const std::vector<std::uint8_t>& mask);
+// Share of the points that any of the sources reaches; the masks are of equal size.
+[[nodiscard]] double lit_share(std::span<const Reach* const> sources);
+
+}  // namespace earthshine::studies

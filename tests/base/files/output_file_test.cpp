@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/files/output_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "tests/base/temporary_folder.h"
+
+namespace earthshine::base {
+namespace {
+
+using test::error_of;
+using test::read_bytes;
+using test::TemporaryFolder;
+using test::write_bytes;
+
+TEST(OutputFile, TextArrivesWholeAndNothingElseIsLeft) {
+  const TemporaryFolder folder;
+  const std::string text("one\0two\n", 8);
+  write_text(folder / "a.txt", text);
+  EXPECT_EQ(read_bytes(folder / "a.txt"), text);
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(OutputFile, OldFileStaysUntilCommitAndForeverWithoutIt) {
+  const TemporaryFolder folder;
+  write_text(folder / "a.txt", "old");
+  {
+    OutputFile output(folder / "a.txt");
+    write_bytes(output.temporary(), "half of the n");
+    EXPECT_EQ(read_bytes(folder / "a.txt"), "old");
+  }
+  EXPECT_EQ(read_bytes(folder / "a.txt"), "old");
+  EXPECT_EQ(folder.file_count(), 1U);
+  write_text(folder / "a.txt", "new");
+  EXPECT_EQ(read_bytes(folder / "a.txt"), "new");
+}
+
+TEST(OutputFile, PermissionsOfTheOldFileAreKept) {
+  const TemporaryFolder folder;
+  write_text(folder / "a.txt", "old");
+  ASSERT_EQ(::chmod((folder / "a.txt").c_str(), 0600), 0);
+  write_text(folder / "a.txt", "new");
+  EXPECT_EQ(std::filesystem::status(folder / "a.txt").permissions(),
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+}
+
+TEST(OutputFile, LinkIsFollowedAndKept) {
+  const TemporaryFolder folder;
+  write_text(folder / "real.txt", "old");
+  std::filesystem::create_symlink("real.txt", folder / "link.txt");
+  write_text(folder / "link.txt", "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
+  EXPECT_EQ(read_bytes(folder / "real.txt"), "new");
+}
+
+TEST(OutputFile, MissingFolderAndFolderAsTargetAreTheCallersMistake) {
+  const TemporaryFolder folder;
+  const std::string missing = error_of(Blame::Input, [&] { write_text(folder / "no/a.txt", "x"); });
+  EXPECT_NE(missing.find("there is no folder"), std::string::npos) << missing;
+  const std::string is_folder = error_of(Blame::Input, [&] { write_text(folder.path(), "x"); });
+  EXPECT_NE(is_folder.find("is a folder"), std::string::npos) << is_folder;
+  error_of(Blame::Input, [] { write_text("", "x"); });
+  error_of(Blame::Input, [&] { write_text(folder.path().string() + "/", "x"); });
+}
+
+TEST(OutputFile, FullDiskIsReportedAsFailedWork) {
+  const std::string message = error_of(Blame::Work, [] { write_text("/dev/full", "x"); });
+  EXPECT_NE(message.find("No space left"), std::string::npos) << message;
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST(OutputFile, FolderThatTakesNoFilesIsReportedAsFailedWork) {
+  // /proc refuses new files to everybody, the superuser included.
+  error_of(Blame::Work, [] { write_text("/proc/earthshine-test.txt", "new"); });
+}
+
+TEST(OutputFile, VeryLongNamesAreWritten) {
+  const TemporaryFolder folder;
+  const std::string name = std::string(250, 'n') + ".txt";
+  write_text(folder / name, "x");
+  EXPECT_EQ(read_bytes(folder / name), "x");
+}
+
+TEST(OutputFile, WhatKilledProcessesLeftIsCleared) {
+  const TemporaryFolder folder;
+  // No process has this number: Linux stops at 2^22.
+  for (const char* name : {".a.json.999999999-0.part", ".b.c.exr.999999999-12.part"}) {
+    write_bytes(folder / name, "half");
+  }
+  const std::string own = ".a.json." + std::to_string(::getpid()) + "-7.part";
+  for (const std::string& name : {own, std::string("a.json.999999999-0.part"),
+                                  std::string(".a.part"), std::string(".a.json.999999999-0"),
+                                  std::string(".a.json.x-0.part"), std::string(".part")}) {
+    write_bytes(folder / name, "kept");
+  }
+  remove_abandoned_files(folder.path());
+  EXPECT_EQ(folder.file_count(), 6U);
+  EXPECT_TRUE(std::filesystem::exists(folder / own));
+  remove_abandoned_files(folder / "none");
+}
+
+}  // namespace
+}  // namespace earthshine::base

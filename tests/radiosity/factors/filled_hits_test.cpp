@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/factors/filled_hits.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+#include <vector>
+
+#include "base/parallel.h"
+#include "tests/support/scene_builder.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+// A closed matrix of hits without geometry, each row of 64 rays.
+FormFactors of_hits(const std::vector<std::vector<std::pair<std::uint32_t, float>>>& rows) {
+  FormFactors f;
+  f.rays_per_patch = 64;
+  f.row_start = {0};
+  for (const auto& row : rows) {
+    for (const auto& [column, hits] : row) {
+      f.column.push_back(column);
+      f.hits.push_back(hits);
+    }
+    f.row_start.push_back(f.column.size());
+  }
+  f.row_scale.assign(rows.size(), 1.0 / 64.0);
+  f.column_scale.assign(rows.size(), 1.0);
+  f.kept.assign(rows.size(), 1.0);
+  for (auto* share : {&f.sky, &f.black, &f.escape, &f.lost}) share->assign(rows.size(), 0.0);
+  f.sky_illuminance.assign(rows.size(), Rgb(0.0));
+  return f;
+}
+
+double entry(const FormFactors& f, std::uint32_t i, std::uint32_t j) {
+  for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
+    if (f.column[e] == j) return f.row_scale[i] * double(f.hits[e]) * f.column_scale[j];
+  }
+  return 0.0;
+}
+
+TEST(FilledHits, LightThatFindsNoWayBackGetsOne) {
+  // 0 and 1 meet each other alone, half of what leaves 2 goes to 0, and 3 sees 2: nothing comes
+  // back over the cut between {0, 1} and {2, 3}, so that columns 0 and 1 hold 2.5 areas for 2.
+  // Conservation over the cut asks for A_0 F_02 = A_2 F_20. Scaling the hits alone takes F_20 to 0,
+  // which they say is 0.5.
+  FormFactors f = of_hits({{{1, 64}}, {{0, 64}}, {{0, 32}, {3, 32}}, {{2, 64}}});
+  const std::vector<double> area = {1.0, 1.0, 1.0, 1.0};
+  const BalanceReport report = balance(f, area);
+  EXPECT_TRUE(report.balanced) << report.after;
+  EXPECT_GT(report.filled, 0U);
+  EXPECT_GT(entry(f, 2, 0), 1e-3);
+  EXPECT_NEAR(entry(f, 0, 2), entry(f, 2, 0), 1e-11);
+}
+
+TEST(FilledHits, APatchWhoseLightHasNoRoomElsewhereKeepsTheRest) {
+  // Patch 0 of 3 m2 met only 1 and 2, of 1 m2 each, which have room for 2 of its 3 m2 of light:
+  // both ways filled already, and yet no scaling. The last third stays: 1 of 5 m2 in all, and
+  // nothing of 1 and 2, which 0 fills.
+  FormFactors f = of_hits({{{1, 32}, {2, 32}}, {{0, 64}}, {{0, 64}}});
+  const std::vector<double> area = {3.0, 1.0, 1.0};
+  const BalanceReport report = balance(f, area);
+  EXPECT_TRUE(report.balanced) << report.after;
+  EXPECT_NEAR(entry(f, 0, 0), 1.0 / 3.0, 1e-3);
+  EXPECT_NEAR(report.held, 0.2, 1e-3);
+}
+
+TEST(FilledHits, FewRaysBalanceToTheSameBytesOnOneThreadAndTwo) {
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  builder.room({m, m, m, m, m, m});
+  const scenes::RayQuery query(builder.scene);
+  const Patches patches = subdivide(builder.scene, 0.05);
+  const auto balanced = [&](int threads) {
+    const base::ThreadLimit limit(threads);
+    FormFactors factors = cast_form_factors(builder.scene, query, patches, {8, 1});
+    EXPECT_GT(balance(factors, patches.area_m2).filled, 0U);
+    return factors;
+  };
+  const FormFactors one = balanced(1), two = balanced(2);
+  EXPECT_EQ(one.hits, two.hits);
+  EXPECT_EQ(one.column, two.column);
+  EXPECT_EQ(one.row_scale, two.row_scale);
+  EXPECT_EQ(one.column_scale, two.column_scale);
+}
+
+}  // namespace
+}  // namespace earthshine::radiosity

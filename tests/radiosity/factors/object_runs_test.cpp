@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/factors/object_runs.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "radiosity/exact/polygon/polygon_factor.h"
+#include "tests/support/scene_builder.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+constexpr int rays = 64;
+
+// Side by side in the plane z = 0, squares of these sides.
+scenes::Scene plates(const std::vector<double>& sides) {
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  double x = 0.0;
+  for (const double a : sides) {
+    builder.quad(m, {x, 0, 0}, {x + a, 0, 0}, {x + a, a, 0}, {x, a, 0});
+    x += a;
+  }
+  return builder.scene;
+}
+
+FormFactors cast(const scenes::Scene& scene, const Patches& patches, int each, bool know_objects) {
+  const scenes::RayQuery query(scene);
+  FormFactorOptions options;
+  options.rays_per_patch = each;
+  options.know_objects = know_objects;
+  return cast_form_factors(scene, query, patches, options);
+}
+
+TEST(ObjectRuns, EveryObjectIsKnownByTheRaysOf64Patches) {
+  // Cut at 1 m: 1, 4, 36, 64 and 100 patches. 64 / 36 is rounded up to a power of two.
+  const scenes::Scene scene = plates({1, 2, 6, 8, 10});
+  EXPECT_EQ(object_runs(scene, subdivide(scene, 1.0), rays),
+            (std::vector<std::uint32_t>{64, 16, 2, 1, 1}));
+}
+
+TEST(ObjectRuns, NoRowIsLongerThanAMillionRaysForIt) {
+  const scenes::Scene scene = plates({1});
+  const Patches patches = subdivide(scene, 1.0);
+  EXPECT_EQ(object_runs(scene, patches, 1 << 16)[0], 16U);
+  EXPECT_EQ(object_runs(scene, patches, 1 << 20)[0], 1U);
+  EXPECT_EQ(object_runs(scene, patches, 1 << 24)[0], 1U);
+}
+
+TEST(ObjectRuns, ManySmallObjectsShareABoundedCost) {
+  // n objects of one patch each would add 63 n runs: 2048 are allowed until a quarter of all
+  // patches is more. 32 add 2016; 33 get half as many each; of 10 000, a quarter adds less than one
+  // run to each.
+  for (const auto& [objects, wanted] : std::vector<std::pair<std::size_t, std::uint32_t>>{
+           {32, 64}, {33, 32}, {2048, 2}, {10000, 1}}) {
+    const scenes::Scene scene = plates(std::vector<double>(objects, 1.0));
+    const std::vector<std::uint32_t> runs = object_runs(scene, subdivide(scene, 1.0), rays);
+    for (const std::uint32_t of_object : runs) EXPECT_EQ(of_object, wanted) << objects;
+  }
+}
+
+// A room of 6 x 16 patches, a wall each an object, and a gauge of one patch in its middle.
+scenes::Scene room_with_gauge() {
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  builder.room({m, m, m, m, m, m});
+  builder.quad(m, {.5, .5, .5}, {.52, .5, .5}, {.52, .52, .5}, {.5, .52, .5});
+  return builder.scene;
+}
+
+TEST(ObjectRuns, ARowOfManyRunsIsTheRowOfAsManyRaysAPatch) {
+  // Runs go on in the sequence: 64 of them are the first 64 * 64 points of it, to the last hit.
+  const scenes::Scene scene = room_with_gauge();
+  const Patches patches = subdivide(scene, 0.25);
+  const FormFactors runs = cast(scene, patches, rays, true);
+  const FormFactors alone = cast(scene, patches, 64 * rays, false);
+  const std::size_t gauge = patches.count() - 1;
+  const auto row = [gauge](const FormFactors& f) {
+    return std::vector<float>(f.hits.begin() + std::ptrdiff_t(f.row_start[gauge]),
+                              f.hits.begin() + std::ptrdiff_t(f.row_start[gauge + 1]));
+  };
+  EXPECT_EQ(row(runs), row(alone));
+  EXPECT_EQ(runs.row_scale[gauge], alone.row_scale[gauge]);
+  // Walls of 16 patches send 4 runs.
+  EXPECT_EQ(runs.ray_count, std::uint64_t{rays} * (6 * 16 * 4 + 64));
+  EXPECT_EQ(runs.rays_per_patch, rays);
+}
+
+TEST(ObjectRuns, RowsOfUnlikeNumbersOfRaysCloseAndBalance) {
+  const scenes::Scene scene = room_with_gauge();
+  const Patches patches = subdivide(scene, 0.2);
+  FormFactors f = cast(scene, patches, rays, true);
+  for (std::size_t i = 0; i < f.count(); ++i) {
+    const double landed = std::accumulate(f.hits.begin() + std::ptrdiff_t(f.row_start[i]),
+                                          f.hits.begin() + std::ptrdiff_t(f.row_start[i + 1]), 0.0);
+    EXPECT_NEAR(f.row_scale[i] * landed + f.sky[i] + f.black[i], 1.0, 1e-15);
+  }
+  EXPECT_TRUE(balance(f, patches.area_m2).balanced);
+}
+
+TEST(ObjectRuns, SameBytesOnOneAndTwoThreads) {
+  const scenes::Scene scene = room_with_gauge();
+  const Patches patches = subdivide(scene, 0.25);
+  FormFactors one, two;
+  {
+    const base::ThreadLimit limit(1);
+    one = cast(scene, patches, rays, true);
+  }
+  {
+    const base::ThreadLimit limit(2);
+    two = cast(scene, patches, rays, true);
+  }
+  EXPECT_EQ(one.column, two.column);
+  EXPECT_EQ(one.hits, two.hits);
+  EXPECT_EQ(one.row_scale, two.row_scale);
+}
+
+TEST(ObjectRuns, AGaugeIsAsWellKnownAsAWall) {
+  // 16 gauges of one patch under a shining plate of 4 x 4 m at 2 m: F of each in closed form, about
+  // 0.3. 1024 rays a patch: 64 runs know F to (F (1 - F) / 65536)^1/2 = 0.0018 if the rays were
+  // drawn independently, and evenly spread ones at least to a third of that; one run alone is off
+  // by three times as much.
+  constexpr int a_patch = 1024;
+  constexpr double half = 0.01, height = 2.0;
+  tests::SceneBuilder builder;
+  const std::uint32_t black = builder.material(tests::grey(0.0));
+  std::vector<double> exact;
+  const Vec3 up{0, 0, 1};
+  const ConvexPolygon plate =
+      make_polygon({{{-2, -2, height}, {-2, 2, height}, {2, 2, height}, {2, -2, height}}}, -up);
+  for (int k = 0; k < 16; ++k) {
+    const Vec3 c(-1.5 + k % 4, -1.2 + 0.8 * (k / 4), 0.0);
+    const std::array<Vec3, 4> at = {c + Vec3(-half, -half, 0), c + Vec3(half, -half, 0),
+                                    c + Vec3(half, half, 0), c + Vec3(-half, half, 0)};
+    builder.quad(black, at[0], at[1], at[2], at[3]);
+    exact.push_back(exchange_m2(make_polygon(at, up), plate) / (4.0 * half * half));
+  }
+  builder.plate(builder.material(tests::grey(0.0, 1.0)), 4.0, height, false);
+  SolveOptions options;
+  options.patch_edge_m = 0.5;
+  options.form_factor_rays = a_patch;
+  const Solution solution = tests::Prepared(builder.scene).solve(options);
+  double square = 0.0, independent = 0.0;
+  for (std::size_t k = 0; k < exact.size(); ++k) {
+    const double error = solution.report.objects[k].illuminance_lx.g - exact[k];
+    square += error * error / double(exact.size());
+    independent += exact[k] * (1.0 - exact[k]) / (64.0 * a_patch) / double(exact.size());
+  }
+  EXPECT_LE(std::sqrt(square), std::sqrt(independent) / 3.0);
+}
+
+}  // namespace
+}  // namespace earthshine::radiosity

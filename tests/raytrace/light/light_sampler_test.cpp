@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/light/light_sampler.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/numbers/random.h"
+#include "tests/support/scene_builder.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+// A plate under a grid of n x n lamps, every second one a panel; a screen hides some of them.
+tests::SceneBuilder under_lamps(int n) {
+  tests::SceneBuilder builder;
+  const std::uint32_t grey = builder.material(tests::grey(0.5));
+  builder.plate(grey, 4.0, 0.0, true);
+  builder.plate(grey, 1.0, 0.5, false);
+  for (int i = 0; i < n * n; ++i) {
+    scenes::Lamp lamp;
+    lamp.name = "lamp-" + std::to_string(i);
+    lamp.group = i % 3 == 0 ? "a" : "b";
+    lamp.kind = i % 2 == 0 ? scenes::LampKind::Point : scenes::LampKind::Rectangle;
+    lamp.position = Vec3(6.0 * ((i % n) + 0.5) / n - 3.0, 6.0 * ((i / n) + 0.5) / n - 3.0, 2.0);
+    lamp.axis = Vec3(0, 0, -1);
+    lamp.edge_u = Vec3(0, 0.2, 0);
+    lamp.edge_v = Vec3(0.2, 0, 0);
+    if (lamp.kind == scenes::LampKind::Point) lamp.intensity_cd = Rgb(1.0 + i % 7);
+    if (lamp.kind == scenes::LampKind::Rectangle) lamp.exitance = Rgb(100.0 * (1.0 + i % 5));
+    builder.scene.lamps.push_back(lamp);
+  }
+  return builder;
+}
+
+scenes::Camera above() {
+  scenes::Camera camera;
+  camera.position = Vec3(0, 0, 1.9);  // under the lamps, above the screen
+  camera.look_at = Vec3(0.0);
+  camera.up = Vec3(0, 1, 0);
+  camera.fov_deg = 80.0;
+  return camera;
+}
+
+TEST(LightSampler, FewLampsAreAllTakenWhole) {
+  const tests::SceneBuilder builder = under_lamps(5);
+  const tests::Prepared prepared(builder.scene);
+  const LightSampler lights(builder.scene, prepared.groups, prepared.effects, Indirect::None, 1);
+  std::vector<scenes::LightChoice> chosen;
+  lights.choose({}, 0.5, chosen);
+  ASSERT_EQ(chosen.size(), 25U);
+  for (std::size_t k = 0; k < 25; ++k) {
+    EXPECT_EQ(chosen[k].light, k);
+    EXPECT_EQ(chosen[k].weight, 1.0);
+  }
+}
+
+TEST(LightSampler, DistributedLightsAreNeverLeftToChance) {
+  const tests::SceneBuilder builder = under_lamps(10);
+  const tests::Prepared prepared(builder.scene);
+  const LightSampler lights(builder.scene, prepared.groups, prepared.effects, Indirect::Distributed,
+                            4);
+  std::vector<scenes::LightChoice> chosen;
+  lights.choose({}, 0.5, chosen);
+  EXPECT_EQ(chosen.size(), 50U + 4 * 50U);
+  // The report's lights are fixed points: the same wherever they are seen from, near or far.
+  for (std::size_t k = 0; k < lights.count(); ++k) {
+    const auto place = [&](const Vec3& point, double u) {
+      const scenes::LightSample sample = lights.sample(k, point, u, u);
+      return point + sample.distance_m * sample.direction;
+    };
+    const Vec3 first = place({0.1, 0.2, 0.0}, 0.2);
+    EXPECT_NEAR(glm::length(first - place({1.0, -0.5, 1.9}, 0.8)), 0.0, 1e-9);
+  }
+}
+
+TEST(LightSampler, PictureOfManyLampsIsThatOfAllOfThem) {
+  // 100 lamps by choice against the same lamps in groups so small that all are taken: the mean over
+  // seeds of each quarter of the picture within four standard errors of the difference. Shadows of
+  // the screen and of the choice are in it.
+  const tests::SceneBuilder builder = under_lamps(10);
+  scenes::Scene apart = builder.scene;
+  for (std::size_t k = 0; k < apart.lamps.size(); ++k) {
+    apart.lamps[k].group = "g" + std::to_string(k / 20);
+  }
+  RenderOptions options;
+  options.columns = options.rows = 8;
+  options.indirect = Indirect::None;
+  struct Mean {
+    double sum = 0.0, squares = 0.0;
+    std::uint64_t rays = 0;
+  };
+  const int seeds = 24;
+  const auto quarters = [&](const scenes::Scene& scene, bool per_light) {
+    std::array<Mean, 4> means;
+    const tests::Prepared prepared(scene);
+    options.per_light = per_light;
+    for (int seed = 1; seed <= seeds; ++seed) {
+      options.seed = static_cast<std::uint64_t>(seed);
+      const Frame frame =
+          render(scene, prepared.groups, prepared.effects, prepared.query, {}, above(), options);
+      const auto& values = frame.image.find("G")->values;
+      std::array<double, 4> value{};
+      for (std::size_t p = 0; p < 64; ++p) {
+        value[2 * (p / 32) + (p % 8) / 4] += double(values[p]) / 16.0;
+      }
+      for (std::size_t q = 0; q < 4; ++q) {
+        means[q].sum += value[q] / seeds;
+        means[q].squares += value[q] * value[q] / seeds;
+        means[q].rays += frame.report.rays.shadow;
+      }
+    }
+    return means;
+  };
+  const auto chosen = quarters(builder.scene, false), all = quarters(apart, true);
+  EXPECT_LT(chosen[0].rays * 3, all[0].rays);
+  for (std::size_t q = 0; q < 4; ++q) {
+    double variance = 0.0;
+    for (const Mean& m : {chosen[q], all[q]}) {
+      variance += std::max(0.0, m.squares - m.sum * m.sum) / (seeds - 1);
+    }
+    EXPECT_NEAR(chosen[q].sum, all[q].sum, 4.0 * std::sqrt(variance)) << q;
+    EXPECT_LT(std::sqrt(variance), 0.01 * all[q].sum);
+  }
+}
+
+TEST(LightSampler, NearestLampOnARayIsSeen) {
+  const tests::SceneBuilder builder = under_lamps(20);
+  const tests::Prepared prepared(builder.scene);
+  const LightSampler lights(builder.scene, prepared.groups, prepared.effects, Indirect::None, 1);
+  base::Rng rng(base::Key(1, base::Stream::Test, 80));
+  int seen_count = 0;
+  for (int n = 0; n < 2000; ++n) {
+    const Vec3 origin(0.0, 0.0, 4.0 * rng.next());
+    const double x = rng.next(), y = rng.next(), z = rng.next();
+    const Vec3 direction = glm::normalize(Vec3(x - 0.5, y - 0.5, 1.6 * z - 0.6));
+    double nearest = 2.5;
+    std::size_t lamp = 0;
+    for (std::size_t k = 0; k < builder.scene.lamps.size(); ++k) {
+      const auto hit = scenes::hit_lamp(builder.scene.lamps[k], origin, direction);
+      if (!hit || hit->distance_m >= nearest) continue;
+      nearest = hit->distance_m;
+      lamp = k;
+    }
+    const auto seen = lights.seen_lamp(origin, direction, 2.5);
+    ASSERT_EQ(seen.has_value(), nearest < 2.5);
+    if (!seen) continue;
+    ++seen_count;
+    EXPECT_EQ(seen->lamp, lamp);
+    EXPECT_EQ(seen->hit.distance_m, nearest);
+  }
+  EXPECT_GT(seen_count, 50);
+}
+
+}  // namespace
+}  // namespace earthshine::raytrace

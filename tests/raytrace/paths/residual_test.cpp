@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// The residual of the solution, added to pictures: whatever the solution is like, pictures have the
+// right mean.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/numbers/random.h"
+#include "raytrace/paths/path_tracer.h"
+#include "raytrace/render.h"
+#include "tests/studies/room.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+constexpr int edge_px = 20, pictures = 10;
+
+struct Means {
+  double mean = 0.0, standard_error = 0.0;
+};
+
+// Of pictures that differ by their seed: the mean of all pixels, or of those that show an object.
+template <class Draw>
+std::vector<Means> means_of(const Draw& draw) {
+  const tests::SmallRoom& room = tests::small_room();
+  std::vector<std::vector<double>> found;  // per picture: of all, of the block
+  for (std::uint64_t seed = 1; seed <= pictures; ++seed) {
+    const base::Image image = draw(room, seed);
+    const std::vector<float> y = base::luminance_of(image);
+    std::vector<double> sums(2, 0.0);
+    for (std::size_t p = 0; p < y.size(); ++p) {
+      sums[0] += double(y[p]) / static_cast<double>(y.size());
+      // The middle of the picture, where the block stands.
+      const int column = static_cast<int>(p) % edge_px, row = static_cast<int>(p) / edge_px;
+      if (std::abs(column - edge_px / 2) < 4 && std::abs(row - edge_px / 2) < 4) {
+        sums[1] += double(y[p]) / 49.0;
+      }
+    }
+    found.push_back(sums);
+  }
+  std::vector<Means> means(2);
+  for (std::size_t k = 0; k < means.size(); ++k) {
+    double squares = 0.0;
+    for (const auto& one : found) means[k].mean += one[k] / pictures;
+    for (const auto& one : found) squares += std::pow(one[k] - means[k].mean, 2);
+    means[k].standard_error = std::sqrt(squares / (pictures - 1.0) / pictures);
+  }
+  return means;
+}
+
+std::vector<Means> pictures_of(const radiosity::Solution& solution, bool shares) {
+  return means_of([&](const tests::SmallRoom& room, std::uint64_t seed) {
+    RenderOptions options;
+    options.columns = options.rows = edge_px;
+    options.gather_rays = 64;
+    options.shared.on = shares;
+    options.seed = seed;
+    return render(room.scene, room.prepared.groups, room.prepared.effects, room.prepared.query,
+                  solution, room.camera, options)
+        .image;
+  });
+}
+
+const std::vector<Means>& truth() {
+  static const std::vector<Means> found =
+      means_of([](const tests::SmallRoom& room, std::uint64_t seed) {
+        PathOptions options;
+        options.columns = options.rows = edge_px;
+        options.paths_per_pixel = 256;
+        options.paths = PathSet::NoCaustics;
+        options.seed = seed;
+        return trace_paths(room.scene, room.prepared.groups, room.prepared.effects,
+                           room.prepared.query, room.camera, options)
+            .image;
+      });
+  return found;
+}
+
+void expect_truth(const radiosity::Solution& solution, const char* what) {
+  for (const bool shares : {true, false}) {
+    const std::vector<Means> found = pictures_of(solution, shares);
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      const Means &a = found[k], &b = truth()[k];
+      EXPECT_NEAR(a.mean, b.mean, 4.0 * std::hypot(a.standard_error, b.standard_error))
+          << what << ", sharing " << shares << ", part " << k;
+      EXPECT_LT(std::hypot(a.standard_error, b.standard_error), 0.03 * b.mean) << what;
+    }
+  }
+}
+
+radiosity::Solution scaled(double factor) {
+  radiosity::Solution solution = tests::small_room().solution;
+  for (auto* values : {&solution.radiosity, &solution.soft_radiosity}) {
+    for (float& value : *values) value *= static_cast<float>(factor);
+  }
+  return solution;
+}
+
+TEST(Residual, TheSolutionAsItIsGivesTheTruth) { expect_truth(scaled(1.0), "as it is"); }
+
+TEST(Residual, ASolutionOfZerosGivesTheTruth) { expect_truth(scaled(0.0), "zeros"); }
+
+TEST(Residual, TwiceTheSolutionGivesTheTruth) { expect_truth(scaled(2.0), "twice"); }
+
+TEST(Residual, NoiseInPlaceOfASolutionGivesTheTruth) {
+  radiosity::Solution solution = scaled(1.0);
+  base::Rng rng(base::Key(1, base::Stream::Test, 9));
+  for (auto* values : {&solution.radiosity, &solution.soft_radiosity}) {
+    double mean = 0.0;
+    for (const float value : *values) mean += double(value) / static_cast<double>(values->size());
+    for (float& value : *values) value = static_cast<float>(2.0 * mean * rng.next());
+  }
+  expect_truth(solution, "noise");
+}
+
+TEST(Residual, OnePatchAFaceGivesTheTruth) {
+  radiosity::SolveOptions coarse;
+  coarse.patch_edge_m = 10.0;
+  coarse.form_factor_rays = 16;
+  expect_truth(tests::small_room().prepared.solve(coarse), "one patch a face");
+}
+
+TEST(Residual, OfAFurnaceIsZeroOnEverySample) {
+  // Walls that send out 1 - rho and reflect rho: B = 1 everywhere, so that every bracket
+  // S + T L~ - L~ is (1 - rho) + rho - 1 over pi, and pictures are exact without a sample of noise.
+  tests::SceneBuilder builder;
+  const std::uint32_t wall = builder.material(tests::grey(0.6, 0.4));
+  builder.room({wall, wall, wall, wall, wall, wall});
+  const tests::Prepared prepared(builder.scene);
+  radiosity::SolveOptions solve;
+  solve.patch_edge_m = 0.25;
+  solve.form_factor_rays = 64;
+  scenes::Camera camera;
+  camera.position = Vec3(0.3, 0.4, 0.5);
+  camera.look_at = Vec3(1, 0.6, 0.3);
+  RenderOptions options;
+  options.columns = options.rows = 8;
+  options.shared.on = true;
+  options.gather_rays = 16;
+  const Frame frame = render(builder.scene, prepared.groups, prepared.effects, prepared.query,
+                             prepared.solve(solve), camera, options);
+  for (const float v : frame.image.find("G")->values) EXPECT_NEAR(double(v), 1.0 / base::pi, 1e-6);
+  EXPECT_LT(frame.report.relative_noise, 1e-6);
+}
+
+}  // namespace
+}  // namespace earthshine::raytrace

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shared gather rays and uneven camera samples, against the plain render that they stand for.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "raytrace/render.h"
+#include "raytrace/shade/pixel_sums.h"
+#include "tests/support/scene_builder.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+// A grey room with a bright wall and a block on its floor, seen from a corner; a lamp and its
+// shadows.
+struct Room {
+  scenes::Scene scene;
+  scenes::Camera camera;
+  Room() {
+    tests::SceneBuilder builder;
+    const std::uint32_t grey = builder.material(tests::grey(0.5));
+    const std::uint32_t bright = builder.material(tests::grey(0.5, 100.0));
+    builder.room({bright, grey, grey, grey, grey, grey});
+    builder.plate(grey, 0.3, 0.2, true);
+    for (std::size_t v = builder.scene.vertices.size() - 4; v < builder.scene.vertices.size();
+         ++v) {
+      builder.scene.vertices[v] += Vec3(0.5, 0.5, 0.0);
+    }
+    scenes::Lamp lamp;
+    lamp.name = lamp.group = "lamp";
+    lamp.kind = scenes::LampKind::Disk;
+    lamp.position = Vec3(0.5, 0.5, 0.9);
+    lamp.axis = Vec3(0, 0, -1);
+    lamp.radius_m = 0.1;
+    lamp.exitance = Rgb(3000.0);
+    builder.scene.lamps.push_back(lamp);
+    scene = builder.scene;
+    camera.name = "corner";
+    camera.position = Vec3(0.95, 0.9, 0.6);
+    camera.look_at = Vec3(0.4, 0.45, 0.2);
+    camera.fov_deg = 60.0;
+  }
+};
+
+struct Studio {
+  Room room;
+  tests::Prepared prepared{room.scene};
+  radiosity::Solution solution = [this] {
+    radiosity::SolveOptions solve;
+    solve.patch_edge_m = 0.1;
+    solve.form_factor_rays = 256;
+    return prepared.solve(solve);
+  }();
+  [[nodiscard]] Frame picture(const RenderOptions& options) const {
+    return render(room.scene, prepared.groups, prepared.effects, prepared.query, solution,
+                  room.camera, options);
+  }
+};
+
+const Studio& studio() {
+  static const Studio made;
+  return made;
+}
+
+RenderOptions shared_options(int columns = 48, int rows = 40) {
+  RenderOptions options;
+  options.columns = columns;
+  options.rows = rows;
+  options.gather_rays = 32;
+  options.shared.on = true;
+  options.shared.noise = 0.02;
+  options.aovs = {"variance"};
+  return options;
+}
+
+double mean(const Frame& frame) {
+  double sum = 0.0;
+  for (const float v : frame.image.find("G")->values) sum += double(v);
+  return sum / static_cast<double>(frame.image.pixel_count());
+}
+
+TEST(SharedGather, PictureIsThePlainOneWithinTheStatedErrors) {
+  // z = difference / sqrt(sum of both variances). Stated variances are those of independent
+  // samples, so that low-discrepancy ones stay below: the mean of z^2 is at most 1 + what sharing
+  // bends.
+  RenderOptions plain = shared_options();
+  plain.shared.on = false;
+  plain.gather_rays = 1024;
+  const Frame oracle = studio().picture(plain), quick = studio().picture(shared_options());
+  const auto& a = oracle.image.find("G")->values;
+  const auto& b = quick.image.find("G")->values;
+  const auto& va = oracle.image.find("variance")->values;
+  const auto& vb = quick.image.find("variance")->values;
+  double squares = 0.0;
+  for (std::size_t p = 0; p < a.size(); ++p) {
+    const double off = double(a[p]) - double(b[p]);
+    squares += off * off / std::max(1e-12, double(va[p]) + double(vb[p]));
+  }
+  const auto n = static_cast<double>(a.size());
+  EXPECT_LT(squares / n, 1.0 + 4.0 * std::sqrt(2.0 / n));
+  EXPECT_NEAR(mean(quick) / mean(oracle), 1.0,
+              4.0 * quick.report.relative_noise / std::sqrt(n) + 0.005);
+}
+
+TEST(SharedGather, CropAndReplayHaveThePixelsOfTheWholePicture) {
+  RenderOptions options = shared_options();
+  options.shared.noise = 0.002;  // five rounds of samples, each looks at the neighbours of the last
+  options.aovs = {"direct", "indirect", "variance", "depth"};
+  const Frame whole = studio().picture(options);
+  for (const Window& crop : {Window{13, 9, 11, 17}, Window{30, 22, 1, 1}, Window{0, 0, 5, 3}}) {
+    options.crop = crop;
+    const Frame part = studio().picture(options);
+    ASSERT_EQ(part.image.width, crop.columns);
+    for (const base::Channel& channel : part.image.channels) {
+      const auto& from = whole.image.find(channel.name)->values;
+      for (int y = 0; y < crop.rows; ++y) {
+        for (int x = 0; x < crop.columns; ++x) {
+          EXPECT_EQ(channel.values[static_cast<std::size_t>(y * crop.columns + x)],
+                    from[static_cast<std::size_t>((crop.y + y) * 48 + crop.x + x)])
+              << channel.name << " " << x << ", " << y;
+        }
+      }
+    }
+  }
+  options.crop = {40, 0, 9, 4};
+  EXPECT_THROW(static_cast<void>(studio().picture(options)), base::Error);
+}
+
+TEST(SharedGather, SameBytesOnOneAndTwoThreads) {
+  const base::ThreadLimit one(1);
+  const Frame a = studio().picture(shared_options());
+  const base::ThreadLimit two(2);
+  const Frame b = studio().picture(shared_options());
+  for (std::size_t c = 0; c < a.image.channels.size(); ++c) {
+    EXPECT_EQ(a.image.channels[c].values, b.image.channels[c].values);
+  }
+}
+
+TEST(SharedGather, DirectIndirectAndSpecularAddUpToThePicture) {
+  for (const bool shares : {true, false}) {
+    RenderOptions options = shared_options(24, 20);
+    options.shared.on = shares;
+    options.aovs = {"direct", "indirect", "specular"};
+    const Frame frame = studio().picture(options);
+    const Frame direct = [&] {
+      RenderOptions none = options;
+      none.indirect = Indirect::None;
+      none.aovs.clear();
+      return studio().picture(none);
+    }();
+    double indirect = 0.0;
+    for (std::size_t p = 0; p < frame.image.pixel_count(); ++p) {
+      const auto at = [&](const char* name) { return double(frame.image.find(name)->values[p]); };
+      EXPECT_NEAR(at("direct.G") + at("indirect.G") + at("specular.G"), at("G"),
+                  1e-5 * at("G") + 1e-6);
+      EXPECT_GE(at("indirect.G"), 0.0);
+      indirect += at("indirect.G");
+    }
+    EXPECT_GT(indirect, 0.0);
+    EXPECT_GT(mean(frame), mean(direct));
+  }
+}
+
+TEST(SharedGather, LightStraightFromTheEarthIsDirect) {
+  // A plate alone under a wide Earth: nothing else reflects, hence direct is all of the picture.
+  tests::SceneBuilder builder;
+  builder.plate(builder.material(tests::grey(0.5)), 2.0, 0.0, true);
+  scenes::Earth earth;
+  earth.half_angle_deg = 70.0;
+  earth.model = scenes::EarthModel::Uniform;
+  earth.radiance = Rgb(1000.0);
+  builder.scene.earth = earth;
+  const tests::Prepared prepared(builder.scene);
+  scenes::Camera camera;
+  camera.position = Vec3(0, 0, 1);
+  camera.look_at = Vec3(0.0);
+  camera.up = Vec3(0, 1, 0);
+  RenderOptions options = shared_options(12, 12);
+  options.aovs = {"direct", "indirect"};
+  const Frame frame = render(builder.scene, prepared.groups, prepared.effects, prepared.query,
+                             prepared.solve({}), camera, options);
+  for (std::size_t p = 0; p < frame.image.pixel_count(); ++p) {
+    const double all = double(frame.image.find("G")->values[p]);
+    EXPECT_GT(all, 0.0);
+    EXPECT_NEAR(double(frame.image.find("direct.G")->values[p]), all, 1e-5 * all);
+    EXPECT_NEAR(double(frame.image.find("indirect.G")->values[p]), 0.0, 1e-5 * all);
+  }
+}
+
+TEST(SharedGather, PathsBetweenMirrorsHaveNoEnd) {
+  // A closed room whose walls reflect 0.8 and send out M: L = M / pi + 0.8 L, five times what a
+  // wall sends itself; a tenth of it comes over paths of more than ten mirrors.
+  tests::SceneBuilder builder;
+  scenes::Material wall = tests::grey(0.0, 1.0);
+  wall.mirror = Rgb(0.8);
+  const std::uint32_t m = builder.material(wall);
+  builder.room({m, m, m, m, m, m});
+  const tests::Prepared prepared(builder.scene);
+  scenes::Camera camera;
+  camera.position = Vec3(0.3, 0.4, 0.5);
+  camera.look_at = Vec3(1, 0.6, 0.3);
+  RenderOptions options = shared_options(32, 32);
+  options.shared.on = false;
+  options.gather_rays = 256;
+  const Frame frame = render(builder.scene, prepared.groups, prepared.effects, prepared.query,
+                             prepared.solve({}), camera, options);
+  double variance = 0.0;
+  for (const float v : frame.image.find("variance")->values) variance += double(v);
+  const double standard_error = std::sqrt(variance) / 1024.0;
+  EXPECT_GT(standard_error, 0.0);
+  EXPECT_LT(standard_error, 0.02);
+  EXPECT_NEAR(mean(frame), 5.0 / base::pi, 4.0 * standard_error);
+}
+
+TEST(SharedGather, AStoppedPictureKeepsWhatIsFinished) {
+  // Stopped after any number of questions every pixel shows something; from some number on, some
+  // pixels are finished and others are not.
+  RenderOptions options = shared_options(96, 80);
+  const Frame whole = studio().picture(options);
+  EXPECT_FALSE(whole.report.stopped);
+  EXPECT_EQ(whole.report.finished_share, 1.0);
+  const base::ThreadLimit one(1);
+  std::atomic<int> asked{0};
+  options.stop = [&asked] {
+    ++asked;
+    return false;
+  };
+  static_cast<void>(studio().picture(options));
+  const int all = asked;
+  int cut_short = 0;
+  for (int last = 1; last < all; last += all / 16) {
+    asked = 0;
+    options.stop = [&asked, last] { return ++asked > last; };
+    const Frame part = studio().picture(options);
+    EXPECT_TRUE(part.report.stopped);
+    for (const float v : part.image.find("G")->values) EXPECT_GT(v, 0.0F);
+    EXPECT_NEAR(mean(part) / mean(whole), 1.0, 0.3);
+    if (part.report.finished_share > 0.0 && part.report.finished_share < 1.0) ++cut_short;
+  }
+  EXPECT_GT(cut_short, 0);
+}
+
+TEST(SharedGather, SamplesGoWhereNeighboursScatter) {
+  // A pixel's own scatter does not count, that of its neighbours does; four times at most a round.
+  PixelSums sums(Window{0, 0, 7, 7}, 1, false);
+  for (std::size_t p = 0; p < sums.samples.size(); ++p) {
+    sums.samples[p] = 4;
+    sums.luminance[p] = 4.0;
+    sums.luminance2[p] = 4.0;
+  }
+  const std::size_t middle = sums.window.index(3, 3);
+  sums.luminance2[middle] = 4.0 + 3.0 * 9.0;  // variance 9 of a sample, deviation 3
+  const auto wanted = wanted_samples(sums, 0.3, 8.0, 4, 256);
+  EXPECT_EQ(wanted[middle], 4U);
+  EXPECT_EQ(wanted[sums.window.index(2, 3)], 16U);  // 3 / 0.3 = 10, rounded up to a power of two
+  EXPECT_EQ(wanted[sums.window.index(1, 3)], 4U);
+  EXPECT_EQ(wanted_samples(sums, 0.03, 8.0, 4, 256)[sums.window.index(4, 4)],
+            16U);  // 100, but 4 x 4
+  // From half of the luminance of 1 on, proportion counts: deviation 3 * 0.5.
+  EXPECT_EQ(wanted_samples(sums, 0.3, 0.5, 4, 256)[sums.window.index(2, 3)], 8U);
+}
+
+TEST(SharedGather, ATimeLimitIsKeptAndStillGivesEveryPixelASample) {
+  RenderOptions options = shared_options(64, 64);
+  options.time_limit_s = 1e-3;
+  const Frame frame = studio().picture(options);
+  for (const float v : frame.image.find("G")->values) EXPECT_GT(v, 0.0F);
+}
+
+}  // namespace
+}  // namespace earthshine::raytrace

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// What neighbouring gather points share, on estimates written down by hand.
+#include "raytrace/share/share.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/numbers/random.h"
+#include "base/parallel.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+constexpr int edge_px = 48;
+constexpr std::size_t count = static_cast<std::size_t>(edge_px) * edge_px;
+constexpr Window window{0, 0, edge_px, edge_px};
+
+std::size_t pixel(int x, int y) { return static_cast<std::size_t>(y * edge_px + x); }
+
+// Points on a plane 2 m in front of the camera, facing it, one per pixel.
+std::vector<GatherPoint> flat() {
+  std::vector<GatherPoint> points(count);
+  for (int y = 0; y < edge_px; ++y) {
+    for (int x = 0; x < edge_px; ++x) {
+      GatherPoint& point = points[pixel(x, y)];
+      point.position =
+          glm::vec3(0.01F * static_cast<float>(x), 0.01F * static_cast<float>(y), -2.0F);
+      point.normal = glm::vec3(0.0F, 0.0F, 1.0F);
+      point.reach_m = 1.0F;
+      point.triangle = static_cast<std::uint32_t>(pixel(x, y));
+      point.spacing_m = 0.01F;
+    }
+  }
+  return points;
+}
+
+// Two samples a point, one in each half: value(x, y, half).
+template <class Value>
+Estimate estimate_of(const Value& value) {
+  Estimate estimate(count, 1, 1);
+  for (int y = 0; y < edge_px; ++y) {
+    for (int x = 0; x < edge_px; ++x) {
+      const std::size_t p = pixel(x, y);
+      for (std::size_t half = 0; half < 2; ++half) {
+        const auto v = static_cast<float>(value(x, y, half));
+        estimate.sum[p] += glm::vec3(v);
+        estimate.luminance[p][half] = v;
+      }
+      estimate.samples[p] = 2.0F;
+    }
+  }
+  return estimate;
+}
+
+TEST(Share, WhatBothHalvesAgreeOnIsKept) {
+  // No noise: every detail is signal, however fine, and nothing is off.
+  const auto fine = [](int x, int y, std::size_t) {
+    return 10.0 + ((x / 3 + y / 5) % 2) + 0.1 * x;
+  };
+  const Shared shared = share(Neighbours(window, flat(), true), estimate_of(fine));
+  for (int y = 0; y < edge_px; ++y) {
+    for (int x = 0; x < edge_px; ++x) {
+      EXPECT_NEAR(double(shared.radiance[pixel(x, y)].g), fine(x, y, 0), 1e-4);
+      EXPECT_EQ(shared.squared_error[pixel(x, y)], 0.0F);
+    }
+  }
+}
+
+TEST(Share, NoiseFallsAndNoLessIsStated) {
+  // Independent noise of variance 1 a sample on 10; the mean of two has 1/2. Over 200 fields, one
+  // point each: the squares found have a relative standard error of sqrt(2 / 200). What seems to be
+  // signal by chance may be stated besides.
+  constexpr int fields = 200;
+  const Neighbours neighbours(window, flat(), true);
+  double found = 0.0, stated = 0.0;
+  for (std::uint64_t seed = 1; seed <= fields; ++seed) {
+    base::Rng rng(base::Key(seed, base::Stream::Test, 4));
+    const Shared shared = share(neighbours, estimate_of([&](int, int, std::size_t) {
+                                  return 10.0 + std::sqrt(12.0) * (rng.next() - 0.5);
+                                }));
+    const double off = double(shared.radiance[pixel(24, 24)].g) - 10.0;
+    found += off * off / fields;
+    stated += double(shared.squared_error[pixel(24, 24)]) / fields;
+  }
+  EXPECT_LT(found / stated, 1.0 + 4.0 * std::sqrt(2.0 / fields));
+  EXPECT_LT(stated, 0.5 / 8.0);
+}
+
+TEST(Share, NothingIsSharedAcrossAnEdgeOrAStep) {
+  // Two planes that meet at x = 20, turned by 90 degrees or half a metre apart, of unlike light and
+  // as much noise: the means of each stay its own.
+  for (const bool step : {false, true}) {
+    std::vector<GatherPoint> points = flat();
+    for (int y = 0; y < edge_px; ++y) {
+      for (int x = 20; x < edge_px; ++x) {
+        GatherPoint& point = points[pixel(x, y)];
+        if (step) point.position.z -= 0.5F;
+        if (!step) point.normal = glm::vec3(1.0F, 0.0F, 0.0F);
+      }
+    }
+    const auto noisy = [](int x, int y, std::size_t half) {
+      const double sign = (x + y + static_cast<int>(half)) % 2 == 0 ? 1.0 : -1.0;
+      return (x < 20 ? 1.0 : 70.0) * (1.0 + 0.3 * sign);
+    };
+    const Shared shared = share(Neighbours(window, points, true), estimate_of(noisy));
+    for (int y = 0; y < edge_px; ++y) {
+      EXPECT_NEAR(double(shared.radiance[pixel(19, y)].g), 1.0, 0.3) << step;
+      EXPECT_NEAR(double(shared.radiance[pixel(20, y)].g), 70.0, 21.0) << step;
+    }
+  }
+}
+
+TEST(Share, PointsThatHaveNoSamplesTakeThoseAround) {
+  Estimate sparse = estimate_of([](int, int, std::size_t) { return 3.0; });
+  for (std::size_t p = 0; p < count; ++p) {
+    if (p % 3 == 0) continue;
+    sparse.sum[p] = glm::vec3(0.0F);
+    sparse.luminance[p] = {0.0F, 0.0F};
+    sparse.samples[p] = 0.0F;
+  }
+  const Shared shared = share(Neighbours(window, flat(), true), sparse);
+  for (const glm::vec3& value : shared.radiance) EXPECT_NEAR(double(value.g), 3.0, 1e-4);
+}
+
+TEST(Share, AloneEveryPointKeepsItsOwn) {
+  base::Rng rng(base::Key(3, base::Stream::Test, 4));
+  const Estimate estimate = estimate_of([&](int, int, std::size_t) { return rng.next(); });
+  const Shared shared = share(Neighbours(window, flat(), false), estimate);
+  for (std::size_t p = 0; p < count; ++p) {
+    const double own = double(estimate.sum[p].g) / 2.0;
+    EXPECT_NEAR(double(shared.radiance[p].g), own, 1e-5 * own);
+    const double off = double(estimate.luminance[p][0]) - double(estimate.luminance[p][1]);
+    EXPECT_NEAR(double(shared.squared_error[p]), 0.25 * off * off, 1e-4 * off * off + 1e-9);
+  }
+}
+
+TEST(Share, MoreSamplesAreExpectedToHelp) {
+  base::Rng rng(base::Key(5, base::Stream::Test, 4));
+  const Shared shared =
+      share(Neighbours(window, flat(), true),
+            estimate_of([&](int x, int, std::size_t) { return std::sin(0.3 * x) + rng.next(); }));
+  for (std::size_t p = 0; p < count; ++p) {
+    const double now = shared.squared_error_with(p, 1.0);
+    EXPECT_NEAR(now, double(shared.squared_error[p]), 1e-5 * now);
+    EXPECT_LE(shared.squared_error_with(p, 1e6), 1e-3 * now);
+  }
+}
+
+TEST(Share, SameBytesOnOneAndTwoThreads) {
+  base::Rng rng(base::Key(7, base::Stream::Test, 4));
+  const Estimate estimate = estimate_of([&](int, int, std::size_t) { return rng.next(); });
+  const auto run = [&](int threads) {
+    const base::ThreadLimit limit(threads);
+    return share(Neighbours(window, flat(), true), estimate).radiance;
+  };
+  EXPECT_EQ(run(1), run(2));
+}
+
+}  // namespace
+}  // namespace earthshine::raytrace

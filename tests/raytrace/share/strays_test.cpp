@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Gather points off the grid, on estimates written down by hand.
+#include "raytrace/share/strays.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/numbers/random.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+// One point of a grid, of value 10, and strays of two samples each.
+struct Written {
+  std::vector<Stray> strays;
+  Estimate estimate;
+  Shared shared;
+
+  explicit Written(std::size_t count)
+      : strays(count, Stray{0, 0, 0, 0.5F}), estimate(1 + count, 1, 1) {
+    shared.layers = 1;
+    shared.radiance = {glm::vec3(10.0F)};
+    shared.signal.resize(1);
+    shared.noise.resize(1);
+    shared.few.resize(1);
+    shared.rest.assign(1, 0.0F);
+    shared.squared_error.assign(1, 0.0F);
+  }
+  void sample(std::size_t stray, double first, double second) {
+    estimate.luminance[1 + stray] = {static_cast<float>(first), static_cast<float>(second)};
+    estimate.sum[1 + stray] = glm::vec3(static_cast<float>(first + second));
+    estimate.samples[1 + stray] = 2.0F;
+  }
+  [[nodiscard]] double value(std::size_t stray) const {
+    return double(shared.radiance[1 + stray].g);
+  }
+};
+
+TEST(Strays, WithoutSamplesTheyTakeWhatTheirSurfaceSays) {
+  Written written(1);
+  add_strays(written.strays, written.estimate, written.shared);
+  EXPECT_EQ(written.value(0), 10.0);
+}
+
+TEST(Strays, WithoutASurfaceBesideThemTheyKeepTheirOwn) {
+  Written written(2);
+  written.strays[0].base = no_base;
+  written.sample(0, 3.0, 5.0);
+  add_strays(written.strays, written.estimate, written.shared);
+  EXPECT_DOUBLE_EQ(written.value(0), 4.0);
+  EXPECT_NEAR(double(written.shared.squared_error[1]), 1.0, 1e-4);  // ((3 - 5) / 2)^2
+}
+
+TEST(Strays, WhatIsNoNoiseIsKeptWhole) {
+  Written written(8);
+  for (std::size_t k = 0; k < 8; ++k) written.sample(k, 4.0 + double(k), 4.0 + double(k));
+  add_strays(written.strays, written.estimate, written.shared);
+  for (std::size_t k = 0; k < 8; ++k) EXPECT_NEAR(written.value(k), 4.0 + double(k), 1e-5);
+}
+
+TEST(Strays, TheirErrorIsAsStated) {
+  // True differences of variance s from what the surface says, means of two samples of noise q:
+  // keeping c of what is found leaves (1 - c)^2 s + c^2 q in the mean. Means of squares of normal
+  // numbers scatter by sqrt(2 / count) of themselves: what is left so, and of what is stated q and
+  // s, which is found as the difference of s + q and q.
+  constexpr std::size_t count = 4000;
+  for (const double q : {0.1, 0.5, 4.0}) {
+    constexpr double s = 1.0;
+    Written written(count);
+    base::Rng rng(base::Key(7, base::Stream::Test, 12));
+    const auto normal = [&] {
+      return std::sqrt(-2.0 * std::log(1.0 - rng.next())) * std::cos(2.0 * base::pi * rng.next());
+    };
+    std::vector<double> truth;
+    for (std::size_t k = 0; k < count; ++k) {
+      truth.push_back(10.0 + std::sqrt(s) * normal());
+      const double noise = std::sqrt(2.0 * q);
+      written.sample(k, truth[k] + noise * normal(), truth[k] + noise * normal());
+    }
+    add_strays(written.strays, written.estimate, written.shared);
+    double found = 0.0, stated = 0.0;
+    for (std::size_t k = 0; k < count; ++k) {
+      found += std::pow(written.value(k) - truth[k], 2) / count;
+      stated += double(written.shared.squared_error[1 + k]) / count;
+    }
+    const double c = double(kept_share(static_cast<float>(s), static_cast<float>(q)));
+    const double left = (1.0 - c) * (1.0 - c) * s + c * c * q;
+    const double error = left + (1.0 - c) * (1.0 - c) * (s + 2.0 * q) + c * c * q;
+    EXPECT_NEAR(stated, found, 4.0 * std::sqrt(2.0 / count) * error) << q;
+    EXPECT_LT(found, std::min(s, q) * (1.0 + 4.0 * std::sqrt(2.0 / count))) << q;
+  }
+}
+
+}  // namespace
+}  // namespace earthshine::raytrace

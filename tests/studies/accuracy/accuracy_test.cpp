@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/accuracy/accuracy.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/numbers/random.h"
+#include "tests/studies/plates.h"
+
+namespace earthshine::studies {
+namespace {
+
+// Nearly normal, variance 1.
+double normal(base::Rng& rng) {
+  double sum = -6.0;
+  for (int j = 0; j < 12; ++j) sum += rng.next();
+  return sum;
+}
+
+NoisyPicture noisy(std::size_t pixels, double truth, double sigma, std::uint64_t seed) {
+  NoisyPicture picture{std::vector<double>(pixels), std::vector<double>(pixels, sigma * sigma)};
+  base::Rng rng(base::Key(seed, base::Stream::Test, 0));
+  for (double& value : picture.luminance) value = truth + sigma * normal(rng);
+  return picture;
+}
+
+constexpr std::size_t pixels = 4096;
+const std::vector<bool> all_pixels(pixels, true);
+
+// L is 10 + d, the references are 10 with noise 2: mean (L - R1)(L - R2) = d^2 whatever the noise,
+// with variance (2 d^2 s^2 + s^4) / pixels; d = 0.5, s = 2: (2 + 16) / 4096, so 0.066 on 0.25.
+TEST(PictureError, NoiseOfTheReferencesIsTakenOff) {
+  const ReferencePair truth{noisy(pixels, 10.0, 2.0, 1), noisy(pixels, 10.0, 2.0, 2)};
+  const std::vector<float> picture(pixels, 10.5F);
+  const PictureError error = picture_error(picture, truth, all_pixels);
+  EXPECT_EQ(error.pixels, pixels);
+  const double standard_error = std::sqrt(18.0 / pixels);
+  EXPECT_NEAR(std::pow(10.0 * error.error, 2), 0.25, 4.0 * standard_error);
+  EXPECT_NEAR(std::pow(10.0 * error.high, 2) - std::pow(10.0 * error.error, 2),
+              2.0 * standard_error, 0.5 * standard_error);
+  EXPECT_NEAR(error.bias, 0.05, 4.0 * 2.0 / std::sqrt(2.0 * pixels) / 10.0);
+  // One noisy reference alone would have said sqrt(0.25 + 4) / 10.
+  EXPECT_LT(error.high, 0.1);
+}
+
+// An exact picture: 2 s = 2 sigma^2 / sqrt(pixels), of which resolution is the root over the mean.
+TEST(PictureError, ResolutionIsWhatNoiseCouldFeign) {
+  const ReferencePair truth{noisy(pixels, 10.0, 2.0, 3), noisy(pixels, 10.0, 2.0, 4)};
+  const double expected = std::sqrt(2.0 * 4.0 / std::sqrt(double(pixels))) / 10.0;
+  EXPECT_NEAR(resolution(truth, all_pixels), expected, 0.02 * expected);
+  int within = 0;
+  for (std::uint64_t seed = 10; seed < 110; seed += 2) {
+    const ReferencePair other{noisy(pixels, 10.0, 2.0, seed), noisy(pixels, 10.0, 2.0, seed + 1)};
+    const PictureError error = picture_error(std::vector<float>(pixels, 10.0F), other, all_pixels);
+    within += error.error <= resolution(other, all_pixels) ? 1 : 0;
+  }
+  EXPECT_GE(within, 44);  // of 50; two standard errors on one side: 97.7 %, less 4 binomial ones
+}
+
+// The limits' pictures and the truth differ by 1; both are noisy: mean (D1 - R1)(D2 - R2) = 1.
+TEST(PictureError, LimitIsTheDifferenceOfTwoTruths) {
+  const ReferencePair truth{noisy(pixels, 10.0, 2.0, 5), noisy(pixels, 10.0, 2.0, 6)};
+  const ReferencePair limit{noisy(pixels, 11.0, 1.0, 7), noisy(pixels, 11.0, 1.0, 8)};
+  const PictureError error = limit_error(limit, truth, all_pixels);
+  const double standard_error = std::sqrt((2.0 * 5.0 + 25.0) / pixels);
+  EXPECT_NEAR(std::pow(10.0 * error.error, 2), 1.0, 4.0 * standard_error);
+  EXPECT_EQ(limit_error(truth, truth, all_pixels).error, 0.0);
+}
+
+TEST(PictureError, BlackOrNoPixelsHaveNoError) {
+  const NoisyPicture black{std::vector<double>(4), std::vector<double>(4)};
+  const PictureError dark = picture_error({0, 0, 0, 0}, {black, black}, std::vector<bool>(4, true));
+  EXPECT_EQ(dark.error, 0.0);
+  EXPECT_EQ(dark.high, 0.0);
+  const PictureError none = picture_error({0, 0, 0, 0}, {black, black}, std::vector<bool>(4));
+  EXPECT_EQ(none.pixels, 0U);
+  EXPECT_EQ(none.error, 0.0);
+  EXPECT_EQ(resolution({black, black}, std::vector<bool>(4)), 0.0);
+}
+
+// A plate of 1 m seen from straight above, 2 m of the ground plane in 16 pixels: 8 x 8 of them.
+TEST(SurfacePixels, SurfacesCountAndSourcesDoNot) {
+  tests::SceneBuilder builder;
+  builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
+  builder.scene.sun = tests::overhead_sun(1000.0);
+  const raytrace::CameraModel camera = raytrace::make_camera_model(tests::above(10.0, 2.0), 16, 16);
+  const auto count = [&] {
+    const tests::Prepared prepared(builder.scene);
+    const std::vector<bool> counted =
+        surface_pixels({builder.scene, prepared.groups, prepared.effects, prepared.query}, camera);
+    return std::count(counted.begin(), counted.end(), true);
+  };
+  EXPECT_EQ(count(), 64);
+  // A disk lamp of 0.2 m above it, shining up, hides its middle.
+  scenes::Lamp lamp;
+  lamp.name = lamp.group = "disk";
+  lamp.kind = scenes::LampKind::Disk;
+  lamp.position = Vec3(0, 0, 0.1);
+  lamp.axis = Vec3(0, 0, 1);
+  lamp.radius_m = 0.2;
+  lamp.exitance = Rgb(1000.0);
+  builder.scene.lamps.push_back(lamp);
+  EXPECT_LT(count(), 64);
+  EXPECT_GT(count(), 32);
+  builder.scene.materials[0].emit = Rgb(1.0);
+  EXPECT_EQ(count(), 0);
+}
+
+// First round: 16 paths leave 4 times what is wanted, so 16 times the paths are needed in all.
+TEST(Reference, BatchesBringTheNoiseDownByTheRootOfThePaths) {
+  const std::vector<int> batches = further_batches(16, 0.04, 0.01, 1 << 14);
+  int paths = 16;
+  for (const int batch : batches) paths += batch;
+  EXPECT_EQ(paths, 256);
+  EXPECT_EQ(*std::max_element(batches.begin(), batches.end()), 64);
+  EXPECT_TRUE(further_batches(16, 0.01, 0.01, 1 << 14).empty());
+  EXPECT_TRUE(further_batches(16, 0.01, 0.0, 1 << 14).empty());
+  int most = 16;
+  for (const int batch : further_batches(16, 1.0, 1e-6, 500)) most += batch;
+  EXPECT_LE(most, 501);  // a batch has two paths at least
+}
+
+TEST(Reference, MeanOfBatchesWeighsByPaths) {
+  const base::Image one{1, 1, {{"Y", {1.0F}}, {"variance", {4.0F}}}};
+  const base::Image two{1, 1, {{"Y", {5.0F}}, {"variance", {8.0F}}}};
+  const NoisyPicture mean = mean_of_batches(
+      {{raytrace::PathSet::All, 0, 0, 16}, {raytrace::PathSet::All, 0, 1, 48}}, {one, two});
+  EXPECT_DOUBLE_EQ(mean.luminance[0], 0.25 * 1.0 + 0.75 * 5.0);
+  EXPECT_DOUBLE_EQ(mean.variance[0], 0.0625 * 4.0 + 0.5625 * 8.0);
+}
+
+TEST(Reference, SeedsAreAllDifferent) {
+  std::set<std::uint64_t> seeds = {1, 2};
+  for (const std::uint64_t seed : {1U, 2U}) {
+    for (int side = 0; side < 2; ++side) {
+      for (int index = 0; index < 50; ++index) seeds.insert(reference_seed(seed, side, index));
+    }
+  }
+  EXPECT_EQ(seeds.size(), 202U);
+}
+
+// Paths against themselves: the error of n paths is their noise, sigma / sqrt(n). 4 and 64 paths
+// differ by 4 in the error.
+TEST(Accuracy, PathsErrorFallsWithTheirRoot) {
+  const auto builder = tests::plate_on_ground(0.5, 0.2);
+  scenes::Scene scene = builder.scene;
+  scenes::Earth earth;
+  earth.half_angle_deg = 60.0;
+  earth.model = scenes::EarthModel::Uniform;
+  earth.radiance = Rgb(100.0);
+  scene.earth = earth;
+  const tests::Prepared prepared(scene);
+  const StudyScene study{scene, prepared.groups, prepared.effects, prepared.query};
+  AccuracyView view = accuracy_view(tests::above(10.0, 2.0), 24, 24, 1);
+  const std::vector<bool> counted =
+      surface_pixels(study, raytrace::make_camera_model(view.camera, view.columns, view.rows));
+  const auto side = [&](int k) {
+    const Batch batch{raytrace::PathSet::All, k, 0, 256};
+    return mean_of_batches({batch}, {*trace_batch(study, view, batch)});
+  };
+  const ReferencePair truth{side(0), side(1)};
+  double errors[2];
+  for (const int k : {0, 1}) {
+    AccuracyStep step;
+    step.method = "paths";
+    step.series = series::samples;
+    step.indirect = raytrace::Indirect::Paths;
+    step.quality.gather_rays = k == 0 ? 4 : 64;
+    SolutionShelf shelf;
+    const auto result = run_step(study, view, step, shelf);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->cost.patches, 0U);
+    EXPECT_GT(result->cost.cpu_seconds, 0.0);
+    EXPECT_GT(result->cost.memory_bytes, 0.0);
+    errors[k] = picture_error(result->luminance, truth, counted).error;
+  }
+  // The square of either is known to sqrt(2 / 576) of itself.
+  EXPECT_NEAR(errors[0] / errors[1], 4.0,
+              4.0 * 4.0 * std::sqrt(2.0 / 576.0) / 2.0 * std::sqrt(2.0));
+}
+
+}  // namespace
+}  // namespace earthshine::studies

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/compare/compare.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "tests/studies/plates.h"
+
+namespace earthshine::studies {
+namespace {
+
+base::Image grey_row(const std::vector<float>& luminance) {
+  base::Image image = base::make_rgb_image(static_cast<int>(luminance.size()), 1);
+  for (base::Channel& channel : image.channels) channel.values = luminance;
+  return image;
+}
+
+scenes::Lamp panel(double height_m, double edge_m) {
+  scenes::Lamp lamp;
+  lamp.name = lamp.group = "panel";
+  lamp.kind = scenes::LampKind::Rectangle;
+  lamp.position = Vec3(0, 0, height_m);
+  lamp.edge_u = Vec3(0, edge_m, 0);
+  lamp.edge_v = Vec3(edge_m, 0, 0);
+  lamp.axis = Vec3(0, 0, -1);
+  lamp.exitance = Rgb(1000.0);
+  return lamp;
+}
+
+Comparison compared(const scenes::Scene& scene, const scenes::Camera& camera,
+                    std::vector<int> lights, int gather_rays = 64) {
+  const tests::Prepared prepared(scene);
+  CompareOptions options;
+  options.columns = options.rows = 16;
+  options.gather_rays = gather_rays;
+  options.distributed_lights = std::move(lights);
+  return compare({scene, prepared.groups, prepared.effects, prepared.query}, camera, options);
+}
+
+// A room whose floor lies in the shadow of a table: what reaches it there has been reflected.
+tests::SceneBuilder room_with_table() {
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.7));
+  builder.room({m, m, m, m, m, m});
+  scenes::Material sheet = tests::grey(0.7);
+  sheet.two_sided = true;
+  const std::uint32_t table = builder.material(sheet);
+  builder.quad(table, {0.3, 0.3, 0.3}, {0.7, 0.3, 0.3}, {0.7, 0.7, 0.3}, {0.3, 0.7, 0.3});
+  builder.quad(m, {0.45, 0.45, 0.01}, {0.55, 0.45, 0.01}, {0.55, 0.55, 0.01}, {0.45, 0.55, 0.01});
+  builder.scene.objects[7].name = "under the table";
+  builder.scene.objects[7].target = true;
+  scenes::Lamp lamp = panel(0.99, 0.2);
+  lamp.position = Vec3(0.5, 0.5, 0.99);
+  builder.scene.lamps.push_back(lamp);
+  return builder;
+}
+scenes::Camera in_the_room() {
+  scenes::Camera camera;
+  camera.position = Vec3(0.1, 0.1, 0.25);
+  camera.look_at = Vec3(0.5, 0.5, 0.01);
+  camera.fov_deg = 40.0;
+  return camera;
+}
+
+TEST(Compare, ReferenceDiffersFromItselfByNothing) {
+  const auto builder = room_with_table();
+  const Comparison comparison = compared(builder.scene, in_the_room(), {4, 16, 4});
+  ASSERT_EQ(comparison.methods.size(), 5U);
+  const char* names[] = {"reference", "radiosity", "distributed-4", "distributed-16", "direct"};
+  for (std::size_t k = 0; k < 5; ++k) EXPECT_EQ(comparison.methods[k].method.name, names[k]);
+  const MethodResult& reference = comparison.reference();
+  EXPECT_EQ(reference.difference.relative_rmse, 0.0);
+  EXPECT_EQ(reference.difference.bias, 0.0);
+  EXPECT_EQ(reference.difference.off_share, 0.0);
+  EXPECT_EQ(reference.difference.pixels, 256U);
+  ASSERT_TRUE(reference.targets.front());
+  EXPECT_EQ(reference.targets.front()->luminance_ratio, 1.0);
+  EXPECT_EQ(reference.targets.front()->contrast_difference, 0.0);
+  EXPECT_FALSE(reference.targets.front()->misleads);
+}
+
+TEST(Compare, PlainRadiosityDiffersByItsNoiseAlone) {
+  const auto builder = room_with_table();
+  const Comparison comparison = compared(builder.scene, in_the_room(), {4}, 256);
+  const MethodResult& radiosity = comparison.methods[1];
+  EXPECT_GT(radiosity.difference.relative_rmse, 0.0);
+  // Noise of both pictures together, with room for the estimate's own error.
+  const double noise = std::hypot(radiosity.frame.report.relative_noise,
+                                  comparison.reference().frame.report.relative_noise);
+  EXPECT_LT(radiosity.difference.relative_rmse, 1.5 * noise);
+  EXPECT_LT(std::abs(radiosity.difference.bias), 4.0 * noise / 16.0);  // 256 pixels
+}
+
+TEST(Compare, LightThatOnlyReflectionCarriesMisleadsTheApproximation) {
+  const auto builder = room_with_table();
+  const Comparison comparison = compared(builder.scene, in_the_room(), {16});
+  const auto& direct = comparison.methods.back();
+  EXPECT_LT(direct.difference.bias, -0.1);
+  EXPECT_TRUE(direct.targets.front()->misleads);
+  const TargetVerdict verdict = judge_approximation(comparison).front();
+  EXPECT_EQ(verdict.verdict, ApproximationVerdict::Misled);
+  EXPECT_NE(verdict.sentence.find("under the table: 16 distributed lights would have misled"),
+            std::string::npos)
+      << verdict.sentence;
+}
+
+// One convex plate under a panel reflects nothing to itself: the lights' only fault is to be few.
+TEST(Compare, DistributedLightsConverge) {
+  auto builder = tests::plate_on_ground(0.0, 0.6);
+  builder.scene.lamps.push_back(panel(0.8, 1.0));
+  const Comparison comparison =
+      compared(builder.scene, tests::above(0.7, 0.9), {4, 16, 64, 256}, 4096);
+  double before = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 2; k < 6; ++k) {
+    const double error = comparison.methods[k].difference.relative_rmse;
+    EXPECT_LT(error, 0.7 * before) << comparison.methods[k].method.name;
+    before = error;
+  }
+  EXPECT_LT(before, 0.01);
+  const TargetVerdict verdict = judge_approximation(comparison).front();
+  EXPECT_EQ(verdict.verdict, ApproximationVerdict::NotMisled) << verdict.sentence;
+}
+
+TEST(Compare, TargetOutOfViewIsSaidToBe) {
+  auto builder = tests::plate_on_ground(0.4, 0.6);
+  builder.scene.sun = tests::overhead_sun(1000.0);
+  scenes::Camera away = tests::above(2.0, 1.0);
+  away.look_at = Vec3(9, 0, 9);
+  const Comparison comparison = compared(builder.scene, away, {4});
+  EXPECT_FALSE(comparison.methods.back().targets.front());
+  EXPECT_EQ(comparison.reference().difference.pixels, 0U);
+  EXPECT_EQ(judge_approximation(comparison).front().sentence, "quad-1: not in view.");
+}
+
+TEST(Compare, HiddenTargetIsSaidToBe) {
+  auto builder = tests::plate_on_ground(0.4, 0.6);
+  builder.plate(1, 3.0, 1.0, true);
+  const Comparison comparison = compared(builder.scene, tests::above(2.0, 2.0), {4});
+  EXPECT_EQ(judge_approximation(comparison).front().sentence, "quad-1: hidden by other objects.");
+}
+
+TEST(Compare, SameValuesOnOneAndTwoThreads) {
+  const auto builder = room_with_table();
+  const auto run = [&](int threads) {
+    const base::ThreadLimit limit(threads);
+    return compared(builder.scene, in_the_room(), {4});
+  };
+  const Comparison one = run(1), two = run(2);
+  for (std::size_t k = 0; k < one.methods.size(); ++k) {
+    EXPECT_EQ(one.methods[k].frame.image.find("G")->values,
+              two.methods[k].frame.image.find("G")->values);
+    EXPECT_EQ(one.methods[k].difference.relative_rmse, two.methods[k].difference.relative_rmse);
+  }
+}
+
+TEST(Compare, NumbersOfLightsAreChecked) {
+  EXPECT_THROW((void)compare_methods({}), base::Error);
+  EXPECT_THROW((void)compare_methods({4, 1}), base::Error);
+}
+
+TEST(PictureDifference, IsTakenOverWhatShowsAnObject) {
+  // Differences 1, 1 and -2 on a mean of 2; a factor 2, 1.25 and 0. The sky's 100 does not count.
+  const base::Image image = grey_row({2, 5, 0, 100}), reference = grey_row({1, 4, 2, 0});
+  const ObjectMap map{4, 1, {0, 0, 1, no_object}};
+  const PictureDifference difference = picture_difference(image, reference, map);
+  EXPECT_EQ(difference.pixels, 3U);
+  EXPECT_NEAR(difference.relative_rmse, std::sqrt(6.0 / 3.0) / (7.0 / 3.0), 1e-12);
+  EXPECT_NEAR(difference.bias, 0.0, 1e-12);
+  EXPECT_NEAR(difference.off_share, 2.0 / 3.0, 1e-12);
+}
+
+TEST(PictureDifference, OfBlackPicturesIsNothing) {
+  const base::Image black = grey_row({0, 0});
+  EXPECT_EQ(picture_difference(black, black, {2, 1, {0, 0}}).relative_rmse, 0.0);
+  EXPECT_EQ(picture_difference(black, black, {2, 1, {-1, -1}}).pixels, 0U);
+}
+
+TEST(TargetDifference, MisleadsBeyondAFactorOrAContrast) {
+  const TargetLight right{100.0, 50.0, 1.0};
+  const auto misleads = [&](double luminance, std::optional<double> contrast) {
+    return target_difference({luminance, 50.0, contrast}, right).misleads;
+  };
+  EXPECT_FALSE(misleads(149.0, 1.0));
+  EXPECT_TRUE(misleads(151.0, 1.0));
+  EXPECT_FALSE(misleads(67.0, 1.0));
+  EXPECT_TRUE(misleads(66.0, 1.0));
+  EXPECT_FALSE(misleads(100.0, 1.09));
+  EXPECT_TRUE(misleads(100.0, 1.11));
+  EXPECT_TRUE(misleads(100.0, 0.89));
+  EXPECT_TRUE(misleads(100.0, std::nullopt));  // a black surround that should not be
+  // Black where it should be: no ratio to object to.
+  EXPECT_FALSE(target_difference({0.0, 0.0, {}}, {0.0, 0.0, {}}).misleads);
+  EXPECT_TRUE(target_difference({1.0, 0.0, {}}, {0.0, 0.0, {}}).misleads);
+}
+
+}  // namespace
+}  // namespace earthshine::studies

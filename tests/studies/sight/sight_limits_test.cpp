@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// What limits a sight: the finest cycles that are left, and the least of size, noise and the eye.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "studies/sight/target_signal.h"
+#include "tests/studies/discs.h"
+
+namespace earthshine::studies {
+namespace {
+
+using tests::discs_on;
+using tests::plain_cctv;
+using tests::sight_of;
+using tests::with_noise;
+
+constexpr int edge = 120;
+
+// A disc of 60 on a ground of 40 cd/m^2, white at 100: S = 0.6 and 0.4.
+tests::DiscPicture bright_disc(double radius = 20.0) {
+  return discs_on(40.0, {{60.0, 60.0, radius, 60.0}}, edge, edge);
+}
+
+// C0 MTF(u) = 3 / SNR: at the limiting frequency what the chain leaves of the difference is three
+// times the noise of a bar half a period wide and as long as the target, that of the target's mean
+// times the square root of the bars, 2 u lines.
+TEST(SightLimits, LimitingFrequencyLeavesThreeTimesTheNoiseOfABar) {
+  degrade::Setup setup = with_noise(plain_cctv(edge, edge, 100.0), 0.25);
+  setup.camera.lens_blur = 1.0;
+  const auto picture = bright_disc();
+  const Sight sight = sight_of(picture, setup);
+  const double u = *sight.signal->limiting_frequency, lines = *sight.tv_lines;
+  const auto n = static_cast<double>(picture.plan.targets[0].seen.size());
+  const double delta = sight.signal->mean - *sight.signal->surround;
+  const double expected = 3.0 * std::sqrt(0.25 / (6.0 * n) * 2.0 * u * lines) / delta;
+  EXPECT_GT(2.0 * u * lines, 4.0);
+  EXPECT_LT(u, 0.3);
+  EXPECT_NEAR(chain_modulation(setup, picture.plan.targets[0].extent.direction_rad, u), expected,
+              1e-3 * expected);
+  EXPECT_NEAR(*sight.johnson_cycles, lines * u, 1e-9);
+}
+
+// Noise blurred with the picture is as wide as this target: a bar scatters as much as a resel, and
+// no more. C0 / (3 / SNR) is then CNR sqrt(6 frames) / 3.
+TEST(SightLimits, ABarIsNoNoisierThanAResel) {
+  degrade::Setup setup = with_noise(plain_cctv(edge, edge, 100.0), 0.0, 0.03);
+  setup.camera.blur_h = setup.camera.blur_v = 2.0;
+  const auto picture = discs_on(50.0, {{60.0, 60.0, 3.0, 90.0}}, edge, edge);
+  SightOptions any_contrast;
+  any_contrast.eye.threshold_factor = 0.0;
+  const Sight sight = sight_of(picture, setup, any_contrast);
+  const double u = *sight.signal->limiting_frequency;
+  EXPECT_GT(2.0 * u * *sight.tv_lines, 1.5);
+  const double expected = 3.0 / (*sight.signal->cnr * std::sqrt(6.0));
+  EXPECT_NEAR(chain_modulation(setup, picture.plan.targets[0].extent.direction_rad, u), expected,
+              1e-2 * expected);
+}
+
+// A grating through the whole chain: the amplitude that its screen has left, by projection.
+TEST(SightLimits, ModulationIsThatOfAGratingOnTheScreen) {
+  constexpr int resels = 96, fine = 8;
+  degrade::Setup setup = plain_cctv(resels, resels, 100.0);
+  setup.camera.lens_blur = 0.3;
+  setup.camera.blur_h = 0.5;
+  setup.camera.blur_v = 0.2;
+  setup.camera.bandwidth_mhz = 0.6;
+  setup.camera.aperture_correction = 0.3;
+  setup.monitor.pixels_per_resel = 3;
+  setup.monitor.spread_width = 0.9;
+  for (const degrade::Spread spread : {degrade::Spread::Gaussian, degrade::Spread::Triangle}) {
+    setup.monitor.spread = spread;
+    for (const bool upright : {true, false}) {
+      for (const int periods : {12, 36}) {
+        base::Image image = base::make_rgb_image(resels * fine, resels * fine);
+        for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+          const std::size_t x = i % (resels * fine), y = i / (resels * fine);
+          const double phase = 2.0 * base::pi * periods *
+                               (static_cast<double>(upright ? x : y) + 0.5) / (resels * fine);
+          for (base::Channel& c : image.channels) {
+            c.values[i] = static_cast<float>(50.0 + 20.0 * std::cos(phase));
+          }
+        }
+        const degrade::Result shown = degrade::degrade(image, setup.camera, setup.monitor);
+        const std::size_t wide = resels * 3;
+        double c = 0.0, s = 0.0;  // of a line in the middle; the mirrored border ends half periods
+        for (std::size_t k = 0; k < wide; ++k) {
+          const double phase =
+              2.0 * base::pi * periods * (static_cast<double>(k) + 0.5) / static_cast<double>(wide);
+          const double v = static_cast<double>(
+              shown.viewed.channels[0].values[upright ? wide / 2 * wide + k : k * wide + wide / 2]);
+          c += v * std::cos(phase) * 2.0 / static_cast<double>(wide);
+          s += v * std::sin(phase) * 2.0 / static_cast<double>(wide);
+        }
+        EXPECT_NEAR(std::hypot(c, s) / 20.0,
+                    chain_modulation(setup, upright ? 0.0 : 0.5 * base::pi,
+                                     static_cast<double>(periods) / resels),
+                    0.004)
+            << static_cast<int>(spread) << upright << periods;
+      }
+    }
+  }
+}
+
+TEST(SightLimits, ProbabilityIsTheLeastOfSizeNoiseAndTheEye) {
+  const degrade::Setup setup = with_noise(plain_cctv(edge, edge, 100.0), 0.01);
+  const auto picture = bright_disc();
+  const Sight sight = sight_of(picture, setup);
+  EXPECT_GT(sight.probability->identify, 0.9);
+  SightOptions noise, eye;
+  noise.even_chance_snr = *sight.signal->snr_d;
+  eye.eye.threshold_factor = *sight.monitor->weber / *sight.monitor->threshold;
+  eye.cycles = {1e-9, 1e-9, 1e-9};
+  const Probability by_noise = *sight_of(picture, setup, noise).probability;
+  for (const double p : {by_noise.detect, by_noise.recognise, by_noise.identify}) {
+    EXPECT_NEAR(p, 0.5, 1e-6);
+  }
+  // Below the eye's threshold no frequency is left either; at 1.02 times it P = 1 - 2^-(1.02^3.5).
+  const double at_threshold = eye.eye.threshold_factor;
+  eye.eye.threshold_factor = 1.02 * at_threshold;
+  EXPECT_EQ(sight_of(picture, setup, eye).probability->detect, 0.0);
+  eye.eye.threshold_factor = at_threshold / 1.02;
+  EXPECT_NEAR(sight_of(picture, setup, eye).probability->detect,
+              1.0 - std::exp2(-std::pow(1.02, 3.5)), 0.01);
+}
+
+// Left of the middle brighter than the ground by 20, right of it darker by as much: on average
+// nothing, but 20 everywhere.
+TEST(SightLimits, TargetLitFromOneSideStandsOutOnBoth) {
+  auto picture = discs_on(40.0, {{60.0, 60.0, 20.0, 40.0}}, edge, edge);
+  for (const std::uint32_t pixel : picture.plan.targets[0].seen) {
+    for (base::Channel& c : picture.image.channels) {
+      c.values[pixel] = pixel % edge < 60 ? 60.0F : 20.0F;
+    }
+  }
+  ASSERT_EQ(picture.plan.targets[0].parts.size(), 8U);
+  const Sight sight = sight_of(picture, plain_cctv(edge, edge, 100.0));
+  EXPECT_NEAR(*sight.weber, 0.0, 1e-3);
+  EXPECT_NEAR(*sight.signal->difference, 0.2, 0.01);  // sectors may share the middle
+  EXPECT_GT(sight.probability->identify, 0.9);
+  EXPECT_GT(sight.eye->probability->identify, 0.9);
+}
+
+TEST(SightLimits, PartsAreThoseOfLargeTargets) {
+  EXPECT_TRUE(bright_disc(3.0).plan.targets[0].parts.empty());
+  double share = 0.0;
+  std::size_t pixels = 0;
+  const auto picture = bright_disc();
+  for (const SightTarget::Part& part : picture.plan.targets[0].parts) {
+    share += part.share;
+    pixels += part.target.size();
+    EXPECT_GE(part.surround.size(), 16U);
+  }
+  EXPECT_NEAR(share, 1.0, 1e-12);
+  EXPECT_EQ(pixels, picture.plan.targets[0].view.measured.size());
+}
+
+TEST(SightLimits, JohnsonDecidesWhereContrastIsAmple) {
+  // Without noise the resels' Nyquist frequency limits: n = lines / 2.
+  for (const double radius : {1.0, 4.0, 8.0}) {
+    const Sight sight = sight_of(bright_disc(radius), plain_cctv(edge, edge, 100.0));
+    EXPECT_EQ(*sight.signal->limiting_frequency, 0.5);
+    const Probability p = johnson_probability(0.5 * *sight.tv_lines, CyclesNeeded{});
+    EXPECT_NEAR(sight.probability->detect, p.detect, 1e-9);
+    EXPECT_NEAR(sight.probability->identify, p.identify, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace earthshine::studies

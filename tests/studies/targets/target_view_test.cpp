@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/targets/target_view.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "tests/studies/plates.h"
+
+namespace earthshine::studies {
+namespace {
+
+constexpr std::int32_t target = 7;
+
+// A rectangle of the target on empty sky.
+ObjectMap rectangle(int columns, int rows, int x0, int y0, int width, int height) {
+  ObjectMap map{columns, rows, {}};
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      const bool inside = x >= x0 && x < x0 + width && y >= y0 && y < y0 + height;
+      map.object.push_back(inside ? target : no_object);
+    }
+  }
+  return map;
+}
+
+TargetView only_target(const scenes::Scene& scene, const scenes::Camera& camera, int size) {
+  const auto frame = tests::direct_picture(scene, camera, size);
+  const std::vector<TargetView> views = find_targets(scene, camera, object_map(frame.image));
+  EXPECT_EQ(views.size(), 1U);
+  return views.front();
+}
+
+TEST(TargetView, SurroundIsAsLargeAsTheTargetAndOnePixelOff) {
+  // 10 x 10 seen; the pixel round it is left out (12 x 12); then by 4 neighbours 4 * 12 = 48, and
+  // by 8 neighbours from the cross of 14 x 12 and 12 x 14 (192) to that of 16 x 14 and 14 x 16
+  // (252): 60 more. 108 is nearer to 100 than 48.
+  const ObjectMap map = rectangle(40, 40, 15, 15, 10, 10);
+  const TargetView view = find_target(map, target);
+  EXPECT_EQ(view.pixels, 100U);
+  EXPECT_EQ(view.surround.size(), 108U);
+  for (const std::uint32_t pixel : view.surround) {
+    const int x = static_cast<int>(pixel) % 40, y = static_cast<int>(pixel) / 40;
+    EXPECT_TRUE(x < 14 || x > 25 || y < 14 || y > 25);
+    EXPECT_TRUE(x >= 12 && x <= 27 && y >= 12 && y <= 27);
+  }
+}
+
+TEST(TargetView, SurroundOfATargetInTheCornerKeepsItsSize) {
+  const TargetView view = find_target(rectangle(40, 40, 0, 30, 10, 10), target);
+  EXPECT_GE(view.surround.size(), 75U);
+  EXPECT_LE(view.surround.size(), 125U);
+}
+
+TEST(TargetView, TargetThatFillsThePictureHasNoSurround) {
+  const TargetView view = find_target(rectangle(8, 6, 0, 0, 8, 6), target);
+  EXPECT_EQ(view.pixels, 48U);
+  EXPECT_EQ(view.measured.size(), 48U);  // the border of the picture is no outline
+  EXPECT_TRUE(view.surround.empty());
+}
+
+TEST(TargetView, LuminanceIsTakenInsideTheOutline) {
+  EXPECT_EQ(find_target(rectangle(40, 40, 15, 15, 10, 10), target).measured.size(), 64U);
+  // A line has no inside: all of it is taken.
+  EXPECT_EQ(find_target(rectangle(40, 40, 15, 5, 1, 30), target).measured.size(), 30U);
+  // 4 x 4 has a core of 4, just a quarter; 3 x 3 has one pixel of 9.
+  EXPECT_EQ(find_target(rectangle(40, 40, 15, 15, 4, 4), target).measured.size(), 4U);
+  EXPECT_EQ(find_target(rectangle(40, 40, 15, 15, 3, 3), target).measured.size(), 9U);
+}
+
+TEST(TargetView, TargetThatIsNowhereIsNotInView) {
+  const TargetView view = find_target(rectangle(8, 6, 0, 0, 8, 6), 3);
+  EXPECT_FALSE(view.in_view());
+  EXPECT_TRUE(view.measured.empty() && view.surround.empty());
+}
+
+TEST(TargetView, TargetWhollyInViewIsSeenAsIfAlone) {
+  // 1 m of the 2 m in view: half of 32 pixels each way. A camera askew leaves no edge on the grid.
+  const auto builder = tests::plate_on_ground(0.4, 0.6);
+  const TargetView view = only_target(builder.scene, tests::above(2.0, 2.0), 32);
+  EXPECT_EQ(view.pixels, 256U);
+  EXPECT_EQ(view.pixels_alone, 256U);
+  EXPECT_FALSE(view.cut_by_frame);
+  scenes::Camera askew = tests::above(2.0, 2.5);
+  askew.position = Vec3(0.7, -0.9, 1.7);
+  askew.up = Vec3(0.3, 1, 0.1);
+  const TargetView other = only_target(builder.scene, askew, 101);
+  EXPECT_GT(other.pixels, 1000U);
+  EXPECT_EQ(other.pixels, other.pixels_alone);
+}
+
+TEST(TargetView, HalfHiddenPlateIsHalfSeen) {
+  // A screen at half the camera's height hides x < 0. Of the plate's 16.5 columns 16 or 17 have
+  // their centre on it; the screen's edge, a line of pixels, may go to either side: an error of at
+  // most half a column for the edge and half for the rounding, 1 of 16.
+  auto builder = tests::plate_on_ground(0.4, 0.6);
+  builder.quad(1, {-3, -3, 1}, {0, -3, 1}, {0, 3, 1}, {-3, 3, 1});
+  const TargetView view = only_target(builder.scene, tests::above(2.0, 2.0), 33);
+  EXPECT_NEAR(static_cast<double>(view.pixels) / static_cast<double>(view.pixels_alone), 0.5,
+              1.0 / 16.0);
+  EXPECT_LT(view.pixels, view.pixels_alone);
+}
+
+TEST(TargetView, HiddenTargetCountsOnlyAlone) {
+  auto builder = tests::plate_on_ground(0.4, 0.6);
+  builder.plate(1, 3.0, 1.0, true);
+  const TargetView view = only_target(builder.scene, tests::above(2.0, 2.0), 32);
+  EXPECT_FALSE(view.in_view());
+  EXPECT_EQ(view.pixels_alone, 256U);
+  EXPECT_EQ(view.hidden.size(), 256U);
+  ASSERT_EQ(view.hidden_by.size(), 1U);
+  EXPECT_EQ(view.hidden_by.front().object, 2U);
+  EXPECT_EQ(view.hidden_by.front().pixels, 256U);
+}
+
+TEST(TargetView, WhatHidesMostComesFirst) {
+  // Two screens at half the camera's height: a narrow one over x > 0.3, a wide one over x < 0.
+  auto builder = tests::plate_on_ground(0.4, 0.6);
+  builder.quad(1, {0.15, -3, 1}, {3, -3, 1}, {3, 3, 1}, {0.15, 3, 1});
+  builder.quad(1, {-3, -3, 1}, {0, -3, 1}, {0, 3, 1}, {-3, 3, 1});
+  const TargetView view = only_target(builder.scene, tests::above(2.0, 2.0), 64);
+  ASSERT_EQ(view.hidden_by.size(), 2U);
+  EXPECT_EQ(view.hidden_by[0].object, 3U);
+  EXPECT_EQ(view.hidden_by[1].object, 2U);
+  EXPECT_EQ(view.hidden_by[0].pixels + view.hidden_by[1].pixels, view.hidden.size());
+  EXPECT_EQ(view.pixels + view.hidden.size(), view.pixels_alone);
+}
+
+TEST(TargetView, TargetBeyondTheFrameSaysSo) {
+  const auto builder = tests::plate_on_ground(0.4, 0.6);
+  EXPECT_TRUE(only_target(builder.scene, tests::above(2.0, 0.5), 16).cut_by_frame);
+  scenes::Camera away = tests::above(2.0, 1.0);
+  away.look_at = Vec3(9, 0, 9);
+  const TargetView view = only_target(builder.scene, away, 16);
+  EXPECT_EQ(view.pixels_alone, 0U);
+  EXPECT_FALSE(view.cut_by_frame);
+}
+
+TEST(TargetView, PictureWithoutObjectsIsRefused) {
+  EXPECT_THROW((void)object_map(base::make_rgb_image(2, 2)), base::Error);
+}
+
+}  // namespace
+}  // namespace earthshine::studies
