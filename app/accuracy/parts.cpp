@@ -36,21 +36,11 @@ Json facts_of(const studies::StepCost& cost) {
           {"estimate_cpu_seconds", cost.statement_cpu_seconds}};
 }
 
-bool usable(const StoredPart& part, bool step) {
-  try {
-    if (step) return AccuracyParts::cost_of(part.facts).cpu_seconds >= 0.0;
-    return part.facts.at("cpu_seconds").get<double>() >= 0.0;
-  } catch (const Json::exception&) {
-    return false;
-  }
-}
-
 }  // namespace
 
 AccuracyParts::AccuracyParts(const AccuracyTask& task, const studies::StudyScene& scene)
     : task_(task), scene_(scene), cpu_start_(cpu_seconds()) {
   common_marks_ = {{"study", "accuracy"},
-                   {"version", EARTHSHINE_VERSION},
                    {"scene", scene_marks(task.loaded)},
                    {"camera", camera_marks(task.view.camera)},
                    {"columns", task.view.columns},
@@ -120,13 +110,9 @@ bool AccuracyParts::has(const studies::AccuracyStep& step, std::uint64_t seed) c
   return task_.store.has(marks_of(step, seed));
 }
 
-std::optional<StoredPart> AccuracyParts::stored(const Json& marks, bool step) {
+std::optional<StoredPart> AccuracyParts::stored(const Json& marks) {
   std::string said;
   std::optional<StoredPart> part = task_.store.find(marks, said);
-  if (part && !usable(*part, step)) {
-    said = "a file of the folder points lacks some of its figures; it is done again";
-    part.reset();
-  }
   if (!said.empty() && !task_.common.quiet) note("note: " + said);
   if (part) ++finished_;
   return part;
@@ -140,7 +126,7 @@ void AccuracyParts::end_early() const {
 
 StoredPart AccuracyParts::batch(const studies::Batch& batch) {
   const Json marks = marks_of(batch);
-  if (auto part = stored(marks, false)) return *part;
+  if (auto part = stored(marks)) return *part;
   if (task_.view.stop()) end_early();
   Progress progress("reference", task_.common.quiet);
   const double before = cpu_seconds();
@@ -154,7 +140,7 @@ StoredPart AccuracyParts::batch(const studies::Batch& batch) {
 
 StoredPart AccuracyParts::point(const studies::AccuracyStep& step, std::uint64_t seed) {
   const Json marks = marks_of(step, seed);
-  if (auto part = stored(marks, true)) return *part;
+  if (auto part = stored(marks)) return *part;
   if (task_.view.stop()) end_early();
   const radiosity::SolveOptions solver = studies::solver_of(scene_, step, seed);
   const auto alike = std::count_if(

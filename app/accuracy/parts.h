@@ -36,7 +36,7 @@ class AccuracyParts {
  private:
   [[nodiscard]] Json marks_of(const studies::Batch& batch) const;
   [[nodiscard]] Json marks_of(const studies::AccuracyStep& step, std::uint64_t seed) const;
-  [[nodiscard]] std::optional<StoredPart> stored(const Json& marks, bool step);
+  [[nodiscard]] std::optional<StoredPart> stored(const Json& marks);
   [[noreturn]] void end_early() const;
 
   const AccuracyTask& task_;

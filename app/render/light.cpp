@@ -6,7 +6,7 @@
 
 #include "app/console.h"
 #include "app/memory.h"
-#include "app/solution.h"
+#include "app/render/solution.h"
 #include "studies/steer/picture_solver.h"
 #include "studies/steer/reach_surfaces.h"
 

@@ -18,7 +18,7 @@
 #include "app/render/effect_table.h"
 #include "app/render/light.h"
 #include "app/render/render_call.h"
-#include "app/solution.h"
+#include "app/render/solution.h"
 #include "base/error.h"
 #include "base/files/output_file.h"
 #include "base/files/png_file.h"

@@ -16,7 +16,7 @@
 #include "app/output.h"
 #include "app/render/error_json.h"
 #include "app/render/light.h"
-#include "app/solution.h"
+#include "app/render/solution.h"
 #include "base/error.h"
 #include "base/files/output_file.h"
 #include "radiosity/solution.h"

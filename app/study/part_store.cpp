@@ -9,6 +9,7 @@
 #include <iterator>
 #include <map>
 
+#include "app/build_id.h"
 #include "base/error.h"
 #include "base/files/exr_file.h"
 #include "base/files/output_file.h"
@@ -43,6 +44,14 @@ std::string digest_of(const base::Image& image) {
   return digest.text();
 }
 
+// The facts have a digest of their own: a changed digit is found when they are read.
+std::string text_of_part(const Json& marks, const Json& facts, const Json& picture) {
+  return dump({{"marks", marks},
+               {"facts", facts},
+               {"digest", stem_of(Json::parse(dump(facts)))},
+               {"picture", picture}});
+}
+
 std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
 
 }  // namespace
@@ -63,6 +72,7 @@ Json scene_marks(const LoadedScene& loaded) {
   }
   lobes.add(loaded.scene.ambient_radiance);
   marks["lobes"] = lobes.text();
+  marks["build"] = build_id();
   return marks;
 }
 
@@ -92,7 +102,8 @@ std::optional<Json> PartStore::read(const Json& marks, std::string& said) const 
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   Json json = Json::parse(text, nullptr, false);
   const bool whole = json.is_object() && json.contains("marks") && json.contains("facts") &&
-                     json["facts"].is_object() && json.contains("picture");
+                     json["facts"].is_object() && json.contains("picture") &&
+                     json.contains("digest") && json["digest"] == stem_of(json["facts"]);
   if (!whole || json["marks"] != marks) {
     said = fmt::format("{} {}; it is done again", path.string(),
                        whole ? "belongs to something else" : "is broken");
@@ -125,8 +136,7 @@ std::optional<Json> PartStore::find_facts(const Json& marks, std::string& said) 
 }
 
 void PartStore::keep_facts(const Json& marks, const Json& facts) const {
-  base::write_text(folder_ / (stem_of(marks) + ".json"),
-                   dump({{"marks", marks}, {"facts", facts}, {"picture", Json()}}));
+  base::write_text(folder_ / (stem_of(marks) + ".json"), text_of_part(marks, facts, Json()));
 }
 
 bool PartStore::has(const Json& marks) const {
@@ -136,9 +146,8 @@ bool PartStore::has(const Json& marks) const {
 
 void PartStore::keep(const Json& marks, const StoredPart& part) const {
   base::write_exr(folder_ / (stem_of(marks) + ".exr"), part.image);
-  base::write_text(
-      folder_ / (stem_of(marks) + ".json"),
-      dump({{"marks", marks}, {"facts", part.facts}, {"picture", digest_of(part.image)}}));
+  base::write_text(folder_ / (stem_of(marks) + ".json"),
+                   text_of_part(marks, part.facts, digest_of(part.image)));
 }
 
 }  // namespace earthshine::app

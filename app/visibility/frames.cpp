@@ -49,7 +49,6 @@ StudyFrames::StudyFrames(const StudyPart& part, const std::filesystem::path& fol
     std::visit([&](const auto& value) { knobs[knob.key] = value; }, knob.value);
   }
   scene_marks_["solver"] = knobs;
-  scene_marks_["program"] = EARTHSHINE_VERSION;
 }
 
 raytrace::RenderOptions StudyFrames::options(const StudyCamera& camera) const {

@@ -39,6 +39,22 @@ class CheckLayers(unittest.TestCase):
         self.faulty("radiosity/a.cpp", '\n#include "degrade/parts/iris.h"\n',
                     "a.cpp:3: radiosity may not include degrade/parts/iris.h")
 
+    def test_include_of_a_later_room(self):
+        self.faulty("radiosity/patches/a.cpp", '#include "radiosity/solution.h"\n',
+                    "room radiosity/patches may not include radiosity/solution.h")
+        self.assertEqual(self.outcome({"radiosity/a.cpp": LICENCE + '#include "radiosity/patches/split.h"\n'}),
+                         (0, ""))
+
+    def test_unknown_room(self):
+        self.faulty("scenes/attic/a.cpp", "", "scenes has no room attic; its rooms are")
+        self.faulty("tests/scenes/attic/a_test.cpp", "", "scenes has no room attic; its rooms are")
+
+    def test_full_room(self):
+        files = {f"base/files/f{k}.h": LICENCE for k in range(20)}
+        self.assertEqual(self.outcome(files), (0, ""))
+        self.assertEqual(self.outcome(files | {"base/files/g.cpp": LICENCE}),
+                         (1, "base/files: 21 files; at most 20: divide it\n"))
+
     def test_relative_include(self):
         self.faulty("radiosity/a.cpp", '#include "patches.h"\n', "name it from the top")
 

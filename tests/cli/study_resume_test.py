@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Visibility studies that are ended go on from what is finished."""
+import json
 import os
+import pathlib
 import random
 import signal
 import subprocess
@@ -66,6 +68,42 @@ class Resume(Case):
         self.says(run.stderr, "done again")
         self.assertEqual(self.without_times(self.study("o")), whole)
         self.assertEqual(set(self.costs("o").values()), {False})
+
+    def test_work_of_another_build_is_not_believed(self):
+        self.done(*self.CALL, "-o", "o")
+        before = self.study("o")["results"]
+        # The program with another build id, as any change of its code or constants gives it.
+        code = pathlib.Path(program.PROGRAM).read_bytes()
+        note = b"\x04\0\0\0\x14\0\0\0\x03\0\0\0GNU\0"  # sizes of name and digest, NT_GNU_BUILD_ID
+        self.assertEqual(code.count(note), 1)
+        at = code.index(note) + len(note)
+        other = self.folder / "other"
+        other.write_bytes(code[:at] + bytes([code[at] ^ 1]) + code[at + 1:])
+        other.chmod(0o755)
+        run = subprocess.run([other, *self.CALL, "-o", "o"], cwd=self.folder, capture_output=True, text=True,
+                             check=False)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(set(self.costs("o").values()), {False})
+        self.assertEqual(self.study("o")["results"], before)
+        # Its own work each of them finds.
+        self.done(*self.CALL, "-o", "o")
+        self.assertEqual(set(self.costs("o").values()), {True})
+
+    def test_a_changed_digit_is_found(self):
+        self.done(*self.CALL, "-o", "o")
+        whole = self.without_times(self.study("o"))
+        changed = 0
+        for path in (self.folder / "o" / "points").glob("*.json"):
+            part = json.loads(path.read_text())
+            for key, value in part["facts"].items():
+                if isinstance(value, float):
+                    part["facts"][key] = value * 1.5 + 1.0
+                    changed += 1
+            path.write_text(json.dumps(part))
+        self.assertGreater(changed, 0)
+        run = self.run_program(*self.CALL, "-o", "o")
+        self.says(run.stderr, "is broken; it is done again")
+        self.assertEqual(self.without_times(self.study("o")), whole)
 
     def test_an_interrupted_run_says_so_and_goes_on(self):
         call = ("study", "orbit", "bay.toml", "--positions", "4", "-o", "o", "--wanted", "box>=0.5",

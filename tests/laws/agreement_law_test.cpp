@@ -11,6 +11,7 @@
 #include <filesystem>
 
 #include "raytrace/paths/path_tracer.h"
+#include "raytrace/render.h"
 #include "scenes/read/scene_file.h"
 #include "tests/support/agreement.h"
 #include "tests/support/scene_builder.h"

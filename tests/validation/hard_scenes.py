@@ -131,6 +131,32 @@ def lit_white_room():
     return Hard("lit white room", "a hundred reflections of a lamp", str(text), mean=100 / (24 * 0.01))
 
 
+def lamp_at_a_wall():
+    """A lamp 1 mm off a wall: half of its light lands on a spot of some millimetres, which lights the rest. With reflectance 0.6 of
+    24 m2 the mean illuminance is flux / (area (1 - rho))."""
+    text = Text("lamp at a wall")
+    closed(text, (0, 0, 0), (2, 2, 2), text.material(diffuse=0.6))
+    text.light(type="point", position=[1.0, 1.999, 1.2], flux=1000.0)
+    look(text, (0.3, 0.3, 1.0), (1.5, 1.0, 0.4))
+    return Hard("lamp at a wall", "half of the light in a spot of 4 mm", str(text), mean=1000 / (24 * 0.4))
+
+
+def corridor():
+    """Twenty rooms of 2 m in a row, doors of 0.8 x 1.6 m between them at alternate sides; the lamp is in the first, the camera in the
+    last but sixteen. Light falls by some ten times a room."""
+    text = Text("corridor")
+    paint = text.material(diffuse=0.7)
+    sheet = text.material(diffuse=0.7, two_sided=True)
+    closed(text, (0, 0, 0), (40, 2, 2), paint)
+    for k in range(1, 20):
+        door = 0.1 if k % 2 else 1.1
+        for a, b in (((0, 1.6), (2, 2)), ((0, 0), (door, 1.6)), ((door + 0.8, 0), (2, 1.6))):
+            text.thing(sheet, **quad(0, 2 * k, (0, *a), (0, *b)))
+    text.light(type="point", position=[1.0, 1.0, 1.8], flux=2000.0)
+    look(text, (7.7, 0.3, 1.2), (6.2, 1.6, 0.8))
+    return Hard("corridor", "light through three doors", str(text))
+
+
 def black_picture():
     """Surfaces that reflect a ten-thousandth of little."""
     text = Text("black picture")
@@ -166,4 +192,4 @@ def no_light():
 
 def all_of_them():
     return [make() for make in (small_emitter, sun_spot, wide_emitter, pinhole, baffle, shadowed_target, caustic, white_room,
-                                lit_white_room, black_picture, one_pixel, sky_alone, no_light)]
+                                lit_white_room, lamp_at_a_wall, corridor, black_picture, one_pixel, sky_alone, no_light)]

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/numbers/random.h"
+#include "raytrace/render.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::raytrace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/solution.h"
+#include "app/render/solution.h"
 
 #include "app/memory.h"
 #include "app/options.h"
