@@ -83,7 +83,7 @@ Moments settled(Moments m) {
   return m;
 }
 
-Moments carry_signal_noise(Moments m, const Passing& at) {
+Moments carry_signal_noise(Moments m, const StageContext& at) {
   const NoiseLaw& law = at.report.noise;
   for (std::size_t p = 0; p < m.mean.planes.size(); ++p) {
     const double c_grain = law.c_is_fixed_pattern ? 0.0 : law.c;
@@ -98,7 +98,7 @@ Moments carry_signal_noise(Moments m, const Passing& at) {
   return m;
 }
 
-Moments carry_lag(Moments m, const Passing& at) {
+Moments carry_lag(Moments m, const StageContext& at) {
   const double lag = lag_of(at);
   for (Covariance& noise : m.grain) {
     noise = times(std::move(noise), (1.0 - lag) / (1.0 + lag));
@@ -106,13 +106,13 @@ Moments carry_lag(Moments m, const Passing& at) {
   return m;
 }
 
-Moments carry_blur(Moments m, const Passing& at) {
+Moments carry_blur(Moments m, const StageContext& at) {
   const AxisMap along = gaussian_blur(m.mean.columns, at.setup.camera.blur_h),
                 across = gaussian_blur(m.mean.rows, at.setup.camera.blur_v);
   return filter(std::move(m), along, across);
 }
 
-Moments carry_bloom(Moments m, const Passing& at) {
+Moments carry_bloom(Moments m, const StageContext& at) {
   const CctvCamera& camera = at.setup.camera;
   // Mean of what lies above: S - min(S, S_most).
   Picture excess = m.mean;
@@ -132,12 +132,12 @@ Moments carry_bloom(Moments m, const Passing& at) {
   return cut;
 }
 
-Moments carry_saturation(Moments m, const Passing& at) {
+Moments carry_saturation(Moments m, const StageContext& at) {
   return settled(
       point(std::move(m), [&](PointMap& map) { map.limit_above(at.setup.camera.saturation); }));
 }
 
-Moments carry_read_noise(Moments m, const Passing& at) {
+Moments carry_read_noise(Moments m, const StageContext& at) {
   m = settled(std::move(m));
   for (std::size_t p = 0; p < m.mean.planes.size(); ++p) {
     add_white(m, m.grain, p, at.report.noise.a);
@@ -146,7 +146,7 @@ Moments carry_read_noise(Moments m, const Passing& at) {
   return m;
 }
 
-Moments carry_bandwidth(Moments m, const Passing& at) {
+Moments carry_bandwidth(Moments m, const StageContext& at) {
   const CctvCamera& camera = at.setup.camera;
   const AxisMap along = line_filter(m.mean.columns, camera.bandwidth_mhz,
                                     camera.aperture_correction, at.setup.monitor.columns),
@@ -154,40 +154,40 @@ Moments carry_bandwidth(Moments m, const Passing& at) {
   return filter(std::move(m), along, across);
 }
 
-Moments carry_black_clamp(Moments m, const Passing&) {
+Moments carry_black_clamp(Moments m, const StageContext&) {
   return point(std::move(m), [](PointMap& map) { map.limit_below(0.0); });
 }
 
-Moments carry_gain(Moments m, const Passing& at) {
+Moments carry_gain(Moments m, const StageContext& at) {
   return point(std::move(m), [&](PointMap& map) { map.amplify(at.report.exposure.gain); });
 }
 
-Moments carry_white_clip(Moments m, const Passing& at) {
+Moments carry_white_clip(Moments m, const StageContext& at) {
   return point(std::move(m), [&](PointMap& map) { map.limit_above(at.setup.camera.white_clip); });
 }
 
-Moments carry_camera_gamma(Moments m, const Passing& at) {
+Moments carry_camera_gamma(Moments m, const StageContext& at) {
   return point(std::move(m), [&](PointMap& map) { map.power(1.0 / at.setup.camera.gamma); });
 }
 
-Moments carry_quantisation(Moments m, const Passing& at) {
+Moments carry_quantisation(Moments m, const StageContext& at) {
   return point(std::move(m), [&](PointMap& map) { map.quantise(at.setup.camera.bits); });
 }
 
-Moments carry_interlace(Moments m, const Passing& at) {
+Moments carry_interlace(Moments m, const StageContext& at) {
   // Both fields have the same moments; a pending map is the same for all rows.
   for (Covariance& noise : m.grain) noise = weave(std::move(noise), at.setup.camera.lag);
   return m;
 }
 
-Moments carry_screen(Moments m, const Passing& at) {
+Moments carry_screen(Moments m, const StageContext& at) {
   const Monitor& monitor = at.setup.monitor;
   return point(std::move(m), [&](PointMap& map) {
     map.screen(monitor.black_luminance, monitor.white_luminance, monitor.gamma);
   });
 }
 
-Moments carry_spread(Moments m, const Passing& at) {
+Moments carry_spread(Moments m, const StageContext& at) {
   const Monitor& monitor = at.setup.monitor;
   m = settled(std::move(m));
   const auto map = [&](int resels) {
@@ -203,7 +203,7 @@ Moments carry_spread(Moments m, const Passing& at) {
   return m;
 }
 
-Moments carry_room_light(Moments m, const Passing& at) {
+Moments carry_room_light(Moments m, const StageContext& at) {
   m = settled(std::move(m));
   m.mean = add_light(std::move(m.mean), room_luminance(at.setup.monitor));
   return m;

@@ -49,7 +49,7 @@ Result run_chain(std::initializer_list<const base::Image*> seen, const Setup& se
     if (radiance->width < 1 || radiance->height < 1) {
       throw base::Error(base::Blame::Input, "picture", "has no pixels");
     }
-    fields.push_back(take_in(*radiance, camera.colour, report.negative_pixels));
+    fields.push_back(sensor_input(*radiance, camera.colour, report.negative_pixels));
   }
   report.noise = noise_law(camera);
   // What stands if the stages that decide it are off.
@@ -93,7 +93,7 @@ Result run_chain(std::initializer_list<const base::Image*> seen, const Setup& se
 
 }  // namespace
 
-Picture take_in(const base::Image& radiance, bool colour, std::size_t& negative_pixels) {
+Picture sensor_input(const base::Image& radiance, bool colour, std::size_t& negative_pixels) {
   Picture picture;
   picture.columns = radiance.width;
   picture.rows = radiance.height;

@@ -70,7 +70,7 @@ struct Setup {
 
 // A stage's surroundings: what the settings are, what earlier stages found out, what the camera
 // remembers, and which of how many fields of the frame this is.
-struct Passing {
+struct StageContext {
   const Setup& setup;
   Report& report;
   Memory& memory;
@@ -89,10 +89,10 @@ struct Stage {
   std::string_view law;
   // Report: what earlier stages found, nullptr while there is no picture yet.
   bool (*runs)(const Setup&, const Report*);
-  Picture (*apply)(Picture&&, const Passing&);
+  Picture (*apply)(Picture&&, const StageContext&);
   // What the stage does to the moments of a picture with noise; without it noise passes unchanged
   // and the mean goes through apply. Stages of the lens come before any noise.
-  Moments (*carry)(Moments, const Passing&) = nullptr;
+  Moments (*carry)(Moments, const StageContext&) = nullptr;
   // Where the two fields become a frame, in place of apply.
   Picture (*merge)(Picture first, const Picture& second) = nullptr;
 };
@@ -107,12 +107,12 @@ struct Stage {
 
 // What the chain works on: luminance, or red, green and blue. Negative light counts as none and is
 // counted. Throws base::Error (Input) for a pixel that is NaN or infinite.
-[[nodiscard]] Picture take_in(const base::Image& radiance, bool colour,
-                              std::size_t& negative_pixels);
+[[nodiscard]] Picture sensor_input(const base::Image& radiance, bool colour,
+                                   std::size_t& negative_pixels);
 
 // Share of the signal that is left when the next picture comes: after a field of an interlaced
 // camera, else after a frame, which lasts two fields.
-[[nodiscard]] double lag_of(const Passing& at);
+[[nodiscard]] double lag_of(const StageContext& at);
 
 // Which stages this camera and monitor call for, as far as it is known without a picture (an
 // automatic gain may turn out to be 1).

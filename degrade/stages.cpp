@@ -13,7 +13,7 @@ namespace earthshine::degrade {
 namespace {
 
 // Fields are counted through the sequence, so that each has noise of its own.
-NoiseKey noise_key(const Passing& at) {
+NoiseKey noise_key(const StageContext& at) {
   const Options& options = at.setup.options;
   return {options.seed, 2 * options.frame + at.field, options.view};
 }
@@ -26,7 +26,7 @@ void add_levels(Levels& sum, const Levels& field, std::uint64_t fields) {
   sum.crushed_share += field.crushed_share / static_cast<double>(fields);
 }
 
-Picture fall_off(Picture&& p, const Passing& at) {
+Picture fall_off(Picture&& p, const StageContext& at) {
   const double fov = at.setup.options.fov_deg;
   if (!(fov > 0.0 && fov < 180.0)) {
     throw base::Error(
@@ -36,7 +36,7 @@ Picture fall_off(Picture&& p, const Passing& at) {
   return fall_off_from_axis(std::move(p), at.setup.camera.fall_off, fov);
 }
 
-Picture iris(Picture&& p, const Passing& at) {
+Picture iris(Picture&& p, const StageContext& at) {
   if (at.field > 0) return p;
   const CctvCamera& camera = at.setup.camera;
   const bool slow = camera.iris_rate != 1.0 || camera.iris_slew > 0.0;
@@ -46,7 +46,7 @@ Picture iris(Picture&& p, const Passing& at) {
   return p;
 }
 
-Picture signal_noise(Picture&& p, const Passing& at) {
+Picture signal_noise(Picture&& p, const StageContext& at) {
   const NoiseLaw& law = at.report.noise;
   NoiseKey key = noise_key(at);
   const double lag = lag_of(at);
@@ -57,7 +57,7 @@ Picture signal_noise(Picture&& p, const Passing& at) {
   return add_signal_noise(std::move(p), law, key);
 }
 
-Picture lag(Picture&& p, const Passing& at) {
+Picture lag(Picture&& p, const StageContext& at) {
   Picture& charge = at.memory.charge;
   if (charge.planes.empty()) charge = p;  // no noise, nothing moved
   if (charge.columns != p.columns || charge.rows != p.rows ||
@@ -74,13 +74,13 @@ Picture lag(Picture&& p, const Passing& at) {
   return p;
 }
 
-Picture levels(Picture&& p, const Passing& at) {
+Picture levels(Picture&& p, const StageContext& at) {
   const double black_noise = at.report.exposure.gain * std::sqrt(at.report.noise.at_black());
   add_levels(at.report.levels, measure_levels(p, black_noise), at.fields);
   return p;
 }
 
-Picture saturate(Picture&& p, const Passing& at) {
+Picture saturate(Picture&& p, const StageContext& at) {
   const double most = at.setup.camera.saturation;
   // Of the signal before bloom, as all shares are.
   const double left = 1.0 - (1.0 - at.setup.camera.bloom) * at.report.excess_share;
@@ -88,7 +88,7 @@ Picture saturate(Picture&& p, const Passing& at) {
   return limit_above(std::move(p), most);
 }
 
-Picture bloom(Picture&& p, const Passing& at) {
+Picture bloom(Picture&& p, const StageContext& at) {
   const CctvCamera& camera = at.setup.camera;
   const double share = share_above(p, camera.saturation);
   if (share == 0.0) return p;
@@ -111,7 +111,7 @@ bool always(const Setup&, const Report*) { return true; }
 
 constexpr Stage table[] = {
     {"sensor-grid", Part::Lens, "cd/m^2", "cd/m^2", "area average onto 300 rows", always,
-     [](Picture&& p, const Passing& at) {
+     [](Picture&& p, const StageContext& at) {
        const Grid grid = picture_grid(p.columns, p.rows, at.setup.monitor);
        at.report.sensor = grid;
        return apply(p, area_average(p.columns, grid.columns), area_average(p.rows, grid.rows));
@@ -119,26 +119,28 @@ constexpr Stage table[] = {
     {"iris", Part::Lens, "cd/m^2", "cd/m^2", "finds N and the gain; the picture passes", always,
      iris},
     {"lens", Part::Lens, "cd/m^2", "lx", "E = pi tau L / (4 N^2 (1 + m)^2)", always,
-     [](Picture&& p, const Passing& at) {
+     [](Picture&& p, const StageContext& at) {
        return through_lens(std::move(p), at.setup.camera, at.report.exposure.f_number);
      }},
     {"fall-off", Part::Lens, "lx", "lx", "E = E cos(theta)^fall_off",
      [](const Setup& s, const Report*) { return s.camera.fall_off > 0.0; }, fall_off},
     {"glare", Part::Lens, "lx", "lx", "E = (1 - g) E + g mean(E)",
      [](const Setup& s, const Report*) { return s.camera.glare > 0.0; },
-     [](Picture&& p, const Passing& at) { return add_glare(std::move(p), at.setup.camera.glare); }},
+     [](Picture&& p, const StageContext& at) {
+       return add_glare(std::move(p), at.setup.camera.glare);
+     }},
     {"lens-spread", Part::Lens, "lx", "lx", "discrete Gaussian, in light",
      [](const Setup& s, const Report*) { return s.camera.lens_blur > 0.0; },
-     [](Picture&& p, const Passing& at) {
+     [](Picture&& p, const StageContext& at) {
        return blur(p, at.setup.camera.lens_blur, at.setup.camera.lens_blur);
      }},
     {"conversion", Part::Lens, "lx", "signal", "S = E / E_white", always,
-     [](Picture&& p, const Passing& at) {
+     [](Picture&& p, const StageContext& at) {
        return to_signal(std::move(p), at.setup.camera.white_lux);
      }},
     {"shading", Part::Lens, "signal", "signal", "S = S (1 - d r^2), r = 1 in the corners",
      [](const Setup& s, const Report*) { return s.camera.shading_percent > 0.0; },
-     [](Picture&& p, const Passing& at) {
+     [](Picture&& p, const StageContext& at) {
        return shade(std::move(p), at.setup.camera.shading_percent / 100.0);
      }},
     {"signal-noise", Part::Sensor, "signal", "signal", "variance b S + c S^2, and dark counts",
@@ -149,13 +151,13 @@ constexpr Stage table[] = {
     {"blur", Part::Sensor, "signal", "signal",
      "discrete Gaussian, sigma_h along and sigma_v across lines",
      [](const Setup& s, const Report*) { return s.camera.blur_h > 0.0 || s.camera.blur_v > 0.0; },
-     [](Picture&& p, const Passing& at) {
+     [](Picture&& p, const StageContext& at) {
        return blur(p, at.setup.camera.blur_h, at.setup.camera.blur_v);
      },
      carry_blur},
     {"smear", Part::Sensor, "signal", "signal", "S = S + 10 smear mean(column)",
      [](const Setup& s, const Report*) { return s.camera.smear_db > 0.0; },
-     [](Picture&& p, const Passing& at) {
+     [](Picture&& p, const StageContext& at) {
        return smear_columns(std::move(p), from_db(at.setup.camera.smear_db));
      }},
     {"bloom", Part::Sensor, "signal", "signal",
@@ -169,7 +171,7 @@ constexpr Stage table[] = {
      carry_saturation},
     {"read-noise", Part::Sensor, "signal", "signal", "variance a",
      [](const Setup& s, const Report*) { return noise_law(s.camera).with_amplifier(); },
-     [](Picture&& p, const Passing& at) {
+     [](Picture&& p, const StageContext& at) {
        return add_read_noise(std::move(p), at.report.noise, noise_key(at));
      },
      carry_read_noise},
@@ -178,7 +180,7 @@ constexpr Stage table[] = {
      [](const Setup& s, const Report*) {
        return s.camera.bandwidth_mhz > 0.0 || s.camera.aperture_correction > 0.0;
      },
-     [](Picture&& p, const Passing& at) {
+     [](Picture&& p, const StageContext& at) {
        const CctvCamera& camera = at.setup.camera;
        return apply(p,
                     line_filter(p.columns, camera.bandwidth_mhz, camera.aperture_correction,
@@ -188,46 +190,53 @@ constexpr Stage table[] = {
      carry_bandwidth},
     {"black-clamp", Part::Sensor, "signal", "signal", "S = max(S, 0)",
      [](const Setup& s, const Report*) { return s.camera.black_clamp; },
-     [](Picture&& p, const Passing&) { return limit_below_zero(std::move(p)); }, carry_black_clamp},
+     [](Picture&& p, const StageContext&) { return limit_below_zero(std::move(p)); },
+     carry_black_clamp},
     {"gain", Part::Sensor, "signal", "signal", "S = G S", gain_runs,
-     [](Picture&& p, const Passing& at) { return amplify(std::move(p), at.report.exposure.gain); },
+     [](Picture&& p, const StageContext& at) {
+       return amplify(std::move(p), at.report.exposure.gain);
+     },
      carry_gain},
     {"levels", Part::Sensor, "signal", "signal",
      "counts white and black resels; the picture passes", always, levels},
     {"white-clip", Part::Sensor, "signal", "signal", "S = min(S, S_clip)",
      [](const Setup& s, const Report*) { return s.camera.white_clip > 0.0; },
-     [](Picture&& p, const Passing& at) {
+     [](Picture&& p, const StageContext& at) {
        return limit_above(std::move(p), at.setup.camera.white_clip);
      },
      carry_white_clip},
     {"camera-gamma", Part::Sensor, "signal", "line signal", "v = S^(1/gamma)",
      [](const Setup& s, const Report*) { return s.camera.gamma != 1.0; },
-     [](Picture&& p, const Passing& at) {
+     [](Picture&& p, const StageContext& at) {
        return encode_gamma(std::move(p), at.setup.camera.gamma);
      },
      carry_camera_gamma},
     {"quantisation", Part::Sensor, "line signal", "line signal", "nearest of 2^bits levels",
      [](const Setup& s, const Report*) { return s.camera.bits > 0; },
-     [](Picture&& p, const Passing& at) { return quantise(std::move(p), at.setup.camera.bits); },
+     [](Picture&& p, const StageContext& at) {
+       return quantise(std::move(p), at.setup.camera.bits);
+     },
      carry_quantisation},
     {"interlace", Part::Sensor, "line signal", "line signal",
      "even lines from the first field, odd ones from the second",
      [](const Setup& s, const Report*) { return s.camera.interlace; }, nullptr, carry_interlace,
      weave},
     {"screen", Part::Monitor, "line signal", "cd/m^2", "I = I_b + (I_w - I_b) v^gamma", always,
-     [](Picture&& p, const Passing& at) { return drive_screen(std::move(p), at.setup.monitor); },
+     [](Picture&& p, const StageContext& at) {
+       return drive_screen(std::move(p), at.setup.monitor);
+     },
      carry_screen},
     {"spread", Part::Monitor, "cd/m^2", "cd/m^2", "point spread, on the finer grid of pixels",
      [](const Setup& s, const Report*) {
        return s.monitor.spread != Spread::None || s.monitor.pixels_per_resel > 1;
      },
-     [](Picture&& p, const Passing& at) {
+     [](Picture&& p, const StageContext& at) {
        return spread_on_screen(p, at.setup.monitor, at.report.clipped_negative_light);
      },
      carry_spread},
     {"room-light", Part::Monitor, "cd/m^2", "cd/m^2", "I = I + reflectance E_room / pi",
      [](const Setup& s, const Report*) { return room_luminance(s.monitor) > 0.0; },
-     [](Picture&& p, const Passing& at) {
+     [](Picture&& p, const StageContext& at) {
        return add_light(std::move(p), room_luminance(at.setup.monitor));
      },
      carry_room_light},
@@ -237,7 +246,7 @@ constexpr Stage table[] = {
 
 std::span<const Stage> stages() { return table; }
 
-double lag_of(const Passing& at) {
+double lag_of(const StageContext& at) {
   const double lag = at.setup.camera.lag;
   return at.fields == 2 ? lag : lag * lag;
 }

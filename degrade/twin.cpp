@@ -24,7 +24,7 @@ StillRun run_still(const base::Image& radiance, const CctvCamera& camera, const 
                    Options options, const Memory& before) {
   StillRun run;
   std::size_t negative = 0;
-  run.exposed = take_in(radiance, camera.colour, negative);  // if no stage of the lens runs
+  run.exposed = sensor_input(radiance, camera.colour, negative);  // if no stage of the lens runs
   for (const char* noise : {"signal-noise", "read-noise"}) options.off.emplace_back(noise);
   options.watch = [&](std::string_view name, const Picture& picture) {
     for (const Stage& stage : stages()) {
@@ -84,7 +84,7 @@ Twin twin(const base::Image& radiance, const CctvCamera& camera, const Monitor& 
   const Setup setup{camera, monitor, options};
   const std::uint64_t fields = has_fields(setup, report) ? 2 : 1;
   Memory scratch;
-  const Passing at{setup, report, scratch, 0, fields};
+  const StageContext at{setup, report, scratch, 0, fields};
   Moments moments = still(std::move(run.exposed));
   std::optional<Moments> line;
   for (const Stage& stage : stages()) {

@@ -3,7 +3,7 @@
 
 #include "radiosity/factors/covered_patches.h"
 #include "radiosity/ledger.h"
-#include "scenes/reflect/spread_reflectance.h"
+#include "scenes/reflect/bihemispherical_albedo.h"
 #include "scenes/sky/sky_parts.h"
 
 namespace earthshine::radiosity {
@@ -49,7 +49,7 @@ std::vector<ObjectLight> object_means(const scenes::Scene& scene, const Patches&
 std::vector<double> reflectances(const scenes::Scene& scene, const Patches& patches,
                                  std::size_t groups) {
   std::vector<double> values(patches.count() * 3 * groups);
-  const std::vector<Rgb> spread = scenes::spread_reflectances(scene);
+  const std::vector<Rgb> spread = scenes::bihemispherical_albedos(scene);
   for (std::size_t i = 0; i < patches.count(); ++i) {
     const Rgb& rho = spread[patches.material(static_cast<std::uint32_t>(i))];
     for (std::size_t k = 0; k < 3 * groups; ++k) {

@@ -5,11 +5,11 @@
 #include <chrono>
 #include <numeric>
 
+#include "radiosity/enclosure.h"
 #include "radiosity/fill_solution.h"
-#include "radiosity/light_ends.h"
 #include "radiosity/linear_solve.h"
 #include "radiosity/refine.h"
-#include "scenes/reflect/spread_reflectance.h"
+#include "scenes/reflect/bihemispherical_albedo.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_parts.h"
 
@@ -40,7 +40,7 @@ class Stopwatch {
 // Whether any surface has a radiosity: reflects, or shines through F.
 bool any_sends(const scenes::Scene& scene, const Patches& patches,
                const std::vector<bool>& is_explicit) {
-  const std::vector<Rgb> spread = scenes::spread_reflectances(scene);
+  const std::vector<Rgb> spread = scenes::bihemispherical_albedos(scene);
   return std::any_of(patches.facets.begin(), patches.facets.end(), [&](const Facet& facet) {
     const std::uint32_t m = facet.material;
     return base::max_component(spread[m]) > 0.0 || (scene.materials[m].emits() && !is_explicit[m]);
@@ -164,7 +164,7 @@ Solution solve_keeping(const scenes::Scene& scene, const scenes::LightGroups& gr
   for (std::size_t k = 0; k < source.size(); ++k) {
     source[k] = found.emitted[k] + rho[k] * found.direct[k];
   }
-  check_light_ends(scene, patches, factors, source, rho, columns);
+  check_enclosure(scene, patches, factors, source, rho, columns);
   LinearSolve linear = solve_linear(factors, source, rho, columns, options.tolerance);
   report.iterations = linear.iterations;
   report.residual = linear.residual;

@@ -8,7 +8,7 @@
 
 #include "base/numbers/random.h"
 #include "base/parallel.h"
-#include "scenes/reflect/spread_reflectance.h"
+#include "scenes/reflect/bihemispherical_albedo.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_parts.h"
 
@@ -144,7 +144,7 @@ Variation::Variation(const scenes::Scene& scene, const scenes::LightGroups& grou
       sources_(find_sources(scene, groups, effects, 16)),
       groups_(groups.count()),
       earth_group_(groups.earth),
-      reflectances_(scenes::spread_reflectances(scene)),
+      reflectances_(scenes::bihemispherical_albedos(scene)),
       options_(options) {}
 
 std::vector<Unevenness> Variation::find(const Patches& patches,

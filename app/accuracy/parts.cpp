@@ -40,47 +40,47 @@ Json facts_of(const studies::StepCost& cost) {
 
 AccuracyParts::AccuracyParts(const AccuracyTask& task, const studies::StudyScene& scene)
     : task_(task), scene_(scene), cpu_start_(cpu_seconds()) {
-  common_marks_ = {{"study", "accuracy"},
-                   {"scene", scene_marks(task.loaded)},
-                   {"camera", camera_marks(task.view.camera)},
-                   {"columns", task.view.columns},
-                   {"rows", task.view.rows}};
+  common_cache_key_ = {{"study", "accuracy"},
+                       {"scene", scene_cache_key(task.loaded)},
+                       {"camera", camera_cache_key(task.view.camera)},
+                       {"columns", task.view.columns},
+                       {"rows", task.view.rows}};
 }
 
-Json AccuracyParts::marks_of(const studies::Batch& batch) const {
-  Json marks = common_marks_;
-  marks["seed"] = task_.view.seed;
-  marks["reference"] = {{"paths", batch.paths == raytrace::PathSet::All ? "all" : "gathered"},
-                        {"side", batch.side},
-                        {"index", batch.index},
-                        {"paths_per_pixel", batch.paths_per_pixel}};
-  return marks;
+Json AccuracyParts::cache_key_of(const studies::Batch& batch) const {
+  Json cache_key = common_cache_key_;
+  cache_key["seed"] = task_.view.seed;
+  cache_key["reference"] = {{"paths", batch.paths == raytrace::PathSet::All ? "all" : "gathered"},
+                            {"side", batch.side},
+                            {"index", batch.index},
+                            {"paths_per_pixel", batch.paths_per_pixel}};
+  return cache_key;
 }
 
-// Every knob that the picture depends on, as resolved: a default that changes has other marks.
-Json AccuracyParts::marks_of(const studies::AccuracyStep& step, std::uint64_t seed) const {
-  Json marks = common_marks_;
+// Every knob that the picture depends on, as resolved: a default that changes has other cache_key.
+Json AccuracyParts::cache_key_of(const studies::AccuracyStep& step, std::uint64_t seed) const {
+  Json cache_key = common_cache_key_;
   const radiosity::SolveOptions solver = studies::solver_of(scene_, step, seed);
   const raytrace::RenderOptions picture = studies::picture_of(scene_, task_.view, step);
-  marks["seed"] = seed;
-  marks["step"] = {{"method", step.method},
-                   {"lights", step.lights},
-                   {"steered", step.steered()},
-                   {"wanted_error", step.quality.error.value_or(0.0)},
-                   {"gather_rays", picture.gather_rays},
-                   {"share_gather", picture.shared.on},
-                   {"smooth_share", picture.shared.smooth_share},
-                   {"picture_noise", picture.shared.noise}};
+  cache_key["seed"] = seed;
+  cache_key["step"] = {{"method", step.method},
+                       {"lights", step.lights},
+                       {"steered", step.steered()},
+                       {"wanted_error", step.quality.error.value_or(0.0)},
+                       {"gather_rays", picture.gather_rays},
+                       {"share_gather", picture.shared.on},
+                       {"smooth_share", picture.shared.smooth_share},
+                       {"picture_noise", picture.shared.noise}};
   if (step.indirect == raytrace::Indirect::Radiosity) {
-    marks["solve"] = {{"patch_edge_m", solver.patch_edge_m},
-                      {"form_factor_rays", solver.form_factor_rays},
-                      {"tolerance", solver.tolerance},
-                      {"refine", solver.refine.on},
-                      {"start_edge_m", solver.refine.start_edge_m},
-                      {"max_patches", solver.refine.max_patches},
-                      {"error", solver.refine.error}};
+    cache_key["solve"] = {{"patch_edge_m", solver.patch_edge_m},
+                          {"form_factor_rays", solver.form_factor_rays},
+                          {"tolerance", solver.tolerance},
+                          {"refine", solver.refine.on},
+                          {"start_edge_m", solver.refine.start_edge_m},
+                          {"max_patches", solver.refine.max_patches},
+                          {"error", solver.refine.error}};
   }
-  return marks;
+  return cache_key;
 }
 
 studies::StepCost AccuracyParts::cost_of(const Json& facts) {
@@ -103,16 +103,16 @@ studies::StepCost AccuracyParts::cost_of(const Json& facts) {
 }
 
 bool AccuracyParts::has(const studies::Batch& batch) const {
-  return task_.store.has(marks_of(batch));
+  return task_.store.has(cache_key_of(batch));
 }
 
 bool AccuracyParts::has(const studies::AccuracyStep& step, std::uint64_t seed) const {
-  return task_.store.has(marks_of(step, seed));
+  return task_.store.has(cache_key_of(step, seed));
 }
 
-std::optional<StoredPart> AccuracyParts::stored(const Json& marks) {
+std::optional<CachedResult> AccuracyParts::stored(const Json& cache_key) {
   std::string said;
-  std::optional<StoredPart> part = task_.store.find(marks, said);
+  std::optional<CachedResult> part = task_.store.find(cache_key, said);
   if (!said.empty() && !task_.common.quiet) note("note: " + said);
   if (part) ++finished_;
   return part;
@@ -124,23 +124,23 @@ void AccuracyParts::end_early() const {
                                 finished_, task_.call.folder));
 }
 
-StoredPart AccuracyParts::batch(const studies::Batch& batch) {
-  const Json marks = marks_of(batch);
-  if (auto part = stored(marks)) return *part;
+CachedResult AccuracyParts::batch(const studies::Batch& batch) {
+  const Json cache_key = cache_key_of(batch);
+  if (auto part = stored(cache_key)) return *part;
   if (task_.view.stop()) end_early();
   Progress progress("reference", task_.common.quiet);
   const double before = cpu_seconds();
   auto image = studies::trace_batch(scene_, task_.view, batch, std::ref(progress));
   if (!image) end_early();
-  StoredPart part{{{"cpu_seconds", cpu_seconds() - before}}, std::move(*image)};
-  task_.store.keep(marks, part);
+  CachedResult part{{{"cpu_seconds", cpu_seconds() - before}}, std::move(*image)};
+  task_.store.keep(cache_key, part);
   ++finished_;
   return part;
 }
 
-StoredPart AccuracyParts::point(const studies::AccuracyStep& step, std::uint64_t seed) {
-  const Json marks = marks_of(step, seed);
-  if (auto part = stored(marks)) return *part;
+CachedResult AccuracyParts::point(const studies::AccuracyStep& step, std::uint64_t seed) {
+  const Json cache_key = cache_key_of(step, seed);
+  if (auto part = stored(cache_key)) return *part;
   if (task_.view.stop()) end_early();
   const radiosity::SolveOptions solver = studies::solver_of(scene_, step, seed);
   const auto alike = std::count_if(
@@ -154,8 +154,8 @@ StoredPart AccuracyParts::point(const studies::AccuracyStep& step, std::uint64_t
   if (!result) end_early();
   base::Image image{view.columns, view.rows, {}};
   image.channels.push_back({"Y", std::move(result->luminance)});
-  StoredPart part{facts_of(result->cost), std::move(image)};
-  task_.store.keep(marks, part);
+  CachedResult part{facts_of(result->cost), std::move(image)};
+  task_.store.keep(cache_key, part);
   ++finished_;
   return part;
 }

@@ -16,9 +16,9 @@ class AccuracyParts {
   AccuracyParts(const AccuracyTask& task, const studies::StudyScene& scene);
 
   // Of a reference: channels Y and variance; fact: cpu_seconds.
-  [[nodiscard]] StoredPart batch(const studies::Batch& batch);
+  [[nodiscard]] CachedResult batch(const studies::Batch& batch);
   // A step's picture, channel Y, and its cost.
-  [[nodiscard]] StoredPart point(const studies::AccuracyStep& step, std::uint64_t seed);
+  [[nodiscard]] CachedResult point(const studies::AccuracyStep& step, std::uint64_t seed);
   [[nodiscard]] bool has(const studies::Batch& batch) const;
   [[nodiscard]] bool has(const studies::AccuracyStep& step, std::uint64_t seed) const;
   [[nodiscard]] static studies::StepCost cost_of(const Json& facts);
@@ -34,14 +34,14 @@ class AccuracyParts {
   void tell(const std::string& what, double seconds_left, const std::string& found) const;
 
  private:
-  [[nodiscard]] Json marks_of(const studies::Batch& batch) const;
-  [[nodiscard]] Json marks_of(const studies::AccuracyStep& step, std::uint64_t seed) const;
-  [[nodiscard]] std::optional<StoredPart> stored(const Json& marks);
+  [[nodiscard]] Json cache_key_of(const studies::Batch& batch) const;
+  [[nodiscard]] Json cache_key_of(const studies::AccuracyStep& step, std::uint64_t seed) const;
+  [[nodiscard]] std::optional<CachedResult> stored(const Json& cache_key);
   [[noreturn]] void end_early() const;
 
   const AccuracyTask& task_;
   const studies::StudyScene& scene_;
-  Json common_marks_;
+  Json common_cache_key_;
   std::vector<radiosity::SolveOptions> expected_;
   studies::SolutionShelf shared_, single_;
   std::size_t finished_ = 0;

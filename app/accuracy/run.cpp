@@ -90,7 +90,7 @@ class Study {
     for (PathReference& reference : references) {
       for (int side = 0; side < 2; ++side) {
         const Batch batch{reference.paths, side, index, paths};
-        StoredPart part = parts_.batch(batch);
+        CachedResult part = parts_.batch(batch);
         result_.reference_cpu_seconds += part.facts["cpu_seconds"].get<double>();
         reference.batches[side].push_back(batch);
         reference.pictures[side].push_back(std::move(part.image));
@@ -136,7 +136,7 @@ class Study {
     const studies::AccuracyStep step = studies::straight_step(task_.loaded.scene, finest);
     studies::NoisyPicture* sides[] = {&straight_.first, &straight_.second};
     for (int side = 0; side < 2; ++side) {
-      const StoredPart part =
+      const CachedResult part =
           parts_.point(step, studies::reference_seed(task_.view.seed, side, most_paths));
       result_.reference_cpu_seconds += part.facts["cpu_seconds"].get<double>();
       const std::vector<float>& values = part.image.find("Y")->values;
@@ -187,7 +187,7 @@ class Study {
           continue;
         }
       }
-      const StoredPart part = parts_.point(step, task_.view.seed);
+      const CachedResult part = parts_.point(step, task_.view.seed);
       const studies::StepCost cost = parts_.cost_of(part.facts);
       const std::vector<float>& luminance = part.image.find("Y")->values;
       result_.points.push_back({step, cost, studies::picture_error(luminance, full_, counted_),

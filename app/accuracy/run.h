@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/study/part_store.h"
+#include "app/study/result_cache.h"
 #include "app/study/study.h"
 #include "studies/accuracy/accuracy.h"
 #include "studies/accuracy/findings.h"
@@ -52,7 +52,7 @@ struct AccuracyTask {
   const LoadedScene& loaded;
   const scenes::RayQuery& query;
   studies::AccuracyView view;
-  const PartStore& store;
+  const ResultCache& store;
 };
 
 // Throws base::Error (Work) with what is finished once view.stop says so.

@@ -14,8 +14,8 @@
 #include "app/memory.h"
 #include "app/options.h"
 #include "app/output.h"
-#include "app/study/part_store.h"
 #include "app/study/plot.h"
+#include "app/study/result_cache.h"
 #include "app/study/study.h"
 #include "base/files/output_file.h"
 #include "raytrace/camera/check.h"
@@ -68,7 +68,7 @@ void run(const AccuracyCall& call, const Common& common) {
   }
   prepare_folder(call.folder, file_names());
   const fs::path folder = call.folder;
-  const PartStore store(folder / points_folder);
+  const ResultCache store(folder / points_folder);
   const std::vector<std::string> replaced = studies::replaced_keys(loaded.scene.quality);
   if (!replaced.empty() && !common.quiet) {
     note(

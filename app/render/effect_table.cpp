@@ -38,12 +38,12 @@ void add_cctv_rows(Json& rows, const LoadedScene& loaded, const RenderCall& call
 }  // namespace
 
 Json effect_rows(const LoadedScene& loaded, const RenderCall& call, const scenes::Asked& asked,
-                 const std::vector<scenes::Idle>& idle) {
+                 const std::vector<scenes::Culling>& culled) {
   Json rows = Json::array();
   for (const auto& row : scenes::describe_effects(loaded.scene, loaded.groups, asked)) {
     rows.push_back({{"effect", row.effect}, {"runs", row.runs}, {"why", row.reason}});
   }
-  for (const scenes::Idle& off : idle) {
+  for (const scenes::Culling& off : culled) {
     const auto row = std::find_if(rows.begin(), rows.end(),
                                   [&](const Json& r) { return r["effect"] == off.effect; });
     // Other lamps of the kind may be on.
@@ -153,7 +153,7 @@ void add_expectation(Json& rows, const Expectation& expected) {
 }
 
 Json report_json(const LoadedScene& loaded, const RenderCall& call, const scenes::Asked& asked,
-                 const std::vector<scenes::Idle>& idle, const Expectation& expected,
+                 const std::vector<scenes::Culling>& culled, const Expectation& expected,
                  const radiosity::SolveReport& solved, const std::vector<Picture>& pictures,
                  const StageTimes& times, double cpu_seconds) {
   const double threads = base::available_threads();
@@ -169,7 +169,7 @@ Json report_json(const LoadedScene& loaded, const RenderCall& call, const scenes
   }
   std::vector<studies::EffectCost> taken = studies::effect_costs(bill, loaded.effects);
   taken.push_back(cctv);
-  Json rows = effect_rows(loaded, call, asked, idle);
+  Json rows = effect_rows(loaded, call, asked, culled);
   rows.push_back(camera_row());
   for (Json& row : rows) {
     row["expected"] = expectation_json(expected, row);

@@ -15,7 +15,8 @@ namespace earthshine::app {
 // {"effect", "runs", "why", "skipped_error"} per effect (the last of those that cannot matter), the
 // stages of the CCTV cameras among them as "cctv: glare".
 [[nodiscard]] Json effect_rows(const LoadedScene& loaded, const RenderCall& call,
-                               const scenes::Asked& asked, const std::vector<scenes::Idle>& idle);
+                               const scenes::Asked& asked,
+                               const std::vector<scenes::Culling>& culled);
 
 // What each effect is expected to take.
 struct Expectation {
@@ -35,7 +36,7 @@ void add_expectation(Json& rows, const Expectation& expected);
 // The table once more with what each effect really took, in `taken` beside `expected`. cpu_seconds:
 // of solve and pictures, all threads.
 [[nodiscard]] Json report_json(const LoadedScene& loaded, const RenderCall& call,
-                               const scenes::Asked& asked, const std::vector<scenes::Idle>& idle,
+                               const scenes::Asked& asked, const std::vector<scenes::Culling>& culled,
                                const Expectation& expected, const radiosity::SolveReport& solved,
                                const std::vector<Picture>& pictures, const StageTimes& times,
                                double cpu_seconds);

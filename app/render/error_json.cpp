@@ -8,12 +8,12 @@
 namespace earthshine::app {
 namespace {
 
-using studies::Doubt;
+using studies::ErrorEstimate;
 
 struct NamedPart {
   const char* name;
   const char* words;
-  Doubt part;
+  ErrorEstimate part;
 };
 using Parts = std::vector<NamedPart>;
 
@@ -30,12 +30,12 @@ Parts parts_of(const studies::SolutionError& parts) {
           {"lamp_sampling", "lamps", parts.lamps}};
 }
 
-Json json_of(const Doubt& doubt) {
+Json json_of(const ErrorEstimate& doubt) {
   return {{"estimate", doubt.estimate}, {"bound_95", doubt.bound_95}};
 }
 
 // Null where nothing is seen that could be wrong.
-Json json_of(const Doubt& doubt, bool known) {
+Json json_of(const ErrorEstimate& doubt, bool known) {
   return known ? json_of(doubt) : Json{{"estimate", nullptr}, {"bound_95", nullptr}};
 }
 
@@ -47,8 +47,8 @@ Json json_of(const studies::TargetError& target) {
   return json;
 }
 
-Json json_of(const Doubt& total, bool known, const Parts& parts, std::optional<double> wanted,
-             const std::vector<std::string>& not_captured) {
+Json json_of(const ErrorEstimate& total, bool known, const Parts& parts,
+             std::optional<double> wanted, const std::vector<std::string>& not_captured) {
   Json json = json_of(total, known);
   json["wanted"] = wanted ? Json(*wanted) : Json();
   json["parts"] = Json::object();
@@ -57,7 +57,7 @@ Json json_of(const Doubt& total, bool known, const Parts& parts, std::optional<d
   return json;
 }
 
-std::string text_of(const Doubt& total, bool known, const Parts& parts,
+std::string text_of(const ErrorEstimate& total, bool known, const Parts& parts,
                     const std::vector<std::string>& not_captured) {
   std::string text = "no error can be told: nothing lit is seen";
   if (known) {
@@ -158,7 +158,7 @@ void add_errors(base::ExrHeader& header, const Drawn& drawn) {
     header.numbers.emplace_back("earthshine:error." + name, static_cast<float>(value));
   };
   if (budget.pixels > 0) {
-    const Doubt total = budget.total;
+    const ErrorEstimate total = budget.total;
     number("estimate", total.estimate);
     number("bound_95", total.bound_95);
     for (const NamedPart& part : parts_of(budget.parts)) number(part.name, part.part.estimate);

@@ -95,7 +95,7 @@ void add_seconds(Json& report, const LoadedScene& loaded, const RenderCall& call
 Json report_of(const RenderCall& call, const Common& common) {
   LoadedScene loaded = load(call.scene, common.quiet);
   const scenes::Asked asked = asked_of(call, planned_cameras(call, loaded.scene));
-  const std::vector<scenes::Idle> idle = decide_effects(loaded, call, asked);
+  const std::vector<scenes::Culling> culled = decide_effects(loaded, call, asked);
   const scenes::QualityKnobs knobs = scenes::resolve_quality(loaded.scene);
   const auto rays_per_patch = std::bit_ceil(static_cast<std::uint64_t>(knobs.form_factor_rays));
   const bool refines = knobs.refine && radiosity::is_lit(loaded.effects);
@@ -106,7 +106,7 @@ Json report_of(const RenderCall& call, const Common& common) {
   Json report;
   report["scene"] = loaded.scene.path.string();
   report["name"] = loaded.scene.name;
-  report["effects"] = effect_rows(loaded, call, asked, idle);
+  report["effects"] = effect_rows(loaded, call, asked, culled);
   report["light_groups"] = loaded.groups.names;
   report["quality"] = {{"patch_edge_m", knobs.patch_edge_m},
                        {"refine", knobs.refine},

@@ -128,7 +128,7 @@ void run(RenderCall call, const Common& common) {
   LoadedScene loaded = times.measure("read", [&] { return load(call.scene, common.quiet); });
   const std::vector<Wanted> pictures = wanted_pictures(call, loaded.scene, common.quiet);
   const scenes::Asked asked = asked_of(call, cameras_of(pictures));
-  const std::vector<scenes::Idle> idle = decide_effects(loaded, call, asked);
+  const std::vector<scenes::Culling> culled = decide_effects(loaded, call, asked);
   const scenes::RayQuery query =
       times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
   for (const Wanted& picture : pictures) {
@@ -187,7 +187,7 @@ void run(RenderCall call, const Common& common) {
   }
   if (expected) {
     base::write_text(call.report,
-                     dump(report_json(loaded, call, asked, idle, *expected, light.solution.report,
+                     dump(report_json(loaded, call, asked, culled, *expected, light.solution.report,
                                       taken, times, base::cpu_seconds() - cpu_before)));
   }
   if (call.json) print(dump(reports.size() == 1 ? reports.front() : reports));

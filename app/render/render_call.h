@@ -10,7 +10,7 @@
 #include "app/render/over.h"
 #include "radiosity/solution.h"
 #include "raytrace/render.h"
-#include "scenes/effects/idle.h"
+#include "scenes/effects/culling.h"
 #include "scenes/ray_query.h"
 #include "studies/error/error_budget.h"
 #include "studies/steer/wanted_error.h"
@@ -55,8 +55,9 @@ void check_aovs(const RenderCall& call);
 
 // Decides about the effects for the call; those that cannot matter are switched off and returned,
 // unless the call wants all of them, paths as a reference, or a solution that is there already.
-[[nodiscard]] std::vector<scenes::Idle> decide_effects(LoadedScene& loaded, const RenderCall& call,
-                                                       const scenes::Asked& asked);
+[[nodiscard]] std::vector<scenes::Culling> decide_effects(LoadedScene& loaded,
+                                                          const RenderCall& call,
+                                                          const scenes::Asked& asked);
 
 // What the call asks of the scene, which decides with it about the effects.
 [[nodiscard]] scenes::Asked asked_of(const RenderCall& call,

@@ -20,7 +20,8 @@
 namespace earthshine::app {
 namespace {
 
-// Whole numbers between the marks of `pattern`: "," and "x" stand for themselves, each # for one.
+// Whole numbers between the cache_key of `pattern`: "," and "x" stand for themselves, each # for
+// one.
 std::optional<std::vector<int>> numbers_like(std::string_view pattern, std::string_view text) {
   std::vector<int> numbers;
   const char *at = text.data(), *end = at + text.size();
@@ -160,12 +161,12 @@ void check_aovs(const RenderCall& call) {
   }
 }
 
-std::vector<scenes::Idle> decide_effects(LoadedScene& loaded, const RenderCall& call,
-                                         const scenes::Asked& asked) {
+std::vector<scenes::Culling> decide_effects(LoadedScene& loaded, const RenderCall& call,
+                                            const scenes::Asked& asked) {
   loaded.effects = scenes::find_effects(loaded.scene, loaded.groups, asked);
   const bool reference = call.indirect == raytrace::Indirect::Paths;
   if (call.all_effects || reference || !call.solution.empty()) return {};
-  return scenes::switch_off_idle(
+  return scenes::cull_effects(
       loaded.scene, asked, loaded.scene.quality.error.value_or(scenes::default_error),
       radiosity::hidden_lights(loaded.scene, asked.cameras), loaded.groups, loaded.effects);
 }

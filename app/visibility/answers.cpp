@@ -46,20 +46,20 @@ std::string arcs_text(const std::vector<studies::Arc>& arcs) {
   return text;
 }
 
-std::string way_text(const WayOfLooking& way) {
+std::string way_text(const ViewingConfiguration& way) {
   return fmt::format("camera {}{}, lamps {}{}", way.camera,
                      way.iris.empty() ? "" : " with iris " + way.iris, way.lamps,
                      way.scene.empty() ? "" : ", in " + way.scene);
 }
 
 struct Rated {
-  const WayOfLooking* way = nullptr;
+  const ViewingConfiguration* way = nullptr;
   std::vector<studies::Arc> arcs;
   double reach = -1.0;  // share of the orbit, or whether the one place does
   double best = 0.0;    // highest probability
 };
 
-Rated rate(const WayOfLooking& way, double wanted, bool closed) {
+Rated rate(const ViewingConfiguration& way, double wanted, bool closed) {
   Rated rated{&way, {}, 0.0, *std::max_element(way.detect.begin(), way.detect.end())};
   const auto seen =
       std::count_if(way.detect.begin(), way.detect.end(), [&](double p) { return p >= wanted; });
@@ -70,17 +70,17 @@ Rated rate(const WayOfLooking& way, double wanted, bool closed) {
   return rated;
 }
 
-std::string lamp_text(const std::vector<WayOfLooking>& ways, double wanted) {
-  const WayOfLooking* best = nullptr;
-  const WayOfLooking* tried = nullptr;
-  for (const WayOfLooking& way : ways) {
+std::string lamp_text(const std::vector<ViewingConfiguration>& ways, double wanted) {
+  const ViewingConfiguration* best = nullptr;
+  const ViewingConfiguration* tried = nullptr;
+  for (const ViewingConfiguration& way : ways) {
     if (way.tried_factors) tried = &way;
     if (way.least_factor && (best == nullptr || *way.least_factor < *best->least_factor)) {
       best = &way;
     }
   }
   if (tried == nullptr) return "";
-  const WayOfLooking& told = best != nullptr ? *best : *tried;
+  const ViewingConfiguration& told = best != nullptr ? *best : *tried;
   const std::string where = told.darkest_deg
                                 ? fmt::format("Where it is darkest, at {}, ", at(*told.darkest_deg))
                                 : "Here ";
@@ -113,7 +113,8 @@ std::vector<std::string> modes_of(const studies::StudyFile& study, const StudyCa
 }  // namespace
 
 void add_ways(const StudyPart& part, const studies::StudyFile& study, const StudyCamera& camera,
-              const studies::BasisView& view, std::vector<std::vector<WayOfLooking>>& ways) {
+              const studies::BasisView& view,
+              std::vector<std::vector<ViewingConfiguration>>& ways) {
   if (study.wanted.empty()) return;
   const studies::LightBasis& basis = *part.basis;
   const std::size_t places = basis.places().size();
@@ -134,15 +135,15 @@ void add_ways(const StudyPart& part, const studies::StudyFile& study, const Stud
         const auto target = static_cast<std::size_t>(named - part.targets.begin());
         const std::size_t darkest = darkest_place(basis, setting, view.targets[target].by_group);
         const bool tries = lamps && view.plan.targets[target].view.in_view();
-        WayOfLooking way{study.scenes.size() > 1 ? part.path : "",
-                         camera.camera->name,
-                         iris,
-                         basis.settings()[setting].name,
-                         {},
-                         part.positions_deg,
-                         {},
-                         {},
-                         tries};
+        ViewingConfiguration way{study.scenes.size() > 1 ? part.path : "",
+                                 camera.camera->name,
+                                 iris,
+                                 basis.settings()[setting].name,
+                                 {},
+                                 part.positions_deg,
+                                 {},
+                                 {},
+                                 tries};
         for (const std::vector<double>& at_place : detect) way.detect.push_back(at_place[target]);
         if (!part.positions_deg.empty()) way.darkest_deg = part.positions_deg[darkest];
         if (tries) {
@@ -158,11 +159,11 @@ void add_ways(const StudyPart& part, const studies::StudyFile& study, const Stud
   }
 }
 
-Json ways_json(const std::vector<std::vector<WayOfLooking>>& ways) {
+Json ways_json(const std::vector<std::vector<ViewingConfiguration>>& ways) {
   Json all = Json::array();
-  for (const std::vector<WayOfLooking>& of_wanted : ways) {
+  for (const std::vector<ViewingConfiguration>& of_wanted : ways) {
     Json& list = all.emplace_back(Json::array());
-    for (const WayOfLooking& way : of_wanted) {
+    for (const ViewingConfiguration& way : of_wanted) {
       list.push_back({{"scene", way.scene},
                       {"camera", way.camera},
                       {"iris", way.iris},
@@ -177,13 +178,13 @@ Json ways_json(const std::vector<std::vector<WayOfLooking>>& ways) {
   return all;
 }
 
-std::vector<std::vector<WayOfLooking>> ways_of(const Json& kept) {
+std::vector<std::vector<ViewingConfiguration>> ways_of(const Json& kept) {
   const auto number = [](const Json& value) {
     return value.is_null() ? std::nullopt : std::optional(value.get<double>());
   };
-  std::vector<std::vector<WayOfLooking>> all;
+  std::vector<std::vector<ViewingConfiguration>> all;
   for (const Json& list : kept) {
-    std::vector<WayOfLooking>& ways = all.emplace_back();
+    std::vector<ViewingConfiguration>& ways = all.emplace_back();
     for (const Json& way : list) {
       ways.push_back({way["scene"], way["camera"], way["iris"], way["lamps"],
                       way["detect"].get<std::vector<double>>(),
@@ -195,9 +196,9 @@ std::vector<std::vector<WayOfLooking>> ways_of(const Json& kept) {
 }
 
 Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& study,
-                 const std::vector<WayOfLooking>& ways) {
+                 const std::vector<ViewingConfiguration>& ways) {
   Rated best;
-  for (const WayOfLooking& way : ways) {
+  for (const ViewingConfiguration& way : ways) {
     Rated rated = rate(way, wanted.probability, study.timeline);
     if (rated.reach > best.reach || (rated.reach == best.reach && rated.best > best.best)) {
       best = std::move(rated);
@@ -217,7 +218,7 @@ Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& 
     answer["text"] = fmt::format("Nothing was looked at for {}.", wanted.target);
     return answer;
   }
-  const WayOfLooking& way = *best.way;
+  const ViewingConfiguration& way = *best.way;
   answer["camera"] = way.camera;
   answer["iris"] = way.iris.empty() ? Json() : Json(way.iris);
   answer["lamps"] = way.lamps;

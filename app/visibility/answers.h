@@ -12,7 +12,7 @@
 namespace earthshine::app {
 
 // One way of looking: a camera with an iris mode, by one lamp setting.
-struct WayOfLooking {
+struct ViewingConfiguration {
   std::string scene;  // its path in a study of several, else empty
   std::string camera, iris, lamps;
   std::vector<double> detect;         // by place
@@ -24,14 +24,14 @@ struct WayOfLooking {
 
 // Adds the ways of one camera to those of each wanted target.
 void add_ways(const StudyPart& part, const studies::StudyFile& study, const StudyCamera& camera,
-              const studies::BasisView& view, std::vector<std::vector<WayOfLooking>>& ways);
+              const studies::BasisView& view, std::vector<std::vector<ViewingConfiguration>>& ways);
 
 // To keep them, and back.
-[[nodiscard]] Json ways_json(const std::vector<std::vector<WayOfLooking>>& ways);
-[[nodiscard]] std::vector<std::vector<WayOfLooking>> ways_of(const Json& kept);
+[[nodiscard]] Json ways_json(const std::vector<std::vector<ViewingConfiguration>>& ways);
+[[nodiscard]] std::vector<std::vector<ViewingConfiguration>> ways_of(const Json& kept);
 
 // An entry of study.json's "answers".
 [[nodiscard]] Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& study,
-                               const std::vector<WayOfLooking>& ways);
+                               const std::vector<ViewingConfiguration>& ways);
 
 }  // namespace earthshine::app

@@ -79,10 +79,10 @@ studies::ConditionOptions StudyConditions::options() const {
   return options;
 }
 
-Json StudyConditions::marks(const StudyCamera& camera, const Json& frame_marks, std::size_t first,
-                            std::size_t last) const {
-  Json marks = {{"what", "conditions"}, {"picture", frame_marks}};
-  Json& weights = marks["weights"] = Json::array();
+Json StudyConditions::cache_key(const StudyCamera& camera, const Json& frame_cache_key,
+                                std::size_t first, std::size_t last) const {
+  Json cache_key = {{"what", "conditions"}, {"picture", frame_cache_key}};
+  Json& weights = cache_key["weights"] = Json::array();
   for (std::size_t k = first; k < last; ++k) {
     const auto [place, setting] = place_of(part_, k);
     const studies::GroupWeights found = part_.basis->weights(place, setting);
@@ -94,26 +94,26 @@ Json StudyConditions::marks(const StudyCamera& camera, const Json& frame_marks, 
     weights.push_back(one);
   }
   if (camera.cctv) {
-    marks["cctv"] = settings_json(camera.cctv->chain.camera);
-    marks["monitor"] = monitor_json(camera.cctv->chain.monitor);
+    cache_key["cctv"] = settings_json(camera.cctv->chain.camera);
+    cache_key["monitor"] = monitor_json(camera.cctv->chain.monitor);
   }
   // Reasons name objects, and how many there are of them depends on what is explained.
   for (const scenes::Object& object : part_.loaded.scene.objects) {
-    marks["objects"].push_back(object.name);
+    cache_key["objects"].push_back(object.name);
   }
-  marks["explain"] = static_cast<int>(options().explain);
-  marks["targets"] = part_.targets;
-  marks["seen"] = study_.seen_probability;
-  return marks;
+  cache_key["explain"] = static_cast<int>(options().explain);
+  cache_key["targets"] = part_.targets;
+  cache_key["seen"] = study_.seen_probability;
+  return cache_key;
 }
 
 std::optional<std::vector<Json>> StudyConditions::find(const StudyCamera& camera,
-                                                       const Json& frame_marks) const {
+                                                       const Json& frame_cache_key) const {
   std::vector<Json> all;
   for (std::size_t first = 0; first < part_.conditions(); first += batch) {
     const std::size_t last = std::min(first + batch, part_.conditions());
     std::string said;
-    const auto stored = store_.find_facts(marks(camera, frame_marks, first, last), said);
+    const auto stored = store_.find_facts(cache_key(camera, frame_cache_key, first, last), said);
     if (!stored) return std::nullopt;
     for (const Json& one : (*stored)["conditions"]) all.push_back(one);
   }
@@ -121,7 +121,8 @@ std::optional<std::vector<Json>> StudyConditions::find(const StudyCamera& camera
 }
 
 std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studies::BasisView& view,
-                                         const Json& frame_marks, std::vector<StudyCost>& costs) {
+                                         const Json& frame_cache_key,
+                                         std::vector<StudyCost>& costs) {
   const auto start = std::chrono::steady_clock::now();
   const raytrace::Progress progress =
       progress_of_stages(common_)(fmt::format("conditions of camera {}", camera.camera->name));
@@ -132,7 +133,7 @@ std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studie
   for (std::size_t first = 0; first < all.size(); first += batch) {
     const std::size_t last = std::min(first + batch, all.size());
     if (progress) progress(first, all.size());
-    const Json key = marks(camera, frame_marks, first, last);
+    const Json key = cache_key(camera, frame_cache_key, first, last);
     std::string said;
     if (const std::optional<Json> stored = store_.find_facts(key, said)) {
       std::copy((*stored)["conditions"].begin(), (*stored)["conditions"].end(),

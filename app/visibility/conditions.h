@@ -19,16 +19,16 @@ class StudyConditions {
                   const std::filesystem::path& folder, const Common& common);
 
   // One entry per condition: a list with one entry per target. Null for those that were not reached
-  // before an interruption. frame_marks: of the picture that the view was made of.
+  // before an interruption. frame_cache_key: of the picture that the view was made of.
   [[nodiscard]] std::vector<Json> judge(const StudyCamera& camera, const studies::BasisView& view,
-                                        const Json& frame_marks, std::vector<StudyCost>& costs);
+                                        const Json& frame_cache_key, std::vector<StudyCost>& costs);
 
   // The same if all of it was done before, without the picture.
   [[nodiscard]] std::optional<std::vector<Json>> find(const StudyCamera& camera,
-                                                      const Json& frame_marks) const;
+                                                      const Json& frame_cache_key) const;
   // Everything that the camera's conditions from `first` to before `last` depend on.
-  [[nodiscard]] Json marks(const StudyCamera& camera, const Json& frame_marks, std::size_t first,
-                           std::size_t last) const;
+  [[nodiscard]] Json cache_key(const StudyCamera& camera, const Json& frame_cache_key,
+                               std::size_t first, std::size_t last) const;
 
  private:
   [[nodiscard]] studies::ConditionOptions options() const;
@@ -36,7 +36,7 @@ class StudyConditions {
   const StudyPart& part_;
   const studies::StudyFile& study_;
   const Common& common_;
-  PartStore store_;
+  ResultCache store_;
 };
 
 }  // namespace earthshine::app

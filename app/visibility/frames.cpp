@@ -43,12 +43,12 @@ StudyFrames::StudyFrames(const StudyPart& part, const std::filesystem::path& fol
       folder_(folder),
       store_(folder),
       solver_(solve_options(part.basis_scene.scene, common)) {
-  scene_marks_ = scene_marks(part.basis_scene);
+  scene_cache_key_ = scene_cache_key(part.basis_scene);
   Json knobs = Json::object();
   for (const radiosity::SolveKnob& knob : radiosity::solve_knobs(solver_)) {
     std::visit([&](const auto& value) { knobs[knob.key] = value; }, knob.value);
   }
-  scene_marks_["solver"] = knobs;
+  scene_cache_key_["solver"] = knobs;
 }
 
 raytrace::RenderOptions StudyFrames::options(const StudyCamera& camera) const {
@@ -63,26 +63,27 @@ raytrace::RenderOptions StudyFrames::options(const StudyCamera& camera) const {
   return options;
 }
 
-Json StudyFrames::marks(const StudyCamera& camera) const {
-  Json marks = scene_marks_;
+Json StudyFrames::cache_key(const StudyCamera& camera) const {
+  Json cache_key = scene_cache_key_;
   const raytrace::RenderOptions how = options(camera);
-  marks["what"] = "picture";
-  marks["camera"] = camera_marks(*camera.camera);
-  marks["name"] = camera.camera->name;
-  marks["filter"] = {scenes::filter_name(camera.camera->filter), camera.camera->filter_width_px};
-  marks["columns"] = how.columns;
-  marks["rows"] = how.rows;
-  marks["gather_rays"] = how.gather_rays;
-  marks["shared"] = {how.shared.on, how.shared.smooth_share, how.error, how.shared.noise};
-  marks["seed"] = how.seed;
-  return marks;
+  cache_key["what"] = "picture";
+  cache_key["camera"] = camera_cache_key(*camera.camera);
+  cache_key["name"] = camera.camera->name;
+  cache_key["filter"] = {scenes::filter_name(camera.camera->filter),
+                         camera.camera->filter_width_px};
+  cache_key["columns"] = how.columns;
+  cache_key["rows"] = how.rows;
+  cache_key["gather_rays"] = how.gather_rays;
+  cache_key["shared"] = {how.shared.on, how.shared.smooth_share, how.error, how.shared.noise};
+  cache_key["seed"] = how.seed;
+  return cache_key;
 }
 
 const radiosity::Solution& StudyFrames::solution(std::vector<StudyCost>& costs) {
   if (solution_) return *solution_;
   const LoadedScene& basis = part_.basis_scene;
   base::Digest digest;
-  digest.add(std::string_view(dump(scene_marks_)));
+  digest.add(std::string_view(dump(scene_cache_key_)));
   const std::filesystem::path file = folder_ / ("solution-" + digest.text() + ".h5");
   const radiosity::SolutionOrigin origin{basis.scene, basis.groups, solver_, EARTHSHINE_VERSION};
   StudyCost cost{"solve " + part_.id, 0.0, 0, true};
@@ -92,7 +93,7 @@ const radiosity::Solution& StudyFrames::solution(std::vector<StudyCost>& costs) 
     try {
       solution_ = times.measure("read", [&] { return radiosity::read_solution(file, origin); });
     } catch (const base::Error& error) {
-      note(fmt::format("note: {}; it is done again", error.what()));
+      note(fmt::format("note: {}; it is recomputed", error.what()));
     }
   }
   if (!solution_) {
@@ -119,7 +120,7 @@ const radiosity::Solution& StudyFrames::solution(std::vector<StudyCost>& costs) 
 std::optional<StudyFrames::Frame> StudyFrames::known(const StudyCamera& camera,
                                                      std::vector<StudyCost>& costs) const {
   std::string said;
-  const std::optional<Json> facts = store_.find_facts(marks(camera), said);
+  const std::optional<Json> facts = store_.find_facts(cache_key(camera), said);
   if (!facts) return std::nullopt;
   costs.push_back({fmt::format("picture {} {}", part_.id, camera.camera->name),
                    (*facts)["seconds"].get<double>(), (*facts)["rays"].get<std::uint64_t>(), true});
@@ -131,10 +132,10 @@ std::optional<StudyFrames::Frame> StudyFrames::known(const StudyCamera& camera,
 
 std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
                                                      std::vector<StudyCost>& costs) {
-  const Json key = marks(camera);
+  const Json key = cache_key(camera);
   std::string said;
   const std::string stage = fmt::format("picture {} {}", part_.id, camera.camera->name);
-  if (std::optional<StoredPart> stored = store_.find(key, said)) {
+  if (std::optional<CachedResult> stored = store_.find(key, said)) {
     const double seconds = stored->facts["seconds"].get<double>();
     costs.push_back({stage, seconds, stored->facts["rays"].get<std::uint64_t>(), true});
     return Frame{std::move(stored->image), stored->facts["relative_noise"].get<double>(), seconds,

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "app/study/part_store.h"
+#include "app/study/result_cache.h"
 #include "app/visibility/scene.h"
 #include "studies/study.h"
 
@@ -34,11 +34,11 @@ class StudyFrames {
                                            std::vector<StudyCost>& costs);
 
   // Everything that a camera's picture depends on.
-  [[nodiscard]] Json marks(const StudyCamera& camera) const;
+  [[nodiscard]] Json cache_key(const StudyCamera& camera) const;
   // What is known of a picture that is there, without reading it.
   [[nodiscard]] std::optional<Frame> known(const StudyCamera& camera,
                                            std::vector<StudyCost>& costs) const;
-  [[nodiscard]] bool has(const StudyCamera& camera) const { return store_.has(marks(camera)); }
+  [[nodiscard]] bool has(const StudyCamera& camera) const { return store_.has(cache_key(camera)); }
 
   // Of all light groups; solved or read when it is first asked for.
   [[nodiscard]] const radiosity::Solution& solution(std::vector<StudyCost>& costs);
@@ -49,9 +49,9 @@ class StudyFrames {
   const StudyPart& part_;
   const Common& common_;
   std::filesystem::path folder_;
-  PartStore store_;
+  ResultCache store_;
   radiosity::SolveOptions solver_;
-  Json scene_marks_;
+  Json scene_cache_key_;
   std::optional<radiosity::Solution> solution_;
 };
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "app/console.h"
-#include "app/study/part_store.h"
+#include "app/study/result_cache.h"
 #include "app/study/study.h"
 #include "base/error.h"
 #include "base/files/exr_file.h"
@@ -195,21 +195,21 @@ std::vector<const PictureWish*> own_wishes(const PictureTask& task) {
 }
 
 // Everything that a picture depends on.
-Json marks_of(const PictureTask& task, const PictureWish& wish) {
+Json cache_key_of(const PictureTask& task, const PictureWish& wish) {
   const studies::GroupWeights weights =
       task.part.basis->weights(place_of(task.part, wish), setting_of(task.part, wish));
-  Json marks = {{"what", "figure"},
-                {"picture", task.frame_marks},
-                {"file", file_of(task.study, wish)},
-                {"shows", static_cast<int>(wish.shows)},
-                {"lights", distributed(wish.shows) ? wish.lights : 0}};
-  for (const Rgb& weight : weights.weight) marks["weights"].push_back(to_json(weight));
+  Json cache_key = {{"what", "figure"},
+                    {"picture", task.frame_cache_key},
+                    {"file", file_of(task.study, wish)},
+                    {"shows", static_cast<int>(wish.shows)},
+                    {"lights", distributed(wish.shows) ? wish.lights : 0}};
+  for (const Rgb& weight : weights.weight) cache_key["weights"].push_back(to_json(weight));
   if (by_cctv(wish.shows)) {
     const CctvSetup cctv = cctv_of_wish(task.part, task.camera, wish, task.common);
-    marks["cctv"] = settings_json(cctv.chain.camera);
-    marks["monitor"] = monitor_json(cctv.chain.monitor);
+    cache_key["cctv"] = settings_json(cctv.chain.camera);
+    cache_key["monitor"] = monitor_json(cctv.chain.monitor);
   }
-  return marks;
+  return cache_key;
 }
 
 std::uintmax_t bytes_of(const std::filesystem::path& path) {
@@ -220,7 +220,7 @@ std::uintmax_t bytes_of(const std::filesystem::path& path) {
 
 bool is_there(const PictureTask& task, const PictureWish& wish) {
   std::string said;
-  const auto facts = PartStore(task.folder / "points").find_facts(marks_of(task, wish), said);
+  const auto facts = ResultCache(task.folder / "points").find_facts(cache_key_of(task, wish), said);
   if (!facts) return false;
   const std::string stem = file_of(task.study, wish);
   return (*facts)["png_bytes"] == bytes_of(task.folder / (stem + ".png")) &&
@@ -243,8 +243,8 @@ void draw(const PictureTask& task, const PictureWish& wish, const studies::Basis
     base::write_png(stem + ".png", radiance.width, radiance.height, 3,
                     base::tone_map(radiance).rgb);
   }
-  PartStore(task.folder / "points")
-      .keep_facts(marks_of(task, wish),
+  ResultCache(task.folder / "points")
+      .keep_facts(cache_key_of(task, wish),
                   {{"png_bytes", bytes_of(stem + ".png")}, {"exr_bytes", bytes_of(stem + ".exr")}});
 }
 

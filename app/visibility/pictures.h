@@ -26,7 +26,7 @@ struct PictureTask {
   const StudyPart& part;
   const StudyCamera& camera;
   std::filesystem::path folder;  // of the study; pictures/ and points/ are in it
-  const Json& frame_marks;       // of the camera's picture with all layers
+  const Json& frame_cache_key;   // of the camera's picture with all layers
   const Common& common;
 };
 // Whether all of them are there from an earlier run.

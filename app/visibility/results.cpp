@@ -141,7 +141,7 @@ Json study_json(const StudyFindings& findings) {
                       {"name", part->loaded.scene.name},
                       {"path", part->path},
                       {"patches", patches_of(findings, *part)}});
-    digests[part->id] = scene_marks(part->loaded);
+    digests[part->id] = scene_cache_key(part->loaded);
     for (const std::string& name : part->targets) {
       if (std::find(targets.begin(), targets.end(), Json(name)) == targets.end()) {
         targets.push_back(name);

@@ -105,20 +105,20 @@ class Runner {
   bool look_through(const StudyPart& part, const StudyCamera& camera, StudyFrames& frames,
                     StudyConditions& conditions) {
     CameraResults found{&part, &camera, 0.0, 0.0, std::vector<Json>(part.conditions())};
-    const Json frame_marks = frames.marks(camera);
+    const Json frame_cache_key = frames.cache_key(camera);
     const PictureTask pictures{task_.study,  findings_.parts, part,   camera,
-                               task_.folder, frame_marks,     common_};
-    Json ways_marks = conditions.marks(camera, frame_marks, 0, part.conditions());
-    ways_marks["what"] = "answers";
+                               task_.folder, frame_cache_key, common_};
+    Json ways_cache_key = conditions.cache_key(camera, frame_cache_key, 0, part.conditions());
+    ways_cache_key["what"] = "answers";
     for (const studies::WantedTarget& wanted : task_.study.wanted) {
-      ways_marks["wanted"].push_back(wanted.text);
+      ways_cache_key["wanted"].push_back(wanted.text);
     }
-    ways_marks["iris"] = task_.study.iris;
-    ways_marks["path"] = part.path;
-    if (!take_finished(pictures, ways_marks, frames, conditions, found)) {
+    ways_cache_key["iris"] = task_.study.iris;
+    ways_cache_key["path"] = part.path;
+    if (!take_finished(pictures, ways_cache_key, frames, conditions, found)) {
       std::optional<StudyFrames::Frame> frame;
       if (!Interrupt::asked()) frame = frames.frame(camera, findings_.costs);
-      if (frame) work(pictures, ways_marks, *frame, conditions, found);
+      if (frame) work(pictures, ways_cache_key, *frame, conditions, found);
     }
     findings_.cameras.push_back(std::move(found));
     const auto& done = findings_.cameras.back().conditions;
@@ -132,19 +132,19 @@ class Runner {
     findings_.patches[part.id] = frame.patches;
   }
 
-  void add_all(const std::vector<std::vector<WayOfLooking>>& more) {
+  void add_all(const std::vector<std::vector<ViewingConfiguration>>& more) {
     for (std::size_t k = 0; k < more.size(); ++k) {
       ways_[k].insert(ways_[k].end(), more[k].begin(), more[k].end());
     }
   }
 
   // Where an earlier run has done all of it, so that not even the picture must be read.
-  bool take_finished(const PictureTask& pictures, const Json& ways_marks, const StudyFrames& frames,
-                     StudyConditions& conditions, CameraResults& found) {
+  bool take_finished(const PictureTask& pictures, const Json& ways_cache_key,
+                     const StudyFrames& frames, StudyConditions& conditions, CameraResults& found) {
     if (listen_ || !pictures_are_there(pictures)) return false;
     std::string said;
-    const auto ways = store_.find_facts(ways_marks, said);
-    const auto judged = conditions.find(pictures.camera, pictures.frame_marks);
+    const auto ways = store_.find_facts(ways_cache_key, said);
+    const auto judged = conditions.find(pictures.camera, pictures.frame_cache_key);
     if (!ways || !judged) return false;
     const auto frame = frames.known(pictures.camera, findings_.costs);
     if (!frame) return false;
@@ -158,33 +158,33 @@ class Runner {
     return true;
   }
 
-  void work(const PictureTask& pictures, const Json& ways_marks, StudyFrames::Frame& frame,
+  void work(const PictureTask& pictures, const Json& ways_cache_key, StudyFrames::Frame& frame,
             StudyConditions& conditions, CameraResults& found) {
     const StudyPart& part = pictures.part;
     take(part, frame, found);
     const studies::BasisView view = studies::make_basis_view(
         *part.basis, *part.query, *pictures.camera.camera, std::move(frame.image));
     found.conditions =
-        conditions.judge(pictures.camera, view, pictures.frame_marks, findings_.costs);
+        conditions.judge(pictures.camera, view, pictures.frame_cache_key, findings_.costs);
     if (listen_) listen_(part, pictures.camera, view, frame);
     if (Interrupt::asked()) return;
     draw_pictures(pictures, &view, findings_.figures);
     std::string said;
-    if (const auto kept = store_.find_facts(ways_marks, said)) {
+    if (const auto kept = store_.find_facts(ways_cache_key, said)) {
       return add_all(ways_of((*kept)["ways"]));
     }
-    std::vector<std::vector<WayOfLooking>> ways(task_.study.wanted.size());
+    std::vector<std::vector<ViewingConfiguration>> ways(task_.study.wanted.size());
     add_ways(part, task_.study, pictures.camera, view, ways);
-    store_.keep_facts(ways_marks, {{"ways", ways_json(ways)}});
+    store_.keep_facts(ways_cache_key, {{"ways", ways_json(ways)}});
     add_all(ways);
   }
 
   const StudyTask& task_;
   const Common& common_;
   const ViewListener& listen_;
-  PartStore store_;
+  ResultCache store_;
   StudyFindings findings_;
-  std::vector<std::vector<WayOfLooking>> ways_;
+  std::vector<std::vector<ViewingConfiguration>> ways_;
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "radiosity/bodies/closed_parts.h"
-#include "radiosity/bodies/stopped_holes.h"
+#include "radiosity/bodies/hole_capping.h"
 
 namespace earthshine::radiosity {
 namespace {

@@ -25,7 +25,7 @@
 
 #include <vector>
 
-#include "scenes/effects/idle.h"
+#include "scenes/effects/culling.h"
 #include "scenes/scene.h"
 
 namespace earthshine::radiosity {

@@ -29,7 +29,7 @@ struct SourceFlux {
   Rgb landed_lm{0.0};            // on patches, scaled; never more luminance than emitted
 
   // What did not land, by where the rays shot from the source went. In luminance never negative; of
-  // many lamps of different colours in one crowd, a channel may be, by the noise of their choice.
+  // many lamps of different colours in one cluster, a channel may be, by the noise of their choice.
   [[nodiscard]] Rgb escaped_lm() const;
   [[nodiscard]] Rgb lost_lm() const;  // on black backs, or where no patch's samples found it
 };

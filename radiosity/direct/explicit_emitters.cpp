@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "scenes/ray_query.h"
-#include "scenes/reflect/spread_reflectance.h"
+#include "scenes/reflect/bihemispherical_albedo.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -26,7 +26,7 @@ std::vector<double> areas_by_material(const scenes::Scene& scene) {
 
 // 0 where nothing absorbs.
 double mean_illuminance(const scenes::Scene& scene, const std::vector<double>& area) {
-  const std::vector<Rgb> spread = scenes::spread_reflectances(scene);
+  const std::vector<Rgb> spread = scenes::bihemispherical_albedos(scene);
   double emitted = 0.0, absorbing = 0.0;
   for (std::size_t m = 0; m < area.size(); ++m) {
     const scenes::Material& material = scene.materials[m];

@@ -85,8 +85,8 @@ int points_for(const Source& source, const Patches& patches, std::uint32_t patch
 void take_samples(const Source& source, const Vec3& point, const Vec3& normal, double u, double v,
                   std::vector<LightSample>& samples) {
   samples.clear();
-  if (source.crowd) {
-    source.crowd(point, normal, u, v, samples);
+  if (source.cluster) {
+    source.cluster(point, normal, u, v, samples);
   } else {
     samples.push_back(source.sample(point, u, v));
   }

@@ -24,7 +24,7 @@ struct Source {
   // In place of `sample`: many lamps as one. Adds those that get a shadow ray from a surface.
   std::function<void(const Vec3& point, const Vec3& normal, double u, double v,
                      std::vector<scenes::LightSample>& samples)>
-      crowd;
+      cluster;
   std::function<double(const Vec3& point)> distance_m;  // empty for the sky
 };
 

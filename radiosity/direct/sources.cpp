@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "radiosity/direct/explicit_emitters.h"
-#include "radiosity/direct/lamp_crowd.h"
+#include "radiosity/direct/light_cluster.h"
 #include "scenes/light/emitters.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_parts.h"
@@ -119,14 +119,14 @@ std::vector<LightSource> find_sources(const scenes::Scene& scene, const scenes::
     key[k] = next_key++;
   }
   for (std::size_t g = 0; g < lamps.size(); ++g) {
-    if (lamps[g].size() < fewest_in_crowd) continue;
+    if (lamps[g].size() < fewest_in_cluster) continue;
     const std::size_t first = lamps[g][0];
-    add(crowd_source(scene, lamps[g], key[first], g, points),
+    add(cluster_source(scene, lamps[g], key[first], g, points),
         scenes::kind_of(scene.lamps[first].kind));
   }
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
     if (groups.lamp[k] == scenes::no_group) continue;
-    if (lamps[groups.lamp[k]].size() >= fewest_in_crowd) continue;
+    if (lamps[groups.lamp[k]].size() >= fewest_in_cluster) continue;
     add(lamp_source(scene.lamps[k], key[k], groups.lamp[k], points),
         scenes::kind_of(scene.lamps[k].kind));
   }

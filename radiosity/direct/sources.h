@@ -21,7 +21,7 @@ struct LightSource {
   Source source;
   Rgb flux_lm{0.0};                                 // what it emits; not known of the sky's
   Emit emit;                                        // empty for the sky
-  scenes::LightKind kind = scenes::LightKind::Sun;  // of a crowd: its first lamp's
+  scenes::LightKind kind = scenes::LightKind::Sun;  // of a cluster: its first lamp's
 };
 
 // Refers to the scene, which must outlive them. points: receiver points per patch for distant

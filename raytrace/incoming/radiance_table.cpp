@@ -26,7 +26,7 @@ Neighbours neighbours(double parameter, std::uint32_t count) {
 }  // namespace
 
 RadianceTable::RadianceTable(const radiosity::Solution& solution, std::span<const float> values,
-                             bool per_light, const CellSight& sight)
+                             bool per_light, const LeakMask& sight)
     : patches_(&solution.patches), sight_(&sight) {
   const std::size_t groups = solution.columns / 3;
   layers_ = per_light ? groups : 1;

@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "radiosity/solution.h"
-#include "raytrace/incoming/cell_sight.h"
+#include "raytrace/incoming/leak_mask.h"
 
 namespace earthshine::raytrace {
 
 // layers: 1 (all light groups summed) or one per group. Between the centres of a facet's cells the
 // radiance is interpolated bilinearly, which makes the error of reading it fall with the square of
 // the patch edge; where cells of different sizes meet, between the knots of knots.h.
-// Across what stands between two cells (cell_sight.h) nothing is interpolated: a cell takes its own
+// Across what stands between two cells (leak_mask.h) nothing is interpolated: a cell takes its own
 // radiance where it would take that of one that it does not see.
 class RadianceTable {
  public:
@@ -24,7 +24,7 @@ class RadianceTable {
   // values: radiosity or soft_radiosity of the solution. `sight`, like the solution, must outlive
   // the table.
   RadianceTable(const radiosity::Solution& solution, std::span<const float> values, bool per_light,
-                const CellSight& sight);
+                const LeakMask& sight);
 
   [[nodiscard]] bool empty() const { return radiance_.empty(); }
 
@@ -37,7 +37,7 @@ class RadianceTable {
                   const Rgb& weight, std::span<Rgb> out) const;
 
   const radiosity::Patches* patches_ = nullptr;
-  const CellSight* sight_ = nullptr;
+  const LeakMask* sight_ = nullptr;
   std::size_t layers_ = 0;
   std::vector<glm::vec4> radiance_;  // patch * layers + layer; fourth component unused
   // Facets with a tree: (leaf * knots_per_cell + knot) * layers + layer from where the side starts.

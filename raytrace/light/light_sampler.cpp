@@ -65,10 +65,10 @@ LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups
     add({Kind::Emitters, groups.material[m], emitters_.size()}, copies);
     emitters_.emplace_back(scene, m);
   }
-  gather_crowds(per_group);
+  gather_clusters(per_group);
 }
 
-void LightSampler::gather_crowds(bool per_group) {
+void LightSampler::gather_clusters(bool per_group) {
   std::map<std::size_t, std::vector<std::size_t>> lamps;
   for (std::size_t k = 0; k < lights_.size(); ++k) {
     const bool lamp = lights_[k].kind == Kind::Lamp && !distributed_;
@@ -82,7 +82,7 @@ void LightSampler::gather_crowds(bool per_group) {
     }
     std::vector<std::size_t> of_scene;
     for (const std::size_t k : lights) of_scene.push_back(lights_[k].index);
-    crowds_.push_back({tree_of(of_scene), std::move(lights)});
+    clusters_.push_back({tree_of(of_scene), std::move(lights)});
   }
 }
 
@@ -128,7 +128,7 @@ std::optional<LightSampler::SeenLamp> LightSampler::seen_lamp(const Vec3& origin
 void LightSampler::choose(const scenes::Receiver& receiver, double u,
                           std::vector<scenes::LightChoice>& chosen) const {
   for (const std::size_t light : always_) chosen.push_back({light, 1.0});
-  for (const Crowd& crowd : crowds_) {
+  for (const Cluster& crowd : clusters_) {
     const std::size_t first = chosen.size();
     crowd.tree.choose(receiver, u, smallest_share, chosen);
     for (std::size_t k = first; k < chosen.size(); ++k) {

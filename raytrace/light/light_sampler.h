@@ -60,12 +60,12 @@ class LightSampler {
     double u = 0.5, v = 0.5;
     double share = 1.0;  // of the source's light
   };
-  struct Crowd {
+  struct Cluster {
     scenes::LightTree tree;
     std::vector<std::size_t> lights;  // of the tree's numbers
   };
   void add(Light light, int copies);
-  void gather_crowds(bool per_group);
+  void gather_clusters(bool per_group);
   [[nodiscard]] scenes::LightTree tree_of(const std::vector<std::size_t>& lamps) const;
 
   const scenes::Scene& scene_;
@@ -73,8 +73,8 @@ class LightSampler {
   std::optional<scenes::Lamp> earth_area_;
   std::vector<Light> lights_;
   std::vector<std::size_t> always_;  // lights that are not left to chance
-  std::vector<Crowd> crowds_;
-  Crowd surfaces_{scenes::LightTree({}), {}};  // lamps that a ray can meet, by their number there
+  std::vector<Cluster> clusters_;
+  Cluster surfaces_{scenes::LightTree({}), {}};  // lamps that a ray can meet, by their number there
   std::vector<scenes::EmitterSet> emitters_;
   Rgb sun_illuminance_lx_{0.0};
   std::vector<Rgb> part_illuminance_lx_;  // of a sky in parts

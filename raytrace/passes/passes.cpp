@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "raytrace/passes/outlook.h"
+#include "raytrace/passes/pilot_pass.h"
 #include "raytrace/passes/sample_plan.h"
 
 namespace earthshine::raytrace {
@@ -95,17 +95,17 @@ class Passes {
 
   void run_shared() {
     const SharedGather& how = options_.shared;
-    const Outlook outlook = look_ahead(shared_, camera_, how.least_samples);
-    report_.rays.planning += outlook.rays.total();
+    const PilotPass pilot = run_pilot_pass(shared_, camera_, how.least_samples);
+    report_.rays.planning += pilot.rays.total();
     // n = deviation / c gives a mean squared error of c times the mean deviation.
-    const double wanted_error = how.noise * outlook.luminance;
+    const double wanted_error = how.noise * pilot.luminance;
     const double per_deviation =
-        outlook.deviation > 0.0 ? wanted_error * wanted_error / outlook.deviation : 1.0;
+        pilot.deviation > 0.0 ? wanted_error * wanted_error / pilot.deviation : 1.0;
     // Rounds look at neighbours: a crop gets the same pixels as the whole picture only if what
     // surrounds it is worked out too.
     sums_.emplace(widened(window_, most_rounds, camera_), shared_.layers, shared_.splits_parts);
     const double samples = std::max(double(how.least_samples),
-                                    per_deviation > 0.0 ? outlook.deviation / per_deviation : 0.0);
+                                    per_deviation > 0.0 ? pilot.deviation / per_deviation : 0.0);
     const double gathers = shared_.gathers ? options_.gather_rays : 0;
     expected_ = static_cast<double>(sums_->samples.size()) * samples + pixels() * 2.0 * gathers;
     if (shared_.gathers) {
@@ -119,7 +119,7 @@ class Passes {
     }
     first_round(static_cast<std::uint32_t>(how.least_samples));
     for (int round = 1; round < most_rounds && !ends() && per_deviation > 0.0; ++round) {
-      shade(wanted_samples(*sums_, per_deviation, outlook.bright(), how.least_samples,
+      shade(wanted_samples(*sums_, per_deviation, pilot.bright(), how.least_samples,
                            how.most_samples));
     }
   }

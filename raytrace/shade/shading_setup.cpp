@@ -37,7 +37,7 @@ ShadingSetup::ShadingSetup(const scenes::Scene& scene, const scenes::LightGroups
                            const radiosity::Solution& solution, const scenes::Camera& camera,
                            const RenderOptions& options, const radiosity::Solution* aimed_at)
     : camera_(make_camera_model(camera, options.columns, options.rows)),
-      sight_(reads(solution, options) ? CellSight(query, solution.patches) : CellSight()),
+      sight_(reads(solution, options) ? LeakMask(query, solution.patches) : LeakMask()),
       all_(solution, values_if(reads(solution, options), solution.radiosity), options.per_light,
            sight_),
       soft_(solution,

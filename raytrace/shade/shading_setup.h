@@ -24,7 +24,7 @@ class ShadingSetup {
 
  private:
   CameraModel camera_;
-  CellSight sight_;
+  LeakMask sight_;
   RadianceTable all_, soft_;
   LightSampler lights_;
   BrightPatches bright_;

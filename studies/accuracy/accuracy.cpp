@@ -8,7 +8,7 @@
 
 #include "radiosity/bodies/walls.h"
 #include "raytrace/paths/path_tracer.h"
-#include "scenes/effects/idle.h"
+#include "scenes/effects/culling.h"
 #include "scenes/effects/quality.h"
 #include "studies/cost/memory.h"
 #include "studies/error/error_budget.h"
@@ -66,7 +66,7 @@ struct Asked {
     asked.paths = paths_of(step.indirect);
     effects = scenes::find_effects(study.scene, groups, asked);
     if (step.indirect == Indirect::Paths) return;
-    (void)scenes::switch_off_idle(
+    (void)scenes::cull_effects(
         study.scene, asked, step.quality.error.value_or(scenes::default_error),
         radiosity::hidden_lights(study.scene, asked.cameras), groups, effects);
   }

@@ -20,7 +20,7 @@
 
 #include "raytrace/paths/path_tracer.h"
 #include "studies/accuracy/ladder.h"
-#include "studies/error/doubt.h"
+#include "studies/error/error_estimate.h"
 #include "studies/error/picture_error.h"
 #include "studies/study.h"
 
@@ -47,7 +47,7 @@ struct StepCost {
   int form_factor_rays = 0, gather_rays = 0;  // per patch, per pixel
   double camera_samples = 0.0;                // per pixel, mean
   double memory_bytes = 0.0;                  // memory.h, for the patches and rows it had
-  Doubt stated;  // the error as the picture itself states it (error_budget.h)
+  ErrorEstimate stated;  // the error as the picture itself states it (error_budget.h)
   // CPU seconds that this took; not in the above, but of settings that were chosen by it.
   double statement_cpu_seconds = 0.0;
 };

@@ -47,7 +47,8 @@ double bound_ratio(const StatedError& stated, const std::vector<std::size_t>& pi
   return 1.0 + one_sided_95 * unseen_spread * spread / sum;
 }
 
-Doubt total_of(const StatedError& stated, const std::vector<std::size_t>& pixels, int columns) {
+ErrorEstimate total_of(const StatedError& stated, const std::vector<std::size_t>& pixels,
+                       int columns) {
   const double square = raytrace::add_up(stated, pixels).squared_error();
   return {std::sqrt(square), std::sqrt(square * bound_ratio(stated, pixels, columns))};
 }
@@ -74,7 +75,7 @@ ErrorBudget error_budget(const StudyScene& scene, const WatchedPicture& picture,
         budget.total.estimate > 0.0 ? budget.total.bound_95 / budget.total.estimate : 1.0;
     const auto part = [&](ErrorPart which) {
       const double off = std::sqrt(whole.squared[static_cast<std::size_t>(which)]);
-      return Doubt{off, bound * off};
+      return ErrorEstimate{off, bound * off};
     };
     budget.parts = {part(ErrorPart::Gather), part(ErrorPart::Residual), part(ErrorPart::Lobe),
                     part(ErrorPart::Camera)};

@@ -12,27 +12,27 @@
 #include <vector>
 
 #include "raytrace/render.h"
-#include "studies/error/doubt.h"
+#include "studies/error/error_estimate.h"
 #include "studies/study.h"
 
 namespace earthshine::studies {
 
 struct ErrorParts {
-  Doubt gather;           // rays over the hemisphere, and what sharing them blurs
-  Doubt interreflection;  // what the solution lacks, found by paths: their noise and blur
-  Doubt lobes;            // the same of rays over Phong lobes
-  Doubt camera_samples;   // edges, lamps, the lens, mirrors and glass
+  ErrorEstimate gather;           // rays over the hemisphere, and what sharing them blurs
+  ErrorEstimate interreflection;  // what the solution lacks, found by paths: their noise and blur
+  ErrorEstimate lobes;            // the same of rays over Phong lobes
+  ErrorEstimate camera_samples;   // edges, lamps, the lens, mirrors and glass
 };
 
 struct TargetError {
   std::string name;
   std::size_t pixels = 0;  // seen
   double luminance = 0.0;  // their mean, cd/m^2
-  Doubt error;             // as of the whole picture, over the target's pixels and their mean
+  ErrorEstimate error;     // as of the whole picture, over the target's pixels and their mean
 };
 
 struct ErrorBudget {
-  Doubt total;
+  ErrorEstimate total;
   ErrorParts parts;
   std::size_t pixels = 0;  // that the errors are over; 0: no surface is seen or all are black
   std::vector<TargetError> targets;

@@ -148,12 +148,12 @@ CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup
   CctvSignal line;
   degrade::Report& report = line.report;
   degrade::Memory memory;
-  Picture picture = degrade::take_in(radiance, camera.colour, report.negative_pixels);
+  Picture picture = degrade::sensor_input(radiance, camera.colour, report.negative_pixels);
   report.noise = degrade::noise_law(camera);
   report.sensor = {picture.columns, picture.rows};
   report.exposure.f_number = camera.f_number;
   line.has_fields = degrade::has_fields(setup, report);
-  const degrade::Passing at{setup, report, memory, 0, line.has_fields ? 2U : 1U};
+  const degrade::StageContext at{setup, report, memory, 0, line.has_fields ? 2U : 1U};
 
   const auto is_on = [&](std::string_view name) {
     const auto stages = degrade::stages();

@@ -19,7 +19,7 @@ Rgb at(const std::vector<double>& values, std::size_t first) {
   return {values[first], values[first + 1], values[first + 2]};
 }
 
-Doubt doubt_of(double square, double more) {
+ErrorEstimate doubt_of(double square, double more) {
   return {std::sqrt(std::max(0.0, square)), std::sqrt(std::max(0.0, square) + std::max(0.0, more))};
 }
 

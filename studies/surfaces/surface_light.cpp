@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "radiosity/linear_solve.h"
-#include "scenes/reflect/spread_reflectance.h"
+#include "scenes/reflect/bihemispherical_albedo.h"
 #include "scenes/sky/sky_parts.h"
 
 namespace earthshine::studies {
@@ -26,7 +26,7 @@ LightOnSurfaces::LightOnSurfaces(const StudyScene& scene, radiosity::Solution co
                                  radiosity::FormFactors factors, double rays)
     : scene_(scene),
       factors_(std::move(factors)),
-      reflectances_(scenes::spread_reflectances(scene.scene)) {
+      reflectances_(scenes::bihemispherical_albedos(scene.scene)) {
   const radiosity::Patches& patches = coarse.patches;
   const std::size_t count = patches.count(), columns = coarse.columns;
   emitted_ = radiosity::exitances(scene.scene, scene.groups, patches);
@@ -168,7 +168,7 @@ std::vector<std::uint32_t> LightOnSurfaces::cut(const std::vector<radiosity::Cut
   const std::size_t columns = light_.columns(), groups = columns / 3;
   const std::size_t parts = light_.count() > 0 ? light_.sky.size() / light_.count() : 0;
   radiosity::Split made = radiosity::split(patches(), wanted);
-  const raytrace::CellSight sight(scene_.query, patches());
+  const raytrace::LeakMask sight(scene_.query, patches());
   const raytrace::RadianceTable table(light_.solution, light_.gathered, true, sight);
   const std::size_t count = made.patches.count();
   SurfaceLight finer;

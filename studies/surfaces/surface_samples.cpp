@@ -8,7 +8,7 @@
 #include "base/numbers/random.h"
 #include "base/parallel.h"
 #include "radiosity/bodies/closed_bodies.h"
-#include "scenes/reflect/spread_reflectance.h"
+#include "scenes/reflect/bihemispherical_albedo.h"
 #include "scenes/sky/sky_parts.h"
 #include "studies/surfaces/patch_looks.h"
 #include "studies/surfaces/residual_sums.h"
@@ -69,7 +69,7 @@ SurfaceSampler::SurfaceSampler(const StudyScene& scene, std::uint64_t seed)
     : scene_(scene),
       seed_(seed),
       sources_(radiosity::find_sources(scene.scene, scene.groups, scene.effects, source_points)),
-      reflectances_(scenes::spread_reflectances(scene.scene)),
+      reflectances_(scenes::bihemispherical_albedos(scene.scene)),
       is_explicit_(radiosity::emitter_is_explicit(scene.scene)) {
   for (const scenes::Material& m : scene.scene.materials) {
     kept_.push_back(m.passes_light_on()
@@ -89,7 +89,7 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
       scene_.effects.earth_by_gather ? scenes::earth_parts(scene_.scene) : 0;
   const bool gathers =
       std::any_of(effort.begin(), effort.end(), [](const Effort& e) { return e.rays > 0; });
-  const raytrace::CellSight sight(scene_.query, patches);
+  const raytrace::LeakMask sight(scene_.query, patches);
   raytrace::RadianceTable table;
   if (gathers) table = {light.solution, light.solution.radiosity, true, sight};
   // Alone, joined: what each part of L~ is at a point.

@@ -3,9 +3,9 @@
 //   r = S + T L~ - L~
 // S: emission and the light of Sun, Earth, lamps and small emitters by shadow rays; T L~: what
 // cosine rays bring that read the solution L~ as pictures do (raytrace/incoming/radiance_table.h),
-// and the sky; all reflected as radiosity has it (scenes/reflect/spread_reflectance.h). Every point
-// is looked at twice, by two halves of independent rays: the mean of their product is that of r^2,
-// whatever noise each has. Nothing is sampled where bodies cover a patch.
+// and the sky; all reflected as radiosity has it (scenes/reflect/bihemispherical_albedo.h). Every
+// point is looked at twice, by two halves of independent rays: the mean of their product is that of
+// r^2, whatever noise each has. Nothing is sampled where bodies cover a patch.
 #pragma once
 
 #include <array>

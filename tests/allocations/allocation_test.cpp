@@ -90,7 +90,7 @@ class Allocations : public testing::Test {
 TEST_F(Allocations, AreTheSameTwice) { EXPECT_EQ(bytes_of({}), usual_); }
 
 TEST_F(Allocations, EffectsWithNothingToDoTakeNone) {
-  const std::map<std::string, Change> idle = {
+  const std::map<std::string, Change> culled = {
       {"specular 0",
        [](View& view) {
          for (scenes::Material& m : view.scene.materials) m.shininess = 30.0;
@@ -113,7 +113,7 @@ TEST_F(Allocations, EffectsWithNothingToDoTakeNone) {
        }},
       {"ambient 0", [](View& view) { view.scene.ambient_radiance = Rgb(0.0); }},
   };
-  for (const auto& [name, change] : idle) EXPECT_EQ(bytes_of(change), usual_) << name;
+  for (const auto& [name, change] : culled) EXPECT_EQ(bytes_of(change), usual_) << name;
 }
 
 // The count sees what an effect takes when it runs.

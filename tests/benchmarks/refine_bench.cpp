@@ -92,7 +92,7 @@ class Judge {
     const std::size_t groups = solution.columns / 3;
     Errors errors{std::vector<double>(groups + 1), std::vector<double>(groups + 1),
                   std::vector<double>(groups + 1)};
-    const raytrace::CellSight sight(query_, solution.patches);
+    const raytrace::LeakMask sight(query_, solution.patches);
     const raytrace::RadianceTable table(solution, solution.radiosity, true, sight);
     std::vector<Rgb> read(groups);
     for (std::uint32_t i = 0; i < fine.count(); ++i) {

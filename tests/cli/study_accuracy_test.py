@@ -125,7 +125,7 @@ class GoesOn(Accuracy):
         self.done(*self.study())
         after = self.parts()
         for name in (name for name in before if name.endswith(".json")):
-            self.assertEqual(before[name], after[name], f"{name} was done again")
+            self.assertEqual(before[name], after[name], f"{name} was recomputed")
         self.assertEqual(self.figures(self.result()), self.figures(self.result("whole")))
 
     def test_a_finished_run_does_nothing_again(self):
@@ -166,7 +166,7 @@ class GoesOn(Accuracy):
         run = self.run_program(*self.study())
         self.assertEqual(run.returncode, 0, run.stderr)
         self.says(run.stderr, "is broken", "belongs to something else", "has lost its picture",
-                  "has another picture", "it is done again")
+                  "has another picture", "it is recomputed")
         self.assertEqual(self.figures(self.result()), self.figures(result))
 
     def test_ctrl_c_says_what_is_finished(self):

@@ -50,7 +50,7 @@ class Resume(Case):
                           if path.with_suffix(".json").exists()]
         last = self.run_program(*self.CALL, "-o", "o")
         self.assertEqual(last.returncode, 0, last.stderr)
-        self.assertNotIn("done again", last.stderr)
+        self.assertNotIn("recomputed", last.stderr)
         self.assertEqual(self.without_times(self.study("o")), self.without_times(self.study("whole")))
         found = [stage for stage, found in self.costs("o").items() if found and stage.startswith("picture")]
         self.assertEqual(len(found), len(whole_pictures))
@@ -65,7 +65,7 @@ class Resume(Case):
             path.write_bytes(path.read_bytes()[:100])
         run = self.run_program(*self.CALL, "-o", "o")
         self.assertEqual(run.returncode, 0, run.stderr)
-        self.says(run.stderr, "done again")
+        self.says(run.stderr, "recomputed")
         self.assertEqual(self.without_times(self.study("o")), whole)
         self.assertEqual(set(self.costs("o").values()), {False})
 
@@ -102,7 +102,7 @@ class Resume(Case):
             path.write_text(json.dumps(part))
         self.assertGreater(changed, 0)
         run = self.run_program(*self.CALL, "-o", "o")
-        self.says(run.stderr, "is broken; it is done again")
+        self.says(run.stderr, "is broken; it is recomputed")
         self.assertEqual(self.without_times(self.study("o")), whole)
 
     def test_an_interrupted_run_says_so_and_goes_on(self):

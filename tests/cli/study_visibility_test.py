@@ -67,7 +67,7 @@ class Orbit(Case):
         self.assertEqual(self.without_times(first), self.without_times(self.study("2")))
         self.assertEqual(set(self.costs("1").values()), {False})
         run = self.run_program(*self.CALL, "-o", "1")
-        self.assertEqual((run.returncode, run.stderr.count("done again")), (0, 0), run.stderr)
+        self.assertEqual((run.returncode, run.stderr.count("recomputed")), (0, 0), run.stderr)
         self.assertEqual(self.without_times(self.study("1")), self.without_times(first))
         self.assertEqual(self.costs("1"), {f"{what} s0 {camera}": True for what in ("picture", "conditions")
                                            for camera in "AB"})

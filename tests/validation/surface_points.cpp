@@ -59,7 +59,7 @@ std::vector<scenes::Hit> spread_over_surfaces(const scenes::Scene& scene, std::s
 std::vector<double> radiosity_at(const scenes::RayQuery& query, const radiosity::Solution& solution,
                                  const std::vector<scenes::Hit>& where) {
   if (solution.columns == 0) return std::vector<double>(where.size(), 0.0);  // nothing shines
-  const raytrace::CellSight sight(query, solution.patches);
+  const raytrace::LeakMask sight(query, solution.patches);
   const raytrace::RadianceTable table(solution, solution.radiosity, false, sight);
   std::vector<double> values;
   values.reserve(where.size());

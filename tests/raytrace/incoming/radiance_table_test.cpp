@@ -48,7 +48,7 @@ radiosity::Solution filled(const radiosity::Patches& patches, const Field& front
   return solution;
 }
 
-const CellSight nothing_stands_there;
+const LeakMask nothing_stands_there;
 
 double read(const RadianceTable& table, const scenes::Hit& hit) {
   std::vector<Rgb> out{Rgb(0.0)};

@@ -27,7 +27,7 @@ class Reader {
   }
 
  private:
-  raytrace::CellSight nothing_stands_there_;
+  raytrace::LeakMask nothing_stands_there_;
   raytrace::RadianceTable table_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "raytrace/incoming/cell_sight.h"
+#include "raytrace/incoming/leak_mask.h"
 
 #include <algorithm>
 #include <array>
@@ -68,7 +68,7 @@ void look_across(const scenes::RayQuery& query, const radiosity::Patches& patche
 
 }  // namespace
 
-CellSight::CellSight(const scenes::RayQuery& query, const radiosity::Patches& patches) {
+LeakMask::LeakMask(const scenes::RayQuery& query, const radiosity::Patches& patches) {
   std::mutex together;
   base::parallel_chunks(patches.facets.size(), 16, [&](std::size_t begin, std::size_t end) {
     std::vector<Pair> pairs, parted;
@@ -92,7 +92,7 @@ CellSight::CellSight(const scenes::RayQuery& query, const radiosity::Patches& pa
   for (const auto& [low, high] : parted_) at_wall_[low] = at_wall_[high] = 1;
 }
 
-bool CellSight::parted(std::uint32_t a, std::uint32_t b) const {
+bool LeakMask::parted(std::uint32_t a, std::uint32_t b) const {
   if (!at_wall(a) || !at_wall(b)) return false;
   return std::binary_search(parted_.begin(), parted_.end(), Pair(std::minmax(a, b)));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "radiosity/light_ends.h"
+#include "radiosity/enclosure.h"
 
 #include <algorithm>
 #include <numeric>
@@ -32,9 +32,9 @@ std::vector<std::uint32_t> connected_parts(const FormFactors& f) {
 
 }  // namespace
 
-void check_light_ends(const scenes::Scene& scene, const Patches& patches,
-                      const FormFactors& factors, std::span<const double> source,
-                      std::span<const double> reflectance, std::size_t columns) {
+void check_enclosure(const scenes::Scene& scene, const Patches& patches, const FormFactors& factors,
+                     std::span<const double> source, std::span<const double> reflectance,
+                     std::size_t columns) {
   // Only where some material reflects all of what it keeps can a part keep all light.
   const std::size_t count = factors.count();
   // What rounding leaves of 1 - mirror - diffuse takes nothing.

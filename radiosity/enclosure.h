@@ -13,8 +13,8 @@ namespace earthshine::radiosity {
 // In a part of the scene that is closed and reflects everything, B = S + rho F B has no solution
 // for any S above 0. Throws base::Error (Input) with the materials of such a part. source,
 // reflectance: count x columns.
-void check_light_ends(const scenes::Scene& scene, const Patches& patches,
-                      const FormFactors& factors, std::span<const double> source,
-                      std::span<const double> reflectance, std::size_t columns);
+void check_enclosure(const scenes::Scene& scene, const Patches& patches, const FormFactors& factors,
+                     std::span<const double> source, std::span<const double> reflectance,
+                     std::size_t columns);
 
 }  // namespace earthshine::radiosity

@@ -3,14 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "base/numbers/random.h"
-#include "tests/scenes/idle_scenes.h"
+#include "tests/scenes/culling_scenes.h"
 
 namespace earthshine::scenes {
 namespace {
 
 // A lamp of half width w in the plane z = -h, tilted by 45 degrees about y, reaches up to
 // -h + w sin 45: the floor's front sees it from there on. The disk's own radius bounds its reach.
-TEST(Idle, LampsBehindEverySurfaceAreSkipped) {
+TEST(Culling, LampsBehindEverySurfaceAreSkipped) {
   const double tilted = 0.25 * std::sqrt(0.5), edge = 1e-3;
   struct Case {
     LampKind kind;
@@ -34,7 +34,7 @@ TEST(Idle, LampsBehindEverySurfaceAreSkipped) {
 
 // Shining upward from above the floor: a flat lamp and a spot of up to 180 degrees have no light
 // for what is behind their plane; a point lamp has no axis and shines all around.
-TEST(Idle, FlatLampsAndSpotsShineOnlyForward) {
+TEST(Culling, FlatLampsAndSpotsShineOnlyForward) {
   for (const LampKind kind :
        {LampKind::Point, LampKind::Spot, LampKind::Rectangle, LampKind::Disk}) {
     for (const double height : {-1.0, 1.0}) {
@@ -52,7 +52,7 @@ TEST(Idle, FlatLampsAndSpotsShineOnlyForward) {
 }
 
 // Spots and quads at random: where any point of a quad's front is in the cone the spot is on.
-TEST(Idle, ASpotIsSkippedOnlyIfNoPointOfASurfaceIsInItsCone) {
+TEST(Culling, ASpotIsSkippedOnlyIfNoPointOfASurfaceIsInItsCone) {
   std::size_t skipped = 0;
   for (std::uint64_t trial = 0; trial < 400; ++trial) {
     base::Rng random(base::Key(7, base::Stream::Test, trial));
@@ -81,7 +81,7 @@ TEST(Idle, ASpotIsSkippedOnlyIfNoPointOfASurfaceIsInItsCone) {
 }
 
 // The lens reaches half its aperture above the camera: a millimetre below and above the plane.
-TEST(Idle, AFlatLampIsKeptWhileACameraOrItsLensMaySeeItShine) {
+TEST(Culling, AFlatLampIsKeptWhileACameraOrItsLensMaySeeItShine) {
   for (const double aperture : {0.0, 0.2}) {
     for (const double over : {-1e-3, 1e-3}) {
       Scene scene = floor_of(tests::grey(0.5)).scene;
@@ -105,7 +105,7 @@ TEST(Idle, AFlatLampIsKeptWhileACameraOrItsLensMaySeeItShine) {
   }
 }
 
-TEST(Idle, LampsAreSkippedOneByOneAndKeepTheirGroups) {
+TEST(Culling, LampsAreSkippedOneByOneAndKeepTheirGroups) {
   Scene scene = floor_of(tests::grey(0.5)).scene;
   scene.lamps = {lamp_of(LampKind::Point, {0, 0, -1}, {0, 0, 1}),
                  lamp_of(LampKind::Point, {0, 0, 1}, {0, 0, 1})};

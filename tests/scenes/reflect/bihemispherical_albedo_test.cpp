@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/reflect/spread_reflectance.h"
+#include "scenes/reflect/bihemispherical_albedo.h"
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ TEST(SpreadReflectance, AddsTheLobeToWhatIsDiffuse) {
   glossy.specular = Rgb(0.2, 0.4, 0.0);
   glossy.shininess = 3.0;
   builder.material(glossy);
-  const std::vector<Rgb> all = spread_reflectances(builder.scene);
+  const std::vector<Rgb> all = bihemispherical_albedos(builder.scene);
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[0], Rgb(0.3));
   const double lobe = mean_lobe_reflectance(3.0);

@@ -7,20 +7,20 @@
 #include <string>
 #include <vector>
 
-#include "scenes/effects/idle.h"
+#include "scenes/effects/culling.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::scenes {
 
 struct Found {
-  std::vector<Idle> idle;
+  std::vector<Culling> culled;
   LightGroups groups;
   Effects effects;
 
-  [[nodiscard]] const Idle* row(const std::string& effect) const {
-    const auto found = std::find_if(idle.begin(), idle.end(),
-                                    [&](const Idle& off) { return off.effect == effect; });
-    return found == idle.end() ? nullptr : &*found;
+  [[nodiscard]] const Culling* row(const std::string& effect) const {
+    const auto found = std::find_if(culled.begin(), culled.end(),
+                                    [&](const Culling& off) { return off.effect == effect; });
+    return found == culled.end() ? nullptr : &*found;
   }
   [[nodiscard]] bool has(const std::string& effect) const { return row(effect) != nullptr; }
 };
@@ -30,7 +30,7 @@ inline Found look(const Scene& scene, double wanted_error = 0.02, const Asked& a
   Found found;
   found.groups = find_light_groups(scene);
   found.effects = find_effects(scene, found.groups, asked);
-  found.idle = switch_off_idle(scene, asked, wanted_error, hidden, found.groups, found.effects);
+  found.culled = cull_effects(scene, asked, wanted_error, hidden, found.groups, found.effects);
   return found;
 }
 

@@ -9,7 +9,7 @@ namespace earthshine::raytrace {
 // What a coarse look at the whole picture tells, read from the solution: the mean luminance of what
 // is lit, and the mean deviation of a camera sample from its pixel. Sources that the camera sees
 // themselves are left out of the former.
-struct Outlook {
+struct PilotPass {
   double luminance = 0.0, deviation = 0.0;
   RayCounts rays;  // that it took
   // From here on pixels count as bright (PixelSums::deviation).
@@ -17,6 +17,6 @@ struct Outlook {
 };
 
 // samples: camera samples per pixel that is looked at. The same for every crop of a picture.
-[[nodiscard]] Outlook look_ahead(ShadingScene shared, const CameraModel& camera, int samples);
+[[nodiscard]] PilotPass run_pilot_pass(ShadingScene shared, const CameraModel& camera, int samples);
 
 }  // namespace earthshine::raytrace

@@ -12,14 +12,14 @@
 
 namespace earthshine::raytrace {
 
-class CellSight {
+class LeakMask {
  public:
   // Nothing is parted.
-  CellSight() = default;
+  LeakMask() = default;
   // Casts one ray between the centres of every two cells that share radiance where it is
   // interpolated (radiance_table.h), on each side that has patches, a thousandth of its length
   // above the surface: some four rays a patch.
-  CellSight(const scenes::RayQuery& query, const radiosity::Patches& patches);
+  LeakMask(const scenes::RayQuery& query, const radiosity::Patches& patches);
 
   // Of two patches on one side of one facet.
   [[nodiscard]] bool parted(std::uint32_t a, std::uint32_t b) const;

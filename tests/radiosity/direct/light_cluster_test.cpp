@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "radiosity/direct/lamp_crowd.h"
+#include "radiosity/direct/light_cluster.h"
 
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ std::vector<LightSource> sources_of(const tests::Prepared& prepared) {
   return find_sources(prepared.scene, prepared.groups, prepared.effects, 4);
 }
 
-TEST(LampCrowd, ManyLampsOfOneGroupAreOneSourceOfTheirWholeFlux) {
+TEST(LightCluster, ManyLampsOfOneGroupAreOneSourceOfTheirWholeFlux) {
   const scenes::Scene scene = room_of_lamps(true);
   Rgb flux(0.0);
   for (const scenes::Lamp& lamp : scene.lamps) flux += scenes::lamp_flux_lm(lamp);
@@ -55,7 +55,7 @@ TEST(LampCrowd, ManyLampsOfOneGroupAreOneSourceOfTheirWholeFlux) {
   EXPECT_NEAR(report.sources[0].scale, 1.0, 0.02);
 }
 
-TEST(LampCrowd, GivesPatchesTheLightOfItsLampsOneByOne) {
+TEST(LightCluster, GivesPatchesTheLightOfItsLampsOneByOne) {
   // Mean over seeds of the flux that lands on every object, within four standard errors of that of
   // lamps sampled each for itself (groups of 16).
   const scenes::Scene scene[] = {room_of_lamps(true), room_of_lamps(false)};
@@ -96,7 +96,7 @@ TEST(LampCrowd, GivesPatchesTheLightOfItsLampsOneByOne) {
   }
 }
 
-TEST(LampCrowd, FewLampsStaySourcesOfTheirOwn) {
+TEST(LightCluster, FewLampsStaySourcesOfTheirOwn) {
   const scenes::Scene scene = room_of_lamps(false);
   EXPECT_EQ(sources_of(tests::Prepared(scene)).size(), 64U);
 }

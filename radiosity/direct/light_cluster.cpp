@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "radiosity/direct/lamp_crowd.h"
+#include "radiosity/direct/light_cluster.h"
 
 #include <algorithm>
 #include <bit>
@@ -16,7 +16,7 @@ using scenes::LightSample;
 
 constexpr double smallest_share = 1.0 / 16.0;
 
-struct Crowd {
+struct Cluster {
   const scenes::Scene& scene;
   std::vector<std::size_t> lamps;
   scenes::LightTree tree;
@@ -64,8 +64,8 @@ struct Crowd {
 
 }  // namespace
 
-LightSource crowd_source(const scenes::Scene& scene, const std::vector<std::size_t>& lamps,
-                         std::uint64_t key, std::size_t group, int points) {
+LightSource cluster_source(const scenes::Scene& scene, const std::vector<std::size_t>& lamps,
+                           std::uint64_t key, std::size_t group, int points) {
   std::vector<scenes::LightBounds> bounds;
   std::vector<double> flux_to;
   Rgb flux(0.0);
@@ -74,20 +74,22 @@ LightSource crowd_source(const scenes::Scene& scene, const std::vector<std::size
     flux += scenes::lamp_flux_lm(scene.lamps[k]);
     flux_to.push_back(base::luminance(flux));
   }
-  const auto crowd = std::make_shared<const Crowd>(
-      Crowd{scene, lamps, scenes::LightTree(bounds), std::move(flux_to)});
+  const auto cluster = std::make_shared<const Cluster>(
+      Cluster{scene, lamps, scenes::LightTree(bounds), std::move(flux_to)});
   LightSource made;
   made.name = std::to_string(lamps.size()) + " lamps of group " + scene.lamps[lamps[0]].group;
   made.flux_lm = flux;
-  made.emit = [crowd](double u, double v, double x, double y) { return crowd->emit(u, v, x, y); };
+  made.emit = [cluster](double u, double v, double x, double y) {
+    return cluster->emit(u, v, x, y);
+  };
   made.source.key = key;
   made.source.group = group;
   made.source.points = 4 * points;
   made.source.near_factor = 4;
-  made.source.distance_m = [crowd](const Vec3& point) { return crowd->distance_m(point); };
-  made.source.crowd = [crowd](const Vec3& point, const Vec3& normal, double u, double v,
-                              std::vector<LightSample>& samples) {
-    crowd->sample(point, normal, u, v, samples);
+  made.source.distance_m = [cluster](const Vec3& point) { return cluster->distance_m(point); };
+  made.source.cluster = [cluster](const Vec3& point, const Vec3& normal, double u, double v,
+                                  std::vector<LightSample>& samples) {
+    cluster->sample(point, normal, u, v, samples);
   };
   return made;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/study/part_store.h"
+#include "app/study/result_cache.h"
 
 #include <fmt/format.h>
 
@@ -21,9 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string stem_of(const Json& marks) {
+std::string stem_of(const Json& cache_key) {
   base::Digest digest;
-  digest.add(std::string_view(dump(marks)));
+  digest.add(std::string_view(dump(cache_key)));
   return digest.text();
 }
 
@@ -45,8 +45,8 @@ std::string digest_of(const base::Image& image) {
 }
 
 // The facts have a digest of their own: a changed digit is found when they are read.
-std::string text_of_part(const Json& marks, const Json& facts, const Json& picture) {
-  return dump({{"marks", marks},
+std::string text_of_part(const Json& cache_key, const Json& facts, const Json& picture) {
+  return dump({{"cache_key", cache_key},
                {"facts", facts},
                {"digest", stem_of(Json::parse(dump(facts)))},
                {"picture", picture}});
@@ -56,10 +56,10 @@ std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
 
 }  // namespace
 
-Json scene_marks(const LoadedScene& loaded) {
-  Json marks = Json::object();
+Json scene_cache_key(const LoadedScene& loaded) {
+  Json cache_key = Json::object();
   for (const radiosity::ScenePart& part : radiosity::scene_parts(loaded.scene, loaded.groups)) {
-    marks[part.key] = hex(part.digest);
+    cache_key[part.key] = hex(part.digest);
   }
   // What a picture reads besides; taken apart whole, so that another member does not compile until
   // it is decided about.
@@ -71,19 +71,19 @@ Json scene_marks(const LoadedScene& loaded) {
     lobes.add(shininess);
   }
   lobes.add(loaded.scene.ambient_radiance);
-  marks["lobes"] = lobes.text();
-  marks["build"] = build_id();
-  return marks;
+  cache_key["lobes"] = lobes.text();
+  cache_key["build"] = build_id();
+  return cache_key;
 }
 
-Json camera_marks(const scenes::Camera& camera) {
+Json camera_cache_key(const scenes::Camera& camera) {
   base::Digest digest;
   for (const Vec3& v : {camera.position, camera.look_at, camera.up}) digest.add(v);
   for (const double x : {camera.fov_deg, camera.focus_m, camera.aperture_m}) digest.add(x);
   return digest.text();
 }
 
-PartStore::PartStore(const fs::path& folder) : folder_(folder) {
+ResultCache::ResultCache(const fs::path& folder) : folder_(folder) {
   std::error_code problem;
   fs::create_directories(folder, problem);
   if (!fs::is_directory(folder)) {
@@ -94,35 +94,35 @@ PartStore::PartStore(const fs::path& folder) : folder_(folder) {
   const base::OutputFile writable(folder / "points.json");
 }
 
-std::optional<Json> PartStore::read(const Json& marks, std::string& said) const {
-  const fs::path path = folder_ / (stem_of(marks) + ".json");
+std::optional<Json> ResultCache::read(const Json& cache_key, std::string& said) const {
+  const fs::path path = folder_ / (stem_of(cache_key) + ".json");
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return std::nullopt;
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   Json json = Json::parse(text, nullptr, false);
-  const bool whole = json.is_object() && json.contains("marks") && json.contains("facts") &&
+  const bool whole = json.is_object() && json.contains("cache_key") && json.contains("facts") &&
                      json["facts"].is_object() && json.contains("picture") &&
                      json.contains("digest") && json["digest"] == stem_of(json["facts"]);
-  if (!whole || json["marks"] != marks) {
-    said = fmt::format("{} {}; it is done again", path.string(),
+  if (!whole || json["cache_key"] != cache_key) {
+    said = fmt::format("{} {}; it is recomputed", path.string(),
                        whole ? "belongs to something else" : "is broken");
     return std::nullopt;
   }
   return json;
 }
 
-std::optional<StoredPart> PartStore::find(const Json& marks, std::string& said) const {
-  const std::optional<Json> json = read(marks, said);
+std::optional<CachedResult> ResultCache::find(const Json& cache_key, std::string& said) const {
+  const std::optional<Json> json = read(cache_key, said);
   if (!json) return std::nullopt;
   const auto again = [&](const std::string& why) {
-    said = fmt::format("{} {}; it is done again", (folder_ / (stem_of(marks) + ".json")).string(),
-                       why);
+    said = fmt::format("{} {}; it is recomputed",
+                       (folder_ / (stem_of(cache_key) + ".json")).string(), why);
     return std::nullopt;
   };
-  StoredPart part{(*json)["facts"], {}};
+  CachedResult part{(*json)["facts"], {}};
   try {
-    part.image = base::read_exr(folder_ / (stem_of(marks) + ".exr")).image;
+    part.image = base::read_exr(folder_ / (stem_of(cache_key) + ".exr")).image;
   } catch (const base::Error& error) {
     return again(fmt::format("has lost its picture ({})", error.what()));
   }
@@ -130,24 +130,25 @@ std::optional<StoredPart> PartStore::find(const Json& marks, std::string& said) 
   return part;
 }
 
-std::optional<Json> PartStore::find_facts(const Json& marks, std::string& said) const {
-  const std::optional<Json> json = read(marks, said);
+std::optional<Json> ResultCache::find_facts(const Json& cache_key, std::string& said) const {
+  const std::optional<Json> json = read(cache_key, said);
   return json ? std::optional<Json>((*json)["facts"]) : std::nullopt;
 }
 
-void PartStore::keep_facts(const Json& marks, const Json& facts) const {
-  base::write_text(folder_ / (stem_of(marks) + ".json"), text_of_part(marks, facts, Json()));
+void ResultCache::keep_facts(const Json& cache_key, const Json& facts) const {
+  base::write_text(folder_ / (stem_of(cache_key) + ".json"),
+                   text_of_part(cache_key, facts, Json()));
 }
 
-bool PartStore::has(const Json& marks) const {
+bool ResultCache::has(const Json& cache_key) const {
   std::error_code ignored;
-  return fs::exists(folder_ / (stem_of(marks) + ".json"), ignored);
+  return fs::exists(folder_ / (stem_of(cache_key) + ".json"), ignored);
 }
 
-void PartStore::keep(const Json& marks, const StoredPart& part) const {
-  base::write_exr(folder_ / (stem_of(marks) + ".exr"), part.image);
-  base::write_text(folder_ / (stem_of(marks) + ".json"),
-                   text_of_part(marks, part.facts, digest_of(part.image)));
+void ResultCache::keep(const Json& cache_key, const CachedResult& part) const {
+  base::write_exr(folder_ / (stem_of(cache_key) + ".exr"), part.image);
+  base::write_text(folder_ / (stem_of(cache_key) + ".json"),
+                   text_of_part(cache_key, part.facts, digest_of(part.image)));
 }
 
 }  // namespace earthshine::app

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The error that scenes/effects/idle states for leaving interreflection out, against solved scenes:
+// The error that scenes/effects/culling states for leaving interreflection out, against solved
+// scenes:
 //   B - B0 = sum over k >= 1 of (rho F)^k B0, and |F| <= 1 in the area-weighted square mean, since
 //   rows of F sum to 1 at most, and columns, weighed by area, too (Schur's test). So |B - B0| <=
 //   (r + r^2 + ...) |B0| = r / (1 - r) |B0|.
@@ -8,7 +9,7 @@
 #include <cmath>
 
 #include "base/numbers/random.h"
-#include "scenes/effects/idle.h"
+#include "scenes/effects/culling.h"
 #include "tests/support/boxes.h"
 
 namespace earthshine::radiosity {
@@ -44,7 +45,7 @@ scenes::Scene random_room(std::uint64_t number, double most) {
   return builder.scene;
 }
 
-TEST(IdleBound, NoSolvedSceneExceedsIt) {
+TEST(CullingBound, NoSolvedSceneExceedsIt) {
   double tightest = 0.0;
   for (std::uint64_t number = 0; number < 24; ++number) {
     const double most = std::pow(10.0, -4.0 + 3.98 * double(number) / 23.0);  // 1e-4 .. 0.95
@@ -53,9 +54,9 @@ TEST(IdleBound, NoSolvedSceneExceedsIt) {
     // So large an error that the bound alone decides.
     scenes::LightGroups groups = prepared.groups;
     scenes::Effects effects = prepared.effects;
-    const auto idle = scenes::switch_off_idle(scene, {}, 1e9, {}, groups, effects);
-    ASSERT_EQ(idle.size(), 1U);
-    ASSERT_EQ(idle[0].effect, "interreflection");
+    const auto culled = scenes::cull_effects(scene, {}, 1e9, {}, groups, effects);
+    ASSERT_EQ(culled.size(), 1U);
+    ASSERT_EQ(culled[0].effect, "interreflection");
 
     SolveOptions options;
     options.patch_edge_m = 0.25;
@@ -73,8 +74,8 @@ TEST(IdleBound, NoSolvedSceneExceedsIt) {
         straight += solution.patches.area_m2[i] * b0 * b0;
       }
       const double error = std::sqrt(left_out / straight);
-      EXPECT_LE(error, idle[0].error * (1.0 + 1e-5)) << number << " column " << column;
-      tightest = std::max(tightest, error / idle[0].error);
+      EXPECT_LE(error, culled[0].error * (1.0 + 1e-5)) << number << " column " << column;
+      tightest = std::max(tightest, error / culled[0].error);
     }
   }
   // And it is no idle bound: some scene comes near it.
@@ -83,7 +84,7 @@ TEST(IdleBound, NoSolvedSceneExceedsIt) {
 
 // A closed room of one reflectance in even light is the worst case: B = B0 / (1 - r) there. Its
 // walls, lit by a lamp in the middle, are lit unevenly, and still reach nine tenths of the bound.
-TEST(IdleBound, AClosedRoomOfOneReflectanceComesNearIt) {
+TEST(CullingBound, AClosedRoomOfOneReflectanceComesNearIt) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.2));
   builder.room({m, m, m, m, m, m});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "radiosity/bodies/stopped_holes.h"
+#include "radiosity/bodies/hole_capping.h"
 
 #include <algorithm>
 #include <cmath>

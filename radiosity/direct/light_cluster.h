@@ -11,11 +11,11 @@
 namespace earthshine::radiosity {
 
 // Fewer lamps of a group are sources of their own, sampled everywhere and each in the ledger.
-inline constexpr std::size_t fewest_in_crowd = 33;
+inline constexpr std::size_t fewest_in_cluster = 33;
 
 // lamps: indices in the scene, which must outlive the source.
-[[nodiscard]] LightSource crowd_source(const scenes::Scene& scene,
-                                       const std::vector<std::size_t>& lamps, std::uint64_t key,
-                                       std::size_t group, int points);
+[[nodiscard]] LightSource cluster_source(const scenes::Scene& scene,
+                                         const std::vector<std::size_t>& lamps, std::uint64_t key,
+                                         std::size_t group, int points);
 
 }  // namespace earthshine::radiosity

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/reflect/spread_reflectance.h"
+#include "scenes/reflect/bihemispherical_albedo.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ double mean_lobe_reflectance(double n) {
   return 2.0 / (n + 1.0) * sum / (double(steps) * steps * steps);
 }
 
-std::vector<Rgb> spread_reflectances(const Scene& scene) {
+std::vector<Rgb> bihemispherical_albedos(const Scene& scene) {
   std::vector<Rgb> all;
   for (const Material& material : scene.materials) {
     Rgb reflectance = material.diffuse;

@@ -7,13 +7,13 @@
 namespace earthshine::studies {
 
 // A part of an error, relative to the mean of what it is an error of.
-struct Doubt {
+struct ErrorEstimate {
   double estimate = 0.0;  // root mean square
   double bound_95 = 0.0;  // exceeded once in twenty times
 };
 
 // Errors of independent causes.
-[[nodiscard]] inline Doubt operator+(const Doubt& a, const Doubt& b) {
+[[nodiscard]] inline ErrorEstimate operator+(const ErrorEstimate& a, const ErrorEstimate& b) {
   return {std::hypot(a.estimate, b.estimate), std::hypot(a.bound_95, b.bound_95)};
 }
 

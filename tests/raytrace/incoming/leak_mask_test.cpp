@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "raytrace/incoming/cell_sight.h"
+#include "raytrace/incoming/leak_mask.h"
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ std::vector<radiosity::Patches> even_and_uneven(const scenes::Scene& scene) {
           tests::random_cuts(radiosity::subdivide(scene, 1.0 / 8), 5, 0.3, 1)};
 }
 
-TEST(CellSight, NoLightIsReadAcrossAWall) {
+TEST(LeakMask, NoLightIsReadAcrossAWall) {
   // 1 on the one side, a million on the other, by the cells' centres: a cell that sees only such
   // as are on its own side reads what it has itself, at each of its points, to rounding. Behind
   // the sheet no wall stands: there the radiance goes over from the one to the other.
@@ -68,7 +68,7 @@ TEST(CellSight, NoLightIsReadAcrossAWall) {
   for (const radiosity::Patches& patches : even_and_uneven(scene)) {
     const radiosity::Solution solution =
         filled(patches, [](double s, double t) { return beyond(s, t) ? 1e6 : 1.0; });
-    const CellSight sight(query, patches);
+    const LeakMask sight(query, patches);
     const RadianceTable table(solution, solution.radiosity, false, sight);
     base::Rng rng(base::Key(1, base::Stream::Test, 0));
     int between = 0;
@@ -85,13 +85,13 @@ TEST(CellSight, NoLightIsReadAcrossAWall) {
   }
 }
 
-TEST(CellSight, ALinearFieldIsReadExactlyAwayFromTheWall) {
+TEST(LeakMask, ALinearFieldIsReadExactlyAwayFromTheWall) {
   const scenes::Scene scene = walled_plate();
   const scenes::RayQuery query(scene);
   const Field linear = [](double s, double t) { return 2.0 + s - 0.7 * t; };
   for (const radiosity::Patches& patches : even_and_uneven(scene)) {
     const radiosity::Solution solution = filled(patches, linear);
-    const CellSight sight(query, patches);
+    const LeakMask sight(query, patches);
     const RadianceTable table(solution, solution.radiosity, false, sight);
     base::Rng rng(base::Key(1, base::Stream::Test, 1));
     for (int k = 0; k < 5000; ++k) {
@@ -104,12 +104,12 @@ TEST(CellSight, ALinearFieldIsReadExactlyAwayFromTheWall) {
   }
 }
 
-TEST(CellSight, WeightsAddUpToOneBesideTheWall) {
+TEST(LeakMask, WeightsAddUpToOneBesideTheWall) {
   const scenes::Scene scene = walled_plate();
   const scenes::RayQuery query(scene);
   for (const radiosity::Patches& patches : even_and_uneven(scene)) {
     const radiosity::Solution solution = filled(patches, [](double, double) { return 3.0; });
-    const CellSight sight(query, patches);
+    const LeakMask sight(query, patches);
     const RadianceTable table(solution, solution.radiosity, false, sight);
     base::Rng rng(base::Key(1, base::Stream::Test, 2));
     for (int k = 0; k < 5000; ++k) {
@@ -119,11 +119,11 @@ TEST(CellSight, WeightsAddUpToOneBesideTheWall) {
   }
 }
 
-TEST(CellSight, OnlyTheSideOnWhichTheWallStandsIsParted) {
+TEST(LeakMask, OnlyTheSideOnWhichTheWallStandsIsParted) {
   const scenes::Scene scene = walled_plate();
   const scenes::RayQuery query(scene);
   const radiosity::Patches patches = radiosity::subdivide(scene, 1.0 / 16);
-  const CellSight sight(query, patches);
+  const LeakMask sight(query, patches);
   const radiosity::Facet& plate = patches.facets[0];
   int parted = 0;
   for (std::uint32_t leaf = 0; leaf + 1 < plate.leaves; ++leaf) {

@@ -10,7 +10,7 @@
 
 namespace earthshine::scenes {
 
-struct Idle {
+struct Culling {
   std::string effect;  // the row of describe_effects()
   std::string why;     // "cannot matter: ..."
   double error = 0.0;  // of the radiosity, relative, root mean square over the area: at most this
@@ -34,7 +34,7 @@ struct HiddenLights {
 //                    Left on where lobes, mirrors, glass, emitting surfaces or a wide Earth would
 //                    have to read the solution.
 // Groups keep their names, so that layers stay the same.
-[[nodiscard]] std::vector<Idle> switch_off_idle(const Scene& scene, const Asked& asked,
+[[nodiscard]] std::vector<Culling> cull_effects(const Scene& scene, const Asked& asked,
                                                 double wanted_error, const HiddenLights& hidden,
                                                 LightGroups& groups, Effects& effects);
 

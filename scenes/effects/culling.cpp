@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/effects/idle.h"
+#include "scenes/effects/culling.h"
 
 #include <fmt/format.h>
 
@@ -26,9 +26,9 @@ double along(const Face& face, const Vec3& point) {
   return glm::dot(face.normal, point - face.corner[0]);
 }
 
-class IdleFinder {
+class CullingPass {
  public:
-  explicit IdleFinder(const Scene& scene) : scene_(scene) {
+  explicit CullingPass(const Scene& scene) : scene_(scene) {
     for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
       const Triangle& triangle = scene.triangles[t];
       const Material& material = scene.materials[triangle.material];
@@ -127,17 +127,17 @@ class IdleFinder {
 };
 
 // Once the others are decided: the bounds of light between surfaces.
-std::vector<Idle> skip_interreflection(const IdleFinder& finder, double wanted_error,
-                                       Effects& effects) {
+std::vector<Culling> skip_interreflection(const CullingPass& finder, double wanted_error,
+                                          Effects& effects) {
   const bool read_otherwise = effects.phong || effects.mirror || effects.refraction ||
                               effects.emitters || effects.earth_by_gather;
   if (!effects.solution || read_otherwise) return {};
-  Idle idle{"interreflection", "cannot matter: no surface is in front of another"};
+  Culling culled{"interreflection", "cannot matter: no surface is in front of another"};
   const double r = finder.largest_reflectance();
   const double error = r < 1.0 ? r / (1.0 - r) : 1.0;
   if (error <= small_share * wanted_error) {
-    idle.error = error;
-    idle.why = fmt::format(
+    culled.error = error;
+    culled.why = fmt::format(
         "cannot matter: reflectances up to {:.2g} leave out {:.2g} of the "
         "light at most, the wanted error is {:g}",
         r, error, wanted_error);
@@ -145,38 +145,38 @@ std::vector<Idle> skip_interreflection(const IdleFinder& finder, double wanted_e
     return {};
   }
   effects.interreflection = effects.solution = false;
-  return {idle};
+  return {culled};
 }
 
 }  // namespace
 
-std::vector<Idle> switch_off_idle(const Scene& scene, const Asked& asked, double wanted_error,
+std::vector<Culling> cull_effects(const Scene& scene, const Asked& asked, double wanted_error,
                                   const HiddenLights& hidden, LightGroups& groups,
                                   Effects& effects) {
-  std::vector<Idle> idle;
-  const IdleFinder finder(scene);
+  std::vector<Culling> culled;
+  const CullingPass finder(scene);
   std::vector<const Camera*> cameras = asked.cameras;
   for (const Camera& camera : scene.cameras) {
     if (asked.cameras.empty()) cameras.push_back(&camera);
   }
   const char* const walled = "cannot matter: closed walls stand between it and every camera";
-  const bool sun_idle =
+  const bool sun_culled =
       effects.sun &&
       (hidden.sky || finder.below_every_horizon(scene.sun->direction,
                                                 base::radians(scene.sun->angular_radius_deg)));
-  const bool earth_idle =
+  const bool earth_culled =
       effects.earth && !asked.earth_on_area &&
       (hidden.sky || finder.below_every_horizon(scene.earth->direction,
                                                 base::radians(scene.earth->half_angle_deg)));
-  bool lamp_idle = false;
+  bool lamp_culled = false;
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
     if (groups.lamp[k] == no_group) continue;
     const Lamp& lamp = scene.lamps[k];
     const bool shut_in = k < hidden.lamps.size() && hidden.lamps[k];
     if (!shut_in && !finder.lights_nothing(lamp, cameras)) continue;
     groups.lamp[k] = no_group;
-    lamp_idle = true;
-    idle.push_back(
+    lamp_culled = true;
+    culled.push_back(
         {std::string(effect_of(kind_of(lamp.kind))),
          shut_in
              ? fmt::format("cannot matter: closed walls stand between lamp \"{}\" and every camera",
@@ -184,26 +184,26 @@ std::vector<Idle> switch_off_idle(const Scene& scene, const Asked& asked, double
              : fmt::format("cannot matter: no surface and no camera is in reach of lamp \"{}\"",
                            lamp.name)});
   }
-  if (lamp_idle) effects = find_effects(scene, groups, asked);
-  if (sun_idle) {
+  if (lamp_culled) effects = find_effects(scene, groups, asked);
+  if (sun_culled) {
     if (effects.penumbra) {
-      idle.push_back({"penumbra", "cannot matter: no sunlight reaches what a camera sees"});
+      culled.push_back({"penumbra", "cannot matter: no sunlight reaches what a camera sees"});
     }
     effects.sun = effects.penumbra = false;
-    idle.push_back(
+    culled.push_back(
         {"sun", hidden.sky ? walled : "cannot matter: it is below the horizon of every surface"});
   }
-  if (earth_idle) {
+  if (earth_culled) {
     effects.earth = effects.earth_by_gather = false;
-    idle.push_back(
+    culled.push_back(
         {"earth",
          hidden.sky ? walled : "cannot matter: its disc is below the horizon of every surface"});
   }
-  if (idle.empty()) return skip_interreflection(finder, wanted_error, effects);
+  if (culled.empty()) return skip_interreflection(finder, wanted_error, effects);
   const bool lit =
       effects.sun || effects.sun_parts || effects.earth || effects.lamps || effects.emitters;
   const auto forget = [&](const char* effect, bool& runs, const char* why) {
-    if (runs) idle.push_back({effect, why});
+    if (runs) culled.push_back({effect, why});
     runs = false;
   };
   const bool goes_on = asked.paths == LightPaths::All || asked.paths == LightPaths::Traced;
@@ -216,10 +216,10 @@ std::vector<Idle> switch_off_idle(const Scene& scene, const Asked& asked, double
   } else if (!goes_on && !effects.earth_by_gather) {
     forget("glossy reflection", effects.glossy, "cannot matter: it has the Earth alone to show");
   }
-  for (Idle& row : skip_interreflection(finder, wanted_error, effects)) {
-    idle.push_back(std::move(row));
+  for (Culling& row : skip_interreflection(finder, wanted_error, effects)) {
+    culled.push_back(std::move(row));
   }
-  return idle;
+  return culled;
 }
 
 }  // namespace earthshine::scenes

@@ -15,6 +15,6 @@ namespace earthshine::scenes {
 [[nodiscard]] double mean_lobe_reflectance(double n);
 
 // Per material: k_d and the mean of its lobe.
-[[nodiscard]] std::vector<Rgb> spread_reflectances(const Scene& scene);
+[[nodiscard]] std::vector<Rgb> bihemispherical_albedos(const Scene& scene);
 
 }  // namespace earthshine::scenes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "raytrace/passes/outlook.h"
+#include "raytrace/passes/pilot_pass.h"
 
 #include <algorithm>
 #include <mutex>
@@ -13,14 +13,14 @@ constexpr int planning_grid = 48;  // pixels along the shorter edge that are loo
 
 }  // namespace
 
-Outlook look_ahead(ShadingScene shared, const CameraModel& camera, int samples) {
+PilotPass run_pilot_pass(ShadingScene shared, const CameraModel& camera, int samples) {
   shared.diffuse = DiffuseSource::Solution;
   shared.splits_parts = false;
   const int step = std::max(1, std::min(camera.columns, camera.rows) / planning_grid);
   const int columns = (camera.columns + step - 1) / step, rows = (camera.rows + step - 1) / step;
   const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   std::vector<PixelSums> looks(count, PixelSums({0, 0, 1, 1}, shared.layers, false));
-  Outlook outlook;
+  PilotPass pilot;
   std::mutex mutex;
   base::parallel_chunks(count, 16, [&](std::size_t begin, std::size_t end) {
     RayCounts rays;
@@ -31,19 +31,19 @@ Outlook look_ahead(ShadingScene shared, const CameraModel& camera, int samples) 
       shade_samples(shared, camera, {static_cast<std::uint32_t>(samples)}, looks[k], rays, {}, {});
     }
     const std::lock_guard lock(mutex);
-    outlook.rays += rays;
+    pilot.rays += rays;
   });
   double pixels = 0.0;
   for (const PixelSums& look : looks) {
     if (!look.counts(0)) continue;
-    outlook.luminance += look.luminance[0] / samples;
+    pilot.luminance += look.luminance[0] / samples;
     pixels += 1.0;
   }
-  outlook.luminance /= std::max(1.0, pixels);
+  pilot.luminance /= std::max(1.0, pixels);
   for (const PixelSums& look : looks) {
-    outlook.deviation += look.deviation(0, outlook.bright()) / static_cast<double>(count);
+    pilot.deviation += look.deviation(0, pilot.bright()) / static_cast<double>(count);
   }
-  return outlook;
+  return pilot;
 }
 
 }  // namespace earthshine::raytrace

@@ -3,14 +3,14 @@
 // case where light just cannot arrive, and the first where it can.
 #include <gtest/gtest.h>
 
-#include "tests/scenes/idle_scenes.h"
+#include "tests/scenes/culling_scenes.h"
 
 namespace earthshine::scenes {
 namespace {
 
 // A disc whose centre stands h below the horizon and whose radius is r shows above it if h < r. It
 // is left on where it just touches: rounding of the direction must not decide.
-TEST(Idle, ADiscOnTheHorizonStaysOnAndOneBelowIsSkipped) {
+TEST(Culling, ADiscOnTheHorizonStaysOnAndOneBelowIsSkipped) {
   for (const double radius : {0.0, 0.2666, 5.0, 60.0, 89.0}) {
     for (const double below : {-1e-3, 0.0, 1e-3}) {
       SCOPED_TRACE(radius);
@@ -31,7 +31,7 @@ TEST(Idle, ADiscOnTheHorizonStaysOnAndOneBelowIsSkipped) {
   }
 }
 
-TEST(Idle, OneSurfaceThatSeesTheDiscKeepsIt) {
+TEST(Culling, OneSurfaceThatSeesTheDiscKeepsIt) {
   for (const bool turned : {false, true}) {
     tests::SceneBuilder builder = floor_of(tests::grey(0.5));
     builder.plate(0, 1.0, -1.0, !turned);
@@ -42,7 +42,7 @@ TEST(Idle, OneSurfaceThatSeesTheDiscKeepsIt) {
   }
 }
 
-TEST(Idle, SheetsAndGlassTakeLightFromBehind) {
+TEST(Culling, SheetsAndGlassTakeLightFromBehind) {
   Material sheet = tests::grey(0.5), glass = tests::grey(0.1);
   sheet.two_sided = true;
   glass.transmit = Rgb(0.0, 0.0, 0.5);
@@ -51,13 +51,13 @@ TEST(Idle, SheetsAndGlassTakeLightFromBehind) {
     scene.sun = sun_at(-45.0, 0.2666);
     scene.earth = earth_at(-80.0, 20.0);
     scene.lamps = {lamp_of(LampKind::Point, {0, 0, -1}, {0, 0, 1})};
-    EXPECT_TRUE(look(scene).idle.empty());
+    EXPECT_TRUE(look(scene).culled.empty());
   }
 }
 
 // The highlights and the gloss of an Earth that is never up need no rays either, and the table must
 // not say that they run.
-TEST(Idle, WhatLivesOnLightThatIsSkippedIsSkippedWithIt) {
+TEST(Culling, WhatLivesOnLightThatIsSkippedIsSkippedWithIt) {
   Material shiny = tests::grey(0.5);
   shiny.specular = Rgb(0.2);
   shiny.shininess = 10.0;
@@ -82,7 +82,7 @@ TEST(Idle, WhatLivesOnLightThatIsSkippedIsSkippedWithIt) {
 }
 
 // r / (1 - r) <= 0.001 e for the wanted error e: r = 0.001 e / (1 + 0.001 e).
-TEST(Idle, InterreflectionEndsAtAThousandthOfTheWantedError) {
+TEST(Culling, InterreflectionEndsAtAThousandthOfTheWantedError) {
   for (const double wanted : {0.001, 0.02, 0.5}) {
     const double share = 1e-3 * wanted, limit = share / (1.0 + share);
     for (const double factor : {0.999, 1.001}) {
@@ -103,7 +103,7 @@ TEST(Idle, InterreflectionEndsAtAThousandthOfTheWantedError) {
 }
 
 // Two plates face each other if a corner of each is in front of the other.
-TEST(Idle, InterreflectionStaysWhereASurfaceHasOneInFrontOfIt) {
+TEST(Culling, InterreflectionStaysWhereASurfaceHasOneInFrontOfIt) {
   const auto facing = [](bool up, double height, bool sheet) {
     Material material = tests::grey(0.5);
     material.two_sided = sheet;
@@ -132,7 +132,7 @@ TEST(Idle, InterreflectionStaysWhereASurfaceHasOneInFrontOfIt) {
   }
 }
 
-TEST(Idle, InterreflectionStaysForThoseThatReadTheSolution) {
+TEST(Culling, InterreflectionStaysForThoseThatReadTheSolution) {
   Material lobe = tests::grey(1e-9), mirror = lobe, glass = lobe, panel = tests::grey(1e-9, 5.0);
   lobe.specular = Rgb(0.1);
   mirror.mirror = Rgb(0.1);
@@ -149,7 +149,7 @@ TEST(Idle, InterreflectionStaysForThoseThatReadTheSolution) {
   EXPECT_TRUE(look(scene).has("interreflection"));
 }
 
-TEST(Idle, HiddenLightsAreSwitchedOff) {
+TEST(Culling, HiddenLightsAreSwitchedOff) {
   Scene scene = floor_of(tests::grey(0.5)).scene;
   scene.sun = sun_at(45.0, 0.2666);
   scene.earth = earth_at(45.0, 60.0);
