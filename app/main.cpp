@@ -11,6 +11,7 @@
 
 #include "app/command.h"
 #include "app/console.h"
+#include "app/help.h"
 #include "app/options.h"
 #include "base/error.h"
 #include "base/files/output_file.h"
@@ -42,12 +43,6 @@ const CLI::App& chosen_parser(const CLI::App& program) {
   const CLI::App* parser = &program;
   while (!parser->get_subcommands().empty()) parser = parser->get_subcommands().front();
   return *parser;
-}
-
-// The words that lead to it, each with a blank behind: "", "render ", "study compare ".
-std::string words_to(const CLI::App& parser) {
-  if (parser.get_parent() == nullptr) return "";
-  return words_to(*parser.get_parent()) + parser.get_name() + " ";
 }
 
 // A word nobody asked for is the likeliest reason of any other complaint, so it is named first.
@@ -94,9 +89,7 @@ int run(int argc, char** argv) {
       "earthshine");
   program.set_version_flag("--version", "earthshine " EARTHSHINE_VERSION);
   program.require_subcommand(1);
-  program.get_formatter()->column_width(36);
-  program.get_formatter()->label("SUBCOMMAND", "COMMAND");
-  program.get_formatter()->label("Subcommands", "Commands");
+  program.formatter(std::make_shared<Help>());
   Common common;
   std::uint64_t threads = 0;
   std::vector<Command> commands = {add_render(program),       add_solve(program),

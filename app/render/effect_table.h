@@ -36,7 +36,8 @@ void add_expectation(Json& rows, const Expectation& expected);
 // The table once more with what each effect really took, in `taken` beside `expected`. cpu_seconds:
 // of solve and pictures, all threads.
 [[nodiscard]] Json report_json(const LoadedScene& loaded, const RenderCall& call,
-                               const scenes::Asked& asked, const std::vector<scenes::Culling>& culled,
+                               const scenes::Asked& asked,
+                               const std::vector<scenes::Culling>& culled,
                                const Expectation& expected, const radiosity::SolveReport& solved,
                                const std::vector<Picture>& pictures, const StageTimes& times,
                                double cpu_seconds);

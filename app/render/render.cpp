@@ -209,6 +209,7 @@ Command add_render(CLI::App& program) {
   file_option("-o,--output", call->output, "Linear picture in cd/m2 (OpenEXR)");
   file_option("--png", call->png, "Also a tone-mapped picture");
   file_option("--cctv", call->cctv, "Also the picture on the camera's CCTV monitor (PNG)");
+  parser->get_option("--cctv")->group("What is written");
   file_option("--range", call->range,
               "Also, or alone, what the camera's range sensor reports (OpenEXR)");
   file_option("--report", call->report,

@@ -144,7 +144,7 @@ void add_picture_options(CLI::App& parser, RenderCall& call) {
   parser
       .add_option_function<std::string>(
           "--aov", [&call](const std::string& text) { call.aovs = split_at_commas(text); },
-          fmt::format("Further layers, of {}", fmt::join(raytrace::aov_names(), ",")))
+          fmt::format("Further layers, of {}", fmt::join(raytrace::aov_names(), ", ")))
       ->type_name("LIST");
   parser.add_flag("--all-effects", call.all_effects,
                   "Also those that cannot matter (plan says which they are)");

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <map>
 
-#include "app/build_id.h"
+#include "app/study/build_id.h"
 #include "base/error.h"
 #include "base/files/exr_file.h"
 #include "base/files/output_file.h"

@@ -15,10 +15,22 @@ class Help(program.Case):
     def test_each_command_has_help(self):
         for command in COMMANDS:
             text = self.done(command, "--help")
-            self.says(text, "-j,--threads", "--seed", "-q,--quiet")
+            self.says(text, "As with every command:", "-j, --threads", "--seed", "-q, --quiet")
         self.says(self.done("render", "-h"), "--camera", "--size", "--png", "--cctv", "--indirect",
                   "--distributed-lights", "--error", "--set", "--aov", "--per-light", "--timings",
                   "--json", "radiosity", "distributed")
+
+    def test_help_fits_a_terminal_and_breaks_between_words(self):
+        for command in [[], *([command] for command in COMMANDS), ["degrade", "certify"], ["study", "visibility"],
+                        ["study", "orbit"], ["study", "accuracy"], ["study", "compare"], ["study", "run"]]:
+            text = self.done(*command, "--help")
+            self.assertLessEqual(max(map(len, text.splitlines())), 80, command)
+            self.says(text, "Usage: earthshine " + "".join(word + " " for word in command) + "[OPTIONS]")
+        # No word is cut: the lines of one entry, put together, are its sentence.
+        self.says(" ".join(self.done("render", "--help").split()),
+                  "--indirect HOW radiosity (default), distributed (many lights, no interreflection), none, paths (slow reference)")
+        # One name, two meanings: what is written here is read there.
+        self.assertRegex(self.done("render", "--help"), r"(?s)What is written:.*--cctv FILE")
 
     def test_version(self):
         self.assertRegex(self.done("--version"), r"^earthshine \d+\.\d+\.\d+\n$")

@@ -31,6 +31,7 @@ TOP = pathlib.Path(__file__).resolve().parents[2]
 FINER = 10  # of the references, in patches
 REFERENCE_RAYS = 512  # form-factor rays per patch of a reference, or as many as the settings have
 REFERENCE_PATHS = 1024  # per pixel of a reference picture
+MOST_PATCHES = 100000  # of a reference solution: 5 GB
 SHARE, MEDIAN = 0.9, 3.0  # asked for
 # Of a true error: below, the references' own noise and rounding decide, and a ratio says nothing.
 LEAST = 1e-3
@@ -111,6 +112,8 @@ class Bench:
 
     def references(self, path, text, more, patches, rays):
         """(solutions, luminances of both references, pixels that count), from the cache if they are there."""
+        # Of a scene that takes more patches than that the picture alone is judged, by paths.
+        judged = FINER * patches <= MOST_PATCHES
         fine = error_scenes.knobs(max_patches=rounded_up(FINER * patches), form_factor_rays=max(REFERENCE_RAYS, rays))
         fine += error_scenes.knobs(refine="true")
         paths = ["--indirect", "paths", *error_scenes.knobs(gather_rays=REFERENCE_PATHS)]
@@ -120,7 +123,8 @@ class Bench:
             folder.mkdir(parents=True)
             for k in (1, 2):
                 seed = ["--seed", 9000 + k]
-                self.json("solve", path, *fine, *seed, "-o", folder / f"{k}.h5")
+                if judged:
+                    self.json("solve", path, *fine, *seed, "-o", folder / f"{k}.h5")
                 self.json("render", path, *paths, *seed, *more, "-o", folder / f"{k}.exr")
             self.json("render", path, *more, "--indirect", "none", "--aov", "object", "-o", folder / "objects.exr")
             (folder / "seen").write_text(json.dumps([int(seen) for seen in self.sources_seen(path, more)]))
@@ -128,7 +132,7 @@ class Bench:
         first, second = (error_truth.picture(folder / f"{k}.exr")[0] for k in (1, 2))
         _, things = error_truth.picture(folder / "objects.exr", "object")
         seen = with_neighbours(json.loads((folder / "seen").read_text()), error_truth.columns(folder / "1.exr"))
-        solutions = [[folder / f"{k}.h5", 9000 + k, *overrides(fine)] for k in (1, 2)]
+        solutions = [[folder / f"{k}.h5", 9000 + k, *overrides(fine)] for k in (1, 2)] if judged else []
         return solutions, first, second, [float(o >= 0 and not s) for o, s in zip(things, seen)]
 
     def rows(self, name, source, more, asked):
@@ -148,9 +152,10 @@ class Bench:
         for setting, stem, solved, rendered in runs:
             light, _ = error_truth.picture(f"{stem}.exr")
             own = [f"{stem}.h5", self.seed, *overrides(error_scenes.ASKED[setting])]
-            surface = error_truth.radiosities(self.reader, path, [own, *solutions])
-            truths = (("solve", solved, error_truth.compare(*surface)),
-                      ("picture", rendered, error_truth.compare(light, first, second, counts)))
+            truths = [("picture", rendered, error_truth.compare(light, first, second, counts))]
+            if solutions:
+                surface = error_truth.radiosities(self.reader, path, [own, *solutions])
+                truths.insert(0, ("solve", solved, error_truth.compare(*surface)))
             for kind, report, truth in truths:
                 error = report["error"]
                 if truth.mean == 0:
