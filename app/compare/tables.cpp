@@ -2,48 +2,12 @@
 // The comparison as tables.
 #include "app/compare/tables.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace earthshine::app {
 namespace {
 
-using studies::Ladder;
-using studies::LadderEnd;
-
 Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
-std::string word_of(LadderEnd reach) {
-  switch (reach) {
-    case LadderEnd::Reached:
-      return "reached";
-    case LadderEnd::LevelsOut:
-      return "levels-out";
-    case LadderEnd::NotWithin:
-      break;
-  }
-  return "not-within";
-}
-
-// The columns that equal time and equal error add to a method's row; null for the references.
-void add_equal(const std::optional<studies::EqualResult>& equal, Json& row) {
-  const studies::Shot* at_time = equal && equal->at_time ? &*equal->at_time : nullptr;
-  const Ladder* ladder = equal ? &equal->ladder : nullptr;
-  const auto of_time = [&](const auto& value) {
-    return at_time != nullptr ? Json(value()) : Json();
-  };
-  row["equal_time_step"] = of_time([&] { return ladder->points[ladder->at_time].rung; });
-  row["equal_time_seconds"] = of_time([&] { return at_time->seconds; });
-  row["equal_time_camera_samples"] = of_time([&] { return at_time->camera_samples; });
-  row["equal_time_rmse"] = of_time([&] { return at_time->difference.relative_rmse; });
-  row["equal_time_standard_error"] = of_time([&] { return at_time->difference.standard_error; });
-  const bool reached = equal && ladder->end == LadderEnd::Reached;
-  row["equal_error"] = equal ? Json(word_of(ladder->end)) : Json();
-  row["equal_error_step"] = reached ? Json(ladder->points[ladder->at_error].rung) : Json();
-  row["equal_error_seconds"] = reached ? Json(equal->at_error.seconds) : Json();
-  row["least_rmse"] = equal ? Json(least_error(*ladder)) : Json();
-  row["most_seconds"] = equal ? Json(most_seconds(*ladder)) : Json();
-}
 
 Json method_row(const studies::Method& method) {
   const int lights = method.distributed_lights;
@@ -67,18 +31,6 @@ void add_target(const std::optional<studies::TargetDifference>& target, Json& ro
 
 }  // namespace
 
-double least_error(const Ladder& ladder) {
-  double least = ladder.points.front().error;
-  for (const studies::LadderPoint& point : ladder.points) least = std::min(least, point.error);
-  return least;
-}
-
-double most_seconds(const Ladder& ladder) {
-  double most = 0.0;
-  for (const studies::LadderPoint& point : ladder.points) most = std::max(most, point.seconds);
-  return most;
-}
-
 Json method_rows(const studies::Comparison& comparison) {
   Json rows = Json::array();
   for (const studies::MethodResult& result : comparison.methods) {
@@ -94,7 +46,6 @@ Json method_rows(const studies::Comparison& comparison) {
     row["standard_error"] = result.difference.standard_error;
     row["solve_cpu_seconds"] = result.solve_cpu_seconds;
     row["render_cpu_seconds"] = result.render_cpu_seconds;
-    add_equal(result.equal, row);
     rows.push_back(std::move(row));
   }
   // What the reference itself is uncertain by.
@@ -121,46 +72,6 @@ Json target_rows(const studies::Comparison& comparison) {
   return rows;
 }
 
-Json equal_target_rows(const studies::Comparison& comparison) {
-  Json rows = Json::array();
-  for (std::size_t k = 0; k < comparison.targets.size(); ++k) {
-    for (const studies::MethodResult& result : comparison.methods) {
-      if (!result.equal) continue;
-      const auto add = [&](const char* basis, const studies::Shot& shot) {
-        Json row = {{"basis", basis},
-                    {"target", comparison.targets[k].name},
-                    {"method", result.method.name},
-                    {"pixels", comparison.targets[k].pixels},
-                    {"seconds", shot.seconds}};
-        add_target(shot.targets[k], row);
-        rows.push_back(std::move(row));
-      };
-      if (result.equal->at_time) add("equal-time", *result.equal->at_time);
-      add(result.equal->ladder.end == LadderEnd::Reached ? "equal-error" : "least-error",
-          result.equal->at_error);
-    }
-  }
-  return rows;
-}
-
-Json curve_rows(const studies::Comparison& comparison) {
-  Json rows = Json::array();
-  for (const studies::MethodResult& result : comparison.methods) {
-    if (!result.equal) continue;
-    for (std::size_t k = 0; k < result.equal->ladder.points.size(); ++k) {
-      const studies::LadderPoint& point = result.equal->ladder.points[k];
-      Json row = method_row(result.method);
-      row["step"] = point.rung;
-      row["cpu_seconds"] = point.seconds;
-      row["relative_rmse"] = point.error;
-      row["standard_error"] = result.equal->differences[k].standard_error;
-      row["bias"] = result.equal->differences[k].bias;
-      rows.push_back(std::move(row));
-    }
-  }
-  return rows;
-}
-
 Json lights_rows(const studies::Comparison& comparison) {
   Json rows = Json::array();
   for (const studies::MethodResult& result : comparison.methods) {
@@ -170,8 +81,7 @@ Json lights_rows(const studies::Comparison& comparison) {
                 {"cpu_seconds", result.cpu_seconds()},
                 {"relative_rmse", result.difference.relative_rmse},
                 {"standard_error", result.difference.standard_error},
-                {"bias", result.difference.bias},
-                {"least_rmse", result.equal ? Json(least_error(result.equal->ladder)) : Json()}};
+                {"bias", result.difference.bias}};
     rows.push_back(std::move(row));
   }
   return rows;

@@ -10,11 +10,6 @@
 namespace earthshine::app {
 namespace {
 
-using studies::Ladder;
-using studies::LadderEnd;
-
-std::string percent(double share) { return fmt::format("{:.3g} %", 100.0 * share); }
-
 std::string fixed_table(const studies::Comparison& comparison) {
   std::string text = fmt::format("{:<18} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "method",
                                  "solve s", "render s", "rays", "RMSE", "bias", "off");
@@ -31,46 +26,6 @@ std::string fixed_table(const studies::Comparison& comparison) {
                             "", 100.0 * noise.relative_rmse);
 }
 
-std::string at_error_text(const studies::Comparison& comparison,
-                          const studies::MethodResult& result) {
-  const Ladder& ladder = result.equal->ladder;
-  switch (ladder.end) {
-    case LadderEnd::Reached: {
-      const double seconds = result.equal->at_error.seconds;
-      return fmt::format("{:.3g} s, x {:.2g}", seconds, seconds / comparison.equal_seconds);
-    }
-    case LadderEnd::LevelsOut:
-      return fmt::format("never: levels out at {}", percent(least_error(ladder)));
-    case LadderEnd::NotWithin:
-      break;
-  }
-  return fmt::format("not in {:.3g} s: {} there", most_seconds(ladder),
-                     percent(least_error(ladder)));
-}
-
-std::string equal_table(const studies::Comparison& comparison) {
-  std::string text = fmt::format(
-      "\nEqual time: {:.3g} CPU s each, solution included. Equal error: {}, as radiosity reaches "
-      "or "
-      "as asked for.\n{:<18} {:>9} {:>9} {:>9} {:>9}   {}\n",
-      comparison.equal_seconds, percent(comparison.equal_error), "method", "CPU s", "samples",
-      "RMSE", "+-", "CPU seconds to the equal error");
-  for (const studies::MethodResult& result : comparison.methods) {
-    if (!result.equal) continue;
-    const std::string at_error = at_error_text(comparison, result);
-    if (!result.equal->at_time) {
-      text += fmt::format("{:<18} {:>39}   {}\n", result.method.name, "takes longer at its least",
-                          at_error);
-      continue;
-    }
-    const studies::Shot& shot = *result.equal->at_time;
-    text += fmt::format("{:<18} {:>9.3g} {:>9.1f} {:>7.2f} % {:>7.2f} %   {}\n", result.method.name,
-                        shot.seconds, shot.camera_samples, 100.0 * shot.difference.relative_rmse,
-                        100.0 * shot.difference.standard_error, at_error);
-  }
-  return text;
-}
-
 std::string lights_text(const studies::Comparison& comparison, bool over_area) {
   const int most = std::prev(std::find_if(comparison.methods.begin() + 2, comparison.methods.end(),
                                           [](const studies::MethodResult& result) {
@@ -81,35 +36,37 @@ std::string lights_text(const studies::Comparison& comparison, bool over_area) {
   const auto from = levels_out_at(comparison, over_area);
   const char* const where = over_area ? " over the area" : "";
   if (from) {
-    return fmt::format("From {} lights{} on, more change the error by less than a twentieth.\n",
+    return fmt::format("From {} lights{} on, more change the error by less than a twentieth.",
                        *from, where);
   }
-  return fmt::format("At {} lights{} the error has not levelled out yet.\n", most, where);
+  return fmt::format("At {} lights{} the error has not levelled out yet.", most, where);
 }
 
 }  // namespace
 
-std::string summary(const studies::Comparison& comparison) {
-  std::string text = fixed_table(comparison);
-  if (comparison.equal_seconds > 0.0) text += equal_table(comparison);
-  text += "\n";
+std::vector<std::string> findings(const studies::Comparison& comparison) {
+  std::vector<std::string> lines;
   if (!comparison.wide_sources) {
-    text +=
+    lines.emplace_back(
         "No Earth, area lamp or emitting surface is there to distribute: the approximation is the "
-        "direct light alone.\n";
+        "direct light alone.");
   } else {
-    text += lights_text(comparison, false);
+    lines.push_back(lights_text(comparison, false));
     const studies::Method& last = std::prev(comparison.methods.end(), 2)->method;
-    if (!last.distributed_over.empty()) text += lights_text(comparison, true);
+    if (!last.distributed_over.empty()) lines.push_back(lights_text(comparison, true));
   }
-  text += fmt::format(
+  lines.push_back(fmt::format(
       "Misled: a target's luminance is off by more than a factor {}, or its contrast by more "
-      "than {}.\n",
-      studies::misleading_factor, studies::misleading_contrast);
+      "than {}.",
+      studies::misleading_factor, studies::misleading_contrast));
   const std::vector<studies::TargetVerdict> verdicts = studies::judge_approximation(comparison);
-  if (verdicts.empty()) text += "The scene marks no object as a target.\n";
-  for (const studies::TargetVerdict& verdict : verdicts) text += verdict.sentence + "\n";
-  return text;
+  if (verdicts.empty()) lines.emplace_back("The scene marks no object as a target.");
+  for (const studies::TargetVerdict& verdict : verdicts) lines.push_back(verdict.sentence);
+  return lines;
+}
+
+std::string summary(const studies::Comparison& comparison) {
+  return fmt::format("{}\n{}\n", fixed_table(comparison), fmt::join(findings(comparison), "\n"));
 }
 
 }  // namespace earthshine::app

@@ -4,11 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <ctime>
 
-#include "base/error.h"
 #include "raytrace/light/distributed_area.h"
 #include "studies/compare/yardstick.h"
 
@@ -53,7 +51,6 @@ class Comparing {
     comparison_.wide_sources = has_wide_sources(study_);
     take_references(methods.front());
     for (std::size_t k = 1; k < methods.size(); ++k) at_the_settings(methods[k]);
-    if (options_.equal) compare_equal();
     return std::move(comparison_);
   }
 
@@ -161,91 +158,10 @@ class Comparing {
     result.frame = draw(solution, render_options(method), method.name);
     result.render_cpu_seconds = cpu_seconds() - solved;
     result.render_seconds = result.frame.report.seconds;
-    result.difference = difference_of(result.frame.image);
+    result.difference = picture_difference(base::luminance_of(result.frame.image), yardstick_.first,
+                                           yardstick_.second, comparison_.map);
     result.targets = target_differences(result.frame.image, comparison_.targets, yardstick_);
     comparison_.methods.push_back(std::move(result));
-  }
-
-  [[nodiscard]] PictureDifference difference_of(const base::Image& image) const {
-    return picture_difference(base::luminance_of(image), yardstick_.first, yardstick_.second,
-                              comparison_.map);
-  }
-
-  [[nodiscard]] Shot shoot(const MethodResult& result, int rung) const {
-    if (rung == 0) {
-      return {result.frame.image, result.cpu_seconds(), result.frame.report.camera_samples,
-              result.difference, result.targets};
-    }
-    const Method& method = result.method;
-    const std::string stage = fmt::format("{}, step {:+}", method.name, rung);
-    radiosity::Solution solution;
-    const double begin = cpu_seconds();
-    if (method.indirect == Indirect::Radiosity) {
-      solution = solve(at_rung(options_.solver, rung), stage + ", solution");
-    }
-    raytrace::Frame frame = draw(solution, at_rung(render_options(method), rung), stage);
-    Shot shot{std::move(frame.image), cpu_seconds() - begin, frame.report.camera_samples, {}, {}};
-    shot.difference = difference_of(shot.image);
-    shot.targets = target_differences(shot.image, comparison_.targets, yardstick_);
-    return shot;
-  }
-
-  // Without gather rays and without sharing there are no more than so many camera samples.
-  [[nodiscard]] int most_rung(const Method& method) const {
-    constexpr int anyhow = LadderLimits().most_rung;
-    if (options_.shared.on || method.indirect == Indirect::Radiosity) return anyhow;
-    const auto rays = static_cast<std::uint32_t>(std::max(1, options_.gather_rays));
-    return std::max(0, (13 - static_cast<int>(std::bit_width(rays))) / 2);
-  }
-
-  [[nodiscard]] EqualResult equal_of(const MethodResult& result, const LadderLimits& wanted) const {
-    std::vector<std::pair<int, Shot>> shots;
-    LadderLimits limits = wanted;
-    limits.most_rung = std::min(limits.most_rung, most_rung(result.method));
-    limits.least_rung = std::min(0, limits.least_rung);
-    EqualResult equal;
-    equal.ladder = climb(
-        [&](int rung) {
-          shots.emplace_back(rung, shoot(result, rung));
-          const Shot& shot = shots.back().second;
-          return LadderPoint{rung, shot.seconds, shot.difference.relative_rmse};
-        },
-        limits);
-    std::sort(shots.begin(), shots.end(),
-              [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (const auto& [rung, shot] : shots) equal.differences.push_back(shot.difference);
-    if (equal.ladder.at_time != Ladder::none) equal.at_time = shots[equal.ladder.at_time].second;
-    equal.at_error = std::move(shots[equal.ladder.at_error].second);
-    return equal;
-  }
-
-  void compare_equal() {
-    const EqualOptions& wanted = *options_.equal;
-    LadderLimits limits;
-    MethodResult& radiosity = comparison_.methods[1];
-    limits.spend = wanted.spend;
-    limits.seconds = wanted.seconds.value_or(radiosity.cpu_seconds());
-    limits.wanted_error = wanted.error;
-    if (!wanted.seconds && !wanted.error) limits.least_rung = limits.most_rung = 0;
-    radiosity.equal = equal_of(radiosity, limits);
-    if (!wanted.error) {
-      // An error that the references' noise hides cannot be told from one that is as small.
-      const Shot& taken =
-          radiosity.equal->at_time ? *radiosity.equal->at_time : radiosity.equal->at_error;
-      limits.wanted_error =
-          std::max(taken.difference.relative_rmse, taken.difference.standard_error);
-      radiosity.equal->at_error = taken;
-      radiosity.equal->ladder.end = LadderEnd::Reached;
-      if (radiosity.equal->at_time)
-        radiosity.equal->ladder.at_error = radiosity.equal->ladder.at_time;
-    }
-    limits.least_rung = LadderLimits().least_rung;
-    limits.most_rung = LadderLimits().most_rung;
-    comparison_.equal_seconds = limits.seconds;
-    comparison_.equal_error = *limits.wanted_error;
-    for (std::size_t k = 2; k < comparison_.methods.size(); ++k) {
-      comparison_.methods[k].equal = equal_of(comparison_.methods[k], limits);
-    }
   }
 
   const StudyScene& study_;

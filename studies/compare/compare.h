@@ -14,20 +14,10 @@
 #include <vector>
 
 #include "raytrace/render.h"
-#include "studies/compare/ladder.h"
 #include "studies/study.h"
 #include "studies/targets/visibility.h"
 
 namespace earthshine::studies {
-
-// Comparison at equal time and at equal error.
-struct EqualOptions {
-  // CPU seconds for each method, the solution included; none: what radiosity takes at the scene's
-  // settings.
-  std::optional<double> seconds;
-  std::optional<double> error;  // relative; none: what radiosity reaches in those seconds
-  double spend = 4.0;           // LadderLimits
-};
 
 struct CompareOptions {
   int columns = 512;
@@ -41,7 +31,6 @@ struct CompareOptions {
       distributed_over;  // an [[area]]: the Earth's lights over it too; empty: its disc only
   radiosity::SolveOptions solver;
   std::uint64_t seed = 1;
-  std::optional<EqualOptions> equal;  // none: at the given settings alone
   [[nodiscard]] int rays_of_a_reference() const {
     return reference_rays > 0 ? reference_rays : gather_rays * reference_factor;
   }
@@ -90,25 +79,6 @@ inline constexpr int fewest_lights = 2;
 [[nodiscard]] std::vector<Method> compare_methods(std::vector<int> distributed_lights,
                                                   const std::string& distributed_over = {});
 
-// A picture and what there is to say about it.
-struct Shot {
-  base::Image image;
-  double seconds = 0.0;         // CPU, of the solution and the picture
-  double camera_samples = 0.0;  // per pixel
-  PictureDifference difference;
-  std::vector<std::optional<TargetDifference>>
-      targets;  // as Comparison::targets; none: not in view
-};
-
-// A method on its ladder: each rung up has half the squared noise that is wanted of the camera
-// samples, twice the gather rays, and twice the entries of the solution's matrix.
-struct EqualResult {
-  Ladder ladder;
-  std::vector<PictureDifference> differences;  // as ladder.points
-  std::optional<Shot> at_time;                 // none: even the lowest rung takes longer
-  Shot at_error;                               // reached, or with the least error
-};
-
 struct MethodResult {
   Method method;
   raytrace::Frame frame;       // the reference's with the layer "object"
@@ -117,8 +87,7 @@ struct MethodResult {
   double solve_cpu_seconds = 0.0, render_cpu_seconds = 0.0;
   PictureDifference difference;
   std::vector<std::optional<TargetDifference>>
-      targets;                       // as Comparison::targets; none: not in view
-  std::optional<EqualResult> equal;  // none for the reference, or if it was not asked for
+      targets;  // as Comparison::targets; none: not in view
   [[nodiscard]] double cpu_seconds() const { return solve_cpu_seconds + render_cpu_seconds; }
 };
 
@@ -131,14 +100,11 @@ struct Comparison {
   std::size_t reference_patches = 0;
   PictureDifference reference_noise;  // of the reference, from the difference of its two halves
   bool wide_sources = true;           // anything for distributed lights to stand for
-  double equal_seconds = 0.0;         // CPU; 0 without EqualOptions
-  double equal_error = 0.0;
   [[nodiscard]] const MethodResult& reference() const { return methods.front(); }
 };
 
-// Seconds apart, the same values for the same options and seed on any number of threads; but for
-// which rungs are drawn and chosen, which follows the seconds. Throws as compare_methods and
-// raytrace::earth_area do.
+// Seconds apart, the same values for the same options and seed on any number of threads. Throws as
+// compare_methods and raytrace::earth_area do.
 [[nodiscard]] Comparison compare(const StudyScene& scene, const scenes::Camera& camera,
                                  const CompareOptions& options, const StageListener& listen = {});
 
@@ -157,6 +123,9 @@ struct Comparison {
 [[nodiscard]] TargetDifference target_difference(const TargetLight& light,
                                                  const TargetLight& reference);
 
+// Infinite where only the reference is black, 1 where both are.
+[[nodiscard]] double ratio_of(double value, double reference);
+
 // Whether luminance or contrast are off by more than the rule allows.
 [[nodiscard]] bool breaks_rule(const TargetDifference& difference);
 
@@ -169,10 +138,6 @@ struct Comparison {
 // Of the first or second reference: half the edge and four times the patches.
 [[nodiscard]] radiosity::SolveOptions reference_solver(radiosity::SolveOptions options,
                                                        std::uint64_t number);
-
-// The settings `rung` rungs up the ladder.
-[[nodiscard]] raytrace::RenderOptions at_rung(raytrace::RenderOptions options, int rung);
-[[nodiscard]] radiosity::SolveOptions at_rung(radiosity::SolveOptions options, int rung);
 
 // What the study says of one target. Undecided: the noise of the pictures could turn it round.
 enum class ApproximationVerdict { NotInView, Misled, NotMisled, Undecided };

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -15,25 +14,7 @@ namespace {
 
 using raytrace::Indirect;
 
-// Infinite where only the reference is black, 1 where both are.
-double ratio(double value, double reference) {
-  if (reference > 0.0) return value / reference;
-  return value > 0.0 ? std::numeric_limits<double>::infinity() : 1.0;
-}
-
-bool far_off(double luminance_ratio) {
-  return luminance_ratio > misleading_factor || luminance_ratio < 1.0 / misleading_factor;
-}
-
-// Without gather rays their number sets that of the camera samples, whose root it is, up to this
-// one (passes.cpp).
-constexpr int most_rays_without_gather = 1 << 12;
-
-int times_power_of_two(int count, int power, int least, int most) {
-  const double scaled = std::ceil(std::ldexp(static_cast<double>(count), power));
-  const auto rays = static_cast<std::uint32_t>(std::clamp(scaled, double(least), double(most)));
-  return static_cast<int>(std::bit_ceil(rays));
-}
+bool far_off(double ratio) { return ratio > misleading_factor || ratio < 1.0 / misleading_factor; }
 
 }  // namespace
 
@@ -71,7 +52,7 @@ PictureDifference picture_difference(const base::Image& image, const base::Image
     squares += difference * difference;
     sum += difference;
     right_sum += double(right[i]);
-    if (far_off(ratio(double(value[i]), double(right[i])))) ++off;
+    if (far_off(ratio_of(double(value[i]), double(right[i])))) ++off;
   }
   if (result.pixels == 0) return result;
   const auto n = static_cast<double>(result.pixels);
@@ -97,7 +78,7 @@ PictureDifference picture_difference(const std::vector<float>& luminance,
     variance += (value - right) * (value - right) * apart * apart;
     sum += value - right;
     right_sum += right;
-    if (far_off(ratio(value, right))) ++off;
+    if (far_off(ratio_of(value, right))) ++off;
   }
   if (result.pixels == 0) return result;
   const auto n = static_cast<double>(result.pixels);
@@ -111,6 +92,11 @@ PictureDifference picture_difference(const std::vector<float>& luminance,
   return result;
 }
 
+double ratio_of(double value, double reference) {
+  if (reference > 0.0) return value / reference;
+  return value > 0.0 ? std::numeric_limits<double>::infinity() : 1.0;
+}
+
 bool breaks_rule(const TargetDifference& difference) {
   return far_off(difference.luminance_ratio) ||
          std::abs(difference.contrast_difference.value_or(0.0)) > misleading_contrast;
@@ -119,7 +105,7 @@ bool breaks_rule(const TargetDifference& difference) {
 TargetDifference target_difference(const TargetLight& light, const TargetLight& reference) {
   TargetDifference difference;
   difference.light = light;
-  difference.luminance_ratio = ratio(light.luminance, reference.luminance);
+  difference.luminance_ratio = ratio_of(light.luminance, reference.luminance);
   if (light.contrast && reference.contrast) {
     difference.contrast_difference = *light.contrast - *reference.contrast;
   }
@@ -128,35 +114,6 @@ TargetDifference target_difference(const TargetLight& light, const TargetLight& 
     difference.misleads = true;  // one surround is black, the other is not
   }
   return difference;
-}
-
-raytrace::RenderOptions at_rung(raytrace::RenderOptions options, int rung) {
-  const double work = std::ldexp(1.0, rung);
-  const bool gathers = options.indirect == Indirect::Radiosity;
-  if (!options.shared.on) {
-    options.gather_rays =
-        gathers ? times_power_of_two(options.gather_rays, rung, 16, 1 << 16)
-                : times_power_of_two(options.gather_rays, 2 * rung, 1, most_rays_without_gather);
-    return options;
-  }
-  options.shared.noise = std::min(1.0, options.shared.noise / std::sqrt(work));
-  options.shared.most_samples = times_power_of_two(options.shared.most_samples, std::max(0, rung),
-                                                   options.shared.least_samples, 1 << 16);
-  if (!gathers) return options;
-  options.gather_rays = times_power_of_two(options.gather_rays, rung, 8, 1 << 16);
-  return options;
-}
-
-// Twice the entries: patches and rays per patch by the root of two each, the rays in powers of two.
-radiosity::SolveOptions at_rung(radiosity::SolveOptions options, int rung) {
-  const double patches = std::exp2(0.5 * rung);
-  options.patch_edge_m /= std::sqrt(patches);
-  options.refine.error /= std::sqrt(patches);
-  options.refine.max_patches = static_cast<std::size_t>(
-      std::ceil(static_cast<double>(options.refine.max_patches) * patches));
-  const int power = rung >= 0 ? rung / 2 : -((1 - rung) / 2);
-  options.form_factor_rays = times_power_of_two(options.form_factor_rays, power, 64, 1 << 18);
-  return options;
 }
 
 radiosity::SolveOptions reference_solver(radiosity::SolveOptions options, std::uint64_t number) {

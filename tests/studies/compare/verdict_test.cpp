@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The comparison at equal time and at equal error, its error without the references' noise, and
-// the sentences for cases that are easily got wrong.
+// The comparison's error without the references' noise, and the sentences for cases that are easily
+// got wrong.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -86,31 +86,6 @@ TEST(Decided, OnlyIfTwiceTheNoiseLeavesTheVerdict) {
   EXPECT_TRUE(is_decided(100.0, 0.0, 0.04));
 }
 
-TEST(Rungs, TwiceTheWorkPerRung) {
-  raytrace::RenderOptions render;
-  render.gather_rays = 32;
-  render.shared.on = true;
-  EXPECT_EQ(at_rung(render, 2).gather_rays, 128);
-  EXPECT_NEAR(at_rung(render, 2).shared.noise, render.shared.noise / 2.0, 1e-12);
-  EXPECT_EQ(at_rung(render, 0).gather_rays, 32);
-  EXPECT_EQ(at_rung(render, 0).shared.noise, render.shared.noise);
-  render.indirect = raytrace::Indirect::Distributed;
-  EXPECT_EQ(at_rung(render, 2).gather_rays, 32);
-  // Unshared and without gathering a pixel has as many samples as the root of its rays.
-  render.shared.on = false;
-  EXPECT_EQ(at_rung(render, 1).gather_rays, 128);
-  radiosity::SolveOptions solver;
-  solver.form_factor_rays = 1024;
-  solver.refine.max_patches = 1000;
-  const auto up = at_rung(solver, 2), down = at_rung(solver, -2), same = at_rung(solver, 0);
-  EXPECT_EQ(up.form_factor_rays, 2048);
-  EXPECT_EQ(up.refine.max_patches, 2000U);
-  EXPECT_EQ(down.form_factor_rays, 512);
-  EXPECT_EQ(down.refine.max_patches, 500U);
-  EXPECT_EQ(same.form_factor_rays, 1024);
-  EXPECT_EQ(same.patch_edge_m, solver.patch_edge_m);
-}
-
 scenes::Lamp panel(double exitance) {
   scenes::Lamp lamp;
   lamp.name = lamp.group = "panel";
@@ -123,7 +98,7 @@ scenes::Lamp panel(double exitance) {
   return lamp;
 }
 
-Comparison compared(const scenes::Scene& scene, std::optional<EqualOptions> equal = {}) {
+Comparison compared(const scenes::Scene& scene) {
   const tests::Prepared prepared(scene);
   CompareOptions options;
   options.columns = options.rows = 16;
@@ -132,7 +107,6 @@ Comparison compared(const scenes::Scene& scene, std::optional<EqualOptions> equa
   options.reference_rays = 256;
   options.distributed_lights = {4, 16};
   options.solver.form_factor_rays = 256;
-  options.equal = equal;
   return compare({scene, prepared.groups, prepared.effects, prepared.query}, tests::above(1.2, 1.6),
                  options);
 }
@@ -141,51 +115,12 @@ std::string sentence(const Comparison& comparison) {
   return judge_approximation(comparison).front().sentence;
 }
 
-TEST(CompareEqual, EveryMethodHasTheSameTimeAndAnAnswerForTheError) {
-  auto builder = tests::plate_on_ground(0.4, 0.6);
-  builder.scene.lamps.push_back(panel(1000.0));
-  const Comparison comparison = compared(builder.scene, EqualOptions{});
-  const MethodResult& radiosity = comparison.methods[1];
-  EXPECT_EQ(comparison.equal_seconds, radiosity.cpu_seconds());
-  EXPECT_FALSE(comparison.reference().equal);
-  for (std::size_t k = 1; k < comparison.methods.size(); ++k) {
-    const MethodResult& result = comparison.methods[k];
-    ASSERT_TRUE(result.equal) << result.method.name;
-    const EqualResult& equal = *result.equal;
-    ASSERT_EQ(equal.differences.size(), equal.ladder.points.size());
-    if (equal.at_time) {
-      EXPECT_LE(equal.at_time->seconds, time_slack * comparison.equal_seconds);
-    }
-    if (equal.ladder.end == LadderEnd::Reached) {
-      EXPECT_LE(equal.at_error.difference.relative_rmse, comparison.equal_error)
-          << result.method.name;
-    } else {
-      EXPECT_GT(equal.at_error.difference.relative_rmse, comparison.equal_error)
-          << result.method.name;
-    }
-  }
-  EXPECT_EQ(radiosity.equal->ladder.end, LadderEnd::Reached);
-}
-
-TEST(CompareEqual, TimeAndErrorMayBeAskedFor) {
-  auto builder = tests::plate_on_ground(0.4, 0.6);
-  builder.scene.lamps.push_back(panel(1000.0));
-  const Comparison comparison = compared(builder.scene, EqualOptions{0.05, 0.5, 2.0});
-  EXPECT_EQ(comparison.equal_seconds, 0.05);
-  EXPECT_EQ(comparison.equal_error, 0.5);
-  // Half the mean luminance is a loose demand: the plate under its panel is convex.
-  EXPECT_EQ(comparison.methods[3].equal->ladder.end, LadderEnd::Reached);
-}
-
-TEST(CompareEqual, BlackSurfacesLeaveNothingForRadiosityToAdd) {
+TEST(CompareVerdict, BlackSurfacesLeaveNothingForRadiosityToAdd) {
   auto builder = tests::plate_on_ground(0.0, 0.0);
   builder.scene.lamps.push_back(panel(1000.0));
-  const Comparison comparison = compared(builder.scene, EqualOptions{});
+  const Comparison comparison = compared(builder.scene);
   for (const MethodResult& result : comparison.methods) {
     EXPECT_EQ(result.difference.relative_rmse, 0.0) << result.method.name;
-    if (result.equal) {
-      EXPECT_EQ(result.equal->ladder.end, LadderEnd::Reached);
-    }
   }
   EXPECT_EQ(sentence(comparison), "quad-1: black by every method; there is nothing to tell.");
 }

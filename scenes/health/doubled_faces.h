@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// Faces that stand at the same place more than once.
+#pragma once
+
+#include "scenes/health/sheets.h"
+
+namespace earthshine::scenes {
+
+// As mend_surfaces has it.
+void mend_doubled_faces(Scene& scene, Sheets& sheets);
+
+}  // namespace earthshine::scenes
