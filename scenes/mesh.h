@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,8 @@ struct Mesh {
   std::vector<base::Location> material_places;  // of each of these
   std::vector<MaterialLibrary> libraries;
   std::vector<std::string> warnings;
+  // What the file holds besides that nothing here reads, and how often.
+  std::map<std::string, std::size_t> unused;
 };
 
 // Appends a polygon; its corners are vertices of the mesh.

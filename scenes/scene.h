@@ -48,15 +48,20 @@ struct Triangle {
       polygon;  // running number over the scene; the triangles of one file polygon share it
 };
 
+// Which way the faces of a mesh are turned (scenes/health).
+enum class Orient { Mended, Outward, AsIs, TwoSided };
+
 struct Object {
   std::string name;
   bool target = false;  // visibility studies measure it
+  Orient orient = Orient::Mended;
   std::uint32_t first_triangle = 0;
   std::uint32_t triangle_count = 0;
   std::uint32_t polygon_count = 0;
   double area_m2 = 0.0;                // one side, of the polygons as the file has them
   std::uint32_t degenerate_count = 0;  // polygons without area, left out
   std::string source;                  // "meshes/bay.obj#Liner" or "sphere"
+  std::string unused;                  // what its file holds and nothing reads: "24 vn, 96 vt"
 };
 
 class Photometry;

@@ -16,7 +16,7 @@ import sys
 # folder.
 ROOMS = {
     "base": [".", "numbers", "files"],
-    "scenes": [".", "text", "reflect", "light", "mesh/gltf", "mesh", "sky", "effects", "read"],
+    "scenes": [".", "text", "reflect", "light", "mesh/gltf", "mesh", "sky", "effects", "health", "read"],
     "radiosity": ["patches", "bodies", "factors", "objects", "direct", ".", "store", "exact/polygon",
                   "exact/occlusion", "exact"],
     "raytrace": ["camera", "frame", "light", "incoming", "paths", "share", "gather", "shade", "passes",

@@ -19,6 +19,7 @@
 #include "scenes/effects/quality.h"
 #include "studies/compare/compare.h"
 #include "studies/compare/difference_picture.h"
+#include "studies/steer/picture_solver.h"
 
 namespace earthshine::app {
 namespace {
@@ -123,7 +124,7 @@ void run(const CompareCall& call, const Common& common) {
   studies::CompareOptions options;
   options.columns = call.size ? call.size->columns : camera.columns;
   options.rows = call.size ? call.size->rows : camera.rows;
-  // The program as users run it; the references alone share no gather rays.
+  // The program as users run it.
   const scenes::QualityKnobs knobs = scenes::resolve_quality(loaded.scene);
   const raytrace::RenderOptions as_rendered = raytrace::render_options(knobs);
   options.gather_rays = as_rendered.gather_rays;
@@ -133,7 +134,8 @@ void run(const CompareCall& call, const Common& common) {
       (loaded.scene.quality.gather_rays || !knobs.share_gather ? 1 : scenes::rays_alone_per_shared);
   options.distributed_lights = call.lights;
   options.distributed_over = call.area;
-  options.solver = solve_options(loaded.scene, common);
+  options.error = loaded.scene.quality.error.value_or(0.0);
+  options.solver = studies::picture_solver(loaded.scene, loaded.scene.quality, common.seed);
   options.seed = common.seed;
   const scenes::RayQuery query(loaded.scene);
   raytrace::check_camera(loaded.scene, query, camera);

@@ -8,7 +8,9 @@
 #include "app/command.h"
 #include "app/console.h"
 #include "app/options.h"
+#include "app/tools/inspect_text.h"
 #include "app/tools/orbit_facts.h"
+#include "scenes/health/mend.h"
 #include "scenes/light/lamp_light.h"
 
 namespace earthshine::app {
@@ -21,7 +23,9 @@ struct InspectCall {
 
 Json objects_of(const scenes::Scene& scene) {
   Json objects = Json::array();
-  for (const scenes::Object& object : scene.objects) {
+  const std::vector<scenes::SurfaceHealth> health = scenes::surface_health(scene);
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    const scenes::Object& object = scene.objects[o];
     std::set<std::string> materials;
     for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
       const auto& triangle = scene.triangles[object.first_triangle + k];
@@ -34,7 +38,15 @@ Json objects_of(const scenes::Scene& scene) {
                        {"degenerate", object.degenerate_count},
                        {"area_m2", object.area_m2},
                        {"materials", materials},
-                       {"target", object.target}});
+                       {"target", object.target},
+                       {"surface",
+                        {{"parts", health[o].parts},
+                         {"closed_parts", health[o].closed_parts},
+                         {"inward_parts", health[o].inward_parts},
+                         {"open_edges", health[o].open_edges},
+                         {"non_manifold_edges", health[o].non_manifold_edges},
+                         {"mixed_edges", health[o].mixed_edges}}},
+                       {"unused", object.unused}});
   }
   return objects;
 }
@@ -45,8 +57,16 @@ Rgb reflected_share(const scenes::Material& m) {
 }
 
 Json materials_of(const scenes::Scene& scene) {
+  std::vector<double> area_m2(scene.materials.size(), 0.0);
+  for (const scenes::Triangle& triangle : scene.triangles) {
+    const Vec3 a = scene.vertices[triangle.vertex[0]];
+    area_m2[triangle.material] +=
+        0.5 * glm::length(glm::cross(scene.vertices[triangle.vertex[1]] - a,
+                                     scene.vertices[triangle.vertex[2]] - a));
+  }
   Json materials = Json::array();
-  for (const scenes::Material& m : scene.materials) {
+  for (std::size_t k = 0; k < scene.materials.size(); ++k) {
+    const scenes::Material& m = scene.materials[k];
     materials.push_back({{"name", m.name},
                          {"diffuse", to_json(m.diffuse)},
                          {"specular", to_json(m.specular)},
@@ -57,6 +77,7 @@ Json materials_of(const scenes::Scene& scene) {
                          {"emit_lm_m2", to_json(m.emit)},
                          {"light_group", m.emits() ? Json(m.light_group) : Json()},
                          {"two_sided", m.two_sided},
+                         {"area_m2", area_m2[k]},
                          {"reflected_share", to_json(reflected_share(m))}});
   }
   return materials;
@@ -166,96 +187,6 @@ Json report_of(const LoadedScene& loaded) {
   report["cameras"] = cameras_of(scene);
   report["warnings"] = scene.warnings;
   return report;
-}
-
-std::string numbers(const Json& three, const char* format = "{:g} {:g} {:g}") {
-  return fmt::format(fmt::runtime(format), three[0].get<double>(), three[1].get<double>(),
-                     three[2].get<double>());
-}
-
-std::string joined(const Json& words) {
-  return fmt::format("{}", fmt::join(words.get<std::vector<std::string>>(), ", "));
-}
-
-std::string objects_table(const Json& report) {
-  std::string text = fmt::format("\n{:<24} {:>9} {:>9} {:>12}  {}\n", "object", "polygons",
-                                 "triangles", "area m2", "materials; source");
-  for (const Json& o : report["objects"]) {
-    text += fmt::format("{:<24} {:>9} {:>9} {:>12.6g}  {}; {}{}\n", o["name"].get<std::string>(),
-                        o["polygons"].get<int>(), o["triangles"].get<int>(),
-                        o["area_m2"].get<double>(), joined(o["materials"]),
-                        o["source"].get<std::string>(), o["target"].get<bool>() ? "; target" : "");
-  }
-  return text;
-}
-
-std::string materials_table(const Json& report) {
-  std::string text = fmt::format("\n{:<24} {:<20} {:<20} {:>9}  {}\n", "material", "diffuse",
-                                 "specular", "shininess", "also");
-  for (const Json& m : report["materials"]) {
-    std::string also;
-    if (!m["light_group"].is_null()) {
-      also += fmt::format("emits {} lm/m2 in group {}; ", numbers(m["emit_lm_m2"]),
-                          m["light_group"].get<std::string>());
-    }
-    const std::string black = "0 0 0";
-    if (numbers(m["mirror"]) != black) also += "mirror " + numbers(m["mirror"]) + "; ";
-    if (numbers(m["transmit"]) != black) also += "transmits " + numbers(m["transmit"]) + "; ";
-    if (m["two_sided"].get<bool>()) also += "two-sided";
-    text += fmt::format("{:<24} {:<20} {:<20} {:>9g}  {}\n", m["name"].get<std::string>(),
-                        numbers(m["diffuse"]), numbers(m["specular"]), m["shininess"].get<double>(),
-                        also);
-  }
-  return text;
-}
-
-std::string lights_table(const Json& report) {
-  std::string text;
-  for (const Json& lamp : report["lamps"]) {
-    const Json& source = lamp["source"];
-    text += fmt::format("lamp {}: {}{}, group {}, {} lm, at {}\n", lamp["name"].get<std::string>(),
-                        lamp["type"].get<std::string>(),
-                        source.is_null() ? "" : " (" + source.get<std::string>() + ")",
-                        lamp["group"].get<std::string>(), numbers(lamp["flux_lm"]),
-                        numbers(lamp["position_m"]));
-  }
-  for (const Json& area : report["areas"]) {
-    text += fmt::format("area {}: {:.6g} m2, for distributed lights\n",
-                        area["name"].get<std::string>(), area["area_m2"].get<double>());
-  }
-  for (const char* name : {"sun", "earth"}) {
-    const Json& body = report[name];
-    if (body.is_null()) continue;
-    text +=
-        fmt::format("{}: toward {}{}\n", name, numbers(body["direction"], "{:.4f} {:.4f} {:.4f}"),
-                    body["shines"].get<bool>() ? "" : " (gives no light)");
-  }
-  if (!report["orbit"].is_null()) text += orbit_line(report["orbit"]);
-  for (const Json& camera : report["cameras"]) {
-    text += fmt::format("camera {}: at {}, looks at {}, {:g} deg, {} x {}\n",
-                        camera["name"].get<std::string>(), numbers(camera["position_m"]),
-                        numbers(camera["look_at_m"]), camera["fov_deg"].get<double>(),
-                        camera["resolution"][0].get<int>(), camera["resolution"][1].get<int>());
-  }
-  const std::string groups = joined(report["light_groups"]);
-  text += "light groups: " + (groups.empty() ? "none: nothing gives light" : groups) + "\n";
-  return text;
-}
-
-std::string inspect_text(const Json& report) {
-  std::string text = fmt::format("{} ({})\n", report["name"].get<std::string>(),
-                                 report["scene"].get<std::string>());
-  text += fmt::format("{} objects, {} triangles, {:.6g} m2", report["objects"].size(),
-                      report["triangles"].get<std::size_t>(), report["area_m2"].get<double>());
-  if (!report["bounding_box"].is_null()) {
-    text += fmt::format(", from {} to {} m", numbers(report["bounding_box"]["min_m"]),
-                        numbers(report["bounding_box"]["max_m"]));
-  }
-  text += "\n" + objects_table(report) + materials_table(report) + "\n" + lights_table(report);
-  for (const Json& warning : report["warnings"]) {
-    text += "warning: " + warning.get<std::string>() + "\n";
-  }
-  return text;
 }
 
 }  // namespace

@@ -6,26 +6,12 @@
 #include <numeric>
 #include <tuple>
 
+#include "scenes/health/topology.h"
+
 namespace earthshine::radiosity {
 namespace {
 
 constexpr std::uint32_t none = 0xFFFFFFFFU;
-
-// Numbers for vertices, the same for those at the same place.
-std::vector<std::uint32_t> welded(const std::vector<Vec3>& vertices) {
-  std::vector<std::uint32_t> order(vertices.size()), id(vertices.size());
-  std::iota(order.begin(), order.end(), 0U);
-  const auto key = [&](std::uint32_t v) {
-    return std::tie(vertices[v].x, vertices[v].y, vertices[v].z);
-  };
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const bool same = k > 0 && key(order[k - 1]) == key(order[k]);
-    id[order[k]] = same ? id[order[k - 1]] : order[k];
-  }
-  return id;
-}
 
 struct EdgeUse {
   std::uint32_t low, high, object, triangle;
@@ -37,7 +23,7 @@ struct EdgeUse {
 }  // namespace
 
 ClosedParts find_closed_parts(const scenes::Scene& scene) {
-  const std::vector<std::uint32_t> id = welded(scene.vertices);
+  const std::vector<std::uint32_t> id = scenes::welded(scene.vertices);
   std::vector<EdgeUse> uses;
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
     const scenes::Triangle& triangle = scene.triangles[t];

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <map>
+#include <string>
+
 #include "scenes/mesh/obj_file.h"
 #include "scenes/text/input_file.h"
+#include "scenes/text/message_text.h"
 #include "scenes/text/table_reader.h"
 #include "scenes/text/text_lines.h"
 
@@ -31,11 +35,26 @@ Rgb read_colour(const TextLines& lines, Range range) {
   return colour;
 }
 
+// Ambient light, the number of a lighting model and an index of refraction alone change nothing
+// here, nor does an opaque material that says so.
+bool changes_the_picture(const TextLines& lines) {
+  const auto& words = lines.words();
+  const std::string_view keyword = words.front().text;
+  if (keyword == "Ka" || keyword == "illum" || keyword == "Ni" || keyword == "sharpness") {
+    return false;
+  }
+  const bool opaque =
+      words.size() == 2 && ((keyword == "d" && words[1].text.starts_with("1")) ||
+                            (keyword == "Tr" && lines.number(std::size_t{1}) == 0.0));
+  return !opaque;
+}
+
 }  // namespace
 
 void parse_mtl(std::string_view text, const std::filesystem::path& path, Mesh& mesh) {
   TextLines lines(text, path.string(), TextLines::Style::Wavefront);
   Material* material = nullptr;
+  std::map<std::string, std::size_t> passed_over;
   while (lines.next()) {
     const std::string_view keyword = lines.words().front().text;
     if (keyword == "newmtl") {
@@ -52,7 +71,10 @@ void parse_mtl(std::string_view text, const std::filesystem::path& path, Mesh& m
       continue;
     }
     const bool used = keyword == "Kd" || keyword == "Ks" || keyword == "Ke" || keyword == "Ns";
-    if (!used) continue;  // ambient, transparency, textures: the scene file says these
+    if (!used) {
+      if (changes_the_picture(lines)) ++passed_over[std::string(keyword)];
+      continue;
+    }
     if (material == nullptr) {
       throw Error(Blame::Input, lines.where(), fmt::format("\"{}\" before any material", keyword),
                   "a material begins with newmtl");
@@ -62,6 +84,16 @@ void parse_mtl(std::string_view text, const std::filesystem::path& path, Mesh& m
     if (keyword == "Ke") material->emit = read_colour(lines, at_least_zero);
     if (keyword == "Ns") material->shininess = read_colour(lines, {0.0, 1e6}).r;
   }
+  if (passed_over.empty()) return;
+  std::string list;
+  for (const auto& [keyword, count] : passed_over) {
+    list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", in_quotes(keyword), count);
+    mesh.unused[keyword] += count;
+  }
+  mesh.warnings.push_back(
+      fmt::format("{}: not used, and the picture would change by it: {}; say diffuse, specular and "
+                  "transmit of these materials in the scene file",
+                  path.string(), list));
 }
 
 void read_material_libraries(Mesh& mesh, std::span<const std::filesystem::path> folders) {

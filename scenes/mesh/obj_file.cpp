@@ -59,12 +59,23 @@ class ObjReader {
       } else if (std::find(std::begin(passed_over), std::end(passed_over), keyword) ==
                  std::end(passed_over)) {
         warn_once(keyword);
+      } else if (keyword != "end") {
+        count_unused(keyword);
       }
     }
     return std::move(mesh_);
   }
 
  private:
+  // Lines of a kind follow each other by the million.
+  void count_unused(std::string_view keyword) {
+    if (last_unused_ == nullptr || last_keyword_ != keyword) {
+      last_keyword_ = keyword;
+      last_unused_ = &mesh_.unused[last_keyword_];
+    }
+    ++*last_unused_;
+  }
+
   void read_vertex() {
     // After x y z there may be a weight, a colour, or both.
     mesh_.vertices.emplace_back(lines_.number(std::size_t{1}), lines_.number(std::size_t{2}),
@@ -158,6 +169,8 @@ class ObjReader {
   TextLines lines_;
   std::span<const std::filesystem::path> folders_;
   Mesh mesh_;
+  std::string last_keyword_;
+  std::size_t* last_unused_ = nullptr;  // of that keyword, in mesh_
   std::vector<std::string> groups_;
   std::string object_;
   std::uint32_t part_set_ = no_index;

@@ -9,13 +9,14 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr std::string_view all_keys[] = {"name",      "mesh",   "part",  "shape",  "material",
-                                         "translate", "rotate", "scale", "target", "inward",
-                                         "corners",   "min",    "max",   "center", "radius",
-                                         "segments",  "from",   "to",    "caps",   "normal"};
+constexpr std::string_view all_keys[] = {
+    "name",   "mesh",     "part",   "shape",   "material", "translate", "rotate",
+    "scale",  "target",   "inward", "corners", "min",      "max",       "center",
+    "radius", "segments", "from",   "to",      "caps",     "normal",    "orient"};
 constexpr std::string_view shapes[] = {"quad", "box", "sphere", "cylinder", "disk"};
 constexpr std::string_view common_keys[] = {"name",  "material", "translate", "rotate",
-                                            "scale", "target",   "inward"};
+                                            "scale", "target",   "inward",    "orient"};
+constexpr std::string_view orients[] = {"outward", "as-is", "two-sided"};
 constexpr Range lengths{-largest_length, largest_length};
 
 void allow_keys(const TableReader& table, std::initializer_list<std::string_view> own,
@@ -109,6 +110,18 @@ Placement read_placement(const TableReader& table, double unit_m) {
   return placement;
 }
 
+Orient read_orient(const TableReader& table, const Placement& placement) {
+  const auto orient = table.choice("orient", orients);
+  // What is turned inward by hand is not turned back.
+  if (!orient) return placement.inward ? Orient::AsIs : Orient::Mended;
+  if (*orient == "as-is") return Orient::AsIs;
+  if (*orient == "two-sided") return Orient::TwoSided;
+  if (placement.inward) {
+    table.fail("orient", "is \"outward\" beside inward = true", "an object is one of the two");
+  }
+  return Orient::Outward;
+}
+
 }  // namespace
 
 ShelvedMesh& MeshShelf::take(const std::filesystem::path& named, const base::Location& asked_at) {
@@ -134,6 +147,7 @@ void read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& s
     table.missing("mesh", "mesh = \"FILE\" or shape = \"quad\", \"box\", \"sphere\", ...");
   }
   const Placement placement = read_placement(table, unit_m);
+  object.orient = read_orient(table, placement);
   ShelvedMesh made;
   ShelvedMesh* shelved = &made;
   std::uint32_t part = no_index;
@@ -148,14 +162,18 @@ void read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& s
       part = find_part(shelved->mesh, *part_name, table.where("part"));
       object.source += "#" + *part_name;
     }
-    // Said once, by the first object that uses the file.
-    auto& warnings = shelved->mesh.warnings;
-    scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
-    warnings.clear();
   }
   MaterialChoice choice(scene, table, *shelved, shelf.own_material_count());
   place_mesh(scene, std::move(object), shelved->mesh, part, placement, table.where(),
              [&](const MeshPolygon& polygon) { return choice.material_of(polygon); });
+  for (const auto& [what, count] : shelved->mesh.unused) {
+    std::string& unused = scene.objects.back().unused;
+    unused += fmt::format("{}{} {}", unused.empty() ? "" : ", ", count, what);
+  }
+  // Said once, by the first object that uses the file.
+  auto& warnings = shelved->mesh.warnings;
+  scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
+  warnings.clear();
 }
 
 }  // namespace earthshine::scenes

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "scenes/health/mend.h"
 #include "scenes/read/override.h"
 #include "scenes/read/scene_parts.h"
 #include "scenes/text/input_file.h"
@@ -67,6 +68,21 @@ void read_cctv(Scene& scene, const TableReader& root) {
   }
 }
 
+// A bay of ten kilometres, or of a millimetre, is one whose unit was forgotten.
+void check_size(Scene& scene) {
+  constexpr double large_m = 300.0, small_m = 0.01;
+  if (scene.vertices.empty()) return;
+  Vec3 low = scene.vertices.front(), high = low;
+  for (const Vec3& vertex : scene.vertices) {
+    low = glm::min(low, vertex);
+    high = glm::max(high, vertex);
+  }
+  const double across = glm::length(high - low);
+  if (across <= large_m && across >= small_m) return;
+  scene.warnings.push_back(fmt::format(
+      "the surfaces are {:.3g} m across; are unit, and scale of the objects, right?", across));
+}
+
 }  // namespace
 
 Scene read_camera_file(const std::filesystem::path& path) {
@@ -125,6 +141,8 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
     read_object(scene, node, unit_m, shelf);
     return scene.objects.back().name;
   });
+  check_size(scene);
+  mend_surfaces(scene);
   return scene;
 }
 

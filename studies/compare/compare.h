@@ -3,9 +3,10 @@
 // camera's view.
 //
 // All are measured against a reference that shares nothing with them: the mean of two pictures,
-// each of a radiosity solution of its own (patches of half the edge, other random numbers),
-// gathered without sharing with `reference_factor` times the rays. Two, because the noise of a
-// single one would count as error of every method: mean (L - R1)(L - R2) is free of it.
+// each of a radiosity solution of its own (patches of half the edge, other random numbers), drawn
+// to half the wanted error or, where none is wanted, without sharing and with `reference_factor`
+// times the rays. Two, because the noise of a single one would count as error of every method: mean
+// (L - R1)(L - R2) is free of it.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +25,10 @@ struct CompareOptions {
   int rows = 512;
   int gather_rays = 256;  // per pixel; without gathering the camera samples that go with them
   raytrace::SharedGather shared = {};  // of all pictures but the references
-  int reference_rays = 0;              // of each reference; 0: gather_rays * reference_factor
+  // Of each picture, as RenderOptions::error; the references are drawn to half of it. 0:
+  // by the settings alone.
+  double error = 0.0;
+  int reference_rays = 0;  // of each reference; 0: gather_rays * reference_factor
   int reference_factor = 4;
   std::vector<int> distributed_lights = {4, 16, 64, 256};
   std::string
