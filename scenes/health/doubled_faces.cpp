@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -44,6 +45,38 @@ std::vector<Face> faces_of(const Scene& scene) {
   }
   return faces;
 }
+
+// Which bodies faces belong to. Only asked about faces that lie on others, so found object by
+// object.
+class Bodies {
+ public:
+  explicit Bodies(const Scene& scene) : scene_(scene), ids_(welded(scene.vertices)) {}
+
+  // Whether two faces turned against each other are where two bodies touch, each hiding the
+  // other's. A sheet with both windings is closed too, but has no volume.
+  [[nodiscard]] bool touch(std::uint32_t triangle, std::uint32_t other) {
+    const SurfacePart *one = body_of(triangle), *two = body_of(other);
+    return one != nullptr && two != nullptr && one != two;
+  }
+
+ private:
+  [[nodiscard]] const SurfacePart* body_of(std::uint32_t triangle) {
+    const std::uint32_t object = scene_.triangles[triangle].object;
+    const auto [entry, fresh] = parts_.try_emplace(object);
+    if (fresh) entry->second = surface_parts(scene_, scene_.objects[object], ids_);
+    for (const SurfacePart& part : entry->second) {
+      if (!std::binary_search(part.triangles.begin(), part.triangles.end(), triangle)) continue;
+      const double edge = glm::length(part.high - part.low);
+      return part.closed() && std::abs(part.volume_m3) > 1e-9 * edge * edge * edge ? &part
+                                                                                   : nullptr;
+    }
+    return nullptr;
+  }
+
+  const Scene& scene_;
+  std::vector<std::uint32_t> ids_;
+  std::map<std::uint32_t, std::vector<SurfacePart>> parts_;
+};
 
 // What was found between two objects (or within one).
 struct Found {
@@ -110,6 +143,7 @@ void mend_doubled_faces(Scene& scene, Sheets& sheets) {
   });
   std::map<std::pair<std::uint32_t, std::uint32_t>, Found> found;
   std::vector<char> gone(scene.triangles.size(), 0);
+  std::optional<Bodies> bodies;
   bool any = false;
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
     while (end < order.size() && faces[order[end]].corners == faces[order[begin]].corners) ++end;
@@ -119,9 +153,11 @@ void mend_doubled_faces(Scene& scene, Sheets& sheets) {
       for (std::size_t other = k + 1; other < end; ++other) {
         const Face& face = faces[order[other]];
         if (gone[face.first] != 0 || !same_place(kept, face)) continue;
-        Triangle &keeps = scene.triangles[kept.first], &goes = scene.triangles[face.first];
-        Found& count = found[{keeps.object, goes.object}];
         const bool alike = glm::dot(kept.area, face.area) > 0.0;
+        if (!bodies) bodies.emplace(scene);
+        if (!alike && bodies->touch(kept.first, face.first)) continue;
+        const Triangle &keeps = scene.triangles[kept.first], &goes = scene.triangles[face.first];
+        Found& count = found[{keeps.object, goes.object}];
         const std::uint32_t sheet = keeps.material;
         const bool same = sheet == goes.material ||
                           (scene.materials[sheet].two_sided && sheets.of(goes.material) == sheet);

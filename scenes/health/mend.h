@@ -14,7 +14,8 @@ namespace earthshine::scenes {
 //   Faces that stand twice, alike in material and winding: one is kept.
 //   Faces that stand back to back, alike in material but for glass: one is kept, as a sheet whose
 //     material is two-sided.
-//   Faces on each other that are not alike: named, and left.
+//   Faces on each other that are not alike: named, and left. Where two bodies touch, each hides the
+//     other's face: that is no fault.
 //   Closed bodies that are turned inside out, or whose faces are wound both ways: turned outward,
 //     unless they surround a camera, a lamp or another object (a room), or stand in a body of the
 //     same object (a cavity).

@@ -23,7 +23,7 @@ import exr  # noqa: E402
 PRESET = "sit-monochrome"
 SMALL = ["--size", "40x30", "--error", "0.2"]
 # Keys whose values are those of a run, not of its result.
-OF_THE_RUN = re.compile(r"seconds|_s$|time|memory|mib|bytes|version|date|command|written|file|path|folder|free")
+OF_THE_RUN = re.compile(r"build|seconds|_s$|time|memory|mib|bytes|version|date|command|written|file|path|folder|free")
 
 
 def plain(value):
@@ -83,8 +83,11 @@ def results(program):
             folder = out / study[0]
             run(program, "study", *study, "-o", folder)
             for file in sorted(folder.rglob("*")):
-                if file.suffix in (".csv", ".exr", ".png") or file.name == "study.json":
+                if file.suffix in (".csv", ".png") or file.name == "study.json":
                     yield f"study {study[0]} {file.relative_to(folder)}", of_file(file)
+            # Their names hold the build that made them.
+            for number, found in enumerate(sorted(of_file(file) for file in folder.rglob("points/*.exr"))):
+                yield f"study {study[0]} points {number}", found
 
 
 def main():

@@ -201,6 +201,33 @@ TEST(Mend, FacesOfOtherMaterialsOnEachOtherAreNamedAndLeft) {
       << warnings(scene);
 }
 
+// Two cubes side by side have a face each at x = 1, against each other: 2 of volume, nothing to
+// say.
+TEST(Mend, BodiesMayTouch) {
+  for (const char* material : {"white", "red"}) {
+    const std::string beside = fmt::format(
+        "[[object]]\nname = \"beside\"\nmesh = \"b.obj\"\ntranslate = [1, 0, 0]\n"
+        "material = \"{}\"\n",
+        material);
+    const Scene scene = read(cube_obj(none), scene_of(beside), cube_obj(none));
+    EXPECT_EQ(warnings(scene), "");
+    EXPECT_EQ(scene.triangles.size(), 24U);
+    EXPECT_NEAR(volume(scene), 2.0, 1e-15);
+  }
+}
+
+// A body each of whose faces stands there with both windings has no inside: six sheets.
+TEST(Mend, ABodyWithBothWindingsIsOfSheets) {
+  std::string obj = cube_obj(none);
+  for (const auto& f : cube) obj += face(f, true, 1);
+  const Scene scene = read(obj);
+  EXPECT_EQ(scene.triangles.size(), 12U);
+  for (const Triangle& triangle : scene.triangles) {
+    EXPECT_TRUE(scene.materials[triangle.material].two_sided);
+  }
+  EXPECT_TRUE(holds(warnings(scene), {"6 faces stood back to back"})) << warnings(scene);
+}
+
 TEST(Mend, AnObjectThatStandsTwiceIsRefused) {
   const std::string again =
       "[[object]]\nname = \"again\"\nmesh = \"b.obj\"\nmaterial = \"white\"\n";

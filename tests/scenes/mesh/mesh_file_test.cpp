@@ -180,7 +180,8 @@ TEST(ObjFile, OneNameInTwoLibrariesIsTwoMaterials) {
   }
   std::string text = "format = 1\n";
   for (const std::string name : {"a", "b", "c"}) {
-    text += "[[object]]\nname = \"" + name + "\"\nmesh = \"" + name + ".obj\"\n";
+    text += "[[object]]\nname = \"" + name + "\"\nmesh = \"" + name +
+            ".obj\"\ntranslate = [0, 0, " + std::to_string(name[0] - 'a') + "]\n";
   }
   const Scene scene = folder.read(text);
   ASSERT_EQ(scene.materials.size(), 2U);
@@ -203,14 +204,14 @@ TEST(ObjFile, ReadsWhatExportersWrite) {
 
 TEST(ObjFile, DegenerateFacesAreLeftOutAndCountedOnce) {
   const test::SceneFolder folder;
-  folder.put(
-      "a.obj",
-      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\nf 1 1 2\nf 1 2 2 1\nf 1 2 3 3\n");
+  folder.put("a.obj",
+             "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 1 2\nf 1 2 2 1\nf "
+             "1 5 5 2\n");
   const Scene scene = folder.read(object("a.obj"));
   EXPECT_EQ(scene.objects.at(0).degenerate_count, 3U);
   EXPECT_EQ(scene.objects.at(0).polygon_count, 2U);
   ASSERT_EQ(scene.warnings.size(), 1U);
-  EXPECT_TRUE(holds(scene.warnings[0], {"\"o\"", "3 of 5", "a.obj:6"}));
+  EXPECT_TRUE(holds(scene.warnings[0], {"\"o\"", "3 of 5", "a.obj:7"}));
   EXPECT_TRUE(holds(folder.refusal(object("a.obj", "material = \"m\"\npart = \"p\"\n")),
                     {"no named parts"}));
 }

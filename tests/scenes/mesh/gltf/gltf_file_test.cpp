@@ -132,7 +132,7 @@ TEST_F(Gltf, NodeTransformsApplyAndMirrorsKeepFrontsOutward) {
 TEST_F(Gltf, PartsAreNodesWithWhatHangsBelowAndMeshes) {
   Parts parts;
   parts.nodes =
-      R"([{"name": "root", "children": [1, 2]}, {"name": "one", "mesh": 0}, {"name": "two", "mesh": 0}])";
+      R"([{"name": "root", "children": [1, 2]}, {"name": "one", "mesh": 0}, {"name": "two", "mesh": 0, "translation": [0, 0, 1]}])";
   EXPECT_EQ(read(parts, "part = \"root\"\n").triangles.size(), 4U);
   EXPECT_EQ(read(parts, "part = \"one\"\n").triangles.size(), 2U);
   EXPECT_EQ(read(parts, "part = \"mesh\"\n").triangles.size(), 4U);
