@@ -61,6 +61,7 @@ class GltfReader {
 
   Mesh read() {
     name_materials();
+    mesh_.unused = model_.unused;
     for (const int root : roots()) visit(root, glm::dmat4(1.0), {}, 1);
     return std::move(mesh_);
   }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "scenes/mesh/gltf/extras.h"
 #include "scenes/mesh/gltf/file.h"
 #include "scenes/text/input_file.h"
 
@@ -268,8 +269,12 @@ GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& p
   if (!loaded && !files.refused.empty() && problem.find("File not found") != std::string::npos) {
     throw Error(Blame::Input, std::string_view(), files.refused);
   }
+  check_required_extensions(model, path);
   if (!loaded) gltf_fail(path, fmt::format("not a sound glTF file: {}", one_line(problem)));
-  return convert(std::move(model));
+  std::map<std::string, std::size_t> unused = unused_of(model);
+  GltfModel converted = convert(std::move(model));
+  converted.unused = std::move(unused);
+  return converted;
 }
 
 }  // namespace earthshine::scenes

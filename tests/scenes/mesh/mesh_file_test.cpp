@@ -173,15 +173,14 @@ TEST(ObjFile, MaterialsComeFromTheSceneThenFromTheLibrary) {
 TEST(ObjFile, OneNameInTwoLibrariesIsTwoMaterials) {
   const test::SceneFolder folder;
   for (const std::string name : {"a", "b", "c"}) {
-    folder.put(name + ".obj",
-               "mtllib " + name + ".mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl x\nf 1 2 3\n");
+    folder.put(name + ".obj", "mtllib " + name + ".mtl\nv 0 0 0\nv 1 0 0\nv 0 1 " +
+                                  std::to_string(name[0]) + "\nusemtl x\nf 1 2 3\n");
     folder.put(name + ".mtl",
                name == "c" ? "newmtl x\nKd 0.1 0.1 0.1\n" : "newmtl x\nKd 0.2 0.2 0.2\n");
   }
   std::string text = "format = 1\n";
   for (const std::string name : {"a", "b", "c"}) {
-    text += "[[object]]\nname = \"" + name + "\"\nmesh = \"" + name +
-            ".obj\"\ntranslate = [0, 0, " + std::to_string(name[0] - 'a') + "]\n";
+    text += "[[object]]\nname = \"" + name + "\"\nmesh = \"" + name + ".obj\"\n";
   }
   const Scene scene = folder.read(text);
   ASSERT_EQ(scene.materials.size(), 2U);

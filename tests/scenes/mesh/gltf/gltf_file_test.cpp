@@ -139,6 +139,36 @@ TEST_F(Gltf, PartsAreNodesWithWhatHangsBelowAndMeshes) {
   EXPECT_TRUE(holds(refusal(parts, "part = \"tow\"\n"), {"no part \"tow\"", "\"two\"?"}));
 }
 
+TEST_F(Gltf, WhatIsNotUsedIsNamed) {
+  Parts parts;
+  parts.primitive =
+      R"({"attributes": {"POSITION": 0, "NORMAL": 0, "TEXCOORD_0": 0}, "indices": 1, "material": 0})";
+  parts.materials +=
+      R"(, "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 1}}],
+      "extensionsUsed": ["KHR_materials_specular"])";
+  EXPECT_EQ(read(parts).objects.at(0).unused,
+            "1 KHR_materials_specular, 1 NORMAL, 1 TEXCOORD_0, 1 cameras");
+  EXPECT_EQ(read({}).objects.at(0).unused, "");
+}
+
+TEST_F(Gltf, RequiredExtensionsAreRefusedByNameWithWhatToDo) {
+  const std::vector<std::pair<std::string, std::string>> known = {
+      {"KHR_draco_mesh_compression", "gltf-transform/cli copy"},
+      {"EXT_meshopt_compression", "gltf-transform/cli copy"},
+      {"KHR_mesh_quantization", "gltf-transform/cli dequantize"},
+      {"XYZ_from_tomorrow", "Export it without"}};
+  for (const auto& [extension, remedy] : known) {
+    Parts parts;
+    parts.materials += R"(, "extensionsUsed": [")" + extension + R"("], "extensionsRequired": [")" +
+                       extension + R"("])";
+    EXPECT_TRUE(holds(refusal(parts), {"a.gltf", extension, remedy}));
+  }
+  Parts textures;
+  textures.materials += R"(, "extensionsUsed": ["KHR_texture_transform"],
+                             "extensionsRequired": ["KHR_texture_transform"])";
+  EXPECT_EQ(read(textures).triangles.size(), 2U);
+}
+
 TEST_F(Gltf, SparsePositionsReplaceOthers) {
   Parts parts;
   parts.accessors =

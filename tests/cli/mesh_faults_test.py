@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Meshes as others export them: with a fault the picture is that of the sound mesh, and the fault is named."""
+import sys
+import unittest
+
+import program
+
+sys.path.insert(0, str(program.TOP / "tests" / "validation"))
+import error_truth  # noqa: E402
+
+CORNERS = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+CUBE = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+SQUARE = [(0, 1, 3, 2)]
+SCENE = """format = 1
+[[material]]
+name = "white"
+diffuse = 0.5
+{sheet}
+[[object]]
+name = "thing"
+mesh = "thing.obj"
+material = "white"
+{more}
+[[object]]
+name = "floor"
+shape = "quad"
+corners = [[-2, -2, -0.5], [3, -2, -0.5], [3, 3, -0.5], [-2, 3, -0.5]]
+material = "white"
+[[light]]
+name = "lamp"
+type = "point"
+position = [-0.4, 0.3, 2.0]
+flux = 1000.0
+[[camera]]
+name = "A"
+position = [-1.5, -2, 2]
+look_at = [0.5, 0.5, 0]
+resolution = [16, 12]
+"""
+
+
+def turned(faces):
+    return [face[::-1] for face in faces]
+
+
+class MeshFaults(program.Case):
+    def picture(self, faces, sheet="", more=""):
+        """(luminances, standard error)"""
+        self.write("thing.obj", "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) +
+                   "".join("f " + " ".join(str(k + 1) for k in face) + "\n" for face in faces))
+        self.write("scene.toml", SCENE.format(sheet=sheet, more=more))
+        run = self.run_program("render", "scene.toml", "-o", "out.exr", "--set", "quality.gather_rays=16")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return error_truth.picture(self.folder / "out.exr")[0], run.stderr
+
+    def test_a_sheet_with_both_windings_is_a_two_sided_sheet(self):
+        right, _ = self.picture(SQUARE, sheet="two_sided = true")
+        for back in (turned(SQUARE), [turned(SQUARE)[0][1:] + turned(SQUARE)[0][:1]]):
+            found, said = self.picture(SQUARE + back)
+            self.says(said, '"thing"', "back to back")
+            # The floor has another material then, which no pixel can tell: the values are the same.
+            self.assertLess(max(abs(a - b) for a, b in zip(found, right)), 0.02 * max(right))
+            self.assertGreater(sum(found), 0.0)
+
+    def test_faces_that_stand_twice_give_the_same_bytes(self):
+        right, _ = self.picture(CUBE)
+        found, said = self.picture(CUBE + CUBE[:2])
+        self.says(said, "2 faces stood twice")
+        self.assertEqual(found, right)
+
+    def test_a_lamp_lands_what_it_gives(self):
+        """What lands of a lamp, or leaves at once, is what it gives, whatever stands twice."""
+        self.picture(CUBE + CUBE[:3])
+        for group in self.json("solve", "scene.toml")["groups"]:
+            given, landed, escaped = (group[key][1] for key in ("given_lm", "landed_lm", "escaped_at_once_lm"))
+            self.assertAlmostEqual((landed + escaped) / given, 1.0, places=6)
+
+    def test_a_body_inside_out_is_seen_from_outside(self):
+        right, _ = self.picture(CUBE)
+        found, said = self.picture(turned(CUBE))
+        self.says(said, "inside out", 'orient = "as-is"')
+        self.assertLess(abs(sum(found) / sum(right) - 1.0), 0.01)
+        black, said = self.picture(turned(CUBE), more='orient = "as-is"')
+        self.assertNotIn("inside out", said)
+        self.assertLess(sum(black), 0.8 * sum(right))
+
+    def test_inspect_shows_what_is_left(self):
+        self.picture(CUBE[:5], more='orient = "as-is"')
+        surface = self.json("inspect", "scene.toml")["objects"][0]["surface"]
+        self.assertEqual(surface, {"parts": 1, "closed_parts": 0, "inward_parts": 0, "open_edges": 4,
+                                   "non_manifold_edges": 0, "mixed_edges": 0})
+        self.says(self.done("inspect", "scene.toml"), "open edges", "non-manifold", "wound apart")
+
+    def test_what_a_material_library_says_in_vain_is_named(self):
+        self.write("thing.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nusemtl wood\nf 1 2 3\n")
+        self.write("a.mtl", "newmtl wood\nKd 0.5 0.5 0.5\nKa 1 1 1\nd 0.5\nillum 2\nmap_Kd wood.png\n"
+                            "newmtl glass\nd 1\nTr 0.0\nbump wood.png\n")
+        self.write("scene.toml", SCENE.format(sheet="", more="").replace('mesh = "thing.obj"\nmaterial = "white"',
+                                                                         'mesh = "thing.obj"'))
+        run = self.run_program("inspect", "scene.toml", "--json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        report = self.json("inspect", "scene.toml")
+        self.says(" ".join(report["warnings"]), "a.mtl", '"bump" (1)', '"d" (1)', '"map_Kd" (1)')
+        self.assertNotIn("Tr", " ".join(report["warnings"]))
+        self.assertEqual(report["objects"][0]["unused"], "1 bump, 1 d, 1 map_Kd, 1 vn, 1 vt")
+
+
+if __name__ == "__main__":
+    unittest.main()
