@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "scenes/health/mend.h"
+#include "scenes/health/near_lamps.h"
 #include "scenes/read/override.h"
 #include "scenes/read/scene_parts.h"
 #include "scenes/text/input_file.h"
@@ -143,6 +144,7 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   });
   check_size(scene);
   mend_surfaces(scene);
+  name_near_lamps(scene);
   return scene;
 }
 

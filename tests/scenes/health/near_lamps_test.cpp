@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/health/near_lamps.h"
+
+#include <fmt/format.h>
+
+#include "base/numbers/random.h"
+#include "tests/scenes/scene_text.h"
+
+namespace earthshine::scenes {
+namespace {
+
+// No other point of the triangle is nearer.
+TEST(NearestOnTriangle, NoPointIsNearer) {
+  base::Rng rng(base::Key(1, base::Stream::Pixel, 3));
+  const auto point = [&] { return Vec3(rng.next(), rng.next(), rng.next()); };
+  for (int k = 0; k < 200; ++k) {
+    const Vec3 a = point(), b = point(), c = point(), p = 3.0 * point() - 1.0;
+    const Vec3 found = nearest_on_triangle(p, a, b, c);
+    // It is of the triangle: its three areas add up to the triangle's.
+    const auto area = [](const Vec3& x, const Vec3& y, const Vec3& z) {
+      return glm::length(glm::cross(y - x, z - x));
+    };
+    EXPECT_NEAR(area(found, a, b) + area(found, b, c) + area(found, c, a), area(a, b, c), 1e-12);
+    for (int n = 0; n < 200; ++n) {
+      double s = rng.next(), t = rng.next();
+      if (s + t > 1.0) s = 1.0 - s, t = 1.0 - t;
+      EXPECT_GE(glm::length(a + s * (b - a) + t * (c - a) - p), glm::length(found - p) - 1e-12);
+    }
+  }
+}
+
+std::string warnings_of(const std::string& height, const std::string& kind = "point") {
+  const test::SceneFolder folder;
+  const std::string size =
+      kind == "disk" ? "center = [0.3, 0.4, " + height + "]\nnormal = [0, 0, 1]\nradius = 0.1\n"
+                     : "position = [0.3, 0.4, " + height + "]\n";
+  const Scene scene = folder.read(
+      "format = 1\n[[material]]\nname = \"m\"\ndiffuse = 0.5\n[[light]]\nname = \"lamp\"\ntype = "
+      "\"" +
+      kind + "\"\n" + size +
+      "flux = 1\n[[object]]\nname = \"floor\"\nshape = \"quad\"\ncorners = [[-5, -5, 0], [5, -5, "
+      "0], "
+      "[5, 5, 0], [-5, 5, 0]]\nmaterial = \"m\"\n");
+  return scene.warnings.empty() ? "" : scene.warnings.front();
+}
+
+TEST(NearLamps, AreNamed) {
+  EXPECT_TRUE(test::holds(warnings_of("0.001"), {"\"lamp\"", "1 mm", "\"floor\""}));
+  EXPECT_TRUE(test::holds(warnings_of("0.0"), {"0 mm"}));
+  EXPECT_TRUE(test::holds(warnings_of("-0.001"), {"1 mm"}));
+  EXPECT_EQ(warnings_of("0.02"), "");
+  EXPECT_EQ(warnings_of("0.001", "disk"), "");
+}
+
+}  // namespace
+}  // namespace earthshine::scenes
