@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -52,35 +50,41 @@ class Bodies {
  public:
   explicit Bodies(const Scene& scene) : scene_(scene), ids_(welded(scene.vertices)) {}
 
-  // Whether two faces turned against each other are where two bodies touch, each hiding the
-  // other's. A sheet with both windings is closed too, but has no volume.
-  [[nodiscard]] bool touch(std::uint32_t triangle, std::uint32_t other) {
-    const SurfacePart *one = body_of(triangle), *two = body_of(other);
-    return one != nullptr && two != nullptr && one != two;
+  // Whether two triangles are of two bodies: where those touch, each hides the other's face.
+  [[nodiscard]] bool apart(std::uint32_t triangle, std::uint32_t other) {
+    const std::uint32_t one = body_of(triangle), two = body_of(other);
+    const bool same = scene_.triangles[triangle].object == scene_.triangles[other].object;
+    return one != none && two != none && !(same && one == two);
   }
 
  private:
-  [[nodiscard]] const SurfacePart* body_of(std::uint32_t triangle) {
-    const std::uint32_t object = scene_.triangles[triangle].object;
-    const auto [entry, fresh] = parts_.try_emplace(object);
-    if (fresh) entry->second = surface_parts(scene_, scene_.objects[object], ids_);
-    for (const SurfacePart& part : entry->second) {
-      if (!std::binary_search(part.triangles.begin(), part.triangles.end(), triangle)) continue;
-      const double edge = glm::length(part.high - part.low);
-      return part.closed() && std::abs(part.volume_m3) > 1e-9 * edge * edge * edge ? &part
-                                                                                   : nullptr;
+  static constexpr std::uint32_t none = ~0U;
+  // The body's number in its object; none: the triangle is of no body.
+  [[nodiscard]] std::uint32_t body_of(std::uint32_t triangle) {
+    const std::uint32_t number = scene_.triangles[triangle].object;
+    const Object& object = scene_.objects[number];
+    const auto [entry, fresh] = bodies_.try_emplace(number);
+    if (fresh) {
+      entry->second.assign(object.triangle_count, none);
+      std::uint32_t body = 0;
+      for (const SurfacePart& part : surface_parts(scene_, object, ids_)) {
+        for (const std::uint32_t t : part.triangles) {
+          if (part.is_body()) entry->second[t - object.first_triangle] = body;
+        }
+        ++body;
+      }
     }
-    return nullptr;
+    return entry->second[triangle - object.first_triangle];
   }
 
   const Scene& scene_;
   std::vector<std::uint32_t> ids_;
-  std::map<std::uint32_t, std::vector<SurfacePart>> parts_;
+  std::map<std::uint32_t, std::vector<std::uint32_t>> bodies_;  // by object, per triangle of it
 };
 
-// What was found between two objects (or within one).
+// What was found between two objects (or within one), in faces.
 struct Found {
-  std::size_t twice = 0, back_to_back = 0, unlike = 0;
+  std::size_t twice = 0, back_to_back = 0, left = 0;
 };
 
 // Two polygons of the same corners cover the same place if they have the same area: corners in
@@ -122,61 +126,88 @@ void drop(Scene& scene, const std::vector<char>& gone) {
       kept.push_back(triangle);
     }
     object.triangle_count = static_cast<std::uint32_t>(kept.size()) - object.first_triangle;
-    if (object.triangle_count > 0) continue;
-    throw base::Error(base::Blame::Input, scene.path.string(),
-                      fmt::format("all faces of the object {} stand at the same place in objects "
-                                  "before it",
-                                  in_quotes(object.name)),
-                      "a surface is in the scene once", "Remove one of them, or move it");
   }
   scene.triangles = std::move(kept);
 }
 
-}  // namespace
+// Throws for an object of which every face stands, turned alike, in objects before it.
+void refuse_doubles(const Scene& scene, const std::vector<std::size_t>& doubled) {
+  for (std::size_t o = 0; o < doubled.size(); ++o) {
+    if (doubled[o] == 0 || doubled[o] < scene.objects[o].polygon_count) continue;
+    throw base::Error(base::Blame::Input, scene.path.string(),
+                      fmt::format("all faces of the object {} stand at the same place in objects "
+                                  "before it",
+                                  in_quotes(scene.objects[o].name)),
+                      "a surface is in the scene once", "Remove one of them, or move it");
+  }
+}
 
-void mend_doubled_faces(Scene& scene, Sheets& sheets) {
-  const std::vector<Face> faces = faces_of(scene);
+// Faces at the same place, the first of the scene first.
+std::vector<std::vector<std::uint32_t>> doubled_groups(const Scene& scene,
+                                                       const std::vector<Face>& faces) {
   std::vector<std::uint32_t> order(faces.size());
   for (std::uint32_t f = 0; f < order.size(); ++f) order[f] = f;
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return std::tie(faces[a].corners, a) < std::tie(faces[b].corners, b);
   });
-  std::map<std::pair<std::uint32_t, std::uint32_t>, Found> found;
-  std::vector<char> gone(scene.triangles.size(), 0);
-  std::optional<Bodies> bodies;
-  bool any = false;
+  std::vector<std::vector<std::uint32_t>> groups;
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
     while (end < order.size() && faces[order[end]].corners == faces[order[begin]].corners) ++end;
+    if (end - begin < 2) continue;
+    std::vector<std::uint32_t> group;
     for (std::size_t k = begin; k < end; ++k) {
-      const Face& kept = faces[order[k]];
-      if (gone[kept.first] != 0) continue;
-      for (std::size_t other = k + 1; other < end; ++other) {
-        const Face& face = faces[order[other]];
-        if (gone[face.first] != 0 || !same_place(kept, face)) continue;
-        const bool alike = glm::dot(kept.area, face.area) > 0.0;
-        if (!bodies) bodies.emplace(scene);
-        if (!alike && bodies->touch(kept.first, face.first)) continue;
-        const Triangle &keeps = scene.triangles[kept.first], &goes = scene.triangles[face.first];
-        Found& count = found[{keeps.object, goes.object}];
-        const std::uint32_t sheet = keeps.material;
-        const bool same = sheet == goes.material ||
-                          (scene.materials[sheet].two_sided && sheets.of(goes.material) == sheet);
-        const bool glass = base::max_component(scene.materials[sheet].transmit) > 0.0;
-        if (!same || (!alike && glass)) {
-          ++count.unlike;
-          continue;
-        }
-        ++(alike ? count.twice : count.back_to_back);
-        for (std::uint32_t t = 0; t < face.count; ++t) gone[face.first + t] = 1;
-        any = true;
-        if (alike) continue;
-        const std::uint32_t both = sheets.of(sheet);
-        for (std::uint32_t t = 0; t < kept.count; ++t) {
-          scene.triangles[kept.first + t].material = both;
-        }
+      const Triangle& triangle = scene.triangles[faces[order[k]].first];
+      if (scene.objects[triangle.object].orient != Orient::AsIs) group.push_back(order[k]);
+    }
+    if (group.size() > 1) groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+}  // namespace
+
+bool has_doubled_faces(const Scene& scene) {
+  return !doubled_groups(scene, faces_of(scene)).empty();
+}
+
+void mend_doubled_faces(Scene& scene, Sheets& sheets) {
+  const std::vector<Face> faces = faces_of(scene);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Found> found;
+  std::vector<std::size_t> doubled(scene.objects.size(), 0);
+  std::vector<char> gone(scene.triangles.size(), 0);
+  Bodies bodies(scene);
+  for (const std::vector<std::uint32_t>& group : doubled_groups(scene, faces)) {
+    // Each later face is held against the first one at its very place.
+    for (std::size_t other = 1; other < group.size(); ++other) {
+      const Face& face = faces[group[other]];
+      const auto at = std::find_if(
+          group.begin(), group.begin() + static_cast<std::ptrdiff_t>(other),
+          [&](std::uint32_t f) { return gone[faces[f].first] == 0 && same_place(faces[f], face); });
+      if (at == group.begin() + static_cast<std::ptrdiff_t>(other)) continue;
+      const Face& kept = faces[*at];
+      const Triangle &keeps = scene.triangles[kept.first], &goes = scene.triangles[face.first];
+      const bool turned_alike = glm::dot(kept.area, face.area) > 0.0;
+      const bool touch = bodies.apart(kept.first, face.first);
+      if (!turned_alike && touch) continue;
+      Found& count = found[{keeps.object, goes.object}];
+      const bool same = sheets.alike(keeps.material, goes.material);
+      if (same && turned_alike && keeps.object != goes.object) ++doubled[goes.object];
+      const bool sheet =
+          same && !turned_alike && keeps.object == goes.object && !sheets.is_glass(keeps.material);
+      if (!sheet && !(same && turned_alike && !touch)) {
+        ++count.left;
+        continue;
       }
+      ++(turned_alike ? count.twice : count.back_to_back);
+      for (std::uint32_t t = 0; t < face.count; ++t) gone[face.first + t] = 1;
+      if (!sheet && !scene.materials[goes.material].two_sided) continue;
+      const std::uint32_t both = sheets.of(keeps.material);
+      for (std::uint32_t t = 0; t < kept.count; ++t)
+        scene.triangles[kept.first + t].material = both;
     }
   }
+  if (found.empty()) return;
+  refuse_doubles(scene, doubled);
   for (const auto& [objects, count] : found) {
     const std::string place = where(scene, objects.first, objects.second);
     if (count.twice > 0) {
@@ -189,14 +220,16 @@ void mend_doubled_faces(Scene& scene, Sheets& sheets) {
           fmt::format("{}: {} stood back to back with another; each pair is one two-sided sheet",
                       place, faces_text(count.back_to_back)));
     }
-    if (count.unlike > 0) {
-      scene.warnings.push_back(
-          fmt::format("{}: {} lie exactly on another of another material, and which is seen is "
-                      "undecided; remove one of each, or move it by some 0.1 mm",
-                      place, faces_text(count.unlike)));
+    if (count.left > 0) {
+      scene.warnings.push_back(fmt::format(
+          "{}: {} exactly on another that is not its like (another material, object or body, or "
+          "glass), and which is seen is undecided; remove one of each, move it by some 0.1 mm, or "
+          "say "
+          "orient = \"as-is\" where that is meant",
+          place, count.left == 1 ? "a face lies" : fmt::format("{} faces lie", count.left)));
     }
   }
-  if (any) drop(scene, gone);
+  drop(scene, gone);
 }
 
 }  // namespace earthshine::scenes

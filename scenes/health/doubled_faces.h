@@ -6,6 +6,9 @@
 
 namespace earthshine::scenes {
 
+// Whether there are any but in objects that are to be left as they are.
+[[nodiscard]] bool has_doubled_faces(const Scene& scene);
+
 // As mend_surfaces has it.
 void mend_doubled_faces(Scene& scene, Sheets& sheets);
 

@@ -10,17 +10,20 @@
 namespace earthshine::scenes {
 
 // For a scene whose objects, cameras and lamps have been read; each thing done or found is a
-// warning of the scene.
+// warning of the scene. Objects with Orient::AsIs are left alone, without a word.
 //   Faces that stand twice, alike in material and winding: one is kept.
-//   Faces that stand back to back, alike in material but for glass: one is kept, as a sheet whose
-//     material is two-sided.
-//   Faces on each other that are not alike: named, and left. Where two bodies touch, each hides the
+//   Faces of one object that stand back to back, alike in material but for glass: one is kept, as a
+//     sheet whose material is two-sided.
+//   Other faces exactly on each other: named, and left. Where two bodies touch, each hides the
 //     other's face: that is no fault.
-//   Closed bodies that are turned inside out, or whose faces are wound both ways: turned outward,
-//     unless they surround a camera, a lamp or another object (a room), or stand in a body of the
-//     same object (a cavity).
-//   Open surfaces whose faces are wound both ways: named, and left; Object::orient decides.
-// Throws base::Error (Input) for an object all of whose faces stand in another one already.
+//   Closed bodies that are turned inside out, or whose faces are wound both ways: turned outward.
+//     Not those that have a camera, a lamp or a surface in them, a window or a shining face (rooms;
+//     around a camera faces wound both ways are turned inward, else to the side of most of the
+//     area), nor those that stand in a body of the same object (cavities).
+//   Open surfaces whose faces are wound both ways, and surfaces without two sides: named, and left,
+//     unless all of them is two-sided; Object::orient decides.
+// Throws base::Error (Input) for an object all of whose faces stand, turned alike, in objects
+// before it.
 void mend_surfaces(Scene& scene);
 
 // What is left, for each object of the scene.

@@ -14,8 +14,9 @@ class Sheets {
   explicit Sheets(Scene& scene) : scene_(scene) {}
 
   // The material as both sides of a sheet wear it; added to the scene, once, if it has one side.
+  // Glass has no black back, and a sheet of it would not refract: it stays what it is.
   [[nodiscard]] std::uint32_t of(std::uint32_t material) {
-    if (scene_.materials[material].two_sided) return material;
+    if (scene_.materials[material].two_sided || is_glass(material)) return material;
     const auto [entry, fresh] =
         twins_.emplace(material, static_cast<std::uint32_t>(scene_.materials.size()));
     if (fresh) {
@@ -23,13 +24,27 @@ class Sheets {
       twin.name += ", both sides";
       twin.two_sided = true;
       scene_.materials.push_back(twin);
+      originals_.emplace(entry->second, material);
     }
     return entry->second;
   }
 
+  [[nodiscard]] bool is_glass(std::uint32_t material) const {
+    return base::max_component(scene_.materials[material].transmit) > 0.0;
+  }
+  // Alike but for the number of sides.
+  [[nodiscard]] bool alike(std::uint32_t a, std::uint32_t b) const {
+    return original(a) == original(b);
+  }
+
  private:
+  [[nodiscard]] std::uint32_t original(std::uint32_t material) const {
+    const auto found = originals_.find(material);
+    return found == originals_.end() ? material : found->second;
+  }
+
   Scene& scene_;
-  std::map<std::uint32_t, std::uint32_t> twins_;
+  std::map<std::uint32_t, std::uint32_t> twins_, originals_;
 };
 
 }  // namespace earthshine::scenes

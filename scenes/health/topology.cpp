@@ -142,9 +142,10 @@ std::vector<SurfacePart> surface_parts(const Scene& scene, const Object& object,
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
     while (end < uses.size() && uses[end].edge() == uses[begin].edge()) ++end;
     const std::size_t count = end - begin;
+    if (count > 2) ++part_of(uses[begin].triangle).crowded_edges;
     if (count == 1) ++part_of(uses[begin].triangle).open_edges;
     for (std::size_t k = begin; count > 2 && k < end; ++k) {
-      ++part_of(uses[k].triangle).crowded_edges;
+      part_of(uses[k].triangle).crowded = true;
     }
     if (count == 2 && uses[begin].rising == uses[begin + 1].rising) {
       ++part_of(uses[begin].triangle).mixed_edges;
@@ -154,9 +155,9 @@ std::vector<SurfacePart> surface_parts(const Scene& scene, const Object& object,
   return parts;
 }
 
-bool surrounds(const Scene& scene, const SurfacePart& part, const Vec3& point) {
+double solid_angle_of(const Scene& scene, const SurfacePart& part, const Vec3& point) {
   if (glm::any(glm::lessThan(point, part.low)) || glm::any(glm::greaterThan(point, part.high))) {
-    return false;
+    return 0.0;
   }
   double angle = 0.0;
   for (std::size_t k = 0; k < part.triangles.size(); ++k) {
@@ -169,7 +170,7 @@ bool surrounds(const Scene& scene, const SurfacePart& part, const Vec3& point) {
         la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
     angle += (part.turned[k] != 0 ? -2.0 : 2.0) * std::atan2(over, under);
   }
-  return std::abs(angle) > 2.0 * base::pi;
+  return std::abs(angle);
 }
 
 }  // namespace earthshine::scenes

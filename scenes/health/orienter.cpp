@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/health/orienter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "scenes/text/message_text.h"
+
+namespace earthshine::scenes {
+namespace {
+
+// Solid angles: a point on a face, an edge or a corner has some, one outside none; all of 4 pi one
+// that is strictly inside.
+constexpr double on_it = 0.1;
+constexpr double strictly_inside = 4.0 * base::pi - 0.1;
+// So many triangles of another part, spread over it, are looked at.
+constexpr std::size_t probes = 8;
+constexpr double wide = 8.0;  // over the median of the parts' widths
+
+}  // namespace
+
+Orienter::Orienter(Scene& scene) : scene_(scene), ids_(welded(scene.vertices)) {}
+
+Orienter::Parts& Orienter::parts_of(std::size_t object) {
+  const auto [entry, fresh] = parts_.try_emplace(object);
+  Parts& parts = entry->second;
+  if (!fresh) return parts;
+  parts.all = surface_parts(scene_, scene_.objects[object], ids_);
+  std::vector<double> widths;
+  for (const SurfacePart& part : parts.all) widths.push_back(part.high.x - part.low.x);
+  std::vector<double> sorted = widths;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                   sorted.end());
+  const double limit = wide * sorted[sorted.size() / 2];
+  for (std::uint32_t p = 0; p < parts.all.size(); ++p) {
+    if (widths[p] > limit) {
+      parts.wide.push_back(p);
+    } else {
+      parts.by_low_x.push_back(p);
+      parts.width_m = std::max(parts.width_m, widths[p]);
+    }
+  }
+  std::sort(parts.by_low_x.begin(), parts.by_low_x.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return parts.all[a].low.x < parts.all[b].low.x;
+  });
+  return parts;
+}
+
+void Orienter::orient(std::size_t number, bool bodies_alone) {
+  const Object& object = scene_.objects[number];
+  if (object.orient == Orient::AsIs || object.orient == Orient::TwoSided) return;
+  const bool told = object.orient == Orient::Outward;
+  const std::size_t count = parts_of(number).all.size();
+  Counts counts;
+  for (std::size_t p = 0; p < count; ++p) {
+    SurfacePart& part = parts_of(number).all[p];
+    if (bodies_alone && !part.is_body()) continue;
+    if (all_two_sided(part)) continue;  // no side of it is black
+    if (!part.orientable) {
+      ++counts.one_sided;
+      continue;
+    }
+    if (!told && !part.is_body()) {
+      counts.mixed_edges += part.mixed_edges;
+      continue;
+    }
+    const double edge = glm::length(part.high - part.low);
+    const double volume = part.closed() ? part.volume_m3 : cup_volume(part);
+    const bool inward = volume < -SurfacePart::flat_share * edge * edge * edge;
+    if (!inward && part.mixed_edges == 0) continue;
+    if (is_cavity(number, p)) continue;
+    const Inside inside = told ? Inside::Nothing : what_is_inside(number, p);
+    if (part.mixed_edges == 0 && inside != Inside::Nothing) continue;
+    // What a camera stands in is a room; with something else in it most of the area decides.
+    const bool keeps_side = inside == Inside::Things || inward == (inside == Inside::Camera);
+    turn(part, !keeps_side, counts);
+  }
+  say(object, counts);
+}
+
+void Orienter::turn(SurfacePart& part, bool all, Counts& counts) {
+  std::size_t turned = 0;
+  for (std::size_t k = 0; k < part.triangles.size(); ++k) {
+    if ((part.turned[k] != 0) == all) continue;
+    auto& vertex = scene_.triangles[part.triangles[k]].vertex;
+    std::swap(vertex[1], vertex[2]);
+    ++turned;
+  }
+  keep_parallelograms(part, all);
+  // What is asked about it from now on is asked of what it has become.
+  if (all) part.volume_m3 = -part.volume_m3;
+  std::fill(part.turned.begin(), part.turned.end(), char{0});
+  part.mixed_edges = 0;
+  if (turned == part.triangles.size()) {
+    ++counts.bodies;
+  } else {
+    counts.triangles += turned;
+  }
+}
+
+// (0,1,2), (0,2,3) of a parallelogram have become (0,2,1), (0,3,2), and stand the other way about.
+void Orienter::keep_parallelograms(const SurfacePart& part, bool all) {
+  const auto is_turned = [&](std::size_t k) { return (part.turned[k] != 0) != all; };
+  auto& triangles = scene_.triangles;
+  for (std::size_t k = 0; k + 1 < part.triangles.size(); ++k) {
+    const std::uint32_t t = part.triangles[k];
+    const auto same = [&](std::uint32_t other) {
+      return other < triangles.size() && triangles[other].polygon == triangles[t].polygon;
+    };
+    if (!is_turned(k) || !is_turned(k + 1) || part.triangles[k + 1] != t + 1) continue;
+    if (same(t + 1) && !same(t + 2) && !(t > 0 && same(t - 1))) {
+      std::swap(triangles[t], triangles[t + 1]);
+    }
+  }
+}
+
+Orienter::Inside Orienter::what_is_inside(std::size_t number, std::size_t p) {
+  const SurfacePart& part = parts_of(number).all[p];
+  for (const Camera& camera : scene_.cameras) {
+    if (solid_angle_of(scene_, part, camera.position) > on_it) return Inside::Camera;
+  }
+  for (const Lamp& lamp : scene_.lamps) {
+    if (solid_angle_of(scene_, part, lamp.position) > on_it) return Inside::Things;
+  }
+  if (is_window_or_lamp_in_part(part)) return Inside::Things;
+  for (std::size_t o = 0; o < scene_.objects.size(); ++o) {
+    if (o == number) continue;
+    const Object& other = scene_.objects[o];
+    for (std::size_t k = 0; k < probes; ++k) {
+      const auto step = static_cast<std::uint32_t>(k * other.triangle_count / probes);
+      if (solid_angle_of(scene_, part, middle_of(other.first_triangle + step)) > strictly_inside) {
+        return Inside::Things;
+      }
+    }
+  }
+  const Parts& parts = parts_of(number);
+  const auto holds = [&](std::uint32_t q) { return q != p && stands_in(part, parts.all[q]); };
+  const auto from =
+      std::lower_bound(parts.by_low_x.begin(), parts.by_low_x.end(), part.low.x - parts.width_m,
+                       [&](std::uint32_t q, double x) { return parts.all[q].low.x < x; });
+  for (auto q = from; q != parts.by_low_x.end() && parts.all[*q].low.x <= part.high.x; ++q) {
+    if (holds(*q)) return Inside::Things;
+  }
+  return std::any_of(parts.wide.begin(), parts.wide.end(), holds) ? Inside::Things
+                                                                  : Inside::Nothing;
+}
+
+// Whether it stands in a body of its own object that is turned outward.
+bool Orienter::is_cavity(std::size_t number, std::size_t p) {
+  const Parts& parts = parts_of(number);
+  const SurfacePart& part = parts.all[p];
+  const auto holds = [&](std::uint32_t q) {
+    const SurfacePart& outer = parts.all[q];
+    return q != p && outer.is_body() && outer.volume_m3 > 0.0 && stands_in(outer, part);
+  };
+  const auto from =
+      std::lower_bound(parts.by_low_x.begin(), parts.by_low_x.end(), part.low.x - parts.width_m,
+                       [&](std::uint32_t q, double x) { return parts.all[q].low.x < x; });
+  for (auto q = from; q != parts.by_low_x.end() && parts.all[*q].low.x <= part.high.x; ++q) {
+    if (holds(*q)) return true;
+  }
+  return std::any_of(parts.wide.begin(), parts.wide.end(), holds);
+}
+
+bool Orienter::stands_in(const SurfacePart& outer, const SurfacePart& inner) const {
+  if (glm::any(glm::lessThan(inner.high, outer.low)) ||
+      glm::any(glm::greaterThan(inner.low, outer.high))) {
+    return false;
+  }
+  for (std::size_t k = 0; k < probes; ++k) {
+    const std::uint32_t triangle = inner.triangles[k * inner.triangles.size() / probes];
+    if (solid_angle_of(scene_, outer, middle_of(triangle)) > strictly_inside) return true;
+  }
+  return false;
+}
+
+// About the middle of its box: an open part is outward where its faces' pyramids have volume.
+double Orienter::cup_volume(const SurfacePart& part) const {
+  const Vec3 middle = 0.5 * (part.low + part.high);
+  double volume = 0.0;
+  for (std::size_t k = 0; k < part.triangles.size(); ++k) {
+    const auto& v = scene_.triangles[part.triangles[k]].vertex;
+    const Vec3 a = scene_.vertices[v[0]] - middle, b = scene_.vertices[v[1]] - middle,
+               c = scene_.vertices[v[2]] - middle;
+    volume += (part.turned[k] != 0 ? -1.0 : 1.0) * glm::dot(a, glm::cross(b, c)) / 6.0;
+  }
+  return volume;
+}
+
+Vec3 Orienter::middle_of(std::uint32_t triangle) const {
+  const auto& v = scene_.triangles[triangle].vertex;
+  return (scene_.vertices[v[0]] + scene_.vertices[v[1]] + scene_.vertices[v[2]]) / 3.0;
+}
+
+bool Orienter::all_two_sided(const SurfacePart& part) const {
+  return std::all_of(part.triangles.begin(), part.triangles.end(), [&](std::uint32_t t) {
+    return scene_.materials[scene_.triangles[t].material].two_sided;
+  });
+}
+
+// A window in a wall or a ceiling that shines makes a room of a closed part; a body all of glass or
+// all of light does not.
+bool Orienter::is_window_or_lamp_in_part(const SurfacePart& part) const {
+  std::size_t some = 0;
+  for (const std::uint32_t t : part.triangles) {
+    const Material& material = scene_.materials[scene_.triangles[t].material];
+    if (material.emits() || base::max_component(material.transmit) > 0.0) ++some;
+  }
+  return some > 0 && some < part.triangles.size();
+}
+
+void Orienter::say(const Object& object, const Counts& counts) {
+  const std::string name = in_quotes(object.name);
+  auto& warnings = scene_.warnings;
+  if (counts.bodies > 0) {
+    warnings.push_back(fmt::format(
+        "object {}: {} inside out, turned outward; where it is a room, say orient = \"as-is\"",
+        name,
+        counts.bodies == 1 ? "a surface was" : fmt::format("{} surfaces were", counts.bodies)));
+  }
+  if (counts.triangles > 0) {
+    warnings.push_back(
+        fmt::format("object {}: {} of {} triangles were wound against their neighbours, turned; "
+                    "orient = \"as-is\" leaves them",
+                    name, counts.triangles, object.triangle_count));
+  }
+  if (counts.mixed_edges > 0) {
+    warnings.push_back(fmt::format(
+        "object {}: at {} of its surfaces the faces on both sides are wound against each other; "
+        "backs "
+        "are black. Say orient = \"outward\" or \"two-sided\", or \"as-is\"",
+        name, counts.mixed_edges == 1 ? "an edge" : fmt::format("{} edges", counts.mixed_edges)));
+  }
+  if (counts.one_sided > 0) {
+    warnings.push_back(fmt::format(
+        "object {}: {} like a Moebius strip, without two sides; backs are black. Say orient = "
+        "\"two-sided\", or \"as-is\"",
+        name,
+        counts.one_sided == 1 ? "a surface is" : fmt::format("{} surfaces are", counts.one_sided)));
+  }
+}
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which way the parts of objects are turned.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "scenes/health/topology.h"
+#include "scenes/scene.h"
+
+namespace earthshine::scenes {
+
+// As mend_surfaces has it. Made anew when triangles have been added or taken out.
+class Orienter {
+ public:
+  explicit Orienter(Scene& scene);
+
+  // bodies_alone: closed parts only, and nothing is said of others.
+  void orient(std::size_t object, bool bodies_alone);
+
+ private:
+  struct Parts {
+    std::vector<SurfacePart> all;
+    std::vector<std::uint32_t> by_low_x;  // numbers, but those of wide ones
+    std::vector<std::uint32_t> wide;
+    double width_m = 0.0;  // along x, of the widest of the others
+  };
+  struct Counts {
+    std::size_t bodies = 0, triangles = 0, mixed_edges = 0, one_sided = 0;
+  };
+  enum class Inside { Nothing, Things, Camera };
+
+  [[nodiscard]] Parts& parts_of(std::size_t object);
+  void turn(SurfacePart& part, bool all, Counts& counts);
+  void keep_parallelograms(const SurfacePart& part, bool all);
+  [[nodiscard]] Inside what_is_inside(std::size_t object, std::size_t part);
+  [[nodiscard]] bool is_cavity(std::size_t object, std::size_t part);
+  [[nodiscard]] bool stands_in(const SurfacePart& outer, const SurfacePart& inner) const;
+  [[nodiscard]] double cup_volume(const SurfacePart& part) const;
+  [[nodiscard]] Vec3 middle_of(std::uint32_t triangle) const;
+  [[nodiscard]] bool all_two_sided(const SurfacePart& part) const;
+  [[nodiscard]] bool is_window_or_lamp_in_part(const SurfacePart& part) const;
+  void say(const Object& object, const Counts& counts);
+
+  Scene& scene_;
+  std::vector<std::uint32_t> ids_;
+  std::map<std::size_t, Parts> parts_;
+};
+
+}  // namespace earthshine::scenes
