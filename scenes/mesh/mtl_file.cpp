@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <map>
 #include <string>
 
@@ -35,17 +37,28 @@ Rgb read_colour(const TextLines& lines, Range range) {
   return colour;
 }
 
+// Whether the words after the keyword are all that number.
+bool all_are(const std::vector<Word>& words, double wanted) {
+  for (std::size_t k = 1; k < words.size(); ++k) {
+    double number = 0.0;
+    const char* const end = words[k].text.data() + words[k].text.size();
+    const auto [stop, problem] = std::from_chars(words[k].text.data(), end, number);
+    if (problem != std::errc() || stop != end || number != wanted) return false;
+  }
+  return words.size() > 1;
+}
+
 // Ambient light, the number of a lighting model and an index of refraction alone change nothing
 // here, nor does an opaque material that says so.
 bool changes_the_picture(const TextLines& lines) {
-  const auto& words = lines.words();
-  const std::string_view keyword = words.front().text;
-  if (keyword == "Ka" || keyword == "illum" || keyword == "Ni" || keyword == "sharpness") {
+  constexpr std::string_view without_effect[] = {"Ka", "map_Ka", "illum", "Ni", "sharpness"};
+  const std::string_view keyword = lines.words().front().text;
+  if (std::find(std::begin(without_effect), std::end(without_effect), keyword) !=
+      std::end(without_effect)) {
     return false;
   }
-  const bool opaque =
-      words.size() == 2 && ((keyword == "d" && words[1].text.starts_with("1")) ||
-                            (keyword == "Tr" && lines.number(std::size_t{1}) == 0.0));
+  const bool opaque = ((keyword == "d" || keyword == "Tf") && all_are(lines.words(), 1.0)) ||
+                      (keyword == "Tr" && all_are(lines.words(), 0.0));
   return !opaque;
 }
 

@@ -41,6 +41,12 @@ std::map<std::string, std::size_t> unused_of(const tinygltf::Model& model) {
       }
     }
   }
+  for (const tinygltf::Material& material : model.materials) {
+    const bool passes = material.extensions.count("KHR_materials_transmission") > 0;
+    if (material.alphaMode == "BLEND" || material.alphaMode == "MASK" || passes) {
+      count(transparent, 1);
+    }
+  }
   count("textures", model.textures.size());
   count("lights", model.lights.size());
   count("cameras", model.cameras.size());

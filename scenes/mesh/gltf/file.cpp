@@ -84,6 +84,11 @@ class GltfReader {
       mesh_.warnings.push_back(fmt::format(
           "{}: textures are passed over; materials have their plain colours", path_.string()));
     }
+    if (model_.transparent) {
+      mesh_.warnings.push_back(fmt::format(
+          "{}: transparent materials are read as opaque; say transmit of these in the scene file",
+          path_.string()));
+    }
   }
 
   [[nodiscard]] std::vector<int> roots() const {

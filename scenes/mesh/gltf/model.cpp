@@ -273,6 +273,7 @@ GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& p
   if (!loaded) gltf_fail(path, fmt::format("not a sound glTF file: {}", one_line(problem)));
   std::map<std::string, std::size_t> unused = unused_of(model);
   GltfModel converted = convert(std::move(model));
+  converted.transparent = unused.count(transparent) > 0;
   converted.unused = std::move(unused);
   return converted;
 }

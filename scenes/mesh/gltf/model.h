@@ -67,6 +67,7 @@ struct GltfModel {
   int default_scene = -1;
   std::vector<Material> materials;  // names may be empty or repeated
   bool textured = false;
+  bool transparent = false;
   std::map<std::string, std::size_t> unused;  // what nothing here reads, as Mesh::unused
 };
 

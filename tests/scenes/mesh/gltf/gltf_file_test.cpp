@@ -149,6 +149,12 @@ TEST_F(Gltf, WhatIsNotUsedIsNamed) {
   EXPECT_EQ(read(parts).objects.at(0).unused,
             "1 KHR_materials_specular, 1 NORMAL, 1 TEXCOORD_0, 1 cameras");
   EXPECT_EQ(read({}).objects.at(0).unused, "");
+  Parts glass;
+  glass.materials = R"([{"name": "glass", "alphaMode": "BLEND"}])";
+  const Scene scene = read(glass);
+  EXPECT_EQ(scene.objects.at(0).unused, "1 transparent materials");
+  ASSERT_EQ(scene.warnings.size(), 1U);
+  EXPECT_TRUE(holds(scene.warnings[0], {"a.gltf", "transparent", "opaque"}));
 }
 
 TEST_F(Gltf, RequiredExtensionsAreRefusedByNameWithWhatToDo) {
