@@ -21,10 +21,13 @@ constexpr int most_error_rounds = 24;
 constexpr double most_step = 2.0;  // less squared error a round
 // What planning by few samples promises is off by that much.
 constexpr double least_kept = 0.7, most_kept = 2.0;
+// Near the wanted error, how much more is cast before looking again, over all so far: what was
+// known by few samples is often better than it seemed.
+constexpr double last_step_share = 0.4;
 // Of the wanted error, what samples are planned for: the next statement may turn out larger.
 constexpr double aimed_share = 0.97;
 // Time of a ray over that of one of a packet of gather rays (tests/benchmarks/gather_bench.cpp).
-constexpr double ray_cost = 1.5, path_ray_cost = 2.5, camera_cost = 3.0;
+constexpr double ray_cost = 1.5, path_ray_cost = 1.7, camera_cost = 3.0;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -139,14 +142,17 @@ class Passes {
     first_round(static_cast<std::uint32_t>(options_.shared.least_samples));
     double before = 0.0, promised = 0.0, kept = 1.0;  // of what the last plan promised
     for (int round = 1; round < most_error_rounds && !ends(); ++round) {
-      const SamplePlanner planner(*sums_, field_ ? &*field_ : nullptr, costs());
+      const SampleCosts each = costs();
+      const SamplePlanner planner(*sums_, field_ ? &*field_ : nullptr, each);
       const double now = planner.squared_error(), error = std::sqrt(now);
       if (options_.error > 0.0 && error <= options_.error) break;
       // Step by step: what few samples say of more of them is rough.
       const double aim = aimed_share * options_.error;
       if (promised > 0.0) kept = std::clamp((before - now) / promised, least_kept, most_kept);
       const double step = now - (now - std::max(aim * aim, now / most_step)) / kept;
-      const SamplePlan plan = planner.plan(step, affordable());
+      double most = affordable();
+      if (now < most_step * aim * aim) most = std::min(most, last_step_share * spent(each));
+      const SamplePlan plan = planner.plan(step, most);
       if (plan.cost <= 0.0) break;
       before = now, promised = now - plan.squared_error;
       expected_ = std::max(done_ + plan.cost, done_ * error * error / std::max(aim * aim, 1e-12));
@@ -168,12 +174,8 @@ class Passes {
   // chooses alike.
   [[nodiscard]] SampleCosts costs() const {
     SampleCosts costs;
-    double samples = 0.0;
-    for (const std::uint32_t n : sums_->samples) samples += n;
-    const RayCounts& rays = report_.rays;
-    const auto others =
-        static_cast<double>(rays.shadow + rays.mirror + rays.refraction + rays.gather + rays.lobe);
-    costs.camera = camera_cost + ray_cost * others / std::max(1.0, samples);
+    costs.camera = camera_cost;
+    costs.camera_ray = ray_cost;
     if (!field_) return costs;
     for (const Gathered kind : {Gathered::Residual, Gathered::Lobe}) {
       double cast = 0.0;
@@ -185,6 +187,21 @@ class Passes {
           path_ray_cost * (1.0 + total / std::max(1.0, cast));
     }
     return costs;
+  }
+
+  // On all samples so far.
+  [[nodiscard]] double spent(const SampleCosts& each) const {
+    double cost = 0.0;
+    for (std::size_t p = 0; p < sums_->samples.size(); ++p) {
+      cost += each.camera * sums_->samples[p] + each.camera_ray * double(sums_->rays[p]);
+    }
+    for (std::size_t k = 0; k < gathered_kinds; ++k) {
+      const auto kind = static_cast<Gathered>(k);
+      for (std::size_t p = 0; field_ && field_->gathers(kind) && p < field_->points().size(); ++p) {
+        cost += each.field[k] * double(field_->samples(kind, p));
+      }
+    }
+    return cost;
   }
 
   // What the time that is left buys; infinite without a limit.

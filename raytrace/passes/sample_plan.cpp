@@ -2,6 +2,7 @@
 #include "raytrace/passes/sample_plan.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -15,6 +16,28 @@ constexpr double greatest_price = 1e6;  // squared error per ray
 // Where a ray gains so much less than a ray so far has on the average, nothing is cast, as long as
 // others gain more: what few samples promise there is often wrong, and the next look tells better.
 constexpr double least_gain = 0.2, least_gain_of_all = 1e-6;
+constexpr std::size_t sample_classes = 33;  // of pixels, by the powers of two of their samples
+constexpr std::size_t few_pixels = 64;
+constexpr double unsure_samples = 4.0;  // up to there a pixel's own say nothing
+
+std::size_t class_of(std::uint32_t samples) {
+  return static_cast<std::size_t>(std::bit_width(samples));
+}
+
+// How samples of some pixels scatter: their means' squared errors, and what these would be if the
+// samples were independent.
+struct Scatter {
+  std::size_t pixels = 0;
+  double found = 0.0, independent = 0.0;
+  void add(double squared_error, double variance_of_mean) {
+    ++pixels;
+    found += squared_error;
+    independent += variance_of_mean;
+  }
+  [[nodiscard]] double share() const {
+    return independent > 0.0 ? std::min(1.0, found / independent) : 1.0;
+  }
+};
 
 }  // namespace
 
@@ -54,54 +77,56 @@ void SamplePlanner::look_at_field(const StatedError& stated, double mean, double
       const double four = shared.squared_error_with(p, 4.0);
       if (factor * (one - four) <= 0.0) continue;
       gains_.push_back({static_cast<std::uint32_t>(p), static_cast<std::uint8_t>(k), samples,
+                        static_cast<float>(double(samples) * costs_.field[k]),
                         static_cast<float>(factor * (one - two)),
                         static_cast<float>(factor * (two - four))});
     }
   }
 }
 
-// Samples of a pixel have the deviation of the noisiest of the pixels around it: its own would stop
-// where they happen to agree, and its mean would be biased. What the halves of all pixels differ by
-// tells how much less the samples scatter than if they were independent.
+// Samples of a pixel have its own deviation, but few of them may miss what they seldom meet: what
+// covers less than one of n is told by the noisiest of the pixels around. What the halves of pixels
+// with as many samples differ by tells how much less these scatter than if they were independent.
 void SamplePlanner::look_at_pixels(const StatedError& stated, double mean, double scale) {
   const Window& window = sums_.window;
   std::vector<double> variance(stated.luminance.size());  // of one sample, weighted
-  double found = 0.0, independent = 0.0;
+  std::array<Scatter, sample_classes> of_class{};
+  Scatter all;
   for (std::size_t p = 0; p < variance.size(); ++p) {
     const double weight = error_weight(double(stated.luminance[p]), mean);
     const double of_mean = weight * weight * sums_.sample_variance(p);
     variance[p] = of_mean * sums_.samples[p];
-    independent += of_mean;
-    found += weight * weight * sums_.squared_error(p);
+    const double found = weight * weight * sums_.squared_error(p);
+    all.add(found, of_mean);
+    of_class[class_of(sums_.samples[p])].add(found, of_mean);
   }
-  const double better = independent > 0.0 ? std::min(1.0, found / independent) : 1.0;
   for (int y = window.y; y < window.y + window.rows; ++y) {
     for (int x = window.x; x < window.x + window.columns; ++x) {
       const std::size_t p = window.index(x, y);
-      double around = window.pixel_count() == 1 ? variance[p] : 0.0;
+      double around = 0.0;
       for (int qy = std::max(window.y, y - 1); qy <= std::min(window.y + window.rows - 1, y + 1);
            ++qy) {
         for (int qx = std::max(window.x, x - 1);
              qx <= std::min(window.x + window.columns - 1, x + 1); ++qx) {
-          if (qx != x || qy != y) around = std::max(around, variance[window.index(qx, qy)]);
+          around = std::max(around, variance[window.index(qx, qy)]);
         }
       }
-      const double error = around * better * scale / std::max(1U, sums_.samples[p]);
+      const double samples = std::max(1U, sums_.samples[p]);
+      const double likely = std::max(variance[p], around * std::min(1.0, unsure_samples / samples));
+      const Scatter& like = of_class[class_of(sums_.samples[p])];
+      const double better = (like.pixels < few_pixels ? all : like).share();
+      const double error = likely * better * scale / samples;
       if (error <= 0.0) continue;
-      gains_.push_back({static_cast<std::uint32_t>(p), camera_kind,
-                        static_cast<float>(sums_.samples[p]), static_cast<float>(error / 2.0),
-                        static_cast<float>(error / 4.0), static_cast<float>(variance[p] / around)});
+      const double cost = samples * costs_.camera + double(sums_.rays[p]) * costs_.camera_ray;
+      gains_.push_back({static_cast<std::uint32_t>(p), camera_kind, static_cast<float>(samples),
+                        static_cast<float>(cost), static_cast<float>(error / 2.0),
+                        static_cast<float>(error / 4.0), static_cast<float>(variance[p] / likely)});
     }
   }
 }
 
-double SamplePlanner::cost_of(const Gain& gain) const {
-  return double(gain.samples) *
-         (gain.kind == camera_kind ? costs_.camera : costs_.field[gain.kind]);
-}
-
-int SamplePlanner::factor(const Gain& gain, double per_cost) const {
-  const double cost = cost_of(gain), first = double(gain.first), second = double(gain.second);
+int SamplePlanner::factor(const Gain& gain, double per_cost) {
+  const double cost = double(gain.cost), first = double(gain.first), second = double(gain.second);
   if (second >= 2.0 * cost * per_cost || first + second >= 3.0 * cost * per_cost) return 4;
   return first >= cost * per_cost ? 2 : 1;
 }
@@ -113,7 +138,7 @@ SamplePlanner::Outcome SamplePlanner::outcome(double per_cost) const {
     if (times == 1) continue;
     outcome.squared_error -=
         double(gain.found) * (double(gain.first) + (times == 4 ? double(gain.second) : 0.0));
-    outcome.cost += (times - 1) * cost_of(gain);
+    outcome.cost += (times - 1) * double(gain.cost);
   }
   return outcome;
 }
@@ -128,7 +153,7 @@ SamplePlan SamplePlanner::plan(double wanted, double most_cost) const {
   // The price of a ray at which the picture is just exact enough; the less it is, the more are
   // cast.
   double all = 0.0;
-  for (const Gain& gain : gains_) all += cost_of(gain);
+  for (const Gain& gain : gains_) all += double(gain.cost);
   if (all <= 0.0 || now_ <= 0.0) {
     return plan;
   }
@@ -147,7 +172,7 @@ SamplePlan SamplePlanner::plan(double wanted, double most_cost) const {
   for (const Gain& gain : gains_) {
     const int times = factor(gain, per_cost);
     if (times == 1) continue;
-    const double cost = (times - 1) * cost_of(gain);
+    const double cost = (times - 1) * double(gain.cost);
     plan.cost += cost;
     if (gain.kind == camera_kind) {
       plan.camera[gain.index] *= static_cast<std::uint32_t>(times);

@@ -14,7 +14,8 @@ namespace earthshine::raytrace {
 // Of one more sample, in rays of a packet.
 struct SampleCosts {
   std::array<double, gathered_kinds> field{1.0, 1.0, 1.0};
-  double camera = 1.0;
+  double camera = 1.0;      // without the rays that it takes beside its own
+  double camera_ray = 1.0;  // each of these; the pixel's samples so far tell how many
 };
 
 struct SamplePlan {
@@ -40,13 +41,13 @@ class SamplePlanner {
     std::uint32_t index = 0;
     std::uint8_t kind = 0;
     float samples = 0.0F;               // that it has
+    float cost = 0.0F;                  // of as many again
     float first = 0.0F, second = 0.0F;  // squared error that twice, four times as many take off
     float found = 1.0F;  // of what they promise, as much as the point or pixel itself has shown
   };
   void look_at_field(const StatedError& stated, double mean, double scale);
   void look_at_pixels(const StatedError& stated, double mean, double scale);
-  [[nodiscard]] double cost_of(const Gain& gain) const;
-  [[nodiscard]] int factor(const Gain& gain, double per_cost) const;
+  [[nodiscard]] static int factor(const Gain& gain, double per_cost);
   struct Outcome {
     double squared_error = 0.0, cost = 0.0;
   };

@@ -57,7 +57,8 @@ PixelSums::PixelSums(const Window& of, std::size_t layers, bool splits_parts)
       luminance(of.pixel_count(), 0.0),
       luminance2(of.pixel_count(), 0.0),
       half_difference(of.pixel_count(), 0.0),
-      source(of.pixel_count()) {}
+      source(of.pixel_count()),
+      rays(of.pixel_count(), 0.0F) {}
 
 void PixelSums::add(std::size_t pixel, const PixelShader& shader, std::uint32_t first,
                     std::uint32_t count) {
@@ -138,7 +139,9 @@ void shade_samples(const ShadingScene& shared, const CameraModel& camera,
         const std::size_t pixel = window.index(window.x + x, window.y + y);
         const std::uint32_t first = sums.samples[pixel];
         if (wanted[pixel] <= first) continue;
+        const std::uint64_t before = shader.rays().total();
         shade_pixel(shared, camera, window.x + x, window.y + y, first, wanted[pixel], shader);
+        sums.rays[pixel] += static_cast<float>(shader.rays().total() - before);
         sums.add(pixel, shader, first, wanted[pixel] - first);
         count += wanted[pixel] - first;
       }

@@ -22,6 +22,7 @@ struct PixelSums {
   std::vector<double> luminance, luminance2;
   std::vector<double> half_difference;  // of the sums of even and odd samples' luminance
   std::vector<SourceSeen> source;
+  std::vector<float> rays;  // cast for the samples, of all kinds
 
   PixelSums(const Window& of, std::size_t image_layers, bool splits_parts);
   // Of the mean luminance, from the spread of the samples alone.

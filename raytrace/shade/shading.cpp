@@ -77,6 +77,12 @@ void PixelShader::end_pixel() {
   flush_gather();
 }
 
+RayCounts PixelShader::rays() const {
+  RayCounts all = rays_;
+  if (walker_) all += walker_->rays();
+  return all;
+}
+
 void PixelShader::add(std::size_t layer, std::size_t sample, Part part, const Rgb& radiance) {
   sums_[layer] += radiance;
   if (shared_.splits_parts) sums_[shared_.layers + static_cast<std::size_t>(part)] += radiance;

@@ -93,7 +93,7 @@ class PixelShader {
   [[nodiscard]] const SourceSeen& source() const { return source_; }
   // What the samples read from gather points, which is in their luminance but not in sums().
   [[nodiscard]] std::span<const FieldTerm> field_terms() const { return terms_; }
-  [[nodiscard]] const RayCounts& rays() const { return rays_; }
+  [[nodiscard]] RayCounts rays() const;  // all that were cast for samples so far
 
  private:
   // What kind of ray asks, which decides what it may see of the sources themselves.

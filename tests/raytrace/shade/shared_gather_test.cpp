@@ -104,6 +104,17 @@ TEST(SharedGather, PictureIsThePlainOneWithinTheStatedErrors) {
               4.0 * quick.report.relative_noise / std::sqrt(n) + 0.005);
 }
 
+// Every surface of the closed room reflects: each gather ray of a camera sample is followed on by
+// at least one ray of what the solution lacks where it ended.
+TEST(SharedGather, PathsBehindCameraSamplesAreCounted) {
+  RenderOptions plain = shared_options();
+  plain.shared.on = false;
+  plain.gather_rays = 16;  // by 4 camera samples of 4 rays
+  const RayCounts rays = studio().picture(plain).report.rays;
+  EXPECT_EQ(rays.camera, 48U * 40U * 4U);
+  EXPECT_GE(rays.gather, 2U * 4U * rays.camera);
+}
+
 TEST(SharedGather, CropAndReplayHaveThePixelsOfTheWholePicture) {
   RenderOptions options = shared_options();
   options.shared.noise = 0.002;  // five rounds of samples, each looks at the neighbours of the last

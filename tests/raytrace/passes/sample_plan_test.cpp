@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the next camera samples of a picture go, told by sums that are made up.
+#include "raytrace/passes/sample_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace earthshine::raytrace {
+namespace {
+
+constexpr int edge = 16;
+constexpr double no_limit = std::numeric_limits<double>::infinity();
+
+// A grey picture of mean luminance 1 without noise, every pixel with as many samples, each of one
+// ray.
+PixelSums quiet(std::uint32_t samples) {
+  PixelSums sums(Window{0, 0, edge, edge}, 1, false);
+  for (std::size_t p = 0; p < sums.samples.size(); ++p) {
+    sums.samples[p] = samples;
+    sums.rays[p] = static_cast<float>(samples);
+    sums.radiance[p] = glm::dvec3(samples);
+    sums.luminance[p] = sums.luminance2[p] = samples;
+    sums.source[p].reflecting = samples;
+  }
+  return sums;
+}
+
+// Samples of the given variance, whose halves differ as if `alike` of that were left.
+void disturb(PixelSums& sums, std::size_t pixel, double variance, double alike = 1.0) {
+  const double n = sums.samples[pixel];
+  sums.luminance2[pixel] = n + variance * (n - 1.0);
+  sums.half_difference[pixel] = std::sqrt(alike * variance * n);
+}
+
+SamplePlan plan(const PixelSums& sums, double squared_error, double most_cost = no_limit) {
+  return SamplePlanner(sums, nullptr, {}).plan(squared_error, most_cost);
+}
+
+TEST(SamplePlan, FewSamplesAreToldByTheNoisiestAround) {
+  PixelSums sums = quiet(4);
+  const std::size_t noisy = sums.window.index(8, 8), beside = sums.window.index(9, 8);
+  disturb(sums, noisy, 1.0);
+  const SamplePlan few = plan(sums, 0.0);
+  EXPECT_GT(few.camera[noisy], 4U);
+  EXPECT_EQ(few.camera[beside], few.camera[noisy]);
+  EXPECT_EQ(few.camera[sums.window.index(2, 2)], 4U);
+}
+
+// With 256 samples what a pixel may have missed covers less than 1 of 64 of it: half of the
+// picture's squared error, that of the noisy pixel, goes by doubling its samples alone.
+TEST(SamplePlan, ManySamplesSpeakForThemselves) {
+  PixelSums sums = quiet(256);
+  const std::size_t noisy = sums.window.index(8, 8);
+  disturb(sums, noisy, 1.0);
+  const double now = SamplePlanner(sums, nullptr, {}).squared_error();
+  EXPECT_NEAR(now, 1.0 / 256.0 / (edge * edge), 1e-12);  // variance / n, over all pixels
+  const SamplePlan many = plan(sums, 0.5 * now);
+  EXPECT_EQ(many.camera[noisy], 512U);
+  EXPECT_EQ(many.camera[sums.window.index(9, 8)], 256U);
+}
+
+// Both halves of the picture are as noisy; samples of the left take ten rays each, those of the
+// right one. What is bought for the price of a tenth is bought on the right.
+TEST(SamplePlan, CheapSamplesComeFirst) {
+  PixelSums sums = quiet(64);
+  for (std::size_t p = 0; p < sums.samples.size(); ++p) {
+    disturb(sums, p, 1.0);
+    if (p % edge < edge / 2) sums.rays[p] *= 10.0F;
+  }
+  const double each_right = 64.0 * 2.0;  // a sample and a ray
+  const SamplePlan cheap = plan(sums, 0.0, edge * edge / 2 * each_right);
+  EXPECT_EQ(cheap.camera[sums.window.index(2, 8)], 64U);
+  EXPECT_EQ(cheap.camera[sums.window.index(13, 8)], 128U);
+}
+
+// Below, 1024 samples of a variance of 16384 would gain four times as much for their price as 16 of
+// variance 1 above (variance / samples^2), if they were independent. But their means are a hundred
+// times as exact (an edge that low-discrepancy samples resolve): they gain 25 times less.
+TEST(SamplePlan, SamplesThatScatterLessTogetherNeedFewer) {
+  PixelSums sums = quiet(16);
+  for (std::size_t p = 0; p < sums.samples.size(); ++p) {
+    if (p / edge < edge / 2) {
+      disturb(sums, p, 1.0);
+      continue;
+    }
+    sums.samples[p] = 1024;
+    sums.rays[p] = 1024.0F;
+    sums.radiance[p] = glm::dvec3(1024.0);
+    sums.luminance[p] = 1024.0;
+    sums.source[p].reflecting = 1024.0;
+    disturb(sums, p, 16384.0, 0.01);
+  }
+  const SamplePlan next = plan(sums, 0.0, 3.0 * 16.0 * 2.0 * edge * edge / 2);
+  EXPECT_EQ(next.camera[sums.window.index(8, 2)], 64U);
+  EXPECT_EQ(next.camera[sums.window.index(8, 13)], 1024U);
+}
+
+}  // namespace
+}  // namespace earthshine::raytrace
