@@ -26,8 +26,6 @@ constexpr double least_kept = 0.7, most_kept = 2.0;
 constexpr double last_step_share = 0.4;
 // Of the wanted error, what samples are planned for: the next statement may turn out larger.
 constexpr double aimed_share = 0.97;
-// Time of a ray over that of one of a packet of gather rays (tests/benchmarks/gather_bench.cpp).
-constexpr double ray_cost = 1.5, path_ray_cost = 1.7, camera_cost = 3.0;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -142,8 +140,8 @@ class Passes {
     first_round(static_cast<std::uint32_t>(options_.shared.least_samples));
     double before = 0.0, promised = 0.0, kept = 1.0;  // of what the last plan promised
     for (int round = 1; round < most_error_rounds && !ends(); ++round) {
-      const SampleCosts each = costs();
-      const SamplePlanner planner(*sums_, field_ ? &*field_ : nullptr, each);
+      const SampleCosts each = sample_costs(field());
+      const SamplePlanner planner(*sums_, field(), each);
       const double now = planner.squared_error(), error = std::sqrt(now);
       if (options_.error > 0.0 && error <= options_.error) break;
       // Step by step: what few samples say of more of them is rough.
@@ -151,7 +149,8 @@ class Passes {
       if (promised > 0.0) kept = std::clamp((before - now) / promised, least_kept, most_kept);
       const double step = now - (now - std::max(aim * aim, now / most_step)) / kept;
       double most = affordable();
-      if (now < most_step * aim * aim) most = std::min(most, last_step_share * spent(each));
+      if (now < most_step * aim * aim)
+        most = std::min(most, last_step_share * spent(*sums_, field(), each));
       const SamplePlan plan = planner.plan(step, most);
       if (plan.cost <= 0.0) break;
       before = now, promised = now - plan.squared_error;
@@ -170,40 +169,6 @@ class Passes {
     }
   }
 
-  // What one more sample of each kind costs, in rays of a packet; counted, so that every machine
-  // chooses alike.
-  [[nodiscard]] SampleCosts costs() const {
-    SampleCosts costs;
-    costs.camera = camera_cost;
-    costs.camera_ray = ray_cost;
-    if (!field_) return costs;
-    for (const Gathered kind : {Gathered::Residual, Gathered::Lobe}) {
-      double cast = 0.0;
-      for (std::size_t p = 0; field_->gathers(kind) && p < field_->points().size(); ++p) {
-        cast += double(field_->samples(kind, p));
-      }
-      const auto total = static_cast<double>(field_->rays_of(kind).total());
-      costs.field[static_cast<std::size_t>(kind)] =
-          path_ray_cost * (1.0 + total / std::max(1.0, cast));
-    }
-    return costs;
-  }
-
-  // On all samples so far.
-  [[nodiscard]] double spent(const SampleCosts& each) const {
-    double cost = 0.0;
-    for (std::size_t p = 0; p < sums_->samples.size(); ++p) {
-      cost += each.camera * sums_->samples[p] + each.camera_ray * double(sums_->rays[p]);
-    }
-    for (std::size_t k = 0; k < gathered_kinds; ++k) {
-      const auto kind = static_cast<Gathered>(k);
-      for (std::size_t p = 0; field_ && field_->gathers(kind) && p < field_->points().size(); ++p) {
-        cost += each.field[k] * double(field_->samples(kind, p));
-      }
-    }
-    return cost;
-  }
-
   // What the time that is left buys; infinite without a limit.
   [[nodiscard]] double affordable() const {
     if (options_.time_limit_s <= 0.0) return std::numeric_limits<double>::infinity();
@@ -211,6 +176,7 @@ class Passes {
     return std::max(0.0, options_.time_limit_s - gone) * done_ / std::max(gone, 1e-3);
   }
 
+  [[nodiscard]] const GatherField* field() const { return field_ ? &*field_ : nullptr; }
   [[nodiscard]] double pixels() const {
     return static_cast<double>(camera_.columns) * camera_.rows;
   }

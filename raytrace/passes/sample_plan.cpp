@@ -10,6 +10,9 @@
 namespace earthshine::raytrace {
 namespace {
 
+// Time of a ray, and of a camera sample beside its rays, over that of one of a packet of gather
+// rays (measured on the payload bay by its three lights).
+constexpr double ray_cost = 1.5, path_ray_cost = 1.7, camera_cost = 3.0;
 constexpr auto camera_kind = static_cast<std::uint8_t>(gathered_kinds);
 constexpr int bisections = 48;
 constexpr double greatest_price = 1e6;  // squared error per ray
@@ -40,6 +43,37 @@ struct Scatter {
 };
 
 }  // namespace
+
+SampleCosts sample_costs(const GatherField* field) {
+  SampleCosts costs;
+  costs.camera = camera_cost;
+  costs.camera_ray = ray_cost;
+  if (field == nullptr) return costs;
+  for (const Gathered kind : {Gathered::Residual, Gathered::Lobe}) {
+    double cast = 0.0;
+    for (std::size_t p = 0; field->gathers(kind) && p < field->points().size(); ++p) {
+      cast += double(field->samples(kind, p));
+    }
+    const auto total = static_cast<double>(field->rays_of(kind).total());
+    costs.field[static_cast<std::size_t>(kind)] =
+        path_ray_cost * (1.0 + total / std::max(1.0, cast));
+  }
+  return costs;
+}
+
+double spent(const PixelSums& sums, const GatherField* field, const SampleCosts& costs) {
+  double cost = 0.0;
+  for (std::size_t p = 0; p < sums.samples.size(); ++p) {
+    cost += costs.camera * sums.samples[p] + costs.camera_ray * double(sums.rays[p]);
+  }
+  for (std::size_t k = 0; k < gathered_kinds && field != nullptr; ++k) {
+    const auto kind = static_cast<Gathered>(k);
+    for (std::size_t p = 0; field->gathers(kind) && p < field->points().size(); ++p) {
+      cost += costs.field[k] * double(field->samples(kind, p));
+    }
+  }
+  return cost;
+}
 
 SamplePlanner::SamplePlanner(const PixelSums& sums, const GatherField* field,
                              const SampleCosts& costs)

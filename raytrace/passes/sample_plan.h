@@ -14,9 +14,16 @@ namespace earthshine::raytrace {
 // Of one more sample, in rays of a packet.
 struct SampleCosts {
   std::array<double, gathered_kinds> field{1.0, 1.0, 1.0};
-  double camera = 1.0;      // without the rays that it takes beside its own
+  double camera = 1.0;      // without its rays
   double camera_ray = 1.0;  // each of these; the pixel's samples so far tell how many
 };
+
+// From the rays that samples have taken so far; counted, so that every machine chooses alike.
+// field: nullptr where nothing is gathered.
+[[nodiscard]] SampleCosts sample_costs(const GatherField* field);
+// Of all samples so far.
+[[nodiscard]] double spent(const PixelSums& sums, const GatherField* field,
+                           const SampleCosts& costs);
 
 struct SamplePlan {
   std::array<std::vector<std::uint32_t>, gathered_kinds> field;  // more, per point
@@ -27,7 +34,7 @@ struct SamplePlan {
 
 class SamplePlanner {
  public:
-  // field: nullptr where nothing is gathered. All must outlive it.
+  // field: as above. All must outlive it.
   SamplePlanner(const PixelSums& sums, const GatherField* field, const SampleCosts& costs);
 
   // Of the picture as it is: relative to its mean luminance, squared.
