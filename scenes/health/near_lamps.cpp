@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <limits>
 
+#include "scenes/ray_query.h"
 #include "scenes/text/message_text.h"
 
 namespace earthshine::scenes {
 namespace {
 
-constexpr double near_m = 0.01, near_share = 1e-3, rounding_m = 1e-9;
+// Of the surfaces' extent: four times what rays are lifted off surfaces (RayQuery), and what no
+// scene means.
+constexpr double least_lamp_share = 1.6e-5, rounding_share = 1e-12;
 
 bool has_size(const Lamp& lamp) {
   return lamp.kind == LampKind::Rectangle || lamp.kind == LampKind::Disk;
@@ -38,40 +41,59 @@ Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
   return a + (vb * ab + vc * ac) / (va + vb + vc);
 }
 
-void name_near_lamps(Scene& scene) {
+namespace {
+
+struct Nearest {
+  double distance_m = std::numeric_limits<double>::infinity();
+  Vec3 point{0.0};
+  std::uint32_t triangle = 0;
+};
+
+// The nearest point of the surfaces, if there is one within reach.
+Nearest nearest_surface(const Scene& scene, const Vec3& position, double reach) {
+  Nearest nearest;
+  for (std::uint32_t k = 0; k < scene.triangles.size(); ++k) {
+    const auto& vertex = scene.triangles[k].vertex;
+    const Vec3 &a = scene.vertices[vertex[0]], &b = scene.vertices[vertex[1]],
+               &c = scene.vertices[vertex[2]];
+    // Most triangles are farther than that along one axis.
+    const Vec3 from = glm::min(a, glm::min(b, c)) - reach, to = glm::max(a, glm::max(b, c)) + reach;
+    if (glm::any(glm::lessThan(position, from)) || glm::any(glm::greaterThan(position, to))) {
+      continue;
+    }
+    const Vec3 point = nearest_on_triangle(position, a, b, c);
+    const double distance = glm::length(point - position);
+    if (distance < nearest.distance_m) nearest = {distance, point, k};
+  }
+  return nearest;
+}
+
+}  // namespace
+
+void lift_lamps(Scene& scene) {
   if (scene.vertices.empty()) return;
   Vec3 low = scene.vertices.front(), high = low;
   for (const Vec3& vertex : scene.vertices) {
     low = glm::min(low, vertex);
     high = glm::max(high, vertex);
   }
-  const double reach = std::min(near_m, near_share * glm::length(high - low));
-  for (const Lamp& lamp : scene.lamps) {
+  const double extent = glm::length(high - low), reach = least_lamp_share * extent;
+  for (Lamp& lamp : scene.lamps) {
     if (has_size(lamp)) continue;
-    double nearest = std::numeric_limits<double>::infinity();
-    std::uint32_t object = 0;
-    for (const Triangle& triangle : scene.triangles) {
-      const Vec3 &a = scene.vertices[triangle.vertex[0]], &b = scene.vertices[triangle.vertex[1]],
-                 &c = scene.vertices[triangle.vertex[2]];
-      // Most triangles are farther than that along one axis.
-      const Vec3 from = glm::min(a, glm::min(b, c)) - reach,
-                 to = glm::max(a, glm::max(b, c)) + reach;
-      if (glm::any(glm::lessThan(lamp.position, from)) ||
-          glm::any(glm::greaterThan(lamp.position, to))) {
-        continue;
-      }
-      const double distance =
-          glm::length(nearest_on_triangle(lamp.position, a, b, c) - lamp.position);
-      if (distance >= nearest) continue;
-      nearest = distance;
-      object = triangle.object;
-    }
-    if (nearest >= reach) continue;
-    scene.warnings.push_back(fmt::format(
-        "lamp {} is {:.2g} mm from the object {}: pictures may lack what the spot under it "
-        "reflects, and not know it; move it some centimetres off, or give it a size",
-        in_quotes(lamp.name), nearest < rounding_m ? 0.0 : 1000.0 * nearest,
-        in_quotes(scene.objects[object].name)));
+    const Nearest found = nearest_surface(scene, lamp.position, reach);
+    if (found.distance_m >= reach) continue;
+    const bool on_it = found.distance_m < rounding_share * extent;
+    const Vec3 away = on_it ? triangle_normal(scene, found.triangle)
+                            : (lamp.position - found.point) / found.distance_m;
+    lamp.position = found.point + reach * away;
+    const std::string where =
+        on_it ? "on" : fmt::format("{:.2g} mm from", 1000.0 * found.distance_m);
+    scene.warnings.push_back(
+        fmt::format("lamp {} is {} the object {}, nearer than single precision tells apart: taken "
+                    "to be {:.2g} mm {}",
+                    in_quotes(lamp.name), where,
+                    in_quotes(scene.objects[scene.triangles[found.triangle].object].name),
+                    1000.0 * reach, on_it ? "in front of it" : "from it"));
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lamps that stand so near a surface that what it reflects of them is hard to find.
+// Lamps that stand on a surface, or nearer to it than rays can tell.
 #pragma once
 
 #include "base/units.h"
@@ -11,9 +11,9 @@ namespace earthshine::scenes {
 // 2005, 5.1.5).
 [[nodiscard]] Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
-// A warning for each lamp without size that is less than a centimetre, and less than a thousandth
-// of the surfaces' extent, from a surface: half of its light falls on a spot that no path finds by
-// chance.
-void name_near_lamps(Scene& scene);
+// Moves each lamp without size that rays in single precision would not find in front of a surface
+// (1.6e-5 of the surfaces' extent) to where they do, with a warning: half of its light lands there
+// all the same. A lamp on a surface is taken to be in front of it.
+void lift_lamps(Scene& scene);
 
 }  // namespace earthshine::scenes

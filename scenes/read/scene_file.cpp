@@ -144,7 +144,7 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   });
   check_size(scene);
   mend_surfaces(scene);
-  name_near_lamps(scene);
+  lift_lamps(scene);
   return scene;
 }
 

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "radiosity/fill_solution.h"
+#include "radiosity/near_lamps.h"
 #include "studies/error/error_budget.h"
 #include "studies/surfaces/residual_error.h"
 #include "studies/surfaces/surface_cuts.h"
@@ -88,7 +89,9 @@ class SurfaceSearch {
   void solve() {
     const raytrace::Progress progress = stage("solve");
     if (progress) progress(0, 1);
-    radiosity::Patches patches = radiosity::subdivide(scene_.scene, result_.solver.patch_edge_m);
+    radiosity::Patches patches =
+        radiosity::cut_near_lamps(scene_.scene, scene_.groups,
+                                  radiosity::subdivide(scene_.scene, result_.solver.patch_edge_m));
     radiosity::FormFactors factors;
     radiosity::Solution coarse =
         radiosity::solve_keeping(scene_.scene, scene_.groups, scene_.effects, scene_.query,

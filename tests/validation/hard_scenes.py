@@ -15,6 +15,7 @@ class Hard:
     mean: float | None = None
     light: float | None = None  # of every pixel, cd/m2
     target: str | None = None
+    traced: str | None = None  # what a path tracer is asked in its place, if that finds some of the light by no chance
 
 
 def closed(text, low, high, material):
@@ -133,12 +134,25 @@ def lit_white_room():
 
 def lamp_at_a_wall():
     """A lamp 1 mm off a wall: half of its light lands on a spot of some millimetres, which lights the rest. With reflectance 0.6 of
-    24 m2 the mean illuminance is flux / (area (1 - rho))."""
-    text = Text("lamp at a wall")
-    closed(text, (0, 0, 0), (2, 2, 2), text.material(diffuse=0.6))
-    text.light(type="point", position=[1.0, 1.999, 1.2], flux=1000.0)
-    look(text, (0.3, 0.3, 1.0), (1.5, 1.0, 0.4))
-    return Hard("lamp at a wall", "half of the light in a spot of 4 mm", str(text), mean=1000 / (24 * 0.4))
+    24 m2 the mean illuminance is flux / (area (1 - rho)). No path finds the spot by chance: the path tracer gets a black
+    square of 5 cm in its place, and a disc that shines as the square would reflect."""
+    half, distance, reflectance, flux = 0.025, 0.001 - 5e-5, 0.6, 1000.0
+    seen_sr = 4 * math.atan(half**2 / (distance * math.sqrt(2 * half**2 + distance**2)))
+
+    def room(traced):
+        text = Text("lamp at a wall")
+        closed(text, (0, 0, 0), (2, 2, 2), text.material(diffuse=reflectance))
+        text.light(type="point", position=[1.0, 1.999, 1.2], flux=flux)
+        if traced:
+            text.thing(text.material(diffuse=0.0), shape="quad", corners=[[1 + x * half, 1.99995, 1.2 + z * half]
+                                                                          for x, z in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+            text.light(type="disk", center=[1.0, 1.9999, 1.2], normal=[0, -1, 0], radius=0.001,
+                       flux=reflectance * flux * seen_sr / (4 * math.pi))
+        look(text, (0.3, 0.3, 1.0), (1.5, 1.0, 0.4))
+        return str(text)
+
+    return Hard("lamp at a wall", "half of the light in a spot of 4 mm", room(False), mean=flux / (24 * (1 - reflectance)),
+                traced=room(True))
 
 
 def corridor():

@@ -29,27 +29,38 @@ TEST(NearestOnTriangle, NoPointIsNearer) {
   }
 }
 
-std::string warnings_of(const std::string& height, const std::string& kind = "point") {
+Scene with_lamp_at(const std::string& height, const std::string& kind = "point") {
   const test::SceneFolder folder;
   const std::string size =
       kind == "disk" ? "center = [0.3, 0.4, " + height + "]\nnormal = [0, 0, 1]\nradius = 0.1\n"
                      : "position = [0.3, 0.4, " + height + "]\n";
-  const Scene scene = folder.read(
+  return folder.read(
       "format = 1\n[[material]]\nname = \"m\"\ndiffuse = 0.5\n[[light]]\nname = \"lamp\"\ntype = "
       "\"" +
       kind + "\"\n" + size +
-      "flux = 1\n[[object]]\nname = \"floor\"\nshape = \"quad\"\ncorners = [[-5, -5, 0], [5, -5, "
+      "flux = 1\n[[object]]\nname = \"floor\"\nshape = \"quad\"\ncorners = [[-3, -4, 0], [3, -4, "
       "0], "
-      "[5, 5, 0], [-5, 5, 0]]\nmaterial = \"m\"\n");
-  return scene.warnings.empty() ? "" : scene.warnings.front();
+      "[3, 4, 0], [-3, 4, 0]]\nmaterial = \"m\"\n");
 }
 
-TEST(NearLamps, AreNamed) {
-  EXPECT_TRUE(test::holds(warnings_of("0.001"), {"\"lamp\"", "1 mm", "\"floor\""}));
-  EXPECT_TRUE(test::holds(warnings_of("0.0"), {"0 mm"}));
-  EXPECT_TRUE(test::holds(warnings_of("-0.001"), {"1 mm"}));
-  EXPECT_EQ(warnings_of("0.02"), "");
-  EXPECT_EQ(warnings_of("0.001", "disk"), "");
+// The floor's diagonal is 10 m: 0.16 mm is the least distance.
+TEST(LiftLamps, MovesWhatIsTooNearOnItsOwnSide) {
+  const Scene above = with_lamp_at("1e-6"), below = with_lamp_at("-1e-6"), on = with_lamp_at("0");
+  EXPECT_NEAR(above.lamps[0].position.z, 1.6e-4, 1e-12);
+  EXPECT_NEAR(below.lamps[0].position.z, -1.6e-4, 1e-12);
+  EXPECT_NEAR(on.lamps[0].position.z, 1.6e-4, 1e-12);
+  ASSERT_EQ(above.warnings.size(), 1U);
+  EXPECT_TRUE(
+      test::holds(above.warnings[0], {"\"lamp\"", "0.001 mm from", "\"floor\"", "0.16 mm"}));
+  ASSERT_EQ(on.warnings.size(), 1U);
+  EXPECT_TRUE(test::holds(on.warnings[0], {"is on the object", "in front of it"}));
+}
+
+TEST(LiftLamps, LeavesOthersWhereTheyAre) {
+  for (const Scene& scene : {with_lamp_at("0.0002"), with_lamp_at("0", "disk")}) {
+    EXPECT_TRUE(scene.warnings.empty());
+  }
+  EXPECT_EQ(with_lamp_at("0.0002").lamps[0].position.z, 0.0002);
 }
 
 }  // namespace

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/near_lamps.h"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+#include "base/parallel.h"
+#include "radiosity/patches/split.h"
+#include "scenes/health/near_lamps.h"
+#include "scenes/light/lamp_light.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+double half_size(const scenes::Lamp& lamp) {
+  const double edges = std::min(glm::length(lamp.edge_u), glm::length(lamp.edge_v));
+  return std::max(lamp.radius_m, 0.5 * edges);
+}
+
+class LampCuts {
+ public:
+  LampCuts(const scenes::Scene& scene, const scenes::LightGroups& groups) {
+    for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
+      if (groups.lamp[k] != scenes::no_group) lamps_.push_back(&scene.lamps[k]);
+    }
+  }
+
+  [[nodiscard]] Cut cut(const Patches& patches, std::uint32_t patch) const {
+    const CellSize size = cell_size(patches, patch);
+    const double longest = std::max(size.s_m, size.t_m);
+    if (lamps_.empty() || longest <= allowed(patches, patch, longest)) return Cut::None;
+    const Cut along = size.s_m >= size.t_m ? Cut::S : Cut::T;
+    return can_cut(patches, patch, along) ? along : Cut::None;
+  }
+
+ private:
+  // How long the patch may be; below `enough` or not at all.
+  [[nodiscard]] double allowed(const Patches& patches, std::uint32_t patch, double enough) const {
+    const auto corner = patches.corners(patch);
+    const Vec3 normal = patches.normal(patch), middle = patches.point(patch, 0.5, 0.5);
+    double least = std::numeric_limits<double>::infinity();
+    for (const scenes::Lamp* lamp : lamps_) {
+      // No point of the patch is farther than that from its middle.
+      if (glm::length(middle - lamp->position) > 3.0 * enough) continue;
+      if (glm::dot(lamp->position - middle, normal) <= 0.0) continue;
+      const auto nearest = [&](std::size_t b, std::size_t c) {
+        return scenes::nearest_on_triangle(lamp->position, corner[0], corner[b], corner[c]);
+      };
+      const Vec3 first = nearest(1, 2), second = nearest(2, 3);
+      const double to_first = glm::length(first - lamp->position);
+      const double to_second = glm::length(second - lamp->position);
+      const double scale = std::max(std::min(to_first, to_second), half_size(*lamp));
+      if (scale >= std::min(least, enough)) continue;
+      if (shines_at(*lamp, to_first < to_second ? first : second) || shines_at(*lamp, middle)) {
+        least = scale;
+      }
+    }
+    return least;
+  }
+
+  static bool shines_at(const scenes::Lamp& lamp, const Vec3& point) {
+    if (point == lamp.position) return false;
+    const scenes::LightSample light = scenes::sample_lamp(lamp, point, 0.5, 0.5);
+    return base::max_component(light.normal_illuminance_lx) > 0.0;
+  }
+
+  std::vector<const scenes::Lamp*> lamps_;
+};
+
+}  // namespace
+
+Patches cut_near_lamps(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                       Patches patches) {
+  const LampCuts cuts(scene, groups);
+  for (;;) {
+    std::vector<Cut> wanted(patches.count(), Cut::None);
+    base::parallel_chunks(patches.count(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        wanted[i] = cuts.cut(patches, static_cast<std::uint32_t>(i));
+      }
+    });
+    if (std::all_of(wanted.begin(), wanted.end(), [](Cut cut) { return cut == Cut::None; })) {
+      return patches;
+    }
+    grade(patches, wanted);
+    Split made = split(patches, wanted);
+    if (made.patches.count() == patches.count()) return patches;
+    patches = std::move(made.patches);
+  }
+}
+
+}  // namespace earthshine::radiosity

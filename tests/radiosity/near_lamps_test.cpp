@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "radiosity/near_lamps.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "radiosity/patches/split.h"
+#include "radiosity/solution.h"
+#include "tests/support/scene_builder.h"
+
+namespace earthshine::radiosity {
+namespace {
+
+constexpr double half_edge = 1.0, start_edge = 0.25;
+
+// A square floor with a lamp of 1000 lm at that height over its centre.
+scenes::Scene floor_under_lamp(double height, scenes::LampKind kind = scenes::LampKind::Point) {
+  tests::SceneBuilder builder;
+  builder.plate(builder.material(tests::grey(0.5)), 2.0 * half_edge, 0.0, true);
+  Vec3 low = builder.scene.vertices.front(), high = low;
+  for (const Vec3& vertex : builder.scene.vertices) {
+    low = glm::min(low, vertex);
+    high = glm::max(high, vertex);
+  }
+  scenes::Lamp lamp;
+  lamp.name = lamp.group = "lamp";
+  lamp.kind = kind;
+  lamp.position = 0.5 * (low + high) + Vec3(0.0, 0.0, height);
+  lamp.intensity_cd = Rgb(1000.0 / (4.0 * base::pi));
+  lamp.axis = Vec3(0.0, 0.0, 1.0);
+  lamp.beam_deg = 60.0, lamp.field_deg = 90.0;
+  builder.scene.lamps.push_back(lamp);
+  return builder.scene;
+}
+
+Patches cut(const scenes::Scene& scene) {
+  return cut_near_lamps(scene, scenes::find_light_groups(scene), subdivide(scene, start_edge));
+}
+
+TEST(NearLamps, NoPatchIsLongerThanItsDistance) {
+  for (const double height : {1e-3, 0.03}) {
+    const scenes::Scene scene = floor_under_lamp(height);
+    const Patches patches = cut(scene);
+    const double area = std::accumulate(patches.area_m2.begin(), patches.area_m2.end(), 0.0);
+    EXPECT_NEAR(area, 4.0 * half_edge * half_edge, 1e-12);
+    for (std::uint32_t i = 0; i < patches.count(); ++i) {
+      const CellSize size = cell_size(patches, i);
+      // To the nearest of many points of the patch: not less than to the patch.
+      double distance = 1e9;
+      for (int k = 0; k < 81; ++k) {
+        const Vec3 point = patches.point(i, k % 9 / 8.0, k / 9 / 8.0);
+        distance = std::min(distance, glm::length(point - scene.lamps[0].position));
+      }
+      EXPECT_LE(std::max(size.s_m, size.t_m), distance);
+    }
+    // Every halving of scale takes as many: far fewer than an even cut.
+    EXPECT_LT(patches.count(), 64U + 64U * std::size_t(std::log2(start_edge / height) + 1.0));
+  }
+}
+
+TEST(NearLamps, OnlyWhatTheyShineAtIsCut) {
+  const std::size_t even = subdivide(floor_under_lamp(1.0), start_edge).count();
+  EXPECT_EQ(cut(floor_under_lamp(1.0)).count(), even);
+  EXPECT_EQ(cut(floor_under_lamp(-1e-3)).count(), even);  // behind a black back
+  EXPECT_EQ(cut(floor_under_lamp(1e-3, scenes::LampKind::Spot)).count(), even);  // looks away
+}
+
+// A square of half edge a is seen from height h over its centre under the solid angle
+// 4 atan(a^2 / (h sqrt(2 a^2 + h^2))): that share of 1000 lm / 4 pi lands.
+TEST(NearLamps, HalfOfTheirLightLands) {
+  for (const double height : {0.1, 1e-3, 1e-4, 5e-5}) {
+    const scenes::Scene scene = floor_under_lamp(height);
+    const tests::Prepared prepared(scene);
+    SolveOptions options;
+    options.patch_edge_m = start_edge;
+    const Solution solution = prepared.solve(options);
+    const double a2 = half_edge * half_edge;
+    const double solid_angle =
+        4.0 * std::atan(a2 / (height * std::sqrt(2.0 * a2 + height * height)));
+    const SourceFlux& flux = solution.report.sources.at(0);
+    EXPECT_NEAR(flux.landed_lm.y, 1000.0 * solid_angle / (4.0 * base::pi),
+                4.0 * 1000.0 * flux.share_std_error)
+        << height;
+    EXPECT_NEAR(flux.scale, 1.0, 0.01) << height;  // the patches' own samples say so
+  }
+}
+
+}  // namespace
+}  // namespace earthshine::radiosity
