@@ -20,10 +20,8 @@ double half_size(const scenes::Lamp& lamp) {
 
 class LampCuts {
  public:
-  LampCuts(const scenes::Scene& scene, const scenes::LightGroups& groups) {
-    for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
-      if (groups.lamp[k] != scenes::no_group) lamps_.push_back(&scene.lamps[k]);
-    }
+  explicit LampCuts(const scenes::Scene& scene) : lamps_(scene.lamps) {
+    for (scenes::Lamp& lamp : lamps_) lamp.intensity_cd = lamp.exitance = Rgb(1.0);
   }
 
   [[nodiscard]] Cut cut(const Patches& patches, std::uint32_t patch) const {
@@ -40,19 +38,19 @@ class LampCuts {
     const auto corner = patches.corners(patch);
     const Vec3 normal = patches.normal(patch), middle = patches.point(patch, 0.5, 0.5);
     double least = std::numeric_limits<double>::infinity();
-    for (const scenes::Lamp* lamp : lamps_) {
+    for (const scenes::Lamp& lamp : lamps_) {
       // No point of the patch is farther than that from its middle.
-      if (glm::length(middle - lamp->position) > 3.0 * enough) continue;
-      if (glm::dot(lamp->position - middle, normal) <= 0.0) continue;
+      if (glm::length(middle - lamp.position) > 3.0 * enough) continue;
+      if (glm::dot(lamp.position - middle, normal) <= 0.0) continue;
       const auto nearest = [&](std::size_t b, std::size_t c) {
-        return scenes::nearest_on_triangle(lamp->position, corner[0], corner[b], corner[c]);
+        return scenes::nearest_on_triangle(lamp.position, corner[0], corner[b], corner[c]);
       };
       const Vec3 first = nearest(1, 2), second = nearest(2, 3);
-      const double to_first = glm::length(first - lamp->position);
-      const double to_second = glm::length(second - lamp->position);
-      const double scale = std::max(std::min(to_first, to_second), half_size(*lamp));
+      const double to_first = glm::length(first - lamp.position);
+      const double to_second = glm::length(second - lamp.position);
+      const double scale = std::max(std::min(to_first, to_second), half_size(lamp));
       if (scale >= std::min(least, enough)) continue;
-      if (shines_at(*lamp, to_first < to_second ? first : second) || shines_at(*lamp, middle)) {
+      if (shines_at(lamp, to_first < to_second ? first : second) || shines_at(lamp, middle)) {
         least = scale;
       }
     }
@@ -65,14 +63,13 @@ class LampCuts {
     return base::max_component(light.normal_illuminance_lx) > 0.0;
   }
 
-  std::vector<const scenes::Lamp*> lamps_;
+  std::vector<scenes::Lamp> lamps_;  // of unit strength
 };
 
 }  // namespace
 
-Patches cut_near_lamps(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                       Patches patches) {
-  const LampCuts cuts(scene, groups);
+Patches cut_near_lamps(const scenes::Scene& scene, Patches patches) {
+  const LampCuts cuts(scene);
   for (;;) {
     std::vector<Cut> wanted(patches.count(), Cut::None);
     base::parallel_chunks(patches.count(), 256, [&](std::size_t begin, std::size_t end) {

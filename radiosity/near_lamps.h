@@ -5,14 +5,12 @@
 #pragma once
 
 #include "radiosity/patches/patches.h"
-#include "scenes/effects/effects.h"
-#include "scenes/effects/light_groups.h"
 
 namespace earthshine::radiosity {
 
 // Halves patches that lamps shine at until none is longer than its distance from the lamp, or than
-// half of the lamp.
-[[nodiscard]] Patches cut_near_lamps(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                                     Patches patches);
+// half of the lamp. Lamps that are dimmed or off count as well: a sum of lamps' lights is that of
+// the scene with all of them.
+[[nodiscard]] Patches cut_near_lamps(const scenes::Scene& scene, Patches patches);
 
 }  // namespace earthshine::radiosity

@@ -36,7 +36,7 @@ scenes::Scene floor_under_lamp(double height, scenes::LampKind kind = scenes::La
 }
 
 Patches cut(const scenes::Scene& scene) {
-  return cut_near_lamps(scene, scenes::find_light_groups(scene), subdivide(scene, start_edge));
+  return cut_near_lamps(scene, subdivide(scene, start_edge));
 }
 
 TEST(NearLamps, NoPatchIsLongerThanItsDistance) {

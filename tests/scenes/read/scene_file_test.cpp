@@ -52,8 +52,8 @@ target = true
 name = "spot"
 group = "bay"
 type = "spot"
-position = [0, 0, 100]
-aim = [0, 0, 0]
+position = [50, 0, 100]
+aim = [50, 0, 0]
 intensity = 9000
 beam_deg = 60
 field_deg = 120
@@ -120,7 +120,7 @@ solver_tolerance = 1e-6
   const Lamp& lamp = scene.lamps.at(0);
   EXPECT_EQ(lamp.kind, LampKind::Spot);
   EXPECT_EQ(lamp.group, "bay");
-  EXPECT_EQ(lamp.position, Vec3(0, 0, 1));
+  EXPECT_EQ(lamp.position, Vec3(0.5, 0, 1));
   EXPECT_EQ(lamp.axis, Vec3(0, 0, -1));
   EXPECT_EQ(lamp.field_deg, 120.0);
   EXPECT_LT(glm::length(scene.sun->direction - Vec3(0, 0.6, 0.8)), 1e-15);
