@@ -84,20 +84,54 @@ TEST(OutputFile, VeryLongNamesAreWritten) {
 
 TEST(OutputFile, WhatKilledProcessesLeftIsCleared) {
   const TemporaryFolder folder;
-  // No process has this number: Linux stops at 2^22.
-  for (const char* name : {".a.json.999999999-0.part", ".b.c.exr.999999999-12.part"}) {
+  for (const char* name : {".a.json.0.part", ".b.c.exr.12.part"}) {
     write_bytes(folder / name, "half");
   }
-  const std::string own = ".a.json." + std::to_string(::getpid()) + "-7.part";
-  for (const std::string& name : {own, std::string("a.json.999999999-0.part"),
-                                  std::string(".a.part"), std::string(".a.json.999999999-0"),
-                                  std::string(".a.json.x-0.part"), std::string(".part")}) {
+  const OutputFile unfinished(folder / "c.json");
+  for (const char* name :
+       {"a.json.0.part", ".a.part", ".a.json.0", ".a.json.x.part", ".a.json..part", ".part"}) {
     write_bytes(folder / name, "kept");
   }
   remove_abandoned_files(folder.path());
-  EXPECT_EQ(folder.file_count(), 6U);
-  EXPECT_TRUE(std::filesystem::exists(folder / own));
+  EXPECT_EQ(folder.file_count(), 7U);
+  EXPECT_TRUE(std::filesystem::exists(unfinished.temporary()));
   remove_abandoned_files(folder / "none");
+}
+
+TEST(OutputFile, WhatAKilledRunLeftIsTakenOver) {
+  const TemporaryFolder folder;
+  write_bytes(folder / ".a.json.0.part", "half of something longer");
+  write_text(folder / "a.json", "new");
+  EXPECT_EQ(read_bytes(folder / "a.json"), "new");
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(OutputFile, TwoWritersOfOneFileDoNotMeet) {
+  const TemporaryFolder folder;
+  OutputFile first(folder / "a.txt"), second(folder / "a.txt");
+  ASSERT_NE(first.temporary(), second.temporary());
+  write_bytes(first.temporary(), "first");
+  write_bytes(second.temporary(), "second");
+  second.commit();
+  first.commit();
+  EXPECT_EQ(read_bytes(folder / "a.txt"), "first");
+}
+
+TEST(OutputFile, ALinkInPlaceOfTheTemporaryFileIsLeftAlone) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "precious.txt", "kept");
+  std::filesystem::create_symlink("precious.txt", folder / ".a.txt.0.part");
+  std::filesystem::create_hard_link(folder / "precious.txt", folder / ".a.txt.1.part");
+  write_text(folder / "a.txt", "new");
+  EXPECT_EQ(read_bytes(folder / "precious.txt"), "kept");
+  EXPECT_EQ(read_bytes(folder / "a.txt"), "new");
+}
+
+TEST(OutputFile, APipeIsRefusedAndDoesNotKeepAnybodyWaiting) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const std::string message = error_of(Blame::Input, [&] { write_text(folder / "pipe", "x"); });
+  EXPECT_NE(message.find("is a pipe or a device"), std::string::npos) << message;
 }
 
 }  // namespace
