@@ -142,7 +142,8 @@ int main(int argc, char** argv) {
     if (std::signal(signal, app::end_by_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
   try {
-    return app::run(argc, argv);
+    const int exit_code = app::run(argc, argv);
+    return exit_code == 0 && app::lost_a_note() ? app::work_failed : exit_code;
   } catch (const base::Error& error) {
     return app::complain(
         error.what(), error.blame() == base::Blame::Input ? app::call_is_wrong : app::work_failed);
