@@ -66,7 +66,8 @@ void run(const AccuracyCall& call, const Common& common) {
   if (call.cameras.empty() && loaded.scene.cameras.size() > 1 && !common.quiet) {
     note("note: no --camera, taking the first, \"" + camera.name + "\"");
   }
-  prepare_folder(call.folder, file_names());
+  prepare_folder(call.folder, file_names(), loaded.scene.files);
+  refuse_inputs_in(fs::path(call.folder) / points_folder, loaded.scene.files);
   const fs::path folder = call.folder;
   const ResultCache store(folder / points_folder);
   const std::vector<std::string> replaced = studies::replaced_keys(loaded.scene.quality);

@@ -112,7 +112,9 @@ std::vector<Wanted> wanted_pictures(const RenderCall& call, const scenes::Scene&
     wanted.push_back(std::move(picture));
   }
   outputs.push_back(call.report);
-  check_outputs(outputs, {scene.path.string(), call.solution, call.over.photo});
+  Files inputs = scene.files;
+  inputs.insert(inputs.end(), {call.solution, call.over.photo});
+  check_outputs(outputs, inputs);
   return wanted;
 }
 

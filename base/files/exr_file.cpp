@@ -22,6 +22,8 @@
 #include "base/error.h"
 #include "base/files/exr_attributes.h"
 #include "base/files/output_file.h"
+#include "base/input/exr_guard.h"
+#include "base/input/input_file.h"
 
 namespace earthshine::base {
 namespace {
@@ -210,8 +212,9 @@ void check_and_scale_colour(const std::filesystem::path& path, Image& image, flo
 
 ExrFile read_exr(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) refuse_reading(path, "is a folder");
   if (!std::filesystem::exists(path, ignored)) refuse_reading(path, "there is no such file");
+  check_input_file(path, {path.string()});
+  guard_exr(path);
   ExrFile result;
   float white = 1.0F;
   try {

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/files/png_file.h"
+#include "base/input/input_file.h"
 
 namespace earthshine::base {
 namespace {
@@ -79,10 +80,7 @@ bool read_rows(const Reader& r, png_byte** rows) {
 }
 
 void open(Source& source, const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    refuse(path, "is a folder", {}, "Name a PNG file");
-  }
+  check_input_file(path, {path.string()});
   errno = 0;
   source.file.open(path, std::ios::binary);
   if (!source.file) {

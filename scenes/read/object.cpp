@@ -174,6 +174,9 @@ void read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& s
   auto& warnings = shelved->mesh.warnings;
   scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
   warnings.clear();
+  auto& files = shelved->mesh.files;
+  scene.files.insert(scene.files.end(), files.begin(), files.end());
+  files.clear();
 }
 
 }  // namespace earthshine::scenes

@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "base/input/input_file.h"
 #include "scenes/health/mend.h"
 #include "scenes/health/near_lamps.h"
 #include "scenes/read/override.h"
 #include "scenes/read/scene_parts.h"
-#include "scenes/text/input_file.h"
 #include "scenes/text/toml_guard.h"
 
 namespace earthshine::scenes {
@@ -87,7 +87,8 @@ void check_size(Scene& scene) {
 }  // namespace
 
 Scene read_camera_file(const std::filesystem::path& path) {
-  const std::string text = read_input_file(path, max_toml_bytes, base::Location{path.string()});
+  const std::string text =
+      base::read_input_file(path, max_toml_bytes, base::Location{path.string()});
   const TomlNode tree = parse_toml(text, path.string());
   const bool whole_scene = find_entry(std::get<TomlTable>(tree.value), "format") != nullptr;
   const TableReader root(tree, whole_scene ? "the scene" : "a camera file",
@@ -101,7 +102,8 @@ Scene read_camera_file(const std::filesystem::path& path) {
 }
 
 Scene read_scene(const std::filesystem::path& path, std::span<const std::string> overrides) {
-  const std::string text = read_input_file(path, max_toml_bytes, base::Location{path.string()});
+  const std::string text =
+      base::read_input_file(path, max_toml_bytes, base::Location{path.string()});
   TomlNode tree = parse_toml(text, path.string());
   for (const std::string& setting : overrides) apply_override(tree, setting);
 
@@ -109,6 +111,7 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   check_format(root);
   Scene scene;
   scene.path = path;
+  scene.files.push_back(path);
   scene.name = root.text("name").value_or(path.stem().string());
   const double unit_m = read_unit(root);
 
@@ -122,6 +125,8 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   read_named(root, "area", [&](const TomlNode& node) {
     return scene.areas.emplace_back(read_area(node, unit_m)).name;
   });
+  const auto tables = luminaires.files();
+  scene.files.insert(scene.files.end(), tables.begin(), tables.end());
   read_sky(scene, plain_table(root, "sun"), plain_table(root, "earth"), plain_table(root, "orbit"));
   if (const TomlNode* node = plain_table(root, "ambient")) {
     const TableReader table(*node, "[ambient]", ambient_keys);
