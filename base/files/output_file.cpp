@@ -6,9 +6,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -22,55 +25,55 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A leading dot keeps it out of `*.exr`. Long names are shortened: name and mark together must stay
-// below the usual limit of 255 bytes.
-fs::path temporary_beside(const fs::path& target, int number) {
-  return target.parent_path() /
-         ("." + target.filename().string().substr(0, 200) + "." + std::to_string(number) + ".part");
+// ".NAME.PROCESS-NUMBER.part": unique among the processes and the files of this one; a leading dot
+// keeps it out of `*.exr`.
+constexpr std::string_view suffix = ".part";
+
+// Long names are shortened: name and mark together must stay below the usual limit of 255 bytes.
+std::string prefix_of(const fs::path& target) {
+  return "." + target.filename().string().substr(0, 200) + ".";
 }
 
-bool is_temporary(const std::string& name) {
-  constexpr std::string_view suffix = ".part";
-  if (name.size() <= suffix.size() || name[0] != '.' || !name.ends_with(suffix)) return false;
-  const std::size_t end = name.size() - suffix.size(), dot = name.rfind('.', end - 1);
-  return dot != std::string::npos && dot > 0 && dot + 1 < end &&
-         name.find_first_not_of("0123456789", dot + 1) == end;
+fs::path temporary_beside(const fs::path& target) {
+  static std::atomic<unsigned> count{0};
+  return target.parent_path() / (prefix_of(target) + std::to_string(::getpid()) + "-" +
+                                 std::to_string(count++) + std::string(suffix));
+}
+
+// The process that a temporary file is named after; 0 for other files.
+pid_t writer_of(const std::string& name) {
+  if (name.size() <= suffix.size() || name[0] != '.' || !name.ends_with(suffix)) return 0;
+  const std::string stem = name.substr(0, name.size() - suffix.size());
+  pid_t process = 0;
+  const char* const end = stem.data() + stem.size();
+  const auto read = std::from_chars(stem.data() + stem.rfind('.') + 1, end, process);
+  const bool sound = read.ec == std::errc() && read.ptr != end && *read.ptr == '-';
+  return sound ? std::max(process, 0) : 0;
 }
 
 // Whoever writes a temporary file holds a lock on it, which ends with the process however that
-// ends: a file that can be locked is one that a killed run has left.
+// ends.
 bool lock(int file) { return ::flock(file, LOCK_EX | LOCK_NB) == 0; }
 
-// Whether the name still leads to the open file, which is a plain one of our own: between opening
-// and locking somebody may have renamed or removed it.
-bool still_names(const fs::path& path, int file) {
-  struct stat named {
-  }, open{};
-  return ::lstat(path.c_str(), &named) == 0 && ::fstat(file, &open) == 0 &&
-         named.st_dev == open.st_dev && named.st_ino == open.st_ino && S_ISREG(open.st_mode) &&
-         open.st_nlink == 1 && open.st_uid == ::geteuid();
+// Removes the file if a run that was killed has left it: its process is gone, and nobody holds it,
+// such as one of another machine or container with that number.
+void remove_if_abandoned(const fs::path& path) {
+  const pid_t process = writer_of(path.filename().string());
+  if (process == 0 || ::kill(process, 0) == 0 || errno != ESRCH) return;
+  const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (file < 0) return;
+  if (lock(file)) ::unlink(path.c_str());
+  ::close(file);
 }
 
-// Opens and locks a temporary file beside the target, a new one or one that was left; -1 and errno
-// where there can be none.
+// Opens and locks a new temporary file beside the target; -1 and errno where there can be none.
 int open_temporary(const fs::path& target, fs::path& name) {
-  constexpr int most_writers = 1000;  // of one target at once
-  for (int number = 0; number < most_writers; ++number) {
-    name = temporary_beside(target, number);
-    constexpr int how = O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
-    int file = ::open(name.c_str(), how | O_CREAT | O_EXCL, 0666);
-    const bool fresh = file >= 0;
-    if (!fresh && errno != EEXIST) return -1;
-    if (!fresh) file = ::open(name.c_str(), how);
-    if (file < 0) continue;
-    const bool locked = lock(file);
-    // Some file systems know no locks: what is new there is ours, what is old is left alone.
-    const bool ours = locked || (fresh && errno != EWOULDBLOCK);
-    if (ours && still_names(name, file) && ::ftruncate(file, 0) == 0) return file;
-    ::close(file);
+  while (true) {
+    name = temporary_beside(target);
+    const int file = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file >= 0) static_cast<void>(lock(file));  // some file systems know no locks
+    if (file >= 0 || errno != EEXIST) return file;
   }
-  errno = EEXIST;
-  return -1;
 }
 
 // The temporary files that stand, as names that live as long as their OutputFile. More at once than
@@ -147,6 +150,10 @@ OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
     temporary_ = target_;
     return;
   }
+  const std::string prefix = prefix_of(target_);
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().filename().string().starts_with(prefix)) remove_if_abandoned(entry.path());
+  }
   file_ = open_temporary(target_, temporary_);
   if (file_ < 0) {
     throw Error(Blame::Work, name,
@@ -189,11 +196,7 @@ void remove_unfinished_files() noexcept {
 void remove_abandoned_files(const fs::path& folder) {
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-    if (!is_temporary(entry.path().filename().string())) continue;
-    const int file = ::open(entry.path().c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-    if (file < 0) continue;
-    if (lock(file) && still_names(entry.path(), file)) ::unlink(entry.path().c_str());
-    ::close(file);
+    remove_if_abandoned(entry.path());
   }
 }
 

@@ -10,9 +10,9 @@
 namespace earthshine::base {
 
 // A temporary file beside `target`, empty and locked; commit() renames it over the target, the
-// destructor removes it if commit() was not reached, and what a killed run left of it is taken
-// over. Throws base::Error (Input) if the target's folder does not exist or the target is a folder,
-// a pipe or a device other than those that never wait, such as /dev/null; and base::Error (Work)
+// destructor removes it if commit() was not reached. What killed runs left of it is cleared away.
+// Throws base::Error (Input) if the target's folder does not exist or the target is a folder, a
+// pipe or a device other than those that never wait, such as /dev/null; and base::Error (Work)
 // where nothing can be written, also from commit().
 class OutputFile {
  public:
@@ -37,8 +37,8 @@ class OutputFile {
 // nothing but unlink.
 void remove_unfinished_files() noexcept;
 
-// Removes the temporary files in a folder that nobody writes any more: runs that were killed had no
-// time to.
+// Removes the temporary files in a folder whose process is gone and that nobody holds: runs that
+// were killed had no time to.
 void remove_abandoned_files(const std::filesystem::path& folder);
 
 // Writes text to a file, aside and renamed. Throws as OutputFile does, and base::Error (Work) on a
