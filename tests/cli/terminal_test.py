@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What names of files and things could do to a terminal, and a terminal that is gone."""
+import csv
+import io
 import os
 import subprocess
 import unittest
@@ -62,6 +64,19 @@ class Terminal(program.Case):
         self.write("a.exr", exr.pack(2, 2, {EVIL.replace(".", ""): 1}))
         self.clean("degrade", "a.exr", "-o", "a.png", codes=(2,), shows="owned")
         self.clean("relight", "a.exr", "-o", "b.exr", codes=(2,))
+
+    def test_cells_that_a_spreadsheet_would_run(self):
+        names = {"=1+2": "'=1+2", "@SUM(A1)": "'@SUM(A1)", "+cmd|x": "'+cmd|x", "-cmd": "'-cmd", "-12.5": "-12.5", "+3": "+3",
+                 "a=b": "a=b"}
+        for name, cell in names.items():
+            self.write("ball.toml", program.BALL.replace('name = "ball"', f'name = "{name}"'))
+            rows = list(csv.DictReader(io.StringIO(self.done("form-factors", "ball.toml", "--csv"))))
+            self.assertEqual(rows[1]["to"], cell)
+        self.write("ball.toml", program.BALL.replace('name = "ball"', 'name = "=1+2"'))
+        self.done("study", "visibility", "ball.toml", "-o", "v", "--size", "16x16")
+        for table in ("visibility.csv", "results.csv"):
+            with open(self.folder / "v" / table, newline="", encoding="utf-8") as file:
+                self.assertEqual({row["target"] for row in csv.DictReader(file)}, {"'=1+2"})
 
     def test_notes_that_nobody_takes(self):
         """`render 2>&1 | head -1`: the work is done, and the exit code says what was lost."""
