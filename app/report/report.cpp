@@ -37,6 +37,9 @@ Json read_study(const fs::path& folder) {
     throw Error(Blame::Input, name,
                 "is not JSON: at byte " + std::to_string(error.byte) + " it goes wrong", {},
                 "Run the study again, which writes the file anew");
+  } catch (const Json::exception&) {
+    throw Error(Blame::Input, name, "holds a number that is too large", {},
+                "Run the study again, which writes the file anew");
   }
 }
 

@@ -101,11 +101,12 @@ Scene read_camera_file(const std::filesystem::path& path) {
   return scene;
 }
 
-Scene read_scene(const std::filesystem::path& path, std::span<const std::string> overrides) {
+Scene read_scene(const std::filesystem::path& path, std::span<const std::string> overrides,
+                 const std::optional<base::Location>& overrides_at) {
   const std::string text =
       base::read_input_file(path, max_toml_bytes, base::Location{path.string()});
   TomlNode tree = parse_toml(text, path.string());
-  for (const std::string& setting : overrides) apply_override(tree, setting);
+  for (const std::string& setting : overrides) apply_override(tree, setting, overrides_at);
 
   const TableReader root(tree, "the scene", root_keys);
   check_format(root);

@@ -25,7 +25,11 @@ struct Elements {
 
 std::size_t unsigned_of(const std::filesystem::path& path, std::int64_t value,
                         std::string_view what) {
-  if (value < 0) gltf_fail(path, fmt::format("{} is {}", what, value), "it is at least 0");
+  // tinygltf keeps 32 bits of a number: a large one turns up as a negative one.
+  if (value < 0) {
+    gltf_fail(path, fmt::format("{} is negative, or too large", what),
+              "it is from 0 to 2147483647");
+  }
   return static_cast<std::size_t>(value);
 }
 
