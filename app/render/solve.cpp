@@ -253,6 +253,7 @@ void run(const SolveCall& call, const Common& common) {
   if (!call.json && !writes_report)
     print(solve_text(json) + "\n" + error_text(light, loaded.scene.quality.error) +
           price_text(light, loaded.scene.quality.error, times.total()) + "\n");
+  if (light.surface.known) check_reached(call.scene, light.limit, error.value_or(0.0));
 }
 
 }  // namespace
