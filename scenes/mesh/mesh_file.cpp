@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/free_memory.h"
 #include "base/input/input_file.h"
 #include "scenes/mesh/gltf/file.h"
 #include "scenes/mesh/obj_file.h"
@@ -60,6 +61,7 @@ Mesh read_mesh(const std::filesystem::path& path, const std::filesystem::path& s
                 "known are .obj, .gltf, .glb, .ply and .stl", "Convert it to one of these");
   }
   const std::string bytes = base::read_input_file(path, max_mesh_bytes, asked_at);
+  base::check_room(bytes.size(), path.string());  // numbers take about as much as their text
   const std::filesystem::path folders[] = {scene_folder, path.parent_path()};
   Mesh mesh;
   if (ending == ".obj") {

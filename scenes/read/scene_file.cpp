@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "base/free_memory.h"
 #include "base/input/input_file.h"
 #include "scenes/health/mend.h"
 #include "scenes/health/near_lamps.h"
@@ -149,6 +150,8 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
     return scene.objects.back().name;
   });
   check_size(scene);
+  constexpr std::size_t mending_bytes = 56;  // per triangle, measured on spheres
+  base::check_room(scene.triangles.size() * mending_bytes, path.string());
   mend_surfaces(scene);
   name_near_lamps(scene);
   return scene;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/free_memory.h"
 #include "scenes/mesh/gltf/file.h"
 #include "scenes/mesh/gltf/model.h"
 
@@ -134,6 +135,7 @@ std::vector<Vec3> read_gltf_positions(const GltfModel& model, int number,
   }
   constexpr std::size_t size = 3 * sizeof(float);
   std::vector<Vec3> positions;
+  base::check_room(accessor.count * sizeof(Vec3), path.string());
   if (accessor.view != -1) {
     const Elements elements =
         view_elements(model, accessor.view, accessor.offset, accessor.count, size, true, path);
