@@ -66,16 +66,6 @@ void remove_if_abandoned(const fs::path& path) {
   ::close(file);
 }
 
-// Opens and locks a new temporary file beside the target; -1 and errno where there can be none.
-int open_temporary(const fs::path& target, fs::path& name) {
-  while (true) {
-    name = temporary_beside(target);
-    const int file = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (file >= 0) static_cast<void>(lock(file));  // some file systems know no locks
-    if (file >= 0 || errno != EEXIST) return file;
-  }
-}
-
 // The temporary files that stand, as names that live as long as their OutputFile. More at once than
 // the list is long are not cleared away when a signal ends the program.
 std::array<std::atomic<const char*>, 32> unfinished{};
@@ -154,18 +144,24 @@ OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
     if (entry.path().filename().string().starts_with(prefix)) remove_if_abandoned(entry.path());
   }
-  file_ = open_temporary(target_, temporary_);
+  do {
+    temporary_ = temporary_beside(target_);
+    // Before it is there: a signal may come at any time.
+    unfinished_ = list_unfinished(temporary_.c_str());
+    file_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file_ < 0 && unfinished_ != nullptr) unfinished_->store(nullptr);
+  } while (file_ < 0 && errno == EEXIST);
   if (file_ < 0) {
     throw Error(Blame::Work, name,
                 "cannot be written: folder " + folder.string() + ": " + reason(errno));
   }
-  unfinished_ = list_unfinished(temporary_.c_str());
+  static_cast<void>(lock(file_));  // some file systems know no locks
 }
 
 OutputFile::~OutputFile() {
-  if (unfinished_ != nullptr) unfinished_->store(nullptr);
   if (file_ < 0) return;
   if (!committed_) ::unlink(temporary_.c_str());
+  if (unfinished_ != nullptr) unfinished_->store(nullptr);
   ::close(file_);  // and with it the lock
 }
 
