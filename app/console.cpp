@@ -35,6 +35,7 @@ void print(std::string_view text) {
 }
 
 void note(std::string_view line) {
+  if (some_note_was_lost) return;  // nobody listens; a full pipe would wait once more
   if (!write_whole(base::escaped(line) + "\n", stderr)) some_note_was_lost = true;
 }
 

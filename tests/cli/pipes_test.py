@@ -89,6 +89,18 @@ class Pipes(program.Case):
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertEqual(run.stdout[:4], b"\x89PNG")
 
+    def ends_at_once(self, run, call):
+        time.sleep(1.0)
+        self.assertIsNone(run.poll(), call)
+        run.send_signal(signal.SIGTERM)
+        start = time.monotonic()
+        try:
+            run.wait(timeout=WAIT_S)
+        finally:
+            run.kill()
+        self.assertLess(time.monotonic() - start, 5.0, call)  # a second, on a machine that is free
+        self.assertNotEqual(run.returncode, 0)
+
     def test_end_is_at_once_where_nobody_reads(self):
         """A pipe that is full keeps the writer waiting; SIGTERM ends that within a second."""
         read_end, write_end = os.pipe()
@@ -99,22 +111,28 @@ class Pipes(program.Case):
         except BlockingIOError:
             pass
         os.set_blocking(write_end, True)
-        call = [program.PROGRAM, "render", "ball.toml", "-o", "a.exr", "--json"]
-        for stream in ("stdout", "stderr"):
+        render = ["render", "ball.toml", "-o", "a.exr", "--json"]
+        # With a camera the first note comes when the picture is there.
+        for stream, call in (("stdout", render), ("stderr", render), ("stderr", [*render, "--camera", "A"]),
+                             ("stdout", ["inspect", "ball.toml"])):
             streams = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL} | {stream: write_end}
-            with subprocess.Popen(call, cwd=self.folder, **streams) as run:
-                time.sleep(1.0)
-                self.assertIsNone(run.poll(), stream)
-                run.send_signal(signal.SIGTERM)
-                start = time.monotonic()
-                try:
-                    run.wait(timeout=WAIT_S)
-                finally:
-                    run.kill()
-                self.assertLess(time.monotonic() - start, 5.0)  # a second, on a machine that is free
-                self.assertEqual(run.returncode, -signal.SIGTERM)
+            with subprocess.Popen([program.PROGRAM, *call], cwd=self.folder, **streams) as run:
+                self.ends_at_once(run, call)
         os.close(read_end)
         os.close(write_end)
+
+
+    def test_end_is_at_once_while_plots_are_drawn(self):
+        (self.folder / "bin").mkdir()
+        self.write("bin/gnuplot", "#!/bin/sh\ntouch started\nexec sleep 60\n")
+        (self.folder / "bin/gnuplot").chmod(0o755)
+        call = [program.PROGRAM, "study", "accuracy", "ball.toml", "-o", "d", "--size", "8x8", "--camera", "A", "-q",
+                "--set", "quality.patch_edge=1", "--wanted", "0.9"]
+        with subprocess.Popen(call, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                              env=os.environ | {"PATH": f"{self.folder}/bin:{os.environ['PATH']}"}) as run:
+            while run.poll() is None and not (self.folder / "d/started").exists():
+                time.sleep(0.05)
+            self.ends_at_once(run, call)
 
 
 if __name__ == "__main__":
