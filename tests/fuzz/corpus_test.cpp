@@ -8,6 +8,10 @@
 #include "tests/fuzz/readers.h"
 
 namespace earthshine::fuzz {
+
+// What a failure names.
+void PrintTo(const Reader& reader, std::ostream* out) { *out << reader.name; }
+
 namespace {
 
 class Corpus : public ::testing::TestWithParam<Reader> {};
