@@ -5,6 +5,7 @@ import resource
 import struct
 import subprocess
 import unittest
+import zlib
 
 import exr
 import program
@@ -58,6 +59,17 @@ class Memory(program.Case):
         peak, said = self.peak_mib("inspect", "a.toml", "--max-memory", "100MiB", code=1)
         self.assertLess(peak, 100)
         self.says(said, "a.obj", "--max-memory")
+
+    def test_a_photograph_that_does_not_fit(self):
+        def chunk(kind, data):
+            return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        self.write("p.png", b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 16384, 12288, 8, 2, 0, 0, 0)) +
+                   chunk(b"IDAT", zlib.compress(bytes(1 << 20))) + chunk(b"IEND", b""))
+        self.write("b.toml", program.BALL)
+        peak, said = self.peak_mib("render", "b.toml", "--camera", "A", "--over", "p.png", "--png", "o.png",
+                                   "--max-memory", "300MiB", code=1)
+        self.assertLess(peak, 300 + SLACK_MIB)
+        self.says(said, "p.png", "--max-memory")
 
     def test_an_attribute_of_gigabytes_in_a_small_picture(self):
         data = exr.pack(8, 8, {"Y": 1.0})
