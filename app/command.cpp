@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+
 #include "app/console.h"
 #include "base/error.h"
 #include "degrade/range/range_sensor_file.h"
@@ -17,7 +19,7 @@ using base::Error;
 
 LoadedScene load(const SceneInput& input, bool quiet) {
   LoadedScene loaded;
-  loaded.scene = scenes::read_scene(input.path, input.overrides);
+  loaded.scene = scenes::read_scene(input.path, input.overrides, input.overrides_at);
   degrade::check_settings(loaded.scene);
   degrade::check_range_sensors(loaded.scene);
   loaded.groups = scenes::find_light_groups(loaded.scene);
@@ -26,6 +28,12 @@ LoadedScene load(const SceneInput& input, bool quiet) {
     if (!quiet) note("warning: " + warning);
   }
   return loaded;
+}
+
+bool SceneInput::wants_error() const {
+  return std::any_of(overrides.begin(), overrides.end(), [](const std::string& setting) {
+    return setting.starts_with("quality.error=");
+  });
 }
 
 const scenes::Camera& choose_camera(const scenes::Scene& scene, const std::string& name) {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,7 +55,17 @@ struct Command {
 // SCENE, --set and --error.
 struct SceneInput {
   std::string path;
-  std::vector<std::string> overrides;  // key=value
+  std::vector<std::string> overrides;               // key=value
+  std::optional<base::Location> overrides_at = {};  // in a file; none: --set
+
+  // Whether the call itself names the error that it wants, other than a scene, whose quality.error
+  // stands for whatever is made of it.
+  [[nodiscard]] bool wants_error() const;
+};
+
+// All was done and written, but not to the error that the call wants: exit code 3.
+struct StoppedShort : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 struct Size {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -11,18 +12,34 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/escape.h"
 
 namespace earthshine::app {
 
-void print(std::string_view text) {
+namespace {
+
+std::atomic<bool> some_note_was_lost{false};
+
+bool write_whole(std::string_view text, std::FILE* stream) {
   errno = 0;
-  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-  if (written && std::fflush(stdout) == 0) return;
+  return std::fwrite(text.data(), 1, text.size(), stream) == text.size() &&
+         std::fflush(stream) == 0;
+}
+
+}  // namespace
+
+void print(std::string_view text) {
+  if (write_whole(base::escaped(text, "\n\t"), stdout)) return;
   throw base::Error(base::Blame::Work, "standard output",
                     "cannot be written: " + std::generic_category().message(errno));
 }
 
-void note(std::string_view line) { fmt::print(stderr, "{}\n", line); }
+void note(std::string_view line) {
+  if (some_note_was_lost) return;  // nobody listens; a full pipe would wait once more
+  if (!write_whole(base::escaped(line) + "\n", stderr)) some_note_was_lost = true;
+}
+
+bool lost_a_note() { return some_note_was_lost; }
 
 std::string duration(double seconds) {
   const long whole = std::lround(seconds);
@@ -39,7 +56,7 @@ std::string short_count(double count) {
 }
 
 Progress::Progress(std::string label, bool quiet)
-    : label_(std::move(label)), shown_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
+    : label_(base::escaped(label)), shown_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
   if (shown_) std::fputs("\r\033[2K", stderr);

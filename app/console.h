@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program's two voices: results on standard output, everything else on standard error.
+// The program's two voices: results on standard output, everything else on standard error. What
+// names of files and things could do to a terminal is taken out here (base/escape.h), once for all.
 #pragma once
 
 #include <chrono>
@@ -13,8 +14,11 @@ namespace earthshine::app {
 // pipe: a result that did not arrive is not done.
 void print(std::string_view text);
 
-// One line on standard error.
+// One line on standard error. Work goes on where nobody listens any more.
 void note(std::string_view line);
+
+// Whether a note did not arrive, for the exit code: what was not said is not done.
+[[nodiscard]] bool lost_a_note();
 
 // "1 h 02 min", "1 min 05 s", "12.3 s" or "0.004 s".
 [[nodiscard]] std::string duration(double seconds);

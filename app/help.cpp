@@ -110,7 +110,12 @@ std::string Help::make_help(const CLI::App* parser, std::string, CLI::AppFormatM
     if (!inside.empty()) text += "\n" + std::string(group.title) + ":\n" + inside;
   }
   if (!commands.empty()) text += "\nCommands:\n" + commands;
-  return text;
+  return text + "\n" +
+         wrapped(
+             "Exit codes: 0 done; 1 the work failed; 2 the call or a file is wrong; 3 done, but "
+             "short of the error that the call asked for.",
+             0) +
+         "\n";
 }
 
 }  // namespace earthshine::app

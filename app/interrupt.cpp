@@ -17,11 +17,15 @@ void remember(int signal) {
   std::signal(signal, at_once);
 }
 
-// Whoever started the program may have it ignore a signal, as nohup does.
+// Without SA_RESTART, so that what waits for a reader that does not come is woken, too. Whoever
+// started the program may have it ignore a signal, as nohup does.
 void (*take_over(int signal))(int) {
-  const auto before = std::signal(signal, remember);
-  if (before == SIG_IGN) std::signal(signal, SIG_IGN);
-  return before;
+  struct sigaction ours {};
+  struct sigaction before {};
+  ours.sa_handler = remember;
+  ::sigaction(signal, &ours, &before);
+  if (before.sa_handler == SIG_IGN) std::signal(signal, SIG_IGN);
+  return before.sa_handler;
 }
 
 }  // namespace

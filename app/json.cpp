@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/json.h"
 
+#include <charconv>
 #include <cmath>
+#include <string_view>
 
 namespace earthshine::app {
 
@@ -9,16 +11,27 @@ std::string dump(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+std::string csv_cell(std::string text) {
+  constexpr std::string_view runs = "=+-@\t\r";
+  double number = 0.0;
+  const char* const end = text.data() + text.size();
+  const char* const first = text.data() + (text.starts_with('+') ? 1 : 0);
+  const bool is_number = std::from_chars(first, end, number).ptr == end;
+  if (!text.empty() && runs.find(text[0]) != std::string_view::npos && !is_number) {
+    text.insert(0, 1, '\'');
+  }
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
 std::string csv_of(const Json& rows) {
   const auto field = [](const Json& value) -> std::string {
     const bool no_number = value.is_number_float() && !std::isfinite(value.get<double>());
     if (value.is_null() || no_number) return "";
     if (!value.is_string()) return value.dump();
-    std::string text = value.get<std::string>();
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-    return quoted + "\"";
+    return csv_cell(value.get<std::string>());
   };
   std::string text;
   if (rows.empty()) return text;

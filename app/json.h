@@ -24,6 +24,10 @@ template <class Number>
   return value ? Json(*value) : Json();
 }
 
+// A text as a cell of comma-separated values (RFC 4180). One that a spreadsheet would run as a
+// formula, as it begins with = + - @ and is no number, gets an apostrophe before it.
+[[nodiscard]] std::string csv_cell(std::string text);
+
 // Comma-separated values (RFC 4180): `rows` are flat objects with the keys of the first, which
 // become the header. null is an empty field.
 [[nodiscard]] std::string csv_of(const Json& rows);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads the command line, runs one command, turns what went wrong into one line and an exit code:
-// 0 done, 1 the work failed, 2 the call or the scene is wrong.
+// 0 done, 1 the work failed, 2 the call or the scene is wrong, 3 stopped short of the wanted error.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,6 +23,7 @@ namespace {
 
 constexpr int work_failed = 1;
 constexpr int call_is_wrong = 2;
+constexpr int stopped_short = 3;
 constexpr std::uint64_t most_threads = 4096;
 
 void add_common_options(CLI::App& parser, Common& common, std::uint64_t& threads) {
@@ -142,10 +143,13 @@ int main(int argc, char** argv) {
     if (std::signal(signal, app::end_by_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
   try {
-    return app::run(argc, argv);
+    const int exit_code = app::run(argc, argv);
+    return exit_code == 0 && app::lost_a_note() ? app::work_failed : exit_code;
   } catch (const base::Error& error) {
     return app::complain(
         error.what(), error.blame() == base::Blame::Input ? app::call_is_wrong : app::work_failed);
+  } catch (const app::StoppedShort& error) {
+    return app::complain(error.what(), app::stopped_short);
   } catch (const std::bad_alloc&) {
     return app::complain(
         "out of memory; larger patches (quality.patch_edge) or a smaller picture need less",

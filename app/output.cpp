@@ -15,31 +15,41 @@ using base::Blame;
 using base::Error;
 namespace fs = std::filesystem;
 
-void check_outputs(const std::vector<std::string>& paths, const std::vector<std::string>& inputs) {
-  const auto same = [](const std::string& a, const std::string& b) {
-    std::error_code ignored;
-    if (fs::exists(a, ignored) && !fs::is_regular_file(a, ignored)) return false;  // e.g. /dev/null
-    return fs::weakly_canonical(fs::absolute(a, ignored), ignored) ==
-           fs::weakly_canonical(fs::absolute(b, ignored), ignored);
-  };
+namespace {
+
+// By device and inode, so that links of both kinds count as what they lead to.
+bool is_same_file(const fs::path& a, const fs::path& b) {
+  std::error_code ignored;
+  if (fs::exists(a, ignored)) {
+    const bool plain = fs::is_regular_file(a, ignored);  // not /dev/null, which may be named twice
+    return plain && fs::equivalent(a, b, ignored);
+  }
+  return fs::weakly_canonical(fs::absolute(a, ignored), ignored) ==
+         fs::weakly_canonical(fs::absolute(b, ignored), ignored);
+}
+
+}  // namespace
+
+void check_outputs(const std::vector<std::string>& paths, const Files& inputs) {
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (paths[i].empty()) continue;
     const base::OutputFile checked(paths[i]);
-    for (const std::string& input : inputs) {
-      if (!input.empty() && same(paths[i], input)) {
-        throw Error(Blame::Input, paths[i], "is read and would be overwritten", {},
-                    "Name another file to write");
-      }
+    for (const fs::path& input : inputs) {
+      if (input.empty() || !is_same_file(paths[i], input)) continue;
+      const std::string also = input == paths[i] ? "" : ", as " + input.string() + ",";
+      throw Error(Blame::Input, paths[i], "is read" + also + " and would be overwritten", {},
+                  "Name another file to write");
     }
     for (std::size_t j = 0; j < i; ++j) {
-      if (!paths[j].empty() && same(paths[i], paths[j])) {
+      if (!paths[j].empty() && is_same_file(paths[i], paths[j])) {
         throw Error(Blame::Input, paths[i], "would be written twice", {}, "Give two names");
       }
     }
   }
 }
 
-void prepare_folder(const std::string& folder, const std::vector<std::string>& files) {
+void prepare_folder(const std::string& folder, const std::vector<std::string>& files,
+                    const Files& inputs) {
   std::error_code problem;
   fs::create_directories(folder, problem);
   if (!fs::is_directory(folder)) {
@@ -49,7 +59,17 @@ void prepare_folder(const std::string& folder, const std::vector<std::string>& f
   std::vector<std::string> paths;
   paths.reserve(files.size());
   for (const std::string& file : files) paths.push_back((fs::path(folder) / file).string());
-  check_outputs(paths, {});
+  check_outputs(paths, inputs);
+}
+
+void refuse_inputs_in(const fs::path& folder, const Files& inputs) {
+  for (const fs::path& input : inputs) {
+    std::error_code ignored;
+    const fs::path own = fs::weakly_canonical(fs::absolute(input, ignored), ignored).parent_path();
+    if (input.empty() || !fs::equivalent(own, folder, ignored)) continue;
+    throw Error(Blame::Input, folder.string(), "holds " + input.string() + ", which is read",
+                "files in it may be overwritten", "Name another folder");
+  }
 }
 
 std::string file_stem(const scenes::Scene& scene, const scenes::Camera& camera) {

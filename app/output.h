@@ -2,6 +2,7 @@
 // Names of files and folders that will be written, looked at before any work is done.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -9,13 +10,21 @@
 
 namespace earthshine::app {
 
-// Throws base::Error before any work is done if one of the files (empty names are left out) cannot
-// be written or two are the same.
-void check_outputs(const std::vector<std::string>& paths, const std::vector<std::string>& inputs);
+using Files = std::vector<std::filesystem::path>;
 
-// Makes the folder where there is none and sees that each of the files can be written in it.
-// Throws base::Error before any work is done.
-void prepare_folder(const std::string& folder, const std::vector<std::string>& files);
+// Throws base::Error before any work is done if one of the files (empty names are left out) cannot
+// be written, two are the same, or one is an input, under whatever name: scenes::Scene::files has
+// those of a scene.
+void check_outputs(const std::vector<std::string>& paths, const Files& inputs);
+
+// Makes the folder where there is none and sees that each of the files can be written in it, as
+// check_outputs does.
+void prepare_folder(const std::string& folder, const std::vector<std::string>& files,
+                    const Files& inputs);
+
+// For a folder whose files get their names as they come: throws base::Error (Input) where an input
+// lies in it.
+void refuse_inputs_in(const std::filesystem::path& folder, const Files& inputs);
 
 // A camera's name as the start of a file name: letters, digits, '.', '-' and '_' stay, others
 // become '_'. Where two cameras would meet, the later ones get their number in the scene.

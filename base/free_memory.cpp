@@ -10,6 +10,8 @@
 #include <sstream>
 #include <string>
 
+#include "base/error.h"
+
 namespace earthshine::base {
 namespace {
 
@@ -94,10 +96,30 @@ Bytes left_of_address_space(const fs::path& root) {
 
 std::atomic<std::uint64_t> most_bytes{0};  // 0: no cap
 
+// What the process holds in memory now; 0 where Linux does not say.
+std::uint64_t resident_bytes() {
+  std::ifstream file("/proc/self/statm");
+  std::uint64_t whole = 0, resident = 0;
+  file >> whole >> resident;
+  return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
 }  // namespace
 
 MemoryLimit::MemoryLimit(std::uint64_t bytes) { most_bytes = bytes; }
 MemoryLimit::~MemoryLimit() { most_bytes = 0; }
+
+void check_room(std::uint64_t bytes, std::string_view what) {
+  constexpr std::uint64_t mib = 1 << 20, small = 8 * mib;
+  if (bytes < small) return;
+  const std::uint64_t cap = most_bytes;
+  const Bytes left = cap == 0 ? free_memory_bytes() : less(cap, resident_bytes());
+  if (!left || bytes <= *left) return;
+  throw Error(
+      Blame::Work, what, "needs " + std::to_string(bytes / mib) + " MiB more",
+      std::to_string(*left / mib) + (cap == 0 ? " MiB are free" : " MiB are left of --max-memory"),
+      cap == 0 ? "Make it smaller or free some memory" : "Make it smaller or allow more");
+}
 
 bool memory_is_limited() { return most_bytes != 0; }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 
 namespace earthshine::base {
 
@@ -16,6 +17,11 @@ class MemoryLimit {
   MemoryLimit(const MemoryLimit&) = delete;
   MemoryLimit& operator=(const MemoryLimit&) = delete;
 };
+
+// Throws base::Error (Work) where `bytes` more than the process holds now would pass that cap, or
+// are not free. `what` names what they are for. For readers, which cannot know beforehand what the
+// whole work takes; a few MiB are not asked about.
+void check_room(std::uint64_t bytes, std::string_view what);
 
 // Whether such a cap is what holds.
 [[nodiscard]] bool memory_is_limited();

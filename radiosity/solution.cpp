@@ -5,6 +5,7 @@
 #include <chrono>
 #include <numeric>
 
+#include "base/error.h"
 #include "radiosity/enclosure.h"
 #include "radiosity/fill_solution.h"
 #include "radiosity/linear_solve.h"
@@ -119,7 +120,12 @@ Solution solve_keeping(const scenes::Scene& scene, const scenes::LightGroups& gr
   solution.patches = std::move(cut);
   const Patches& patches = solution.patches;
   report.patches = patches.count();
-  if (!is_lit(effects) || patches.count() == 0) return solution;
+  if (!is_lit(effects) || scene.triangles.empty()) return solution;
+  if (patches.count() == 0) {
+    throw base::Error(base::Blame::Work, scene.path.string(),
+                      "surfaces were left without patches, which would show them without light", {},
+                      "Raise quality.patch_edge, and report this as a fault of the program");
+  }
   solution.columns = 3 * groups.count();
 
   SkyRadiance sky;

@@ -45,6 +45,7 @@ struct Mesh {
   std::vector<Material> materials;              // those that the file itself or a library defines
   std::vector<base::Location> material_places;  // of each of these
   std::vector<MaterialLibrary> libraries;
+  std::vector<std::filesystem::path> files;  // that it was read from, or that it names
   std::vector<std::string> warnings;
   // What the file holds besides that nothing here reads, and how often.
   std::map<std::string, std::size_t> unused;

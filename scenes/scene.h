@@ -197,6 +197,7 @@ struct SkyParts;  // sky_parts.h
 
 struct Scene {
   std::filesystem::path path;
+  std::vector<std::filesystem::path> files;  // that it was read from: itself, meshes, tables, ...
   std::string name;
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;

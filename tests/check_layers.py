@@ -15,7 +15,7 @@ import sys
 # Floors, and the rooms of each: a file may include its own room and those before it. "." is the floor's own
 # folder.
 ROOMS = {
-    "base": [".", "numbers", "files"],
+    "base": [".", "numbers", "input", "files"],
     "scenes": [".", "text", "reflect", "light", "mesh/gltf", "mesh", "sky", "effects", "health", "read"],
     "radiosity": ["patches", "bodies", "factors", "objects", "direct", ".", "store", "exact/polygon",
                   "exact/occlusion", "exact"],

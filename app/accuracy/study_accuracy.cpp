@@ -6,6 +6,7 @@
 #include <charconv>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "app/accuracy/report.h"
 #include "app/accuracy/run.h"
@@ -66,7 +67,8 @@ void run(const AccuracyCall& call, const Common& common) {
   if (call.cameras.empty() && loaded.scene.cameras.size() > 1 && !common.quiet) {
     note("note: no --camera, taking the first, \"" + camera.name + "\"");
   }
-  prepare_folder(call.folder, file_names());
+  prepare_folder(call.folder, file_names(), loaded.scene.files);
+  refuse_inputs_in(fs::path(call.folder) / points_folder, loaded.scene.files);
   const fs::path folder = call.folder;
   const ResultCache store(folder / points_folder);
   const std::vector<std::string> replaced = studies::replaced_keys(loaded.scene.quality);
@@ -79,7 +81,7 @@ void run(const AccuracyCall& call, const Common& common) {
   const scenes::RayQuery query(loaded.scene);
   raytrace::check_camera(loaded.scene, query, camera);
 
-  const Interrupt interrupt;
+  std::optional<Interrupt> interrupt(std::in_place);
   studies::AccuracyView view =
       studies::accuracy_view(camera, call.size ? call.size->columns : camera.columns,
                              call.size ? call.size->rows : camera.rows, common.seed);
@@ -91,6 +93,7 @@ void run(const AccuracyCall& call, const Common& common) {
   };
   const AccuracyTask task{call, common, loaded, query, view, store};
   const AccuracyResult result = measure_accuracy(task);
+  interrupt.reset();  // gnuplot is not waited for against a signal
   const Json json = accuracy_json(task, result);
   base::write_text(folder / table_csv, csv_of(json["points"]));
   base::write_text(folder / accuracy_file, dump(json));

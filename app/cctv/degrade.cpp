@@ -72,14 +72,18 @@ void check_call(const DegradeCall& call) {
   }
 }
 
+Files inputs_of(const DegradeCall& call) {
+  Files inputs(call.tape.inputs.begin(), call.tape.inputs.end());
+  inputs.insert(inputs.end(), {call.scene, file_of_camera(call.cctv)});
+  return inputs;
+}
+
 // Every file that the frames will be written into.
-void check_files(const DegradeCall& call, const std::vector<TapeFrame>& tape) {
+void check_files(const DegradeCall& call, const std::vector<TapeFrame>& tape, const Files& inputs) {
   check_numbered("-o", call.output, tape.size());
   check_numbered("--twin", call.twin, tape.size());
   check_numbered("--stages", call.stages, tape.size());
-  std::vector<std::string> inputs = call.tape.inputs, outputs;
-  inputs.push_back(call.scene);
-  inputs.push_back(file_of_camera(call.cctv));
+  std::vector<std::string> outputs;
   for (const TapeFrame& frame : tape) {
     outputs.push_back(numbered(call.output, frame.number));
     outputs.push_back(numbered(call.twin, frame.number));
@@ -100,11 +104,13 @@ std::string camera_of(const DegradeCall& call, const scenes::Scene& scene,
   return {};
 }
 
-CctvSetup setup_for(const DegradeCall& call, const Common& common, const base::ExrHeader& header) {
+CctvSetup setup_for(const DegradeCall& call, const Common& common, const base::ExrHeader& header,
+                    const std::vector<TapeFrame>& tape) {
   if (!call.preset.empty()) return cctv_of_preset(call.preset, common);
   if (!call.cctv.empty()) return cctv_of(camera_of_argument("--cctv", call.cctv), common);
   if (!call.scene.empty()) {
     const LoadedScene loaded = load({call.scene, {}}, common.quiet);
+    check_files(call, tape, loaded.scene.files);
     return cctv_of_camera(
         loaded.scene, choose_camera(loaded.scene, camera_of(call, loaded.scene, header)), common);
   }
@@ -154,10 +160,11 @@ void run(const DegradeCall& call, const Common& common) {
   }
   check_call(call);
   const std::vector<TapeFrame> tape = lay_out(call.tape);
-  check_files(call, tape);
+  const Files inputs = inputs_of(call);
+  check_files(call, tape, inputs);
   Reader reader;
   const base::ExrHeader header = base::ExrReader(tape.front().inputs.front()).header();
-  CctvSetup setup = setup_for(call, common, header);
+  CctvSetup setup = setup_for(call, common, header, tape);
   degrade::Options& options = setup.chain.options;
   options.off = call.off;
   options.fov_deg = field_of_view(call, options.fov_deg, header);
@@ -173,7 +180,7 @@ void run(const DegradeCall& call, const Common& common) {
   }
   for (const TapeFrame& frame : tape) {
     options.frame = frame.number;
-    StagePictures stages(numbered(call.stages, frame.number), options);
+    StagePictures stages(numbered(call.stages, frame.number), inputs, options);
     degrade::Result result;
     if (frame.inputs.size() == 2) {
       const base::Image first = reader.read(frame.inputs[0], setup.chain);

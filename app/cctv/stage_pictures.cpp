@@ -6,15 +6,15 @@
 #include <memory>
 #include <utility>
 
-#include "app/output.h"
 #include "base/files/exr_file.h"
 
 namespace earthshine::app {
 
-StagePictures::StagePictures(std::string folder, degrade::Options& options)
+StagePictures::StagePictures(std::string folder, const Files& inputs, degrade::Options& options)
     : folder_(std::move(folder)), options_(options) {
   if (folder_.empty()) return;
-  prepare_folder(folder_, {});
+  prepare_folder(folder_, {}, {});
+  refuse_inputs_in(folder_, inputs);
   options_.watch = [this, count = 0](std::string_view stage,
                                      const degrade::Picture& picture) mutable {
     base::write_exr(fmt::format("{}/{:02}-{}.exr", folder_, ++count, stage),

@@ -119,7 +119,7 @@ void run(const CompareCall& call, const Common& common) {
     note("note: no --camera, taking the first, \"" + camera.name + "\"");
   }
   (void)raytrace::earth_area(loaded.scene, call.area);  // a wrong one is refused before the folder
-  prepare_folder(call.folder, file_names(call.lights, call.area));
+  prepare_folder(call.folder, file_names(call.lights, call.area), loaded.scene.files);
 
   studies::CompareOptions options;
   options.columns = call.size ? call.size->columns : camera.columns;

@@ -183,4 +183,12 @@ std::string error_text(const Solved& light, std::optional<double> wanted) {
          (error.known ? choice_text(light.limit, light.steps, wanted, 0.0) : "");
 }
 
+void check_reached(const SceneInput& call, studies::Limit limit, double wanted) {
+  if (!call.wants_error() || limit == studies::Limit::None || limit == studies::Limit::Settings) {
+    return;
+  }
+  throw StoppedShort(fmt::format("{}: the wanted error of {:.2g} % is not reached: {}", call.path,
+                                 100.0 * wanted, words_of(limit)));
+}
+
 }  // namespace earthshine::app

@@ -194,7 +194,8 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
     if (screen) write_cctv(files.cctv, *cctv, *screen);
     if (!files.output.empty()) base::write_exr(files.output, frame.image, header);
   });
-  Picture picture{json_of(studio, camera, frame, times), !frame.report.stopped, frame.report, {}};
+  Picture picture{
+      json_of(studio, camera, frame, times), !frame.report.stopped, drawn.limit, frame.report, {}};
   picture.times = times;
   const std::optional<double> wanted =
       call.no_error ? std::nullopt : studio.loaded.scene.quality.error;

@@ -112,7 +112,9 @@ std::vector<Wanted> wanted_pictures(const RenderCall& call, const scenes::Scene&
     wanted.push_back(std::move(picture));
   }
   outputs.push_back(call.report);
-  check_outputs(outputs, {scene.path.string(), call.solution, call.over.photo});
+  Files inputs = scene.files;
+  inputs.insert(inputs.end(), {call.solution, call.over.photo});
+  check_outputs(outputs, inputs);
   return wanted;
 }
 
@@ -127,10 +129,10 @@ void run(RenderCall call, const Common& common) {
   StageTimes times;
   LoadedScene loaded = times.measure("read", [&] { return load(call.scene, common.quiet); });
   const std::vector<Wanted> pictures = wanted_pictures(call, loaded.scene, common.quiet);
-  const scenes::Asked asked = asked_of(call, cameras_of(pictures));
-  const std::vector<scenes::Culling> culled = decide_effects(loaded, call, asked);
   const scenes::RayQuery query =
       times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
+  const scenes::Asked asked = asked_of(call, cameras_of(pictures));
+  const std::vector<scenes::Culling> culled = decide_effects(loaded, call, asked);
   for (const Wanted& picture : pictures) {
     raytrace::check_camera(loaded.scene, query, *picture.camera);
   }
@@ -191,7 +193,12 @@ void run(RenderCall call, const Common& common) {
                                       taken, times, base::cpu_seconds() - cpu_before)));
   }
   if (call.json) print(dump(reports.size() == 1 ? reports.front() : reports));
-  if (whole) return;
+  if (whole) {
+    for (const Picture& picture : taken) {
+      check_reached(call.scene, picture.limit, loaded.scene.quality.error.value_or(0.0));
+    }
+    return;
+  }
   const std::string& file = pictures[reports.size() - 1].files.output;
   throw Error(Blame::Work, "render", "interrupted", {},
               file.empty() ? "" : "What was finished is in " + file + ", which says it is partial");

@@ -103,6 +103,7 @@ struct PictureFiles {
 struct Picture {
   Json report;
   bool whole = true;
+  studies::Limit limit = studies::Limit::None;  // what kept it from the wanted error
   raytrace::RenderReport rendered;
   StageTimes times;  // of the whole call so far and of this picture
 };

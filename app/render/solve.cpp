@@ -201,7 +201,6 @@ void check_call(const SolveCall& call) {
                       fmt::format("\"{}\" is not a .glb file", call.mesh), {},
                       "Name a file that ends in .glb");
   }
-  check_outputs({call.output, call.mesh}, {call.scene.path, call.solution});
 }
 
 // By the scene's settings, until an error that it names is reached, or from a file.
@@ -226,6 +225,9 @@ void run(const SolveCall& call, const Common& common) {
   check_call(call);
   StageTimes times;
   const LoadedScene loaded = times.measure("read", [&] { return load(call.scene, common.quiet); });
+  Files inputs = loaded.scene.files;
+  inputs.emplace_back(call.solution);
+  check_outputs({call.output, call.mesh}, inputs);
   const scenes::RayQuery query =
       times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
   const radiosity::SolveOptions options = solve_options(loaded.scene, common);
@@ -251,6 +253,7 @@ void run(const SolveCall& call, const Common& common) {
   if (!call.json && !writes_report)
     print(solve_text(json) + "\n" + error_text(light, loaded.scene.quality.error) +
           price_text(light, loaded.scene.quality.error, times.total()) + "\n");
+  if (light.surface.known) check_reached(call.scene, light.limit, error.value_or(0.0));
 }
 
 }  // namespace

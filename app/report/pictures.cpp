@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <map>
 
 #include "app/report/sections.h"
 #include "app/report/text.h"
 #include "base/error.h"
+#include "base/input/input_file.h"
 
 namespace earthshine::app {
 namespace {
@@ -34,19 +33,7 @@ void check_inside(const std::string& file) {
 std::string png_bytes(const fs::path& folder, const std::string& file) {
   check_inside(file);
   const fs::path path = folder / file;
-  std::error_code problem;
-  const std::uintmax_t size = fs::file_size(path, problem);
-  std::ifstream stream(path, std::ios::binary);
-  if (problem || !stream) {
-    throw Error(Blame::Input, path.string(),
-                "cannot be read: " + (problem ? problem.message() : "no permission"),
-                "study.json names it as a picture of the report", "Run the study again");
-  }
-  if (size > largest_bytes) {
-    throw Error(Blame::Input, path.string(), "is larger than 64 MiB",
-                "pictures are put into the page", "Run the study with smaller pictures");
-  }
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  std::string bytes = base::read_input_file(path, largest_bytes, {path.string()});
   if (bytes.compare(0, png_signature.size(), png_signature) != 0) {
     throw Error(Blame::Input, path.string(), "is not a PNG file", "pictures of a report are PNG");
   }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // earthshine report: draws report.html anew from a study's folder.
-#include <fstream>
 #include <memory>
 #include <system_error>
 
 #include "app/options.h"
+#include "app/output.h"
 #include "app/report/page.h"
 #include "base/error.h"
+#include "base/input/input_file.h"
 
 namespace earthshine::app {
 namespace {
@@ -14,6 +15,8 @@ namespace {
 using base::Blame;
 using base::Error;
 namespace fs = std::filesystem;
+
+constexpr std::size_t largest_study_bytes = std::size_t{1} << 30;
 
 struct ReportCall {
   std::string folder;
@@ -23,16 +26,19 @@ struct ReportCall {
 Json read_study(const fs::path& folder) {
   const std::string name = (folder / study_file).string();
   std::error_code ignored;
-  std::ifstream file(name, std::ios::binary);
-  if (!file || !fs::is_regular_file(name, ignored)) {
+  if (!fs::is_regular_file(name, ignored)) {
     throw Error(Blame::Input, name, "cannot be read", "a study's folder has this file",
                 "Name the folder given as -o to study visibility");
   }
+  check_outputs({(folder / report_file).string()}, {name});
   try {
-    return Json::parse(file);
+    return Json::parse(base::read_input_file(name, largest_study_bytes, {name}));
   } catch (const Json::parse_error& error) {
     throw Error(Blame::Input, name,
                 "is not JSON: at byte " + std::to_string(error.byte) + " it goes wrong", {},
+                "Run the study again, which writes the file anew");
+  } catch (const Json::exception&) {
+    throw Error(Blame::Input, name, "holds a number that is too large", {},
                 "Run the study again, which writes the file anew");
   }
 }

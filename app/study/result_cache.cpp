@@ -97,7 +97,7 @@ ResultCache::ResultCache(const fs::path& folder) : folder_(folder) {
 std::optional<Json> ResultCache::read(const Json& cache_key, std::string& said) const {
   const fs::path path = folder_ / (stem_of(cache_key) + ".json");
   std::error_code ignored;
-  if (!fs::exists(path, ignored)) return std::nullopt;
+  if (!fs::is_regular_file(path, ignored)) return std::nullopt;
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   Json json = Json::parse(text, nullptr, false);

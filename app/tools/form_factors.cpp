@@ -157,22 +157,16 @@ Json json_of(const Found& found) {
   return json;
 }
 
-// A pair a line, the way tables of view factors are exchanged; names as RFC 4180 wants them.
+// A pair a line, the way tables of view factors are exchanged.
 std::string csv_of(const Found& found) {
-  const auto quoted = [](const std::string& name) {
-    if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
-    std::string text = "\"";
-    for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return text + "\"";
-  };
   const radiosity::ObjectFormFactors& o = found.between;
   std::string text = "from,to,from_area_m2,F,std_error\n";
   for (std::size_t i = 0; i < found.names.size(); ++i) {
     const auto line = [&](const std::string& to, double f, double error) {
-      text += fmt::format("{},{},{},{},{}\n", quoted(found.names[i]), to, o.area_m2[i], f, error);
+      text += fmt::format("{},{},{},{},{}\n", csv_cell(found.names[i]), to, o.area_m2[i], f, error);
     };
     for (std::size_t k = 0; k < found.names.size(); ++k) {
-      line(quoted(found.names[k]), o.F[i][k], o.std_error[i][k]);
+      line(csv_cell(found.names[k]), o.F[i][k], o.std_error[i][k]);
     }
     line("(sky)", o.sky[i], o.sky_std_error[i]);
     line("(black backs)", o.black[i], o.black_std_error[i]);

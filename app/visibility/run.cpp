@@ -197,9 +197,17 @@ Json run_study(StudyTask task, const Common& common, const ViewListener& listen)
   if (task.dry_run) return plan_json(task.study, pointers(parts), task.folder, common);
   std::vector<std::string> files = {study_file, results_table, report_file};
   files.insert(files.end(), task.more_files.begin(), task.more_files.end());
-  prepare_folder(task.folder, files);
+  Files inputs = {task.study.path};
+  for (const auto& part : parts) {
+    const Files& own = part->loaded.scene.files;
+    inputs.insert(inputs.end(), own.begin(), own.end());
+  }
+  prepare_folder(task.folder, files, inputs);
   std::error_code ignored;
   fs::create_directories(fs::path(task.folder) / "pictures", ignored);
+  for (const char* folder : {points_folder, "pictures"}) {
+    refuse_inputs_in(fs::path(task.folder) / folder, inputs);
+  }
   for (const char* folder : {"", points_folder, "pictures"}) {
     base::remove_abandoned_files(fs::path(task.folder) / folder);
   }

@@ -119,7 +119,9 @@ std::unique_ptr<StudyPart> prepare_part(const studies::StudyFile& study, std::si
   auto part = std::make_unique<StudyPart>();
   part->id = fmt::format("s{}", index);
   part->path = study.scenes[index].lexically_normal().string();
-  part->loaded = load({part->path, study.overrides}, common.quiet);
+  SceneInput input{part->path, study.overrides};
+  if (study.where.count("set") > 0) input.overrides_at = study.place("set");
+  part->loaded = load(input, common.quiet);
   scenes::Scene& scene = part->loaded.scene;
   add_cctv(study, scene);
   mark_targets(study, scene);

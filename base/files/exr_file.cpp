@@ -22,6 +22,9 @@
 #include "base/error.h"
 #include "base/files/exr_attributes.h"
 #include "base/files/output_file.h"
+#include "base/free_memory.h"
+#include "base/input/exr_guard.h"
+#include "base/input/input_file.h"
 
 namespace earthshine::base {
 namespace {
@@ -210,8 +213,9 @@ void check_and_scale_colour(const std::filesystem::path& path, Image& image, flo
 
 ExrFile read_exr(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) refuse_reading(path, "is a folder");
   if (!std::filesystem::exists(path, ignored)) refuse_reading(path, "there is no such file");
+  check_input_file(path, {path.string()});
+  guard_exr(path);
   ExrFile result;
   float white = 1.0F;
   try {
@@ -227,6 +231,9 @@ ExrFile read_exr(const std::filesystem::path& path) {
     Image& image = result.image;
     image.width = window.max.x - window.min.x + 1;
     image.height = window.max.y - window.min.y + 1;
+    std::uint64_t channels = 0;
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c) ++channels;
+    check_room(image.pixel_count() * channels * sizeof(float), path.string());
     Imf::FrameBuffer buffer;
     for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
       buffer.insert(c.name(), Imf::Slice::Make(Imf::FLOAT, image.add(c.name()).data(), window));

@@ -21,6 +21,8 @@
 #include "base/error.h"
 #include "base/files/exr_attributes.h"
 #include "base/files/exr_picture.h"
+#include "base/input/exr_guard.h"
+#include "base/input/input_file.h"
 
 namespace earthshine::base {
 namespace {
@@ -244,8 +246,9 @@ struct ExrReader::Open {
 
 ExrReader::ExrReader(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) refuse(path, "is a folder");
   if (!std::filesystem::exists(path, ignored)) refuse(path, "there is no such file");
+  check_input_file(path, {path.string()});
+  guard_exr(path);
   try {
     open_ = std::make_unique<Open>(path);
   } catch (const Error&) {

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/files/output_file.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -21,13 +25,45 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Unique among the processes and the files of this one; a leading dot keeps it out of `*.exr`.
+// ".NAME.PROCESS-NUMBER.part": unique among the processes and the files of this one; a leading dot
+// keeps it out of `*.exr`.
+constexpr std::string_view suffix = ".part";
+
+// Long names are shortened: name and mark together must stay below the usual limit of 255 bytes.
+std::string prefix_of(const fs::path& target) {
+  return "." + target.filename().string().substr(0, 200) + ".";
+}
+
 fs::path temporary_beside(const fs::path& target) {
   static std::atomic<unsigned> count{0};
-  const std::string mark = std::to_string(::getpid()) + "-" + std::to_string(count++);
-  // Long names are shortened: name and mark together must stay below the usual limit of 255 bytes.
-  return target.parent_path() /
-         ("." + target.filename().string().substr(0, 200) + "." + mark + ".part");
+  return target.parent_path() / (prefix_of(target) + std::to_string(::getpid()) + "-" +
+                                 std::to_string(count++) + std::string(suffix));
+}
+
+// The process that a temporary file is named after; 0 for other files.
+pid_t writer_of(const std::string& name) {
+  if (name.size() <= suffix.size() || name[0] != '.' || !name.ends_with(suffix)) return 0;
+  const std::string stem = name.substr(0, name.size() - suffix.size());
+  pid_t process = 0;
+  const char* const end = stem.data() + stem.size();
+  const auto read = std::from_chars(stem.data() + stem.rfind('.') + 1, end, process);
+  const bool sound = read.ec == std::errc() && read.ptr != end && *read.ptr == '-';
+  return sound ? std::max(process, 0) : 0;
+}
+
+// Whoever writes a temporary file holds a lock on it, which ends with the process however that
+// ends.
+bool lock(int file) { return ::flock(file, LOCK_EX | LOCK_NB) == 0; }
+
+// Removes the file if a run that was killed has left it: its process is gone, and nobody holds it,
+// such as one of another machine or container with that number.
+void remove_if_abandoned(const fs::path& path) {
+  const pid_t process = writer_of(path.filename().string());
+  if (process == 0 || ::kill(process, 0) == 0 || errno != ESRCH) return;
+  const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (file < 0) return;
+  if (lock(file)) ::unlink(path.c_str());
+  ::close(file);
 }
 
 // The temporary files that stand, as names that live as long as their OutputFile. More at once than
@@ -45,6 +81,24 @@ std::atomic<const char*>* list_unfinished(const char* name) {
 
 std::string reason(int error_number) {
   return std::error_code(error_number, std::generic_category()).message();
+}
+
+fs::path folder_of(const fs::path& target) {
+  return target.has_parent_path() ? target.parent_path() : fs::path(".");
+}
+
+void flush_folder(const fs::path& folder) {
+  const int open = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (open < 0) return;
+  ::fsync(open);
+  ::close(open);
+}
+
+// /dev/stdout leads to "pipe:[1234]", which is nowhere.
+bool has_no_name(const fs::path& path) {
+  std::error_code problem;
+  static_cast<void>(fs::canonical(path, problem));
+  return static_cast<bool>(problem);
 }
 
 // Follows links, so that a link is kept and the file it names is replaced.
@@ -67,7 +121,7 @@ OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
   if (fs::is_directory(status)) {
     throw Error(Blame::Input, name, "is a folder", {}, "Name a file inside it");
   }
-  const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
+  const fs::path folder = folder_of(target_);
   if (!fs::is_directory(folder, ignored)) {
     throw Error(Blame::Input, name, "cannot be written: there is no folder " + folder.string(), {},
                 "Make the folder first");
@@ -75,34 +129,58 @@ OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
   if (fs::exists(status) && ::access(target_.c_str(), W_OK) != 0) {
     throw Error(Blame::Work, name, "cannot be written: " + reason(errno));
   }
-  // A device or a pipe is written directly: renaming would replace it by a plain file.
-  const bool plain = !fs::exists(status) || fs::is_regular_file(status);
-  if (plain && ::access(folder.c_str(), W_OK) != 0) {
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    // Written directly: renaming would replace /dev/null by a plain file. A pipe with a name keeps
+    // the opening waiting for somebody who reads; one without is /dev/stdout, which is open
+    // already.
+    if (!fs::is_character_file(status) && !(fs::is_fifo(status) && has_no_name(target_))) {
+      throw Error(Blame::Input, name, "is a pipe or a device", "a file on disk is wanted here",
+                  "Name a file to write");
+    }
+    temporary_ = target_;
+    return;
+  }
+  const std::string prefix = prefix_of(target_);
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().filename().string().starts_with(prefix)) remove_if_abandoned(entry.path());
+  }
+  do {
+    temporary_ = temporary_beside(target_);
+    // Before it is there: a signal may come at any time.
+    unfinished_ = list_unfinished(temporary_.c_str());
+    file_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file_ < 0 && unfinished_ != nullptr) unfinished_->store(nullptr);
+  } while (file_ < 0 && errno == EEXIST);
+  if (file_ < 0) {
     throw Error(Blame::Work, name,
                 "cannot be written: folder " + folder.string() + ": " + reason(errno));
   }
-  temporary_ = plain ? temporary_beside(target_) : target_;
-  if (plain) unfinished_ = list_unfinished(temporary_.c_str());
+  static_cast<void>(lock(file_));  // some file systems know no locks
 }
 
 OutputFile::~OutputFile() {
+  if (file_ < 0) return;
+  if (!committed_) ::unlink(temporary_.c_str());
   if (unfinished_ != nullptr) unfinished_->store(nullptr);
-  if (committed_ || temporary_ == target_) return;
-  std::error_code ignored;
-  fs::remove(temporary_, ignored);
+  ::close(file_);  // and with it the lock
 }
 
 void OutputFile::commit() {
-  if (temporary_ != target_) {
-    std::error_code problem;
-    const fs::file_status old = fs::status(target_, problem);
-    if (fs::exists(old)) fs::permissions(temporary_, old.permissions(), problem);
-    fs::rename(temporary_, target_, problem);
-    if (problem) {
-      throw Error(Blame::Work, target_.string(), "cannot be written: " + problem.message());
-    }
+  if (file_ >= 0) {
+    struct stat old {};
+    if (::stat(target_.c_str(), &old) == 0) static_cast<void>(::fchmod(file_, old.st_mode & 07777));
+    // First the bytes, then the name, then the folder: after a loss of power there is the old file
+    // or the new one. Where a folder cannot be flushed the file system does so in its own time.
+    if (::fsync(file_) != 0 && errno != EINVAL) refuse(errno);
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) refuse(errno);
+    flush_folder(folder_of(target_));
   }
   committed_ = true;
+}
+
+void OutputFile::refuse(int error_number) const {
+  throw Error(Blame::Work, target_.string(), "cannot be written: " + reason(error_number), {},
+              "An older file of that name was kept");
 }
 
 void remove_unfinished_files() noexcept {
@@ -114,18 +192,7 @@ void remove_unfinished_files() noexcept {
 void remove_abandoned_files(const fs::path& folder) {
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-    // ".NAME.PID-NUMBER.part", as temporary_beside has it
-    const std::string name = entry.path().filename().string();
-    constexpr std::string_view suffix = ".part";
-    if (name.size() <= suffix.size() || name[0] != '.' || !name.ends_with(suffix)) continue;
-    const std::string stem = name.substr(0, name.size() - suffix.size());
-    const std::size_t dot = stem.rfind('.');
-    pid_t process = 0;
-    const char* const end = stem.data() + stem.size();
-    const auto read = std::from_chars(stem.data() + dot + 1, end, process);
-    if (read.ec != std::errc() || read.ptr == end || *read.ptr != '-' || process <= 0) continue;
-    if (::kill(process, 0) == 0 || errno != ESRCH) continue;
-    fs::remove(entry.path(), ignored);
+    remove_if_abandoned(entry.path());
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files are written aside and renamed, so that a reader never sees half a file and a failure keeps
-// the old one.
+// Files are written aside, flushed to the disk and renamed, so that a reader never sees half a file
+// and a failure, a kill or a loss of power keeps the old one.
 #pragma once
 
 #include <atomic>
@@ -9,9 +9,11 @@
 
 namespace earthshine::base {
 
-// A temporary name beside `target`; commit() renames it over the target, the destructor removes it
-// if commit() was not reached. Throws base::Error (Input) if the target's folder does not exist or
-// the target is a folder, and base::Error (Work) if renaming fails.
+// A temporary file beside `target`, empty and locked; commit() renames it over the target, the
+// destructor removes it if commit() was not reached. What killed runs left of it is cleared away.
+// Throws base::Error (Input) if the target's folder does not exist or the target is a folder, a
+// pipe or a device other than those that never wait, such as /dev/null; and base::Error (Work)
+// where nothing can be written, also from commit().
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& target);
@@ -23,7 +25,10 @@ class OutputFile {
   void commit();
 
  private:
+  [[noreturn]] void refuse(int error_number) const;
+
   std::filesystem::path target_, temporary_;
+  int file_ = -1;                                   // the temporary file, locked; -1: none
   std::atomic<const char*>* unfinished_ = nullptr;  // its place in the list of what stands
   bool committed_ = false;
 };
@@ -32,7 +37,7 @@ class OutputFile {
 // nothing but unlink.
 void remove_unfinished_files() noexcept;
 
-// Removes the temporary files in a folder of processes of this machine that are gone: runs that
+// Removes the temporary files in a folder whose process is gone and that nobody holds: runs that
 // were killed had no time to.
 void remove_abandoned_files(const std::filesystem::path& folder);
 

@@ -12,6 +12,8 @@
 
 #include "base/error.h"
 #include "base/files/png_file.h"
+#include "base/free_memory.h"
+#include "base/input/input_file.h"
 
 namespace earthshine::base {
 namespace {
@@ -79,10 +81,7 @@ bool read_rows(const Reader& r, png_byte** rows) {
 }
 
 void open(Source& source, const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    refuse(path, "is a folder", {}, "Name a PNG file");
-  }
+  check_input_file(path, {path.string()});
   errno = 0;
   source.file.open(path, std::ios::binary);
   if (!source.file) {
@@ -118,6 +117,7 @@ Picture8 read_png(const std::filesystem::path& path) {
   }
   constexpr std::size_t rgba = 4;
   const std::size_t pixels = static_cast<std::size_t>(width) * height;
+  check_room((rgba + 3) * pixels, path.string());
   std::vector<png_byte> bytes(rgba * pixels);
   std::vector<png_byte*> rows(height);
   for (std::size_t y = 0; y < height; ++y) rows[y] = bytes.data() + y * rgba * width;

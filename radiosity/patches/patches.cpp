@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "radiosity/patches/patches.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
 
 namespace earthshine::radiosity {
 namespace {
@@ -12,8 +13,11 @@ namespace {
 constexpr std::uint64_t most_patches = std::uint64_t{1} << 26;
 
 std::uint32_t divisions(double length_m, double edge_m) {
-  // A length that is a whole number of edges up to rounding is not cut once more.
-  return static_cast<std::uint32_t>(std::max(1.0, std::ceil(length_m / edge_m - 1e-9)));
+  // A length that is a whole number of edges up to rounding is not cut once more. One cut more
+  // often than there may be patches is refused by their number, which must not be more than a
+  // number holds.
+  const double count = std::ceil(length_m / edge_m - 1e-9);
+  return static_cast<std::uint32_t>(std::clamp(count, 1.0, most_patches + 1.0));
 }
 
 // Triangles k and k + 1 are the halves (0,1,2), (0,2,3) of a parallelogram.
@@ -172,11 +176,10 @@ std::uint64_t for_each_facet(const scenes::Scene& scene, double edge_m, Take tak
     const bool sheet = scene.materials[facet.material].two_sided;
     const std::uint64_t cells = std::uint64_t{facet.s_count} * facet.t_count;
     if (total + 2 * cells > most_patches) {
-      throw base::Error(base::Blame::Input, scene.path.string(),
-                        "quality.patch_edge = " + std::to_string(edge_m) +
-                            " m cuts the scene into more than " + std::to_string(most_patches) +
-                            " patches",
-                        {}, "Raise quality.patch_edge");
+      throw base::Error(
+          base::Blame::Input, scene.path.string(),
+          fmt::format("patches of {:g} m cut the scene into more than {}", edge_m, most_patches),
+          {}, "Raise quality.patch_edge");
     }
     facet.leaves = static_cast<std::uint32_t>(cells);
     facet.first_front = static_cast<std::uint32_t>(total);

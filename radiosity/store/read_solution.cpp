@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "base/files/hdf5_file.h"
+#include "base/input/input_file.h"
 #include "radiosity/store/solution_fields.h"
 #include "radiosity/store/solution_file.h"
 #include "radiosity/store/solution_key.h"
-#include "scenes/text/input_file.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -142,7 +142,7 @@ Solution read_solution(const std::filesystem::path& path, const SolutionOrigin& 
                 fmt::format("Make it with \"earthshine solve {} -o {}\"",
                             origin.scene.path.string(), path.string()));
   }
-  const Hdf5Reader file(scenes::read_input_file(path, most_bytes, {"--solution"}), path.string());
+  const Hdf5Reader file(base::read_input_file(path, most_bytes, {"--solution"}), path.string());
   refuse_other_program(file, origin);
   refuse_stale(file, origin);
 

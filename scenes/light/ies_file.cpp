@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/input/input_file.h"
 #include "scenes/light/ies_numbers.h"
-#include "scenes/text/input_file.h"
 #include "scenes/text/message_text.h"
 #include "scenes/text/text_lines.h"
 
@@ -220,7 +220,7 @@ Luminaire parse_ies(std::string_view bytes, const std::string& file) {
 }
 
 Luminaire read_ies(const std::filesystem::path& path, const base::Location& asked_at) {
-  return parse_ies(read_regular_file(path, max_ies_bytes, asked_at), path.string());
+  return parse_ies(base::read_input_file(path, max_ies_bytes, asked_at), path.string());
 }
 
 }  // namespace earthshine::scenes

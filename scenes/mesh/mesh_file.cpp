@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/free_memory.h"
+#include "base/input/input_file.h"
 #include "scenes/mesh/gltf/file.h"
 #include "scenes/mesh/obj_file.h"
 #include "scenes/mesh/ply_file.h"
 #include "scenes/mesh/stl_file.h"
-#include "scenes/text/input_file.h"
+#include "scenes/text/confined_path.h"
 #include "scenes/text/message_text.h"
 
 namespace earthshine::scenes {
@@ -58,7 +60,8 @@ Mesh read_mesh(const std::filesystem::path& path, const std::filesystem::path& s
                 fmt::format("the mesh {} is of an unknown kind", in_quotes(path.string())),
                 "known are .obj, .gltf, .glb, .ply and .stl", "Convert it to one of these");
   }
-  const std::string bytes = read_input_file(path, max_mesh_bytes, asked_at);
+  const std::string bytes = base::read_input_file(path, max_mesh_bytes, asked_at);
+  base::check_room(bytes.size(), path.string());  // numbers take about as much as their text
   const std::filesystem::path folders[] = {scene_folder, path.parent_path()};
   Mesh mesh;
   if (ending == ".obj") {
@@ -70,6 +73,7 @@ Mesh read_mesh(const std::filesystem::path& path, const std::filesystem::path& s
   } else {
     mesh = parse_gltf(bytes, path, folders);
   }
+  mesh.files.push_back(path);
   check_mesh(mesh);
   return mesh;
 }

@@ -6,8 +6,9 @@
 #include <map>
 #include <string>
 
+#include "base/input/input_file.h"
 #include "scenes/mesh/obj_file.h"
-#include "scenes/text/input_file.h"
+#include "scenes/text/confined_path.h"
 #include "scenes/text/message_text.h"
 #include "scenes/text/table_reader.h"
 #include "scenes/text/text_lines.h"
@@ -128,7 +129,8 @@ void read_material_libraries(Mesh& mesh, std::span<const std::filesystem::path> 
     }
     for (const std::string& name : names) {
       const auto path = confined_path(folder, name, folders, library.where);
-      parse_mtl(read_input_file(path, max_library_bytes, library.where), path, mesh);
+      mesh.files.push_back(path);
+      parse_mtl(base::read_input_file(path, max_library_bytes, library.where), path, mesh);
     }
   }
 }

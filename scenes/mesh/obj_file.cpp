@@ -8,7 +8,7 @@
 #include <set>
 #include <unordered_map>
 
-#include "scenes/text/input_file.h"
+#include "scenes/text/confined_path.h"
 #include "scenes/text/message_text.h"
 #include "scenes/text/text_lines.h"
 
@@ -153,7 +153,8 @@ class ObjReader {
     }
     const base::Location where = lines_.where(words[1]);
     // Checked although it may never be read: a mesh that points elsewhere should be noticed.
-    static_cast<void>(confined_path(mesh_.path.parent_path(), lines_.argument(), folders_, where));
+    mesh_.files.push_back(
+        confined_path(mesh_.path.parent_path(), lines_.argument(), folders_, where));
     mesh_.libraries.push_back({std::string(lines_.argument()), where});
   }
 

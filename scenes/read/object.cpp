@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "base/free_memory.h"
 #include "scenes/mesh/mesh_file.h"
 #include "scenes/mesh/shapes.h"
 #include "scenes/read/material_choice.h"
@@ -26,9 +27,20 @@ void allow_keys(const TableReader& table, std::initializer_list<std::string_view
   table.allow_only(keys, of_what);
 }
 
-int read_segments(const TableReader& table) {
-  return table.whole("segments", fewest_segments, most_segments).value_or(default_segments);
+// faces_of: how many faces a shape of so many segments has. Refused before it is made where there
+// is not the memory for it.
+int read_segments(const TableReader& table, std::uint64_t (*faces_of)(std::uint64_t)) {
+  constexpr std::uint64_t bytes_per_face = 2 * sizeof(MeshPolygon) + 8 * sizeof(std::uint32_t) +
+                                           2 * sizeof(Vec3);  // arrays grow by doubling
+  const int segments =
+      table.whole("segments", fewest_segments, most_segments).value_or(default_segments);
+  base::check_room(faces_of(static_cast<std::uint64_t>(segments)) * bytes_per_face,
+                   base::to_string(table.where()));
+  return segments;
 }
+
+std::uint64_t faces_around(std::uint64_t segments) { return 3 * segments; }
+std::uint64_t faces_of_sphere(std::uint64_t segments) { return segments * segments / 2; }
 
 double read_radius(const TableReader& table) {
   return table.required(table.number("radius", {0.0, largest_length, true}), "radius",
@@ -79,7 +91,7 @@ Mesh read_cylinder(const TableReader& table) {
   const Vec3 from = read_point(table, "from");
   const Vec3 to = read_point(table, "to");
   if (!(glm::length(to - from) > 0.0)) table.fail("to", "is the same point as from");
-  return make_cylinder(from, to, read_radius(table), read_segments(table),
+  return make_cylinder(from, to, read_radius(table), read_segments(table, faces_around),
                        table.flag("caps").value_or(true));
 }
 
@@ -89,11 +101,13 @@ Mesh read_shape(const TableReader& table, const std::string& shape) {
   if (shape == "cylinder") return read_cylinder(table);
   if (shape == "sphere") {
     allow_keys(table, {"shape", "center", "radius", "segments"}, "the shape \"sphere\"");
-    return make_sphere(read_point(table, "center"), read_radius(table), read_segments(table));
+    return make_sphere(read_point(table, "center"), read_radius(table),
+                       read_segments(table, faces_of_sphere));
   }
   allow_keys(table, {"shape", "center", "normal", "radius", "segments"}, "the shape \"disk\"");
   const Vec3 normal = table.required(table.direction("normal"), "normal", "normal = [x, y, z]");
-  return make_disk(read_point(table, "center"), normal, read_radius(table), read_segments(table));
+  return make_disk(read_point(table, "center"), normal, read_radius(table),
+                   read_segments(table, faces_around));
 }
 
 Placement read_placement(const TableReader& table, double unit_m) {
@@ -174,6 +188,9 @@ void read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& s
   auto& warnings = shelved->mesh.warnings;
   scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
   warnings.clear();
+  auto& files = shelved->mesh.files;
+  scene.files.insert(scene.files.end(), files.begin(), files.end());
+  files.clear();
 }
 
 }  // namespace earthshine::scenes

@@ -21,7 +21,7 @@ static_assert(std::size(attitudes) == std::size(orbit_attitudes) + 1);
 constexpr Range one_turn{-360.0, 360.0};
 constexpr double obliquity_deg = 23.44;  // of the ecliptic
 
-void read_attitude(Orbit& orbit, const TableReader& table, const std::filesystem::path& folder) {
+void read_attitude(Scene& scene, Orbit& orbit, const TableReader& table) {
   const auto attitude = table.choice("attitude", attitudes);
   if (const auto file = table.text("attitude_table")) {
     if (attitude) {
@@ -29,8 +29,8 @@ void read_attitude(Orbit& orbit, const TableReader& table, const std::filesystem
                  "the attitude is given by one of the two");
     }
     orbit.attitude.clear();
-    orbit.table = std::make_shared<const AttitudeTable>(
-        read_attitudes(folder / *file, table.where("attitude_table")));
+    orbit.table = std::make_shared<const AttitudeTable>(read_attitudes(
+        scene.files.emplace_back(scene.path.parent_path() / *file), table.where("attitude_table")));
   }
   if (attitude) orbit.attitude = *attitude;
   if (orbit.attitude != inertial_attitude) {
@@ -71,7 +71,7 @@ Orbit read_orbit(Scene& scene, const TomlNode& node) {
   orbit.position_deg = table.number("position_deg", one_turn).value_or(0.0);
   orbit.inclination_deg = table.number("inclination_deg", {0.0, 180.0}).value_or(0.0);
   orbit.noon_argument_deg = table.number("noon_argument_deg", one_turn).value_or(0.0);
-  read_attitude(orbit, table, scene.path.parent_path());
+  read_attitude(scene, orbit, table);
   if (table.has("inclination_deg") || table.has("noon_argument_deg")) {
     check_declination(scene, orbit);
   }

@@ -111,8 +111,10 @@ std::vector<TomlTable*> entries_named(TomlTable& root, std::string_view kind, st
 
 }  // namespace
 
-void apply_override(TomlNode& root, const std::string& setting) {
-  const base::Location where{"--set " + printable(setting, 200)};
+void apply_override(TomlNode& root, const std::string& setting,
+                    const std::optional<base::Location>& asked_at) {
+  const std::string origin = asked_at ? base::to_string(*asked_at) + ": set " : "--set ";
+  const base::Location where{origin + printable(setting, 200)};
   const std::size_t equals = setting.find('=');
   const std::string_view path = std::string_view(setting).substr(0, equals);
   const std::size_t first_dot = path.find('.');

@@ -9,6 +9,7 @@
 #include <limits>
 #include <span>
 
+#include "base/free_memory.h"
 #include "scenes/mesh/triangulate.h"
 #include "scenes/text/message_text.h"
 #include "scenes/text/table_reader.h"
@@ -67,6 +68,10 @@ class Placer {
   }
 
   void triangulate_all(const std::function<std::uint32_t(const MeshPolygon&)>& material_of) {
+    std::size_t triangles = 0;
+    for (const std::size_t p : chosen_) triangles += mesh_.polygons[p].count - 2;
+    make_room(scene_.triangles, triangles);
+    make_room(scene_.vertices, std::min(mesh_.vertices.size(), 3 * triangles));
     object_.first_triangle = static_cast<std::uint32_t>(scene_.triangles.size());
     next_polygon_ = scene_.triangles.empty() ? 0 : scene_.triangles.back().polygon + 1;
     Triangulation pieces;
@@ -120,6 +125,15 @@ class Placer {
   }
 
  private:
+  // An array that must grow is copied to a larger one; both stand for a while.
+  template <class Item>
+  void make_room(const std::vector<Item>& items, std::size_t more) const {
+    const std::size_t wanted = items.size() + more;
+    if (wanted <= items.capacity()) return;
+    const std::size_t capacity = std::max(wanted, 2 * items.capacity());
+    base::check_room(capacity * sizeof(Item), base::to_string(where_));
+  }
+
   [[nodiscard]] std::span<const std::uint32_t> corners_of(const MeshPolygon& polygon) const {
     return std::span(mesh_.indices).subspan(polygon.first, polygon.count);
   }

@@ -3,11 +3,12 @@
 
 #include <fmt/format.h>
 
+#include "base/free_memory.h"
+#include "base/input/input_file.h"
 #include "scenes/health/mend.h"
 #include "scenes/health/near_lamps.h"
 #include "scenes/read/override.h"
 #include "scenes/read/scene_parts.h"
-#include "scenes/text/input_file.h"
 #include "scenes/text/toml_guard.h"
 
 namespace earthshine::scenes {
@@ -87,7 +88,8 @@ void check_size(Scene& scene) {
 }  // namespace
 
 Scene read_camera_file(const std::filesystem::path& path) {
-  const std::string text = read_input_file(path, max_toml_bytes, base::Location{path.string()});
+  const std::string text =
+      base::read_input_file(path, max_toml_bytes, base::Location{path.string()});
   const TomlNode tree = parse_toml(text, path.string());
   const bool whole_scene = find_entry(std::get<TomlTable>(tree.value), "format") != nullptr;
   const TableReader root(tree, whole_scene ? "the scene" : "a camera file",
@@ -100,15 +102,18 @@ Scene read_camera_file(const std::filesystem::path& path) {
   return scene;
 }
 
-Scene read_scene(const std::filesystem::path& path, std::span<const std::string> overrides) {
-  const std::string text = read_input_file(path, max_toml_bytes, base::Location{path.string()});
+Scene read_scene(const std::filesystem::path& path, std::span<const std::string> overrides,
+                 const std::optional<base::Location>& overrides_at) {
+  const std::string text =
+      base::read_input_file(path, max_toml_bytes, base::Location{path.string()});
   TomlNode tree = parse_toml(text, path.string());
-  for (const std::string& setting : overrides) apply_override(tree, setting);
+  for (const std::string& setting : overrides) apply_override(tree, setting, overrides_at);
 
   const TableReader root(tree, "the scene", root_keys);
   check_format(root);
   Scene scene;
   scene.path = path;
+  scene.files.push_back(path);
   scene.name = root.text("name").value_or(path.stem().string());
   const double unit_m = read_unit(root);
 
@@ -122,6 +127,8 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   read_named(root, "area", [&](const TomlNode& node) {
     return scene.areas.emplace_back(read_area(node, unit_m)).name;
   });
+  const auto tables = luminaires.files();
+  scene.files.insert(scene.files.end(), tables.begin(), tables.end());
   read_sky(scene, plain_table(root, "sun"), plain_table(root, "earth"), plain_table(root, "orbit"));
   if (const TomlNode* node = plain_table(root, "ambient")) {
     const TableReader table(*node, "[ambient]", ambient_keys);
@@ -143,6 +150,8 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
     return scene.objects.back().name;
   });
   check_size(scene);
+  constexpr std::size_t mending_bytes = 56;  // per triangle, measured on spheres
+  base::check_room(scene.triangles.size() * mending_bytes, path.string());
   mend_surfaces(scene);
   lift_lamps(scene);
   return scene;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -14,10 +15,12 @@ namespace earthshine::scenes {
 // value: "quality.gather_rays=64", "sun.illuminance=0", "light.fwd-bulkhead.intensity=0" (the entry
 // of that name), "camera.A.fov_deg=30". Overrides are checked like the file's own keys; one that
 // creates a table or entry that the file does not have is allowed for the plain tables (sun, earth,
-// orbit, ambient, quality, monitor) and refused for named entries. Throws base::Error (Input):
+// orbit, ambient, quality, monitor) and refused for named entries. overrides_at: where they stand
+// in a file, for messages; none: they are --set of the command line. Throws base::Error (Input):
 // where (file:line:column), what was found, what is allowed, what to do.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path,
-                               std::span<const std::string> overrides = {});
+                               std::span<const std::string> overrides = {},
+                               const std::optional<base::Location>& overrides_at = {});
 
 // A Scene with nothing but the [[cctv]] tables and the [monitor] of the file, which holds nothing
 // else or is a whole scene (it has "format"), whose other tables are neither read nor checked.

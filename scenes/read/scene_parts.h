@@ -26,6 +26,11 @@ class LuminaireShelf {
       : scene_folder_(std::move(scene_folder)) {}
   [[nodiscard]] const Luminaire& take(const std::filesystem::path& named,
                                       const base::Location& asked_at);
+  [[nodiscard]] std::vector<std::filesystem::path> files() const {
+    std::vector<std::filesystem::path> files;
+    for (const auto& [file, luminaire] : luminaires_) files.push_back(file);
+    return files;
+  }
 
  private:
   std::filesystem::path scene_folder_;

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
+#include <sstream>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 #include "base/error.h"
+#include "base/input/input_file.h"
 #include "scenes/text/text_lines.h"
 
 namespace earthshine::scenes {
@@ -17,6 +17,8 @@ namespace {
 
 using base::Blame;
 using base::Error;
+
+constexpr std::size_t max_reflectance_bytes = std::size_t{16} << 20;
 
 // A number within [least, most] at `column` of the line.
 double checked_number(std::string_view field, const base::Location& where, const char* what,
@@ -30,12 +32,7 @@ double checked_number(std::string_view field, const base::Location& where, const
 }  // namespace
 
 std::vector<ReflectancePoint> read_reflectance(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    throw Error(Blame::Input, path.string(), "is a folder", {}, "Name a CSV file");
-  }
-  std::ifstream file(path);
-  if (!file) throw Error(Blame::Input, path.string(), "cannot be read: there is no such file");
+  std::istringstream file(base::read_input_file(path, max_reflectance_bytes, {path.string()}));
   std::vector<ReflectancePoint> points;
   std::string line;
   bool heading_possible = true;
@@ -67,7 +64,6 @@ std::vector<ReflectancePoint> read_reflectance(const std::filesystem::path& path
     points.push_back({checked_number(angle, at_angle, "angle in degrees", -180.0, 180.0),
                       checked_number(reflectance, at_reflectance, "reflectance factor", 0.0, 1e6)});
   }
-  if (file.bad()) throw Error(Blame::Work, path.string(), "cannot be read to its end");
   return points;
 }
 

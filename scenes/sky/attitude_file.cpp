@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "scenes/text/input_file.h"
+#include "base/input/input_file.h"
 #include "scenes/text/message_text.h"
 #include "scenes/text/table_reader.h"
 #include "scenes/text/text_lines.h"
@@ -194,7 +194,7 @@ class AttitudeReader {
 }  // namespace
 
 AttitudeTable read_attitudes(const std::filesystem::path& path, const base::Location& asked_at) {
-  const std::string text = read_regular_file(path, max_attitude_bytes, asked_at);
+  const std::string text = base::read_input_file(path, max_attitude_bytes, asked_at);
   return AttitudeReader(text, path.string()).read();
 }
 

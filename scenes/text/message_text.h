@@ -9,11 +9,7 @@
 
 namespace earthshine::scenes {
 
-// Length in bytes of the UTF-8 character at the start of `text`; 0 if it is not one (overlong
-// forms, surrogates and values beyond U+10FFFF included).
-[[nodiscard]] std::size_t utf8_length(std::string_view text);
-
-// Control characters and bytes that are not UTF-8 become \xNN; cut after `longest` bytes.
+// As base::escaped() has it; cut after `longest` bytes.
 [[nodiscard]] std::string printable(std::string_view text, std::size_t longest);
 
 // The same in quotes, cut at 80 bytes.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/escape.h"
 #include "scenes/text/message_text.h"
 
 namespace earthshine::scenes {
@@ -103,7 +104,7 @@ void guard_toml(std::string_view text, const std::string& file) {
     }
     std::size_t length = 1;
     if (byte >= 0x80) {
-      length = utf8_length(text.substr(i));
+      length = base::utf8_length(text.substr(i));
       if (length == 0) {
         throw Error(Blame::Input, here, fmt::format("the byte 0x{:02x} is not UTF-8", byte),
                     "a scene file is UTF-8 text", "Save it as UTF-8");

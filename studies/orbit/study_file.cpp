@@ -7,8 +7,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/input/input_file.h"
 #include "scenes/read/scene_parts.h"
-#include "scenes/text/input_file.h"
 #include "scenes/text/toml_guard.h"
 
 namespace earthshine::studies {
@@ -222,7 +222,7 @@ void read_cameras(StudyFile& study, const TableReader& root) {
 
 StudyFile read_study_file(const std::filesystem::path& path) {
   const std::string text =
-      scenes::read_input_file(path, scenes::max_toml_bytes, base::Location{path.string()});
+      base::read_input_file(path, scenes::max_toml_bytes, base::Location{path.string()});
   const TomlNode tree = scenes::parse_toml(text, path.string());
   const TableReader root(tree, "the study", root_keys);
   const std::optional<int> format = root.whole("format", 1, 1);
@@ -231,6 +231,7 @@ StudyFile read_study_file(const std::filesystem::path& path) {
                 "this program reads format = 1", "Begin the file with format = 1");
   }
   StudyFile study;
+  study.path = path;
   for (const TomlEntry& entry : std::get<TomlTable>(tree.value)) {
     study.where[entry.key] = entry.where;
   }

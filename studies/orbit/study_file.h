@@ -39,6 +39,7 @@ struct PairWish {
 };
 
 struct StudyFile {
+  std::filesystem::path path;  // empty: put together from a call
   std::string name;
   std::vector<std::filesystem::path> scenes;  // beside the study's file, or absolute
   std::vector<std::string> overrides;         // as --set has them

@@ -81,6 +81,23 @@ class Output(program.Case):
             self.assertEqual(run.returncode, -number)
             self.assertEqual((self.folder / "a.exr").read_text(), "old")
 
+    def test_killed_while_writing(self):
+        """What a killed run leaves is taken over by the next one that writes the file."""
+        call = [program.PROGRAM, "render", "ball.toml", "-o", "a.exr", "-q", "--size", "1536x1536", "--indirect",
+                "none", "--set", "quality.gather_rays=1", "--aov", "albedo,normal,position,depth,range"]
+        left = []
+        while not left:
+            with subprocess.Popen(call, cwd=self.folder, stderr=subprocess.DEVNULL) as run:
+                def parts():
+                    return [path for path in self.folder.glob(".*.part") if path.stat().st_size > 0]
+                while run.poll() is None and not parts():
+                    time.sleep(0.002)
+                run.kill()
+            left = parts()
+        self.assertFalse((self.folder / "a.exr").exists())
+        self.done("render", "ball.toml", "-o", "a.exr", "--size", "8x8")
+        self.assertEqual(self.files(), ["a.exr", "ball.toml"])
+
     def test_full_disk(self):
         self.says(self.refused("render", "ball.toml", "-o", "/dev/full", code=1), "/dev/full")
         with open("/dev/full", "w") as full:

@@ -240,6 +240,7 @@ class Refusals(Report):
     def test_what_is_no_study(self):
         self.says(self.refused("report", "nowhere"), "nowhere/study.json", "cannot be read")
         self.refused_study("{\"format\": 1,", "study.json", "not JSON")
+        self.refused_study("{\"format\": 1, \"x\": 1e400}", "study.json", "too large")
         self.refused_study("", "not JSON")
         self.refused_study([1, 2], "not the result of a study")
         self.refused_study({"study": "compare"}, "not the result of a study")

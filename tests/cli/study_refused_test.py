@@ -52,6 +52,8 @@ class Refused(Case):
         run(STUDY.replace('shows = "cctv"', 'shows = "cctv"\n').replace('camera = "A"\nposition_deg = 180',
                                                                         'camera = "B"\nposition_deg = 180'), '"B"', "CCTV")
         run(STUDY.replace("bay.toml", "none.toml"), "none.toml")
+        run(STUDY.replace("size =", 'set = ["quality.nonsense=3"]\nsize ='), "bad.toml:5:1: set quality.nonsense=3")
+        self.assertNotIn("--set", self.refused("study", "run", "bad.toml", "-o", "d"))
         self.says(self.refused_cleanly("study", "run", "gone.toml"), "gone.toml")
 
     def test_folder_that_cannot_be(self):

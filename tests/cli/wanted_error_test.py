@@ -10,9 +10,9 @@ OPEN = program.BALL.split("[quality]")[0]
 
 
 class WantedError(program.Case):
-    def rendered(self, *options, scene=OPEN):
+    def rendered(self, *options, scene=OPEN, code=0):
         self.write("scene.toml", scene)
-        return self.json("render", "scene.toml", "-o", "out.exr", "--size", "48x36", *options)["error"]
+        return self.json("render", "scene.toml", "-o", "out.exr", "--size", "48x36", *options, code=code)["error"]
 
     def test_the_estimate_ends_within_the_wanted_error(self):
         for wanted in (0.2, 0.05, 0.02):
@@ -47,7 +47,7 @@ class WantedError(program.Case):
         self.assertLessEqual(error["estimate"], 0.001)
 
     def test_a_time_limit_comes_first_and_is_named(self):
-        error = self.rendered("--error", 0.0005, "--time-limit", 0.7)
+        error = self.rendered("--error", 0.0005, "--time-limit", 0.7, code=3)
         self.assertEqual(error["limit"], "time")
         self.assertGreater(error["estimate"], 0.0005)
         self.assertGreater(error["seconds_to_go"], 0)
@@ -57,7 +57,7 @@ class WantedError(program.Case):
 
     def test_memory_comes_first_and_is_named(self):
         self.write("scene.toml", OPEN)
-        error = self.json("solve", "scene.toml", "--error", 0.002, "--max-memory", "22MiB")["error"]
+        error = self.json("solve", "scene.toml", "--error", 0.002, "--max-memory", "22MiB", code=3)["error"]
         self.assertEqual(error["limit"], "memory")
         self.assertGreater(error["estimate"], 0.002)
 

@@ -158,5 +158,14 @@ TEST(Solve, CubeWithSixFacesMatchesTheExactSixSurfaceSystem) {
   EXPECT_NEAR(b(3), 0.022736812093798, 0.008);
 }
 
+TEST(Solve, SurfacesWithoutPatchesAreNoSolution) {
+  tests::SceneBuilder builder;
+  const std::uint32_t glowing = builder.material(tests::grey(0.5, 1.0));
+  builder.quad(glowing, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
+  const tests::Prepared made(builder.scene);
+  EXPECT_THROW((void)solve(made.scene, made.groups, made.effects, made.query, coarse(), Patches{}),
+               base::Error);
+}
+
 }  // namespace
 }  // namespace earthshine::radiosity

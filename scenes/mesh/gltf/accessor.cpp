@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/free_memory.h"
 #include "scenes/mesh/gltf/file.h"
 #include "scenes/mesh/gltf/model.h"
 
@@ -25,7 +26,11 @@ struct Elements {
 
 std::size_t unsigned_of(const std::filesystem::path& path, std::int64_t value,
                         std::string_view what) {
-  if (value < 0) gltf_fail(path, fmt::format("{} is {}", what, value), "it is at least 0");
+  // tinygltf keeps 32 bits of a number: a large one turns up as a negative one.
+  if (value < 0) {
+    gltf_fail(path, fmt::format("{} is negative, or too large", what),
+              "it is from 0 to 2147483647");
+  }
   return static_cast<std::size_t>(value);
 }
 
@@ -130,6 +135,7 @@ std::vector<Vec3> read_gltf_positions(const GltfModel& model, int number,
   }
   constexpr std::size_t size = 3 * sizeof(float);
   std::vector<Vec3> positions;
+  base::check_room(accessor.count * sizeof(Vec3), path.string());
   if (accessor.view != -1) {
     const Elements elements =
         view_elements(model, accessor.view, accessor.offset, accessor.count, size, true, path);

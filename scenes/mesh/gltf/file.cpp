@@ -210,8 +210,10 @@ class GltfReader {
 
 Mesh parse_gltf(std::string_view bytes, const std::filesystem::path& path,
                 std::span<const std::filesystem::path> folders) {
-  const GltfModel model = load_gltf_model(bytes, path, folders);
-  return GltfReader(model, path).read();
+  GltfModel model = load_gltf_model(bytes, path, folders);
+  Mesh mesh = GltfReader(model, path).read();
+  mesh.files = std::move(model.files);
+  return mesh;
 }
 
 }  // namespace earthshine::scenes

@@ -8,9 +8,10 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/input/input_file.h"
 #include "scenes/mesh/gltf/extras.h"
 #include "scenes/mesh/gltf/file.h"
-#include "scenes/text/input_file.h"
+#include "scenes/text/confined_path.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -55,6 +56,7 @@ std::string_view json_of(std::string_view bytes, bool binary, const std::filesys
 struct FileAccess {
   std::filesystem::path path;
   std::span<const std::filesystem::path> folders;
+  std::vector<std::filesystem::path> found;
   std::string refused;  // why a path was, in words clearer than tinygltf's "file not found"
 
   [[nodiscard]] std::filesystem::path inside(const std::string& named) const {
@@ -76,13 +78,12 @@ bool is_image(const std::string& name) {
 }
 
 bool file_exists(const std::string& tried, void* access) {
-  if (is_image(tried)) return false;
   auto* files = static_cast<FileAccess*>(access);
   try {
-    static_cast<void>(files->inside(plain_name(tried)));
-    return true;  // a missing file is reported when it is read
+    files->found.push_back(files->inside(plain_name(tried)));
+    return !is_image(tried);  // a missing file is reported when it is read
   } catch (const Error& error) {
-    if (files->refused.empty()) files->refused = error.what();
+    if (files->refused.empty() && !is_image(tried)) files->refused = error.what();
     return false;
   }
 }
@@ -93,8 +94,8 @@ bool read_file(std::vector<unsigned char>* out, std::string* problem, const std:
                void* access) {
   const auto* files = static_cast<FileAccess*>(access);
   try {
-    const auto bytes = read_input_file(files->inside(plain_name(tried)), max_mesh_bytes,
-                                       base::Location{files->path.string()});
+    const auto bytes = base::read_input_file(files->inside(plain_name(tried)), max_mesh_bytes,
+                                             base::Location{files->path.string()});
     out->assign(bytes.begin(), bytes.end());
     return true;
   } catch (const Error& error) {
@@ -248,7 +249,7 @@ GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& p
   const bool binary = bytes.starts_with("glTF");
   const std::string_view json = json_of(bytes, binary, path);
   check_json_depth(json, path);
-  FileAccess files{path, folders, {}};
+  FileAccess files{path, folders, {}, {}};
 
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(file_callbacks<tinygltf::FsCallbacks>(files));
@@ -274,6 +275,7 @@ GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& p
   std::map<std::string, std::size_t> unused = unused_of(model);
   GltfModel converted = convert(std::move(model));
   converted.transparent = unused.count(transparent) > 0;
+  converted.files = std::move(files.found);
   converted.unused = std::move(unused);
   return converted;
 }

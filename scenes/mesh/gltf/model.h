@@ -65,7 +65,8 @@ struct GltfModel {
   std::vector<GltfNode> nodes;
   std::vector<std::vector<int>> scenes;  // root nodes of each
   int default_scene = -1;
-  std::vector<Material> materials;  // names may be empty or repeated
+  std::vector<Material> materials;           // names may be empty or repeated
+  std::vector<std::filesystem::path> files;  // that the file names
   bool textured = false;
   bool transparent = false;
   std::map<std::string, std::size_t> unused;  // what nothing here reads, as Mesh::unused

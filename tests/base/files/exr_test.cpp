@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/files/exr_file.h"
+#include "base/free_memory.h"
 #include "tests/base/temporary_folder.h"
 
 namespace earthshine::base {
@@ -157,6 +158,18 @@ TEST(Exr, MissingFolderAndFolderAsTargetAreTheCallersMistake) {
   const TemporaryFolder folder;
   error_of(Blame::Input, [&] { write_exr(folder / "no/a.exr", pattern(1, 1)); });
   error_of(Blame::Input, [&] { write_exr(folder.path(), pattern(1, 1)); });
+}
+
+TEST(Exr, APictureBeyondTheMemoryAllowedIsNotRead) {
+  const TemporaryFolder folder;
+  {
+    Image dark{6000, 6000, {}};
+    dark.add("Y");
+    write_exr(folder / "a.exr", dark);  // 144 MB, next to nothing on the disk
+  }
+  const MemoryLimit limit(std::uint64_t{120} << 20U);
+  const std::string message = error_of(Blame::Work, [&] { (void)read_exr(folder / "a.exr"); });
+  EXPECT_NE(message.find("--max-memory"), std::string::npos) << message;
 }
 
 }  // namespace

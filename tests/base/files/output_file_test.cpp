@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/files/output_file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 
 #include "tests/base/temporary_folder.h"
@@ -98,6 +100,43 @@ TEST(OutputFile, WhatKilledProcessesLeftIsCleared) {
   EXPECT_EQ(folder.file_count(), 6U);
   EXPECT_TRUE(std::filesystem::exists(folder / own));
   remove_abandoned_files(folder / "none");
+}
+
+TEST(OutputFile, WhatAKilledRunLeftGoesWithTheNextWrite) {
+  const TemporaryFolder folder;
+  write_bytes(folder / ".a.json.999999999-3.part", "half");
+  write_text(folder / "a.json", "new");
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(OutputFile, WhatAnotherMachineIsWritingIsLeftAlone) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder / ".a.json.999999999-3.part";
+  write_bytes(path, "at work");
+  const int file = ::open(path.c_str(), O_RDWR);
+  ASSERT_EQ(::flock(file, LOCK_EX), 0);
+  write_text(folder / "a.json", "new");
+  remove_abandoned_files(folder.path());
+  EXPECT_EQ(read_bytes(path), "at work");
+  ::close(file);
+}
+
+TEST(OutputFile, TwoWritersOfOneFileDoNotMeet) {
+  const TemporaryFolder folder;
+  OutputFile first(folder / "a.txt"), second(folder / "a.txt");
+  ASSERT_NE(first.temporary(), second.temporary());
+  write_bytes(first.temporary(), "first");
+  write_bytes(second.temporary(), "second");
+  second.commit();
+  first.commit();
+  EXPECT_EQ(read_bytes(folder / "a.txt"), "first");
+}
+
+TEST(OutputFile, APipeIsRefusedAndDoesNotKeepAnybodyWaiting) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const std::string message = error_of(Blame::Input, [&] { write_text(folder / "pipe", "x"); });
+  EXPECT_NE(message.find("is a pipe or a device"), std::string::npos) << message;
 }
 
 }  // namespace

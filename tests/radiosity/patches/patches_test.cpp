@@ -43,6 +43,22 @@ TEST(Patches, AreasOfAFacetsCellsAddUpToTheTrianglesArea) {
   for (std::size_t f = 0; f < sum.size(); ++f) EXPECT_NEAR(sum[f] / triangles[f], 1.0, 1e-12);
 }
 
+TEST(Patches, MoreThanNumbersHoldAreRefused) {
+  const scenes::Scene scene = assorted_scene();
+  for (const double edge_m : {1e-4, 1e-9, 1e-10, 1e-20, 1e-300, 5e-324}) {
+    for (const auto& count :
+         {+[](const scenes::Scene&s, double e) { return count_patches(s, e); },
+          +[](const scenes::Scene&s, double e) { return subdivide(s, e).count(); }}) {
+      try {
+        ADD_FAILURE() << edge_m << " m gives " << count(scene, edge_m) << " patches";
+      } catch (const base::Error& error) {
+        EXPECT_NE(std::string(error.what()).find("more than 67108864"), std::string::npos)
+            << error.what();
+      }
+    }
+  }
+}
+
 TEST(Patches, ARayAtAPointOfAPatchFindsThatPatch) {
   const scenes::Scene scene = assorted_scene();
   const scenes::RayQuery query(scene);

@@ -197,6 +197,13 @@ TEST_F(Gltf, WhatTheLibraryAcceptsAndShouldNotIsRefused) {
   const std::string positions =
       R"([{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},)";
   const std::vector<Broken> all{
+      {&Parts::accessors,
+       R"([{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3",
+            "sparse": {"count": 1000000000000000,
+             "indices": {"bufferView": 1, "byteOffset": 2, "componentType": 5123},
+             "values": {"bufferView": 0, "byteOffset": 0}}},
+           {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}])",
+       {"a sparse count is negative, or too large", "2147483647"}},
       {&Parts::nodes,
        R"([{"children": [1]}, {"mesh": 0, "children": [0]}])",
        {"node 0 is reached twice", "tree"}},

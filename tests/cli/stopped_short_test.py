@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Exit code 3: all was written, but not to the error that the call asked for."""
+import json
+import unittest
+
+import program
+
+FINE = "quality.error=0.002"
+LITTLE = ("--max-memory", "22MiB")
+
+
+class StoppedShort(program.Case):
+    def setUp(self):
+        super().setUp()
+        self.write("ball.toml", program.BALL.split("[quality]")[0])
+        self.write("fine.toml", program.BALL.split("[quality]")[0] + "[quality]\nerror = 0.002\n")
+
+    def short(self, *call):
+        run = self.run_program(*call)
+        self.assertEqual(run.returncode, 3, f"{call}: {run.stderr}")
+        lines = [line for line in run.stderr.splitlines() if line.startswith("earthshine: ")]
+        self.assertEqual(len(lines), 1, run.stderr)
+        self.says(lines[0], "is not reached")
+        return run.stdout, lines[0]
+
+    def test_every_command_that_takes_an_error(self):
+        for wish in (("--error", "0.002"), ("--set", FINE)):
+            self.says(self.short("solve", "ball.toml", *wish, *LITTLE)[1], "ball.toml", "0.2 %", "--max-memory")
+        for wish in (("--error", "0.0001"), ("--set", "quality.error=0.0001")):
+            render = ("render", "ball.toml", "-o", "a.exr", "--size", "24x24", "--time-limit", "0.3", "-q", *wish)
+            self.says(self.short(*render)[1], "ball.toml", "0.01 %", "--time-limit")
+            self.short(*render, "--camera", "A", "--camera", "above")
+
+    def test_what_there_is_was_written(self):
+        out, _ = self.short("solve", "ball.toml", "--error", "0.002", *LITTLE, "-o", "a.h5", "--json")
+        self.assertEqual(json.loads(out)["error"]["limit"], "memory")
+        self.assertTrue((self.folder / "a.h5").exists())
+        self.short("render", "ball.toml", "--size", "24x24", "--error", "0.0001", "--time-limit", "0.3", "-o", "a.exr")
+        self.assertTrue((self.folder / "a.exr").exists())
+
+    def test_what_is_done_is_done(self):
+        self.done("solve", "ball.toml", "--error", "0.3")
+        self.done("render", "ball.toml", "-o", "a.exr", "--size", "24x24", "--error", "0.3")
+        self.done("render", "ball.toml", "-o", "a.exr", "--size", "24x24", "--time-limit", "0.3")  # wants no error
+        self.done("render", "ball.toml", "-o", "a.exr", "--size", "24x24", "--set", "quality.error=0.02", "--no-error")
+
+    def test_a_scene_alone_and_settings_that_win_change_nothing(self):
+        self.done("solve", "fine.toml", *LITTLE)
+        self.done("solve", "ball.toml", "--error", "0.0001", "--set", "quality.patch_edge=1", "--set",
+                  "quality.form_factor_rays=16")
+
+    def test_help_says_it(self):
+        for call in ([], ["render"], ["study", "run"]):
+            self.says(" ".join(self.done(*call, "--help").split()), "Exit codes: 0 done;", "3 done, but short of")
+
+
+if __name__ == "__main__":
+    unittest.main()
