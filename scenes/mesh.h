@@ -34,6 +34,21 @@ struct MaterialLibrary {
   base::Location where;
 };
 
+// What Mesh::unused calls lamps and cameras, which objects take over when they ask for them.
+inline constexpr const char* lamps_of_file = "lights";
+inline constexpr const char* cameras_of_file = "cameras";
+
+// A lamp or a camera among the faces, in the file's own coordinates; names may be empty or
+// repeated.
+struct MeshLamp {
+  Lamp lamp;
+  std::uint32_t part_set = 0;
+};
+struct MeshCamera {
+  Camera camera;
+  std::uint32_t part_set = 0;
+};
+
 struct Mesh {
   std::filesystem::path path;  // empty for a shape
   std::vector<Vec3> vertices;
@@ -45,6 +60,8 @@ struct Mesh {
   std::vector<Material> materials;              // those that the file itself or a library defines
   std::vector<base::Location> material_places;  // of each of these
   std::vector<MaterialLibrary> libraries;
+  std::vector<MeshLamp> lamps;
+  std::vector<MeshCamera> cameras;
   std::vector<std::string> warnings;
   // What the file holds besides that nothing here reads, and how often.
   std::map<std::string, std::size_t> unused;

@@ -12,6 +12,7 @@
 #include "app/tools/orbit_facts.h"
 #include "scenes/health/mend.h"
 #include "scenes/light/lamp_light.h"
+#include "scenes/reflect/energy.h"
 
 namespace earthshine::app {
 namespace {
@@ -51,11 +52,6 @@ Json objects_of(const scenes::Scene& scene) {
   return objects;
 }
 
-// Diffuse, highlight (its share is 2 k_s / (n + 2)), mirror and transmitted light together.
-Rgb reflected_share(const scenes::Material& m) {
-  return m.diffuse + m.specular * (2.0 / (m.shininess + 2.0)) + m.mirror + m.transmit;
-}
-
 Json materials_of(const scenes::Scene& scene) {
   std::vector<double> area_m2(scene.materials.size(), 0.0);
   for (const scenes::Triangle& triangle : scene.triangles) {
@@ -78,7 +74,7 @@ Json materials_of(const scenes::Scene& scene) {
                          {"light_group", m.emits() ? Json(m.light_group) : Json()},
                          {"two_sided", m.two_sided},
                          {"area_m2", area_m2[k]},
-                         {"reflected_share", to_json(reflected_share(m))}});
+                         {"reflected_share", to_json(scenes::reflected_share(m))}});
   }
   return materials;
 }

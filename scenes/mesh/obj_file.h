@@ -17,8 +17,8 @@ namespace earthshine::scenes {
 [[nodiscard]] Mesh parse_obj(std::string_view text, const std::filesystem::path& path,
                              std::span<const std::filesystem::path> folders);
 
-// Kd -> diffuse, Ks -> specular, Ns -> shininess, Ke -> emit; textures, transparency and whatever
-// else would change the picture are named in one warning, the rest is passed over.
+// Kd, Ks, Ns, Ke, d, Tr, Tf, Ni and illum as docs/models.md maps them; whatever else would change
+// the picture is named in one warning, the rest is passed over.
 void parse_mtl(std::string_view text, const std::filesystem::path& path, Mesh& mesh);
 
 // Reads mesh.libraries into mesh.materials and empties the list.

@@ -3,6 +3,7 @@
 
 #include "scenes/mesh/mesh_file.h"
 #include "scenes/mesh/shapes.h"
+#include "scenes/read/file_lamps.h"
 #include "scenes/read/material_choice.h"
 #include "scenes/read/scene_parts.h"
 
@@ -10,9 +11,9 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr std::string_view all_keys[] = {
-    "name",   "mesh",     "part",   "shape",   "material", "translate", "rotate",
-    "scale",  "target",   "inward", "corners", "min",      "max",       "center",
-    "radius", "segments", "from",   "to",      "caps",     "normal",    "orient"};
+    "name",   "mesh",   "part",    "shape",  "material", "translate", "rotate", "scale",
+    "target", "inward", "corners", "min",    "max",      "center",    "radius", "segments",
+    "from",   "to",     "caps",    "normal", "orient",   "lights",    "cameras"};
 constexpr std::string_view shapes[] = {"quad", "box", "sphere", "cylinder", "disk"};
 constexpr std::string_view common_keys[] = {"name",  "material", "translate", "rotate",
                                             "scale", "target",   "inward",    "orient"};
@@ -122,6 +123,25 @@ Orient read_orient(const TableReader& table, const Placement& placement) {
   return Orient::Outward;
 }
 
+// What of the mesh's file besides faces goes into the scene, and the names of what does not.
+void take_extras(Scene& scene, const TableReader& table, const Mesh& mesh, std::uint32_t part,
+                 const Placement& placement) {
+  const std::string object = scene.objects.back().name;
+  const bool lights = table.flag("lights").value_or(false);
+  const bool cameras = table.flag("cameras").value_or(false);
+  if (lights) {
+    add_file_lamps(scene, object, mesh, part, placement, table.where("lights"));
+  }
+  if (cameras) {
+    add_file_cameras(scene, object, mesh, part, placement, table.where("cameras"));
+  }
+  std::string& unused = scene.objects.back().unused;
+  for (const auto& [what, count] : mesh.unused) {
+    if ((lights && what == lamps_of_file) || (cameras && what == cameras_of_file)) continue;
+    unused += fmt::format("{}{} {}", unused.empty() ? "" : ", ", count, what);
+  }
+}
+
 }  // namespace
 
 ShelvedMesh& MeshShelf::take(const std::filesystem::path& named, const base::Location& asked_at) {
@@ -155,7 +175,7 @@ void read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& s
     made.mesh = read_shape(table, *shape);
     object.source = *shape;
   } else {
-    allow_keys(table, {"mesh", "part"}, "an object with a mesh");
+    allow_keys(table, {"mesh", "part", "lights", "cameras"}, "an object with a mesh");
     shelved = &shelf.take(*named, table.where("mesh"));
     object.source = *named;
     if (const auto part_name = table.text("part")) {
@@ -166,10 +186,7 @@ void read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& s
   MaterialChoice choice(scene, table, *shelved, shelf.own_material_count());
   place_mesh(scene, std::move(object), shelved->mesh, part, placement, table.where(),
              [&](const MeshPolygon& polygon) { return choice.material_of(polygon); });
-  for (const auto& [what, count] : shelved->mesh.unused) {
-    std::string& unused = scene.objects.back().unused;
-    unused += fmt::format("{}{} {}", unused.empty() ? "" : ", ", count, what);
-  }
+  take_extras(scene, table, shelved->mesh, part, placement);
   // Said once, by the first object that uses the file.
   auto& warnings = shelved->mesh.warnings;
   scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());

@@ -84,11 +84,6 @@ class GltfReader {
       mesh_.warnings.push_back(fmt::format(
           "{}: textures are passed over; materials have their plain colours", path_.string()));
     }
-    if (model_.transparent) {
-      mesh_.warnings.push_back(fmt::format(
-          "{}: transparent materials are read as opaque; say transmit of these in the scene file",
-          path_.string()));
-    }
   }
 
   [[nodiscard]] std::vector<int> roots() const {
@@ -132,7 +127,55 @@ class GltfReader {
     const glm::dmat4 matrix = parent * node_matrix(node, path_);
     if (!node.name.empty()) parts.push_back(number_of(node.name, mesh_.part_names, part_numbers_));
     if (node.mesh >= 0) add_mesh(node.mesh, matrix, parts);
+    add_lamp(node, matrix, parts);
+    add_camera(node, matrix, parts);
     for (const int child : node.children) visit(child, matrix, parts, depth + 1);
+  }
+
+  std::uint32_t add_parts(const std::vector<std::uint32_t>& parts) {
+    mesh_.part_sets.push_back(parts);
+    return static_cast<std::uint32_t>(mesh_.part_sets.size() - 1);
+  }
+
+  void add_lamp(const GltfNode& node, const glm::dmat4& matrix,
+                const std::vector<std::uint32_t>& parts) {
+    if (node.lamp < 0) return;
+    const auto number = static_cast<std::size_t>(node.lamp);
+    if (number >= model_.lamps.size()) {
+      gltf_fail(path_, fmt::format("light {} does not exist", number),
+                fmt::format("the file has {}", model_.lamps.size()));
+    }
+    if (!model_.lamps[number].is_lamp) return;
+    MeshLamp made{model_.lamps[number].lamp, add_parts(parts)};
+    if (!node.name.empty()) made.lamp.name = node.name;
+    made.lamp.position = Vec3(matrix[3]);
+    made.lamp.axis = turned(matrix, made.lamp.axis);
+    mesh_.lamps.push_back(std::move(made));
+  }
+
+  void add_camera(const GltfNode& node, const glm::dmat4& matrix,
+                  const std::vector<std::uint32_t>& parts) {
+    if (node.camera < 0) return;
+    const auto number = static_cast<std::size_t>(node.camera);
+    if (number >= model_.cameras.size()) {
+      gltf_fail(path_, fmt::format("camera {} does not exist", number),
+                fmt::format("the file has {}", model_.cameras.size()));
+    }
+    if (!model_.cameras[number].is_camera) return;
+    MeshCamera made{model_.cameras[number].camera, add_parts(parts)};
+    if (!node.name.empty()) made.camera.name = node.name;
+    made.camera.position = Vec3(matrix[3]);
+    made.camera.look_at = made.camera.position + turned(matrix, {0.0, 0.0, -1.0});
+    made.camera.up = turned(matrix, {0.0, 1.0, 0.0});
+    mesh_.cameras.push_back(std::move(made));
+  }
+
+  [[nodiscard]] Vec3 turned(const glm::dmat4& matrix, const Vec3& direction) const {
+    const Vec3 made = glm::dmat3(matrix) * direction;
+    if (!(glm::length(made) > 0.0)) {
+      gltf_fail(path_, "a lamp or a camera hangs on a node of scale 0");
+    }
+    return glm::normalize(made);
   }
 
   void add_mesh(int number, const glm::dmat4& matrix, std::vector<std::uint32_t> parts) {
@@ -142,8 +185,7 @@ class GltfReader {
     }
     const GltfMesh& mesh = model_.meshes[static_cast<std::size_t>(number)];
     if (!mesh.name.empty()) parts.push_back(number_of(mesh.name, mesh_.part_names, part_numbers_));
-    part_set_ = static_cast<std::uint32_t>(mesh_.part_sets.size());
-    mesh_.part_sets.push_back(std::move(parts));
+    part_set_ = add_parts(parts);
     for (const GltfPrimitive& primitive : mesh.primitives) add_primitive(primitive, matrix);
   }
 
@@ -158,7 +200,8 @@ class GltfReader {
                   fmt::format("the file has {}", model_.materials.size()));
       }
     }
-    const std::vector<Vec3> positions = read_gltf_positions(model_, primitive.position, path_);
+    const std::vector<Vec3> positions =
+        read_gltf_vectors(model_, primitive.position, 3, "POSITION", path_);
     std::vector<std::uint32_t> indices;
     if (primitive.indices >= 0) {
       indices = read_gltf_indices(model_, primitive.indices, path_);

@@ -5,11 +5,12 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "scenes/mesh/gltf/extras.h"
 #include "scenes/mesh/gltf/file.h"
+#include "scenes/mesh/gltf/materials.h"
+#include "scenes/mesh/gltf/punctual.h"
 #include "scenes/text/input_file.h"
 
 namespace earthshine::scenes {
@@ -139,36 +140,14 @@ std::string one_line(std::string text) {
   return text.empty() ? "tinygltf gives no reason" : text;
 }
 
-Material convert(const tinygltf::Material& source) {
-  const auto unit = [](double x) { return std::isfinite(x) ? std::clamp(x, 0.0, 1.0) : 0.0; };
-  const auto colour = [&](const std::vector<double>& values, double otherwise) {
-    return values.size() < 3 ? Rgb(otherwise)
-                             : Rgb(unit(values[0]), unit(values[1]), unit(values[2]));
-  };
-  Material material;
-  material.name = source.name;
-  const auto& pbr = source.pbrMetallicRoughness;
-  const Rgb base_colour = colour(pbr.baseColorFactor, 1.0);
-  const double metallic = unit(pbr.metallicFactor);
-  const double roughness = unit(pbr.roughnessFactor);
-  material.diffuse = base_colour * (1.0 - metallic);
-  if (metallic > 0.0 && roughness < 0.05) {
-    material.mirror = base_colour * metallic;
-  } else if (metallic > 0.0) {
-    const double slope2 = roughness * roughness * roughness * roughness;
-    material.shininess = 2.0 / slope2 - 2.0;
-    material.specular = base_colour * metallic * (material.shininess + 2.0) / 2.0;
-  }
-  // The emissive factor is radiance; a diffuse emitter's exitance is pi times that.
-  material.emit = base::pi * colour(source.emissiveFactor, 0.0);
-  material.two_sided = source.doubleSided;
-  return material;
-}
-
 GltfNumber number_type(int component_type) {
   switch (component_type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return GltfNumber::Int8;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
       return GltfNumber::Uint8;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return GltfNumber::Int16;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
       return GltfNumber::Uint16;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
@@ -183,8 +162,9 @@ GltfNumber number_type(int component_type) {
 GltfAccessor convert(const tinygltf::Accessor& source) {
   GltfAccessor accessor{
       source.bufferView, source.byteOffset, source.count, number_type(source.componentType), 0,
-      std::nullopt};
+      source.normalized, std::nullopt};
   if (source.type == TINYGLTF_TYPE_SCALAR) accessor.components = 1;
+  if (source.type == TINYGLTF_TYPE_VEC2) accessor.components = 2;
   if (source.type == TINYGLTF_TYPE_VEC3) accessor.components = 3;
   if (source.sparse.isSparse) {
     const auto& indices = source.sparse.indices;
@@ -217,6 +197,7 @@ GltfMesh convert(const tinygltf::Mesh& source) {
 
 GltfModel convert(tinygltf::Model&& source) {
   GltfModel model;
+  model.unused = unused_of(source);
   for (auto& buffer : source.buffers) model.buffers.push_back(std::move(buffer.data));
   for (const auto& view : source.bufferViews) {
     model.views.push_back({view.buffer, view.byteOffset, view.byteLength, view.byteStride});
@@ -224,15 +205,16 @@ GltfModel convert(tinygltf::Model&& source) {
   for (const auto& accessor : source.accessors) model.accessors.push_back(convert(accessor));
   for (const auto& mesh : source.meshes) model.meshes.push_back(convert(mesh));
   for (const auto& node : source.nodes) {
-    model.nodes.push_back({node.name, node.mesh, node.children, node.matrix, node.translation,
-                           node.rotation, node.scale});
+    model.nodes.push_back({node.name, node.mesh, -1, -1, node.children, node.matrix,
+                           node.translation, node.rotation, node.scale});
   }
   for (const auto& scene : source.scenes) model.scenes.push_back(scene.nodes);
   model.default_scene = source.defaultScene;
   for (const auto& material : source.materials) {
-    model.materials.push_back(convert(material));
+    model.materials.push_back(phong_material(material, model.unused));
     model.textured = model.textured || material.pbrMetallicRoughness.baseColorTexture.index >= 0;
   }
+  read_punctual(source, model);
   return model;
 }
 
@@ -271,11 +253,7 @@ GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& p
   }
   check_required_extensions(model, path);
   if (!loaded) gltf_fail(path, fmt::format("not a sound glTF file: {}", one_line(problem)));
-  std::map<std::string, std::size_t> unused = unused_of(model);
-  GltfModel converted = convert(std::move(model));
-  converted.transparent = unused.count(transparent) > 0;
-  converted.unused = std::move(unused);
-  return converted;
+  return convert(std::move(model));
 }
 
 }  // namespace earthshine::scenes
