@@ -52,7 +52,10 @@ struct MeshCamera {
 struct Mesh {
   std::filesystem::path path;  // empty for a shape
   std::vector<Vec3> vertices;
-  std::vector<std::uint32_t> indices;  // counter-clockwise seen from the front
+  std::vector<std::uint32_t> indices;     // counter-clockwise seen from the front
+  std::vector<glm::vec2> uv;              // texture coordinates, v down from the upper edge
+  std::vector<std::uint32_t> uv_indices;  // into uv, one for each of `indices`; no_index: none.
+                                          // Empty: no corner has any
   std::vector<MeshPolygon> polygons;
   std::vector<std::string> part_names;                // groups, objects, nodes, meshes, solids
   std::vector<std::vector<std::uint32_t>> part_sets;  // a polygon may belong to several

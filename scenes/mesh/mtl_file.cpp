@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "scenes/mesh/mtl_maps.h"
 #include "scenes/mesh/obj_file.h"
 #include "scenes/text/input_file.h"
 #include "scenes/text/message_text.h"
@@ -48,6 +49,7 @@ struct MtlMaterial {
   Rgb filter{1.0};                 // Tf: colour of what passes
   double ior = 1.0;
   int illumination = 2;  // illum
+  MaterialMaps maps;
 };
 
 // From here on a highlight is as sharp as the format has it: what is reflected is a mirror's.
@@ -56,6 +58,10 @@ constexpr double sharpest = 1000.0;
 // docs/models.md has this map as a table.
 Material material_of(const MtlMaterial& source) {
   Material material;
+  const MaterialMaps& maps = source.maps;
+  if (maps.diffuse.texture || maps.emit.texture || maps.opacity.texture) {
+    material.maps = std::make_shared<const MaterialMaps>(maps);
+  }
   material.name = material.light_group = source.name;
   const double there = source.dissolve.value_or(1.0);
   material.diffuse = there * source.diffuse;
@@ -81,8 +87,12 @@ Material material_of(const MtlMaterial& source) {
 
 class MtlReader {
  public:
-  MtlReader(std::string_view text, const std::filesystem::path& path, Mesh& mesh)
-      : lines_(text, path.string(), TextLines::Style::Wavefront), path_(path), mesh_(mesh) {}
+  MtlReader(std::string_view text, const std::filesystem::path& path,
+            std::span<const std::filesystem::path> folders, Mesh& mesh)
+      : lines_(text, path.string(), TextLines::Style::Wavefront),
+        path_(path),
+        mesh_(mesh),
+        maps_(path, folders, mesh.warnings) {}
 
   void read() {
     while (lines_.next()) {
@@ -106,7 +116,8 @@ class MtlReader {
 
  private:
   [[nodiscard]] static bool is_used(std::string_view keyword) {
-    constexpr std::string_view used[] = {"Kd", "Ks", "Ke", "Ns", "d", "Tr", "Tf", "Ni", "illum"};
+    constexpr std::string_view used[] = {"Kd", "Ks", "Ke",    "Ns",     "d",      "Tr",
+                                         "Tf", "Ni", "illum", "map_Kd", "map_Ke", "map_d"};
     return std::find(std::begin(used), std::end(used), keyword) != std::end(used);
   }
 
@@ -153,6 +164,14 @@ class MtlReader {
       }
     }
     if (keyword == "illum") read_model();
+    if (keyword.starts_with("map_")) read_map(keyword);
+  }
+
+  void read_map(std::string_view keyword) {
+    MaterialMaps& maps = material_->maps;
+    const bool is_mask = keyword == "map_d";
+    TextureMap& map = is_mask ? maps.opacity : keyword == "map_Ke" ? maps.emit : maps.diffuse;
+    if (!maps_.read(lines_, is_mask, map)) ++passed_over_[fmt::format("{} with options", keyword)];
   }
 
   // Models 0 to 9; 10 is of shadows alone.
@@ -181,14 +200,16 @@ class MtlReader {
   TextLines lines_;
   const std::filesystem::path& path_;
   Mesh& mesh_;
+  MtlMaps maps_;
   std::optional<MtlMaterial> material_;
   std::map<std::string, std::size_t> passed_over_;
 };
 
 }  // namespace
 
-void parse_mtl(std::string_view text, const std::filesystem::path& path, Mesh& mesh) {
-  MtlReader(text, path, mesh).read();
+void parse_mtl(std::string_view text, const std::filesystem::path& path,
+               std::span<const std::filesystem::path> folders, Mesh& mesh) {
+  MtlReader(text, path, folders, mesh).read();
 }
 
 void read_material_libraries(Mesh& mesh, std::span<const std::filesystem::path> folders) {
@@ -210,9 +231,13 @@ void read_material_libraries(Mesh& mesh, std::span<const std::filesystem::path> 
     }
     for (const std::string& name : names) {
       const auto path = confined_path(folder, name, folders, library.where);
-      parse_mtl(read_input_file(path, max_library_bytes, library.where), path, mesh);
+      parse_mtl(read_input_file(path, max_library_bytes, library.where), path, folders, mesh);
     }
   }
+  const bool textured =
+      std::any_of(mesh.materials.begin(), mesh.materials.end(),
+                  [](const Material& material) { return material.maps != nullptr; });
+  if (textured) mesh.unused.erase("vt");
 }
 
 }  // namespace earthshine::scenes

@@ -18,8 +18,10 @@ namespace earthshine::scenes {
                              std::span<const std::filesystem::path> folders);
 
 // Kd, Ks, Ns, Ke, d, Tr, Tf, Ni and illum as docs/models.md maps them; whatever else would change
-// the picture is named in one warning, the rest is passed over.
-void parse_mtl(std::string_view text, const std::filesystem::path& path, Mesh& mesh);
+// the picture is named in one warning, the rest is passed over. Textures (mtl_maps.h) lie beside
+// the library or in the folders.
+void parse_mtl(std::string_view text, const std::filesystem::path& path,
+               std::span<const std::filesystem::path> folders, Mesh& mesh);
 
 // Reads mesh.libraries into mesh.materials and empties the list.
 void read_material_libraries(Mesh& mesh, std::span<const std::filesystem::path> folders);

@@ -19,7 +19,7 @@ std::vector<std::string> names_of(const std::vector<Material>& materials, std::s
 bool same_values(const Material& a, const Material& b) {
   return a.diffuse == b.diffuse && a.specular == b.specular && a.shininess == b.shininess &&
          a.mirror == b.mirror && a.transmit == b.transmit && a.ior == b.ior && a.emit == b.emit &&
-         a.light_group == b.light_group && a.two_sided == b.two_sided;
+         a.light_group == b.light_group && a.two_sided == b.two_sided && a.maps == b.maps;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "scenes/health/near_lamps.h"
 #include "scenes/read/override.h"
 #include "scenes/read/scene_parts.h"
+#include "scenes/surface_texture.h"
 #include "scenes/text/input_file.h"
 #include "scenes/text/toml_guard.h"
 
@@ -144,6 +145,7 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   });
   check_size(scene);
   mend_surfaces(scene);
+  settle_textures(scene);
   name_near_lamps(scene);
   return scene;
 }

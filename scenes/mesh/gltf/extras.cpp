@@ -13,13 +13,14 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr std::string_view of_textures[] = {"KHR_texture_transform", "KHR_texture_basisu",
-                                            "EXT_texture_webp", "EXT_texture_avif"};
+constexpr std::string_view of_textures[] = {"KHR_texture_basisu", "EXT_texture_webp",
+                                            "EXT_texture_avif"};
 // Those that the readers here look into.
 constexpr std::string_view known[] = {
     "KHR_mesh_quantization",      "KHR_lights_punctual",    "KHR_materials_emissive_strength",
     "KHR_materials_ior",          "KHR_materials_specular", "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_transmission", "KHR_materials_volume",   "KHR_materials_unlit"};
+    "KHR_materials_transmission", "KHR_materials_volume",   "KHR_materials_unlit",
+    "KHR_texture_transform"};
 
 template <std::size_t N>
 bool among(const std::string& name, const std::string_view (&names)[N]) {
@@ -35,6 +36,14 @@ std::string remedy_for(const std::string& extension) {
   return "Export it without";
 }
 
+bool has_texture(const tinygltf::Model& model, int material) {
+  if (material < 0 || static_cast<std::size_t>(material) >= model.materials.size()) return false;
+  const tinygltf::Material& found = model.materials[static_cast<std::size_t>(material)];
+  return found.pbrMetallicRoughness.baseColorTexture.index >= 0 ||
+         found.emissiveTexture.index >= 0 ||
+         found.extensions.count("KHR_materials_pbrSpecularGlossiness") > 0;
+}
+
 }  // namespace
 
 std::map<std::string, std::size_t> unused_of(const tinygltf::Model& model) {
@@ -44,12 +53,12 @@ std::map<std::string, std::size_t> unused_of(const tinygltf::Model& model) {
   };
   for (const tinygltf::Mesh& mesh : model.meshes) {
     for (const tinygltf::Primitive& primitive : mesh.primitives) {
+      const bool textured = has_texture(model, primitive.material);
       for (const auto& [name, accessor] : primitive.attributes) {
-        if (name != "POSITION") count(name, 1);
+        if (name != "POSITION" && !(textured && name == "TEXCOORD_0")) count(name, 1);
       }
     }
   }
-  count("textures", model.textures.size());
   for (const tinygltf::Light& light : model.lights) {
     count(light.type == "directional" ? "directional lights (say [sun])" : lamps_of_file, 1);
   }

@@ -12,8 +12,8 @@
 
 namespace earthshine::scenes {
 
-// Vertex attributes but for positions, textures, lamps, cameras, skins, animations, extensions that
-// nothing here knows.
+// Vertex attributes but for positions and coordinates of textures, lamps, cameras, skins,
+// animations, extensions that nothing here knows.
 [[nodiscard]] std::map<std::string, std::size_t> unused_of(const tinygltf::Model& model);
 
 // Throws base::Error (Input) for an extension that the file cannot be read without, with what

@@ -62,7 +62,9 @@ class GltfReader {
   Mesh read() {
     name_materials();
     mesh_.unused = model_.unused;
+    mesh_.warnings = model_.warnings;
     for (const int root : roots()) visit(root, glm::dmat4(1.0), {}, 1);
+    if (!mesh_.uv.empty()) mesh_.uv_indices.resize(mesh_.indices.size(), no_index);
     return std::move(mesh_);
   }
 
@@ -79,10 +81,6 @@ class GltfReader {
       mesh_.material_names.push_back(material.name);
       mesh_.materials.push_back(std::move(material));
       mesh_.material_places.push_back({path_.string()});
-    }
-    if (model_.textured) {
-      mesh_.warnings.push_back(fmt::format(
-          "{}: textures are passed over; materials have their plain colours", path_.string()));
     }
   }
 
@@ -223,12 +221,30 @@ class GltfReader {
     }
     const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
     for (const Vec3& p : positions) mesh_.vertices.emplace_back(matrix * glm::dvec4(p, 1.0));
+    const std::uint32_t first_uv = add_coordinates(primitive, material, positions.size());
     const bool mirrored = glm::determinant(glm::dmat3(matrix)) < 0.0;
-    add_triangles(primitive.mode, indices, first, material, mirrored);
+    add_triangles(primitive.mode, indices, first, first_uv, material, mirrored);
+  }
+
+  // Of a primitive with a texture, where they begin in the mesh's; no_index: it has none.
+  std::uint32_t add_coordinates(const GltfPrimitive& primitive, std::uint32_t material,
+                                std::size_t count) {
+    if (material == no_index || !model_.materials[material].maps) return no_index;
+    const auto set = primitive.coordinates.find(model_.coordinates[material]);
+    if (set == primitive.coordinates.end()) return no_index;
+    const std::vector<Vec3> uv = read_gltf_vectors(model_, set->second, 2, "TEXCOORD", path_);
+    if (uv.size() < count) {
+      gltf_fail(path_, fmt::format("{} texture coordinates", uv.size()),
+                fmt::format("the primitive has {} vertices", count));
+    }
+    const auto first = static_cast<std::uint32_t>(mesh_.uv.size());
+    for (const Vec3& place : uv) mesh_.uv.emplace_back(place.x, place.y);
+    return first;
   }
 
   void add_triangles(GltfMode mode, const std::vector<std::uint32_t>& indices, std::uint32_t first,
-                     std::uint32_t material, bool mirrored) {
+                     std::uint32_t first_uv, std::uint32_t material, bool mirrored) {
+    if (first_uv != no_index) mesh_.uv_indices.resize(mesh_.indices.size(), no_index);
     const std::size_t step = mode == GltfMode::Triangles ? 3 : 1;
     for (std::size_t i = 0; i + 3 <= indices.size(); i += step) {
       std::array<std::uint32_t, 3> corners{indices[i], indices[i + 1], indices[i + 2]};
@@ -236,7 +252,10 @@ class GltfReader {
       // Every second triangle of a strip runs the other way round, and so does a mirrored mesh.
       const bool odd = mode == GltfMode::Strip && i % 2 == 1;
       if (odd != mirrored) std::swap(corners[1], corners[2]);
-      for (std::uint32_t& corner : corners) corner += first;
+      for (std::uint32_t& corner : corners) {
+        if (first_uv != no_index) mesh_.uv_indices.push_back(first_uv + corner);
+        corner += first;
+      }
       add_polygon(mesh_, corners, part_set_, material);
     }
   }

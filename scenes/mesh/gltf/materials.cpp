@@ -13,20 +13,28 @@ constexpr double largest_gltf_ior = 10.0;  // as materials of a scene file
 
 // What both of glTF's models come down to.
 struct Facets {
-  Rgb base{1.0};  // of the diffuse light and of metal
+  Rgb base{1.0};    // of the diffuse light and of metal
+  Rgb passed{1.0};  // the same where a texture is only known by its mean
+  TextureSlot colour;
   double alpha = 1.0;
   double metallic = 0.0;
   double roughness = 1.0;
   Rgb dielectric{0.04};  // reflectance at normal incidence of what is no metal
 };
 
-Facets metallic_roughness(const tinygltf::Material& source) {
+Facets metallic_roughness(const tinygltf::Material& source, GltfTextures& textures) {
   const auto& pbr = source.pbrMetallicRoughness;
   Facets facets;
+  facets.colour = slot_of(pbr.baseColorTexture);
   facets.base = colour_of(pbr.baseColorFactor, 1.0);
   if (pbr.baseColorFactor.size() > 3) facets.alpha = in_range(pbr.baseColorFactor[3]);
   facets.metallic = in_range(pbr.metallicFactor);
   facets.roughness = in_range(pbr.roughnessFactor);
+  if (const TextureMap map = textures.read(slot_of(pbr.metallicRoughnessTexture), false);
+      map.texture) {
+    facets.roughness *= map.texture->mean().g;
+    facets.metallic *= map.texture->mean().b;
+  }
   const double ior = number_of(extension_of(source.extensions, "KHR_materials_ior"), "ior", 1.5);
   // An index of 0 stands for a mirror by the extension's text.
   const double root = ior <= 0.0 ? 1.0 : (ior - 1.0) / (ior + 1.0);
@@ -39,6 +47,7 @@ Facets metallic_roughness(const tinygltf::Material& source) {
 
 Facets specular_glossiness(const tinygltf::Value& source) {
   Facets facets;
+  facets.colour = slot_of(source, "diffuseTexture");
   const std::vector<double> diffuse = numbers_of(source, "diffuseFactor");
   facets.base = colour_of(diffuse, 1.0);
   if (diffuse.size() > 3) facets.alpha = in_range(diffuse[3]);
@@ -61,7 +70,7 @@ void reflect(const Facets& facets, Material& material) {
   } else {
     material.diffuse *= 1.0 - base::max_component(facets.dielectric);
   }
-  facet += facets.metallic * facets.base;
+  facet += facets.metallic * facets.passed;
   if (mirror) {
     material.mirror = facet;
   } else if (base::max_component(facet) > 0.0) {
@@ -79,17 +88,63 @@ void thin_out(double alpha, Material& material) {
   material.transmit += Rgb(1.0 - alpha);
 }
 
+void count_unused(const tinygltf::Material& source, std::map<std::string, std::size_t>& unused) {
+  if (source.normalTexture.index >= 0) ++unused["normal maps"];
+  if (source.occlusionTexture.index >= 0) ++unused["occlusion maps"];
+  if (source.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0) {
+    ++unused["metallic-roughness maps, but for their means"];
+  }
+  for (const auto& [name, table] : source.extensions) {
+    for (const std::string& key : table.IsObject() ? table.Keys() : std::vector<std::string>()) {
+      if (key.ends_with("Texture") && key != "diffuseTexture") ++unused[key];
+    }
+  }
+}
+
+// The maps of the material; what only their means go into comes out of `facets`.
+void texture(const tinygltf::Material& source, GltfTextures& textures, Facets& facets,
+             GltfMaterial& made, std::map<std::string, std::size_t>& unused) {
+  MaterialMaps maps;
+  maps.diffuse = textures.read(facets.colour, true);
+  const TextureSlot emission = slot_of(source.emissiveTexture);
+  maps.emit = textures.read(emission, true);
+  made.coordinates = maps.diffuse.texture ? facets.colour.coordinates : emission.coordinates;
+  if (maps.emit.texture && emission.coordinates != made.coordinates) {
+    maps.emit = {};
+    ++unused["textures by a second set of coordinates"];
+  }
+  if (maps.diffuse.texture) {
+    const glm::dvec4 mean = maps.diffuse.texture->mean();
+    facets.passed *= Rgb(mean);
+    if (source.alphaMode == "MASK") {
+      maps.opacity = maps.diffuse;
+      maps.cutoff = facets.alpha > 0.0 ? source.alphaCutoff / facets.alpha : 2.0;
+      facets.alpha = 1.0;
+    } else if (source.alphaMode == "BLEND" && mean.a < 1.0) {
+      facets.alpha *= mean.a;
+      ++unused["blended alpha of textures, but for its mean"];
+    }
+  }
+  if (maps.diffuse.texture || maps.emit.texture) {
+    made.material.maps = std::make_shared<const MaterialMaps>(maps);
+  }
+}
+
 }  // namespace
 
-Material phong_material(const tinygltf::Material& source,
-                        std::map<std::string, std::size_t>& unused) {
-  Material material;
+GltfMaterial phong_material(const tinygltf::Material& source, GltfTextures& textures,
+                            std::map<std::string, std::size_t>& unused) {
+  GltfMaterial made;
+  Material& material = made.material;
   material.name = source.name;
   material.two_sided = source.doubleSided;
   const auto& extensions = source.extensions;
   const tinygltf::Value glossy = extension_of(extensions, "KHR_materials_pbrSpecularGlossiness");
-  const Facets facets =
-      glossy.IsObject() ? specular_glossiness(glossy) : metallic_roughness(source);
+  Facets facets =
+      glossy.IsObject() ? specular_glossiness(glossy) : metallic_roughness(source, textures);
+  facets.passed = facets.base;
+  texture(source, textures, facets, made, unused);
+  count_unused(source, unused);
   if (extensions.count("KHR_materials_unlit") > 0) {
     material.diffuse = facets.base;
     ++unused["unlit materials, taken as diffuse"];
@@ -99,7 +154,7 @@ Material phong_material(const tinygltf::Material& source,
   const tinygltf::Value passing = extension_of(extensions, "KHR_materials_transmission");
   const double passed = in_range(number_of(passing, "transmissionFactor", 0.0));
   if (passed > 0.0 && facets.metallic < 1.0) {
-    material.transmit = passed * (1.0 - facets.metallic) * facets.base *
+    material.transmit = passed * (1.0 - facets.metallic) * facets.passed *
                         (1.0 - base::max_component(facets.dielectric));
     material.diffuse *= 1.0 - passed;
     // Without a thickness it is a sheet, and sheets do not bend light.
@@ -117,7 +172,7 @@ Material phong_material(const tinygltf::Material& source,
                   in_range(number_of(strength, "emissiveStrength", 1.0), strongest);
   if (source.alphaMode == "BLEND") thin_out(facets.alpha, material);
   if (source.alphaMode == "MASK" && facets.alpha < source.alphaCutoff) thin_out(0.0, material);
-  return material;
+  return made;
 }
 
 }  // namespace earthshine::scenes

@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 
+#include "scenes/mesh/gltf/textures.h"
 #include "scenes/scene.h"
 
 namespace earthshine::scenes {
@@ -20,7 +21,13 @@ inline constexpr double least_highlight = 0.05;
 
 // Metallic-roughness, or specular-glossiness; emissive_strength, ior, specular, transmission,
 // volume (whether it is solid), unlit. What they have that Phong has not is counted in `unused`.
-[[nodiscard]] Material phong_material(const tinygltf::Material& source,
-                                      std::map<std::string, std::size_t>& unused);
+// Textures: base colour (k_d; its mean in what metal reflects and glass passes), emission, the
+// alpha of masks; of metallic-roughness maps and of blended alpha the mean.
+struct GltfMaterial {
+  Material material;
+  int coordinates = 0;  // TEXCOORD_n of its textures
+};
+[[nodiscard]] GltfMaterial phong_material(const tinygltf::Material& source, GltfTextures& textures,
+                                          std::map<std::string, std::size_t>& unused);
 
 }  // namespace earthshine::scenes

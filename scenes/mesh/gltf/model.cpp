@@ -68,7 +68,7 @@ std::string plain_name(const std::string& tried) {
   return tried.starts_with("./") ? tried.substr(2) : tried;
 }
 
-// Textures are not used, so they need not be read; tinygltf does without a missing image.
+// Read where a material needs them; tinygltf does without a missing image.
 bool is_image(const std::string& name) {
   constexpr std::string_view endings[] = {".png",  ".jpg", ".jpeg", ".webp",
                                           ".ktx2", ".dds", ".basis"};
@@ -127,8 +127,10 @@ Callbacks file_callbacks(FileAccess& files) {
   return callbacks;
 }
 
-bool pass_over_image(tinygltf::Image*, const int, std::string*, std::string*, int, int,
-                     const unsigned char*, int, void*) {
+// Bytes of a picture inside the file or its buffers, kept as they are.
+bool keep_image(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
+                const unsigned char* bytes, int size, void*) {
+  if (size > 0) image->image.assign(bytes, bytes + size);
   return true;
 }
 
@@ -182,7 +184,7 @@ GltfAccessor convert(const tinygltf::Accessor& source) {
 GltfMesh convert(const tinygltf::Mesh& source) {
   GltfMesh mesh{source.name, {}};
   for (const tinygltf::Primitive& primitive : source.primitives) {
-    GltfPrimitive converted{GltfMode::Other, -1, primitive.indices, primitive.material};
+    GltfPrimitive converted{GltfMode::Other, -1, primitive.indices, primitive.material, {}};
     if (primitive.mode == -1 || primitive.mode == TINYGLTF_MODE_TRIANGLES) {
       converted.mode = GltfMode::Triangles;
     }
@@ -190,14 +192,27 @@ GltfMesh convert(const tinygltf::Mesh& source) {
     if (primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN) converted.mode = GltfMode::Fan;
     const auto position = primitive.attributes.find("POSITION");
     if (position != primitive.attributes.end()) converted.position = position->second;
+    for (const auto& [name, accessor] : primitive.attributes) {
+      constexpr std::string_view coordinates = "TEXCOORD_";
+      if (!name.starts_with(coordinates)) continue;
+      const char set = name.size() == coordinates.size() + 1 ? name.back() : 'x';
+      if (set >= '0' && set <= '9') converted.coordinates[set - '0'] = accessor;
+    }
     mesh.primitives.push_back(converted);
   }
   return mesh;
 }
 
-GltfModel convert(tinygltf::Model&& source) {
+GltfModel convert(tinygltf::Model&& source, const FileAccess& files) {
   GltfModel model;
   model.unused = unused_of(source);
+  GltfTextures textures(
+      source, files.path,
+      [&](const std::string& uri) {
+        return read_input_file(files.inside(uri), max_mesh_bytes,
+                               base::Location{files.path.string()});
+      },
+      model.warnings);
   for (auto& buffer : source.buffers) model.buffers.push_back(std::move(buffer.data));
   for (const auto& view : source.bufferViews) {
     model.views.push_back({view.buffer, view.byteOffset, view.byteLength, view.byteStride});
@@ -211,8 +226,9 @@ GltfModel convert(tinygltf::Model&& source) {
   for (const auto& scene : source.scenes) model.scenes.push_back(scene.nodes);
   model.default_scene = source.defaultScene;
   for (const auto& material : source.materials) {
-    model.materials.push_back(phong_material(material, model.unused));
-    model.textured = model.textured || material.pbrMetallicRoughness.baseColorTexture.index >= 0;
+    GltfMaterial made = phong_material(material, textures, model.unused);
+    model.materials.push_back(std::move(made.material));
+    model.coordinates.push_back(made.coordinates);
   }
   read_punctual(source, model);
   return model;
@@ -234,7 +250,7 @@ GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& p
 
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(file_callbacks<tinygltf::FsCallbacks>(files));
-  loader.SetImageLoader(pass_over_image, nullptr);
+  loader.SetImageLoader(keep_image, nullptr);
   tinygltf::Model model;
   std::string problem, warning;
   bool loaded = false;
@@ -253,7 +269,7 @@ GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& p
   }
   check_required_extensions(model, path);
   if (!loaded) gltf_fail(path, fmt::format("not a sound glTF file: {}", one_line(problem)));
-  return convert(std::move(model));
+  return convert(std::move(model), files);
 }
 
 }  // namespace earthshine::scenes

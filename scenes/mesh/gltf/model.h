@@ -44,6 +44,7 @@ enum class GltfMode { Triangles, Strip, Fan, Other };
 struct GltfPrimitive {
   GltfMode mode = GltfMode::Other;
   int position = -1, indices = -1, material = -1;  // -1: none
+  std::map<int, int> coordinates;                  // TEXCOORD_n, by n
 };
 
 struct GltfMesh {
@@ -78,9 +79,10 @@ struct GltfModel {
   std::vector<std::vector<int>> scenes;  // root nodes of each
   int default_scene = -1;
   std::vector<Material> materials;  // names may be empty or repeated
+  std::vector<int> coordinates;     // of each: TEXCOORD_n of its textures
   std::vector<GltfLamp> lamps;
   std::vector<GltfCamera> cameras;
-  bool textured = false;
+  std::vector<std::string> warnings;
   std::map<std::string, std::size_t> unused;  // what nothing here reads, as Mesh::unused
 };
 
@@ -88,7 +90,8 @@ struct GltfModel {
 [[noreturn]] void gltf_fail(const std::filesystem::path& path, std::string_view found,
                             std::string_view allowed = {});
 
-// Buffers only from the folders, no images. Materials: materials.h; lamps and cameras: punctual.h.
+// Buffers and pictures only from the folders. Materials: materials.h; lamps and cameras:
+// punctual.h.
 [[nodiscard]] GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& path,
                                         std::span<const std::filesystem::path> folders);
 

@@ -2,7 +2,9 @@
 // What the lines of an MTL file become.
 #include <gtest/gtest.h>
 
+#include "base/files/png_file.h"
 #include "scenes/mesh/obj_file.h"
+#include "scenes/texture/texture.h"
 #include "tests/scenes/scene_text.h"
 
 namespace earthshine::scenes {
@@ -12,7 +14,7 @@ using test::holds;
 
 Material material_of(const std::string& lines) {
   Mesh mesh;
-  parse_mtl("newmtl m\n" + lines, "a.mtl", mesh);
+  parse_mtl("newmtl m\n" + lines, "a.mtl", {}, mesh);
   EXPECT_EQ(mesh.warnings.size(), 0U);
   return mesh.materials.at(0);
 }
@@ -54,11 +56,48 @@ TEST(MtlMaterials, DissolveLetsThroughAndBendsOnlyWhereTheModelRefracts) {
 TEST(MtlMaterials, WhatIsNotReadIsNamed) {
   Mesh mesh;
   parse_mtl("newmtl m\nd -halo 0.5\nTf xyz 1 1 1\nillum 10\nPr 0.5\nKa 1 1 1\nsharpness 60\n",
-            "a.mtl", mesh);
+            "a.mtl", {}, mesh);
   ASSERT_EQ(mesh.warnings.size(), 1U);
   EXPECT_TRUE(holds(mesh.warnings[0], {"a.mtl", "\"d -halo\" (1)", "\"Tf xyz\" (1)",
                                        "\"illum 10\" (1)", "\"Pr\" (1)"}));
   EXPECT_EQ(mesh.unused.size(), 4U);
+}
+
+TEST(MtlMaterials, TexturesHaveTheirOptionsAndNamesWithBlanks) {
+  const test::SceneFolder folder;
+  const std::vector<std::uint8_t> grey(12, 188);
+  base::write_png(folder.path() / "old wood.png", 2, 2, 3, grey);
+  Mesh mesh;
+  const std::filesystem::path folders[] = {folder.path()};
+  parse_mtl(
+      "newmtl m\nKd 0.5\nmap_Kd -s 2 4 1 -o 0.25 0.5 -clamp on old wood.png\nmap_Ke -mm 0 2 a.png\n"
+      "newmtl n\nmap_d -imfchan m old wood.png\n",
+      folder.path() / "a.mtl", folders, mesh);
+  const TextureMap& map = mesh.materials.at(0).maps->diffuse;
+  EXPECT_EQ(map.texture->name(), "old wood.png");
+  // v runs up in the file and down here: (u, v) = (0.1, 0.2), w = 0.8, becomes u' = 0.25 + 0.2 and
+  // v' = 0.5 + 0.8, w' = 1 - v' = -0.3.
+  const glm::dvec2 place = map.transform->apply({0.1, 0.8});
+  EXPECT_NEAR(place.x, 0.45, 1e-12);
+  EXPECT_NEAR(place.y, -0.3, 1e-12);
+  EXPECT_TRUE(mesh.materials.at(1).has_holes());
+  EXPECT_EQ(mesh.unused, (std::map<std::string, std::size_t>{{"map_Ke with options", 1}}));
+}
+
+TEST(MtlMaterials, CornersWithoutCoordinatesAreNamed) {
+  const test::SceneFolder folder;
+  base::write_png(folder.path() / "a.png", 1, 1, 3, std::vector<std::uint8_t>(3, 255));
+  folder.put("a.obj",
+             "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 0.5 0.25\nusemtl m\n"
+             "f 1/-1 2/1 3/7\nf 3 2 1\n");
+  folder.put("a.mtl", "newmtl m\nKd 0.5\nmap_Kd a.png\n");
+  const Scene scene =
+      folder.read("format = 1\n[[object]]\nname = \"o\"\nmesh = \"a.obj\"\norient = \"as-is\"\n");
+  ASSERT_EQ(scene.warnings.size(), 1U);
+  EXPECT_TRUE(holds(scene.warnings[0], {"\"o\"", "4 corners"}));
+  const glm::vec2 uv = scene.vertex_uv.at(scene.triangles.at(0).vertex[0]);
+  EXPECT_EQ(uv, glm::vec2(0.5F, 0.75F));
+  EXPECT_EQ(scene.objects.at(0).unused, "");
 }
 
 TEST(MtlMaterials, MoreLightThanArrivesIsScaledAndSaid) {

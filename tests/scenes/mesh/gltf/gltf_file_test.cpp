@@ -262,7 +262,8 @@ TEST_F(Gltf, TexturesAreNotOpenedWhereverTheyLie) {
           "textures": [{"source": 0}], "images": [{"uri": "../../textures/a.png"}])";
   const Scene scene = read(parts);
   ASSERT_EQ(scene.warnings.size(), 1U);
-  EXPECT_TRUE(holds(scene.warnings[0], {"a.gltf", "textures are passed over"}));
+  EXPECT_TRUE(holds(scene.warnings[0],
+                    {"a texture is left out", "a.gltf", "leads out of the scene's folder"}));
 }
 
 TEST_F(Gltf, DeepTextsAndChainsAreRefused) {

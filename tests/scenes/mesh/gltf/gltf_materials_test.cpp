@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/files/png_file.h"
 #include "scenes/reflect/energy.h"
 #include "scenes/reflect/microfacet.h"
+#include "scenes/texture/texture.h"
 #include "tests/scenes/scene_text.h"
 
 namespace earthshine::scenes {
@@ -127,6 +129,30 @@ TEST_F(GltfMaterials, GlassPassesItsColourAndBendsOnlyWhereItIsThick) {
       R"({"alphaMode": "BLEND", "pbrMetallicRoughness": {"metallicFactor": 0, "baseColorFactor": [0.5, 0.5, 0.5, 0.25]}})");
   EXPECT_EQ(blended.diffuse, Rgb(0.125));
   EXPECT_EQ(blended.transmit, Rgb(0.75));
+}
+
+TEST_F(GltfMaterials, TexturesAreTurnedCounterClockwiseAndMetalHasTheirMean) {
+  base::write_png(folder_.path() / "a b.png", 2, 1, 3,
+                  std::vector<std::uint8_t>{255, 255, 255, 0, 0, 0});
+  const std::string more =
+      R"(, "images": [{"uri": "a%20b.png"}], "textures": [{"source": 0, "sampler": 0}],
+      "samplers": [{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}])";
+  const std::string turned =
+      R"("baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform":
+      {"offset": [0.5, 0.25], "rotation": 1.57079632679489662, "scale": [2, 4]}}})";
+  const Scene plain =
+      read(R"({"pbrMetallicRoughness": {"metallicFactor": 0, )" + turned + "}}", more);
+  const TextureMap& map = plain.materials.at(0).maps->diffuse;
+  // (u, v) = (0.1, 0.2) scaled is (0.2, 0.8); a quarter turn counter-clockwise, v running down,
+  // takes (1, 0) to (0, -1) and (0, 1) to (1, 0): (0.8, -0.2); shifted (1.3, 0.05).
+  const glm::dvec2 place = map.transform->apply({0.1, 0.2});
+  EXPECT_NEAR(place.x, 1.3, 1e-12);
+  EXPECT_NEAR(place.y, 0.05, 1e-12);
+  EXPECT_NEAR(map.texture->at({-3.0, 0.5}).r, 1.0, 1e-9);  // clamped
+  EXPECT_TRUE(holds(plain.warnings.at(0), {"no texture coordinates"}));
+  const Scene metal =
+      read(R"({"pbrMetallicRoughness": {"roughnessFactor": 0, )" + turned + "}}", more);
+  EXPECT_NEAR(metal.materials.at(0).mirror.g, 0.5, 1e-4);
 }
 
 TEST_F(GltfMaterials, LampsAndCamerasComeWhenAskedFor) {
