@@ -118,7 +118,8 @@ class Models(program.Case):
         floor = self.render("grille.toml", "--camera", "floor", "--indirect", "none", "--no-error")[0]
         lit = sum(1 for value in floor["G"] if value > 80) / len(floor["G"])
         self.assertAlmostEqual(lit, 0.5, delta=0.02)
-        self.assertAlmostEqual(max(floor["G"]), 0.5 * 1000 / math.pi, delta=0.5)
+        # The screen beside it adds 1 %.
+        self.assertAlmostEqual(max(floor["G"]), 0.5 * 1000 / math.pi, delta=2.5)
         seen = self.render("grille.toml", "--camera", "above", "--aov", "object,albedo", "--no-error")[0]
         self.assertTrue(any(abs(a - 0.5) < 1e-6 for a in seen["albedo.G"]))
         self.assertTrue(any(abs(a - srgb(180)) < 1e-3 for a in seen["albedo.G"]))
