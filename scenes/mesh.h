@@ -49,13 +49,18 @@ struct MeshCamera {
   std::uint32_t part_set = 0;
 };
 
+// Whether the normals of vertices are read: few meshes need them.
+enum class VertexNormals { Ignored, Read };
+
 struct Mesh {
   std::filesystem::path path;  // empty for a shape
   std::vector<Vec3> vertices;
-  std::vector<std::uint32_t> indices;     // counter-clockwise seen from the front
-  std::vector<glm::vec2> uv;              // texture coordinates, v down from the upper edge
-  std::vector<std::uint32_t> uv_indices;  // into uv, one for each of `indices`; no_index: none.
-                                          // Empty: no corner has any
+  std::vector<std::uint32_t> indices;         // counter-clockwise seen from the front
+  std::vector<glm::vec2> uv;                  // texture coordinates, v down from the upper edge
+  std::vector<std::uint32_t> uv_indices;      // into uv, one for each of `indices`; no_index: none.
+                                              // Empty: no corner has any
+  std::vector<glm::vec3> normals;             // of the surface, where they are asked for
+  std::vector<std::uint32_t> normal_indices;  // as uv_indices
   std::vector<MeshPolygon> polygons;
   std::vector<std::string> part_names;                // groups, objects, nodes, meshes, solids
   std::vector<std::vector<std::uint32_t>> part_sets;  // a polygon may belong to several

@@ -30,8 +30,10 @@ constexpr std::size_t most_warnings = 10;
 class ObjReader {
  public:
   ObjReader(std::string_view text, const std::filesystem::path& path,
-            std::span<const std::filesystem::path> folders)
-      : lines_(text, path.string(), TextLines::Style::Wavefront), folders_(folders) {
+            std::span<const std::filesystem::path> folders, VertexNormals normals)
+      : lines_(text, path.string(), TextLines::Style::Wavefront),
+        folders_(folders),
+        reads_normals_(normals == VertexNormals::Read) {
     mesh_.path = path;
   }
 
@@ -58,6 +60,9 @@ class ObjReader {
         note_library();
       } else if (keyword == "vt" && !mesh_.libraries.empty()) {
         read_coordinates();
+      } else if (keyword == "vn" && reads_normals_) {
+        mesh_.normals.emplace_back(lines_.number(std::size_t{1}), lines_.number(std::size_t{2}),
+                                   lines_.number(std::size_t{3}));
       } else if (std::find(std::begin(passed_over), std::end(passed_over), keyword) ==
                  std::end(passed_over)) {
         warn_once(keyword);
@@ -108,17 +113,23 @@ class ObjReader {
     }
     corners_.clear();
     if (!mesh_.uv.empty()) mesh_.uv_indices.resize(mesh_.indices.size(), no_index);
+    if (!mesh_.normals.empty()) mesh_.normal_indices.resize(mesh_.indices.size(), no_index);
     for (std::size_t i = 1; i < words.size(); ++i) {
-      std::int64_t coordinates = 0;
-      corners_.push_back(vertex_of(words[i], coordinates));
-      if (!mesh_.uv.empty()) mesh_.uv_indices.push_back(coordinates_of(coordinates));
+      std::int64_t coordinates = 0, normal = 0;
+      corners_.push_back(vertex_of(words[i], coordinates, normal));
+      if (!mesh_.uv.empty()) {
+        mesh_.uv_indices.push_back(attribute_of(coordinates, mesh_.uv.size()));
+      }
+      if (!mesh_.normals.empty()) {
+        mesh_.normal_indices.push_back(attribute_of(normal, mesh_.normals.size()));
+      }
     }
     add_polygon(mesh_, corners_, part_set(), material_, static_cast<std::uint32_t>(lines_.line()));
   }
 
   // "v", "v/vt", "v//vn" or "v/vt/vn"; v counts from 1, or from the last vertex with -1.
-  // `coordinates`: vt, or 0.
-  std::uint32_t vertex_of(const Word& word, std::int64_t& coordinates) {
+  // `coordinates`: vt, `normal`: vn, or 0.
+  std::uint32_t vertex_of(const Word& word, std::int64_t& coordinates, std::int64_t& normal) {
     const std::size_t slash = word.text.find('/');
     std::int64_t number = 0;
     bool sound = parse_whole(word.text.substr(0, slash), number);
@@ -127,7 +138,6 @@ class ObjReader {
       const std::size_t next = word.text.find('/', at + 1);
       const std::string_view field =
           word.text.substr(at + 1, next == std::string_view::npos ? next : next - at - 1);
-      std::int64_t normal = 0;
       std::int64_t& number_there = slashes == 0 ? coordinates : normal;
       sound = (field.empty() || parse_whole(field, number_there)) && ++slashes <= 2;
       at = next;
@@ -147,9 +157,9 @@ class ObjReader {
     return static_cast<std::uint32_t>(number > 0 ? number - 1 : count + number);
   }
 
-  // A face whose coordinates are not there has none: without a texture nobody would miss them.
-  [[nodiscard]] std::uint32_t coordinates_of(std::int64_t number) const {
-    const auto count = static_cast<std::int64_t>(mesh_.uv.size());
+  // A corner whose coordinates or normal are not there has none: often nobody misses them.
+  [[nodiscard]] static std::uint32_t attribute_of(std::int64_t number, std::size_t size) {
+    const auto count = static_cast<std::int64_t>(size);
     if (number < 0) number += count + 1;
     return number < 1 || number > count ? no_index : static_cast<std::uint32_t>(number - 1);
   }
@@ -192,6 +202,7 @@ class ObjReader {
 
   TextLines lines_;
   std::span<const std::filesystem::path> folders_;
+  bool reads_normals_;
   Mesh mesh_;
   std::string last_keyword_;
   std::size_t* last_unused_ = nullptr;  // of that keyword, in mesh_
@@ -208,8 +219,8 @@ class ObjReader {
 }  // namespace
 
 Mesh parse_obj(std::string_view text, const std::filesystem::path& path,
-               std::span<const std::filesystem::path> folders) {
-  return ObjReader(text, path, folders).read();
+               std::span<const std::filesystem::path> folders, VertexNormals normals) {
+  return ObjReader(text, path, folders, normals).read();
 }
 
 }  // namespace earthshine::scenes

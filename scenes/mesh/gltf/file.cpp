@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/quaternion.hpp>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -17,45 +15,13 @@
 namespace earthshine::scenes {
 namespace {
 
-glm::dmat4 node_matrix(const GltfNode& node, const std::filesystem::path& path) {
-  const auto check = [&](const std::vector<double>& values, std::size_t wanted,
-                         std::string_view what) {
-    const bool finite = std::all_of(values.begin(), values.end(),
-                                    [](double x) { return std::abs(x) <= largest_coordinate; });
-    if ((values.empty() || values.size() == wanted) && finite) return;
-    gltf_fail(path, fmt::format("the {} of node {}", what, in_quotes(node.name)),
-              fmt::format("it has {} finite numbers", wanted));
-  };
-  check(node.matrix, 16, "matrix");
-  check(node.translation, 3, "translation");
-  check(node.rotation, 4, "rotation");
-  check(node.scale, 3, "scale");
-  glm::dmat4 matrix(1.0);
-  if (!node.matrix.empty()) {
-    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
-    return matrix;
-  }
-  if (!node.translation.empty()) {
-    matrix =
-        glm::translate(matrix, Vec3(node.translation[0], node.translation[1], node.translation[2]));
-  }
-  if (!node.rotation.empty()) {
-    const glm::dquat turn(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-    if (!(glm::length(turn) > 1e-9)) {
-      gltf_fail(path, fmt::format("the rotation of node {} has no length", in_quotes(node.name)));
-    }
-    matrix = matrix * glm::mat4_cast(glm::normalize(turn));
-  }
-  if (!node.scale.empty()) {
-    matrix = glm::scale(matrix, Vec3(node.scale[0], node.scale[1], node.scale[2]));
-  }
-  return matrix;
-}
-
 class GltfReader {
  public:
-  GltfReader(const GltfModel& model, const std::filesystem::path& path)
-      : model_(model), path_(path), visited_(model.nodes.size(), 0) {
+  GltfReader(const GltfModel& model, const std::filesystem::path& path, VertexNormals normals)
+      : model_(model),
+        path_(path),
+        reads_normals_(normals == VertexNormals::Read),
+        visited_(model.nodes.size(), 0) {
     mesh_.path = path;
   }
 
@@ -65,6 +31,7 @@ class GltfReader {
     mesh_.warnings = model_.warnings;
     for (const int root : roots()) visit(root, glm::dmat4(1.0), {}, 1);
     if (!mesh_.uv.empty()) mesh_.uv_indices.resize(mesh_.indices.size(), no_index);
+    if (reads_normals_) mesh_.unused.erase("NORMAL");
     return std::move(mesh_);
   }
 
@@ -221,9 +188,27 @@ class GltfReader {
     }
     const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
     for (const Vec3& p : positions) mesh_.vertices.emplace_back(matrix * glm::dvec4(p, 1.0));
-    const std::uint32_t first_uv = add_coordinates(primitive, material, positions.size());
+    const First starts{first, add_coordinates(primitive, material, positions.size()),
+                       add_normals(primitive, matrix, positions.size())};
     const bool mirrored = glm::determinant(glm::dmat3(matrix)) < 0.0;
-    add_triangles(primitive.mode, indices, first, first_uv, material, mirrored);
+    add_triangles(primitive.mode, indices, starts, material, mirrored);
+  }
+
+  // Where a primitive's begin in the mesh's lists; no_index: it has none.
+  struct First {
+    std::uint32_t vertex, uv, normal;
+  };
+
+  // Where they are asked for.
+  std::uint32_t add_normals(const GltfPrimitive& primitive, const glm::dmat4& matrix,
+                            std::size_t count) {
+    if (!reads_normals_ || primitive.normal < 0) return no_index;
+    const auto normals = read_gltf_vectors(model_, primitive.normal, 3, "NORMAL", path_);
+    if (normals.size() < count) gltf_fail(path_, "fewer normals than vertices");
+    const auto first = static_cast<std::uint32_t>(mesh_.normals.size());
+    const glm::dmat3 turn = glm::transpose(glm::inverse(glm::dmat3(matrix)));
+    for (const Vec3& normal : normals) mesh_.normals.emplace_back(glm::normalize(turn * normal));
+    return first;
   }
 
   // Of a primitive with a texture, where they begin in the mesh's; no_index: it has none.
@@ -242,9 +227,13 @@ class GltfReader {
     return first;
   }
 
-  void add_triangles(GltfMode mode, const std::vector<std::uint32_t>& indices, std::uint32_t first,
-                     std::uint32_t first_uv, std::uint32_t material, bool mirrored) {
-    if (first_uv != no_index) mesh_.uv_indices.resize(mesh_.indices.size(), no_index);
+  void add_triangles(GltfMode mode, const std::vector<std::uint32_t>& indices, First first,
+                     std::uint32_t material, bool mirrored) {
+    const auto begin = [&](std::uint32_t start, std::vector<std::uint32_t>& list) {
+      if (start != no_index) list.resize(mesh_.indices.size(), no_index);
+    };
+    begin(first.uv, mesh_.uv_indices);
+    begin(first.normal, mesh_.normal_indices);
     const std::size_t step = mode == GltfMode::Triangles ? 3 : 1;
     for (std::size_t i = 0; i + 3 <= indices.size(); i += step) {
       std::array<std::uint32_t, 3> corners{indices[i], indices[i + 1], indices[i + 2]};
@@ -253,8 +242,9 @@ class GltfReader {
       const bool odd = mode == GltfMode::Strip && i % 2 == 1;
       if (odd != mirrored) std::swap(corners[1], corners[2]);
       for (std::uint32_t& corner : corners) {
-        if (first_uv != no_index) mesh_.uv_indices.push_back(first_uv + corner);
-        corner += first;
+        if (first.uv != no_index) mesh_.uv_indices.push_back(first.uv + corner);
+        if (first.normal != no_index) mesh_.normal_indices.push_back(first.normal + corner);
+        corner += first.vertex;
       }
       add_polygon(mesh_, corners, part_set_, material);
     }
@@ -262,6 +252,7 @@ class GltfReader {
 
   const GltfModel& model_;
   const std::filesystem::path& path_;
+  bool reads_normals_;
   Mesh mesh_;
   std::vector<int> visited_;
   std::uint32_t part_set_ = 0;
@@ -271,9 +262,9 @@ class GltfReader {
 }  // namespace
 
 Mesh parse_gltf(std::string_view bytes, const std::filesystem::path& path,
-                std::span<const std::filesystem::path> folders) {
+                std::span<const std::filesystem::path> folders, VertexNormals normals) {
   const GltfModel model = load_gltf_model(bytes, path, folders);
-  return GltfReader(model, path).read();
+  return GltfReader(model, path, normals).read();
 }
 
 }  // namespace earthshine::scenes

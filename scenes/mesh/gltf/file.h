@@ -20,6 +20,7 @@ inline constexpr std::size_t max_gltf_triangles = std::size_t{1} << 24;
 // applied. Parts: names of nodes, each with what hangs below it, and of meshes. Materials and
 // textures: materials.h.
 [[nodiscard]] Mesh parse_gltf(std::string_view bytes, const std::filesystem::path& path,
-                              std::span<const std::filesystem::path> folders);
+                              std::span<const std::filesystem::path> folders,
+                              VertexNormals normals = VertexNormals::Ignored);
 
 }  // namespace earthshine::scenes

@@ -184,7 +184,7 @@ GltfAccessor convert(const tinygltf::Accessor& source) {
 GltfMesh convert(const tinygltf::Mesh& source) {
   GltfMesh mesh{source.name, {}};
   for (const tinygltf::Primitive& primitive : source.primitives) {
-    GltfPrimitive converted{GltfMode::Other, -1, primitive.indices, primitive.material, {}};
+    GltfPrimitive converted{GltfMode::Other, -1, primitive.indices, primitive.material, -1, {}};
     if (primitive.mode == -1 || primitive.mode == TINYGLTF_MODE_TRIANGLES) {
       converted.mode = GltfMode::Triangles;
     }
@@ -192,6 +192,8 @@ GltfMesh convert(const tinygltf::Mesh& source) {
     if (primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN) converted.mode = GltfMode::Fan;
     const auto position = primitive.attributes.find("POSITION");
     if (position != primitive.attributes.end()) converted.position = position->second;
+    const auto normal = primitive.attributes.find("NORMAL");
+    if (normal != primitive.attributes.end()) converted.normal = normal->second;
     for (const auto& [name, accessor] : primitive.attributes) {
       constexpr std::string_view coordinates = "TEXCOORD_";
       if (!name.starts_with(coordinates)) continue;

@@ -44,7 +44,8 @@ enum class GltfMode { Triangles, Strip, Fan, Other };
 struct GltfPrimitive {
   GltfMode mode = GltfMode::Other;
   int position = -1, indices = -1, material = -1;  // -1: none
-  std::map<int, int> coordinates;                  // TEXCOORD_n, by n
+  int normal = -1;
+  std::map<int, int> coordinates;  // TEXCOORD_n, by n
 };
 
 struct GltfMesh {
@@ -94,6 +95,10 @@ struct GltfModel {
 // punctual.h.
 [[nodiscard]] GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& path,
                                         std::span<const std::filesystem::path> folders);
+
+// A node's own transform: its matrix, or translation, rotation and scale in that order. Throws
+// base::Error (Input) for numbers that are too few, too many or not finite.
+[[nodiscard]] glm::dmat4 node_matrix(const GltfNode& node, const std::filesystem::path& path);
 
 // The accessor's values, checked against buffer view and buffer in wide arithmetic; sparse ones
 // included. Of vectors with two components the third is 0; quantised ones come as the shares or
