@@ -3,7 +3,7 @@
 
 #include "radiosity/factors/covered_patches.h"
 #include "radiosity/ledger.h"
-#include "scenes/reflect/bihemispherical_albedo.h"
+#include "radiosity/patches/patch_albedo.h"
 #include "scenes/sky/sky_parts.h"
 
 namespace earthshine::radiosity {
@@ -32,7 +32,7 @@ std::vector<ObjectLight> object_means(const scenes::Scene& scene, const Patches&
       mean.radiosity_lm_m2[c] += area * radiosity[i * columns + k];
     }
     const std::uint32_t m = patches.material(patch);
-    if (is_explicit[m]) mean.radiosity_lm_m2 += area * scene.materials[m].emit;
+    if (is_explicit[m]) mean.radiosity_lm_m2 += area * patch_emit(scene, patches, patch);
   }
   for (std::size_t o = 0; o < means.size(); ++o) {
     means[o].name = scene.objects[o].name;
@@ -49,9 +49,9 @@ std::vector<ObjectLight> object_means(const scenes::Scene& scene, const Patches&
 std::vector<double> reflectances(const scenes::Scene& scene, const Patches& patches,
                                  std::size_t groups) {
   std::vector<double> values(patches.count() * 3 * groups);
-  const std::vector<Rgb> spread = scenes::bihemispherical_albedos(scene);
+  const PatchAlbedos albedos(scene);
   for (std::size_t i = 0; i < patches.count(); ++i) {
-    const Rgb& rho = spread[patches.material(static_cast<std::uint32_t>(i))];
+    const Rgb rho = albedos.of(patches, static_cast<std::uint32_t>(i));
     for (std::size_t k = 0; k < 3 * groups; ++k) {
       values[i * 3 * groups + k] = rho[static_cast<int>(k % 3)];
     }
@@ -67,9 +67,9 @@ std::vector<double> exitances(const scenes::Scene& scene, const scenes::LightGro
   for (std::size_t i = 0; i < patches.count(); ++i) {
     const std::uint32_t m = patches.material(static_cast<std::uint32_t>(i));
     if (is_explicit[m] || groups.material[m] == scenes::no_group) continue;
+    const Rgb emitted = patch_emit(scene, patches, static_cast<std::uint32_t>(i));
     for (int c = 0; c < 3; ++c) {
-      values[i * columns + 3 * groups.material[m] + static_cast<std::size_t>(c)] =
-          scene.materials[m].emit[c];
+      values[i * columns + 3 * groups.material[m] + static_cast<std::size_t>(c)] = emitted[c];
     }
   }
   return values;
@@ -93,10 +93,13 @@ void fill_solution(const scenes::Scene& scene, const scenes::LightGroups& groups
   solution.indirect_lx.assign(light.indirect.begin(), light.indirect.end());
   solution.soft_radiosity.resize(light.radiosity.size());
   const std::size_t sky_parts = scenes::earth_parts(scene);
+  Rgb patch_k_d(0.0);
   for (std::size_t k = 0; k < light.radiosity.size(); ++k) {
     const std::size_t column = k % columns;
-    const std::uint32_t material = patches.material(static_cast<std::uint32_t>(k / columns));
-    const double diffuse = scene.materials[material].diffuse[static_cast<int>(column % 3)];
+    if (column == 0) {
+      patch_k_d = patch_diffuse(scene, patches, static_cast<std::uint32_t>(k / columns));
+    }
+    const double diffuse = patch_k_d[static_cast<int>(column % 3)];
     double soft = diffuse * light.indirect[k];
     if (effects.earth_by_gather && column / 3 >= groups.earth &&
         column / 3 < groups.earth + sky_parts) {

@@ -8,7 +8,6 @@
 
 #include "base/numbers/random.h"
 #include "base/parallel.h"
-#include "scenes/reflect/bihemispherical_albedo.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_parts.h"
 
@@ -144,7 +143,7 @@ Variation::Variation(const scenes::Scene& scene, const scenes::LightGroups& grou
       sources_(find_sources(scene, groups, effects, 16)),
       groups_(groups.count()),
       earth_group_(groups.earth),
-      reflectances_(scenes::bihemispherical_albedos(scene)),
+      reflectances_(scene),
       options_(options) {}
 
 std::vector<Unevenness> Variation::find(const Patches& patches,
@@ -241,7 +240,7 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
   base::parallel_chunks(which.size(), 64, [&](std::size_t begin, std::size_t end) {
     std::uint64_t rays = 0;
     for (std::size_t k = begin; k < end; ++k) {
-      const Rgb& rho = reflectances_[patches.material(which[k])];
+      const Rgb rho = reflectances_.of(patches, which[k]);
       if (base::max_component(rho) <= 0.0) continue;
       Looks sharp(points_on(patches.area_m2[which[k]]), groups_), soft(indirect_points, groups_);
       rays += direct(which[k], rho, sharp);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "radiosity/direct/sources.h"
+#include "radiosity/patches/patch_albedo.h"
 #include "radiosity/solution.h"
 
 namespace earthshine::radiosity {
@@ -64,7 +65,7 @@ class Variation {
   const scenes::RayQuery& query_;
   std::vector<LightSource> sources_;
   std::size_t groups_, earth_group_;
-  std::vector<Rgb> reflectances_;  // per material, with lobes
+  PatchAlbedos reflectances_;
   VariationOptions options_;
   std::uint64_t rays_ = 0;
 };

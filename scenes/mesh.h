@@ -34,10 +34,33 @@ struct MaterialLibrary {
   base::Location where;
 };
 
+// What Mesh::unused calls lamps and cameras, which objects take over when they ask for them.
+inline constexpr const char* lamps_of_file = "lights";
+inline constexpr const char* cameras_of_file = "cameras";
+
+// A lamp or a camera among the faces, in the file's own coordinates; names may be empty or
+// repeated.
+struct MeshLamp {
+  Lamp lamp;
+  std::uint32_t part_set = 0;
+};
+struct MeshCamera {
+  Camera camera;
+  std::uint32_t part_set = 0;
+};
+
+// Whether the normals of vertices are read: few meshes need them.
+enum class VertexNormals { Ignored, Read };
+
 struct Mesh {
   std::filesystem::path path;  // empty for a shape
   std::vector<Vec3> vertices;
-  std::vector<std::uint32_t> indices;  // counter-clockwise seen from the front
+  std::vector<std::uint32_t> indices;         // counter-clockwise seen from the front
+  std::vector<glm::vec2> uv;                  // texture coordinates, v down from the upper edge
+  std::vector<std::uint32_t> uv_indices;      // into uv, one for each of `indices`; no_index: none.
+                                              // Empty: no corner has any
+  std::vector<glm::vec3> normals;             // of the surface, where they are asked for
+  std::vector<std::uint32_t> normal_indices;  // as uv_indices
   std::vector<MeshPolygon> polygons;
   std::vector<std::string> part_names;                // groups, objects, nodes, meshes, solids
   std::vector<std::vector<std::uint32_t>> part_sets;  // a polygon may belong to several
@@ -46,6 +69,8 @@ struct Mesh {
   std::vector<base::Location> material_places;  // of each of these
   std::vector<MaterialLibrary> libraries;
   std::vector<std::filesystem::path> files;  // that it was read from, or that it names
+  std::vector<MeshLamp> lamps;
+  std::vector<MeshCamera> cameras;
   std::vector<std::string> warnings;
   // What the file holds besides that nothing here reads, and how often.
   std::map<std::string, std::size_t> unused;

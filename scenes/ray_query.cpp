@@ -18,6 +18,8 @@
 #include <cstring>
 #include <string>
 
+#include "scenes/mask.h"
+
 namespace earthshine::scenes {
 namespace {
 
@@ -72,12 +74,25 @@ constexpr auto lane_masks() {
 }
 alignas(32) constexpr std::array<std::array<int, 8>, 9> valid_lanes = lane_masks();
 
+// Rays go on through the holes of opacity masks.
+void pass_holes(const RTCFilterFunctionNArguments* found) {
+  const auto& masks = *static_cast<const OpacityMasks*>(found->geometryUserPtr);
+  for (unsigned k = 0; k < found->N; ++k) {
+    if (found->valid[k] != -1) continue;
+    const bool hole = masks.is_hole(RTCHitN_primID(found->hit, found->N, k),
+                                    double(RTCHitN_u(found->hit, found->N, k)),
+                                    double(RTCHitN_v(found->hit, found->N, k)));
+    if (hole) found->valid[k] = 0;
+  }
+}
+
 }  // namespace
 
 struct RayQuery::Embree {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   double offset_m = 0.0;
+  OpacityMasks masks;
 
   ~Embree() {
     if (scene != nullptr) rtcReleaseScene(scene);
@@ -142,6 +157,12 @@ RayQuery::RayQuery(const Scene& source) : embree_(std::make_unique<Embree>()) {
       for (std::size_t k = 0; k < 3; ++k) indices[3 * i + k] = source.triangles[i].vertex[k];
     }
     rtcSetGeometryMask(geometry, all_rays);  // Embree 4 would default to 1
+    embree_->masks = OpacityMasks(source);
+    if (!embree_->masks.empty()) {
+      rtcSetGeometryUserData(geometry, &embree_->masks);
+      rtcSetGeometryIntersectFilterFunction(geometry, pass_holes);
+      rtcSetGeometryOccludedFilterFunction(geometry, pass_holes);
+    }
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(embree_->scene, geometry);
     rtcReleaseGeometry(geometry);

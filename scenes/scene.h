@@ -18,6 +18,21 @@
 
 namespace earthshine::scenes {
 
+class Texture;            // scenes/texture/texture.h
+struct TextureTransform;  // of the vertices' coordinates
+
+// A texture that varies a colour of a material over the surface, about its mean there.
+struct TextureMap {
+  std::shared_ptr<const Texture> texture;  // null: none
+  std::shared_ptr<const TextureTransform> transform;
+  Rgb over_mean{1.0};  // 1 / the texture's mean over what wears the material; 0 where that is 0
+};
+struct MaterialMaps {
+  TextureMap diffuse, emit;
+  TextureMap opacity;  // by its alpha: nothing is there where that is below the cutoff
+  double cutoff = 0.5;
+};
+
 // Surface reflectance as the 1990 report has it: pi f = diffuse + specular cos^n(alpha), n =
 // shininess. diffuse + 2 specular / (n + 2) + mirror + transmit <= 1 in every channel.
 struct Material {
@@ -31,8 +46,13 @@ struct Material {
   Rgb emit{0.0};            // exitance, lm/m^2
   std::string light_group;  // of what it emits; the material's name unless the scene says otherwise
   bool two_sided = false;   // false: the back is black
+  std::shared_ptr<const MaterialMaps> maps;  // null: no textures. diffuse and emit are the means
 
   [[nodiscard]] bool emits() const { return base::max_component(emit) > 0.0; }
+  [[nodiscard]] bool has_holes() const { return maps && maps->opacity.texture; }
+  [[nodiscard]] bool lets_light_through() const {
+    return base::max_component(transmit) > 0.0 || has_holes();
+  }
   [[nodiscard]] bool passes_light_on() const {  // mirror or glass: rays go on from it
     return base::max_component(mirror) > 0.0 || base::max_component(transmit) > 0.0;
   }
@@ -200,6 +220,7 @@ struct Scene {
   std::vector<std::filesystem::path> files;  // that it was read from: itself, meshes, tables, ...
   std::string name;
   std::vector<Vec3> vertices;
+  std::vector<glm::vec2> vertex_uv;  // u, v down, of each; empty: no surface has a texture
   std::vector<Triangle> triangles;
   std::vector<Material> materials;
   std::vector<Object> objects;

@@ -15,8 +15,8 @@ import sys
 # Floors, and the rooms of each: a file may include its own room and those before it. "." is the floor's own
 # folder.
 ROOMS = {
-    "base": [".", "numbers", "input", "files"],
-    "scenes": [".", "text", "reflect", "light", "mesh/gltf", "mesh", "sky", "effects", "health", "read"],
+    "base": [".", "numbers", "input", "files", "pixels"],
+    "scenes": ["texture", ".", "text", "reflect", "light", "mesh/gltf", "mesh", "sky", "effects", "health", "round", "read"],
     "radiosity": ["patches", "bodies", "factors", "objects", "direct", ".", "store", "exact/polygon",
                   "exact/occlusion", "exact"],
     "raytrace": ["camera", "frame", "light", "incoming", "paths", "share", "gather", "shade", "passes",
@@ -36,9 +36,13 @@ OWNERS = {
     "OpenEXR": (r"(OpenEXR/|Imath/|Imf|Imath|Iex|half\.h)", ["base/files/exr_*"]),
     "oneTBB": (r"(tbb|oneapi)/", ["base/parallel.cpp"]),
     "toml++": (r"toml(\+\+|plusplus)", ["scenes/text/toml_file.cpp"]),
-    "libpng": (r"png\.h", ["base/files/png_file.cpp", "base/files/png_reader.cpp"]),
+    "libpng": (r"png\.h", ["base/files/png_file.cpp", "base/files/png_reader.cpp",
+                            "base/pixels/png_pixels.cpp"]),
+    "libjpeg-turbo": (r"j(peglib|config|error|morecfg)\.h", ["base/pixels/jpeg_pixels.cpp"]),
     "tinygltf": (r"tiny_?gltf", ["scenes/mesh/gltf/model.cpp", "scenes/mesh/gltf/writer.cpp",
-                                    "scenes/mesh/gltf/extras.*"]),
+                                    "scenes/mesh/gltf/extras.*", "scenes/mesh/gltf/materials.*",
+                                    "scenes/mesh/gltf/punctual.*", "scenes/mesh/gltf/textures.*",
+                                    "scenes/mesh/gltf/values.h"]),
     "HDF5": (r"(hdf5(_hl)?|H5\w*)\.h", ["base/files/hdf5_handle.h"]),
     "CLI11": (r"CLI/", ["app/*"]),
     "nlohmann-json": (r"nlohmann/", ["app/*"]),

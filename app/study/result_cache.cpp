@@ -65,8 +65,8 @@ Json scene_cache_key(const LoadedScene& loaded) {
   // it is decided about.
   base::Digest lobes;
   for (const scenes::Triangle& triangle : loaded.scene.triangles) {
-    const auto& [name, diffuse, specular, shininess, mirror, transmit, ior, emit, group, sheet] =
-        loaded.scene.materials[triangle.material];
+    const auto& [name, diffuse, specular, shininess, mirror, transmit, ior, emit, group, sheet,
+                 maps] = loaded.scene.materials[triangle.material];
     lobes.add(specular);
     lobes.add(shininess);
   }

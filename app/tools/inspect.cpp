@@ -12,6 +12,9 @@
 #include "app/tools/orbit_facts.h"
 #include "scenes/health/mend.h"
 #include "scenes/light/lamp_light.h"
+#include "scenes/reflect/energy.h"
+#include "scenes/surface_texture.h"
+#include "scenes/texture/texture.h"
 
 namespace earthshine::app {
 namespace {
@@ -51,9 +54,20 @@ Json objects_of(const scenes::Scene& scene) {
   return objects;
 }
 
-// Diffuse, highlight (its share is 2 k_s / (n + 2)), mirror and transmitted light together.
-Rgb reflected_share(const scenes::Material& m) {
-  return m.diffuse + m.specular * (2.0 / (m.shininess + 2.0)) + m.mirror + m.transmit;
+// What each texture is for, its file and size.
+Json textures_of(const scenes::MaterialMaps& maps) {
+  Json textures = Json::array();
+  const auto add = [&](const char* use, const scenes::TextureMap& map) {
+    if (!map.texture) return;
+    textures.push_back({{"use", use},
+                        {"file", map.texture->name()},
+                        {"size", {map.texture->width(), map.texture->height()}},
+                        {"mib", static_cast<double>(map.texture->bytes()) / 1048576.0}});
+  };
+  add("diffuse", maps.diffuse);
+  add("emit", maps.emit);
+  add("opacity", maps.opacity);
+  return textures;
 }
 
 Json materials_of(const scenes::Scene& scene) {
@@ -78,7 +92,8 @@ Json materials_of(const scenes::Scene& scene) {
                          {"light_group", m.emits() ? Json(m.light_group) : Json()},
                          {"two_sided", m.two_sided},
                          {"area_m2", area_m2[k]},
-                         {"reflected_share", to_json(reflected_share(m))}});
+                         {"reflected_share", to_json(scenes::reflected_share(m))}});
+    if (m.maps) materials.back()["textures"] = textures_of(*m.maps);
   }
   return materials;
 }
@@ -182,6 +197,9 @@ Json report_of(const LoadedScene& loaded) {
   report["areas"] = areas_of(scene);
   report.update(sky_of(scene, loaded));
   report["orbit"] = orbit_facts(scene);
+  if (const std::size_t bytes = scenes::texture_bytes(scene); bytes > 0) {
+    report["texture_mib"] = static_cast<double>(bytes) / 1048576.0;
+  }
   report["ambient_radiance_cd_m2"] = to_json(scene.ambient_radiance);
   report["light_groups"] = loaded.groups.names;
   report["cameras"] = cameras_of(scene);

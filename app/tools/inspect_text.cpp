@@ -60,6 +60,13 @@ std::string materials_table(const Json& report) {
     if (numbers(m["mirror"]) != black) also += "mirror " + numbers(m["mirror"]) + "; ";
     if (numbers(m["transmit"]) != black) also += "transmits " + numbers(m["transmit"]) + "; ";
     if (m["two_sided"].get<bool>()) also += "two-sided";
+    for (const Json& texture : m.value("textures", Json::array())) {
+      also += fmt::format("{}{} by {} ({} x {}, {:.3g} MiB)",
+                          also.empty() || also.ends_with("; ") ? "" : "; ",
+                          texture["use"].get<std::string>(), texture["file"].get<std::string>(),
+                          texture["size"][0].get<int>(), texture["size"][1].get<int>(),
+                          texture["mib"].get<double>());
+    }
     text += fmt::format("{:<24} {:>10.5g} {:<20} {:<20} {:>9g}  {}\n", m["name"].get<std::string>(),
                         m["area_m2"].get<double>(), numbers(m["diffuse"]), numbers(m["specular"]),
                         m["shininess"].get<double>(), also);

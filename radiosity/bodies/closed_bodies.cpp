@@ -15,7 +15,8 @@ namespace {
 constexpr double least_volume_share = 1e-9;  // of its box: below it a surface holds nothing
 constexpr double most_cells = 512.0;         // per way of the grid
 constexpr std::uint32_t none = 0xFFFFFFFFU;
-constexpr std::uint32_t outside = none;  // stands for a body: all that is in no room
+constexpr std::uint32_t first_hole = 0x80000000U;  // from here on: masked triangles
+constexpr std::uint32_t outside = none;            // stands for a body: all that is in no room
 
 // Whether the half-line from p along +x crosses the edge, +1 upward, -1 downward. The same edge the
 // other way round gives the opposite number to the last bit.
@@ -85,7 +86,19 @@ int ClosedSurface::winding(const Vec3& point) const {
   return winding;
 }
 
+void ClosedBodies::find_holes(const scenes::Scene& scene) {
+  masks_ = scenes::OpacityMasks(scene);
+  if (masks_.empty()) return;
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    if (masks_.number(t) == scenes::unmasked) continue;
+    const auto& v = scene.triangles[t].vertex;
+    masked_.push_back({scene.vertices[v[0]] - centre_, scene.vertices[v[1]] - centre_,
+                       scene.vertices[v[2]] - centre_});
+  }
+}
+
 ClosedBodies::ClosedBodies(const scenes::Scene& scene, const Vec3& centre) : centre_(centre) {
+  find_holes(scene);
   const ClosedParts parts = find_closed_parts(scene);
   std::vector<char> walls(parts.of.size(), 0);
   const std::map<std::uint32_t, std::vector<Vec3>> stoppers = find_stoppers(scene, parts);
@@ -174,12 +187,31 @@ std::vector<std::uint32_t> ClosedBodies::near(const Patches& patches, std::uint3
     if (bodies_[b].surface.may_wind(low - margin_m, high + margin_m)) found.push_back(b);
   }
   if (dark_outside_) found.push_back(outside);
+  if (masks_.empty()) return found;
+  const Facet& facet = patches.facets[patches.facet[patch]];
+  for (std::uint32_t k = 0; k < (facet.parallelogram ? 2U : 1U); ++k) {
+    const std::uint32_t number = masks_.number(facet.triangle + k);
+    if (number != scenes::unmasked) found.push_back(first_hole + number);
+  }
   return found;
+}
+
+// The point lies a hair's breadth over the triangle: its weights there.
+bool ClosedBodies::in_hole(const Vec3& point, std::uint32_t number) const {
+  const auto& [a, b, c] = masked_[number];
+  const Vec3 ab = b - a, ac = c - a, normal = glm::cross(ab, ac);
+  const double square = glm::dot(normal, normal);
+  const double u = glm::dot(glm::cross(point - a, ac), normal) / square;
+  const double v = glm::dot(glm::cross(ab, point - a), normal) / square;
+  constexpr double rounding = 1e-5;
+  if (u < -rounding || v < -rounding || u + v > 1.0 + rounding) return false;  // the other half
+  return masks_.has_hole(number, u, v);
 }
 
 bool ClosedBodies::cover(const Vec3& point, std::span<const std::uint32_t> bodies) const {
   return std::any_of(bodies.begin(), bodies.end(), [&](std::uint32_t b) {
     if (b == outside) return !in_room(point);
+    if (b >= first_hole) return in_hole(point, b - first_hole);
     const Body& body = bodies_[b];
     return body.surface.winding(point) > 0 &&
            std::none_of(body.cavities.begin(), body.cavities.end(),

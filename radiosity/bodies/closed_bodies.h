@@ -11,7 +11,8 @@
 // floor, or is sunk in it, has nothing to receive beyond the floor and nobody to send it to.
 // A hole that rests on another surface all around is stopped up by it (hole_capping.h).
 // Sheets, glass, other open meshes and meshes with some faces turned over cover nothing: where
-// their inside is cannot be told.
+// their inside is cannot be told. The holes of an opacity mask are counted with what is covered:
+// nothing is there either.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +20,7 @@
 #include <vector>
 
 #include "radiosity/patches/patches.h"
+#include "scenes/mask.h"
 #include "scenes/scene.h"
 
 namespace earthshine::radiosity {
@@ -71,7 +73,8 @@ class ClosedBodies {
   // Points, here and below, are relative to `centre`. A body in which a lamp stands is none.
   ClosedBodies(const scenes::Scene& scene, const Vec3& centre);
 
-  // What may cover points within margin_m of a patch: bodies, and the dark outside.
+  // What may cover points within margin_m of a patch: bodies, the dark outside, and the holes of
+  // the patch's own opacity mask, where it is not.
   [[nodiscard]] std::vector<std::uint32_t> near(const Patches& patches, std::uint32_t patch,
                                                 double margin_m) const;
   [[nodiscard]] bool cover(const Vec3& point, std::span<const std::uint32_t> bodies) const;
@@ -82,6 +85,8 @@ class ClosedBodies {
     ClosedSurface surface;
     std::vector<std::uint32_t> cavities;
   };
+  void find_holes(const scenes::Scene& scene);
+  [[nodiscard]] bool in_hole(const Vec3& point, std::uint32_t number) const;
   void leave_out_lit(const scenes::Scene& scene);
   [[nodiscard]] bool in_room(const Vec3& point) const;
   [[nodiscard]] bool light_is_in_rooms(const scenes::Scene& scene,
@@ -92,6 +97,11 @@ class ClosedBodies {
   std::vector<Body> bodies_;
   std::vector<ClosedSurface> cavities_;  // rooms among them
   bool dark_outside_ = false;
+  scenes::OpacityMasks masks_;
+  struct Corners {
+    Vec3 a, b, c;
+  };
+  std::vector<Corners> masked_;  // per masked triangle
 };
 
 }  // namespace earthshine::radiosity

@@ -28,7 +28,7 @@ ClosedParts find_closed_parts(const scenes::Scene& scene) {
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
     const scenes::Triangle& triangle = scene.triangles[t];
     const scenes::Material& material = scene.materials[triangle.material];
-    if (material.two_sided || base::max_component(material.transmit) > 0.0) continue;
+    if (material.two_sided || material.lets_light_through()) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = id[triangle.vertex[k]], b = id[triangle.vertex[(k + 1) % 3]];
       if (a != b)

@@ -77,7 +77,7 @@ class Stopper {
       if (glm::dot(normals_[t], outward) > flat - 1.0 || parts_.of[t] == part) continue;
       if (std::abs(glm::dot(corners_of(scene_, t).a - hub, normals_[t])) > touch_m_) continue;
       const scenes::Material& material = scene_.materials[scene_.triangles[t].material];
-      if (material.two_sided || base::max_component(material.transmit) > 0.0) continue;
+      if (material.two_sided || material.lets_light_through()) continue;
       found.push_back(t);
     }
     return found;

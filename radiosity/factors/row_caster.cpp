@@ -56,7 +56,9 @@ void RowCaster::cast(std::uint32_t patch, HitCounter& counter, Band& band) const
   std::vector<std::uint32_t> near;
   const std::size_t first_part = band.sky_illuminance.size();
   band.sky_illuminance.resize(first_part + sky_parts_, Rgb(0.0));
-  if (!trace(patch, sender, leave_out_covered_, near, row, counter, band)) {
+  const bool has_holes = scene_.materials[patches_.material(patch)].has_holes();
+  if (has_holes && leave_out_covered_) near = bodies_near(patch);
+  if (!trace(patch, sender, leave_out_covered_ && !has_holes, near, row, counter, band)) {
     counter.clear();
     band.backs_met.clear();
     row = {};

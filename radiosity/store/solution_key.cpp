@@ -4,6 +4,7 @@
 #include "base/numbers/digest.h"
 #include "scenes/light/photometry.h"
 #include "scenes/sky/sky_parts.h"
+#include "scenes/texture/texture.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -19,7 +20,12 @@ std::uint64_t geometry(const Scene& scene) {
   digest.add(std::uint64_t{scene.triangles.size()});
   for (const scenes::Triangle& triangle : scene.triangles) {
     const auto& [vertex, object, material, polygon] = triangle;
-    for (const std::uint32_t v : vertex) digest.add(scene.vertices[v]);
+    for (const std::uint32_t v : vertex) {
+      digest.add(scene.vertices[v]);
+      if (scene.vertex_uv.empty() || !scene.materials[material].maps) continue;
+      digest.add(double(scene.vertex_uv[v].x));
+      digest.add(double(scene.vertex_uv[v].y));
+    }
     digest.add(std::uint64_t{object});
     digest.add(std::uint64_t{polygon});
   }
@@ -37,10 +43,21 @@ std::uint64_t of_worn(const Scene& scene, Part part) {
   return digest.value();
 }
 
+std::uint64_t of_map(const scenes::TextureMap& map) {
+  Digest digest;
+  if (!map.texture) return digest.value();
+  digest.add(map.texture->digest());
+  const auto& [turn, shift] = *map.transform;
+  for (const double x : {turn[0].x, turn[0].y, turn[1].x, turn[1].y, shift.x, shift.y}) {
+    digest.add(x);
+  }
+  return digest.value();
+}
+
 std::uint64_t surfaces(const Scene& scene) {
   return of_worn(scene, [&](std::size_t m) {
-    const auto& [name, diffuse, specular, shininess, mirror, transmit, ior, emit, group, sheet] =
-        scene.materials[m];
+    const auto& [name, diffuse, specular, shininess, mirror, transmit, ior, emit, group, sheet,
+                 maps] = scene.materials[m];
     Digest digest;
     digest.add(diffuse);
     digest.add(specular);
@@ -49,6 +66,11 @@ std::uint64_t surfaces(const Scene& scene) {
     digest.add(transmit);
     digest.add(ior);
     digest.add(std::uint64_t{sheet});
+    if (maps) {
+      digest.add(of_map(maps->diffuse));
+      digest.add(of_map(maps->opacity));
+      digest.add(maps->cutoff);
+    }
     return digest.value();
   });
 }
@@ -76,6 +98,7 @@ std::uint64_t lights(const Scene& scene, const scenes::LightGroups& groups) {
     Digest emission;
     emission.add(scene.materials[m].emit);
     emission.add(std::uint64_t{groups.material[m]});
+    if (scene.materials[m].maps) emission.add(of_map(scene.materials[m].maps->emit));
     return emission.value();
   }));
   return digest.value();

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "radiosity/patches/patch_albedo.h"
 namespace earthshine::radiosity {
 namespace {
 
@@ -27,7 +28,7 @@ std::vector<Rgb> whole_radiosity(const scenes::Scene& scene, const Solution& sol
       sums[i][static_cast<int>(k % 3)] += solution.radiosity[i * solution.columns + k];
     }
     const std::uint32_t m = solution.patches.material(i);
-    if (is_explicit[m]) sums[i] += scene.materials[m].emit;
+    if (is_explicit[m]) sums[i] += patch_emit(scene, solution.patches, i);
   }
   return sums;
 }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "scenes/surface_texture.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 // What the ray through a pixel's centre met.
 struct FirstHit {
   const scenes::Triangle* triangle = nullptr;  // nullptr: nothing
-  const scenes::Material* material = nullptr;
+  Rgb albedo{0.0};
   Vec3 position{0.0}, normal{0.0};
   double range_m = 0.0, depth_m = 0.0;
 };
@@ -25,7 +26,7 @@ FirstHit first_hit(const scenes::Scene& scene, const scenes::RayQuery& query,
   const scenes::Hit hit = query.closest(ray.origin, ray.direction);
   if (hit.missed()) return found;
   found.triangle = &scene.triangles[hit.triangle];
-  found.material = &scene.materials[found.triangle->material];
+  found.albedo = scenes::diffuse_at(scene, scene.materials[found.triangle->material], hit);
   const Vec3 normal = scenes::triangle_normal(scene, hit.triangle);
   // Where the ray crosses the triangle's plane, in double precision: the traced distance is single,
   // and who projects positions back would see that.
@@ -60,7 +61,7 @@ const std::vector<Measured>& measured() {
       {"albedo",
        {"albedo.R", "albedo.G", "albedo.B"},
        0.0F,
-       [](const FirstHit& h, char c) { return axis(h.material->diffuse, c); }},
+       [](const FirstHit& h, char c) { return axis(h.albedo, c); }},
       {"normal",
        {"N.X", "N.Y", "N.Z"},
        0.0F,

@@ -9,6 +9,7 @@
 #include "scenes/reflect/specular.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_parts.h"
+#include "scenes/surface_texture.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -53,7 +54,8 @@ PathWalker::Surface PathWalker::surface_at(const scenes::Hit& hit) const {
           outward,
           hit.front ? outward : -outward,
           glm::reflect(ray_.direction, outward),
-          hit.front || material.two_sided};
+          hit.front || material.two_sided,
+          scenes::diffuse_at(scene, material, hit)};
 }
 
 bool PathWalker::is_black(const Surface& surface) {
@@ -80,9 +82,9 @@ void PathWalker::shine(const Surface& surface, const scenes::Hit& hit) {
   const scenes::Material& material = surface.material;
   const std::uint32_t number = world_.scene.triangles[hit.triangle].material;
   if (sees_sampled_ || !world_.sampled_emitter[number]) {
-    add(world_.groups.material[number], material.emit / pi);
+    add(world_.groups.material[number], scenes::emit_at(world_.scene, material, hit) / pi);
   }
-  if (from_camera_) add(world_.groups.ambient, material.diffuse * world_.scene.ambient_radiance);
+  if (from_camera_) add(world_.groups.ambient, surface.diffuse * world_.scene.ambient_radiance);
   if (lit(material.diffuse) || lit(material.specular)) light_directly(surface);
 }
 
@@ -150,7 +152,7 @@ void PathWalker::light_directly(const Surface& surface) {
     const scenes::LightSample light = world_.lights.sample(k, surface.position, u, v);
     const double cosine = glm::dot(light.direction, surface.normal);
     if (cosine <= 0.0 || !lit(light.normal_illuminance_lx)) continue;
-    Rgb reflectance = surface.material.diffuse;
+    Rgb reflectance = surface.diffuse;
     const double cos_alpha = glm::dot(light.direction, surface.mirrored);
     if (lit(surface.material.specular) && cos_alpha > 0.0) {
       reflectance += surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
@@ -174,7 +176,7 @@ bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
   const double n = material.shininess;
   enum : std::size_t { Diffuse, Lobe, Mirror, Glass };
   const std::array<double, 4> share = {
-      surface.shines ? base::max_component(material.diffuse) : 0.0,
+      surface.shines ? base::max_component(surface.diffuse) : 0.0,
       surface.shines ? base::max_component(material.specular) * 2.0 / (n + 2.0) : 0.0,
       base::max_component(material.mirror), base::max_component(material.transmit)};
   const double all = share[Diffuse] + share[Lobe] + share[Mirror] + share[Glass];
@@ -188,7 +190,7 @@ bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
 
   if (way == Diffuse && solution != nullptr) {
     const Vec3 origin = surface.position + surface.normal * world_.query.surface_offset_m();
-    weight_ *= material.diffuse;
+    weight_ *= surface.diffuse;
     const double u = rng_->next(), v = rng_->next();
     if (!turn_diffusely(*solution, origin, surface.normal, u, v)) return false;
   } else if (way == Mirror || way == Glass) {
@@ -226,7 +228,7 @@ void PathWalker::scatter(const Surface& surface, bool by_lobe) {
     const double cosine = std::max(0.0, glm::dot(direction, surface.normal));
     weight_ *= surface.material.specular * (2.0 * cosine / (n + 1.0));
   } else {
-    weight_ *= surface.material.diffuse;
+    weight_ *= surface.diffuse;
   }
   ray_ = {surface.position + surface.normal * world_.query.surface_offset_m(), direction};
   sees_sampled_ = from_camera_ = false;

@@ -53,6 +53,7 @@ class PathWalker {
     Vec3 normal;    // the same on the side that the path arrives from
     Vec3 mirrored;  // the path's direction reflected
     bool shines;    // reflects and emits: false inside glass
+    Rgb diffuse;    // k_d there
   };
 
   void begin(const Ray& start, base::Rng& rng);

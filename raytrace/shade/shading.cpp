@@ -7,6 +7,7 @@
 #include "scenes/reflect/specular.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_parts.h"
+#include "scenes/surface_texture.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -152,12 +153,16 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
   if (!hit.front && !material.two_sided && !glass) return;  // the black back
 
   const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
-  const Surface surface{material, scenes::hit_position(scene, hit), outward,
-                        hit.front ? outward : -outward, -ray.direction};
+  const Surface surface{
+      material,       scenes::hit_position(scene, hit),
+      outward,        hit.front ? outward : -outward,
+      -ray.direction, scenes::diffuse_at(scene, material, hit, hit.t * shared_.texture_rad)};
   const bool shines = hit.front || material.two_sided;
   const bool shows_emission = seen == Seen::ByCamera || !shared_.sampled_emitter[triangle.material];
   if (shines && shows_emission && shared_.groups.material[triangle.material] != no_group) {
-    see_source(shared_.groups.material[triangle.material], weight * material.emit / pi, depth);
+    see_source(shared_.groups.material[triangle.material],
+               weight * scenes::emit_at(scene, material, hit, hit.t * shared_.texture_rad) / pi,
+               depth);
   }
   if (shines) {
     if (lit(material.diffuse) || lit(material.specular)) direct(surface, weight, depth);
@@ -165,7 +170,7 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
       if (shared_.groups.ambient != no_group) {
         add(shared_.layer[shared_.groups.ambient], sample_,
             depth == 0 ? Part::Indirect : Part::Specular,
-            weight * material.diffuse * scene.ambient_radiance);
+            weight * surface.diffuse * scene.ambient_radiance);
       }
       diffuse(surface, hit, weight, depth);
     }
@@ -187,7 +192,7 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
   const auto choice = light_point(shared_.lights.count());
   chosen_.clear();
   shared_.lights.choose(
-      {surface.position, surface.normal, mirrored, base::max_component(surface.material.diffuse),
+      {surface.position, surface.normal, mirrored, base::max_component(surface.diffuse),
        base::max_component(surface.material.specular), surface.material.shininess},
       double(choice[0]) + 0x1p-24 * double(choice[1]), chosen_);
   for (const auto& [k, chance_weight] : chosen_) {
@@ -203,7 +208,7 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
       highlight = surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
     }
     const Rgb incident = weight * light.normal_illuminance_lx * (chance_weight * cosine / pi);
-    const Rgb value = incident * (surface.material.diffuse + highlight);
+    const Rgb value = incident * (surface.diffuse + highlight);
     if (!lit(value)) continue;
     const double reach = light.distance_m * (1.0 - 1e-5) - 2.0 * offset;
     if (reach <= 0.0) continue;

@@ -43,6 +43,7 @@ struct ShadingScene {
   DiffuseSource diffuse = DiffuseSource::Gather;
   const GatherField* field = nullptr;  // with DiffuseSource::Field
   Vec3 camera_position{0.0};
+  double texture_rad = 0.0;                // angle that a camera sample looks at a texture with
   PixelFilter filter{scenes::Camera{}};    // of the camera samples
   int gather_rays = 16;                    // per camera sample
   std::uint64_t seed = 1;                  // of camera and gather rays
@@ -104,6 +105,7 @@ class PixelShader {
     Vec3 outward;  // unit normal of the front
     Vec3 normal;   // the same on the side of the viewer
     Vec3 view;     // unit, toward the viewer
+    Rgb diffuse;   // k_d there
   };
 
   // counter: the kind of ray it is.

@@ -27,7 +27,7 @@ void PixelShader::diffuse(const Surface& surface, const scenes::Hit& hit, const 
     return;
   }
   if (!shared_.gathers) return;
-  const Rgb reflected = weight * surface.material.diffuse;
+  const Rgb reflected = weight * surface.diffuse;
   if (depth == 0 && shared_.field != nullptr && read_field(surface, reflected)) return;
   gather(surface, reflected, depth);
 }

@@ -81,7 +81,9 @@ class CullingPass {
   [[nodiscard]] double largest_reflectance() const {
     double largest = 0.0;
     for (const Triangle& t : scene_.triangles) {
-      largest = std::max(largest, base::max_component(scene_.materials[t.material].diffuse));
+      const Material& material = scene_.materials[t.material];
+      // A texture has brighter places than its mean.
+      largest = std::max(largest, material.maps ? 1.0 : base::max_component(material.diffuse));
     }
     return largest;
   }

@@ -6,6 +6,7 @@
 
 #include "scenes/light/solid_angle.h"
 #include "scenes/ray_query.h"
+#include "scenes/surface_texture.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -108,7 +109,7 @@ LightSample sample_flat(const FlatEmitter& emitter, const Vec3& point, double u,
                      emitter.exitance, emitter.area_m2);
 }
 
-EmitterSet::EmitterSet(const Scene& scene, std::size_t material) {
+EmitterSet::EmitterSet(const Scene& scene, std::size_t material) : scene_(&scene) {
   for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
     if (scene.triangles[t].material == material) add(scene, static_cast<std::uint32_t>(t));
   }
@@ -134,7 +135,14 @@ void EmitterSet::add(const Scene& scene, std::uint32_t triangle) {
                           triangle_area(scene, triangle),
                           material.emit,
                           material.two_sided,
-                          FlatShape::Triangle};
+                          FlatShape::Triangle,
+                          FlatEmitter::none};
+  if (material.maps && (material.maps->emit.texture || material.has_holes())) {
+    pieces_.push_back(piece);
+    pieces_.back().exitance = mean_emit(scene, triangle);
+    pieces_.back().textured_triangle = triangle;
+    return;
+  }
   const bool follows = triangle > 0 && scene.triangles[triangle - 1].polygon == t.polygon;
   if (follows && !pieces_.empty() && joins(pieces_.back(), piece)) return;
   pieces_.push_back(piece);
@@ -151,6 +159,32 @@ const FlatEmitter& EmitterSet::choose(double& u, double& probability) const {
   return pieces_[index];
 }
 
+// Exitance at a point of the emitter over its mean.
+Rgb EmitterSet::relative_exitance(const FlatEmitter& emitter, const Vec3& point) const {
+  if (emitter.textured_triangle == FlatEmitter::none) return Rgb(1.0);
+  const Vec3 normal = glm::cross(emitter.edge1, emitter.edge2), at = point - emitter.corner;
+  const double square = glm::dot(normal, normal);
+  Hit hit;
+  hit.triangle = emitter.textured_triangle;
+  hit.u = glm::dot(glm::cross(at, emitter.edge2), normal) / square;
+  hit.v = glm::dot(glm::cross(emitter.edge1, at), normal) / square;
+  Rgb relative(0.0);
+  if (!is_there(*scene_, hit.triangle, hit.u, hit.v)) return relative;
+  const Material& material = scene_->materials[scene_->triangles[hit.triangle].material];
+  const Rgb exitance = emit_at(*scene_, material, hit);
+  for (int c = 0; c < 3; ++c) {
+    if (emitter.exitance[c] > 0.0) relative[c] = exitance[c] / emitter.exitance[c];
+  }
+  return relative;
+}
+
+void EmitterSet::vary(LightSample& sample, const FlatEmitter& emitter,
+                      const Vec3& seen_from) const {
+  if (emitter.textured_triangle == FlatEmitter::none) return;
+  sample.normal_illuminance_lx *=
+      relative_exitance(emitter, seen_from + sample.distance_m * sample.direction);
+}
+
 LightSample EmitterSet::sample(const Vec3& point, double u, double v, Spread spread) const {
   double probability = 1.0;
   LightSample sample;
@@ -159,9 +193,11 @@ LightSample EmitterSet::sample(const Vec3& point, double u, double v, Spread spr
     if (!pick) return sample;
     sample = sample_flat(pieces_[pick->light], point, pick->rest, v, spread);
     probability = pick->probability;
+    vary(sample, pieces_[pick->light], point);
   } else {
     const FlatEmitter& emitter = choose(u, probability);
     sample = sample_flat(emitter, point, u, v, spread);
+    vary(sample, emitter, point);
   }
   sample.normal_illuminance_lx /= probability;
   return sample;
@@ -175,7 +211,13 @@ EmittedRay EmitterSet::emit(double u, double v, double x, double y) const {
     if (x >= 0.5) normal = -normal;
     x = x >= 0.5 ? 2.0 * x - 1.0 : 2.0 * x;
   }
-  return {point_on(emitter, u, v), cosine_direction(base::frame_around(normal), x, y), 1.0};
+  const Vec3 from = point_on(emitter, u, v);
+  double weight = 1.0;
+  if (emitter.textured_triangle != FlatEmitter::none) {
+    weight = base::luminance(relative_exitance(emitter, from) * emitter.exitance) /
+             base::luminance(emitter.exitance);
+  }
+  return {from, cosine_direction(base::frame_around(normal), x, y), weight};
 }
 
 }  // namespace earthshine::scenes

@@ -20,6 +20,8 @@ struct FlatEmitter {
   Rgb exitance{0.0};  // lm/m^2, of each side
   bool two_sided = false;
   FlatShape shape = FlatShape::Triangle;
+  std::uint32_t textured_triangle = none;  // of the scene, where the exitance is a mean
+  static constexpr std::uint32_t none = 0xFFFFFFFFU;
 };
 
 [[nodiscard]] Vec3 point_on(const FlatEmitter& emitter, double u, double v);
@@ -40,7 +42,8 @@ struct FlatEmitter {
 class EmitterSet {
  public:
   EmitterSet() = default;
-  // The emitting triangles of a material.
+  // The emitting triangles of a material. The scene must outlive the set if the material has a
+  // texture.
   EmitterSet(const Scene& scene, std::size_t material);
 
   [[nodiscard]] Rgb flux_lm() const { return flux_lm_; }
@@ -54,6 +57,10 @@ class EmitterSet {
  private:
   void add(const Scene& scene, std::uint32_t triangle);
   [[nodiscard]] const FlatEmitter& choose(double& u, double& probability) const;
+  void vary(LightSample& sample, const FlatEmitter& emitter, const Vec3& seen_from) const;
+  [[nodiscard]] Rgb relative_exitance(const FlatEmitter& emitter, const Vec3& point) const;
+
+  const Scene* scene_ = nullptr;
   std::vector<FlatEmitter> pieces_;
   std::vector<double> cumulative_;  // luminous flux, running sum
   LightTree tree_{{}};

@@ -52,7 +52,7 @@ void check_mesh(const Mesh& mesh) {
 }  // namespace
 
 Mesh read_mesh(const std::filesystem::path& path, const std::filesystem::path& scene_folder,
-               const base::Location& asked_at) {
+               const base::Location& asked_at, VertexNormals normals) {
   const std::string ending = lower_case(path.extension().string());
   constexpr std::string_view known[] = {".obj", ".gltf", ".glb", ".ply", ".stl"};
   if (std::find(std::begin(known), std::end(known), ending) == std::end(known)) {
@@ -65,13 +65,13 @@ Mesh read_mesh(const std::filesystem::path& path, const std::filesystem::path& s
   const std::filesystem::path folders[] = {scene_folder, path.parent_path()};
   Mesh mesh;
   if (ending == ".obj") {
-    mesh = parse_obj(bytes, path, folders);
+    mesh = parse_obj(bytes, path, folders, normals);
   } else if (ending == ".ply") {
-    mesh = parse_ply(bytes, path);
+    mesh = parse_ply(bytes, path, normals);
   } else if (ending == ".stl") {
     mesh = parse_stl(bytes, path);
   } else {
-    mesh = parse_gltf(bytes, path, folders);
+    mesh = parse_gltf(bytes, path, folders, normals);
   }
   mesh.files.push_back(path);
   check_mesh(mesh);

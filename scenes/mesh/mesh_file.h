@@ -15,7 +15,8 @@ namespace earthshine::scenes {
 // formats, line and column; for a missing file or an unknown ending, at asked_at.
 [[nodiscard]] Mesh read_mesh(const std::filesystem::path& path,
                              const std::filesystem::path& scene_folder,
-                             const base::Location& asked_at);
+                             const base::Location& asked_at,
+                             VertexNormals normals = VertexNormals::Ignored);
 
 // The number of the part of that name.
 // Throws base::Error (Input) at asked_at, with the nearest name and the list, if there is none.

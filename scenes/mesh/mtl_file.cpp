@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+#include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "base/input/input_file.h"
+#include "scenes/mesh/mtl_maps.h"
 #include "scenes/mesh/obj_file.h"
 #include "scenes/text/confined_path.h"
 #include "scenes/text/message_text.h"
@@ -38,76 +40,177 @@ Rgb read_colour(const TextLines& lines, Range range) {
   return colour;
 }
 
-// Whether the words after the keyword are all that number.
-bool all_are(const std::vector<Word>& words, double wanted) {
-  for (std::size_t k = 1; k < words.size(); ++k) {
-    double number = 0.0;
-    const char* const end = words[k].text.data() + words[k].text.size();
-    const auto [stop, problem] = std::from_chars(words[k].text.data(), end, number);
-    if (problem != std::errc() || stop != end || number != wanted) return false;
+// A material as the library has it.
+struct MtlMaterial {
+  std::string name;
+  base::Location where;
+  Rgb diffuse{0.0}, specular{0.0}, emitted{0.0};
+  std::optional<double> shininess;
+  std::optional<double> dissolve;  // d: share that is there; 1 - Tr
+  Rgb filter{1.0};                 // Tf: colour of what passes
+  double ior = 1.0;
+  int illumination = 2;  // illum
+  MaterialMaps maps;
+};
+
+// From here on a highlight is as sharp as the format has it: what is reflected is a mirror's.
+constexpr double sharpest = 1000.0;
+
+// docs/models.md has this map as a table.
+Material material_of(const MtlMaterial& source) {
+  Material material;
+  const MaterialMaps& maps = source.maps;
+  if (maps.diffuse.texture || maps.emit.texture || maps.opacity.texture) {
+    material.maps = std::make_shared<const MaterialMaps>(maps);
   }
-  return words.size() > 1;
+  material.name = material.light_group = source.name;
+  const double there = source.dissolve.value_or(1.0);
+  material.diffuse = there * source.diffuse;
+  material.emit = source.emitted;
+  material.shininess = source.shininess.value_or(material.shininess);
+  const int model = source.illumination;
+  const bool reflects_surroundings = model >= 3 && model <= 9;
+  if (reflects_surroundings && source.shininess.value_or(sharpest) >= sharpest) {
+    material.mirror = there * glm::min(source.specular, Rgb(1.0));
+  } else if (reflects_surroundings) {
+    // All that is reflected, blurred as the highlight is: the lobe's albedo is Ks.
+    material.specular = there * source.specular * (material.shininess + 2.0) / 2.0;
+  } else if (model >= 2) {
+    material.specular = there * source.specular;
+  }
+  if (there < 1.0) {
+    material.transmit = (1.0 - there) * source.filter;
+    const bool refracts = model == 6 || model == 7;
+    if (refracts) material.ior = source.ior;
+  }
+  return material;
 }
 
-// Ambient light, the number of a lighting model and an index of refraction alone change nothing
-// here, nor does an opaque material that says so.
-bool changes_the_picture(const TextLines& lines) {
-  constexpr std::string_view without_effect[] = {"Ka", "map_Ka", "illum", "Ni", "sharpness"};
-  const std::string_view keyword = lines.words().front().text;
-  if (std::find(std::begin(without_effect), std::end(without_effect), keyword) !=
-      std::end(without_effect)) {
-    return false;
+class MtlReader {
+ public:
+  MtlReader(std::string_view text, const std::filesystem::path& path,
+            std::span<const std::filesystem::path> folders, Mesh& mesh)
+      : lines_(text, path.string(), TextLines::Style::Wavefront),
+        path_(path),
+        mesh_(mesh),
+        maps_(path, folders, mesh.files, mesh.warnings) {}
+
+  void read() {
+    while (lines_.next()) {
+      const std::string_view keyword = lines_.words().front().text;
+      if (keyword == "newmtl") {
+        begin();
+      } else if (is_used(keyword)) {
+        if (!material_) {
+          throw Error(Blame::Input, lines_.where(),
+                      fmt::format("\"{}\" before any material", keyword),
+                      "a material begins with newmtl");
+        }
+        read_value(keyword);
+      } else if (!is_neutral(keyword)) {
+        ++passed_over_[std::string(keyword)];
+      }
+    }
+    end();
+    report();
   }
-  const bool opaque = ((keyword == "d" || keyword == "Tf") && all_are(lines.words(), 1.0)) ||
-                      (keyword == "Tr" && all_are(lines.words(), 0.0));
-  return !opaque;
-}
+
+ private:
+  [[nodiscard]] static bool is_used(std::string_view keyword) {
+    constexpr std::string_view used[] = {"Kd", "Ks", "Ke",    "Ns",     "d",      "Tr",
+                                         "Tf", "Ni", "illum", "map_Kd", "map_Ke", "map_d"};
+    return std::find(std::begin(used), std::end(used), keyword) != std::end(used);
+  }
+
+  // Ambient light and the sharpness of reflection maps change nothing here.
+  [[nodiscard]] static bool is_neutral(std::string_view keyword) {
+    return keyword == "Ka" || keyword == "map_Ka" || keyword == "sharpness";
+  }
+
+  void begin() {
+    end();
+    material_.emplace();
+    material_->name = lines_.argument();
+    material_->where = lines_.where();
+    if (!material_->name.empty()) return;
+    throw Error(Blame::Input, lines_.where(), "\"newmtl\" has no name",
+                "newmtl is followed by a name");
+  }
+
+  void end() {
+    if (!material_) return;
+    mesh_.materials.push_back(material_of(*material_));
+    mesh_.material_places.push_back(material_->where);
+    material_.reset();
+  }
+
+  void read_value(std::string_view keyword) {
+    const auto& words = lines_.words();
+    if (keyword == "Kd") material_->diffuse = read_colour(lines_, share);
+    if (keyword == "Ks") material_->specular = read_colour(lines_, at_least_zero);
+    if (keyword == "Ke") material_->emitted = read_colour(lines_, at_least_zero);
+    if (keyword == "Ns") material_->shininess = read_colour(lines_, {0.0, 1e6}).r;
+    if (keyword == "Ni") material_->ior = std::max(1.0, read_colour(lines_, {0.0, 10.0}).r);
+    // "d -halo f": thinner in its middle, which nothing here does. Where both stand, d decides.
+    const bool plain = words.size() > 1 && number_in(words[1].text).has_value();
+    if (keyword == "d" || keyword == "Tr" || keyword == "Tf") {
+      if (!plain) {
+        ++passed_over_[fmt::format("{} {}", keyword, words.size() > 1 ? words[1].text : "")];
+      } else if (keyword == "Tf") {
+        material_->filter = read_colour(lines_, share);
+      } else if (keyword == "d") {
+        material_->dissolve = read_colour(lines_, share).r;
+      } else if (!material_->dissolve) {
+        material_->dissolve = 1.0 - read_colour(lines_, share).r;
+      }
+    }
+    if (keyword == "illum") read_model();
+    if (keyword.starts_with("map_")) read_map(keyword);
+  }
+
+  void read_map(std::string_view keyword) {
+    MaterialMaps& maps = material_->maps;
+    const bool is_mask = keyword == "map_d";
+    TextureMap& map = is_mask ? maps.opacity : keyword == "map_Ke" ? maps.emit : maps.diffuse;
+    if (!maps_.read(lines_, is_mask, map)) ++passed_over_[fmt::format("{} with options", keyword)];
+  }
+
+  // Models 0 to 9; 10 is of shadows alone.
+  void read_model() {
+    const double model = lines_.number(std::size_t{1});
+    if (model >= 0.0 && model <= 9.0 && model == std::floor(model)) {
+      material_->illumination = static_cast<int>(model);
+    } else {
+      ++passed_over_[fmt::format("illum {}", model)];
+    }
+  }
+
+  void report() {
+    if (passed_over_.empty()) return;
+    std::string list;
+    for (const auto& [keyword, count] : passed_over_) {
+      list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", in_quotes(keyword), count);
+      mesh_.unused[keyword] += count;
+    }
+    mesh_.warnings.push_back(fmt::format(
+        "{}: not used, and the picture would change by it: {}; say what these materials are like "
+        "in the scene file",
+        path_.string(), list));
+  }
+
+  TextLines lines_;
+  const std::filesystem::path& path_;
+  Mesh& mesh_;
+  MtlMaps maps_;
+  std::optional<MtlMaterial> material_;
+  std::map<std::string, std::size_t> passed_over_;
+};
 
 }  // namespace
 
-void parse_mtl(std::string_view text, const std::filesystem::path& path, Mesh& mesh) {
-  TextLines lines(text, path.string(), TextLines::Style::Wavefront);
-  Material* material = nullptr;
-  std::map<std::string, std::size_t> passed_over;
-  while (lines.next()) {
-    const std::string_view keyword = lines.words().front().text;
-    if (keyword == "newmtl") {
-      Material fresh;
-      fresh.name = lines.argument();
-      fresh.light_group = fresh.name;
-      if (fresh.name.empty()) {
-        throw Error(Blame::Input, lines.where(), "\"newmtl\" has no name",
-                    "newmtl is followed by a name");
-      }
-      mesh.materials.push_back(std::move(fresh));
-      mesh.material_places.push_back(lines.where());
-      material = &mesh.materials.back();
-      continue;
-    }
-    const bool used = keyword == "Kd" || keyword == "Ks" || keyword == "Ke" || keyword == "Ns";
-    if (!used) {
-      if (changes_the_picture(lines)) ++passed_over[std::string(keyword)];
-      continue;
-    }
-    if (material == nullptr) {
-      throw Error(Blame::Input, lines.where(), fmt::format("\"{}\" before any material", keyword),
-                  "a material begins with newmtl");
-    }
-    if (keyword == "Kd") material->diffuse = read_colour(lines, share);
-    if (keyword == "Ks") material->specular = read_colour(lines, at_least_zero);
-    if (keyword == "Ke") material->emit = read_colour(lines, at_least_zero);
-    if (keyword == "Ns") material->shininess = read_colour(lines, {0.0, 1e6}).r;
-  }
-  if (passed_over.empty()) return;
-  std::string list;
-  for (const auto& [keyword, count] : passed_over) {
-    list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", in_quotes(keyword), count);
-    mesh.unused[keyword] += count;
-  }
-  mesh.warnings.push_back(
-      fmt::format("{}: not used, and the picture would change by it: {}; say diffuse, specular and "
-                  "transmit of these materials in the scene file",
-                  path.string(), list));
+void parse_mtl(std::string_view text, const std::filesystem::path& path,
+               std::span<const std::filesystem::path> folders, Mesh& mesh) {
+  MtlReader(text, path, folders, mesh).read();
 }
 
 void read_material_libraries(Mesh& mesh, std::span<const std::filesystem::path> folders) {
@@ -130,9 +233,13 @@ void read_material_libraries(Mesh& mesh, std::span<const std::filesystem::path> 
     for (const std::string& name : names) {
       const auto path = confined_path(folder, name, folders, library.where);
       mesh.files.push_back(path);
-      parse_mtl(base::read_input_file(path, max_library_bytes, library.where), path, mesh);
+      parse_mtl(base::read_input_file(path, max_library_bytes, library.where), path, folders, mesh);
     }
   }
+  const bool textured =
+      std::any_of(mesh.materials.begin(), mesh.materials.end(),
+                  [](const Material& material) { return material.maps != nullptr; });
+  if (textured) mesh.unused.erase("vt");
 }
 
 }  // namespace earthshine::scenes

@@ -30,8 +30,10 @@ constexpr std::size_t most_warnings = 10;
 class ObjReader {
  public:
   ObjReader(std::string_view text, const std::filesystem::path& path,
-            std::span<const std::filesystem::path> folders)
-      : lines_(text, path.string(), TextLines::Style::Wavefront), folders_(folders) {
+            std::span<const std::filesystem::path> folders, VertexNormals normals)
+      : lines_(text, path.string(), TextLines::Style::Wavefront),
+        folders_(folders),
+        reads_normals_(normals == VertexNormals::Read) {
     mesh_.path = path;
   }
 
@@ -56,6 +58,11 @@ class ObjReader {
         material_ = name.empty() ? no_index : number_of(name, mesh_.material_names, materials_);
       } else if (keyword == "mtllib") {
         note_library();
+      } else if (keyword == "vt" && !mesh_.libraries.empty()) {
+        read_coordinates();
+      } else if (keyword == "vn" && reads_normals_) {
+        mesh_.normals.emplace_back(lines_.number(std::size_t{1}), lines_.number(std::size_t{2}),
+                                   lines_.number(std::size_t{3}));
       } else if (std::find(std::begin(passed_over), std::end(passed_over), keyword) ==
                  std::end(passed_over)) {
         warn_once(keyword);
@@ -85,6 +92,14 @@ class ObjReader {
     }
   }
 
+  // Of use only with a library, whose materials may have textures. v runs up in these files.
+  void read_coordinates() {
+    count_unused("vt");
+    const bool has_v = lines_.words().size() > 2;
+    mesh_.uv.emplace_back(lines_.number(std::size_t{1}),
+                          1.0 - (has_v ? lines_.number(std::size_t{2}) : 0.0));
+  }
+
   void read_face() {
     const auto& words = lines_.words();
     const std::size_t count = words.size() - 1;
@@ -97,12 +112,24 @@ class ObjReader {
       throw Error(Blame::Input, lines_.where(), "too many corners", "a mesh has fewer than 2^32");
     }
     corners_.clear();
-    for (std::size_t i = 1; i < words.size(); ++i) corners_.push_back(vertex_of(words[i]));
+    if (!mesh_.uv.empty()) mesh_.uv_indices.resize(mesh_.indices.size(), no_index);
+    if (!mesh_.normals.empty()) mesh_.normal_indices.resize(mesh_.indices.size(), no_index);
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      std::int64_t coordinates = 0, normal = 0;
+      corners_.push_back(vertex_of(words[i], coordinates, normal));
+      if (!mesh_.uv.empty()) {
+        mesh_.uv_indices.push_back(attribute_of(coordinates, mesh_.uv.size()));
+      }
+      if (!mesh_.normals.empty()) {
+        mesh_.normal_indices.push_back(attribute_of(normal, mesh_.normals.size()));
+      }
+    }
     add_polygon(mesh_, corners_, part_set(), material_, static_cast<std::uint32_t>(lines_.line()));
   }
 
   // "v", "v/vt", "v//vn" or "v/vt/vn"; v counts from 1, or from the last vertex with -1.
-  std::uint32_t vertex_of(const Word& word) {
+  // `coordinates`: vt, `normal`: vn, or 0.
+  std::uint32_t vertex_of(const Word& word, std::int64_t& coordinates, std::int64_t& normal) {
     const std::size_t slash = word.text.find('/');
     std::int64_t number = 0;
     bool sound = parse_whole(word.text.substr(0, slash), number);
@@ -111,8 +138,8 @@ class ObjReader {
       const std::size_t next = word.text.find('/', at + 1);
       const std::string_view field =
           word.text.substr(at + 1, next == std::string_view::npos ? next : next - at - 1);
-      std::int64_t ignored = 0;
-      sound = (field.empty() || parse_whole(field, ignored)) && ++slashes <= 2;
+      std::int64_t& number_there = slashes == 0 ? coordinates : normal;
+      sound = (field.empty() || parse_whole(field, number_there)) && ++slashes <= 2;
       at = next;
     }
     if (!sound) {
@@ -128,6 +155,13 @@ class ObjReader {
                   fmt::format("allowed are 1 to {0} and -{0} to -1, the vertices so far", count));
     }
     return static_cast<std::uint32_t>(number > 0 ? number - 1 : count + number);
+  }
+
+  // A corner whose coordinates or normal are not there has none: often nobody misses them.
+  [[nodiscard]] static std::uint32_t attribute_of(std::int64_t number, std::size_t size) {
+    const auto count = static_cast<std::int64_t>(size);
+    if (number < 0) number += count + 1;
+    return number < 1 || number > count ? no_index : static_cast<std::uint32_t>(number - 1);
   }
 
   std::uint32_t part_set() {
@@ -169,6 +203,7 @@ class ObjReader {
 
   TextLines lines_;
   std::span<const std::filesystem::path> folders_;
+  bool reads_normals_;
   Mesh mesh_;
   std::string last_keyword_;
   std::size_t* last_unused_ = nullptr;  // of that keyword, in mesh_
@@ -185,8 +220,8 @@ class ObjReader {
 }  // namespace
 
 Mesh parse_obj(std::string_view text, const std::filesystem::path& path,
-               std::span<const std::filesystem::path> folders) {
-  return ObjReader(text, path, folders).read();
+               std::span<const std::filesystem::path> folders, VertexNormals normals) {
+  return ObjReader(text, path, folders, normals).read();
 }
 
 }  // namespace earthshine::scenes

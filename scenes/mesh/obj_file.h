@@ -11,15 +11,18 @@
 
 namespace earthshine::scenes {
 
-// Reads v, f, g, o, usemtl, mtllib; knows and passes over vt, vn, s, l, p and curves; keywords that
-// nobody knows give one warning each. Libraries are noted, not read; their paths must stay in the
-// folders.
+// Reads v, f, g, o, usemtl, mtllib, and where they are of use vt and vn; knows and passes over s,
+// l, p and curves; keywords that nobody knows give one warning each. Libraries are noted, not read;
+// their paths must stay in the folders.
 [[nodiscard]] Mesh parse_obj(std::string_view text, const std::filesystem::path& path,
-                             std::span<const std::filesystem::path> folders);
+                             std::span<const std::filesystem::path> folders,
+                             VertexNormals normals = VertexNormals::Ignored);
 
-// Kd -> diffuse, Ks -> specular, Ns -> shininess, Ke -> emit; textures, transparency and whatever
-// else would change the picture are named in one warning, the rest is passed over.
-void parse_mtl(std::string_view text, const std::filesystem::path& path, Mesh& mesh);
+// Kd, Ks, Ns, Ke, d, Tr, Tf, Ni and illum as docs/models.md maps them; whatever else would change
+// the picture is named in one warning, the rest is passed over. Textures (mtl_maps.h) lie beside
+// the library or in the folders.
+void parse_mtl(std::string_view text, const std::filesystem::path& path,
+               std::span<const std::filesystem::path> folders, Mesh& mesh);
 
 // Reads mesh.libraries into mesh.materials and empties the list.
 void read_material_libraries(Mesh& mesh, std::span<const std::filesystem::path> folders);

@@ -101,8 +101,10 @@ Header read_header(std::string_view bytes, const std::string& file) {
 
 class PlyReader {
  public:
-  PlyReader(std::string_view bytes, const std::filesystem::path& path, const Header& header)
-      : values_(bytes.substr(header.bytes), path.string(), header.encoding, header.lines) {
+  PlyReader(std::string_view bytes, const std::filesystem::path& path, const Header& header,
+            VertexNormals normals)
+      : values_(bytes.substr(header.bytes), path.string(), header.encoding, header.lines),
+        reads_normals_(normals == VertexNormals::Read) {
     mesh_.path = path;
     mesh_.part_sets.emplace_back();
   }
@@ -129,7 +131,13 @@ class PlyReader {
  private:
   void read_vertex(const Element& element) {
     Vec3 position(std::nan(""));
+    glm::vec3 normal(0.0F);
     for (const Property& property : element.properties) {
+      if (reads_normals_ && !property.count_type && property.name.size() == 2 &&
+          property.name[0] == 'n' && property.name[1] >= 'x' && property.name[1] <= 'z') {
+        normal[property.name[1] - 'x'] = static_cast<float>(values_.next(property.type));
+        continue;
+      }
       const bool wanted = !property.count_type && property.name.size() == 1 &&
                           property.name[0] >= 'x' && property.name[0] <= 'z';
       if (!wanted) {
@@ -149,6 +157,7 @@ class PlyReader {
                   "element vertex has properties x, y and z");
     }
     mesh_.vertices.push_back(position);
+    if (reads_normals_) mesh_.normals.push_back(normal);
   }
 
   void read_face(const Element& element) {
@@ -172,6 +181,9 @@ class PlyReader {
                     "a mesh has fewer than 2^32");
       }
       add_polygon(mesh_, corners_, 0, no_index, values_.line());
+      if (reads_normals_) {
+        mesh_.normal_indices.insert(mesh_.normal_indices.end(), corners_.begin(), corners_.end());
+      }
     }
   }
 
@@ -200,15 +212,16 @@ class PlyReader {
   }
 
   PlyValues values_;
+  bool reads_normals_;
   Mesh mesh_;
   std::vector<std::uint32_t> corners_;
 };
 
 }  // namespace
 
-Mesh parse_ply(std::string_view bytes, const std::filesystem::path& path) {
+Mesh parse_ply(std::string_view bytes, const std::filesystem::path& path, VertexNormals normals) {
   const Header header = read_header(bytes, path.string());
-  return PlyReader(bytes, path, header).read(header);
+  return PlyReader(bytes, path, header, normals).read(header);
 }
 
 }  // namespace earthshine::scenes

@@ -12,7 +12,6 @@ namespace earthshine::scenes {
 
 inline constexpr int fewest_segments = 3;
 inline constexpr int most_segments = 4096;
-inline constexpr int default_segments = 32;
 
 enum class QuadFault { None, NoArea, NotFlat, NotConvex };
 // Flat to 1e-6 of its size, and convex.

@@ -19,7 +19,7 @@ std::vector<std::string> names_of(const std::vector<Material>& materials, std::s
 bool same_values(const Material& a, const Material& b) {
   return a.diffuse == b.diffuse && a.specular == b.specular && a.shininess == b.shininess &&
          a.mirror == b.mirror && a.transmit == b.transmit && a.ior == b.ior && a.emit == b.emit &&
-         a.light_group == b.light_group && a.two_sided == b.two_sided;
+         a.light_group == b.light_group && a.two_sided == b.two_sided && a.maps == b.maps;
 }
 
 }  // namespace
@@ -91,8 +91,14 @@ std::uint32_t MaterialChoice::add_to_scene(std::uint32_t mesh_material) {
   std::uint32_t& number = shelved_.scene_material[mesh_material];
   if (number != no_index) return number;
   Material material = shelved_.mesh.materials[mesh_material];
-  check_energy(material, shelved_.mesh.material_places[mesh_material],
-               fmt::format("material {}", in_quotes(material.name)));
+  // Files of materials do not know the bound; a picture with light from nowhere helps nobody.
+  if (const double sum = conserve_energy(material); sum > 1.0) {
+    scene_.warnings.push_back(fmt::format(
+        "{}: the material {} would send on {:.4g} times the light that arrives; all its shares are "
+        "divided by that",
+        base::to_string(shelved_.mesh.material_places[mesh_material]), in_quotes(material.name),
+        sum));
+  }
   // Meshes may share a library, or use one name for different things; the scene's names stay
   // unique.
   for (std::size_t i = own_material_count_; i < scene_.materials.size(); ++i) {

@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <cmath>
+#include <optional>
+
 #include "base/free_memory.h"
 #include "scenes/mesh/mesh_file.h"
 #include "scenes/mesh/shapes.h"
+#include "scenes/read/file_lamps.h"
 #include "scenes/read/material_choice.h"
 #include "scenes/read/scene_parts.h"
+#include "scenes/round/round.h"
 
 namespace earthshine::scenes {
 namespace {
 
 constexpr std::string_view all_keys[] = {
-    "name",   "mesh",     "part",   "shape",   "material", "translate", "rotate",
-    "scale",  "target",   "inward", "corners", "min",      "max",       "center",
-    "radius", "segments", "from",   "to",      "caps",     "normal",    "orient"};
+    "name",   "mesh",     "part",       "shape",    "material", "translate", "rotate",
+    "scale",  "target",   "inward",     "corners",  "min",      "max",       "center",
+    "radius", "segments", "from",       "to",       "caps",     "normal",    "orient",
+    "lights", "cameras",  "smooth_deg", "round_deg"};
 constexpr std::string_view shapes[] = {"quad", "box", "sphere", "cylinder", "disk"};
 constexpr std::string_view common_keys[] = {"name",  "material", "translate", "rotate",
                                             "scale", "target",   "inward",    "orient"};
@@ -27,16 +33,36 @@ void allow_keys(const TableReader& table, std::initializer_list<std::string_view
   table.allow_only(keys, of_what);
 }
 
-// faces_of: how many faces a shape of so many segments has. Refused before it is made where there
-// is not the memory for it.
+constexpr Range turns_deg{0.25, 90.0};
+constexpr Range creases_deg{0.0, 180.0, true};
+
+// By their number, or by the angle between two. faces_of: how many faces a shape of so many
+// segments has. Refused before it is made where there is not the memory for it.
 int read_segments(const TableReader& table, std::uint64_t (*faces_of)(std::uint64_t)) {
   constexpr std::uint64_t bytes_per_face = 2 * sizeof(MeshPolygon) + 8 * sizeof(std::uint32_t) +
                                            2 * sizeof(Vec3);  // arrays grow by doubling
+  const auto given = table.whole("segments", fewest_segments, most_segments);
+  const auto turn_deg = table.number("round_deg", turns_deg);
+  if (given && turn_deg) {
+    table.fail("round_deg", "stands beside \"segments\"", "a shape has one of the two");
+  }
   const int segments =
-      table.whole("segments", fewest_segments, most_segments).value_or(default_segments);
+      given ? *given
+            : static_cast<int>(std::ceil(360.0 / turn_deg.value_or(Rounding{}.turn_deg) - 1e-6));
   base::check_room(faces_of(static_cast<std::uint64_t>(segments)) * bytes_per_face,
                    base::to_string(table.where()));
   return segments;
+}
+
+// Of a mesh that is asked to be round.
+std::optional<Rounding> read_rounding(const TableReader& table) {
+  const auto crease_deg = table.number("smooth_deg", creases_deg);
+  const auto turn_deg = table.number("round_deg", turns_deg);
+  if (!crease_deg && !turn_deg) return std::nullopt;
+  Rounding rounding;
+  rounding.crease_deg = crease_deg;
+  rounding.turn_deg = turn_deg.value_or(rounding.turn_deg);
+  return rounding;
 }
 
 std::uint64_t faces_around(std::uint64_t segments) { return 3 * segments; }
@@ -86,7 +112,7 @@ Mesh read_box(const TableReader& table) {
 }
 
 Mesh read_cylinder(const TableReader& table) {
-  allow_keys(table, {"shape", "from", "to", "radius", "segments", "caps"},
+  allow_keys(table, {"shape", "from", "to", "radius", "segments", "caps", "round_deg"},
              "the shape \"cylinder\"");
   const Vec3 from = read_point(table, "from");
   const Vec3 to = read_point(table, "to");
@@ -100,11 +126,13 @@ Mesh read_shape(const TableReader& table, const std::string& shape) {
   if (shape == "box") return read_box(table);
   if (shape == "cylinder") return read_cylinder(table);
   if (shape == "sphere") {
-    allow_keys(table, {"shape", "center", "radius", "segments"}, "the shape \"sphere\"");
+    allow_keys(table, {"shape", "center", "radius", "segments", "round_deg"},
+               "the shape \"sphere\"");
     return make_sphere(read_point(table, "center"), read_radius(table),
                        read_segments(table, faces_of_sphere));
   }
-  allow_keys(table, {"shape", "center", "normal", "radius", "segments"}, "the shape \"disk\"");
+  allow_keys(table, {"shape", "center", "normal", "radius", "segments", "round_deg"},
+             "the shape \"disk\"");
   const Vec3 normal = table.required(table.direction("normal"), "normal", "normal = [x, y, z]");
   return make_disk(read_point(table, "center"), normal, read_radius(table),
                    read_segments(table, faces_around));
@@ -136,14 +164,34 @@ Orient read_orient(const TableReader& table, const Placement& placement) {
   return Orient::Outward;
 }
 
+// What of the mesh's file besides faces goes into the scene, and the names of what does not.
+void take_extras(Scene& scene, const TableReader& table, const Mesh& mesh, std::uint32_t part,
+                 const Placement& placement) {
+  const std::string object = scene.objects.back().name;
+  const bool lights = table.flag("lights").value_or(false);
+  const bool cameras = table.flag("cameras").value_or(false);
+  if (lights) {
+    add_file_lamps(scene, object, mesh, part, placement, table.where("lights"));
+  }
+  if (cameras) {
+    add_file_cameras(scene, object, mesh, part, placement, table.where("cameras"));
+  }
+  std::string& unused = scene.objects.back().unused;
+  for (const auto& [what, count] : mesh.unused) {
+    if ((lights && what == lamps_of_file) || (cameras && what == cameras_of_file)) continue;
+    unused += fmt::format("{}{} {}", unused.empty() ? "" : ", ", count, what);
+  }
+}
+
 }  // namespace
 
-ShelvedMesh& MeshShelf::take(const std::filesystem::path& named, const base::Location& asked_at) {
+ShelvedMesh& MeshShelf::take(const std::filesystem::path& named, const base::Location& asked_at,
+                             VertexNormals normals) {
   const std::filesystem::path path = scene_folder_ / named;
-  std::unique_ptr<ShelvedMesh>& shelved = meshes_[path.lexically_normal()];
+  std::unique_ptr<ShelvedMesh>& shelved = meshes_[{path.lexically_normal(), normals}];
   if (!shelved) {
     auto fresh = std::make_unique<ShelvedMesh>();
-    fresh->mesh = read_mesh(path, scene_folder_, asked_at);
+    fresh->mesh = read_mesh(path, scene_folder_, asked_at, normals);
     shelved = std::move(fresh);
   }
   return *shelved;
@@ -165,12 +213,16 @@ void read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& s
   ShelvedMesh made;
   ShelvedMesh* shelved = &made;
   std::uint32_t part = no_index;
+  std::optional<Rounding> rounding;
   if (shape) {
     made.mesh = read_shape(table, *shape);
     object.source = *shape;
   } else {
-    allow_keys(table, {"mesh", "part"}, "an object with a mesh");
-    shelved = &shelf.take(*named, table.where("mesh"));
+    allow_keys(table, {"mesh", "part", "lights", "cameras", "smooth_deg", "round_deg"},
+               "an object with a mesh");
+    rounding = read_rounding(table);
+    shelved = &shelf.take(*named, table.where("mesh"),
+                          rounding ? VertexNormals::Read : VertexNormals::Ignored);
     object.source = *named;
     if (const auto part_name = table.text("part")) {
       part = find_part(shelved->mesh, *part_name, table.where("part"));
@@ -178,12 +230,18 @@ void read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& s
     }
   }
   MaterialChoice choice(scene, table, *shelved, shelf.own_material_count());
-  place_mesh(scene, std::move(object), shelved->mesh, part, placement, table.where(),
-             [&](const MeshPolygon& polygon) { return choice.material_of(polygon); });
-  for (const auto& [what, count] : shelved->mesh.unused) {
-    std::string& unused = scene.objects.back().unused;
-    unused += fmt::format("{}{} {}", unused.empty() ? "" : ", ", count, what);
+  Mesh round;
+  if (rounding) {
+    if (shelved->mesh.normals.empty() && !rounding->crease_deg) {
+      table.fail("round_deg", "has nothing to go by: the mesh has no vertex normals", {},
+                 "Add smooth_deg = 30, the angle from which an edge is a crease");
+    }
+    round = rounded(shelved->mesh, *rounding, table.where("round_deg"));
   }
+  place_mesh(scene, std::move(object), rounding ? round : shelved->mesh, part, placement,
+             table.where(),
+             [&](const MeshPolygon& polygon) { return choice.material_of(polygon); });
+  take_extras(scene, table, shelved->mesh, part, placement);
   // Said once, by the first object that uses the file.
   auto& warnings = shelved->mesh.warnings;
   scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());

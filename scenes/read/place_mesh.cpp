@@ -8,6 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <span>
+#include <unordered_map>
 
 #include "base/free_memory.h"
 #include "scenes/mesh/triangulate.h"
@@ -93,7 +94,7 @@ class Placer {
         continue;
       }
       judge(p, pieces);
-      add(pieces, indices, material_of(polygon));
+      add(pieces, polygon, material_of(polygon));
     }
     object_.triangle_count =
         static_cast<std::uint32_t>(scene_.triangles.size()) - object_.first_triangle;
@@ -113,6 +114,12 @@ class Placer {
                       "first at {}",
                       in_quotes(object_.name), object_.degenerate_count, chosen_.size(),
                       base::to_string(place_of(first_degenerate_))));
+    }
+    if (without_uv_ > 0) {
+      scene_.warnings.push_back(
+          fmt::format("object {}: {} corners of faces with a texture have no texture coordinates; "
+                      "they take its upper left corner",
+                      in_quotes(object_.name), without_uv_));
     }
     if (warped_count_ > 0) {
       scene_.warnings.push_back(
@@ -167,8 +174,31 @@ class Placer {
     }
   }
 
-  void add(const Triangulation& pieces, std::span<const std::uint32_t> indices,
-           std::uint32_t material) {
+  std::uint32_t plain_vertex(std::uint32_t corner) {
+    if (placed_at_[corner] == no_index) {
+      placed_at_[corner] = static_cast<std::uint32_t>(scene_.vertices.size());
+      scene_.vertices.push_back(placement_.apply(mesh_.vertices[corner]));
+    }
+    return placed_at_[corner];
+  }
+
+  // A vertex for each pair of a place and texture coordinates.
+  std::uint32_t textured_vertex(std::uint32_t corner, std::uint32_t index) {
+    const std::uint32_t uv = index < mesh_.uv_indices.size() ? mesh_.uv_indices[index] : no_index;
+    if (uv == no_index) ++without_uv_;
+    const auto [entry, fresh] = textured_at_.emplace(
+        (std::uint64_t{corner} << 32U) | uv, static_cast<std::uint32_t>(scene_.vertices.size()));
+    if (fresh) {
+      scene_.vertex_uv.resize(scene_.vertices.size(), glm::vec2(0.0F));
+      scene_.vertices.push_back(placement_.apply(mesh_.vertices[corner]));
+      scene_.vertex_uv.push_back(uv == no_index ? glm::vec2(0.0F) : mesh_.uv[uv]);
+    }
+    return entry->second;
+  }
+
+  void add(const Triangulation& pieces, const MeshPolygon& polygon, std::uint32_t material) {
+    const auto indices = corners_of(polygon);
+    const bool textured = scene_.materials[material].maps != nullptr;
     if (scene_.triangles.size() + pieces.triangles.size() > max_scene_triangles) {
       throw Error(Blame::Input, where_, "the scene is too large",
                   fmt::format("it has at most {} triangles", max_scene_triangles));
@@ -177,14 +207,11 @@ class Placer {
     for (const auto& piece : pieces.triangles) {
       Triangle triangle{{0, 0, 0}, number, material, next_polygon_};
       for (std::size_t k = 0; k < 3; ++k) {
-        std::uint32_t corner = indices[piece[k]];
-        if (placed_at_[corner] == no_index) {
-          placed_at_[corner] = static_cast<std::uint32_t>(scene_.vertices.size());
-          scene_.vertices.push_back(placement_.apply(mesh_.vertices[corner]));
-        }
+        const std::uint32_t corner = indices[piece[k]];
         // Turned about the first corner, so that a parallelogram stays (0,1,2), (0,2,3) of its
         // corners read the other way round.
-        triangle.vertex[placement_.inward ? (3 - k) % 3 : k] = placed_at_[corner];
+        triangle.vertex[placement_.inward ? (3 - k) % 3 : k] =
+            textured ? textured_vertex(corner, polygon.first + piece[k]) : plain_vertex(corner);
       }
       scene_.triangles.push_back(triangle);
     }
@@ -203,7 +230,9 @@ class Placer {
   const Placement& placement_;
   const base::Location& where_;
   std::vector<std::size_t> chosen_;
-  std::vector<std::uint32_t> placed_at_;  // scene vertex per mesh vertex
+  std::vector<std::uint32_t> placed_at_;                          // scene vertex per mesh vertex
+  std::unordered_map<std::uint64_t, std::uint32_t> textured_at_;  // the same by (vertex, uv)
+  std::size_t without_uv_ = 0;                                    // textured corners
   double smallest_area_ = 0.0;
   std::uint32_t next_polygon_ = 0;
   std::size_t first_degenerate_ = 0;

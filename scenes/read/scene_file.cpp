@@ -9,6 +9,7 @@
 #include "scenes/health/near_lamps.h"
 #include "scenes/read/override.h"
 #include "scenes/read/scene_parts.h"
+#include "scenes/surface_texture.h"
 #include "scenes/text/toml_guard.h"
 
 namespace earthshine::scenes {
@@ -153,6 +154,7 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   constexpr std::size_t mending_bytes = 56;  // per triangle, measured on spheres
   base::check_room(scene.triangles.size() * mending_bytes, path.string());
   mend_surfaces(scene);
+  settle_textures(scene);
   lift_lamps(scene);
   return scene;
 }

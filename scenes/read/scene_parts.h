@@ -68,13 +68,13 @@ class MeshShelf {
       : scene_folder_(std::move(scene_folder)), own_material_count_(own_material_count) {}
 
   [[nodiscard]] ShelvedMesh& take(const std::filesystem::path& named,
-                                  const base::Location& asked_at);
+                                  const base::Location& asked_at, VertexNormals normals);
   [[nodiscard]] std::size_t own_material_count() const { return own_material_count_; }
 
  private:
   std::filesystem::path scene_folder_;
   std::size_t own_material_count_;
-  std::map<std::filesystem::path, std::unique_ptr<ShelvedMesh>> meshes_;
+  std::map<std::pair<std::filesystem::path, VertexNormals>, std::unique_ptr<ShelvedMesh>> meshes_;
 };
 
 // Adds the object's triangles, and the materials that only its mesh defines, to the scene.

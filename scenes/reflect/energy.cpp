@@ -4,12 +4,34 @@
 #include <fmt/format.h>
 
 namespace earthshine::scenes {
+namespace {
+
+constexpr double rounding = 1e-9;
+
+Rgb lobe_of(const Material& material) {
+  return material.specular * (2.0 / (material.shininess + 2.0));
+}
+
+}  // namespace
+
+Rgb reflected_share(const Material& material) {
+  return material.diffuse + lobe_of(material) + material.mirror + material.transmit;
+}
+
+double conserve_energy(Material& material) {
+  const double sum = base::max_component(reflected_share(material));
+  if (sum <= 1.0 + rounding) return 1.0;
+  for (Rgb* part : {&material.diffuse, &material.specular, &material.mirror, &material.transmit}) {
+    *part /= sum;
+  }
+  return sum;
+}
 
 void check_energy(const Material& material, const base::Location& where, const std::string& what) {
-  const Rgb lobe = material.specular * (2.0 / (material.shininess + 2.0));
-  const Rgb total = material.diffuse + lobe + material.mirror + material.transmit;
+  const Rgb lobe = lobe_of(material);
+  const Rgb total = reflected_share(material);
   for (int c = 0; c < 3; ++c) {
-    if (total[c] <= 1.0 + 1e-9) continue;
+    if (total[c] <= 1.0 + rounding) continue;
     throw base::Error(
         base::Blame::Input, where,
         fmt::format(

@@ -9,6 +9,7 @@
 #include "radiosity/refine.h"
 #include "raytrace/frame/cryptomatte.h"
 #include "raytrace/incoming/knots.h"
+#include "scenes/surface_texture.h"
 
 namespace earthshine::studies {
 namespace {
@@ -58,7 +59,7 @@ MemoryNeed memory_needed(const MemoryCase& m) {
   MemoryNeed standing = {{{"program", program_bytes},
                           {"scene", double(m.vertices) * vertex_bytes +
                                         triangles * (triangle_bytes + hierarchy_bytes)}}};
-
+  if (m.texture_bytes > 0) standing.parts.push_back({"textures", double(m.texture_bytes)});
   if (m.solves || m.columns > 0) {
     standing.parts.push_back({"patches", patches * patch_bytes + triangles * facet_bytes});
   }
@@ -96,6 +97,7 @@ std::string memory_remedy(const MemoryNeed& need) {
   if (largest->name == "form factors") {
     return "Lower quality.max_patches or quality.form_factor_rays, or raise quality.patch_edge";
   }
+  if (largest->name == "textures") return "Shrink the pictures of the textures";
   if (largest->name == "scene") return "Leave out objects, or take meshes of fewer triangles";
   return "Lower quality.max_patches, raise quality.patch_edge, or give lights a common group";
 }
@@ -105,6 +107,7 @@ MemoryCase memory_case(const scenes::Scene& scene, const scenes::LightGroups& gr
   MemoryCase m;
   m.vertices = scene.vertices.size();
   m.triangles = scene.triangles.size();
+  m.texture_bytes = scenes::texture_bytes(scene);
   m.threads = base::available_threads();
   if (!radiosity::is_lit(effects) || scene.triangles.empty()) return m;
   set_patches(m,

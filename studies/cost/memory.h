@@ -31,6 +31,7 @@ inline constexpr PixelRecordBytes pixel_record_bytes;
 // The sizes that decide.
 struct MemoryCase {
   std::size_t vertices = 0, triangles = 0;
+  std::size_t texture_bytes = 0;
   std::size_t patches = 0;
   bool refined = false;        // cut unevenly
   double row_entries = 0.0;    // form factors of a mean row

@@ -67,7 +67,7 @@ LightNoise noise_of(const LightOnSurfaces& light, const std::vector<double>& ray
 }
 
 ResidualError residual_error(const LightOnSurfaces& light, const SurfaceSamples& samples,
-                             const LightNoise& noise, const std::vector<Rgb>& reflectances,
+                             const LightNoise& noise, const radiosity::PatchAlbedos& reflectances,
                              double mean, double solver_error) {
   ResidualError error;
   const radiosity::Patches& patches = light.patches();
@@ -86,7 +86,7 @@ ResidualError residual_error(const LightOnSurfaces& light, const SurfaceSamples&
     if (r.taken == 0) continue;
     const double part = patches.area_m2[i] * r.taken / r.tried;  // what no body covers
     area += part;
-    const Rgb& rho = reflectances[patches.material(i)];
+    const Rgb rho = reflectances.of(patches, i);
     Rgb b(0.0);
     for (std::size_t g = 0; g < groups; ++g) {
       const float* own = &light.light().solution.radiosity[(i * groups + g) * 3];

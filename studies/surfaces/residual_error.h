@@ -41,7 +41,7 @@ struct LightNoise {
 // samples: of all patches. mean: that they were weighed by.
 [[nodiscard]] ResidualError residual_error(const LightOnSurfaces& light,
                                            const SurfaceSamples& samples, const LightNoise& noise,
-                                           const std::vector<Rgb>& reflectances, double mean,
+                                           const radiosity::PatchAlbedos& reflectances, double mean,
                                            double solver_error);
 
 }  // namespace earthshine::studies

@@ -24,16 +24,15 @@ float mixed(float old, double found, double share) {
 
 LightOnSurfaces::LightOnSurfaces(const StudyScene& scene, radiosity::Solution coarse,
                                  radiosity::FormFactors factors, double rays)
-    : scene_(scene),
-      factors_(std::move(factors)),
-      reflectances_(scenes::bihemispherical_albedos(scene.scene)) {
+    : scene_(scene), factors_(std::move(factors)), reflectances_(scene.scene) {
   const radiosity::Patches& patches = coarse.patches;
   const std::size_t count = patches.count(), columns = coarse.columns;
   emitted_ = radiosity::exitances(scene.scene, scene.groups, patches);
   coarse_open_m2_ = radiosity::open_areas(factors_.open, patches.area_m2);
   coarse_.resize(count);
   std::iota(coarse_.begin(), coarse_.end(), 0U);
-  for (std::uint32_t i = 0; i < count; ++i) coarse_material_.push_back(patches.material(i));
+  for (std::uint32_t i = 0; i < count; ++i)
+    coarse_reflectance_.push_back(reflectances_.of(patches, i));
   lamp_points_.assign(count, radiosity::DirectOptions{}.points_per_patch);
   gather_rays_.assign(count, 0.5 * rays);
   open_share_ = factors_.open.share;
@@ -63,7 +62,7 @@ void LightOnSurfaces::sum_up() {
   std::vector<float>& b = light_.solution.radiosity;
   b.resize(light_.count() * columns);
   for (std::size_t i = 0; i < light_.count(); ++i) {
-    const Rgb& rho = reflectances_[patches().material(static_cast<std::uint32_t>(i))];
+    const Rgb rho = reflectances_.of(patches(), static_cast<std::uint32_t>(i));
     for (std::size_t k = 0; k < columns; ++k) {
       const std::size_t at = i * columns + k;
       b[at] = static_cast<float>(emitted_[coarse_[i] * columns + k] +
@@ -90,7 +89,7 @@ double LightOnSurfaces::mean_radiosity() const {
 
 std::vector<double> LightOnSurfaces::brought(const std::vector<double>& residual,
                                              std::size_t columns) const {
-  const std::size_t coarse = coarse_material_.size();
+  const std::size_t coarse = coarse_reflectance_.size();
   std::vector<double> source(coarse * columns, 0.0), area(coarse, 0.0), rho(coarse * columns);
   for (std::size_t i = 0; i < light_.count(); ++i) {
     const double part = patches().area_m2[i] * (open_share_.empty() ? 1.0 : open_share_[i]);
@@ -102,7 +101,7 @@ std::vector<double> LightOnSurfaces::brought(const std::vector<double>& residual
   for (std::size_t j = 0; j < coarse; ++j) {
     for (std::size_t k = 0; k < columns; ++k) {
       source[j * columns + k] = area[j] > 0.0 ? source[j * columns + k] / area[j] : 0.0;
-      rho[j * columns + k] = reflectances_[coarse_material_[j]][static_cast<int>(k % 3)];
+      rho[j * columns + k] = coarse_reflectance_[j][static_cast<int>(k % 3)];
     }
   }
   const radiosity::LinearSolve error =
@@ -123,7 +122,7 @@ void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std
     std::vector<double> residual(light_.count() * columns, 0.0);
     for (const std::uint32_t i : which) {
       if (samples.residual[i].taken == 0) continue;
-      const Rgb& rho = reflectances_[patches().material(i)];
+      const Rgb rho = reflectances_.of(patches(), i);
       for (std::size_t k = i * columns; k < (i + 1) * columns; ++k) {
         residual[k] =
             rho[static_cast<int>(k % 3)] * (samples.lamps[k] + samples.gathered[k] -
@@ -135,7 +134,7 @@ void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std
   for (std::size_t n = 0; n < which.size(); ++n) {
     const std::uint32_t i = which[n];
     const PatchResidual& seen = samples.residual[i];
-    if (base::max_component(reflectances_[patches().material(i)]) <= 0.0) continue;  // not sampled
+    if (base::max_component(reflectances_.of(patches(), i)) <= 0.0) continue;  // not sampled
     if (seen.taken == 0) {  // wholly covered: no light reaches it
       std::fill_n(&light_.lamps[i * columns], columns, 0.0F);
       std::fill_n(&light_.gathered[i * columns], columns, 0.0F);

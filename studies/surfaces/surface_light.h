@@ -7,6 +7,7 @@
 #pragma once
 
 #include "radiosity/fill_solution.h"
+#include "radiosity/patches/patch_albedo.h"
 #include "radiosity/patches/split.h"
 #include "studies/surfaces/surface_samples.h"
 
@@ -48,11 +49,11 @@ class LightOnSurfaces {
   StudyScene scene_;
   SurfaceLight light_;
   radiosity::FormFactors factors_;
-  std::vector<Rgb> reflectances_;  // per material
-  std::vector<double> emitted_;    // per coarse patch and column
+  radiosity::PatchAlbedos reflectances_;
+  std::vector<double> emitted_;  // per coarse patch and column
   std::vector<double> coarse_open_m2_;
   std::vector<std::uint32_t> coarse_;                           // per patch
-  std::vector<std::uint32_t> coarse_material_;                  // per coarse patch
+  std::vector<Rgb> coarse_reflectance_;                         // per coarse patch
   std::vector<double> lamp_points_, gather_rays_, open_share_;  // per patch
   std::vector<double> escape_, lost_;  // per patch: shares of what leaves it
 };

@@ -69,7 +69,7 @@ SurfaceSampler::SurfaceSampler(const StudyScene& scene, std::uint64_t seed)
     : scene_(scene),
       seed_(seed),
       sources_(radiosity::find_sources(scene.scene, scene.groups, scene.effects, source_points)),
-      reflectances_(scenes::bihemispherical_albedos(scene.scene)),
+      reflectances_(scene.scene),
       is_explicit_(radiosity::emitter_is_explicit(scene.scene)) {
   for (const scenes::Material& m : scene.scene.materials) {
     kept_.push_back(m.passes_light_on()
@@ -113,8 +113,10 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
       const std::uint32_t patch = which[n];
       const Effort& work = effort[n];
       const std::uint32_t material = patches.material(patch);
-      const Rgb &rho = reflectances_[material],
-                emitted = is_explicit_[material] ? Rgb(0.0) : scene_.scene.materials[material].emit;
+      const Rgb rho = reflectances_.of(patches, patch),
+                emitted = is_explicit_[material]
+                              ? Rgb(0.0)
+                              : radiosity::patch_emit(scene_.scene, patches, patch);
       PatchResidual& residual = found.residual[patch];
       residual.tried = residual.taken = work.points;
       if (base::max_component(rho) <= 0.0) continue;  // B = M, whatever falls on it

@@ -15,6 +15,7 @@
 
 #include "radiosity/direct/sources.h"
 #include "radiosity/factors/form_factors.h"
+#include "radiosity/patches/patch_albedo.h"
 #include "radiosity/solution.h"
 #include "raytrace/incoming/radiance_table.h"
 #include "studies/study.h"
@@ -74,14 +75,14 @@ class SurfaceSampler {
                                       double mean, const radiosity::ClosedBodies* bodies,
                                       const raytrace::Progress& progress = {}) const;
 
-  [[nodiscard]] const std::vector<Rgb>& reflectances() const { return reflectances_; }
+  [[nodiscard]] const radiosity::PatchAlbedos& reflectances() const { return reflectances_; }
   [[nodiscard]] const std::vector<bool>& is_explicit() const { return is_explicit_; }
 
  private:
   StudyScene scene_;
   std::uint64_t seed_;
   std::vector<radiosity::LightSource> sources_;
-  std::vector<Rgb> reflectances_;  // per material
+  radiosity::PatchAlbedos reflectances_;
   std::vector<bool> is_explicit_;  // per material: emission by shadow rays
   std::vector<double> kept_;       // per material: 1 - mirror - transmit
 };

@@ -93,17 +93,17 @@ class MeshFaults(program.Case):
 
     def test_what_a_material_library_says_in_vain_is_named(self):
         self.write("thing.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nusemtl wood\nf 1 2 3\n")
-        self.write("a.mtl", "newmtl wood\nKd 0.5 0.5 0.5\nKa 1 1 1\nd 0.5\nillum 2\nmap_Kd wood.png\n"
+        self.write("a.mtl", "newmtl wood\nKd 0.5 0.5 0.5\nKa 1 1 1\nPr 0.5\nillum 2\nmap_Kd wood.png\n"
                             "newmtl glass\nd 1.0\nTr 0.0\nTf 1 1 1\nmap_Ka wood.png\nbump wood.png\n")
         self.write("scene.toml", SCENE.format(sheet="", more="").replace('mesh = "thing.obj"\nmaterial = "white"',
                                                                          'mesh = "thing.obj"'))
         run = self.run_program("inspect", "scene.toml", "--json")
         self.assertEqual(run.returncode, 0, run.stderr)
         report = self.json("inspect", "scene.toml")
-        self.says(" ".join(report["warnings"]), "a.mtl", '"bump" (1)', '"d" (1)', '"map_Kd" (1)')
+        self.says(" ".join(report["warnings"]), "a.mtl", '"bump" (1)', '"Pr" (1)', '"map_Kd" (1)')
         for neutral in ("Tr", "Tf", "map_Ka"):
             self.assertNotIn(neutral, " ".join(report["warnings"]))
-        self.assertEqual(report["objects"][0]["unused"], "1 bump, 1 d, 1 map_Kd, 1 vn, 1 vt")
+        self.assertEqual(report["objects"][0]["unused"], "1 Pr, 1 bump, 1 map_Kd, 1 vn, 1 vt")
 
 
 if __name__ == "__main__":

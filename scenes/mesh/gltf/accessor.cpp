@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "base/free_memory.h"
 #include "scenes/mesh/gltf/file.h"
@@ -88,11 +90,38 @@ std::uint32_t index_at(const unsigned char* bytes, std::size_t size) {
   return index;
 }
 
-Vec3 float3_at(const unsigned char* bytes, const std::filesystem::path& path) {
-  float values[3];
-  std::memcpy(values, bytes, sizeof values);
-  const Vec3 v(values[0], values[1], values[2]);
-  for (int c = 0; c < 3; ++c) {
+std::size_t number_bytes(GltfNumber number) {
+  if (number == GltfNumber::Int8 || number == GltfNumber::Uint8) return 1;
+  return number == GltfNumber::Int16 || number == GltfNumber::Uint16 ? 2 : 4;
+}
+
+template <class Number>
+double whole_at(const unsigned char* bytes, bool normalized) {
+  Number value = 0;
+  std::memcpy(&value, bytes, sizeof value);
+  if (!normalized) return static_cast<double>(value);
+  // glTF 2.0, 3.6.2.2: the least negative number stands for -1 too.
+  return std::max(-1.0, static_cast<double>(value) / std::numeric_limits<Number>::max());
+}
+
+double number_at(const unsigned char* bytes, GltfNumber number, bool normalized) {
+  if (number == GltfNumber::Int8) return whole_at<std::int8_t>(bytes, normalized);
+  if (number == GltfNumber::Uint8) return whole_at<std::uint8_t>(bytes, normalized);
+  if (number == GltfNumber::Int16) return whole_at<std::int16_t>(bytes, normalized);
+  if (number == GltfNumber::Uint16) return whole_at<std::uint16_t>(bytes, normalized);
+  float value = 0.0F;
+  std::memcpy(&value, bytes, sizeof value);
+  return double(value);
+}
+
+// The first `components` numbers; the rest are 0.
+Vec3 vector_at(const unsigned char* bytes, const GltfAccessor& accessor,
+               const std::filesystem::path& path) {
+  Vec3 v(0.0);
+  const std::size_t size = number_bytes(accessor.number);
+  for (int c = 0; c < accessor.components; ++c) {
+    v[c] =
+        number_at(bytes + size * static_cast<std::size_t>(c), accessor.number, accessor.normalized);
     if (std::abs(v[c]) <= largest_coordinate) continue;
     gltf_fail(path, fmt::format("a vertex at ({}, {}, {})", v.x, v.y, v.z),
               fmt::format("coordinates are finite and at most {}", largest_coordinate));
@@ -126,29 +155,33 @@ void each_sparse(const GltfModel& model, const GltfAccessor& accessor, std::size
 
 }  // namespace
 
-std::vector<Vec3> read_gltf_positions(const GltfModel& model, int number,
-                                      const std::filesystem::path& path) {
+std::vector<Vec3> read_gltf_vectors(const GltfModel& model, int number, int components,
+                                    std::string_view attribute, const std::filesystem::path& path) {
   const GltfAccessor& accessor = accessor_at(model, number, path);
-  if (accessor.components != 3 || accessor.number != GltfNumber::Float32) {
-    gltf_fail(path, "positions that are not three floats",
-              "POSITION is VEC3 of component type 5126");
+  const bool is_number =
+      accessor.number != GltfNumber::Uint32 && accessor.number != GltfNumber::Other;
+  if (accessor.components != components || !is_number) {
+    gltf_fail(path, fmt::format("{} that is not {} numbers", attribute, components),
+              fmt::format("{} is VEC{} of floats, or of quantised bytes or shorts", attribute,
+                          components));
   }
-  constexpr std::size_t size = 3 * sizeof(float);
-  std::vector<Vec3> positions;
+  const std::size_t size = static_cast<std::size_t>(components) * number_bytes(accessor.number);
+  std::vector<Vec3> vectors;
   base::check_room(accessor.count * sizeof(Vec3), path.string());
   if (accessor.view != -1) {
     const Elements elements =
         view_elements(model, accessor.view, accessor.offset, accessor.count, size, true, path);
-    positions.reserve(accessor.count);
-    for (std::size_t i = 0; i < accessor.count; ++i)
-      positions.push_back(float3_at(elements[i], path));
+    vectors.reserve(accessor.count);
+    for (std::size_t i = 0; i < accessor.count; ++i) {
+      vectors.push_back(vector_at(elements[i], accessor, path));
+    }
   } else {
-    positions.assign(accessor.count, Vec3(0.0));  // zeros by the specification, unless sparse
+    vectors.assign(accessor.count, Vec3(0.0));  // zeros by the specification, unless sparse
   }
   each_sparse(model, accessor, size, path, [&](std::size_t i, const unsigned char* bytes) {
-    positions[i] = float3_at(bytes, path);
+    vectors[i] = vector_at(bytes, accessor, path);
   });
-  return positions;
+  return vectors;
 }
 
 std::vector<std::uint32_t> read_gltf_indices(const GltfModel& model, int number,

@@ -12,11 +12,8 @@
 
 namespace earthshine::scenes {
 
-// Materials with an alpha mode other than opaque, or that transmit.
-inline constexpr const char* transparent = "transparent materials";
-
-// Those; vertex attributes but for positions, textures, lights, cameras, skins, animations,
-// extensions.
+// Vertex attributes but for positions and coordinates of textures, lamps, cameras, skins,
+// animations, extensions that nothing here knows.
 [[nodiscard]] std::map<std::string, std::size_t> unused_of(const tinygltf::Model& model);
 
 // Throws base::Error (Input) for an extension that the file cannot be read without, with what

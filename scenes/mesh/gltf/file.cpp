@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/quaternion.hpp>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -17,52 +15,23 @@
 namespace earthshine::scenes {
 namespace {
 
-glm::dmat4 node_matrix(const GltfNode& node, const std::filesystem::path& path) {
-  const auto check = [&](const std::vector<double>& values, std::size_t wanted,
-                         std::string_view what) {
-    const bool finite = std::all_of(values.begin(), values.end(),
-                                    [](double x) { return std::abs(x) <= largest_coordinate; });
-    if ((values.empty() || values.size() == wanted) && finite) return;
-    gltf_fail(path, fmt::format("the {} of node {}", what, in_quotes(node.name)),
-              fmt::format("it has {} finite numbers", wanted));
-  };
-  check(node.matrix, 16, "matrix");
-  check(node.translation, 3, "translation");
-  check(node.rotation, 4, "rotation");
-  check(node.scale, 3, "scale");
-  glm::dmat4 matrix(1.0);
-  if (!node.matrix.empty()) {
-    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
-    return matrix;
-  }
-  if (!node.translation.empty()) {
-    matrix =
-        glm::translate(matrix, Vec3(node.translation[0], node.translation[1], node.translation[2]));
-  }
-  if (!node.rotation.empty()) {
-    const glm::dquat turn(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-    if (!(glm::length(turn) > 1e-9)) {
-      gltf_fail(path, fmt::format("the rotation of node {} has no length", in_quotes(node.name)));
-    }
-    matrix = matrix * glm::mat4_cast(glm::normalize(turn));
-  }
-  if (!node.scale.empty()) {
-    matrix = glm::scale(matrix, Vec3(node.scale[0], node.scale[1], node.scale[2]));
-  }
-  return matrix;
-}
-
 class GltfReader {
  public:
-  GltfReader(const GltfModel& model, const std::filesystem::path& path)
-      : model_(model), path_(path), visited_(model.nodes.size(), 0) {
+  GltfReader(const GltfModel& model, const std::filesystem::path& path, VertexNormals normals)
+      : model_(model),
+        path_(path),
+        reads_normals_(normals == VertexNormals::Read),
+        visited_(model.nodes.size(), 0) {
     mesh_.path = path;
   }
 
   Mesh read() {
     name_materials();
     mesh_.unused = model_.unused;
+    mesh_.warnings = model_.warnings;
     for (const int root : roots()) visit(root, glm::dmat4(1.0), {}, 1);
+    if (!mesh_.uv.empty()) mesh_.uv_indices.resize(mesh_.indices.size(), no_index);
+    if (reads_normals_) mesh_.unused.erase("NORMAL");
     return std::move(mesh_);
   }
 
@@ -79,15 +48,6 @@ class GltfReader {
       mesh_.material_names.push_back(material.name);
       mesh_.materials.push_back(std::move(material));
       mesh_.material_places.push_back({path_.string()});
-    }
-    if (model_.textured) {
-      mesh_.warnings.push_back(fmt::format(
-          "{}: textures are passed over; materials have their plain colours", path_.string()));
-    }
-    if (model_.transparent) {
-      mesh_.warnings.push_back(fmt::format(
-          "{}: transparent materials are read as opaque; say transmit of these in the scene file",
-          path_.string()));
     }
   }
 
@@ -132,7 +92,55 @@ class GltfReader {
     const glm::dmat4 matrix = parent * node_matrix(node, path_);
     if (!node.name.empty()) parts.push_back(number_of(node.name, mesh_.part_names, part_numbers_));
     if (node.mesh >= 0) add_mesh(node.mesh, matrix, parts);
+    add_lamp(node, matrix, parts);
+    add_camera(node, matrix, parts);
     for (const int child : node.children) visit(child, matrix, parts, depth + 1);
+  }
+
+  std::uint32_t add_parts(const std::vector<std::uint32_t>& parts) {
+    mesh_.part_sets.push_back(parts);
+    return static_cast<std::uint32_t>(mesh_.part_sets.size() - 1);
+  }
+
+  void add_lamp(const GltfNode& node, const glm::dmat4& matrix,
+                const std::vector<std::uint32_t>& parts) {
+    if (node.lamp < 0) return;
+    const auto number = static_cast<std::size_t>(node.lamp);
+    if (number >= model_.lamps.size()) {
+      gltf_fail(path_, fmt::format("light {} does not exist", number),
+                fmt::format("the file has {}", model_.lamps.size()));
+    }
+    if (!model_.lamps[number].is_lamp) return;
+    MeshLamp made{model_.lamps[number].lamp, add_parts(parts)};
+    if (!node.name.empty()) made.lamp.name = node.name;
+    made.lamp.position = Vec3(matrix[3]);
+    made.lamp.axis = turned(matrix, made.lamp.axis);
+    mesh_.lamps.push_back(std::move(made));
+  }
+
+  void add_camera(const GltfNode& node, const glm::dmat4& matrix,
+                  const std::vector<std::uint32_t>& parts) {
+    if (node.camera < 0) return;
+    const auto number = static_cast<std::size_t>(node.camera);
+    if (number >= model_.cameras.size()) {
+      gltf_fail(path_, fmt::format("camera {} does not exist", number),
+                fmt::format("the file has {}", model_.cameras.size()));
+    }
+    if (!model_.cameras[number].is_camera) return;
+    MeshCamera made{model_.cameras[number].camera, add_parts(parts)};
+    if (!node.name.empty()) made.camera.name = node.name;
+    made.camera.position = Vec3(matrix[3]);
+    made.camera.look_at = made.camera.position + turned(matrix, {0.0, 0.0, -1.0});
+    made.camera.up = turned(matrix, {0.0, 1.0, 0.0});
+    mesh_.cameras.push_back(std::move(made));
+  }
+
+  [[nodiscard]] Vec3 turned(const glm::dmat4& matrix, const Vec3& direction) const {
+    const Vec3 made = glm::dmat3(matrix) * direction;
+    if (!(glm::length(made) > 0.0)) {
+      gltf_fail(path_, "a lamp or a camera hangs on a node of scale 0");
+    }
+    return glm::normalize(made);
   }
 
   void add_mesh(int number, const glm::dmat4& matrix, std::vector<std::uint32_t> parts) {
@@ -142,8 +150,7 @@ class GltfReader {
     }
     const GltfMesh& mesh = model_.meshes[static_cast<std::size_t>(number)];
     if (!mesh.name.empty()) parts.push_back(number_of(mesh.name, mesh_.part_names, part_numbers_));
-    part_set_ = static_cast<std::uint32_t>(mesh_.part_sets.size());
-    mesh_.part_sets.push_back(std::move(parts));
+    part_set_ = add_parts(parts);
     for (const GltfPrimitive& primitive : mesh.primitives) add_primitive(primitive, matrix);
   }
 
@@ -158,7 +165,8 @@ class GltfReader {
                   fmt::format("the file has {}", model_.materials.size()));
       }
     }
-    const std::vector<Vec3> positions = read_gltf_positions(model_, primitive.position, path_);
+    const std::vector<Vec3> positions =
+        read_gltf_vectors(model_, primitive.position, 3, "POSITION", path_);
     std::vector<std::uint32_t> indices;
     if (primitive.indices >= 0) {
       indices = read_gltf_indices(model_, primitive.indices, path_);
@@ -180,12 +188,52 @@ class GltfReader {
     }
     const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
     for (const Vec3& p : positions) mesh_.vertices.emplace_back(matrix * glm::dvec4(p, 1.0));
+    const First starts{first, add_coordinates(primitive, material, positions.size()),
+                       add_normals(primitive, matrix, positions.size())};
     const bool mirrored = glm::determinant(glm::dmat3(matrix)) < 0.0;
-    add_triangles(primitive.mode, indices, first, material, mirrored);
+    add_triangles(primitive.mode, indices, starts, material, mirrored);
   }
 
-  void add_triangles(GltfMode mode, const std::vector<std::uint32_t>& indices, std::uint32_t first,
+  // Where a primitive's begin in the mesh's lists; no_index: it has none.
+  struct First {
+    std::uint32_t vertex, uv, normal;
+  };
+
+  // Where they are asked for.
+  std::uint32_t add_normals(const GltfPrimitive& primitive, const glm::dmat4& matrix,
+                            std::size_t count) {
+    if (!reads_normals_ || primitive.normal < 0) return no_index;
+    const auto normals = read_gltf_vectors(model_, primitive.normal, 3, "NORMAL", path_);
+    if (normals.size() < count) gltf_fail(path_, "fewer normals than vertices");
+    const auto first = static_cast<std::uint32_t>(mesh_.normals.size());
+    const glm::dmat3 turn = glm::transpose(glm::inverse(glm::dmat3(matrix)));
+    for (const Vec3& normal : normals) mesh_.normals.emplace_back(glm::normalize(turn * normal));
+    return first;
+  }
+
+  // Of a primitive with a texture, where they begin in the mesh's; no_index: it has none.
+  std::uint32_t add_coordinates(const GltfPrimitive& primitive, std::uint32_t material,
+                                std::size_t count) {
+    if (material == no_index || !model_.materials[material].maps) return no_index;
+    const auto set = primitive.coordinates.find(model_.coordinates[material]);
+    if (set == primitive.coordinates.end()) return no_index;
+    const std::vector<Vec3> uv = read_gltf_vectors(model_, set->second, 2, "TEXCOORD", path_);
+    if (uv.size() < count) {
+      gltf_fail(path_, fmt::format("{} texture coordinates", uv.size()),
+                fmt::format("the primitive has {} vertices", count));
+    }
+    const auto first = static_cast<std::uint32_t>(mesh_.uv.size());
+    for (const Vec3& place : uv) mesh_.uv.emplace_back(place.x, place.y);
+    return first;
+  }
+
+  void add_triangles(GltfMode mode, const std::vector<std::uint32_t>& indices, First first,
                      std::uint32_t material, bool mirrored) {
+    const auto begin = [&](std::uint32_t start, std::vector<std::uint32_t>& list) {
+      if (start != no_index) list.resize(mesh_.indices.size(), no_index);
+    };
+    begin(first.uv, mesh_.uv_indices);
+    begin(first.normal, mesh_.normal_indices);
     const std::size_t step = mode == GltfMode::Triangles ? 3 : 1;
     for (std::size_t i = 0; i + 3 <= indices.size(); i += step) {
       std::array<std::uint32_t, 3> corners{indices[i], indices[i + 1], indices[i + 2]};
@@ -193,13 +241,18 @@ class GltfReader {
       // Every second triangle of a strip runs the other way round, and so does a mirrored mesh.
       const bool odd = mode == GltfMode::Strip && i % 2 == 1;
       if (odd != mirrored) std::swap(corners[1], corners[2]);
-      for (std::uint32_t& corner : corners) corner += first;
+      for (std::uint32_t& corner : corners) {
+        if (first.uv != no_index) mesh_.uv_indices.push_back(first.uv + corner);
+        if (first.normal != no_index) mesh_.normal_indices.push_back(first.normal + corner);
+        corner += first.vertex;
+      }
       add_polygon(mesh_, corners, part_set_, material);
     }
   }
 
   const GltfModel& model_;
   const std::filesystem::path& path_;
+  bool reads_normals_;
   Mesh mesh_;
   std::vector<int> visited_;
   std::uint32_t part_set_ = 0;
@@ -209,9 +262,9 @@ class GltfReader {
 }  // namespace
 
 Mesh parse_gltf(std::string_view bytes, const std::filesystem::path& path,
-                std::span<const std::filesystem::path> folders) {
+                std::span<const std::filesystem::path> folders, VertexNormals normals) {
   GltfModel model = load_gltf_model(bytes, path, folders);
-  Mesh mesh = GltfReader(model, path).read();
+  Mesh mesh = GltfReader(model, path, normals).read();
   mesh.files = std::move(model.files);
   return mesh;
 }

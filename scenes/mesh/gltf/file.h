@@ -17,9 +17,10 @@ inline constexpr int max_node_depth = 64;
 inline constexpr std::size_t max_gltf_triangles = std::size_t{1} << 24;
 
 // The triangles of the default scene (or the first, or all root nodes), with the nodes' transforms
-// applied. Parts: names of nodes, each with what hangs below it, and of meshes. Materials: base
-// colour, metal, roughness and emission as Phong; textures are passed over with a warning.
+// applied. Parts: names of nodes, each with what hangs below it, and of meshes. Materials and
+// textures: materials.h.
 [[nodiscard]] Mesh parse_gltf(std::string_view bytes, const std::filesystem::path& path,
-                              std::span<const std::filesystem::path> folders);
+                              std::span<const std::filesystem::path> folders,
+                              VertexNormals normals = VertexNormals::Ignored);
 
 }  // namespace earthshine::scenes

@@ -5,12 +5,13 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "base/input/input_file.h"
 #include "scenes/mesh/gltf/extras.h"
 #include "scenes/mesh/gltf/file.h"
+#include "scenes/mesh/gltf/materials.h"
+#include "scenes/mesh/gltf/punctual.h"
 #include "scenes/text/confined_path.h"
 
 namespace earthshine::scenes {
@@ -69,7 +70,7 @@ std::string plain_name(const std::string& tried) {
   return tried.starts_with("./") ? tried.substr(2) : tried;
 }
 
-// Textures are not used, so they need not be read; tinygltf does without a missing image.
+// Read where a material needs them; tinygltf does without a missing image.
 bool is_image(const std::string& name) {
   constexpr std::string_view endings[] = {".png",  ".jpg", ".jpeg", ".webp",
                                           ".ktx2", ".dds", ".basis"};
@@ -127,8 +128,10 @@ Callbacks file_callbacks(FileAccess& files) {
   return callbacks;
 }
 
-bool pass_over_image(tinygltf::Image*, const int, std::string*, std::string*, int, int,
-                     const unsigned char*, int, void*) {
+// Bytes of a picture inside the file or its buffers, kept as they are.
+bool keep_image(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
+                const unsigned char* bytes, int size, void*) {
+  if (size > 0) image->image.assign(bytes, bytes + size);
   return true;
 }
 
@@ -140,36 +143,14 @@ std::string one_line(std::string text) {
   return text.empty() ? "tinygltf gives no reason" : text;
 }
 
-Material convert(const tinygltf::Material& source) {
-  const auto unit = [](double x) { return std::isfinite(x) ? std::clamp(x, 0.0, 1.0) : 0.0; };
-  const auto colour = [&](const std::vector<double>& values, double otherwise) {
-    return values.size() < 3 ? Rgb(otherwise)
-                             : Rgb(unit(values[0]), unit(values[1]), unit(values[2]));
-  };
-  Material material;
-  material.name = source.name;
-  const auto& pbr = source.pbrMetallicRoughness;
-  const Rgb base_colour = colour(pbr.baseColorFactor, 1.0);
-  const double metallic = unit(pbr.metallicFactor);
-  const double roughness = unit(pbr.roughnessFactor);
-  material.diffuse = base_colour * (1.0 - metallic);
-  if (metallic > 0.0 && roughness < 0.05) {
-    material.mirror = base_colour * metallic;
-  } else if (metallic > 0.0) {
-    const double slope2 = roughness * roughness * roughness * roughness;
-    material.shininess = 2.0 / slope2 - 2.0;
-    material.specular = base_colour * metallic * (material.shininess + 2.0) / 2.0;
-  }
-  // The emissive factor is radiance; a diffuse emitter's exitance is pi times that.
-  material.emit = base::pi * colour(source.emissiveFactor, 0.0);
-  material.two_sided = source.doubleSided;
-  return material;
-}
-
 GltfNumber number_type(int component_type) {
   switch (component_type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return GltfNumber::Int8;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
       return GltfNumber::Uint8;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return GltfNumber::Int16;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
       return GltfNumber::Uint16;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
@@ -184,8 +165,9 @@ GltfNumber number_type(int component_type) {
 GltfAccessor convert(const tinygltf::Accessor& source) {
   GltfAccessor accessor{
       source.bufferView, source.byteOffset, source.count, number_type(source.componentType), 0,
-      std::nullopt};
+      source.normalized, std::nullopt};
   if (source.type == TINYGLTF_TYPE_SCALAR) accessor.components = 1;
+  if (source.type == TINYGLTF_TYPE_VEC2) accessor.components = 2;
   if (source.type == TINYGLTF_TYPE_VEC3) accessor.components = 3;
   if (source.sparse.isSparse) {
     const auto& indices = source.sparse.indices;
@@ -203,7 +185,7 @@ GltfAccessor convert(const tinygltf::Accessor& source) {
 GltfMesh convert(const tinygltf::Mesh& source) {
   GltfMesh mesh{source.name, {}};
   for (const tinygltf::Primitive& primitive : source.primitives) {
-    GltfPrimitive converted{GltfMode::Other, -1, primitive.indices, primitive.material};
+    GltfPrimitive converted{GltfMode::Other, -1, primitive.indices, primitive.material, -1, {}};
     if (primitive.mode == -1 || primitive.mode == TINYGLTF_MODE_TRIANGLES) {
       converted.mode = GltfMode::Triangles;
     }
@@ -211,13 +193,30 @@ GltfMesh convert(const tinygltf::Mesh& source) {
     if (primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN) converted.mode = GltfMode::Fan;
     const auto position = primitive.attributes.find("POSITION");
     if (position != primitive.attributes.end()) converted.position = position->second;
+    const auto normal = primitive.attributes.find("NORMAL");
+    if (normal != primitive.attributes.end()) converted.normal = normal->second;
+    for (const auto& [name, accessor] : primitive.attributes) {
+      constexpr std::string_view coordinates = "TEXCOORD_";
+      if (!name.starts_with(coordinates)) continue;
+      const char set = name.size() == coordinates.size() + 1 ? name.back() : 'x';
+      if (set >= '0' && set <= '9') converted.coordinates[set - '0'] = accessor;
+    }
     mesh.primitives.push_back(converted);
   }
   return mesh;
 }
 
-GltfModel convert(tinygltf::Model&& source) {
+GltfModel convert(tinygltf::Model&& source, FileAccess& files) {
   GltfModel model;
+  model.unused = unused_of(source);
+  GltfTextures textures(
+      source, files.path,
+      [&](const std::string& uri) {
+        files.found.push_back(files.inside(uri));
+        return base::read_input_file(files.found.back(), max_mesh_bytes,
+                                     base::Location{files.path.string()});
+      },
+      model.warnings);
   for (auto& buffer : source.buffers) model.buffers.push_back(std::move(buffer.data));
   for (const auto& view : source.bufferViews) {
     model.views.push_back({view.buffer, view.byteOffset, view.byteLength, view.byteStride});
@@ -225,15 +224,17 @@ GltfModel convert(tinygltf::Model&& source) {
   for (const auto& accessor : source.accessors) model.accessors.push_back(convert(accessor));
   for (const auto& mesh : source.meshes) model.meshes.push_back(convert(mesh));
   for (const auto& node : source.nodes) {
-    model.nodes.push_back({node.name, node.mesh, node.children, node.matrix, node.translation,
-                           node.rotation, node.scale});
+    model.nodes.push_back({node.name, node.mesh, -1, -1, node.children, node.matrix,
+                           node.translation, node.rotation, node.scale});
   }
   for (const auto& scene : source.scenes) model.scenes.push_back(scene.nodes);
   model.default_scene = source.defaultScene;
   for (const auto& material : source.materials) {
-    model.materials.push_back(convert(material));
-    model.textured = model.textured || material.pbrMetallicRoughness.baseColorTexture.index >= 0;
+    GltfMaterial made = phong_material(material, textures, model.unused);
+    model.materials.push_back(std::move(made.material));
+    model.coordinates.push_back(made.coordinates);
   }
+  read_punctual(source, model);
   return model;
 }
 
@@ -253,7 +254,7 @@ GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& p
 
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(file_callbacks<tinygltf::FsCallbacks>(files));
-  loader.SetImageLoader(pass_over_image, nullptr);
+  loader.SetImageLoader(keep_image, nullptr);
   tinygltf::Model model;
   std::string problem, warning;
   bool loaded = false;
@@ -272,11 +273,8 @@ GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& p
   }
   check_required_extensions(model, path);
   if (!loaded) gltf_fail(path, fmt::format("not a sound glTF file: {}", one_line(problem)));
-  std::map<std::string, std::size_t> unused = unused_of(model);
-  GltfModel converted = convert(std::move(model));
-  converted.transparent = unused.count(transparent) > 0;
+  GltfModel converted = convert(std::move(model), files);
   converted.files = std::move(files.found);
-  converted.unused = std::move(unused);
   return converted;
 }
 

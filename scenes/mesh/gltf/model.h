@@ -21,7 +21,7 @@ struct GltfView {
   std::size_t offset = 0, length = 0, stride = 0;  // bytes; stride 0: tightly packed
 };
 
-enum class GltfNumber { Uint8, Uint16, Uint32, Float32, Other };
+enum class GltfNumber { Int8, Uint8, Int16, Uint16, Uint32, Float32, Other };
 
 struct GltfSparse {
   int count = 0;
@@ -35,6 +35,7 @@ struct GltfAccessor {
   std::size_t offset = 0, count = 0;
   GltfNumber number = GltfNumber::Other;
   int components = 0;
+  bool normalized = false;  // whole numbers stand for shares of their largest
   std::optional<GltfSparse> sparse;
 };
 
@@ -43,6 +44,8 @@ enum class GltfMode { Triangles, Strip, Fan, Other };
 struct GltfPrimitive {
   GltfMode mode = GltfMode::Other;
   int position = -1, indices = -1, material = -1;  // -1: none
+  int normal = -1;
+  std::map<int, int> coordinates;  // TEXCOORD_n, by n
 };
 
 struct GltfMesh {
@@ -52,9 +55,20 @@ struct GltfMesh {
 
 struct GltfNode {
   std::string name;
-  int mesh = -1;
+  int mesh = -1, lamp = -1, camera = -1;
   std::vector<int> children;
   std::vector<double> matrix, translation, rotation, scale;  // empty when not given
+};
+
+// As its table has it: at the origin, toward -z.
+struct GltfLamp {
+  Lamp lamp;
+  bool is_lamp = true;  // false: light from everywhere along one direction
+};
+
+struct GltfCamera {
+  Camera camera;
+  bool is_camera = true;  // false: without perspective
 };
 
 struct GltfModel {
@@ -67,8 +81,10 @@ struct GltfModel {
   int default_scene = -1;
   std::vector<Material> materials;           // names may be empty or repeated
   std::vector<std::filesystem::path> files;  // that the file names
-  bool textured = false;
-  bool transparent = false;
+  std::vector<int> coordinates;              // of each material: TEXCOORD_n of its textures
+  std::vector<GltfLamp> lamps;
+  std::vector<GltfCamera> cameras;
+  std::vector<std::string> warnings;
   std::map<std::string, std::size_t> unused;  // what nothing here reads, as Mesh::unused
 };
 
@@ -76,16 +92,21 @@ struct GltfModel {
 [[noreturn]] void gltf_fail(const std::filesystem::path& path, std::string_view found,
                             std::string_view allowed = {});
 
-// Buffers only from the folders, no images. Materials: metallic-roughness as Phong, the energy
-// kept: the metallic share goes to a lobe with n = 2/r^4 - 2, or to the mirror when the roughness r
-// is below 0.05.
+// Buffers and pictures only from the folders. Materials: materials.h; lamps and cameras:
+// punctual.h.
 [[nodiscard]] GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& path,
                                         std::span<const std::filesystem::path> folders);
 
+// A node's own transform: its matrix, or translation, rotation and scale in that order. Throws
+// base::Error (Input) for numbers that are too few, too many or not finite.
+[[nodiscard]] glm::dmat4 node_matrix(const GltfNode& node, const std::filesystem::path& path);
+
 // The accessor's values, checked against buffer view and buffer in wide arithmetic; sparse ones
-// included.
-[[nodiscard]] std::vector<Vec3> read_gltf_positions(const GltfModel& model, int accessor,
-                                                    const std::filesystem::path& path);
+// included. Of vectors with two components the third is 0; quantised ones come as the shares or
+// whole numbers that they stand for. `attribute` is for messages.
+[[nodiscard]] std::vector<Vec3> read_gltf_vectors(const GltfModel& model, int accessor,
+                                                  int components, std::string_view attribute,
+                                                  const std::filesystem::path& path);
 [[nodiscard]] std::vector<std::uint32_t> read_gltf_indices(const GltfModel& model, int accessor,
                                                            const std::filesystem::path& path);
 

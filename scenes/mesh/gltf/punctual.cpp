@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/mesh/gltf/punctual.h"
+
+#include <cmath>
+
+#include "scenes/mesh/gltf/values.h"
+
+namespace earthshine::scenes {
+namespace {
+
+constexpr double strongest_lamp = 1e15;  // cd, as in scene files
+constexpr double degrees = 180.0 / base::pi;
+
+GltfLamp lamp_of(const tinygltf::Light& source, GltfModel& model) {
+  GltfLamp made;
+  Lamp& lamp = made.lamp;
+  lamp.name = source.name;
+  lamp.axis = {0.0, 0.0, -1.0};
+  lamp.intensity_cd = colour_of(source.color, 1.0) * in_range(source.intensity, strongest_lamp);
+  if (source.type == "spot") {
+    lamp.kind = LampKind::Spot;
+    const auto full = [](double half_angle) {
+      return 2.0 * degrees * in_range(half_angle, base::pi / 2.0);
+    };
+    lamp.field_deg = full(source.spot.outerConeAngle);
+    lamp.beam_deg = std::min(lamp.field_deg, full(source.spot.innerConeAngle));
+  } else {
+    made.is_lamp = source.type == "point";
+  }
+  if (source.range > 0.0) ++model.unused["ranges of lamps: light goes on"];
+  return made;
+}
+
+GltfCamera camera_of(const tinygltf::Camera& source, GltfModel& model) {
+  GltfCamera made;
+  Camera& camera = made.camera;
+  camera.name = source.name;
+  made.is_camera = source.type == "perspective" && source.perspective.yfov > 0.0 &&
+                   source.perspective.yfov < base::pi;
+  if (!made.is_camera) {
+    ++model.unused["orthographic cameras"];
+    return made;
+  }
+  camera.fov_deg = source.perspective.yfov * degrees;
+  const double aspect = source.perspective.aspectRatio;
+  if (aspect > 0.0 && aspect < 32.0) {
+    camera.columns = std::max(1, static_cast<int>(std::lround(camera.rows * aspect)));
+  }
+  return made;
+}
+
+}  // namespace
+
+void read_punctual(const tinygltf::Model& source, GltfModel& model) {
+  for (const tinygltf::Light& light : source.lights) model.lamps.push_back(lamp_of(light, model));
+  for (const tinygltf::Camera& camera : source.cameras) {
+    model.cameras.push_back(camera_of(camera, model));
+  }
+  for (std::size_t n = 0; n < model.nodes.size(); ++n) {
+    model.nodes[n].camera = source.nodes[n].camera;
+    const tinygltf::Value hung = extension_of(source.nodes[n].extensions, "KHR_lights_punctual");
+    model.nodes[n].lamp = static_cast<int>(number_of(hung, "light", -1.0));
+  }
+}
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/mesh/mtl_maps.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "base/input/input_file.h"
+#include "scenes/mesh.h"
+#include "scenes/text/confined_path.h"
+
+namespace earthshine::scenes {
+namespace {
+
+struct Option {
+  std::string_view name;
+  std::size_t least, most;  // numbers or words after it
+  bool changes_nothing;     // here
+};
+// Of the format's text. -bm is of bump maps, -imfchan names the channel that a mask is taken from.
+constexpr Option options[] = {
+    {"-s", 1, 3, false},      {"-o", 1, 3, false},     {"-clamp", 1, 1, false},
+    {"-t", 1, 3, true},       {"-blendu", 1, 1, true}, {"-blendv", 1, 1, true},
+    {"-cc", 1, 1, true},      {"-texres", 1, 1, true}, {"-boost", 1, 1, true},
+    {"-imfchan", 1, 1, true}, {"-type", 1, 1, true}};
+
+}  // namespace
+
+bool MtlMaps::read(const TextLines& line, bool is_mask, TextureMap& map) {
+  const auto& words = line.words();
+  glm::dvec2 scale(1.0), shift(0.0);
+  TextureReading reading;
+  reading.is_mask = is_mask;
+  reading.is_srgb = !is_mask;
+  std::size_t at = 1;
+  while (at < words.size() && words[at].text.starts_with('-')) {
+    const auto* const option =
+        std::find_if(std::begin(options), std::end(options),
+                     [&](const Option& known) { return known.name == words[at].text; });
+    if (option == std::end(options)) return false;
+    std::vector<double> numbers;
+    std::size_t used = 1;
+    // Numbers as long as there are some: "-s 2 floor.png" has one.
+    for (; used <= option->most && at + used < words.size(); ++used) {
+      const auto number = number_in(words[at + used].text);
+      if (!number && used > option->least) break;
+      numbers.push_back(number.value_or(0.0));
+    }
+    const auto component = [&](std::size_t k, double otherwise) {
+      return k < numbers.size() ? numbers[k] : otherwise;
+    };
+    if (option->name == "-s") scale = {component(0, 1.0), component(1, 1.0)};
+    if (option->name == "-o") shift = {component(0, 0.0), component(1, 0.0)};
+    if (option->name == "-clamp" && at + 1 < words.size() && words[at + 1].text == "on") {
+      reading.wrap_u = reading.wrap_v = Wrap::Clamp;
+    }
+    at += used;
+  }
+  if (at >= words.size()) return false;
+  // The rest of the line: names may have blanks.
+  const char* const first = words[at].text.data();
+  const char* const last = words.back().text.data() + words.back().text.size();
+  reading.name.assign(first, last);
+  std::replace(reading.name.begin(), reading.name.end(), '\\', '/');
+  const base::Location where = line.where(words[at]);
+  map.texture = shelf_.take(reading, [&] {
+    const auto path = confined_path(library_.parent_path(), reading.name, folders_, where);
+    files_.push_back(path);
+    return base::read_input_file(path, max_mesh_bytes, where);
+  });
+  // v runs up in these files, and down from the upper edge here: with w = 1 - v and the format's
+  // v' = o + s v, w' = 1 - v' = (1 - o - s) + s w.
+  TextureTransform transform;
+  transform.turn = glm::dmat2(scale.x, 0.0, 0.0, scale.y);
+  transform.shift = {shift.x, 1.0 - shift.y - scale.y};
+  map.transform = std::make_shared<const TextureTransform>(transform);
+  return true;
+}
+
+}  // namespace earthshine::scenes

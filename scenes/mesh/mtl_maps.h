@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Texture lines of an MTL file: map_Kd, map_Ke, map_d.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenes/scene.h"
+#include "scenes/text/text_lines.h"
+#include "scenes/texture/picture_shelf.h"
+
+namespace earthshine::scenes {
+
+class MtlMaps {
+ public:
+  MtlMaps(std::filesystem::path library, std::span<const std::filesystem::path> folders,
+          std::vector<std::filesystem::path>& files, std::vector<std::string>& warnings)
+      : library_(std::move(library)), folders_(folders), files_(files), shelf_(warnings) {}
+
+  // The texture of a line: its options -s, -o and -clamp, and its file beside the library or in the
+  // folders. False for another option that changes what it shows; no texture, and a warning, for a
+  // file that cannot be read.
+  [[nodiscard]] bool read(const TextLines& line, bool is_mask, TextureMap& map);
+
+ private:
+  std::filesystem::path library_;
+  std::span<const std::filesystem::path> folders_;
+  std::vector<std::filesystem::path>& files_;  // those that were asked for
+  PictureShelf shelf_;
+};
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/round/edge_curves.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace earthshine::scenes {
+namespace {
+
+constexpr double same_normal = 1e-4;        // 1 - |cosine|: within 0.8 degrees
+constexpr double flat_deg = 0.05;           // what turns less is flat
+constexpr double least_cosine = 0.5;        // of the angle between a curve's end and its chord
+constexpr std::uint32_t most_pieces = 256;  // of an edge
+
+double angle_deg(const Vec3& a, const Vec3& b) {
+  return std::atan2(glm::length(glm::cross(a, b)), std::abs(glm::dot(a, b))) * 180.0 / base::pi;
+}
+
+// The inner Bezier point beside `from`, a third of the way to `to`.
+Vec3 inner_point(const Vec3& from, const Vec3& to, const std::vector<Vec3>& normals) {
+  const Vec3 way = to - from;
+  const auto alike = [&](const Vec3& normal) {
+    return 1.0 - std::abs(glm::dot(normal, normals.front())) < same_normal;
+  };
+  Vec3 along = way;
+  if (std::all_of(normals.begin(), normals.end(), alike)) {
+    along = way - glm::dot(way, normals.front()) * normals.front();
+  } else if (normals.size() == 2) {  // a crease runs along both of its faces
+    const Vec3 crease = glm::normalize(glm::cross(normals[0], normals[1]));
+    along = glm::dot(way, crease) * crease;
+  }
+  const double chord = glm::length(way), tangent = glm::length(along);
+  const double cosine = chord * tangent > 0.0 ? glm::dot(way, along) / (chord * tangent) : 0.0;
+  // A curve that runs across its own edge is none. Else as long as an arc wants it that leaves its
+  // chord by phi: (4/3) tan(phi/2) radii, the chord being 2 sin(phi) of them.
+  if (cosine < least_cosine) return from + way / 3.0;
+  return from + along * (2.0 / 3.0 * chord / (tangent * (1.0 + cosine)));
+}
+
+}  // namespace
+
+Vec3 point_on(const EdgeCurve& curve, double t) {
+  const auto& [a, b, c, d] = curve.points;
+  const double s = 1.0 - t;
+  return s * s * s * a + 3.0 * s * s * t * b + 3.0 * s * t * t * c + t * t * t * d;
+}
+
+void EdgeCurves::add(std::uint32_t a, std::uint32_t b, const Vec3& normal_a, const Vec3& normal_b) {
+  faces_[std::minmax(a, b)].normals.push_back(a < b ? std::pair(normal_a, normal_b)
+                                                    : std::pair(normal_b, normal_a));
+}
+
+void EdgeCurves::find(const std::vector<Vec3>& place, double turn_deg) {
+  for (const auto& [ends, faces] : faces_) {
+    std::vector<Vec3> low, high;
+    double turn = 0.0;
+    for (const auto& [at_low, at_high] : faces.normals) {
+      low.push_back(at_low);
+      high.push_back(at_high);
+      turn = std::max(turn, angle_deg(at_low, at_high));
+    }
+    EdgeCurve curve;
+    const Vec3 &a = place[ends.first], &b = place[ends.second];
+    curve.points = {a, inner_point(a, b, low), inner_point(b, a, high), b};
+    turn = std::max(turn, angle_deg(curve.points[1] - a, b - curve.points[2]));
+    if (turn > flat_deg) {
+      curve.pieces = std::clamp(static_cast<std::uint32_t>(std::ceil(turn / turn_deg - 1e-6)),
+                                std::uint32_t{1}, most_pieces);
+    }
+    curves_.emplace(ends, std::move(curve));
+  }
+  faces_.clear();
+}
+
+}  // namespace earthshine::scenes

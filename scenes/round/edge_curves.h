@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// The curves that the edges of a mesh stand for: cubics from corner to corner, one for all the
+// faces of an edge, so that no gap opens between a side and the cap it meets at a crease.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "base/units.h"
+
+namespace earthshine::scenes {
+
+// Bezier points from the end with the lower id to the other, and the pieces that it is cut into.
+struct EdgeCurve {
+  std::array<Vec3, 4> points;
+  std::uint32_t pieces = 1;
+  std::vector<std::uint32_t> vertices;  // of the new mesh, between the ends, once they are made
+};
+
+// The point at t in [0, 1] (de Casteljau).
+[[nodiscard]] Vec3 point_on(const EdgeCurve& curve, double t);
+
+class EdgeCurves {
+ public:
+  // A face that has the edge from a to b, and its normals there. Ids are those of places.
+  void add(std::uint32_t a, std::uint32_t b, const Vec3& normal_a, const Vec3& normal_b);
+  // Curves for all edges, after the last add(). At each end the curve leaves in the tangent plane
+  // of the faces' common normal (Vlachos, Peters, Boyd and Mitchell, "Curved PN triangles", 2001),
+  // or along the crease of two, as far as an arc does (Goldapp, "Approximation of circular arcs by
+  // cubic polynomials", 1991); it is cut so that no piece turns by more than turn_deg. place: of an
+  // id.
+  void find(const std::vector<Vec3>& place, double turn_deg);
+
+  [[nodiscard]] EdgeCurve& between(std::uint32_t a, std::uint32_t b) {
+    return curves_.at(std::minmax(a, b));
+  }
+
+ private:
+  struct Faces {
+    std::vector<std::pair<Vec3, Vec3>> normals;  // at the lower and at the higher id
+  };
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Faces> faces_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, EdgeCurve> curves_;
+};
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/surface_texture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "scenes/mask.h"
+#include "scenes/texture/texture.h"
+
+namespace earthshine::scenes {
+namespace {
+
+// Of a triangle for its mean, along each side: sixteen samples to a texel, within these bounds.
+constexpr int fewest_samples = 4, most_samples = 64;
+
+// Point k of the R2 lattice (Roberts 2018): even over the square, in step with no pattern.
+glm::dvec2 lattice_point(int k) {
+  return glm::fract(0.5 + (k + 1.0) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
+}
+
+glm::dvec2 uv_at(const Scene& scene, const SurfacePlace& place) {
+  const auto& vertex = scene.triangles[place.triangle].vertex;
+  const glm::dvec2 a(scene.vertex_uv[vertex[0]]), b(scene.vertex_uv[vertex[1]]),
+      c(scene.vertex_uv[vertex[2]]);
+  return (1.0 - place.u - place.v) * a + place.u * b + place.v * c;
+}
+
+// Texels to a metre of the triangle, by their areas.
+double texels_per_m(const Scene& scene, const TextureMap& map, std::uint32_t triangle) {
+  const auto& vertex = scene.triangles[triangle].vertex;
+  const glm::dvec2 a(scene.vertex_uv[vertex[0]]);
+  const glm::dvec2 ab = glm::dvec2(scene.vertex_uv[vertex[1]]) - a,
+                   ac = glm::dvec2(scene.vertex_uv[vertex[2]]) - a;
+  const double in_texture =
+      0.5 * std::abs((ab.x * ac.y - ab.y * ac.x) * glm::determinant(map.transform->turn)) *
+      map.texture->width() * map.texture->height();
+  return std::sqrt(in_texture / triangle_area(scene, triangle));
+}
+
+glm::dvec4 look_up(const Scene& scene, const TextureMap& map, const SurfacePlace& place) {
+  double level = 0.0;
+  if (place.width_m > 0.0) {
+    level = std::log2(std::max(1.0, place.width_m * texels_per_m(scene, map, place.triangle)));
+  }
+  return map.texture->at(map.transform->apply(uv_at(scene, place)), level);
+}
+
+Rgb relative(const Scene& scene, const TextureMap& map, const SurfacePlace& place) {
+  return Rgb(look_up(scene, map, place)) * map.over_mean;
+}
+
+// Sums over the surfaces of a material, by area.
+struct Sums {
+  double area = 0.0;
+  Rgb diffuse{0.0}, emit{0.0};
+};
+
+void add_triangle(const Scene& scene, std::uint32_t triangle, const MaterialMaps& maps,
+                  Sums& sums) {
+  const double area = triangle_area(scene, triangle);
+  double texels = 1.0;
+  for (const TextureMap* map : {&maps.diffuse, &maps.emit, &maps.opacity}) {
+    if (!map->texture) continue;
+    texels = std::max(texels, texels_per_m(scene, *map, triangle) * std::sqrt(area));
+  }
+  const int n = std::clamp(static_cast<int>(std::ceil(16.0 * std::min(texels, 1e6))),
+                           fewest_samples, most_samples);
+  SurfacePlace place{triangle, 0.0, 0.0, std::sqrt(area) / n};
+  const double share = area / (double(n) * n);
+  for (int k = 0; k < n * n; ++k) {
+    const glm::dvec2 square = lattice_point(k);
+    const double root = std::sqrt(square.x);  // even over the triangle
+    place.u = root * (1.0 - square.y);
+    place.v = root * square.y;
+    if (!is_opaque(maps, uv_at(scene, place))) continue;
+    sums.area += share;
+    if (maps.diffuse.texture) sums.diffuse += share * Rgb(look_up(scene, maps.diffuse, place));
+    if (maps.emit.texture) sums.emit += share * Rgb(look_up(scene, maps.emit, place));
+  }
+}
+
+void settle(const Rgb& sum, double area, TextureMap& map, Rgb& factor) {
+  if (!map.texture) return;
+  const Rgb mean = area > 0.0 ? sum / area : Rgb(map.texture->mean());
+  for (int c = 0; c < 3; ++c) map.over_mean[c] = mean[c] > 0.0 ? 1.0 / mean[c] : 0.0;
+  factor *= mean;
+}
+
+}  // namespace
+
+Rgb textured_diffuse(const Scene& scene, const Material& material, const SurfacePlace& place) {
+  if (!material.maps || !material.maps->diffuse.texture) return material.diffuse;
+  return material.diffuse * relative(scene, material.maps->diffuse, place);
+}
+
+Rgb textured_emit(const Scene& scene, const Material& material, const SurfacePlace& place) {
+  if (!material.maps || !material.maps->emit.texture) return material.emit;
+  return material.emit * relative(scene, material.maps->emit, place);
+}
+
+bool is_there(const Scene& scene, std::uint32_t triangle, double u, double v) {
+  const Material& material = scene.materials[scene.triangles[triangle].material];
+  return !material.maps || is_opaque(*material.maps, uv_at(scene, {triangle, u, v, 0.0}));
+}
+
+Rgb mean_emit(const Scene& scene, std::uint32_t triangle) {
+  const Material& material = scene.materials[scene.triangles[triangle].material];
+  Sums sums;
+  add_triangle(scene, triangle, *material.maps, sums);
+  const double area = triangle_area(scene, triangle);
+  const TextureMap& map = material.maps->emit;
+  return map.texture ? material.emit * map.over_mean * (sums.emit / area)
+                     : material.emit * (sums.area / area);
+}
+
+void settle_textures(Scene& scene) {
+  if (scene.vertex_uv.empty()) return;
+  scene.vertex_uv.resize(scene.vertices.size(), glm::vec2(0.0F));
+  std::vector<Sums> sums(scene.materials.size());
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    const std::uint32_t m = scene.triangles[t].material;
+    if (scene.materials[m].maps) add_triangle(scene, t, *scene.materials[m].maps, sums[m]);
+  }
+  for (std::size_t m = 0; m < sums.size(); ++m) {
+    Material& material = scene.materials[m];
+    if (!material.maps) continue;
+    auto maps = std::make_shared<MaterialMaps>(*material.maps);
+    settle(sums[m].diffuse, sums[m].area, maps->diffuse, material.diffuse);
+    settle(sums[m].emit, sums[m].area, maps->emit, material.emit);
+    material.maps = std::move(maps);
+  }
+}
+
+std::size_t texture_bytes(const Scene& scene) {
+  std::set<const Texture*> all;
+  for (const Material& material : scene.materials) {
+    if (!material.maps) continue;
+    for (const TextureMap* map :
+         {&material.maps->diffuse, &material.maps->emit, &material.maps->opacity}) {
+      if (map->texture) all.insert(map->texture.get());
+    }
+  }
+  std::size_t bytes = 0;
+  for (const Texture* texture : all) bytes += texture->bytes();
+  return bytes;
+}
+
+}  // namespace earthshine::scenes

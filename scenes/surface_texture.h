@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a textured surface is like at a point of it, and on average.
+#pragma once
+
+#include "scenes/ray_query.h"
+#include "scenes/scene.h"
+
+namespace earthshine::scenes {
+
+// A point of a triangle by the weights u, v of its second and third vertex, and how wide the place
+// is that is looked at, m; 0: a point.
+struct SurfacePlace {
+  std::uint32_t triangle = 0;
+  double u = 0.0, v = 0.0;
+  double width_m = 0.0;
+};
+
+// k_d and exitance there; without a texture those of the material.
+[[nodiscard]] Rgb textured_diffuse(const Scene& scene, const Material& material,
+                                   const SurfacePlace& place);
+[[nodiscard]] Rgb textured_emit(const Scene& scene, const Material& material,
+                                const SurfacePlace& place);
+
+[[nodiscard]] inline Rgb diffuse_at(const Scene& scene, const Material& material, const Hit& hit,
+                                    double width_m = 0.0) {
+  if (!material.maps) return material.diffuse;
+  return textured_diffuse(scene, material, {hit.triangle, hit.u, hit.v, width_m});
+}
+[[nodiscard]] inline Rgb emit_at(const Scene& scene, const Material& material, const Hit& hit,
+                                 double width_m = 0.0) {
+  if (!material.maps) return material.emit;
+  return textured_emit(scene, material, {hit.triangle, hit.u, hit.v, width_m});
+}
+
+// The mean exitance of a triangle over its whole area, holes included.
+[[nodiscard]] Rgb mean_emit(const Scene& scene, std::uint32_t triangle);
+
+// Whether anything is there: false in the holes of an opacity mask.
+[[nodiscard]] bool is_there(const Scene& scene, std::uint32_t triangle, double u, double v);
+
+// Replaces the factors in diffuse and emit of textured materials, as their files have them, by
+// their means over the surfaces that wear them, and finds TextureMap::over_mean. Once, when a scene
+// is complete.
+void settle_textures(Scene& scene);
+
+// All textures of the scene together, bytes.
+[[nodiscard]] std::size_t texture_bytes(const Scene& scene);
+
+}  // namespace earthshine::scenes

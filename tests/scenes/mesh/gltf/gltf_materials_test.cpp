@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+// glTF's materials as Phong, its lamps and cameras as the scene's, its quantised numbers.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "base/files/png_file.h"
+#include "scenes/reflect/energy.h"
+#include "scenes/reflect/microfacet.h"
+#include "scenes/texture/texture.h"
+#include "tests/scenes/scene_text.h"
+
+namespace earthshine::scenes {
+namespace {
+
+using test::holds;
+
+// A triangle with right angle at the origin and legs of 1, indices implied: three corners as floats
+// at 0, as normalised shorts (8 bytes apart) at 36, as plain bytes (4 apart) at 60.
+std::string triangle_buffer() {
+  std::string bytes;
+  const auto append = [&](auto value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  for (const float x : {0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 1.F, 0.F}) append(x);
+  for (const int x : {0, 0, 0, 0, 32767, 0, 0, 0, 0, 32767, 0, 0}) {
+    append(static_cast<std::int16_t>(x));
+  }
+  for (const int x : {0, 0, 0, 0, 100, 0, 0, 0, 0, 100, 0, 0}) append(static_cast<std::int8_t>(x));
+  return bytes;
+}
+
+class GltfMaterials : public ::testing::Test {
+ protected:
+  GltfMaterials() { folder_.put("a.bin", triangle_buffer()); }
+
+  // `more`: further members of the file; `node`: further ones of the triangle's node.
+  Scene read(const std::string& material, const std::string& more = "",
+             const std::string& node = "", const std::string& keys = "",
+             const std::string& accessor = R"("bufferView": 0, "componentType": 5126)") const {
+    folder_.put("a.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+      "nodes": [{"name": "thing", "mesh": 0)" +
+                              node + R"(}],
+      "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+      "buffers": [{"byteLength": 72, "uri": "a.bin"}],
+      "bufferViews": [{"buffer": 0, "byteLength": 36},
+        {"buffer": 0, "byteOffset": 36, "byteLength": 24, "byteStride": 8},
+        {"buffer": 0, "byteOffset": 60, "byteLength": 12, "byteStride": 4}],
+      "accessors": [{)" + accessor +
+                              R"(, "count": 3, "type": "VEC3"}],
+      "materials": [)" + material +
+                              "]" + more + "}");
+    return folder_.read("format = 1\n[[object]]\nname = \"o\"\nmesh = \"a.gltf\"\n" + keys);
+  }
+  Material material(const std::string& text) const { return read(text).materials.at(0); }
+
+  test::SceneFolder folder_;
+};
+
+TEST_F(GltfMaterials, MetalIsALobeWithThePeakAndTheAlbedoOfItsFacets) {
+  const Material metal = material(
+      R"({"pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.6, 0.4, 1], "roughnessFactor": 0.5}})");
+  const PhongLobe lobe = phong_of_ggx(0.25);
+  EXPECT_EQ(metal.diffuse, Rgb(0.0));
+  EXPECT_NEAR(metal.specular.r, 0.8 * lobe.peak, 1e-12);
+  EXPECT_NEAR(metal.shininess, lobe.shininess, 1e-12);
+  EXPECT_NEAR(reflected_share(metal).b, 0.4 * ggx_albedo(0.25), 1e-12);
+  const Material mirror = material(
+      R"({"pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.6, 0.4, 1], "roughnessFactor": 0}})");
+  EXPECT_EQ(mirror.mirror, Rgb(0.8, 0.6, 0.4));
+}
+
+TEST_F(GltfMaterials, DielectricsReflectByTheirIndex) {
+  const std::string pbr =
+      R"("pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.4, "baseColorFactor": [0.5, 0.5, 0.5, 1]})";
+  const PhongLobe lobe = phong_of_ggx(0.16);
+  const Material usual = material("{" + pbr + "}");
+  EXPECT_NEAR(usual.diffuse.r, 0.96 * 0.5, 1e-12);  // F0 = ((1.5 - 1) / (1.5 + 1))^2
+  EXPECT_NEAR(usual.specular.r, 0.04 * lobe.peak, 1e-12);
+  const Material dense =
+      material("{" + pbr + R"(, "extensions": {"KHR_materials_ior": {"ior": 2}}})");
+  EXPECT_NEAR(dense.specular.r, lobe.peak / 9.0, 1e-12);
+  const Material tinted = material("{" + pbr + R"(, "extensions": {"KHR_materials_specular":
+      {"specularFactor": 0.5, "specularColorFactor": [2, 1, 0]}}})");
+  EXPECT_NEAR(tinted.specular.r, 0.04 * lobe.peak, 1e-12);
+  EXPECT_NEAR(tinted.specular.g, 0.02 * lobe.peak, 1e-12);
+  EXPECT_NEAR(tinted.diffuse.b, 0.96 * 0.5, 1e-12);
+  // Wide and weak: left with the diffuse light.
+  const Material rough = material(
+      R"({"pbrMetallicRoughness": {"metallicFactor": 0, "baseColorFactor": [0.5, 0.5, 0.5, 1]}})");
+  EXPECT_EQ(rough.diffuse, Rgb(0.5));
+  EXPECT_EQ(rough.specular, Rgb(0.0));
+}
+
+TEST_F(GltfMaterials, SpecularGlossinessEmissionAndUnlit) {
+  const Scene glossy = read(R"({"emissiveFactor": [1, 0.5, 0], "extensions": {
+      "KHR_materials_emissive_strength": {"emissiveStrength": 20},
+      "KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [0.4, 0.4, 0.4, 1],
+        "specularFactor": [0.2, 0.2, 0.2], "glossinessFactor": 0.5}}})",
+                            R"(, "extensionsUsed": ["KHR_materials_pbrSpecularGlossiness"],
+      "extensionsRequired": ["KHR_materials_pbrSpecularGlossiness"])");
+  const Material& made = glossy.materials.at(0);
+  EXPECT_NEAR(made.diffuse.r, 0.8 * 0.4, 1e-12);
+  EXPECT_NEAR(made.specular.r, 0.2 * phong_of_ggx(0.25).peak, 1e-12);
+  EXPECT_NEAR(made.emit.r, 20.0 * base::pi, 1e-9);
+  EXPECT_NEAR(made.emit.g, 10.0 * base::pi, 1e-9);
+  EXPECT_EQ(glossy.objects.at(0).unused, "");
+  const Scene unlit = read(R"({"extensions": {"KHR_materials_unlit": {}},
+      "pbrMetallicRoughness": {"baseColorFactor": [0.3, 0.2, 0.1, 1]}})");
+  EXPECT_EQ(unlit.materials.at(0).diffuse, Rgb(0.3, 0.2, 0.1));
+  EXPECT_TRUE(holds(unlit.objects.at(0).unused, {"unlit"}));
+}
+
+TEST_F(GltfMaterials, GlassPassesItsColourAndBendsOnlyWhereItIsThick) {
+  const std::string pbr =
+      R"("pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0, "baseColorFactor": [1, 0.5, 0.25, 1]})";
+  const Material sheet = material(
+      "{" + pbr + R"(, "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}}})");
+  EXPECT_NEAR(sheet.transmit.g, 0.5 * 0.96, 1e-12);
+  EXPECT_NEAR(sheet.mirror.g, 0.04, 1e-12);
+  EXPECT_EQ(sheet.diffuse, Rgb(0.0));
+  EXPECT_EQ(sheet.ior, 1.0);
+  const Material body = material("{" + pbr + R"(, "extensions": {
+      "KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_ior": {"ior": 1.33},
+      "KHR_materials_volume": {"thicknessFactor": 1}}})");
+  EXPECT_EQ(body.ior, 1.33);
+  const Material blended = material(
+      R"({"alphaMode": "BLEND", "pbrMetallicRoughness": {"metallicFactor": 0, "baseColorFactor": [0.5, 0.5, 0.5, 0.25]}})");
+  EXPECT_EQ(blended.diffuse, Rgb(0.125));
+  EXPECT_EQ(blended.transmit, Rgb(0.75));
+}
+
+TEST_F(GltfMaterials, TexturesAreTurnedCounterClockwiseAndMetalHasTheirMean) {
+  base::write_png(folder_.path() / "a b.png", 2, 1, 3,
+                  std::vector<std::uint8_t>{255, 255, 255, 0, 0, 0});
+  const std::string more =
+      R"(, "images": [{"uri": "a%20b.png"}], "textures": [{"source": 0, "sampler": 0}],
+      "samplers": [{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}])";
+  const std::string turned =
+      R"("baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform":
+      {"offset": [0.5, 0.25], "rotation": 1.57079632679489662, "scale": [2, 4]}}})";
+  const Scene plain =
+      read(R"({"pbrMetallicRoughness": {"metallicFactor": 0, )" + turned + "}}", more);
+  const TextureMap& map = plain.materials.at(0).maps->diffuse;
+  // (u, v) = (0.1, 0.2) scaled is (0.2, 0.8); a quarter turn counter-clockwise, v running down,
+  // takes (1, 0) to (0, -1) and (0, 1) to (1, 0): (0.8, -0.2); shifted (1.3, 0.05).
+  const glm::dvec2 place = map.transform->apply({0.1, 0.2});
+  EXPECT_NEAR(place.x, 1.3, 1e-12);
+  EXPECT_NEAR(place.y, 0.05, 1e-12);
+  EXPECT_NEAR(map.texture->at({-3.0, 0.5}).r, 1.0, 1e-9);  // clamped
+  EXPECT_TRUE(holds(plain.warnings.at(0), {"no texture coordinates"}));
+  const Scene metal =
+      read(R"({"pbrMetallicRoughness": {"roughnessFactor": 0, )" + turned + "}}", more);
+  EXPECT_NEAR(metal.materials.at(0).mirror.g, 0.5, 1e-4);
+}
+
+TEST_F(GltfMaterials, LampsAndCamerasComeWhenAskedFor) {
+  const std::string more = R"(, "extensionsUsed": ["KHR_lights_punctual"],
+      "extensions": {"KHR_lights_punctual": {"lights": [{"type": "spot", "color": [1, 0.5, 0],
+        "intensity": 200, "spot": {"innerConeAngle": 0.2, "outerConeAngle": 0.5}},
+        {"type": "directional", "intensity": 5}]}},
+      "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 1, "aspectRatio": 2}}])";
+  // A quarter turn about x: -z becomes +y.
+  const std::string node = R"(, "camera": 0, "translation": [1, 2, 3],
+      "rotation": [0.70710678118654752, 0, 0, 0.70710678118654752],
+      "extensions": {"KHR_lights_punctual": {"light": 0}})";
+  const Scene none = read("{}", more, node);
+  EXPECT_TRUE(none.lamps.empty() && none.cameras.empty());
+  EXPECT_EQ(none.objects.at(0).unused, "1 cameras, 1 directional lights (say [sun]), 1 lights");
+  const Scene both = read("{}", more, node, "lights = true\ncameras = true\nscale = 2.0\n");
+  EXPECT_EQ(both.objects.at(0).unused, "1 directional lights (say [sun])");
+  const Lamp& lamp = both.lamps.at(0);
+  EXPECT_EQ(lamp.name, "o.thing");
+  EXPECT_EQ(lamp.group, "o.thing");
+  EXPECT_EQ(lamp.intensity_cd, Rgb(200, 100, 0));
+  EXPECT_NEAR(glm::length(lamp.position - Vec3(2, 4, 6)), 0.0, 1e-12);
+  EXPECT_NEAR(glm::length(lamp.axis - Vec3(0, 1, 0)), 0.0, 1e-12);
+  EXPECT_NEAR(lamp.beam_deg, 2.0 * 0.2 * 180.0 / base::pi, 1e-9);
+  EXPECT_NEAR(lamp.field_deg, 2.0 * 0.5 * 180.0 / base::pi, 1e-9);
+  const Camera& camera = both.cameras.at(0);
+  EXPECT_EQ(camera.name, "o.thing");
+  EXPECT_NEAR(glm::length(camera.look_at - Vec3(2, 5, 6)), 0.0, 1e-12);
+  EXPECT_NEAR(glm::length(camera.up - Vec3(0, 0, 1)), 0.0, 1e-12);
+  EXPECT_NEAR(camera.fov_deg, 180.0 / base::pi, 1e-9);
+  EXPECT_EQ(camera.columns, 2 * camera.rows);
+}
+
+TEST_F(GltfMaterials, QuantisedPositionsAreTheNumbersTheyStandFor) {
+  const std::string required = R"(, "extensionsUsed": ["KHR_mesh_quantization"],
+      "extensionsRequired": ["KHR_mesh_quantization"])";
+  const auto area = [&](const std::string& accessor) {
+    return read("{}", required, "", "", accessor).objects.at(0).area_m2;
+  };
+  EXPECT_DOUBLE_EQ(area(R"("bufferView": 1, "componentType": 5122, "normalized": true)"), 0.5);
+  EXPECT_DOUBLE_EQ(area(R"("bufferView": 2, "componentType": 5120)"), 0.5 * 100 * 100);
+}
+
+}  // namespace
+}  // namespace earthshine::scenes

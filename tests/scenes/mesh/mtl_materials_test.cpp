@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the lines of an MTL file become.
+#include <gtest/gtest.h>
+
+#include "base/files/png_file.h"
+#include "scenes/mesh/obj_file.h"
+#include "scenes/texture/texture.h"
+#include "tests/scenes/scene_text.h"
+
+namespace earthshine::scenes {
+namespace {
+
+using test::holds;
+
+Material material_of(const std::string& lines) {
+  Mesh mesh;
+  parse_mtl("newmtl m\n" + lines, "a.mtl", {}, mesh);
+  EXPECT_EQ(mesh.warnings.size(), 0U);
+  return mesh.materials.at(0);
+}
+
+TEST(MtlMaterials, ModelsWithoutHighlightHaveNone) {
+  for (const int model : {0, 1}) {
+    const Material plain = material_of(fmt::format("Kd 0.5\nKs 0.3\nNs 20\nillum {}\n", model));
+    EXPECT_EQ(plain.diffuse, Rgb(0.5));
+    EXPECT_EQ(plain.specular, Rgb(0.0));
+  }
+  EXPECT_EQ(material_of("Kd 0.5\nKs 0.3\nNs 20\nillum 2\n").specular, Rgb(0.3));
+}
+
+TEST(MtlMaterials, ModelsThatReflectHaveTheAlbedoKs) {
+  const Material satin = material_of("Ks 0.3\nNs 20\nillum 3\n");
+  EXPECT_NEAR(satin.specular.r * 2.0 / (satin.shininess + 2.0), 0.3, 1e-12);
+  EXPECT_EQ(satin.mirror, Rgb(0.0));
+  for (const std::string sharp : {"", "Ns 1000\n"}) {
+    const Material mirror = material_of("Ks 0.3\n" + sharp + "illum 5\n");
+    EXPECT_EQ(mirror.mirror, Rgb(0.3));
+    EXPECT_EQ(mirror.specular, Rgb(0.0));
+  }
+}
+
+TEST(MtlMaterials, DissolveLetsThroughAndBendsOnlyWhereTheModelRefracts) {
+  const Material pane = material_of("Kd 0.4\nKs 0.2\nd 0.25\nTr 0.1\nNi 1.5\nTf 1 0.5 0\n");
+  EXPECT_EQ(pane.diffuse, Rgb(0.1));
+  EXPECT_EQ(pane.specular, Rgb(0.05));
+  EXPECT_EQ(pane.transmit, Rgb(0.75, 0.375, 0.0));
+  EXPECT_EQ(pane.ior, 1.0);
+  EXPECT_EQ(material_of("Kd 0.4\nTr 0.75\n").transmit, Rgb(0.75));
+  for (const int model : {6, 7}) {
+    EXPECT_EQ(material_of(fmt::format("d 0\nNi 1.5\nillum {}\n", model)).ior, 1.5);
+  }
+  const Material opaque = material_of("Kd 0.4\nd 1\nTf 1 1 1\nNi 1.5\nillum 4\n");
+  EXPECT_EQ(opaque.transmit, Rgb(0.0));
+}
+
+TEST(MtlMaterials, WhatIsNotReadIsNamed) {
+  Mesh mesh;
+  parse_mtl("newmtl m\nd -halo 0.5\nTf xyz 1 1 1\nillum 10\nPr 0.5\nKa 1 1 1\nsharpness 60\n",
+            "a.mtl", {}, mesh);
+  ASSERT_EQ(mesh.warnings.size(), 1U);
+  EXPECT_TRUE(holds(mesh.warnings[0], {"a.mtl", "\"d -halo\" (1)", "\"Tf xyz\" (1)",
+                                       "\"illum 10\" (1)", "\"Pr\" (1)"}));
+  EXPECT_EQ(mesh.unused.size(), 4U);
+}
+
+TEST(MtlMaterials, TexturesHaveTheirOptionsAndNamesWithBlanks) {
+  const test::SceneFolder folder;
+  const std::vector<std::uint8_t> grey(12, 188);
+  base::write_png(folder.path() / "old wood.png", 2, 2, 3, grey);
+  Mesh mesh;
+  const std::filesystem::path folders[] = {folder.path()};
+  parse_mtl(
+      "newmtl m\nKd 0.5\nmap_Kd -s 2 4 1 -o 0.25 0.5 -clamp on old wood.png\nmap_Ke -mm 0 2 a.png\n"
+      "newmtl n\nmap_d -imfchan m old wood.png\n",
+      folder.path() / "a.mtl", folders, mesh);
+  const TextureMap& map = mesh.materials.at(0).maps->diffuse;
+  EXPECT_EQ(map.texture->name(), "old wood.png");
+  // v runs up in the file and down here: (u, v) = (0.1, 0.2), w = 0.8, becomes u' = 0.25 + 0.2 and
+  // v' = 0.5 + 0.8, w' = 1 - v' = -0.3.
+  const glm::dvec2 place = map.transform->apply({0.1, 0.8});
+  EXPECT_NEAR(place.x, 0.45, 1e-12);
+  EXPECT_NEAR(place.y, -0.3, 1e-12);
+  EXPECT_TRUE(mesh.materials.at(1).has_holes());
+  EXPECT_EQ(mesh.unused, (std::map<std::string, std::size_t>{{"map_Ke with options", 1}}));
+}
+
+TEST(MtlMaterials, CornersWithoutCoordinatesAreNamed) {
+  const test::SceneFolder folder;
+  base::write_png(folder.path() / "a.png", 1, 1, 3, std::vector<std::uint8_t>(3, 255));
+  folder.put("a.obj",
+             "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 0.5 0.25\nusemtl m\n"
+             "f 1/-1 2/1 3/7\nf 3 2 1\n");
+  folder.put("a.mtl", "newmtl m\nKd 0.5\nmap_Kd a.png\n");
+  const Scene scene =
+      folder.read("format = 1\n[[object]]\nname = \"o\"\nmesh = \"a.obj\"\norient = \"as-is\"\n");
+  ASSERT_EQ(scene.warnings.size(), 1U);
+  EXPECT_TRUE(holds(scene.warnings[0], {"\"o\"", "4 corners"}));
+  const glm::vec2 uv = scene.vertex_uv.at(scene.triangles.at(0).vertex[0]);
+  EXPECT_EQ(uv, glm::vec2(0.5F, 0.75F));
+  EXPECT_EQ(scene.objects.at(0).unused, "");
+}
+
+TEST(MtlMaterials, MoreLightThanArrivesIsScaledAndSaid) {
+  const test::SceneFolder folder;
+  folder.put("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl bright\nf 1 2 3\n");
+  folder.put("a.mtl", "newmtl bright\nKd 1\nKs 1\nNs 10\nnewmtl unworn\nKd 1\nKs 1\nNs 10\n");
+  const Scene scene = folder.read("format = 1\n[[object]]\nname = \"o\"\nmesh = \"a.obj\"\n");
+  const Material& bright = scene.materials.at(0);
+  EXPECT_NEAR(bright.diffuse.g, 6.0 / 7.0, 1e-12);  // 1 + 2 / 12 = 7/6
+  EXPECT_NEAR(bright.specular.g, 6.0 / 7.0, 1e-12);
+  ASSERT_EQ(scene.warnings.size(), 1U);
+  EXPECT_TRUE(holds(scene.warnings[0], {"a.mtl:1", "\"bright\"", "1.167"}));
+}
+
+}  // namespace
+}  // namespace earthshine::scenes

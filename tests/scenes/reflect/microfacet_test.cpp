@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/reflect/microfacet.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/units.h"
+#include "scenes/reflect/energy.h"
+
+namespace earthshine::scenes {
+namespace {
+
+TEST(Microfacet, RoughestFacetsReflectWhatTheIntegralSays) {
+  // a = 1: D = 1/pi, V = 1/(2 (1 + n v)) for light along the normal, so that
+  // integral f cos = 2 pi integral_0^1 c / (2 pi (1 + c)) dc = 1 - ln 2.
+  EXPECT_NEAR(ggx_albedo(1.0), 1.0 - std::log(2.0), 1e-6);
+}
+
+TEST(Microfacet, SmoothFacetsReflectAll) {
+  EXPECT_NEAR(ggx_albedo(0.0025), 1.0, 1e-4);
+  double last = 1.0;
+  for (const double a : {0.01, 0.1, 0.3, 0.6, 1.0}) {
+    EXPECT_LT(ggx_albedo(a), last);
+    last = ggx_albedo(a);
+  }
+}
+
+TEST(Microfacet, LobeHasThePeakAndTheAlbedoOfTheFacets) {
+  for (const double a : {0.0025, 0.04, 0.25, 0.6}) {
+    const PhongLobe lobe = phong_of_ggx(a);
+    EXPECT_NEAR(lobe.peak, base::pi * ggx_brdf(a, 1.0, 1.0, 1.0), 1e-9 * lobe.peak);
+    EXPECT_NEAR(2.0 * lobe.peak / (lobe.shininess + 2.0), ggx_albedo(a), 1e-9);
+  }
+}
+
+TEST(Energy, WhatReflectsTooMuchIsDividedByItsLargestSum) {
+  Material material;
+  material.diffuse = {1.0, 0.5, 0.0};
+  material.specular = Rgb(1.0);
+  material.shininess = 10.0;  // albedo of the lobe: 2/12
+  EXPECT_DOUBLE_EQ(conserve_energy(material), 7.0 / 6.0);
+  EXPECT_DOUBLE_EQ(base::max_component(reflected_share(material)), 1.0);
+  EXPECT_DOUBLE_EQ(material.diffuse.r, 6.0 / 7.0);
+  EXPECT_DOUBLE_EQ(material.diffuse.g, 3.0 / 7.0);
+  EXPECT_EQ(conserve_energy(material), 1.0);
+}
+
+}  // namespace
+}  // namespace earthshine::scenes

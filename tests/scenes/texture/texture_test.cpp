@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/texture/texture.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace earthshine::scenes {
+namespace {
+
+// Greys, opaque unless `alpha` is given.
+base::Pixels picture(int width, int height, const std::vector<int>& greys, int alpha = 255) {
+  base::Pixels pixels{width, height, {}};
+  for (const int grey : greys) {
+    for (int c = 0; c < 3; ++c) pixels.rgba.push_back(static_cast<std::uint8_t>(grey));
+    pixels.rgba.push_back(static_cast<std::uint8_t>(alpha));
+  }
+  return pixels;
+}
+
+TEST(Texture, ColoursAreDecodedFromSrgbAndDataIsNot) {
+  // IEC 61966-2-1: 128/255 encodes 0.2158605; the mean of what is decoded is not the decoded mean.
+  EXPECT_NEAR(Texture(picture(1, 1, {128}), {}).at({0.5, 0.5}).g, 0.2158605, 1e-5);
+  TextureReading plain;
+  plain.is_srgb = false;
+  EXPECT_NEAR(Texture(picture(1, 1, {128}), plain).at({0.5, 0.5}).g, 128.0 / 255.0, 1e-5);
+  EXPECT_NEAR(Texture(picture(2, 1, {0, 255}), {}).mean().r, 0.5, 1e-5);
+}
+
+TEST(Texture, EveryLevelHasTheMeanOfThePicture) {
+  // 5 x 3: no edge halves evenly.
+  std::vector<int> greys;
+  for (int k = 0; k < 15; ++k) greys.push_back((37 * k * k) % 256);
+  TextureReading plain;
+  plain.is_srgb = false;
+  const Texture texture(picture(5, 3, greys), plain);
+  double mean = 0.0;
+  for (const int grey : greys) mean += grey / 255.0 / 15.0;
+  EXPECT_NEAR(texture.mean().r, mean, 1e-4);
+  EXPECT_NEAR(texture.at({0.3, 0.9}, 20.0).r, mean, 1e-4);
+}
+
+TEST(Texture, PlacesLieBetweenTexelCentresAndWrapAsAsked) {
+  TextureReading reading;
+  reading.is_srgb = false;
+  const auto at = [&](double u, double level = 0.0) {
+    return Texture(picture(2, 1, {0, 255}), reading).at({u, 0.5}, level).r;
+  };
+  EXPECT_NEAR(at(0.25), 0.0, 1e-9);
+  EXPECT_NEAR(at(0.75), 1.0, 1e-9);
+  EXPECT_NEAR(at(0.5), 0.5, 1e-9);
+  EXPECT_NEAR(at(0.0), 0.5, 1e-9);   // half way to the last texel of the one before
+  EXPECT_NEAR(at(7.75), 1.0, 1e-9);  // repeats
+  EXPECT_NEAR(at(-0.25), 1.0, 1e-9);
+  EXPECT_NEAR(at(0.75, 0.5), 0.75, 1e-4);  // half the picture, half its mean
+  reading.wrap_u = Wrap::Clamp;
+  EXPECT_NEAR(at(-3.0), 0.0, 1e-9);
+  EXPECT_NEAR(at(9.0), 1.0, 1e-9);
+  reading.wrap_u = Wrap::Mirror;
+  EXPECT_NEAR(at(1.25), 1.0, 1e-9);
+  EXPECT_NEAR(at(1.75), 0.0, 1e-9);
+  reading.is_crisp = true;
+  EXPECT_NEAR(at(0.499), 0.0, 1e-9);
+  EXPECT_NEAR(at(0.501), 1.0, 1e-9);
+}
+
+TEST(Texture, MasksAreAlphaOrElseGrey) {
+  TextureReading mask;
+  mask.is_mask = true;
+  EXPECT_NEAR(Texture(picture(1, 1, {51}), mask).at({0.5, 0.5}).a, 0.2, 1e-5);
+  EXPECT_NEAR(Texture(picture(1, 1, {51}, 102), mask).at({0.5, 0.5}).a, 0.4, 1e-5);
+}
+
+TEST(Texture, OtherContentIsAnotherDigest) {
+  TextureReading crisp;
+  crisp.is_crisp = true;
+  const std::uint64_t one = Texture(picture(2, 1, {0, 255}), {}).digest();
+  EXPECT_EQ(one, Texture(picture(2, 1, {0, 255}), {}).digest());
+  EXPECT_NE(one, Texture(picture(2, 1, {0, 254}), {}).digest());
+  EXPECT_NE(one, Texture(picture(1, 2, {0, 255}), {}).digest());
+  EXPECT_NE(one, Texture(picture(2, 1, {0, 255}), crisp).digest());
+}
+
+}  // namespace
+}  // namespace earthshine::scenes
