@@ -2,8 +2,11 @@
 #include "app/output.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <filesystem>
+#include <map>
+#include <set>
 #include <system_error>
 
 #include "base/error.h"
@@ -17,33 +20,37 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// By device and inode, so that links of both kinds count as what they lead to.
-bool is_same_file(const fs::path& a, const fs::path& b) {
-  std::error_code ignored;
-  if (fs::exists(a, ignored)) {
-    const bool plain = fs::is_regular_file(a, ignored);  // not /dev/null, which may be named twice
-    return plain && fs::equivalent(a, b, ignored);
+// By device and inode, so that links of both kinds count as what they lead to; by name where there
+// is nothing yet. Empty for what may be named twice, such as /dev/null.
+std::string identity(const fs::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) == 0) {
+    return S_ISREG(status.st_mode) ? fmt::format("{}:{}", status.st_dev, status.st_ino) : "";
   }
-  return fs::weakly_canonical(fs::absolute(a, ignored), ignored) ==
-         fs::weakly_canonical(fs::absolute(b, ignored), ignored);
+  std::error_code ignored;
+  return fs::weakly_canonical(fs::absolute(path, ignored), ignored).string();
 }
 
 }  // namespace
 
 void check_outputs(const std::vector<std::string>& paths, const Files& inputs) {
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (paths[i].empty()) continue;
-    const base::OutputFile checked(paths[i]);
-    for (const fs::path& input : inputs) {
-      if (input.empty() || !is_same_file(paths[i], input)) continue;
-      const std::string also = input == paths[i] ? "" : ", as " + input.string() + ",";
-      throw Error(Blame::Input, paths[i], "is read" + also + " and would be overwritten", {},
+  std::map<std::string, fs::path> read;
+  for (const fs::path& input : inputs) {
+    if (!input.empty()) read.emplace(identity(input), input);
+  }
+  std::set<std::string> written;
+  for (const std::string& path : paths) {
+    if (path.empty()) continue;
+    const base::OutputFile checked(path);
+    const std::string file = identity(path);
+    if (file.empty()) continue;
+    if (const auto input = read.find(file); input != read.end()) {
+      const std::string also = input->second == path ? "" : ", as " + input->second.string() + ",";
+      throw Error(Blame::Input, path, "is read" + also + " and would be overwritten", {},
                   "Name another file to write");
     }
-    for (std::size_t j = 0; j < i; ++j) {
-      if (!paths[j].empty() && is_same_file(paths[i], paths[j])) {
-        throw Error(Blame::Input, paths[i], "would be written twice", {}, "Give two names");
-      }
+    if (!written.insert(file).second) {
+      throw Error(Blame::Input, path, "would be written twice", {}, "Give two names");
     }
   }
 }

@@ -14,6 +14,8 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -30,14 +32,11 @@ namespace fs = std::filesystem;
 constexpr std::string_view suffix = ".part";
 
 // Long names are shortened: name and mark together must stay below the usual limit of 255 bytes.
-std::string prefix_of(const fs::path& target) {
-  return "." + target.filename().string().substr(0, 200) + ".";
-}
-
 fs::path temporary_beside(const fs::path& target) {
   static std::atomic<unsigned> count{0};
-  return target.parent_path() / (prefix_of(target) + std::to_string(::getpid()) + "-" +
-                                 std::to_string(count++) + std::string(suffix));
+  const std::string mark = std::to_string(::getpid()) + "-" + std::to_string(count++);
+  return target.parent_path() /
+         ("." + target.filename().string().substr(0, 200) + "." + mark + std::string(suffix));
 }
 
 // The process that a temporary file is named after; 0 for other files.
@@ -101,6 +100,17 @@ bool has_no_name(const fs::path& path) {
   return static_cast<bool>(problem);
 }
 
+// A run may write thousands of files into one folder, and looks through it once.
+void clear_once(const fs::path& folder) {
+  static std::mutex mutex;
+  static std::set<fs::path> cleared;
+  {
+    const std::lock_guard guard(mutex);
+    if (!cleared.insert(folder).second) return;
+  }
+  remove_abandoned_files(folder);
+}
+
 // Follows links, so that a link is kept and the file it names is replaced.
 fs::path follow_links(const fs::path& path) {
   std::error_code ignored;
@@ -140,10 +150,7 @@ OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
     temporary_ = target_;
     return;
   }
-  const std::string prefix = prefix_of(target_);
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-    if (entry.path().filename().string().starts_with(prefix)) remove_if_abandoned(entry.path());
-  }
+  clear_once(folder);
   do {
     temporary_ = temporary_beside(target_);
     // Before it is there: a signal may come at any time.

@@ -10,10 +10,10 @@
 namespace earthshine::base {
 
 // A temporary file beside `target`, empty and locked; commit() renames it over the target, the
-// destructor removes it if commit() was not reached. What killed runs left of it is cleared away.
-// Throws base::Error (Input) if the target's folder does not exist or the target is a folder, a
-// pipe or a device other than those that never wait, such as /dev/null; and base::Error (Work)
-// where nothing can be written, also from commit().
+// destructor removes it if commit() was not reached. What killed runs left in its folder is
+// cleared. Throws base::Error (Input) if the target's folder does not exist or the target is a
+// folder, a pipe or a device other than those that never wait, such as /dev/null; and base::Error
+// (Work) where nothing can be written, also from commit().
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& target);
