@@ -26,10 +26,13 @@ std::filesystem::path confined_path(const std::filesystem::path& base_folder,
                 "Put it beside the mesh and correct the path");
   }
   std::error_code problem;
-  const std::filesystem::path wanted =
-      std::filesystem::weakly_canonical(base_folder / relative, problem);
+  // Absolute first: of a relative path without any part that exists nothing would be resolved.
+  const auto resolved = [&](const std::filesystem::path& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, problem), problem);
+  };
+  const std::filesystem::path wanted = resolved(base_folder / relative);
   for (const std::filesystem::path& folder : folders) {
-    const auto root = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, problem);
+    const auto root = resolved(folder.empty() ? "." : folder);
     if (problem) continue;
     const auto inside = wanted.lexically_relative(root);
     if (!inside.empty() && *inside.begin() != "..") return base_folder / relative;
