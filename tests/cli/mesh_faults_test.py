@@ -100,10 +100,10 @@ class MeshFaults(program.Case):
         run = self.run_program("inspect", "scene.toml", "--json")
         self.assertEqual(run.returncode, 0, run.stderr)
         report = self.json("inspect", "scene.toml")
-        self.says(" ".join(report["warnings"]), "a.mtl", '"bump" (1)', '"Pr" (1)', '"map_Kd" (1)')
+        self.says(" ".join(report["warnings"]), "a.mtl", '"bump" (1)', '"Pr" (1)', "wood.png")
         for neutral in ("Tr", "Tf", "map_Ka"):
             self.assertNotIn(neutral, " ".join(report["warnings"]))
-        self.assertEqual(report["objects"][0]["unused"], "1 Pr, 1 bump, 1 map_Kd, 1 vn, 1 vt")
+        self.assertEqual(report["objects"][0]["unused"], "1 Pr, 1 bump, 1 vn, 1 vt")
 
 
 if __name__ == "__main__":
