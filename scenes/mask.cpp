@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/mask.h"
 
+#include <algorithm>
+
 #include "scenes/texture/texture.h"
 
 namespace earthshine::scenes {
@@ -25,6 +27,11 @@ bool OpacityMasks::has_hole(std::uint32_t number, double u, double v) const {
   const Masked& masked = masked_[number];
   return !is_opaque(*masked.maps, (1.0 - u - v) * glm::dvec2(masked.uv[0]) +
                                       u * glm::dvec2(masked.uv[1]) + v * glm::dvec2(masked.uv[2]));
+}
+
+bool any_has_holes(const Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const Material& material) { return material.has_holes(); });
 }
 
 bool is_opaque(const MaterialMaps& maps, const glm::dvec2& uv) {

@@ -37,6 +37,9 @@ class OpacityMasks {
   std::vector<std::shared_ptr<const MaterialMaps>> maps_;  // keeps them
 };
 
+// Whether any material has an opacity mask.
+[[nodiscard]] bool any_has_holes(const Scene& scene);
+
 // Whether a place of a textured surface is there; uv: of its vertices, mixed.
 [[nodiscard]] bool is_opaque(const MaterialMaps& maps, const glm::dvec2& uv);
 

@@ -19,6 +19,7 @@
 #include "radiosity/objects/form_factors.h"
 #include "radiosity/patches/patches.h"
 #include "scenes/effects/quality.h"
+#include "scenes/mask.h"
 #include "scenes/ray_query.h"
 #include "scenes/reflect/specular.h"
 
@@ -103,9 +104,10 @@ Found find(const FactorsCall& call, const Common& common) {
   const radiosity::Patches facets =
       radiosity::subdivide(scene, std::numeric_limits<double>::infinity());
   Found found;
-  found.is_exact = call.method == Method::Exact ||
-                   (call.method == Method::Auto && !call.raw &&
-                    !scenes::any_passes_light_on(scene) && facets.count() <= most_facets_for_auto);
+  found.is_exact =
+      call.method == Method::Exact ||
+      (call.method == Method::Auto && !call.raw && !scenes::any_passes_light_on(scene) &&
+       !scenes::any_has_holes(scene) && facets.count() <= most_facets_for_auto);
   if (found.is_exact) {
     found.patches = facets.count();
     find_exactly(scene, query, facets, common, found);

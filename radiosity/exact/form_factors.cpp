@@ -21,6 +21,11 @@ void check(const scenes::Scene& scene, const Patches& patches) {
                         "Exact form factors cannot follow light through mirrors or glass",
                         "Use form factors by rays");
     }
+    if (material.has_holes()) {
+      throw base::Error(base::Blame::Input, scene.path.string(),
+                        "material \"" + material.name + "\" has an opacity mask",
+                        "Exact form factors know whole faces", "Use form factors by rays");
+    }
   }
   if (patches.count() > most_exact_patches) {
     throw base::Error(base::Blame::Input, scene.path.string(),

@@ -8,6 +8,7 @@
 #include "base/numbers/random.h"
 #include "base/parallel.h"
 #include "radiosity/objects/table.h"
+#include "scenes/mask.h"
 #include "scenes/reflect/specular.h"
 
 namespace earthshine::radiosity {
@@ -233,7 +234,8 @@ ObjectFormFactors object_form_factors_by_rays(const scenes::Scene& scene,
   ObjectFormFactors result = per_area(mean, area);
   set_std_errors(signed_tables, rays_per_m2, false, result);
   report.reciprocity_error_before = reciprocity_error(result);
-  report.reconciled = !options.raw && !scenes::any_passes_light_on(scene);
+  report.reconciled =
+      !options.raw && !scenes::any_passes_light_on(scene) && !scenes::any_has_holes(scene);
   if (report.reconciled) {
     const Reconciliation reconcile(mean, area, rays_per_m2);
     reconcile.apply(mean, true);

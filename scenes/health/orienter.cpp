@@ -206,7 +206,7 @@ bool Orienter::is_window_or_lamp_in_part(const SurfacePart& part) const {
   std::size_t some = 0;
   for (const std::uint32_t t : part.triangles) {
     const Material& material = scene_.materials[scene_.triangles[t].material];
-    if (material.emits() || base::max_component(material.transmit) > 0.0) ++some;
+    if (material.emits() || material.lets_light_through()) ++some;
   }
   return some > 0 && some < part.triangles.size();
 }

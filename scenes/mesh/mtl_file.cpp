@@ -44,7 +44,8 @@ Rgb read_colour(const TextLines& lines, Range range) {
 struct MtlMaterial {
   std::string name;
   base::Location where;
-  Rgb diffuse{0.0}, specular{0.0}, emitted{0.0};
+  std::optional<Rgb> diffuse, emitted;  // without a line 0, or 1 beside a texture
+  Rgb specular{0.0};
   std::optional<double> shininess;
   std::optional<double> dissolve;  // d: share that is there; 1 - Tr
   Rgb filter{1.0};                 // Tf: colour of what passes
@@ -65,8 +66,11 @@ Material material_of(const MtlMaterial& source) {
   }
   material.name = material.light_group = source.name;
   const double there = source.dissolve.value_or(1.0);
-  material.diffuse = there * source.diffuse;
-  material.emit = source.emitted;
+  const auto factor = [](const std::optional<Rgb>& value, const TextureMap& map) {
+    return value.value_or(Rgb(map.texture ? 1.0 : 0.0));
+  };
+  material.diffuse = there * factor(source.diffuse, maps.diffuse);
+  material.emit = factor(source.emitted, maps.emit);
   material.shininess = source.shininess.value_or(material.shininess);
   const int model = source.illumination;
   const bool reflects_surroundings = model >= 3 && model <= 9;

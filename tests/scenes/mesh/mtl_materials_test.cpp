@@ -71,7 +71,7 @@ TEST(MtlMaterials, TexturesHaveTheirOptionsAndNamesWithBlanks) {
   const std::filesystem::path folders[] = {folder.path()};
   parse_mtl(
       "newmtl m\nKd 0.5\nmap_Kd -s 2 4 1 -o 0.25 0.5 -clamp on old wood.png\nmap_Ke -mm 0 2 a.png\n"
-      "newmtl n\nmap_d -imfchan m old wood.png\n",
+      "newmtl n\nmap_Kd old wood.png\nmap_d -imfchan m old wood.png\n",
       folder.path() / "a.mtl", folders, mesh);
   const TextureMap& map = mesh.materials.at(0).maps->diffuse;
   EXPECT_EQ(map.texture->name(), "old wood.png");
@@ -81,6 +81,7 @@ TEST(MtlMaterials, TexturesHaveTheirOptionsAndNamesWithBlanks) {
   EXPECT_NEAR(place.x, 0.45, 1e-12);
   EXPECT_NEAR(place.y, -0.3, 1e-12);
   EXPECT_TRUE(mesh.materials.at(1).has_holes());
+  EXPECT_EQ(mesh.materials.at(1).diffuse, Rgb(1.0));  // a texture without its Kd
   EXPECT_EQ(mesh.unused, (std::map<std::string, std::size_t>{{"map_Ke with options", 1}}));
 }
 
