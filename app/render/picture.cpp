@@ -2,6 +2,8 @@
 // One camera's picture: rendered, degraded, written, reported.
 #include <fmt/format.h>
 
+#include <sstream>
+
 #include "app/cctv/cctv.h"
 #include "app/console.h"
 #include "app/interrupt.h"
@@ -207,7 +209,10 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
   }
   if (studio.common.quiet) return picture;
   tell(studio, frame, times);
-  if (!call.no_error) note("  " + error_text(drawn, wanted));
+  if (!call.no_error) {
+    std::istringstream lines("  " + error_text(drawn, wanted));
+    for (std::string line; std::getline(lines, line);) note(line);
+  }
   if (screen) note("  " + cctv_summary(*cctv, *screen));
   return picture;
 }

@@ -59,6 +59,12 @@ class ErrorBudget(program.Case):
         self.assertAlmostEqual(stated["bound_95"], error["bound_95"], delta=1e-6)
         self.assertEqual(stated["not_captured"], "; ".join(error["not_captured"]))
 
+    def test_the_error_is_told_line_by_line(self):
+        said = self.run_program("render", "ball.toml", "-o", "a.exr", "--camera", "A", "--error", "0.2").stderr
+        self.assertNotIn("\\x0a", said)
+        self.assertTrue(any(line.startswith("  error ") for line in said.splitlines()), said)
+        self.assertTrue(any(line.startswith("  picture: ") for line in said.splitlines()), said)
+
     def test_none_is_stated_where_none_is_wanted(self):
         run = self.run_program("render", "ball.toml", "-o", "a.exr", "--no-error", "--set", "quality.error=0.05", "--json")
         self.assertEqual(run.returncode, 0, run.stderr)
