@@ -13,6 +13,9 @@
 namespace earthshine::radiosity {
 namespace {
 
+// Patches of so many near lamps as they may be: beyond, more of them cost more than they save.
+constexpr std::size_t most_more = 4096;
+
 double half_size(const scenes::Lamp& lamp) {
   const double edges = std::min(glm::length(lamp.edge_u), glm::length(lamp.edge_v));
   return std::max(lamp.radius_m, 0.5 * edges);
@@ -70,7 +73,8 @@ class LampCuts {
 
 Patches cut_near_lamps(const scenes::Scene& scene, Patches patches) {
   const LampCuts cuts(scene);
-  for (;;) {
+  const std::size_t most = 2 * patches.count() + most_more;
+  while (patches.count() < most) {
     std::vector<Cut> wanted(patches.count(), Cut::None);
     base::parallel_chunks(patches.count(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
@@ -85,6 +89,7 @@ Patches cut_near_lamps(const scenes::Scene& scene, Patches patches) {
     if (made.patches.count() == patches.count()) return patches;
     patches = std::move(made.patches);
   }
+  return patches;
 }
 
 }  // namespace earthshine::radiosity

@@ -8,9 +8,9 @@
 
 namespace earthshine::radiosity {
 
-// Halves patches that lamps shine at until none is longer than its distance from the lamp, or than
-// half of the lamp. Lamps that are dimmed or off count as well: a sum of lamps' lights is that of
-// the scene with all of them.
+// Halves patches that lamps shine at until none is longer than its distance from the lamp's centre,
+// or than half of the lamp, or they are about twice as many. Lamps that are dimmed or off count as
+// well: a sum of lamps' lights is that of the scene with all of them.
 [[nodiscard]] Patches cut_near_lamps(const scenes::Scene& scene, Patches patches);
 
 }  // namespace earthshine::radiosity

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "scenes/ray_query.h"
 #include "scenes/text/message_text.h"
@@ -15,6 +16,7 @@ namespace {
 // Of the surfaces' extent: four times what rays are lifted off surfaces (RayQuery), and what no
 // scene means.
 constexpr double least_lamp_share = 1.6e-5, rounding_share = 1e-12;
+constexpr int most_lifts = 8;
 
 bool has_size(const Lamp& lamp) {
   return lamp.kind == LampKind::Rectangle || lamp.kind == LampKind::Disk;
@@ -68,6 +70,37 @@ Nearest nearest_surface(const Scene& scene, const Vec3& position, double reach) 
   return nearest;
 }
 
+// Whether the lamp would come to stand on the other side of a surface that it was near.
+bool goes_through(const Scene& scene, const Vec3& from, const Vec3& to, double reach) {
+  for (std::uint32_t k = 0; k < scene.triangles.size(); ++k) {
+    const auto& vertex = scene.triangles[k].vertex;
+    const Vec3 &a = scene.vertices[vertex[0]], &b = scene.vertices[vertex[1]],
+               &c = scene.vertices[vertex[2]];
+    const Vec3 normal = triangle_normal(scene, k);
+    if (glm::dot(from - a, normal) * glm::dot(to - a, normal) >= 0.0) continue;
+    if (glm::length(nearest_on_triangle(from, a, b, c) - from) < reach) return true;
+  }
+  return false;
+}
+
+// Off one surface after another, as many as meet in a corner; nothing if that has no end.
+std::optional<Vec3> lifted(const Scene& scene, const Vec3& start, double extent) {
+  Vec3 position = start;
+  const double reach = least_lamp_share * extent;
+  for (int k = 0; k < most_lifts; ++k) {
+    const Nearest found = nearest_surface(scene, position, reach * (1.0 - 1e-6));
+    if (found.distance_m >= reach * (1.0 - 1e-6)) {
+      if (goes_through(scene, start, position, reach)) return std::nullopt;
+      return position;
+    }
+    const bool on_it = found.distance_m < rounding_share * extent;
+    const Vec3 away = on_it ? triangle_normal(scene, found.triangle)
+                            : (position - found.point) / found.distance_m;
+    position = found.point + reach * away;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 void lift_lamps(Scene& scene) {
@@ -80,20 +113,29 @@ void lift_lamps(Scene& scene) {
   const double extent = glm::length(high - low), reach = least_lamp_share * extent;
   for (Lamp& lamp : scene.lamps) {
     if (has_size(lamp)) continue;
-    const Nearest found = nearest_surface(scene, lamp.position, reach);
-    if (found.distance_m >= reach) continue;
-    const bool on_it = found.distance_m < rounding_share * extent;
-    const Vec3 away = on_it ? triangle_normal(scene, found.triangle)
-                            : (lamp.position - found.point) / found.distance_m;
-    lamp.position = found.point + reach * away;
+    const Nearest first = nearest_surface(scene, lamp.position, reach);
+    if (first.distance_m >= reach) continue;
+    const std::string name = in_quotes(lamp.name),
+                      object =
+                          in_quotes(scene.objects[scene.triangles[first.triangle].object].name);
+    const std::optional<Vec3> free = lifted(scene, lamp.position, extent);
+    if (!free) {
+      scene.warnings.push_back(
+          fmt::format("lamp {} stands between surfaces of the object {} and others that are less "
+                      "than {:.2g} mm apart: single precision cannot tell where its light goes; "
+                      "move it",
+                      name, object, 2000.0 * reach));
+      continue;
+    }
+    const bool on_it = first.distance_m < rounding_share * extent;
     const std::string where =
-        on_it ? "on" : fmt::format("{:.2g} mm from", 1000.0 * found.distance_m);
+        on_it ? "on" : fmt::format("{:.2g} mm from", 1000.0 * first.distance_m);
     scene.warnings.push_back(
         fmt::format("lamp {} is {} the object {}, nearer than single precision tells apart: taken "
                     "to be {:.2g} mm {}",
-                    in_quotes(lamp.name), where,
-                    in_quotes(scene.objects[scene.triangles[found.triangle].object].name),
-                    1000.0 * reach, on_it ? "in front of it" : "from it"));
+                    name, where, object, 1000.0 * glm::length(*free - lamp.position),
+                    on_it ? "in front of it" : "farther off"));
+    lamp.position = *free;
   }
 }
 

@@ -13,7 +13,9 @@ namespace earthshine::scenes {
 
 // Moves each lamp without size that rays in single precision would not find in front of a surface
 // (1.6e-5 of the surfaces' extent) to where they do, with a warning: half of its light lands there
-// all the same. A lamp on a surface is taken to be in front of it.
+// all the same. A lamp on a surface is taken to be in front of it, in a
+// corner in front of all that meet there; one between sheets that are nearer still stays, and is
+// named.
 void lift_lamps(Scene& scene);
 
 }  // namespace earthshine::scenes

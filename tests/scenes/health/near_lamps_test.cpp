@@ -50,10 +50,35 @@ TEST(LiftLamps, MovesWhatIsTooNearOnItsOwnSide) {
   EXPECT_NEAR(below.lamps[0].position.z, -1.6e-4, 1e-12);
   EXPECT_NEAR(on.lamps[0].position.z, 1.6e-4, 1e-12);
   ASSERT_EQ(above.warnings.size(), 1U);
-  EXPECT_TRUE(
-      test::holds(above.warnings[0], {"\"lamp\"", "0.001 mm from", "\"floor\"", "0.16 mm"}));
+  EXPECT_TRUE(test::holds(above.warnings[0],
+                          {"\"lamp\"", "0.001 mm from", "\"floor\"", "0.16 mm farther off"}));
   ASSERT_EQ(on.warnings.size(), 1U);
   EXPECT_TRUE(test::holds(on.warnings[0], {"is on the object", "in front of it"}));
+}
+
+// Where three walls of a box meet, all three are left by as much.
+TEST(LiftLamps, LeavesEveryWallOfACorner) {
+  const test::SceneFolder folder;
+  const Scene scene = folder.read(
+      "format = 1\n[[material]]\nname = \"m\"\ndiffuse = 0.5\n[[light]]\nname = \"lamp\"\ntype = "
+      "\"point\"\nposition = [0, 0, 0]\nflux = 1\n[[object]]\nname = \"room\"\nshape = "
+      "\"box\"\nmin = [0, 0, 0]\nmax = [1, 2, 2]\ninward = true\nmaterial = \"m\"\n");
+  const double least = 1.6e-5 * 3.0;  // of the diagonal
+  EXPECT_LT(glm::length(scene.lamps[0].position - Vec3(least)), 1e-12);
+}
+
+TEST(LiftLamps, NamesWhatStandsBetweenSheets) {
+  const test::SceneFolder folder;
+  const std::string sheet = "[[object]]\nshape = \"quad\"\nmaterial = \"m\"\n";
+  const Scene scene = folder.read(
+      "format = 1\n[[material]]\nname = \"m\"\ndiffuse = 0.5\n[[light]]\nname = \"lamp\"\ntype = "
+      "\"point\"\nposition = [0.1, 0.2, 1e-5]\nflux = 1\n" +
+      sheet + "name = \"low\"\ncorners = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]\n" +
+      sheet +
+      "name = \"high\"\ncorners = [[-1, -1, 2e-5], [-1, 1, 2e-5], [1, 1, 2e-5], [1, -1, 2e-5]]\n");
+  EXPECT_EQ(scene.lamps[0].position.z, 1e-5);
+  ASSERT_FALSE(scene.warnings.empty());
+  EXPECT_TRUE(test::holds(scene.warnings.back(), {"\"lamp\"", "between", "move it"}));
 }
 
 TEST(LiftLamps, LeavesOthersWhereTheyAre) {
