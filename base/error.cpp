@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <system_error>
 #include <vector>
 
 namespace earthshine::base {
@@ -34,6 +35,10 @@ Error::Error(Blame blame, std::string_view where, std::string_view found, std::s
 Error::Error(Blame blame, const Location& where, std::string_view found, std::string_view allowed,
              std::string_view remedy)
     : Error(blame, std::string_view(to_string(where)), found, allowed, remedy) {}
+
+std::string system_reason(int error_number) {
+  return std::error_code(error_number, std::generic_category()).message();
+}
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);

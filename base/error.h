@@ -38,6 +38,9 @@ class Error : public std::runtime_error {
   Blame blame_;
 };
 
+// What the system says of an error number, e.g. "No such file or directory".
+[[nodiscard]] std::string system_reason(int error_number);
+
 // The candidate nearest to `word` by edit distance, or "" when none is near enough to be meant.
 // Candidates: any range of strings.
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);

@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <limits>
-#include <span>
 
 #include "base/parallel.h"
 #include "radiosity/patches/split.h"
-#include "scenes/health/near_lamps.h"
 #include "scenes/light/lamp_light.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -71,7 +70,8 @@ class LampCuts {
 
 }  // namespace
 
-Patches cut_near_lamps(const scenes::Scene& scene, Patches patches) {
+Patches subdivide_near_lamps(const scenes::Scene& scene, double edge_m) {
+  Patches patches = subdivide(scene, edge_m);
   const LampCuts cuts(scene);
   const std::size_t most = 2 * patches.count() + most_more;
   while (patches.count() < most) {

@@ -175,11 +175,11 @@ class Refinement {
   // as the Sun may in a room with a small window.
   void start() {
     double edge_m = options_.refine.start_edge_m;
-    refined_.patches = cut_near_lamps(scene_, subdivide(scene_, edge_m));
+    refined_.patches = subdivide_near_lamps(scene_, edge_m);
     solve_for(refined_.patches);
     while (edge_m > options_.patch_edge_m && any_dark()) {
       edge_m = std::max(0.5 * edge_m, options_.patch_edge_m);
-      Patches finer = cut_near_lamps(scene_, subdivide(scene_, edge_m));
+      Patches finer = subdivide_near_lamps(scene_, edge_m);
       if (finer.count() > max_patches_) return;
       refined_.patches = std::move(finer);
       solve_for(refined_.patches);
@@ -245,7 +245,7 @@ Refined refine(const scenes::Scene& scene, const scenes::LightGroups& groups,
     return Refinement(scene, groups, effects, query, options).run();
   }
   Refined even;
-  even.patches = cut_near_lamps(scene, subdivide(scene, options.patch_edge_m));
+  even.patches = subdivide_near_lamps(scene, options.patch_edge_m);
   return even;
 }
 

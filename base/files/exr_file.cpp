@@ -70,9 +70,7 @@ class CheckedStream : public Imf::OStream {
     file_ = nullptr;
   }
   [[nodiscard]] int problem() const { return problem_; }
-  [[nodiscard]] std::string reason() const {
-    return std::error_code(problem_, std::generic_category()).message();
-  }
+  [[nodiscard]] std::string reason() const { return system_reason(problem_); }
 
  private:
   std::FILE* file_;

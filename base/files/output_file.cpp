@@ -78,10 +78,6 @@ std::atomic<const char*>* list_unfinished(const char* name) {
   return nullptr;
 }
 
-std::string reason(int error_number) {
-  return std::error_code(error_number, std::generic_category()).message();
-}
-
 fs::path folder_of(const fs::path& target) {
   return target.has_parent_path() ? target.parent_path() : fs::path(".");
 }
@@ -137,7 +133,7 @@ OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
                 "Make the folder first");
   }
   if (fs::exists(status) && ::access(target_.c_str(), W_OK) != 0) {
-    throw Error(Blame::Work, name, "cannot be written: " + reason(errno));
+    throw Error(Blame::Work, name, "cannot be written: " + system_reason(errno));
   }
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     // Written directly: renaming would replace /dev/null by a plain file. A pipe with a name keeps
@@ -160,7 +156,7 @@ OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
   } while (file_ < 0 && errno == EEXIST);
   if (file_ < 0) {
     throw Error(Blame::Work, name,
-                "cannot be written: folder " + folder.string() + ": " + reason(errno));
+                "cannot be written: folder " + folder.string() + ": " + system_reason(errno));
   }
   static_cast<void>(lock(file_));  // some file systems know no locks
 }
@@ -186,8 +182,8 @@ void OutputFile::commit() {
 }
 
 void OutputFile::refuse(int error_number) const {
-  throw Error(Blame::Work, target_.string(), "cannot be written: " + reason(error_number), {},
-              "An older file of that name was kept");
+  throw Error(Blame::Work, target_.string(), "cannot be written: " + system_reason(error_number),
+              {}, "An older file of that name was kept");
 }
 
 void remove_unfinished_files() noexcept {
@@ -208,7 +204,7 @@ void write_text(const fs::path& path, std::string_view text) {
   const auto close = [](std::FILE* f) { std::fclose(f); };
   std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(output.temporary().c_str(), "wb"),
                                                    close);
-  if (!file) throw Error(Blame::Work, path.string(), "cannot be written: " + reason(errno));
+  if (!file) throw Error(Blame::Work, path.string(), "cannot be written: " + system_reason(errno));
   errno = 0;
   const bool written = std::fwrite(text.data(), 1, text.size(), file.get()) == text.size();
   // A full disk may show only when buffers are flushed or the file is closed.
@@ -216,7 +212,7 @@ void write_text(const fs::path& path, std::string_view text) {
   int problem = flushed ? 0 : errno;
   if (std::fclose(file.release()) != 0 && problem == 0) problem = errno;
   if (!flushed || problem != 0) {
-    throw Error(Blame::Work, path.string(), "cannot be written: " + reason(problem), {},
+    throw Error(Blame::Work, path.string(), "cannot be written: " + system_reason(problem), {},
                 "Free some space or write elsewhere; an older file of that name was kept");
   }
   output.commit();

@@ -85,7 +85,7 @@ void open(Source& source, const std::filesystem::path& path) {
   errno = 0;
   source.file.open(path, std::ios::binary);
   if (!source.file) {
-    refuse(path, "cannot be read: " + std::error_code(errno, std::generic_category()).message());
+    refuse(path, "cannot be read: " + system_reason(errno));
   }
   png_byte signature[8] = {};
   source.file.read(reinterpret_cast<char*>(signature), sizeof signature);

@@ -29,17 +29,13 @@ struct Named {
   }
 };
 
-std::string reason(int error_number) {
-  return std::error_code(error_number, std::generic_category()).message();
-}
-
 class Descriptor {
  public:
   // Without O_NONBLOCK a pipe that nobody writes into would keep the opening waiting.
   explicit Descriptor(const Named& file)
       : number_(::open(file.path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)) {
     if (number_ < 0) {
-      const std::string why = reason(errno);
+      const std::string why = system_reason(errno);
       throw Error(Blame::Input, file.asked_at, "cannot open \"" + file.path.string() + "\": " + why,
                   file.asked_at.line > 0 ? "paths are relative to the file that names them" : "");
     }
@@ -58,7 +54,7 @@ class Descriptor {
 std::uint64_t size_on_disk(const Descriptor& file, const Named& named) {
   struct stat status {};
   if (::fstat(file.number(), &status) != 0) {
-    throw named.wrong("cannot be read: " + reason(errno));
+    throw named.wrong("cannot be read: " + system_reason(errno));
   }
   if (S_ISDIR(status.st_mode)) throw named.wrong("is a folder", "a file is wanted here");
   if (!S_ISREG(status.st_mode)) {
@@ -96,7 +92,7 @@ std::string read_input_file(const std::filesystem::path& path, std::size_t max_b
     const ssize_t got = ::read(file.number(), bytes.data() + filled, bytes.size() - filled);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) {
-      throw named.wrong("cannot be read: " + reason(errno));
+      throw named.wrong("cannot be read: " + system_reason(errno));
     }
     if (got == 0) break;
     filled += static_cast<std::size_t>(got);

@@ -74,7 +74,7 @@ Pixels read_jpeg_pixels(std::string_view bytes, std::string_view named) {
   if (!begin(reader, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size())) {
     refuse(reader.errors.message);
   }
-  check_edges(reader.jpeg.output_width, reader.jpeg.output_height, named);
+  check_size(reader.jpeg.output_width, reader.jpeg.output_height, named);
   Pixels pixels{
       static_cast<int>(reader.jpeg.output_width), static_cast<int>(reader.jpeg.output_height), {}};
   pixels.rgba.resize(std::size_t{4} * reader.jpeg.output_width * reader.jpeg.output_height);

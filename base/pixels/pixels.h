@@ -24,7 +24,7 @@ inline constexpr int largest_picture_edge_px = 16384;
 [[nodiscard]] Pixels read_png_pixels(std::string_view bytes, std::string_view named);
 [[nodiscard]] Pixels read_jpeg_pixels(std::string_view bytes, std::string_view named);
 
-// Throws unless both edges are allowed and the picture has pixels.
-void check_edges(std::uint64_t width, std::uint64_t height, std::string_view named);
+// Throws unless both edges are allowed, the picture has pixels, and there is room for them.
+void check_size(std::uint64_t width, std::uint64_t height, std::string_view named);
 
 }  // namespace earthshine::base

@@ -30,7 +30,7 @@ Pixels read_png_pixels(std::string_view bytes, std::string_view named) {
   if (png_image_begin_read_from_memory(&png.image, bytes.data(), bytes.size()) == 0) {
     refuse_png(named, png.image.message);
   }
-  check_edges(png.image.width, png.image.height, named);
+  check_size(png.image.width, png.image.height, named);
   png.image.format = PNG_FORMAT_RGBA;
   Pixels pixels{static_cast<int>(png.image.width), static_cast<int>(png.image.height), {}};
   pixels.rgba.resize(PNG_IMAGE_SIZE(png.image));

@@ -8,6 +8,7 @@
 
 #include "radiosity/bodies/closed_parts.h"
 #include "radiosity/bodies/hole_capping.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -199,10 +200,7 @@ std::vector<std::uint32_t> ClosedBodies::near(const Patches& patches, std::uint3
 // The point lies a hair's breadth over the triangle: its weights there.
 bool ClosedBodies::in_hole(const Vec3& point, std::uint32_t number) const {
   const auto& [a, b, c] = masked_[number];
-  const Vec3 ab = b - a, ac = c - a, normal = glm::cross(ab, ac);
-  const double square = glm::dot(normal, normal);
-  const double u = glm::dot(glm::cross(point - a, ac), normal) / square;
-  const double v = glm::dot(glm::cross(ab, point - a), normal) / square;
+  const auto [u, v] = scenes::barycentric(point, a, b - a, c - a);
   constexpr double rounding = 1e-5;
   if (u < -rounding || v < -rounding || u + v > 1.0 + rounding) return false;  // the other half
   return masks_.has_hole(number, u, v);

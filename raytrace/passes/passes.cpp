@@ -148,9 +148,9 @@ class Passes {
       const double aim = aimed_share * options_.error;
       if (promised > 0.0) kept = std::clamp((before - now) / promised, least_kept, most_kept);
       const double step = now - (now - std::max(aim * aim, now / most_step)) / kept;
-      double most = affordable();
-      if (now < most_step * aim * aim)
-        most = std::min(most, last_step_share * spent(*sums_, field(), each));
+      const double so_far = spent(*sums_, field(), each);
+      double most = affordable(so_far);
+      if (now < most_step * aim * aim) most = std::min(most, last_step_share * so_far);
       const SamplePlan plan = planner.plan(step, most);
       if (plan.cost <= 0.0) break;
       before = now, promised = now - plan.squared_error;
@@ -170,10 +170,10 @@ class Passes {
   }
 
   // What the time that is left buys; infinite without a limit.
-  [[nodiscard]] double affordable() const {
+  [[nodiscard]] double affordable(double so_far) const {
     if (options_.time_limit_s <= 0.0) return std::numeric_limits<double>::infinity();
     const double gone = seconds_since(start_);
-    return std::max(0.0, options_.time_limit_s - gone) * done_ / std::max(gone, 1e-3);
+    return std::max(0.0, options_.time_limit_s - gone) * so_far / std::max(gone, 1e-3);
   }
 
   [[nodiscard]] const GatherField* field() const { return field_ ? &*field_ : nullptr; }

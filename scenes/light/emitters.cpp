@@ -7,6 +7,7 @@
 #include "scenes/light/solid_angle.h"
 #include "scenes/ray_query.h"
 #include "scenes/surface_texture.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -162,12 +163,11 @@ const FlatEmitter& EmitterSet::choose(double& u, double& probability) const {
 // Exitance at a point of the emitter over its mean.
 Rgb EmitterSet::relative_exitance(const FlatEmitter& emitter, const Vec3& point) const {
   if (emitter.textured_triangle == FlatEmitter::none) return Rgb(1.0);
-  const Vec3 normal = glm::cross(emitter.edge1, emitter.edge2), at = point - emitter.corner;
-  const double square = glm::dot(normal, normal);
+  const Barycentric at = barycentric(point, emitter.corner, emitter.edge1, emitter.edge2);
   Hit hit;
   hit.triangle = emitter.textured_triangle;
-  hit.u = glm::dot(glm::cross(at, emitter.edge2), normal) / square;
-  hit.v = glm::dot(glm::cross(emitter.edge1, at), normal) / square;
+  hit.u = at.u;
+  hit.v = at.v;
   Rgb relative(0.0);
   if (!is_there(*scene_, hit.triangle, hit.u, hit.v)) return relative;
   const Material& material = scene_->materials[scene_->triangles[hit.triangle].material];

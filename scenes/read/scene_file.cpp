@@ -5,8 +5,8 @@
 
 #include "base/free_memory.h"
 #include "base/input/input_file.h"
+#include "scenes/health/lift_lamps.h"
 #include "scenes/health/mend.h"
-#include "scenes/health/near_lamps.h"
 #include "scenes/read/override.h"
 #include "scenes/read/scene_parts.h"
 #include "scenes/surface_texture.h"

@@ -6,19 +6,10 @@
 #include "base/error.h"
 
 namespace earthshine::scenes {
-namespace {
-
-bool same_reading(const TextureReading& a, const TextureReading& b) {
-  return a.name == b.name && a.is_srgb == b.is_srgb && a.is_mask == b.is_mask &&
-         a.is_crisp == b.is_crisp && a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v;
-}
-
-}  // namespace
-
 std::shared_ptr<const Texture> PictureShelf::take(const TextureReading& reading,
                                                   const std::function<std::string()>& read) {
   for (const Shelved& known : shelved_) {
-    if (same_reading(known.reading, reading)) return known.texture;
+    if (known.reading == reading) return known.texture;
   }
   std::shared_ptr<const Texture> made;
   try {

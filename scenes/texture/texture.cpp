@@ -117,7 +117,7 @@ glm::dvec4 Texture::in_level(const Level& level, const glm::dvec2& uv, bool cris
 }
 
 glm::dvec4 Texture::at(const glm::dvec2& uv, double level) const {
-  const bool is_number = uv.x == uv.x && uv.y == uv.y;
+  const bool is_number = !std::isnan(uv.x) && !std::isnan(uv.y);
   const glm::dvec2 place = is_number ? uv : glm::dvec2(0.0);
   if (!(level > 0.0)) return in_level(levels_.front(), place, reading_.is_crisp);
   const double last = static_cast<double>(levels_.size() - 1);

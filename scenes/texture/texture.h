@@ -22,6 +22,7 @@ struct TextureReading {
   bool is_mask = false;   // opacity: the picture's alpha, or its grey where it has none
   bool is_crisp = false;  // nearest texel, not between four, where texels are large
   Wrap wrap_u = Wrap::Repeat, wrap_v = Wrap::Repeat;
+  bool operator==(const TextureReading&) const = default;
 };
 
 class Texture {

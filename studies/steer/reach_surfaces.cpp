@@ -89,8 +89,8 @@ class SurfaceSearch {
   void solve() {
     const raytrace::Progress progress = stage("solve");
     if (progress) progress(0, 1);
-    radiosity::Patches patches = radiosity::cut_near_lamps(
-        scene_.scene, radiosity::subdivide(scene_.scene, result_.solver.patch_edge_m));
+    radiosity::Patches patches =
+        radiosity::subdivide_near_lamps(scene_.scene, result_.solver.patch_edge_m);
     radiosity::FormFactors factors;
     radiosity::Solution coarse =
         radiosity::solve_keeping(scene_.scene, scene_.groups, scene_.effects, scene_.query,

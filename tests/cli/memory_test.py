@@ -60,11 +60,23 @@ class Memory(program.Case):
         self.assertLess(peak, 100)
         self.says(said, "a.obj", "--max-memory")
 
-    def test_a_photograph_that_does_not_fit(self):
+    def write_large_picture(self):
         def chunk(kind, data):
             return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
         self.write("p.png", b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 16384, 12288, 8, 2, 0, 0, 0)) +
                    chunk(b"IDAT", zlib.compress(bytes(1 << 20))) + chunk(b"IEND", b""))
+
+    def test_a_texture_that_does_not_fit(self):
+        self.write_large_picture()
+        self.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n")
+        self.write("a.mtl", "newmtl m\nKd 1 1 1\nmap_Kd p.png\n")
+        self.write("a.toml", program.BALL + '\n[[object]]\nname = "it"\nmesh = "a.obj"\n')
+        peak, said = self.peak_mib("inspect", "a.toml", "--max-memory", "300MiB", code=1)
+        self.assertLess(peak, 300 + SLACK_MIB)
+        self.says(said, "p.png", "--max-memory")
+
+    def test_a_photograph_that_does_not_fit(self):
+        self.write_large_picture()
         self.write("b.toml", program.BALL)
         peak, said = self.peak_mib("render", "b.toml", "--camera", "A", "--over", "p.png", "--png", "o.png",
                                    "--max-memory", "300MiB", code=1)

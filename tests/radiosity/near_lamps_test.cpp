@@ -35,9 +35,7 @@ scenes::Scene floor_under_lamp(double height, scenes::LampKind kind = scenes::La
   return builder.scene;
 }
 
-Patches cut(const scenes::Scene& scene) {
-  return cut_near_lamps(scene, subdivide(scene, start_edge));
-}
+Patches cut(const scenes::Scene& scene) { return subdivide_near_lamps(scene, start_edge); }
 
 TEST(NearLamps, NoPatchIsLongerThanItsDistance) {
   for (const double height : {1e-3, 0.03}) {

@@ -102,16 +102,21 @@ class GltfReader {
     return static_cast<std::uint32_t>(mesh_.part_sets.size() - 1);
   }
 
+  // What a node names by its number.
+  template <class Thing>
+  const Thing& at(const std::vector<Thing>& things, int number, const char* kind) const {
+    const auto index = static_cast<std::size_t>(number);
+    if (index < things.size()) return things[index];
+    gltf_fail(path_, fmt::format("{} {} does not exist", kind, number),
+              fmt::format("the file has {}", things.size()));
+  }
+
   void add_lamp(const GltfNode& node, const glm::dmat4& matrix,
                 const std::vector<std::uint32_t>& parts) {
     if (node.lamp < 0) return;
-    const auto number = static_cast<std::size_t>(node.lamp);
-    if (number >= model_.lamps.size()) {
-      gltf_fail(path_, fmt::format("light {} does not exist", number),
-                fmt::format("the file has {}", model_.lamps.size()));
-    }
-    if (!model_.lamps[number].is_lamp) return;
-    MeshLamp made{model_.lamps[number].lamp, add_parts(parts)};
+    const GltfLamp& lamp = at(model_.lamps, node.lamp, "light");
+    if (!lamp.is_lamp) return;
+    MeshLamp made{lamp.lamp, add_parts(parts)};
     if (!node.name.empty()) made.lamp.name = node.name;
     made.lamp.position = Vec3(matrix[3]);
     made.lamp.axis = turned(matrix, made.lamp.axis);
@@ -121,13 +126,9 @@ class GltfReader {
   void add_camera(const GltfNode& node, const glm::dmat4& matrix,
                   const std::vector<std::uint32_t>& parts) {
     if (node.camera < 0) return;
-    const auto number = static_cast<std::size_t>(node.camera);
-    if (number >= model_.cameras.size()) {
-      gltf_fail(path_, fmt::format("camera {} does not exist", number),
-                fmt::format("the file has {}", model_.cameras.size()));
-    }
-    if (!model_.cameras[number].is_camera) return;
-    MeshCamera made{model_.cameras[number].camera, add_parts(parts)};
+    const GltfCamera& camera = at(model_.cameras, node.camera, "camera");
+    if (!camera.is_camera) return;
+    MeshCamera made{camera.camera, add_parts(parts)};
     if (!node.name.empty()) made.camera.name = node.name;
     made.camera.position = Vec3(matrix[3]);
     made.camera.look_at = made.camera.position + turned(matrix, {0.0, 0.0, -1.0});

@@ -58,13 +58,11 @@ Facets specular_glossiness(const tinygltf::Value& source) {
 
 // k_d, and the highlight as a lobe or a mirror.
 void reflect(const Facets& facets, Material& material) {
-  const PhongLobe lobe = facets.roughness < mirror_roughness
-                             ? PhongLobe{1.0, 1.0}
-                             : phong_of_ggx(facets.roughness * facets.roughness);
+  const bool mirror = facets.roughness < mirror_roughness;
+  const PhongLobe lobe = mirror ? PhongLobe() : phong_of_ggx(facets.roughness * facets.roughness);
   const double plain = 1.0 - facets.metallic;
   Rgb facet = plain * facets.dielectric;
   material.diffuse = plain * facets.base;
-  const bool mirror = facets.roughness < mirror_roughness;
   if (!mirror && base::max_component(facet) * lobe.peak < least_highlight) {
     facet = Rgb(0.0);
   } else {

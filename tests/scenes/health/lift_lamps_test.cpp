@@ -1,39 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/health/near_lamps.h"
+#include "scenes/health/lift_lamps.h"
 
 #include <fmt/format.h>
 
-#include "base/numbers/random.h"
 #include "tests/scenes/scene_text.h"
 
 namespace earthshine::scenes {
 namespace {
 
-// No other point of the triangle is nearer.
-TEST(NearestOnTriangle, NoPointIsNearer) {
-  base::Rng rng(base::Key(1, base::Stream::Pixel, 3));
-  const auto point = [&] { return Vec3(rng.next(), rng.next(), rng.next()); };
-  for (int k = 0; k < 200; ++k) {
-    const Vec3 a = point(), b = point(), c = point(), p = 3.0 * point() - 1.0;
-    const Vec3 found = nearest_on_triangle(p, a, b, c);
-    // It is of the triangle: its three areas add up to the triangle's.
-    const auto area = [](const Vec3& x, const Vec3& y, const Vec3& z) {
-      return glm::length(glm::cross(y - x, z - x));
-    };
-    EXPECT_NEAR(area(found, a, b) + area(found, b, c) + area(found, c, a), area(a, b, c), 1e-12);
-    for (int n = 0; n < 200; ++n) {
-      double s = rng.next(), t = rng.next();
-      if (s + t > 1.0) s = 1.0 - s, t = 1.0 - t;
-      EXPECT_GE(glm::length(a + s * (b - a) + t * (c - a) - p), glm::length(found - p) - 1e-12);
-    }
-  }
-}
-
-Scene with_lamp_at(const std::string& height, const std::string& kind = "point") {
+Scene with_lamp_at(const std::string& height, const std::string& kind = "point",
+                   const std::string& normal = "[0, 0, 1]") {
   const test::SceneFolder folder;
-  const std::string size =
-      kind == "disk" ? "center = [0.3, 0.4, " + height + "]\nnormal = [0, 0, 1]\nradius = 0.1\n"
-                     : "position = [0.3, 0.4, " + height + "]\n";
+  const std::string size = kind == "disk" ? "center = [0.3, 0.4, " + height +
+                                                "]\nnormal = " + normal + "\nradius = 0.1\n"
+                                          : "position = [0.3, 0.4, " + height + "]\n";
   return folder.read(
       "format = 1\n[[material]]\nname = \"m\"\ndiffuse = 0.5\n[[light]]\nname = \"lamp\"\ntype = "
       "\"" +
@@ -81,8 +61,19 @@ TEST(LiftLamps, NamesWhatStandsBetweenSheets) {
   EXPECT_TRUE(test::holds(scene.warnings.back(), {"\"lamp\"", "between", "move it"}));
 }
 
+// Flush with the floor a disk may shine up; one that shines down is lifted.
+TEST(LiftLamps, OfAFlatLampOnlyWhereItShines) {
+  for (const std::string height : {"0", "1e-5"}) {
+    const Scene down = with_lamp_at(height, "disk", "[0, 0, -1]");
+    EXPECT_NEAR(down.lamps[0].position.z, 1.6e-4, 1e-12);
+    EXPECT_EQ(down.warnings.size(), 1U);
+    EXPECT_TRUE(with_lamp_at(height, "disk").warnings.empty());
+  }
+}
+
 TEST(LiftLamps, LeavesOthersWhereTheyAre) {
-  for (const Scene& scene : {with_lamp_at("0.0002"), with_lamp_at("0", "disk")}) {
+  for (const Scene& scene :
+       {with_lamp_at("0.0002"), with_lamp_at("0.0002", "disk", "[0, 0, -1]")}) {
     EXPECT_TRUE(scene.warnings.empty());
   }
   EXPECT_EQ(with_lamp_at("0.0002").lamps[0].position.z, 0.0002);

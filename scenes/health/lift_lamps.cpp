@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/health/near_lamps.h"
+#include "scenes/health/lift_lamps.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +9,7 @@
 
 #include "scenes/ray_query.h"
 #include "scenes/text/message_text.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -21,29 +22,6 @@ constexpr int most_lifts = 8;
 bool has_size(const Lamp& lamp) {
   return lamp.kind == LampKind::Rectangle || lamp.kind == LampKind::Disk;
 }
-
-}  // namespace
-
-Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
-  if (d1 <= 0.0 && d2 <= 0.0) return a;
-  const double d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
-  if (d3 >= 0.0 && d4 <= d3) return b;
-  const double d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
-  if (d6 >= 0.0 && d5 <= d6) return c;
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return a + d1 / (d1 - d3) * ab;
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return a + d2 / (d2 - d6) * ac;
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 >= d3 && d5 >= d6) {
-    return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
-  }
-  return a + (vb * ab + vc * ac) / (va + vb + vc);
-}
-
-namespace {
 
 struct Nearest {
   double distance_m = std::numeric_limits<double>::infinity();
@@ -101,6 +79,13 @@ std::optional<Vec3> lifted(const Scene& scene, const Vec3& start, double extent)
   return std::nullopt;
 }
 
+// Lamps with a front are often mounted flush: those that shine away from what they stand on are
+// left there.
+bool shines_at(const Scene& scene, const Lamp& lamp, const Nearest& found, bool on_it) {
+  const Vec3 toward = on_it ? -triangle_normal(scene, found.triangle) : found.point - lamp.position;
+  return glm::dot(toward, lamp.axis) > 0.0;
+}
+
 }  // namespace
 
 void lift_lamps(Scene& scene) {
@@ -112,9 +97,10 @@ void lift_lamps(Scene& scene) {
   }
   const double extent = glm::length(high - low), reach = least_lamp_share * extent;
   for (Lamp& lamp : scene.lamps) {
-    if (has_size(lamp)) continue;
     const Nearest first = nearest_surface(scene, lamp.position, reach);
     if (first.distance_m >= reach) continue;
+    const bool on_it = first.distance_m < rounding_share * extent;
+    if (has_size(lamp) && !shines_at(scene, lamp, first, on_it)) continue;
     const std::string name = in_quotes(lamp.name),
                       object =
                           in_quotes(scene.objects[scene.triangles[first.triangle].object].name);
@@ -127,7 +113,6 @@ void lift_lamps(Scene& scene) {
                       name, object, 2000.0 * reach));
       continue;
     }
-    const bool on_it = first.distance_m < rounding_share * extent;
     const std::string where =
         on_it ? "on" : fmt::format("{:.2g} mm from", 1000.0 * first.distance_m);
     scene.warnings.push_back(
