@@ -14,6 +14,11 @@ namespace {
 
 // Patches of so many near lamps as they may be: beyond, more of them cost more than they save.
 constexpr std::size_t most_more = 4096;
+// Of a patch, over its distance from the lamp: illuminance goes as 1 / d^2 there, and what is read
+// between the middles of patches is off by about the square of that. On the payload bay by night,
+// whose lamps stand 25 mm off their housings, 1/4 in place of 1 makes 7 % more patches and a fifth
+// of the mean square of what the solution lacks.
+constexpr double most_length = 0.25;
 
 double half_size(const scenes::Lamp& lamp) {
   const double edges = std::min(glm::length(lamp.edge_u), glm::length(lamp.edge_v));
@@ -29,7 +34,8 @@ class LampCuts {
   [[nodiscard]] Cut cut(const Patches& patches, std::uint32_t patch) const {
     const CellSize size = cell_size(patches, patch);
     const double longest = std::max(size.s_m, size.t_m);
-    if (lamps_.empty() || longest <= allowed(patches, patch, longest)) return Cut::None;
+    if (lamps_.empty() || longest <= most_length * allowed(patches, patch, longest / most_length))
+      return Cut::None;
     const Cut along = size.s_m >= size.t_m ? Cut::S : Cut::T;
     return can_cut(patches, patch, along) ? along : Cut::None;
   }

@@ -8,10 +8,10 @@
 
 namespace earthshine::radiosity {
 
-// As subdivide(), and then halves patches that lamps shine at until none is longer than its
-// distance from the lamp's centre, or than half of the lamp, or they are about twice as many. Lamps
-// that are dimmed or off count as well: a sum of lamps' lights is that of the scene with all of
-// them.
+// As subdivide(), and then halves patches that lamps shine at until none is longer than a
+// quarter of its distance from the lamp's centre, or of half of the lamp, or they are about twice
+// as many. Lamps that are dimmed or off count as well: a sum of lamps' lights is that of the scene
+// with all of them.
 [[nodiscard]] Patches subdivide_near_lamps(const scenes::Scene& scene, double edge_m);
 
 }  // namespace earthshine::radiosity

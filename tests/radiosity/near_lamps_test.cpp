@@ -37,7 +37,7 @@ scenes::Scene floor_under_lamp(double height, scenes::LampKind kind = scenes::La
 
 Patches cut(const scenes::Scene& scene) { return subdivide_near_lamps(scene, start_edge); }
 
-TEST(NearLamps, NoPatchIsLongerThanItsDistance) {
+TEST(NearLamps, NoPatchIsLongerThanAQuarterOfItsDistance) {
   for (const double height : {1e-3, 0.03}) {
     const scenes::Scene scene = floor_under_lamp(height);
     const Patches patches = cut(scene);
@@ -51,10 +51,11 @@ TEST(NearLamps, NoPatchIsLongerThanItsDistance) {
         const Vec3 point = patches.point(i, k % 9 / 8.0, k / 9 / 8.0);
         distance = std::min(distance, glm::length(point - scene.lamps[0].position));
       }
-      EXPECT_LE(std::max(size.s_m, size.t_m), distance);
+      EXPECT_LE(std::max(size.s_m, size.t_m), distance / 4.0);
     }
-    // Every halving of scale takes as many: far fewer than an even cut.
-    EXPECT_LT(patches.count(), 64U + 64U * std::size_t(std::log2(start_edge / height) + 1.0));
+    // Every halving of scale takes as many, far fewer than an even cut: the ring from r to 2 r has
+    // 3 pi r^2, and halving stops above r / 8, so that 192 pi = 603 fit.
+    EXPECT_LT(patches.count(), 64U + 603U * std::size_t(std::log2(start_edge / height) + 3.0));
   }
 }
 
