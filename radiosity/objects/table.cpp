@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "radiosity/objects/table.h"
 
+#include <Eigen/Core>
+#include <Eigen/IterativeLinearSolvers>
 #include <algorithm>
-#include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace earthshine::radiosity {
 
@@ -37,50 +40,31 @@ void Reconciliation::average(ObjectTable& table) const {
 void Reconciliation::apply(ObjectTable& table, bool closes_to_area) const {
   average(table);
   const std::size_t n = table.objects();
-  std::vector<double> missing(n), diagonal(n, 0.0), l(n, 0.0);
+  const auto rows = static_cast<Eigen::Index>(n);
+  Eigen::MatrixXd matrix(rows, rows);
+  Eigen::VectorXd missing(rows);
   for (std::size_t i = 0; i < n; ++i) {
-    missing[i] = closes_to_area ? area_m2_[i] : 0.0;
-    for (std::size_t k = 0; k < n + 2; ++k) {
-      missing[i] -= table.row(i)[k];
-      diagonal[i] += variance_.row(i)[k];
-    }
+    const auto r = static_cast<Eigen::Index>(i);
+    const std::span<const double> variance(variance_.row(i), n + 2), row(table.row(i), n + 2);
+    for (std::size_t k = 0; k < n; ++k) matrix(r, static_cast<Eigen::Index>(k)) = variance[k];
+    matrix(r, r) = std::accumulate(variance.begin(), variance.end(), 0.0);
+    // Where nothing is known by chance, nothing moves.
+    missing[r] = matrix(r, r) > 0.0 ? (closes_to_area ? area_m2_[i] : 0.0) -
+                                          std::accumulate(row.begin(), row.end(), 0.0)
+                                    : 0.0;
   }
-  // (D + V) l = missing by conjugate gradients with D as preconditioner; it is positive, and
-  // semidefinite only where a closed scene leaves it consistent.
-  std::vector<double> left = missing, z(n), way(n), change(n);
-  const auto conditioned = [&] {
-    double size = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-      z[i] = diagonal[i] > 0.0 ? left[i] / diagonal[i] : 0.0;
-      size += z[i] * left[i];
-    }
-    return size;
-  };
-  double size = conditioned();
-  const double wanted = 1e-30 * size;
-  way = z;
-  for (std::size_t step = 0; step < 4 * n + 20 && size > wanted; ++step) {
-    double curvature = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-      change[i] = diagonal[i] * way[i];
-      for (std::size_t k = 0; k < n; ++k) {
-        if (k != i) change[i] += variance_.row(i)[k] * way[k];
-      }
-      curvature += change[i] * way[i];
-    }
-    if (!(curvature > 0.0)) break;
-    for (std::size_t i = 0; i < n; ++i) {
-      l[i] += size / curvature * way[i];
-      left[i] -= size / curvature * change[i];
-    }
-    const double next = conditioned();
-    for (std::size_t i = 0; i < n; ++i) way[i] = z[i] + next / size * way[i];
-    size = next;
-  }
+  // It is positive, and semidefinite only where a closed scene leaves it consistent, which
+  // conjugate gradients do not mind.
+  Eigen::ConjugateGradient<Eigen::MatrixXd, Eigen::Lower | Eigen::Upper> solver(matrix);
+  solver.setTolerance(std::numeric_limits<double>::epsilon());
+  solver.setMaxIterations(4 * rows + 20);
+  const Eigen::VectorXd l = solver.solve(missing);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t k = 0; k < n + 2; ++k) {
       // What a row alone is about, itself, the sky and black backs, follows that row alone.
-      table.row(i)[k] += variance_.row(i)[k] * (k < n && k != i ? l[i] + l[k] : l[i]);
+      const double own = l[static_cast<Eigen::Index>(i)];
+      const double other = k < n && k != i ? l[static_cast<Eigen::Index>(k)] : 0.0;
+      table.row(i)[k] += variance_.row(i)[k] * (own + other);
     }
   }
 }
