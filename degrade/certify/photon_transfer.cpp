@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "degrade/certify/photon_transfer.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -10,47 +11,28 @@ namespace {
 // Powers of the signal with a coefficient each.
 using Powers = std::vector<int>;
 
-// Rows of the linear map from the levels' variances to the coefficients: (X' W X)^-1 X' W.
-std::vector<std::vector<double>> estimator(std::span<const FlatField> fields,
-                                           const std::vector<double>& weights,
-                                           const Powers& powers) {
-  const std::size_t n = powers.size();
-  std::vector<std::vector<double>> left(n, std::vector<double>(n, 0.0));
-  std::vector<std::vector<double>> right(n, std::vector<double>(fields.size(), 0.0));
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t level = 0; level < fields.size(); ++level) {
-      const double s = fields[level].signal;
-      right[i][level] = weights[level] * std::pow(s, powers[i]);
-      for (std::size_t j = 0; j < n; ++j) left[i][j] += right[i][level] * std::pow(s, powers[j]);
-    }
-  }
-  // Gauss and Jordan; the matrix is symmetric and positive, so no pivots are looked for.
-  for (std::size_t i = 0; i < n; ++i) {
-    const double pivot = left[i][i];
-    for (double& value : left[i]) value /= pivot;
-    for (double& value : right[i]) value /= pivot;
-    for (std::size_t k = 0; k < n; ++k) {
-      if (k == i) continue;
-      const double factor = left[k][i];
-      for (std::size_t j = 0; j < n; ++j) left[k][j] -= factor * left[i][j];
-      for (std::size_t j = 0; j < right[k].size(); ++j) right[k][j] -= factor * right[i][j];
-    }
-  }
-  return right;
-}
-
+// The coefficients by weighted least squares: (X' W X)^-1 X' W v for each block's variances v.
 std::vector<Estimate> fit(std::span<const FlatField> fields,
                           const std::vector<double> FlatField::*variances,
                           const std::vector<double>& weights, const Powers& powers) {
-  std::vector<Estimate> result;
-  for (const std::vector<double>& row : estimator(fields, weights, powers)) {
-    std::vector<double> blocks((fields.front().*variances).size(), 0.0);
-    for (std::size_t level = 0; level < fields.size(); ++level) {
-      for (std::size_t k = 0; k < blocks.size(); ++k) {
-        blocks[k] += row[level] * (fields[level].*variances)[k];
-      }
+  const auto levels = static_cast<Eigen::Index>(fields.size());
+  const auto unknowns = static_cast<Eigen::Index>(powers.size());
+  const auto blocks = static_cast<Eigen::Index>((fields.front().*variances).size());
+  Eigen::MatrixXd x(levels, unknowns), v(levels, blocks);
+  for (Eigen::Index level = 0; level < levels; ++level) {
+    const FlatField& field = fields[static_cast<std::size_t>(level)];
+    for (Eigen::Index k = 0; k < unknowns; ++k) {
+      x(level, k) = std::pow(field.signal, powers[static_cast<std::size_t>(k)]);
     }
-    result.push_back(mean_of(blocks));
+    v.row(level) = Eigen::Map<const Eigen::RowVectorXd>((field.*variances).data(), blocks);
+  }
+  const auto w = Eigen::Map<const Eigen::VectorXd>(weights.data(), levels).asDiagonal();
+  const Eigen::MatrixXd normal = x.transpose() * w * x;
+  const Eigen::MatrixXd found = normal.ldlt().solve(x.transpose() * w * v);
+  std::vector<Estimate> result;
+  for (Eigen::Index k = 0; k < unknowns; ++k) {
+    const Eigen::RowVectorXd row = found.row(k);
+    result.push_back(mean_of({row.begin(), row.end()}));
   }
   return result;
 }
