@@ -118,7 +118,7 @@ struct RayQuery::Embree {
   }
 };
 
-RayQuery::RayQuery(const Scene& source) : embree_(std::make_unique<Embree>()) {
+RayQuery::RayQuery(const Scene& source) : embree_(std::make_unique<Embree>()), ways_(source) {
   embree_->device = rtcNewDevice(nullptr);
   if (embree_->device == nullptr) fail("Embree could not start");
   embree_->scene = rtcNewScene(embree_->device);
