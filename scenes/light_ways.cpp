@@ -86,15 +86,14 @@ bool is_straight_glass(const Material& material) {
 }
 
 LightWays::LightWays(const Scene& scene) {
-  const auto matters = [&scene](const Triangle& triangle) {
-    const Material& material = scene.materials[triangle.material];
+  const auto sends_on = [](const Material& material) {
     return is_straight_glass(material) || base::max_component(material.mirror) > 0.0;
   };
-  if (std::none_of(scene.triangles.begin(), scene.triangles.end(), matters)) return;
+  if (std::none_of(scene.materials.begin(), scene.materials.end(), sends_on)) return;
   number_.assign(scene.triangles.size(), no_mirror);
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
-    if (!matters(scene.triangles[t])) continue;
     const Material& material = scene.materials[scene.triangles[t].material];
+    if (!sends_on(material)) continue;
     number_[t] = static_cast<std::uint32_t>(faces_.size());
     faces_.push_back({triangle_normal(scene, t),
                       is_straight_glass(material) ? material.transmit : Rgb(0.0),
@@ -102,7 +101,7 @@ LightWays::LightWays(const Scene& scene) {
                       {no_mirror, no_mirror},
                       material.two_sided});
   }
-  find_mirrors(scene);
+  if (!faces_.empty()) find_mirrors(scene);
 }
 
 void LightWays::find_mirrors(const Scene& scene) {
