@@ -19,9 +19,10 @@ std::vector<GroupLedger> energy_ledger(const LedgerInput& in,
         const std::size_t k = i * in.columns + 3 * g + static_cast<std::size_t>(c);
         const double area = in.area_m2[i];
         emitted += area * in.emitted[k];
-        landed += area * in.direct[k];
+        const double ends = in.factors.kept_direct.empty() ? 1.0 : in.factors.kept_direct[i][c];
+        landed += area * ends * in.direct[k];
         absorbed += area * ((in.factors.kept[i] - in.reflectance[k]) * in.indirect[k] +
-                            (1.0 - in.reflectance[k]) * in.direct[k] +
+                            (ends - in.reflectance[k]) * in.direct[k] +
                             in.radiosity[k] * in.factors.lost[i]);
         escaped += area * in.radiosity[k] * in.factors.escape[i];
       }

@@ -3,11 +3,12 @@
 // solver's residual:
 //   given   = emitted + landed + what sources lose at once (direct.h)
 //   emitted = sum A M            patches that shine through F
-//   landed  = sum A E0           direct light, as computed
-//   absorbed = sum A ((a - rho) F B + (1 - rho) E0) + sum A B lost
+//   landed  = sum A d E0         direct light, as computed
+//   absorbed = sum A ((a - rho) F B + (d - rho) E0) + sum A B lost
 //   escaped  = sum A B escape
-// Direct light that meets a mirror or glass is counted as absorbed there: radiosity does not carry
-// caustics.
+// d is 1 less what goes on through glass that does not bend light and off flat mirrors, which lands
+// elsewhere. What other mirrors and glass would throw counts as absorbed there, what comes to a
+// second flat mirror as lost by the source.
 #pragma once
 
 #include <span>

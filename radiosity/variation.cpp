@@ -74,16 +74,18 @@ class ShadowQueue {
     const double reach = sample.distance_m * (1.0 - 1e-5) - 2.0 * query_.surface_offset_m();
     if (value <= 0.0 || reach <= 0.0) return;
     query_.set(packet_, count_, origin, sample.direction, reach);
+    mirror_[count_] = sample.mirror;
     value_[count_] = value;
     target_[count_] = {point, set, group};
     if (++count_ == RayPacket::width) flush();
   }
   void flush() {
     if (count_ == 0) return;
-    const std::uint32_t hidden = query_.occluded(packet_, count_);
+    std::array<Rgb, RayPacket::width> shares;
+    query_.light_shares(packet_, mirror_.data(), count_, shares.data());
     for (std::size_t k = 0; k < count_; ++k) {
       const auto [point, set, group] = target_[k];
-      if (((hidden >> k) & 1U) == 0) looks_.at(point, set, group) += value_[k];
+      looks_.at(point, set, group) += value_[k] * base::luminance(shares[k]);
     }
     rays_ += count_;
     count_ = 0;
@@ -96,6 +98,7 @@ class ShadowQueue {
   RayPacket packet_;
   std::size_t count_ = 0;
   std::uint64_t rays_ = 0;
+  std::array<std::uint32_t, RayPacket::width> mirror_{};
   std::array<double, RayPacket::width> value_{};
   std::array<std::array<std::size_t, 3>, RayPacket::width> target_{};
 };
@@ -176,7 +179,7 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
           const base::SobolOwen4 toward(key.with(2 * k + set));
           for (std::size_t m = 0; m < samples; ++m) {
             const auto u = toward.point2(static_cast<std::uint32_t>(m));
-            take_samples(source, at, normal, u[0], u[1], taken);
+            take_samples(source, query_.ways().mirrors(), at, normal, u[0], u[1], taken);
             for (const scenes::LightSample& sample : taken) {
               const double cosine = glm::dot(sample.direction, normal);
               const double y = base::luminance(rho * sample.normal_illuminance_lx);

@@ -1,29 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/ray_query.h"
 
-#include "base/free_memory.h"
-
-// Embree 3 and 4 differ in the header's folder and in how a query is called; everything else here
-// is common.
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#define EARTHSHINE_EMBREE_MAJOR 4
-#else
-#include <embree3/rtcore.h>
-#define EARTHSHINE_EMBREE_MAJOR 3
-#endif
-
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <string>
 
-#include "scenes/mask.h"
+#include "base/free_memory.h"
+#include "scenes/ray_structure.h"
 
 namespace earthshine::scenes {
 namespace {
-
-constexpr unsigned all_rays = 0xFFFFFFFFU;
 
 #if EARTHSHINE_EMBREE_MAJOR == 4
 void intersect8(const int* valid, RTCScene scene, RTCRayHit8& rays) {
@@ -59,9 +46,22 @@ void intersect1(RTCScene scene, RTCRayHit& ray) {
 }
 #endif
 
-[[noreturn]] void fail(const std::string& what) {
-  throw base::Error(base::Blame::Work, "ray structure", what, "the scene must fit into memory",
-                    "Use a smaller scene or a machine with more memory");
+void fill(const RayPacket& rays, RTCRay8& ray) {
+  static_assert(sizeof(ray.org_x) == sizeof(rays.origin_x));
+  std::memcpy(ray.org_x, rays.origin_x, sizeof(ray.org_x));
+  std::memcpy(ray.org_y, rays.origin_y, sizeof(ray.org_y));
+  std::memcpy(ray.org_z, rays.origin_z, sizeof(ray.org_z));
+  std::memcpy(ray.dir_x, rays.direction_x, sizeof(ray.dir_x));
+  std::memcpy(ray.dir_y, rays.direction_y, sizeof(ray.dir_y));
+  std::memcpy(ray.dir_z, rays.direction_z, sizeof(ray.dir_z));
+  std::memcpy(ray.tfar, rays.t_max, sizeof(ray.tfar));
+  for (std::size_t k = 0; k < RayPacket::width; ++k) {
+    ray.tnear[k] = 0.0F;
+    ray.time[k] = 0.0F;
+    ray.mask[k] = all_rays;
+    ray.id[k] = 0;
+    ray.flags[k] = 0;
+  }
 }
 
 // For each count of live lanes, the mask that Embree wants.
@@ -74,61 +74,23 @@ constexpr auto lane_masks() {
 }
 alignas(32) constexpr std::array<std::array<int, 8>, 9> valid_lanes = lane_masks();
 
-// Rays go on through the holes of opacity masks.
-void pass_holes(const RTCFilterFunctionNArguments* found) {
-  const auto& masks = *static_cast<const OpacityMasks*>(found->geometryUserPtr);
-  for (unsigned k = 0; k < found->N; ++k) {
-    if (found->valid[k] != -1) continue;
-    const bool hole = masks.is_hole(RTCHitN_primID(found->hit, found->N, k),
-                                    double(RTCHitN_u(found->hit, found->N, k)),
-                                    double(RTCHitN_v(found->hit, found->N, k)));
-    if (hole) found->valid[k] = 0;
-  }
-}
-
 }  // namespace
 
-struct RayQuery::Embree {
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-  double offset_m = 0.0;
-  OpacityMasks masks;
-
-  ~Embree() {
-    if (scene != nullptr) rtcReleaseScene(scene);
-    if (device != nullptr) rtcReleaseDevice(device);
-  }
-
-  static void fill(const RayPacket& rays, RTCRay8& ray) {
-    static_assert(sizeof(ray.org_x) == sizeof(rays.origin_x));
-    std::memcpy(ray.org_x, rays.origin_x, sizeof(ray.org_x));
-    std::memcpy(ray.org_y, rays.origin_y, sizeof(ray.org_y));
-    std::memcpy(ray.org_z, rays.origin_z, sizeof(ray.org_z));
-    std::memcpy(ray.dir_x, rays.direction_x, sizeof(ray.dir_x));
-    std::memcpy(ray.dir_y, rays.direction_y, sizeof(ray.dir_y));
-    std::memcpy(ray.dir_z, rays.direction_z, sizeof(ray.dir_z));
-    std::memcpy(ray.tfar, rays.t_max, sizeof(ray.tfar));
-    for (std::size_t k = 0; k < RayPacket::width; ++k) {
-      ray.tnear[k] = 0.0F;
-      ray.time[k] = 0.0F;
-      ray.mask[k] = all_rays;
-      ray.id[k] = 0;
-      ray.flags[k] = 0;
-    }
-  }
-};
-
-RayQuery::RayQuery(const Scene& source) : embree_(std::make_unique<Embree>()) {
+RayQuery::RayQuery(const Scene& source) : embree_(std::make_unique<Embree>()), ways_(source) {
   embree_->device = rtcNewDevice(nullptr);
-  if (embree_->device == nullptr) fail("Embree could not start");
-  embree_->scene = rtcNewScene(embree_->device);
-  // Robust: without it two in ten million rays slip through shared edges of a closed room.
-  rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(embree_->scene, RTC_BUILD_QUALITY_HIGH);
+  if (embree_->device == nullptr) Embree::fail("Embree could not start");
+  embree_->scene = embree_->new_scene();
 
+  std::size_t own_triangles = source.triangles.size(), own_vertices = source.vertices.size();
+  for (const Object& object : source.objects) {
+    if (!object.instance) continue;
+    own_triangles = object.first_triangle;
+    own_vertices = object.instance->first_vertex;
+    break;
+  }
   // Measured while Embree 3.13 builds at its highest quality; a third of it stays.
   constexpr std::uint64_t bytes_per_triangle = 450;
-  base::check_room(source.triangles.size() * bytes_per_triangle, source.path.string());
+  base::check_room(own_triangles * bytes_per_triangle, source.path.string());
   if (!source.triangles.empty()) {
     Vec3 low = source.vertices.front(), high = low;
     for (const Vec3& p : source.vertices) {
@@ -139,37 +101,13 @@ RayQuery::RayQuery(const Scene& source) : embree_(std::make_unique<Embree>()) {
     // near points.
     centre_ = Vec3(glm::vec3(0.5 * (low + high)));
     embree_->offset_m = 4e-6 * std::max(glm::length(high - low), 1e-6);
-
-    RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                3 * sizeof(float), source.vertices.size()));
-    auto* indices = static_cast<unsigned*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                3 * sizeof(unsigned), source.triangles.size()));
-    if (vertices == nullptr || indices == nullptr) fail("no memory for the triangles");
-    for (std::size_t i = 0; i < source.vertices.size(); ++i) {
-      const Vec3 p = source.vertices[i] - centre_;
-      for (int axis = 0; axis < 3; ++axis)
-        vertices[3 * i + static_cast<std::size_t>(axis)] = static_cast<float>(p[axis]);
-    }
-    for (std::size_t i = 0; i < source.triangles.size(); ++i) {
-      for (std::size_t k = 0; k < 3; ++k) indices[3 * i + k] = source.triangles[i].vertex[k];
-    }
-    rtcSetGeometryMask(geometry, all_rays);  // Embree 4 would default to 1
     embree_->masks = OpacityMasks(source);
-    if (!embree_->masks.empty()) {
-      rtcSetGeometryUserData(geometry, &embree_->masks);
-      rtcSetGeometryIntersectFilterFunction(geometry, pass_holes);
-      rtcSetGeometryOccludedFilterFunction(geometry, pass_holes);
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(embree_->scene, geometry);
-    rtcReleaseGeometry(geometry);
+    embree_->add_triangles(embree_->scene, source, 0, own_triangles, 0, own_vertices, centre_);
+    embree_->add_instances(source, centre_);
   }
   rtcCommitScene(embree_->scene);
   if (const RTCError error = rtcGetDeviceError(embree_->device); error != RTC_ERROR_NONE) {
-    fail("Embree error " + std::to_string(static_cast<int>(error)));
+    Embree::fail("Embree error " + std::to_string(static_cast<int>(error)));
   }
 }
 
@@ -181,20 +119,21 @@ double RayQuery::surface_offset_m() const { return embree_->offset_m; }
 
 void RayQuery::closest(const RayPacket& rays, std::size_t count, HitPacket& hits) const {
   RTCRayHit8 query;
-  Embree::fill(rays, query.ray);
+  fill(rays, query.ray);
   for (unsigned& id : query.hit.geomID) id = RTC_INVALID_GEOMETRY_ID;
   for (unsigned& id : query.hit.instID[0]) id = RTC_INVALID_GEOMETRY_ID;
   intersect8(valid_lanes[count].data(), embree_->scene, query);
   for (std::size_t k = 0; k < RayPacket::width; ++k) {
     const bool hit = query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
-    hits.triangle[k] = hit ? query.hit.primID[k] : no_triangle;
+    const unsigned instance = query.hit.instID[0][k];
+    hits.triangle[k] = hit ? embree_->triangle(instance, query.hit.primID[k]) : no_triangle;
     hits.u[k] = query.hit.u[k];
     hits.v[k] = query.hit.v[k];
     hits.t[k] = query.ray.tfar[k];
-    const float facing = query.hit.Ng_x[k] * query.ray.dir_x[k] +
-                         query.hit.Ng_y[k] * query.ray.dir_y[k] +
-                         query.hit.Ng_z[k] * query.ray.dir_z[k];
-    hits.front[k] = facing < 0.0F ? 1U : 0U;
+    const bool front =
+        embree_->is_front(instance, {query.hit.Ng_x[k], query.hit.Ng_y[k], query.hit.Ng_z[k]},
+                          {query.ray.dir_x[k], query.ray.dir_y[k], query.ray.dir_z[k]});
+    hits.front[k] = front ? 1U : 0U;
   }
 }
 
@@ -213,13 +152,16 @@ Hit RayQuery::closest(const Vec3& origin, const Vec3& direction) const {
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   intersect1(embree_->scene, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  const float facing = query.hit.Ng_x * d.x + query.hit.Ng_y * d.y + query.hit.Ng_z * d.z;
-  return {query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar, facing < 0.0F};
+  const unsigned instance = query.hit.instID[0];
+  const bool front =
+      embree_->is_front(instance, {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z}, d);
+  return {embree_->triangle(instance, query.hit.primID), query.hit.u, query.hit.v, query.ray.tfar,
+          front};
 }
 
 std::uint32_t RayQuery::occluded(const RayPacket& rays, std::size_t count) const {
   RTCRay8 query;
-  Embree::fill(rays, query);
+  fill(rays, query);
   occluded8(valid_lanes[count].data(), embree_->scene, query);
   std::uint32_t bits = 0;
   for (std::size_t k = 0; k < count; ++k) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 
+#include "scenes/light_ways.h"
 #include "scenes/scene.h"
 
 namespace earthshine::scenes {
@@ -65,6 +66,13 @@ class RayQuery {
   // Bit k is set if ray k meets anything before t_max.
   [[nodiscard]] std::uint32_t occluded(const RayPacket& rays, std::size_t count) const;
 
+  // Shadow rays, from a surface toward a source at t_max: of its light, the share that arrives.
+  // mirrors: per ray the flat mirror of ways() that the light comes by, t_max the whole way; or
+  // no_mirror. Glass that does not bend light lets its share through, all else casts a shadow.
+  void light_shares(const RayPacket& rays, const std::uint32_t* mirrors, std::size_t count,
+                    Rgb* shares) const;
+  [[nodiscard]] const LightWays& ways() const { return ways_; }
+
   // How far to lift a ray's origin off its surface along the normal, m: a few units of single
   // precision at the scene's extent, so that no ray hits the surface it leaves and none leaks
   // through a neighbour.
@@ -76,6 +84,7 @@ class RayQuery {
  private:
   struct Embree;
   std::unique_ptr<Embree> embree_;
+  LightWays ways_;
   Vec3 centre_{0.0};
 };
 

@@ -71,6 +71,16 @@ struct Triangle {
 // Which way the faces of a mesh are turned (scenes/health).
 enum class Orient { Mended, Outward, AsIs, TwoSided };
 
+// Of an object that repeats the faces of another, p -> linear p + offset_m of the other's: its own
+// triangles, in the same order, stand after those of all objects that are no instances, its
+// vertices likewise.
+struct Instance {
+  std::uint32_t object = 0;  // the other: no instance itself
+  glm::dmat3 linear{1.0};    // of positive determinant
+  Vec3 offset_m{0.0};
+  std::uint32_t first_vertex = 0;
+};
+
 struct Object {
   std::string name;
   bool target = false;  // visibility studies measure it
@@ -82,6 +92,7 @@ struct Object {
   std::uint32_t degenerate_count = 0;  // polygons without area, left out
   std::string source;                  // "meshes/bay.obj#Liner" or "sphere"
   std::string unused;                  // what its file holds and nothing reads: "24 vn, 96 vt"
+  std::optional<Instance> instance;
 };
 
 class Photometry;

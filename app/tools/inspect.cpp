@@ -29,11 +29,12 @@ Json objects_of(const scenes::Scene& scene) {
   const std::vector<scenes::SurfaceHealth> health = scenes::surface_health(scene);
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const scenes::Object& object = scene.objects[o];
-    std::set<std::string> materials;
+    std::set<std::uint32_t> worn;
     for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
-      const auto& triangle = scene.triangles[object.first_triangle + k];
-      materials.insert(scene.materials[triangle.material].name);
+      worn.insert(scene.triangles[object.first_triangle + k].material);
     }
+    std::set<std::string> materials;
+    for (const std::uint32_t m : worn) materials.insert(scene.materials[m].name);
     objects.push_back({{"name", object.name},
                        {"source", object.source},
                        {"polygons", object.polygon_count},
@@ -50,6 +51,9 @@ Json objects_of(const scenes::Scene& scene) {
                          {"non_manifold_edges", health[o].non_manifold_edges},
                          {"mixed_edges", health[o].mixed_edges}}},
                        {"unused", object.unused}});
+    if (object.instance) {
+      objects.back()["instance_of"] = scene.objects[object.instance->object].name;
+    }
   }
   return objects;
 }

@@ -14,20 +14,36 @@
 namespace earthshine::radiosity {
 namespace {
 
-Rgb landed_as_sampled(const Sampled& sampled, const std::vector<double>& area_m2) {
+// Where the light of a patch's samples ends: all of it on the patch, or (LightWays::kept) a share.
+struct Landing {
+  std::vector<double> area_m2;
+  const std::vector<Rgb>& kept;  // per patch; empty: all
+
+  [[nodiscard]] Rgb flux(std::size_t patch, const Rgb& lx) const {
+    return area_m2[patch] * (kept.empty() ? lx : kept[patch] * lx);
+  }
+  [[nodiscard]] double share(std::size_t patch) const {
+    return kept.empty() ? 1.0 : base::luminance(kept[patch]);
+  }
+};
+
+Rgb landed_as_sampled(const Sampled& sampled, const Landing& landing) {
   Rgb landed(0.0);
-  for (std::size_t i = 0; i < area_m2.size(); ++i) landed += area_m2[i] * sampled.illuminance_lx[i];
+  for (std::size_t i = 0; i < landing.area_m2.size(); ++i) {
+    landed += landing.flux(i, sampled.illuminance_lx[i]);
+  }
   return landed;
 }
 
 // What lands is known twice: from the patches' samples, and as the flux less what was found to
 // escape. The mean of the two, weighted by inverse variance, sets the scale: in a closed room
 // nothing escapes and the flux rules exactly; on a small plate under an open sky the samples do.
-double landing_scale(const Sampled& sampled, const std::vector<double>& area_m2, double landed,
+double landing_scale(const Sampled& sampled, const Landing& landing, double landed,
                      const SourceFlux& flux) {
   double landed_variance = 0.0;
-  for (std::size_t i = 0; i < area_m2.size(); ++i) {
-    landed_variance += area_m2[i] * area_m2[i] * sampled.variance[i];
+  for (std::size_t i = 0; i < landing.area_m2.size(); ++i) {
+    const double area = landing.area_m2[i], share = landing.share(i);
+    landed_variance += area * area * sampled.variance[i] * share * share;
   }
   const double all = base::luminance(flux.emitted_lm);
   const double expected = all * (1.0 - flux.escaped_share - flux.black_share);
@@ -50,18 +66,65 @@ Rgb channel_scales(const SourceFlux& flux, const Rgb& landed) {
   return scale;
 }
 
+struct Shares {
+  double escaped = 0.0, black = 0.0, all = 0.0;
+  Shares& operator+=(const Shares& o) {
+    escaped += o.escaped;
+    black += o.black;
+    all += o.all;
+    return *this;
+  }
+};
+
+// Follows a ray from a source as shadow rays come the other way: straight on through glass, off
+// flat mirrors once. What comes to a second one counts as met by a black back, as what ends within
+// a body of glass does: no patch is lit by it.
+class SourceRays {
+ public:
+  SourceRays(const scenes::Scene& scene, const scenes::RayQuery& query)
+      : scene_(scene), query_(query) {}
+
+  void follow(const Vec3& origin, const Vec3& direction, double weight, int panes, bool thrown,
+              Shares& part) const {
+    const scenes::Hit hit = query_.closest(origin, direction);
+    if (hit.missed()) {
+      part.escaped += weight;
+      return;
+    }
+    const scenes::LightWays::Face* face = query_.ways().face(hit.triangle);
+    const bool is_back =
+        !hit.front && !scene_.materials[scene_.triangles[hit.triangle].material].two_sided;
+    const double through = face != nullptr ? base::luminance(face->through) : 0.0;
+    const std::uint32_t mirror =
+        face != nullptr ? face->mirror[hit.front ? 0 : 1] : scenes::no_mirror;
+    const double reflected = mirror != scenes::no_mirror ? base::luminance(face->reflected) : 0.0;
+    if (is_back) part.black += weight * (1.0 - through - reflected);
+    if (face == nullptr || panes == most_panes) return;
+    const Vec3 at = scenes::hit_position(scene_, hit);
+    const Vec3 lift = (hit.front ? 1.0 : -1.0) * query_.surface_offset_m() * face->normal;
+    if (through > 0.0) {
+      follow(at - lift, direction, weight * through, panes + 1, thrown, part);
+    }
+    if (mirror == scenes::no_mirror) return;
+    if (thrown) {
+      part.black += weight * reflected;
+    } else {
+      follow(at + lift, query_.ways().mirrors()[mirror].turned(direction), weight * reflected,
+             panes + 1, true, part);
+    }
+  }
+
+ private:
+  static constexpr int most_panes = 64;
+
+  const scenes::Scene& scene_;
+  const scenes::RayQuery& query_;
+};
+
 // Shoots rays from a source of known flux to find what escapes and what falls on black backs.
 void find_shares(const scenes::Scene& scene, const scenes::RayQuery& query, const Emit& emit,
                  std::uint64_t key, int rays, std::uint64_t seed, SourceFlux& flux) {
-  struct Shares {
-    double escaped = 0.0, black = 0.0, all = 0.0;
-    Shares& operator+=(const Shares& o) {
-      escaped += o.escaped;
-      black += o.black;
-      all += o.all;
-      return *this;
-    }
-  };
+  const SourceRays source_rays(scene, query);
   const base::SobolOwen4 sobol(base::Key(seed, base::Stream::LampFlux, key));
   const Shares shares = base::ordered_sum(
       static_cast<std::size_t>(rays), 4096, Shares{}, [&](std::size_t begin, std::size_t end) {
@@ -72,32 +135,26 @@ void find_shares(const scenes::Scene& scene, const scenes::RayQuery& query, cons
           if (ray.weight <= 0.0) continue;
           part.all += ray.weight;
           const Vec3 origin = ray.origin + ray.direction * query.surface_offset_m();
-          const scenes::Hit hit = query.closest(origin, ray.direction);
-          if (hit.missed()) {
-            part.escaped += ray.weight;
-          } else if (!hit.front &&
-                     !scene.materials[scene.triangles[hit.triangle].material].two_sided) {
-            part.black += ray.weight;
-          }
+          source_rays.follow(origin, ray.direction, ray.weight, 0, false, part);
         }
         return part;
       });
   if (shares.all <= 0.0) return;
   flux.escaped_share = shares.escaped / shares.all;
   flux.black_share = shares.black / shares.all;
-  const double p = flux.escaped_share + flux.black_share;
+  const double p = std::min(1.0, flux.escaped_share + flux.black_share);
   flux.share_std_error = std::sqrt(p * (1.0 - p) / rays);
 }
 
 class DirectStage {
  public:
   DirectStage(const scenes::Scene& scene, const scenes::RayQuery& query, const Patches& patches,
-              const OpenParts& open, const DirectOptions& options, DirectLight& light)
+              const FormFactors& factors, const DirectOptions& options, DirectLight& light)
       : scene_(scene),
         query_(query),
         patches_(patches),
-        open_(open),
-        area_m2_(open_areas(open, patches.area_m2)),
+        open_(factors.open),
+        landing_{open_areas(factors.open, patches.area_m2), factors.kept_direct},
         options_(options),
         light_(light) {}
 
@@ -113,8 +170,8 @@ class DirectStage {
         sample_patches(query_, patches_, open_, source, options_.seed, light_.shadow_rays);
     find_shares(scene_, query_, emit, source.key, options_.flux_rays, options_.seed, flux);
     light_.shadow_rays += static_cast<std::uint64_t>(options_.flux_rays);
-    const Rgb landed = landed_as_sampled(sampled, area_m2_);
-    flux.scale = landing_scale(sampled, area_m2_, base::luminance(landed), flux);
+    const Rgb landed = landed_as_sampled(sampled, landing_);
+    flux.scale = landing_scale(sampled, landing_, base::luminance(landed), flux);
     const Rgb scale = channel_scales(flux, landed);
     flux.landed_lm = scale * landed;
     store(sampled.illuminance_lx, source.group, scale);
@@ -145,7 +202,7 @@ class DirectStage {
   const scenes::RayQuery& query_;
   const Patches& patches_;
   const OpenParts& open_;
-  std::vector<double> area_m2_;
+  Landing landing_;
   const DirectOptions& options_;
   DirectLight& light_;
 };
@@ -166,7 +223,7 @@ DirectLight direct_light(const scenes::Scene& scene, const scenes::LightGroups& 
   DirectLight light;
   light.columns = 3 * groups.count();
   light.illuminance_lx.assign(patches.count() * light.columns, 0.0);
-  DirectStage stage(scene, query, patches, factors.open, options, light);
+  DirectStage stage(scene, query, patches, factors, options, light);
   if (effects.earth_by_gather) {
     const std::size_t parts = factors.sky_illuminance.size() / patches.count();
     for (std::size_t part = 0; part < parts; ++part) {

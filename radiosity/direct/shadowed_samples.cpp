@@ -2,12 +2,14 @@
 #include "radiosity/direct/shadowed_samples.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
 #include "base/numbers/random.h"
 #include "base/parallel.h"
 #include "radiosity/bodies/closed_bodies.h"
+#include "scenes/light/thrown_light.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -32,6 +34,7 @@ class Receiver {
     const double reach = sample.distance_m * (1.0 - 1e-5) - 2.0 * query_.surface_offset_m();
     if (reach <= 0.0) return;
     query_.set(packet_, count_, origin, sample.direction, reach);
+    mirror_[count_] = sample.mirror;
     point_[count_] = static_cast<std::size_t>(point);
     contribution_[count_++] = sample.normal_illuminance_lx * cosine;
     if (count_ == RayPacket::width) flush();
@@ -49,11 +52,12 @@ class Receiver {
  private:
   void flush() {
     if (count_ == 0) return;
-    const std::uint32_t hidden = query_.occluded(packet_, count_);
+    std::array<Rgb, RayPacket::width> shares;
+    query_.light_shares(packet_, mirror_, count_, shares.data());
     for (std::size_t k = 0; k < count_; ++k) {
-      if (((hidden >> k) & 1U) != 0) continue;
-      sum_ += contribution_[k];
-      by_point_[point_[k]] += base::luminance(contribution_[k]);
+      const Rgb arrives = shares[k] * contribution_[k];
+      sum_ += arrives;
+      by_point_[point_[k]] += base::luminance(arrives);
     }
     rays_ += count_;
     count_ = 0;
@@ -62,6 +66,7 @@ class Receiver {
   const scenes::RayQuery& query_;
   Vec3 normal_;
   RayPacket packet_;
+  std::uint32_t mirror_[RayPacket::width];
   Rgb contribution_[RayPacket::width];
   std::size_t count_ = 0;
   Rgb sum_{0.0};
@@ -80,15 +85,32 @@ int points_for(const Source& source, const Patches& patches, std::uint32_t patch
   return ratio < 6.0 ? source.points * 4 : source.points;
 }
 
-}  // namespace
-
-void take_samples(const Source& source, const Vec3& point, const Vec3& normal, double u, double v,
-                  std::vector<LightSample>& samples) {
-  samples.clear();
+void add_samples(const Source& source, const Vec3& point, const Vec3& normal, double u, double v,
+                 std::vector<LightSample>& samples) {
   if (source.cluster) {
     source.cluster(point, normal, u, v, samples);
   } else {
     samples.push_back(source.sample(point, u, v));
+  }
+}
+
+}  // namespace
+
+void take_samples(const Source& source, std::span<const scenes::FlatMirror> mirrors,
+                  const Vec3& point, const Vec3& normal, double u, double v,
+                  std::vector<LightSample>& samples) {
+  samples.clear();
+  add_samples(source, point, normal, u, v, samples);
+  for (std::uint32_t m = 0; m < mirrors.size(); ++m) {
+    const scenes::FlatMirror& mirror = mirrors[m];
+    if (mirror.height_m(point) <= 0.0) continue;
+    std::size_t kept = samples.size();
+    add_samples(source, mirror.image(point), mirror.turned(normal), u, v, samples);
+    for (std::size_t k = kept; k < samples.size(); ++k) {
+      const LightSample sample = scenes::thrown(samples[k], mirror, m, point);
+      if (base::max_component(sample.normal_illuminance_lx) > 0.0) samples[kept++] = sample;
+    }
+    samples.resize(kept);
   }
 }
 
@@ -116,7 +138,7 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
         const auto p = sobol.point(static_cast<std::uint32_t>(k));
         const Vec3 at = patches.point(patch, p[0], p[1]);
         if (!near.empty() && open.bodies->cover(at + lift - open.bodies->centre(), near)) continue;
-        take_samples(source, at, normal, p[2], p[3], samples);
+        take_samples(source, query.ways().mirrors(), at, normal, p[2], p[3], samples);
         for (const LightSample& sample : samples) receiver.add(taken, at + lift, sample);
         ++taken;
       }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "radiosity/patches/open_parts.h"
@@ -33,8 +34,9 @@ struct Sampled {
   std::vector<double> variance;     // of its luminance-weighted value, as if the points were random
 };
 
-// The source's samples at a surface, in place of what `samples` held.
-void take_samples(const Source& source, const Vec3& point, const Vec3& normal, double u, double v,
+// The source's samples at a surface, straight and by flat mirrors, in place of what `samples` held.
+void take_samples(const Source& source, std::span<const scenes::FlatMirror> mirrors,
+                  const Vec3& point, const Vec3& normal, double u, double v,
                   std::vector<scenes::LightSample>& samples);
 
 // Owen-Sobol in four dimensions (point of the patch, point of the source), keyed by patch and

@@ -44,6 +44,8 @@ struct FormFactors {
   std::vector<double> sky, black;    // F_i,sky and F_i,black: what patch i sees
   std::vector<double> escape, lost;  // shares of what leaves j that reach the sky, black backs
   std::vector<double> kept;          // a_j per patch
+  std::vector<Rgb> kept_direct;  // of light straight from sources, the share that ends on a patch
+                                 // (scenes/light_ways.h); empty: all
   std::vector<double>
       back_hits;  // per object of the scene: rays of exposed patches that met its back
   std::vector<Rgb> sky_illuminance;  // per patch, or per patch and cell of the sky, lx: pi times
@@ -66,8 +68,8 @@ using SkyRadiance = std::function<Rgb(const Vec3& direction)>;
                                             const FormFactorOptions& options,
                                             const SkyRadiance& sky = {});
 
-// The rows of some patches only, in the order given; all per-patch vectors but `kept` and
-// `column_scale` then have an entry per row.
+// The rows of some patches only, in the order given; all per-patch vectors but `kept`,
+// `kept_direct` and `column_scale` then have an entry per row.
 [[nodiscard]] FormFactors cast_rows(const scenes::Scene& scene, const scenes::RayQuery& query,
                                     const Patches& patches, std::span<const std::uint32_t> rows,
                                     const FormFactorOptions& options, const SkyRadiance& sky = {});

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "radiosity/direct/explicit_emitters.h"
+#include "scenes/light/thrown_light.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_parts.h"
 
@@ -29,9 +30,11 @@ double fraction(double x) { return x - std::floor(x); }
 LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups& groups,
                            const scenes::Effects& effects, Indirect indirect,
                            int distributed_lights, bool per_group,
-                           std::optional<scenes::Lamp> earth_area)
+                           std::optional<scenes::Lamp> earth_area,
+                           std::span<const scenes::FlatMirror> mirrors)
     : scene_(scene),
       distributed_(indirect == Indirect::Distributed),
+      mirrors_(distributed_ ? std::span<const scenes::FlatMirror>() : mirrors),
       earth_area_(distributed_ ? std::move(earth_area) : std::nullopt) {
   const int copies = distributed_ ? distributed_lights : 1;
   if (effects.sun) {
@@ -93,7 +96,7 @@ scenes::LightTree LightSampler::tree_of(const std::vector<std::size_t>& lamps) c
 }
 
 scenes::LightKind LightSampler::kind(std::size_t index) const {
-  const Light& light = lights_[index];
+  const Light& light = of(index);
   switch (light.kind) {
     case Kind::Sun:
     case Kind::SunPart:
@@ -127,6 +130,22 @@ std::optional<LightSampler::SeenLamp> LightSampler::seen_lamp(const Vec3& origin
 
 void LightSampler::choose(const scenes::Receiver& receiver, double u,
                           std::vector<scenes::LightChoice>& chosen) const {
+  choose_straight(receiver, u, chosen);
+  for (std::size_t m = 0; m < mirrors_.size(); ++m) {
+    const scenes::FlatMirror& mirror = mirrors_[m];
+    if (mirror.height_m(receiver.point) <= 0.0) continue;
+    scenes::Receiver image = receiver;
+    image.point = mirror.image(receiver.point);
+    image.normal = mirror.turned(receiver.normal);
+    image.mirrored = mirror.turned(receiver.mirrored);
+    const std::size_t first = chosen.size();
+    choose_straight(image, u, chosen);
+    for (std::size_t k = first; k < chosen.size(); ++k) chosen[k].light += (m + 1) * lights_.size();
+  }
+}
+
+void LightSampler::choose_straight(const scenes::Receiver& receiver, double u,
+                                   std::vector<scenes::LightChoice>& chosen) const {
   for (const std::size_t light : always_) chosen.push_back({light, 1.0});
   for (const Cluster& crowd : clusters_) {
     const std::size_t first = chosen.size();
@@ -154,17 +173,27 @@ void LightSampler::add(Light light, int copies) {
 }
 
 bool LightSampler::below_horizon(std::size_t index, const Vec3& normal) const {
-  const Light& light = lights_[index];
+  const Light& light = of(index);
   if (light.kind != Kind::Sun && light.kind != Kind::SunPart) return false;
   const scenes::Sun& sun =
       light.kind == Kind::Sun ? *scene_.sun : scene_.sky_parts->suns[light.index];
   constexpr double rounding = 1e-9;
-  return glm::dot(sun.direction, normal) < -base::radians(sun.angular_radius_deg) - rounding;
+  const scenes::FlatMirror* mirror = mirror_of(index);
+  const Vec3 facing = mirror != nullptr ? mirror->turned(normal) : normal;
+  return glm::dot(sun.direction, facing) < -base::radians(sun.angular_radius_deg) - rounding;
 }
 
 scenes::LightSample LightSampler::sample(std::size_t index, const Vec3& point, double u,
                                          double v) const {
-  const Light& light = lights_[index];
+  const scenes::FlatMirror* mirror = mirror_of(index);
+  if (mirror == nullptr) return sample_straight(lights_[index], point, u, v);
+  if (mirror->height_m(point) <= 0.0) return {};
+  return scenes::thrown(sample_straight(of(index), mirror->image(point), u, v), *mirror,
+                        static_cast<std::uint32_t>(mirror - mirrors_.data()), point);
+}
+
+scenes::LightSample LightSampler::sample_straight(const Light& light, const Vec3& point, double u,
+                                                  double v) const {
   if (light.fixed) {
     u = light.u;
     v = light.v;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "raytrace/frame/frame.h"
@@ -21,9 +22,11 @@ class LightSampler {
   // by `distributed_lights` fixed points or directions of equal share, the same for every pixel;
   // the Earth by points of earth_area (distributed_area.h), or by directions to its disc.
   // per_group: every light group gets an image of its own, so that lamps are chosen within each.
+  // mirrors: flat ones, that throw each source's light a second time; not of distributed lights.
   LightSampler(const scenes::Scene& scene, const scenes::LightGroups& groups,
                const scenes::Effects& effects, Indirect indirect, int distributed_lights,
-               bool per_group = false, std::optional<scenes::Lamp> earth_area = std::nullopt);
+               bool per_group = false, std::optional<scenes::Lamp> earth_area = std::nullopt,
+               std::span<const scenes::FlatMirror> mirrors = {});
 
   // Adds the lights that get a shadow ray at the receiver: of few lamps all, of many those that
   // matter, with weight 1, and some of the others by chance, with weight 1 / probability
@@ -41,8 +44,9 @@ class LightSampler {
   [[nodiscard]] std::optional<SeenLamp> seen_lamp(const Vec3& origin, const Vec3& direction,
                                                   double nearer_than_m) const;
 
-  [[nodiscard]] std::size_t count() const { return lights_.size(); }
-  [[nodiscard]] std::size_t group(std::size_t light) const { return lights_[light].group; }
+  // The lights themselves, then their images in each mirror.
+  [[nodiscard]] std::size_t count() const { return lights_.size() * (1 + mirrors_.size()); }
+  [[nodiscard]] std::size_t group(std::size_t light) const { return of(light).group; }
   [[nodiscard]] scenes::LightKind kind(std::size_t light) const;
   // Whether the whole of it is below the horizon of a surface that faces `normal`: known without a
   // sample for Suns alone.
@@ -64,12 +68,22 @@ class LightSampler {
     scenes::LightTree tree;
     std::vector<std::size_t> lights;  // of the tree's numbers
   };
+  [[nodiscard]] const Light& of(std::size_t light) const { return lights_[light % lights_.size()]; }
+  // Its mirror; null: the light itself.
+  [[nodiscard]] const scenes::FlatMirror* mirror_of(std::size_t light) const {
+    return light < lights_.size() ? nullptr : &mirrors_[light / lights_.size() - 1];
+  }
+  void choose_straight(const scenes::Receiver& receiver, double u,
+                       std::vector<scenes::LightChoice>& chosen) const;
+  [[nodiscard]] scenes::LightSample sample_straight(const Light& light, const Vec3& point, double u,
+                                                    double v) const;
   void add(Light light, int copies);
   void gather_clusters(bool per_group);
   [[nodiscard]] scenes::LightTree tree_of(const std::vector<std::size_t>& lamps) const;
 
   const scenes::Scene& scene_;
   bool distributed_;
+  std::span<const scenes::FlatMirror> mirrors_;
   std::optional<scenes::Lamp> earth_area_;
   std::vector<Light> lights_;
   std::vector<std::size_t> always_;  // lights that are not left to chance

@@ -25,6 +25,7 @@ std::span<const Rgb> PathWalker::residual(const IncomingLight& solution, const R
                                           const scenes::Hit& first, base::Rng& rng) {
   begin(ray, rng);
   sees_sampled_ = from_camera_ = false;
+  turn();
   follow(solution, first);
   return radiance_;
 }
@@ -34,6 +35,7 @@ std::span<const Rgb> PathWalker::residual_at(const IncomingLight& solution, cons
                                              base::Rng& rng) {
   begin({}, rng);
   sees_sampled_ = from_camera_ = false;
+  turn();
   if (!turn_diffusely(solution, origin, normal, u, v)) return radiance_;
   const scenes::Hit hit = world_.query.closest(ray_.origin, ray_.direction);
   if (hit.missed()) return radiance_;
@@ -67,6 +69,7 @@ void PathWalker::follow(const IncomingLight& solution, scenes::Hit hit) {
 bool PathWalker::turn_diffusely(const IncomingLight& solution, const Vec3& origin,
                                 const Vec3& normal, double u, double v) {
   sees_sampled_ = from_camera_ = false;
+  turn();
   ++rays_.gather;
   const bool aims = !solution.bright().empty();
   if (aims && rng_->next() < aimed_share) {

@@ -100,7 +100,8 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
   const auto start = std::chrono::steady_clock::now();
   check(options);
   // As for the final gather: emitters that are a large part of the area are met, not sampled.
-  const LightSampler lights(scene, groups, effects, Indirect::Radiosity, 1);
+  const LightSampler lights(scene, groups, effects, Indirect::Radiosity, 1, false, std::nullopt,
+                            query.ways().mirrors());
   const PathWorld world = make_world(scene, groups, effects, query, lights, options);
   const CameraModel model = make_camera_model(camera, options.columns, options.rows);
 

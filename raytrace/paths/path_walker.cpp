@@ -39,6 +39,7 @@ void PathWalker::begin(const Ray& start, base::Rng& rng) {
 std::span<const Rgb> PathWalker::walk(const Ray& start, base::Rng& rng) {
   begin(start, rng);
   sees_sampled_ = from_camera_ = true;
+  turn();
   ++rays_.camera;
   for (int bounce = 0; step() && survives(bounce); ++bounce) {
   }
@@ -55,7 +56,8 @@ PathWalker::Surface PathWalker::surface_at(const scenes::Hit& hit) const {
           hit.front ? outward : -outward,
           glm::reflect(ray_.direction, outward),
           hit.front || material.two_sided,
-          scenes::diffuse_at(scene, material, hit)};
+          scenes::diffuse_at(scene, material, hit),
+          hit.triangle};
 }
 
 bool PathWalker::is_black(const Surface& surface) {
@@ -134,12 +136,14 @@ void PathWalker::light_directly(const Surface& surface) {
   std::array<Rgb, width> value;
   std::array<std::size_t, width> group{};
   std::array<scenes::LightKind, width> kind{};
+  std::array<std::uint32_t, width> mirror{};
+  std::array<Rgb, width> shares;
   std::size_t count = 0;
   const auto trace = [&] {
-    const std::uint32_t hidden = count > 0 ? world_.query.occluded(packet, count) : 0;
+    if (count > 0) world_.query.light_shares(packet, mirror.data(), count, shares.data());
     for (std::size_t k = 0; k < count; ++k) {
       rays_.add_shadow(kind[k]);
-      if (((hidden >> k) & 1U) == 0) add(group[k], value[k]);
+      add(group[k], shares[k] * value[k]);
     }
     count = 0;
   };
@@ -163,6 +167,7 @@ void PathWalker::light_directly(const Surface& surface) {
     value[count] = reflectance * light.normal_illuminance_lx * (cosine / pi);
     group[count] = world_.lights.group(k);
     kind[count] = world_.lights.kind(k);
+    mirror[count] = light.mirror;
     world_.query.set(packet, count, origin, light.direction, reach);
     if (++count == width) trace();
   }
@@ -201,6 +206,15 @@ bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
   return lit(weight_);
 }
 
+// Whether light that comes the other way is what shadow rays bring to where the path last turned:
+// by glass that does not bend it, by flat mirrors once.
+bool PathWalker::shadow_rays_follow(const Surface& surface, bool through) {
+  if (through) return scenes::is_straight_glass(surface.material);
+  const scenes::LightWays::Face* face = world_.query.ways().face(surface.triangle);
+  const bool front = glm::dot(surface.normal, surface.outward) > 0.0;
+  return face != nullptr && face->mirror[front ? 0 : 1] != scenes::no_mirror && ++mirrors_ == 1;
+}
+
 void PathWalker::pass_on(const Surface& surface, bool through) {
   weight_ *= through ? surface.material.transmit : surface.material.mirror;
   Vec3 lift = surface.normal * world_.query.surface_offset_m();
@@ -212,7 +226,8 @@ void PathWalker::pass_on(const Surface& surface, bool through) {
     if (!refraction.total) lift = -lift;
   }
   ray_ = {surface.position + lift, direction};
-  if (world_.paths == PathSet::All) sees_sampled_ = true;
+  straight_ = straight_ && shadow_rays_follow(surface, through);
+  if (world_.paths == PathSet::All && !straight_) sees_sampled_ = true;
   ++(through ? rays_.refraction : rays_.mirror);
 }
 
@@ -232,6 +247,7 @@ void PathWalker::scatter(const Surface& surface, bool by_lobe) {
   }
   ray_ = {surface.position + surface.normal * world_.query.surface_offset_m(), direction};
   sees_sampled_ = from_camera_ = false;
+  turn();
   ++(by_lobe ? rays_.lobe : rays_.gather);
 }
 

@@ -54,6 +54,7 @@ class PathWalker {
     Vec3 mirrored;  // the path's direction reflected
     bool shines;    // reflects and emits: false inside glass
     Rgb diffuse;    // k_d there
+    std::uint32_t triangle;
   };
 
   void begin(const Ray& start, base::Rng& rng);
@@ -71,6 +72,11 @@ class PathWalker {
                       double u, double v);
   void follow(const IncomingLight& solution, scenes::Hit hit);
   void pass_on(const Surface& surface, bool through);
+  bool shadow_rays_follow(const Surface& surface, bool through);
+  void turn() {  // the path leaves a surface that shadow rays light
+    straight_ = true;
+    mirrors_ = 0;
+  }
   void scatter(const Surface& surface, bool by_lobe);
 
   const PathWorld& world_;
@@ -81,6 +87,8 @@ class PathWalker {
   Rgb weight_{1.0};
   bool sees_sampled_ = true;  // no shadow ray of the last surface carried the sources' light
   bool from_camera_ = true;   // by mirrors and glass alone
+  bool straight_ = true;      // } since the last turn: only where shadow rays go,
+  int mirrors_ = 0;           // } and by so many flat mirrors
   RayShare share_;            // of the last ray, with those aimed at bright patches
 };
 

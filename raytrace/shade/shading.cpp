@@ -214,7 +214,7 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
     if (reach <= 0.0) continue;
     queue_shadow(origin, light.direction, reach,
                  {value, incident * highlight, shared_.layer[shared_.lights.group(k)], sample_,
-                  depth == 0, shared_.lights.kind(k)});
+                  depth == 0, shared_.lights.kind(k), light.mirror});
   }
 }
 

@@ -136,6 +136,7 @@ class PixelShader {
     std::size_t layer = 0, sample = 0;
     bool by_camera = true;  // at a surface that the camera sees itself
     scenes::LightKind kind = scenes::LightKind::Sun;
+    std::uint32_t mirror = scenes::no_mirror;  // that throws the light
   };
   void queue_shadow(const Vec3& origin, const Vec3& direction, double reach_m,
                     const ShadowRay& ray);

@@ -128,15 +128,20 @@ void PixelShader::queue_shadow(const Vec3& origin, const Vec3& direction, double
 
 void PixelShader::flush_shadow() {
   if (shadow_count_ == 0) return;
-  const std::uint32_t hidden = shared_.query.occluded(shadow_packet_, shadow_count_);
+  std::array<std::uint32_t, width> mirrors;
+  std::array<Rgb, width> shares;
+  for (std::size_t k = 0; k < shadow_count_; ++k) mirrors[k] = shadow_rays_[k].mirror;
+  shared_.query.light_shares(shadow_packet_, mirrors.data(), shadow_count_, shares.data());
   for (std::size_t k = 0; k < shadow_count_; ++k) {
-    rays_.add_shadow(shadow_rays_[k].kind);
-    if (((hidden >> k) & 1U) != 0) continue;
     const ShadowRay& ray = shadow_rays_[k];
-    add(ray.layer, ray.sample, ray.by_camera ? Part::Direct : Part::Specular, ray.value);
+    rays_.add_shadow(ray.kind);
+    if (base::max_component(shares[k]) <= 0.0) continue;
+    add(ray.layer, ray.sample, ray.by_camera ? Part::Direct : Part::Specular,
+        shares[k] * ray.value);
     if (shared_.splits_parts && ray.by_camera) {
-      sums_[shared_.layers + static_cast<std::size_t>(Part::Direct)] -= ray.specular;
-      sums_[shared_.layers + static_cast<std::size_t>(Part::Specular)] += ray.specular;
+      const Rgb specular = shares[k] * ray.specular;
+      sums_[shared_.layers + static_cast<std::size_t>(Part::Direct)] -= specular;
+      sums_[shared_.layers + static_cast<std::size_t>(Part::Specular)] += specular;
     }
   }
   shadow_count_ = 0;

@@ -34,9 +34,19 @@ void mend_surfaces(Scene& scene) {
 }
 
 std::vector<SurfaceHealth> surface_health(const Scene& scene) {
-  const std::vector<std::uint32_t> ids = welded(scene.vertices);
+  std::size_t own_vertices = scene.vertices.size();
+  for (const Object& object : scene.objects) {
+    if (!object.instance) continue;
+    own_vertices = object.instance->first_vertex;
+    break;
+  }
+  const std::vector<std::uint32_t> ids = welded(std::span(scene.vertices).first(own_vertices));
   std::vector<SurfaceHealth> all;
   for (const Object& object : scene.objects) {
+    if (object.instance) {
+      all.push_back(all[object.instance->object]);
+      continue;
+    }
     SurfaceHealth health;
     for (const SurfacePart& part : surface_parts(scene, object, ids)) {
       ++health.parts;

@@ -26,7 +26,7 @@ namespace earthshine::scenes {
 // before it.
 void mend_surfaces(Scene& scene);
 
-// What is left, for each object of the scene.
+// What is left, for each object of the scene; of an instance that of its original.
 struct SurfaceHealth {
   std::size_t parts = 0;         // that hang together by edges
   std::size_t closed_parts = 0;  // of them without open and non-manifold edges

@@ -100,7 +100,7 @@ void measure(const Scene& scene, SurfacePart& part) {
 
 }  // namespace
 
-std::vector<std::uint32_t> welded(const std::vector<Vec3>& vertices) {
+std::vector<std::uint32_t> welded(std::span<const Vec3> vertices) {
   std::vector<std::uint32_t> order(vertices.size()), id(vertices.size());
   std::iota(order.begin(), order.end(), 0U);
   const auto key = [&](std::uint32_t v) {

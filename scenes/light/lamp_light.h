@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "scenes/light_ways.h"
 #include "scenes/scene.h"
 
 namespace earthshine::scenes {
@@ -14,6 +15,7 @@ struct LightSample {
   double distance_m = 0.0;  // infinite for the sky
   Rgb normal_illuminance_lx{
       0.0};  // on a plane facing `direction`, divided by the sample's density; nothing in between
+  std::uint32_t mirror = no_mirror;  // that throws it; the distance is that of the whole way
 };
 
 // Shape of a spot's intensity against the angle from its axis: 1 inside beam_deg, smoothstep in the

@@ -16,10 +16,10 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr std::string_view all_keys[] = {
-    "name",   "mesh",     "part",       "shape",    "material", "translate", "rotate",
-    "scale",  "target",   "inward",     "corners",  "min",      "max",       "center",
-    "radius", "segments", "from",       "to",       "caps",     "normal",    "orient",
-    "lights", "cameras",  "smooth_deg", "round_deg"};
+    "name",   "mesh",     "part",       "shape",     "material",   "translate", "rotate",
+    "scale",  "target",   "inward",     "corners",   "min",        "max",       "center",
+    "radius", "segments", "from",       "to",        "caps",       "normal",    "orient",
+    "lights", "cameras",  "smooth_deg", "round_deg", "instance_of"};
 constexpr std::string_view shapes[] = {"quad", "box", "sphere", "cylinder", "disk"};
 constexpr std::string_view common_keys[] = {"name",  "material", "translate", "rotate",
                                             "scale", "target",   "inward",    "orient"};
@@ -138,20 +138,6 @@ Mesh read_shape(const TableReader& table, const std::string& shape) {
                    read_segments(table, faces_around));
 }
 
-Placement read_placement(const TableReader& table, double unit_m) {
-  Placement placement;
-  // Of meshes too: glTF means metres by its specification, but here the scene's unit rules whatever
-  // the format, so that one key says what every number of the scene means.
-  placement.unit_m = unit_m;
-  if (table.has("scale")) placement.scale = *table.colour("scale", {0.0, 1e6, true});
-  if (const auto degrees = table.vector("rotate", {-1e6, 1e6})) {
-    placement.rotation = rotation_xyz(*degrees);
-  }
-  placement.translate = table.vector("translate", lengths).value_or(Vec3(0.0));
-  placement.inward = table.flag("inward").value_or(false);
-  return placement;
-}
-
 Orient read_orient(const TableReader& table, const Placement& placement) {
   const auto orient = table.choice("orient", orients);
   // What is turned inward by hand is not turned back.
@@ -185,6 +171,20 @@ void take_extras(Scene& scene, const TableReader& table, const Mesh& mesh, std::
 
 }  // namespace
 
+Placement read_placement(const TableReader& table, double unit_m) {
+  Placement placement;
+  // Of meshes too: glTF means metres by its specification, but here the scene's unit rules whatever
+  // the format, so that one key says what every number of the scene means.
+  placement.unit_m = unit_m;
+  if (table.has("scale")) placement.scale = *table.colour("scale", {0.0, 1e6, true});
+  if (const auto degrees = table.vector("rotate", {-1e6, 1e6})) {
+    placement.rotation = rotation_xyz(*degrees);
+  }
+  placement.translate = table.vector("translate", lengths).value_or(Vec3(0.0));
+  placement.inward = table.flag("inward").value_or(false);
+  return placement;
+}
+
 ShelvedMesh& MeshShelf::take(const std::filesystem::path& named, const base::Location& asked_at,
                              VertexNormals normals) {
   const std::filesystem::path path = scene_folder_ / named;
@@ -197,7 +197,7 @@ ShelvedMesh& MeshShelf::take(const std::filesystem::path& named, const base::Loc
   return *shelved;
 }
 
-void read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& shelf) {
+Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& shelf) {
   TableReader table(node, "[[object]]", all_keys);
   Object object;
   object.name = table.read_name();
@@ -206,7 +206,9 @@ void read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& s
   const auto shape = table.choice("shape", shapes);
   if (named && shape) table.fail("shape", "stands beside \"mesh\"", "an object is one of the two");
   if (!named && !shape) {
-    table.missing("mesh", "mesh = \"FILE\" or shape = \"quad\", \"box\", \"sphere\", ...");
+    table.missing("mesh",
+                  "mesh = \"FILE\", shape = \"quad\", \"box\", \"sphere\", ... or instance_of = "
+                  "\"OBJECT\"");
   }
   const Placement placement = read_placement(table, unit_m);
   object.orient = read_orient(table, placement);
@@ -249,6 +251,7 @@ void read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& s
   auto& files = shelved->mesh.files;
   scene.files.insert(scene.files.end(), files.begin(), files.end());
   files.clear();
+  return placement;
 }
 
 }  // namespace earthshine::scenes

@@ -146,14 +146,18 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
 
   // Objects last: their meshes take the longest to read, and a slip elsewhere shows at once.
   MeshShelf shelf(path.parent_path(), scene.materials.size());
+  InstanceReader instances;
   read_named(root, "object", [&](const TomlNode& node) {
-    read_object(scene, node, unit_m, shelf);
+    if (const auto name = instances.take(node)) return *name;
+    const Placement placement = read_object(scene, node, unit_m, shelf);
+    instances.know(scene.objects.back().name, placement);
     return scene.objects.back().name;
   });
-  check_size(scene);
   constexpr std::size_t mending_bytes = 56;  // per triangle, measured on spheres
   base::check_room(scene.triangles.size() * mending_bytes, path.string());
   mend_surfaces(scene);
+  instances.finish(scene, unit_m, shelf.own_material_count());
+  check_size(scene);
   settle_textures(scene);
   lift_lamps(scene);
   return scene;

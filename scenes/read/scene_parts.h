@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -77,7 +78,25 @@ class MeshShelf {
   std::map<std::pair<std::filesystem::path, VertexNormals>, std::unique_ptr<ShelvedMesh>> meshes_;
 };
 
-// Adds the object's triangles, and the materials that only its mesh defines, to the scene.
-void read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& shelf);
+// translate, rotate, scale and inward of an object.
+[[nodiscard]] Placement read_placement(const TableReader& table, double unit_m);
+
+// Adds the object's triangles, and the materials that only its mesh defines, to the scene. Says how
+// it is placed.
+Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& shelf);
+
+// [[object]] tables with instance_of: read when all others are in the scene, and mended.
+class InstanceReader {
+ public:
+  // The table's name, if it is one; it is read in finish(), until when `node` must live.
+  [[nodiscard]] std::optional<std::string> take(const TomlNode& node);
+  // An object that is no instance.
+  void know(const std::string& name, const Placement& placement) { placed_[name] = placement; }
+  void finish(Scene& scene, double unit_m, std::size_t own_material_count) const;
+
+ private:
+  std::map<std::string, Placement> placed_;
+  std::vector<const TomlNode*> waiting_;
+};
 
 }  // namespace earthshine::scenes

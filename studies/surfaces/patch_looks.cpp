@@ -26,6 +26,7 @@ void PatchLooks::add_shadow_ray(const Vec3& origin, const scenes::LightSample& s
   const double reach = sample.distance_m * (1.0 - 1e-5) - 2.0 * scene_.query.surface_offset_m();
   if (base::max_component(lx) <= 0.0 || reach <= 0.0) return;
   scene_.query.set(packet_, count_, origin, sample.direction, reach);
+  mirror_[count_] = sample.mirror;
   lx_[count_] = lx;
   to_[count_] = look * groups_ + group;
   twice_[count_] = twice;
@@ -34,11 +35,12 @@ void PatchLooks::add_shadow_ray(const Vec3& origin, const scenes::LightSample& s
 
 void PatchLooks::finish_shadows() {
   if (count_ == 0) return;
-  const std::uint32_t hidden = scene_.query.occluded(packet_, count_);
+  std::array<Rgb, RayPacket::width> shares;
+  scene_.query.light_shares(packet_, mirror_.data(), count_, shares.data());
   for (std::size_t k = 0; k < count_; ++k) {
-    if (((hidden >> k) & 1U) != 0) continue;
-    lamps_[to_[k]] += lx_[k];
-    if (twice_[k]) lamps_[to_[k] + groups_] += lx_[k];
+    const Rgb arrives = shares[k] * lx_[k];
+    lamps_[to_[k]] += arrives;
+    if (twice_[k]) lamps_[to_[k] + groups_] += arrives;
   }
   rays_ += count_;
   count_ = 0;

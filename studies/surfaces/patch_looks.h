@@ -51,6 +51,7 @@ class PatchLooks {
   std::size_t count_ = 0;
   double escaped_ = 0.0, lost_ = 0.0;
   std::uint64_t rays_ = 0;
+  std::array<std::uint32_t, scenes::RayPacket::width> mirror_{};
   std::array<Rgb, scenes::RayPacket::width> lx_{};
   std::array<std::size_t, scenes::RayPacket::width> to_{};
   std::array<bool, scenes::RayPacket::width> twice_{};

@@ -268,7 +268,10 @@ radiosity::Solution LightOnSurfaces::finished() const {
   close_energy(found);
   found.sky = light_.sky;
   radiosity::FormFactors ends;  // where light ends, of each patch as of its coarse one
-  for (const std::uint32_t j : coarse_) ends.kept.push_back(factors_.kept[j]);
+  for (const std::uint32_t j : coarse_) {
+    ends.kept.push_back(factors_.kept[j]);
+    if (!factors_.kept_direct.empty()) ends.kept_direct.push_back(factors_.kept_direct[j]);
+  }
   ends.escape = escape_;
   ends.lost = lost_;
   ends.open = {open_share_, factors_.open.bodies};

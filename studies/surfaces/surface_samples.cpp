@@ -145,8 +145,8 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
           for (std::size_t m = 0; m < samples; ++m) {
             for (std::size_t half = 0; half < 2; ++half) {
               const auto u = toward[half].point2(static_cast<std::uint32_t>(point * samples + m));
-              radiosity::take_samples(source, at, frame.normal, double(u[0]), double(u[1]),
-                                      taken[half]);
+              radiosity::take_samples(source, scene_.query.ways().mirrors(), at, frame.normal,
+                                      double(u[0]), double(u[1]), taken[half]);
             }
             const bool twice = same(taken[0], taken[1]);
             for (std::size_t half = 0; half < (twice ? 1U : 2U); ++half) {

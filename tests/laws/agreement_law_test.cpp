@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Radiosity with final gather and the path tracer draw the same picture: z-tests on pictures of
 // both (tests/support/agreement.h). The path tracer leaves out what the gather does not carry
-// (PathSet::NoCaustics).
+// (PathSet::NoCaustics), but where there is nothing of the kind.
 //
 // The gather's variance is the spread of eight pictures that differ by their seed. They read one
 // solution: its own noise (form factors by 512 rays) moves the mean of a picture by 0.03 %
@@ -26,6 +26,7 @@ struct Effort {
   std::size_t max_patches = 6000;
   int gather_rays = 256;  // per pixel and replicate
   int paths = 1024;       // per pixel, in each of two pictures
+  raytrace::PathSet path_set = raytrace::PathSet::NoCaustics;
 };
 
 scenes::Scene read(const char* file) {
@@ -55,7 +56,7 @@ tests::Agreement agreement(const scenes::Scene& scene, const Effort& effort) {
   raytrace::PathOptions options;
   options.columns = options.rows = 24;
   options.paths_per_pixel = effort.paths;
-  options.paths = raytrace::PathSet::NoCaustics;
+  options.paths = effort.path_set;
   std::vector<tests::Measured> traced;
   for (const std::uint64_t seed : {3, 4}) {
     options.seed = seed;
@@ -103,6 +104,37 @@ TEST(Agreement, CornellBoxWithAMirrorForAWall) {
     material.diffuse = Rgb(0.1);
   }
   expect_agreement(agreement(scene, {0.5, 6000, 1024, 1024}));
+}
+
+// A room of two halves with a coloured pane between, that mirrors a little, and a mirror for a
+// wall; the lamp is in the other half. Of point lamps no path meets what shadow rays do not bring,
+// so that all paths may be asked: what glass lets through and mirrors throw counts once in both.
+TEST(Agreement, RoomLitThroughAPane) {
+  tests::SceneBuilder builder;
+  const std::uint32_t wall = builder.material(tests::grey(0.5));
+  scenes::Material silvered = tests::grey(0.2), pane = tests::grey(0.05);
+  silvered.mirror = Rgb(0.6);
+  pane.transmit = Rgb(0.5, 0.7, 0.6);
+  pane.mirror = Rgb(0.1);
+  pane.ior = 1.5;
+  pane.two_sided = true;
+  builder.room({wall, builder.material(silvered), wall, wall, wall, wall});
+  builder.quad(builder.material(pane), {0, 0, 0.5}, {1, 0, 0.5}, {1, 1, 0.5}, {0, 1, 0.5});
+  scenes::Lamp lamp;
+  lamp.name = lamp.group = "lamp";
+  lamp.position = Vec3(0.4, 0.6, 0.8);
+  lamp.intensity_cd = Rgb(100.0);
+  builder.scene.lamps.push_back(lamp);
+  scenes::Camera camera;
+  camera.position = Vec3(0.1, 0.1, 0.4);
+  camera.look_at = Vec3(0.9, 0.9, 0.1);
+  camera.fov_deg = 80.0;
+  builder.scene.cameras.push_back(camera);
+  expect_agreement(agreement(builder.scene, {.start_edge_m = 0.25,
+                                             .max_patches = 6000,
+                                             .gather_rays = 256,
+                                             .paths = 1024,
+                                             .path_set = raytrace::PathSet::All}));
 }
 
 TEST(Agreement, FurnaceRoomWithOneSmallLamp) {

@@ -103,14 +103,12 @@ def shadowed_target():
 
 
 def caustic():
-    """A mirror at 45 degrees sends the Sun's light down into the shadow of a roof: 0.9 of 20000 lx on the floor there, which no
-    strategy of the program carries. It must be named."""
+    """A ball that mirrors sends the Sun's light all around, onto the floor too, which no strategy of the program carries. It must be
+    named. Of the light that falls on the ball it sends 0.9 on."""
     text = Text("caustic")
     text.thing(text.material(diffuse=0.5), **quad(2, 0, (-2, -2, 0), (2, 2, 0)))
-    # Sunlight along -x meets the mirror, whose normal is (1, 0, -1) / sqrt 2, and goes on along -z.
-    mirror = text.material(diffuse=0.0, mirror=0.9, two_sided=True)
-    text.thing(mirror, shape="quad", corners=[[-0.5, -0.5, 1], [0.5, -0.5, 2], [0.5, 0.5, 2], [-0.5, 0.5, 1]])
-    text.table("[sun]", direction=[1.0, 0.0, 0.02], illuminance=20000.0)
+    text.thing(text.material(diffuse=0.0, mirror=0.9), shape="sphere", center=[0, 0, 1], radius=0.5)
+    text.table("[sun]", direction=[1.0, 0.0, 1.0], illuminance=20000.0)
     look(text, (2.5, -2.5, 1.5), (0, 0, 0.3), fov=50.0)
     return Hard("caustic", "a mirror lights the floor", str(text))
 

@@ -153,9 +153,10 @@ TEST(PathTracer, BlackBacksOfOneSidedSurfacesAndBothSidesOfSheets) {
   }
 }
 
-TEST(PathTracer, CausticsAreLeftOutOfTheGatheredPaths) {
+TEST(PathTracer, WhatAFlatMirrorThrowsComesOnce) {
   // A mirror facing a plate sends it the light of a panel that does not shine on it directly:
-  // unfolded, the panel's image stands 3 m over the plate's point in view. E = rho_m M F.
+  // unfolded, the panel's image stands 3 m over the plate's point in view. E = rho_m M F. Shadow
+  // rays bring it, so that paths which meet the panel in the mirror must not.
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 0.1, 0.0, true);
   scenes::Material mirror = tests::grey(0.0);
@@ -168,8 +169,29 @@ TEST(PathTracer, CausticsAreLeftOutOfTheGatheredPaths) {
   PathOptions options = pixels(8, 256);
   const double x = 1.0 / std::sqrt(10.0);
   const double form_factor = 4.0 / base::pi * x * std::atan(x);
+  for (const PathSet paths : {PathSet::All, PathSet::NoCaustics}) {
+    options.paths = paths;
+    expect_mean(picture(builder.scene, above(0.5), options),
+                0.5 * 0.9 * 100.0 / base::pi * form_factor);
+  }
+}
+
+TEST(PathTracer, CausticsAreLeftOutOfTheGatheredPaths) {
+  // A plate of glass that bends light, 1 mm thick: it moves the panel's image by 0.3 mm, takes
+  // 1 - 0.9^2 of its light, and no shadow ray goes through. E = 0.81 M F with the panel at 3 m.
+  tests::SceneBuilder builder;
+  builder.plate(builder.material(tests::grey(0.5)), 0.1, 0.0, true);
+  scenes::Material glass = tests::grey(0.0);
+  glass.transmit = Rgb(0.9);
+  glass.ior = 1.5;
+  builder.plate(builder.material(glass), 20.0, 1.0, false);
+  builder.plate(1, 20.0, 1.001, true);
+  builder.scene.lamps.push_back(panel(2.0, 3.0));
+  PathOptions options = pixels(8, 256);
+  const double x = 1.0 / std::sqrt(10.0);
+  const double form_factor = 4.0 / base::pi * x * std::atan(x);
   expect_mean(picture(builder.scene, above(0.5), options),
-              0.5 * 0.9 * 100.0 / base::pi * form_factor);
+              0.5 * 0.81 * 100.0 / base::pi * form_factor);
   options.paths = PathSet::NoCaustics;
   EXPECT_EQ(estimate(picture(builder.scene, above(0.5), options)).mean, 0.0);
 }

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/light_ways.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "scenes/ray_query.h"
+
+namespace earthshine::scenes {
+namespace {
+
+constexpr std::size_t most_mirrors = 32;
+constexpr double least_part = 0.02;  // of all that reflects
+// Triangles are of one plane if their normals and distances agree to these; an image is off by no
+// more than twice the one times the distance.
+constexpr double same_normal = 1e-4;
+constexpr double same_distance = 1e-5;  // of the scene's extent
+
+// One side of a plane, while its triangles are counted.
+struct Plane {
+  Vec3 normal{0.0}, point{0.0};
+  Vec3 low{0.0}, high{0.0};
+  double reflecting = 0.0;  // area times share
+  std::vector<std::uint32_t> triangles;
+};
+
+class Planes {
+ public:
+  explicit Planes(const Scene& scene) : scene_(scene), low_(scene.vertices.front()) {
+    Vec3 high = low_;
+    for (const Vec3& p : scene.vertices) {
+      low_ = glm::min(low_, p);
+      high = glm::max(high, p);
+    }
+    step_m_ = same_distance * std::max(glm::length(high - low_), 1e-6);
+  }
+
+  // side: 1 the front, -1 the back.
+  void add(std::uint32_t triangle, double side, double share) {
+    const auto& v = scene_.triangles[triangle].vertex;
+    const Vec3 normal = side * triangle_normal(scene_, triangle);
+    const Vec3& corner = scene_.vertices[v[0]];
+    // Rounding may put two halves of a square into cells side by side.
+    std::size_t& at = last_[side > 0.0 ? 0 : 1];
+    if (at >= planes.size() || !agrees(planes[at], normal, corner)) {
+      const auto [entry, fresh] = known_.emplace(key_of(normal, corner), planes.size());
+      at = entry->second;
+      if (fresh) planes.push_back({normal, corner, corner, corner, 0.0, {}});
+    }
+    Plane& plane = planes[at];
+    plane.reflecting += share * triangle_area(scene_, triangle);
+    plane.triangles.push_back(triangle);
+    for (const std::uint32_t k : v) {
+      plane.low = glm::min(plane.low, scene_.vertices[k]);
+      plane.high = glm::max(plane.high, scene_.vertices[k]);
+    }
+  }
+
+  std::vector<Plane> planes;
+
+ private:
+  [[nodiscard]] std::array<std::int64_t, 4> key_of(const Vec3& normal, const Vec3& corner) const {
+    const Vec3 n = normal / same_normal;
+    return {std::llround(n.x), std::llround(n.y), std::llround(n.z),
+            std::llround(glm::dot(normal, corner - low_) / step_m_)};
+  }
+  [[nodiscard]] bool agrees(const Plane& plane, const Vec3& normal, const Vec3& corner) const {
+    return glm::length(plane.normal - normal) < same_normal &&
+           std::abs(glm::dot(plane.normal, corner - plane.point)) < step_m_;
+  }
+
+  const Scene& scene_;
+  Vec3 low_;
+  double step_m_ = 0.0;
+  std::map<std::array<std::int64_t, 4>, std::size_t> known_;
+  std::size_t last_[2] = {~std::size_t{0}, ~std::size_t{0}};  // plane of the triangle before
+};
+
+}  // namespace
+
+bool is_straight_glass(const Material& material) {
+  return base::max_component(material.transmit) > 0.0 &&
+         (material.two_sided || material.ior == 1.0);
+}
+
+LightWays::LightWays(const Scene& scene) {
+  const auto sends_on = [](const Material& material) {
+    return is_straight_glass(material) || base::max_component(material.mirror) > 0.0;
+  };
+  if (std::none_of(scene.materials.begin(), scene.materials.end(), sends_on)) return;
+  number_.assign(scene.triangles.size(), no_mirror);
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    const Material& material = scene.materials[scene.triangles[t].material];
+    if (!sends_on(material)) continue;
+    number_[t] = static_cast<std::uint32_t>(faces_.size());
+    faces_.push_back({triangle_normal(scene, t),
+                      is_straight_glass(material) ? material.transmit : Rgb(0.0),
+                      material.mirror,
+                      {no_mirror, no_mirror},
+                      material.two_sided});
+  }
+  if (!faces_.empty()) find_mirrors(scene);
+}
+
+void LightWays::find_mirrors(const Scene& scene) {
+  Planes found(scene);
+  double all = 0.0;
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    const Material& material = scene.materials[scene.triangles[t].material];
+    const double share = base::luminance(material.mirror);
+    if (share <= 0.0) continue;
+    found.add(t, 1.0, share);
+    const bool both = material.two_sided || is_straight_glass(material);
+    if (both) found.add(t, -1.0, share);
+    all += (both ? 2.0 : 1.0) * share * triangle_area(scene, t);
+  }
+  std::vector<Plane>& planes = found.planes;
+  std::stable_sort(planes.begin(), planes.end(),
+                   [](const Plane& a, const Plane& b) { return a.reflecting > b.reflecting; });
+  for (const Plane& plane : planes) {
+    if (mirrors_.size() == most_mirrors || plane.reflecting < least_part * all) break;
+    for (const std::uint32_t t : plane.triangles) {
+      Face& face = faces_[number_[t]];
+      face.mirror[glm::dot(face.normal, plane.normal) > 0.0 ? 0 : 1] =
+          static_cast<std::uint32_t>(mirrors_.size());
+    }
+    mirrors_.push_back({plane.point, plane.normal, 0.5 * (plane.low + plane.high),
+                        0.5 * glm::length(plane.high - plane.low)});
+  }
+}
+
+Rgb LightWays::kept(std::uint32_t triangle) const {
+  const Face* at = face(triangle);
+  if (at == nullptr) return Rgb(1.0);
+  const Rgb thrown = at->mirror[0] != no_mirror ? at->reflected : Rgb(0.0);
+  return glm::max(Rgb(0.0), Rgb(1.0) - at->through - thrown);
+}
+
+}  // namespace earthshine::scenes

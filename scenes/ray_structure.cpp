@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/ray_structure.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <map>
+
+namespace earthshine::scenes {
+
+void RayQuery::Embree::fail(const std::string& what) {
+  throw base::Error(base::Blame::Work, "ray structure", what, "the scene must fit into memory",
+                    "Use a smaller scene or a machine with more memory");
+}
+
+// Rays go on through the holes of opacity masks.
+void RayQuery::Embree::pass_holes(const RTCFilterFunctionNArguments* found) {
+  const auto& embree = *static_cast<const Embree*>(found->geometryUserPtr);
+  for (unsigned k = 0; k < found->N; ++k) {
+    if (found->valid[k] != -1) continue;
+    const std::uint32_t triangle = embree.triangle(RTCHitN_instID(found->hit, found->N, k, 0),
+                                                   RTCHitN_primID(found->hit, found->N, k));
+    const bool hole = embree.masks.is_hole(triangle, double(RTCHitN_u(found->hit, found->N, k)),
+                                           double(RTCHitN_v(found->hit, found->N, k)));
+    if (hole) found->valid[k] = 0;
+  }
+}
+
+RTCScene RayQuery::Embree::new_scene() const {
+  RTCScene made = rtcNewScene(device);
+  // Robust: without it two in ten million rays slip through shared edges of a closed room.
+  rtcSetSceneFlags(made, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(made, RTC_BUILD_QUALITY_HIGH);
+  return made;
+}
+
+void RayQuery::Embree::add_triangles(RTCScene to, const Scene& source, std::size_t first,
+                                     std::size_t count, std::size_t low, std::size_t high,
+                                     const Vec3& centre) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), high - low));
+  auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), count));
+  if (vertices == nullptr || indices == nullptr) fail("no memory for the triangles");
+  for (std::size_t i = 0; i < high - low; ++i) {
+    const Vec3 p = source.vertices[low + i] - centre;
+    for (int axis = 0; axis < 3; ++axis)
+      vertices[3 * i + static_cast<std::size_t>(axis)] = static_cast<float>(p[axis]);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < 3; ++k)
+      indices[3 * i + k] = static_cast<unsigned>(source.triangles[first + i].vertex[k] - low);
+  }
+  rtcSetGeometryMask(geometry, all_rays);  // Embree 4 would default to 1
+  if (!masks.empty()) {
+    rtcSetGeometryUserData(geometry, this);
+    rtcSetGeometryIntersectFilterFunction(geometry, pass_holes);
+    rtcSetGeometryOccludedFilterFunction(geometry, pass_holes);
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(to, geometry);
+  rtcReleaseGeometry(geometry);
+}
+
+// Each about the middle of its original, so that single precision serves its size.
+void RayQuery::Embree::add_instances(const Scene& source, const Vec3& centre) {
+  struct Original {
+    RTCScene scene = nullptr;
+    Vec3 centre{0.0};
+  };
+  std::map<std::uint32_t, Original> originals;
+  placed.resize(1);
+  for (const Object& object : source.objects) {
+    if (!object.instance) continue;
+    const Instance& instance = *object.instance;
+    Original& original = originals[instance.object];
+    if (original.scene == nullptr) {
+      const Object& first = source.objects[instance.object];
+      std::uint32_t low = ~0U, high = 0;
+      Vec3 least(std::numeric_limits<double>::infinity()), most(-least);
+      for (std::uint32_t t = 0; t < first.triangle_count; ++t) {
+        for (const std::uint32_t v : source.triangles[first.first_triangle + t].vertex) {
+          low = std::min(low, v);
+          high = std::max(high, v);
+          least = glm::min(least, source.vertices[v]);
+          most = glm::max(most, source.vertices[v]);
+        }
+      }
+      original.centre = Vec3(glm::vec3(0.5 * (least + most)));
+      original.scene = new_scene();
+      add_triangles(original.scene, source, first.first_triangle, first.triangle_count, low,
+                    std::size_t{high} + 1, original.centre);
+      rtcCommitScene(original.scene);
+    }
+    const Vec3 offset = instance.linear * original.centre + instance.offset_m - centre;
+    std::array<float, 12> matrix;  // three columns and the offset
+    for (int column = 0; column < 4; ++column) {
+      const Vec3& from = column < 3 ? instance.linear[column] : offset;
+      for (int row = 0; row < 3; ++row)
+        matrix[static_cast<std::size_t>(3 * column + row)] = static_cast<float>(from[row]);
+    }
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, original.scene);
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, matrix.data());
+    rtcSetGeometryMask(geometry, all_rays);
+    rtcCommitGeometry(geometry);
+    const unsigned number = rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    placed.resize(std::max<std::size_t>(placed.size(), number + 1));
+    placed[number] = {object.first_triangle, glm::mat3(glm::inverse(instance.linear))};
+  }
+  for (const auto& [object, original] : originals) rtcReleaseScene(original.scene);
+}
+
+}  // namespace earthshine::scenes

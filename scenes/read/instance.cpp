@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/free_memory.h"
+#include "scenes/ray_query.h"
+#include "scenes/read/material_choice.h"
+#include "scenes/read/scene_parts.h"
+#include "scenes/text/message_text.h"
+
+namespace earthshine::scenes {
+namespace {
+
+constexpr const char* title = "[[object]] with instance_of";
+constexpr std::string_view instance_keys[] = {"name",  "instance_of", "translate", "rotate",
+                                              "scale", "material",    "target"};
+
+// From where the original stands to where the instance does.
+Instance relation(std::uint32_t object, const Placement& from, const Placement& to) {
+  Instance instance;
+  instance.object = object;
+  glm::dmat3 scale(1.0);
+  for (int k = 0; k < 3; ++k) scale[k][k] = to.scale[k] / from.scale[k];
+  instance.linear = to.rotation * scale * glm::transpose(from.rotation);
+  instance.offset_m = to.unit_m * to.translate - instance.linear * (from.unit_m * from.translate);
+  return instance;
+}
+
+// Whether it turns and scales alike in all directions.
+bool is_uniform(const glm::dmat3& linear, double scale) {
+  const glm::dmat3 square = glm::transpose(linear) * linear;
+  for (int k = 0; k < 3; ++k) {
+    Vec3 off = square[k];
+    off[k] -= scale * scale;
+    if (glm::length(off) > 1e-12 * scale * scale) return false;
+  }
+  return true;
+}
+
+bool is_same_pose(const Instance& a, const Instance& b) {
+  constexpr double rounding = 1e-12;
+  for (int k = 0; k < 3; ++k) {
+    if (glm::length(a.linear[k] - b.linear[k]) > rounding) return false;
+  }
+  return glm::length(a.offset_m - b.offset_m) <= rounding * (1.0 + glm::length(a.offset_m));
+}
+
+// Faces that stand twice are not looked for among instances: this is how they come about.
+void check_alone(const Scene& scene, const TableReader& table, const Instance& instance) {
+  const auto refuse = [&table](const std::string& name) {
+    table.fail("instance_of", fmt::format("puts it exactly where {} stands", in_quotes(name)),
+               "a surface is in the scene once", "Give it a pose of its own");
+  };
+  if (is_same_pose(instance, Instance{})) refuse(scene.objects[instance.object].name);
+  for (const Object& other : scene.objects) {
+    if (!other.instance || other.instance->object != instance.object) continue;
+    if (is_same_pose(instance, *other.instance)) refuse(other.name);
+  }
+}
+
+struct Vertices {
+  std::uint32_t first = 0, count = 0;
+};
+Vertices vertices_of(const Scene& scene, std::uint32_t number) {
+  const Object& object = scene.objects[number];
+  std::uint32_t low = ~0U, high = 0;
+  for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+    for (const std::uint32_t v : scene.triangles[object.first_triangle + t].vertex) {
+      low = std::min(low, v);
+      high = std::max(high, v);
+    }
+  }
+  return {low, high - low + 1};
+}
+
+void copy_vertices(Scene& scene, const TableReader& table, const Vertices& of,
+                   const Instance& instance) {
+  if (!scene.vertex_uv.empty()) {
+    scene.vertex_uv.resize(scene.vertices.size() + of.count, glm::vec2(0.0F));
+    std::copy_n(scene.vertex_uv.begin() + of.first, of.count,
+                scene.vertex_uv.begin() + instance.first_vertex);
+  }
+  for (std::uint32_t k = 0; k < of.count; ++k) {
+    const Vec3 p = instance.linear * scene.vertices[of.first + k] + instance.offset_m;
+    for (int c = 0; c < 3; ++c) {
+      if (std::abs(p[c]) <= largest_length) continue;
+      table.fail("instance_of", fmt::format("has a vertex at ({}, {}, {}) m", p.x, p.y, p.z),
+                 fmt::format("coordinates are finite and at most {} m", largest_length),
+                 "Check scale and translate");
+    }
+    scene.vertices.push_back(p);
+  }
+}
+
+void add(Scene& scene, const TableReader& table, Instance instance,
+         std::size_t own_material_count) {
+  check_alone(scene, table, instance);
+  const Object& original = scene.objects[instance.object];
+  Object object = original;
+  object.name = *table.name("name");
+  object.source = "instance of " + original.name;
+  object.unused.clear();
+  object.target = table.flag("target").value_or(false);
+  ShelvedMesh none;
+  MaterialChoice choice(scene, table, none, own_material_count);
+
+  const std::uint32_t count = object.triangle_count, from = object.first_triangle;
+  const Vertices vertices = vertices_of(scene, instance.object);
+  instance.first_vertex = static_cast<std::uint32_t>(scene.vertices.size());
+  copy_vertices(scene, table, vertices, instance);
+
+  object.first_triangle = static_cast<std::uint32_t>(scene.triangles.size());
+  const std::uint32_t polygon = scene.triangles.back().polygon + 1 - scene.triangles[from].polygon;
+  const auto number = static_cast<std::uint32_t>(scene.objects.size());
+  const double scale = std::cbrt(glm::determinant(instance.linear));
+  const bool is_alike = is_uniform(instance.linear, scale);
+  object.area_m2 = is_alike ? scale * scale * object.area_m2 : 0.0;
+  for (std::uint32_t t = from; t < from + count; ++t) {
+    Triangle triangle = scene.triangles[t];
+    for (std::uint32_t& v : triangle.vertex) v += instance.first_vertex - vertices.first;
+    triangle.object = number;
+    triangle.polygon += polygon;
+    if (table.has("material")) triangle.material = choice.material_of({});
+    scene.triangles.push_back(triangle);
+    if (is_alike) continue;
+    object.area_m2 += triangle_area(scene, static_cast<std::uint32_t>(scene.triangles.size() - 1));
+  }
+  object.instance = instance;
+  scene.objects.push_back(std::move(object));
+}
+
+}  // namespace
+
+std::optional<std::string> InstanceReader::take(const TomlNode& node) {
+  const auto* keys = std::get_if<TomlTable>(&node.value);
+  if (keys == nullptr || find_entry(*keys, "instance_of") == nullptr) return std::nullopt;
+  waiting_.push_back(&node);
+  return TableReader(node, title, instance_keys).read_name();
+}
+
+void InstanceReader::finish(Scene& scene, double unit_m, std::size_t own_material_count) const {
+  const auto originals = static_cast<std::uint32_t>(scene.objects.size());
+  std::vector<Instance> instances;
+  std::size_t triangles = scene.triangles.size(), vertices = scene.vertices.size();
+  for (const TomlNode* node : waiting_) {
+    const TableReader table(*node, title, instance_keys);
+    const std::string named = *table.name("instance_of");
+    std::uint32_t object = 0;
+    while (object < originals && scene.objects[object].name != named) ++object;
+    if (object == originals) {
+      table.fail("instance_of", fmt::format("is {}", in_quotes(named)),
+                 "it names an [[object]] with a mesh or a shape");
+    }
+    const Placement placement = read_placement(table, unit_m);
+    instances.push_back(relation(object, placed_.at(named), placement));
+    triangles += scene.objects[object].triangle_count;
+    if (triangles > max_scene_triangles) {
+      table.fail("instance_of", "makes the scene too large",
+                 fmt::format("it has at most {} triangles", max_scene_triangles));
+    }
+    const Vertices of_object = vertices_of(scene, object);
+    vertices += of_object.count;
+  }
+  if (waiting_.empty()) return;
+  base::check_room(triangles * sizeof(Triangle) + vertices * sizeof(Vec3), scene.path.string());
+  scene.triangles.reserve(triangles);
+  scene.vertices.reserve(vertices);
+  for (std::size_t k = 0; k < waiting_.size(); ++k) {
+    const TableReader table(*waiting_[k], title, instance_keys);
+    add(scene, table, instances[k], own_material_count);
+  }
+}
+
+}  // namespace earthshine::scenes
