@@ -83,7 +83,7 @@ int usage_error(const CLI::App& program, const CLI::ParseError& error) {
   return call_is_wrong;
 }
 
-int run(int argc, char** argv) {
+int run(std::vector<std::string> arguments) {
   CLI::App program(
       "Earthshine: light in a spacecraft's payload bay. Radiosity, final gather and the CCTV "
       "camera.",
@@ -92,6 +92,7 @@ int run(int argc, char** argv) {
   program.require_subcommand(1);
   program.formatter(std::make_shared<Help>());
   Common common;
+  common.arguments = arguments;
   std::uint64_t threads = 0;
   std::vector<Command> commands = {add_render(program),       add_solve(program),
                                    add_form_factors(program), add_plan(program),
@@ -100,10 +101,14 @@ int run(int argc, char** argv) {
   commands.push_back(add_fit_phong(program));
   for (Command& part : add_study(program)) commands.push_back(std::move(part));
   commands.push_back(add_report(program));
+  int exit_code = 0;
+  commands.push_back(add_merge(
+      program, [&exit_code](const std::vector<std::string>& call) { exit_code = run(call); }));
   add_common_options(program, common, threads);
   for (const Command& command : commands) add_common_options(*command.parser, common, threads);
   try {
-    program.parse(argc, argv);
+    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+    program.parse(arguments);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) return usage_error(program, error);
     std::ostringstream text, ignored;
@@ -117,7 +122,7 @@ int run(int argc, char** argv) {
   for (const Command& command : commands) {
     if (command.parser->parsed() && command.run) command.run(common);
   }
-  return 0;
+  return exit_code;
 }
 
 // Interrupted or told to end: no half-written file stays behind, and the shell sees the signal.
@@ -143,7 +148,7 @@ int main(int argc, char** argv) {
     if (std::signal(signal, app::end_by_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
   try {
-    const int exit_code = app::run(argc, argv);
+    const int exit_code = app::run({argv + std::min(argc, 1), argv + argc});
     return exit_code == 0 && app::lost_a_note() ? app::work_failed : exit_code;
   } catch (const base::Error& error) {
     return app::complain(

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/study/result_cache.h"
+#include "app/parts/result_cache.h"
 #include "app/study/study.h"
 #include "studies/accuracy/accuracy.h"
 #include "studies/accuracy/findings.h"

@@ -68,7 +68,7 @@ Json json_of(const Studio& studio, const scenes::Camera& camera, const raytrace:
                {"finished_share", report.finished_share},
                {"partial", report.stopped}};
   // What a solution cost by kind of light is not kept in its file.
-  if (!studio.call.solution.empty()) json["rays"].erase("direct_by");
+  if (!studio.call.solution.empty() || studio.parts != nullptr) json["rays"].erase("direct_by");
   return json;
 }
 

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "app/study/result_cache.h"
+#include "app/parts/result_cache.h"
 #include "app/visibility/scene.h"
 #include "studies/study.h"
 

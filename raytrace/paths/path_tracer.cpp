@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/parallel.h"
+#include "raytrace/frame/join.h"
 #include "raytrace/paths/path_walker.h"
 
 namespace earthshine::raytrace {
@@ -41,8 +42,8 @@ PathWorld make_world(const scenes::Scene& scene, const scenes::LightGroups& grou
   return world;
 }
 
-base::Image make_image(const PathOptions& options, const std::vector<std::string>& layers) {
-  base::Image image = base::make_rgb_image(options.columns, options.rows);
+base::Image make_image(const Window& window, const std::vector<std::string>& layers) {
+  base::Image image = base::make_rgb_image(window.columns, window.rows);
   image.add("variance");
   for (const std::string& name : layers) {
     for (const char* channel : {".R", ".G", ".B"}) image.add("light_" + name + channel);
@@ -83,14 +84,6 @@ void store(const PathSums& sums, std::size_t pixel, base::Image& image) {
   image.channels[rgb].values[pixel] = static_cast<float>(sums.variance_of_mean());
 }
 
-double relative_noise(const base::Image& image) {
-  double error = 0.0, mean = 0.0;
-  for (const float v : image.channels[rgb].values) error += double(v);
-  for (const float y : base::luminance_of(image)) mean += double(y);
-  const auto n = static_cast<double>(image.pixel_count());
-  return mean > 0.0 ? std::sqrt(error / n) / (mean / n) : 0.0;
-}
-
 }  // namespace
 
 Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
@@ -105,10 +98,12 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
   const CameraModel model = make_camera_model(camera, options.columns, options.rows);
 
   Frame frame;
-  frame.window = {0, 0, options.columns, options.rows};
-  frame.image = make_image(options, options.per_light ? groups.names : std::vector<std::string>{});
-  const auto columns = static_cast<std::size_t>(options.columns);
-  const auto rows = static_cast<std::size_t>(options.rows);
+  const Window window =
+      options.window.columns > 0 ? options.window : Window{0, 0, options.columns, options.rows};
+  frame.window = window;
+  frame.image = make_image(window, options.per_light ? groups.names : std::vector<std::string>{});
+  const auto columns = static_cast<std::size_t>(window.columns);
+  const auto rows = static_cast<std::size_t>(window.rows);
   std::vector<RayCounts> row_rays(rows);
   std::size_t done = 0;
   std::mutex progress_mutex;
@@ -116,18 +111,20 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
     if (options.stop && options.stop()) return;
     PathWalker walker(world);
     for (std::size_t x = 0; x < columns; ++x) {
-      const std::size_t pixel = y * columns + x;
-      const base::Key key(options.seed, base::Stream::Path, pixel);
+      const std::size_t in_x = static_cast<std::size_t>(window.x) + x;
+      const std::size_t in_y = static_cast<std::size_t>(window.y) + y;
+      const base::Key key(options.seed, base::Stream::Path,
+                          in_y * static_cast<std::size_t>(options.columns) + in_x);
       PathSums sums{std::vector<Rgb>(world.layers, Rgb(0.0))};
       for (int path = 0; path < options.paths_per_pixel; ++path) {
         base::Rng rng(key.with(static_cast<std::uint64_t>(path)));
-        const double at_x = double(x) + rng.next();
-        const double at_y = double(y) + rng.next();
+        const double at_x = double(in_x) + rng.next();
+        const double at_y = double(in_y) + rng.next();
         const double lens_u = rng.next();
         const double lens_v = rng.next();
         sums.add(walker.walk(model.ray(at_x, at_y, lens_u, lens_v), rng));
       }
-      store(sums, pixel, frame.image);
+      store(sums, y * columns + x, frame.image);
     }
     row_rays[y] = walker.rays();
     const std::lock_guard lock(progress_mutex);
@@ -139,7 +136,7 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
   frame.report.stopped = done < rows;
   frame.report.camera_samples = options.paths_per_pixel;
   frame.report.most_camera_samples = options.paths_per_pixel;
-  frame.report.relative_noise = relative_noise(frame.image);
+  frame.report.relative_noise = noise_of_paths(frame.image);
   frame.report.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return frame;
