@@ -34,6 +34,7 @@ class AccuracyShare : AccuracyStages {
     parts_.expect(ladder_);
     join_parts(std::filesystem::path(task_.call.folder) / "points", task_.common,
                parts_.digests(ladder_), part);
+    if (part.task == Task::Solve) return;
     std::vector<MissingWork> missing;
     for (const AccuracyPiece& piece : first) {
       if (part.task != Task::Merge) {

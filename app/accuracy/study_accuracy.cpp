@@ -61,7 +61,7 @@ void write_plots(const fs::path& folder, const AccuracyTask& task, const Accurac
 }
 
 void check_part(const AccuracyCall& call) {
-  const bool solves = call.part.task == PartCall::Task::Solve;
+  const bool solves = call.part.task == PartCall::Task::Solve && !call.part.begins;
   if (!solves && (!call.part.in_parts() || call.time_limit_s <= 0.0)) return;
   throw base::Error(base::Blame::Input, "--part",
                     solves ? "a ladder of settings has no solution that all of it reads"
@@ -105,7 +105,7 @@ void run(const AccuracyCall& call, const Common& common) {
   if (call.part.in_parts()) {
     PartCall part = call.part;
     share_accuracy(task, part);
-    if (part.task == PartCall::Task::Share) return;
+    if (part.task != PartCall::Task::Merge) return;
   }
   const AccuracyResult result = measure_accuracy(task);
   interrupt.reset();  // gnuplot is not waited for against a signal

@@ -25,6 +25,7 @@ struct PartCall {
   Task task = Task::All;
   std::size_t number = 0, count = 0;  // from 1; of a share
   double wait_s = 0.0;                // for another process's solution
+  bool begins = false;                // of a solve: a call of before in the same place is forgotten
 
   [[nodiscard]] bool in_parts() const { return task != Task::All; }
 };

@@ -21,6 +21,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/ranks/ranks.h"
 
 namespace earthshine::base {
 namespace {
@@ -169,6 +170,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::commit() {
+  if (ranks() != nullptr && ranks()->number() > 0) return;
   if (file_ >= 0) {
     struct stat old {};
     if (::stat(target_.c_str(), &old) == 0) static_cast<void>(::fchmod(file_, old.st_mode & 07777));

@@ -22,6 +22,7 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
+  // Of several ranks (base/ranks) the first alone renames it; the others' is removed.
   void commit();
   // The same only where the target is not there yet: false, and nothing is changed, if it is. Of
   // several processes that write one file exactly one is told true.

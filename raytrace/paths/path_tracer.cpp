@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "raytrace/paths/path_tracer.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <mutex>
 #include <string>
 
-#include "base/parallel.h"
+#include "base/ranks/ranks.h"
 #include "raytrace/frame/join.h"
 #include "raytrace/paths/path_walker.h"
 
@@ -105,9 +106,10 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
   const auto columns = static_cast<std::size_t>(window.columns);
   const auto rows = static_cast<std::size_t>(window.rows);
   std::vector<RayCounts> row_rays(rows);
+  std::vector<char> finished(rows, 0);
   std::size_t done = 0;
   std::mutex progress_mutex;
-  base::parallel_chunks(rows, 1, [&](std::size_t y, std::size_t) {
+  const auto trace_row = [&](std::size_t y) {
     if (options.stop && options.stop()) return;
     PathWalker walker(world);
     for (std::size_t x = 0; x < columns; ++x) {
@@ -127,11 +129,20 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
       store(sums, y * columns + x, frame.image);
     }
     row_rays[y] = walker.rays();
+    finished[y] = 1;
     const std::lock_guard lock(progress_mutex);
     ++done;
     if (progress) progress(done, rows);
+  };
+  base::share_loop(rows, trace_row, [&](std::size_t y, base::Parcel& parcel) {
+    parcel.pass(row_rays[y]);
+    parcel.pass(finished[y]);
+    for (base::Channel& channel : frame.image.channels) {
+      parcel.pass_range(&channel.values[y * columns], columns);
+    }
   });
   for (const RayCounts& rays : row_rays) frame.report.rays += rays;
+  done = static_cast<std::size_t>(std::count(finished.begin(), finished.end(), 1));
   frame.report.finished_share = static_cast<double>(done) / static_cast<double>(rows);
   frame.report.stopped = done < rows;
   frame.report.camera_samples = options.paths_per_pixel;
