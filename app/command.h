@@ -30,6 +30,7 @@ struct Common {
   std::uint64_t seed = 1;
   bool quiet = false;
   std::uint64_t max_memory_bytes = 0;  // 0: what is free
+  std::vector<std::string> arguments;  // the whole call, from the command on
 };
 
 // One file per command defines it: its options, and what it does once they are read.
@@ -49,6 +50,9 @@ struct Command {
 [[nodiscard]] Command add_certify(CLI::App& degrade);
 [[nodiscard]] Command add_fit_phong(CLI::App& program);
 [[nodiscard]] Command add_report(CLI::App& program);
+// What runs a call as if it had been typed, for `merge`. Its exit code.
+using RunCall = std::function<void(const std::vector<std::string>& arguments)>;
+[[nodiscard]] Command add_merge(CLI::App& program, RunCall run_call);
 // `study` itself, which runs nothing, and one command of it per study.
 [[nodiscard]] std::vector<Command> add_study(CLI::App& program);
 

@@ -18,7 +18,7 @@ namespace earthshine::app {
 
 namespace {
 
-std::atomic<bool> some_note_was_lost{false};
+std::atomic<bool> some_note_was_lost{false}, silent_now{false};
 
 bool write_whole(std::string_view text, std::FILE* stream) {
   errno = 0;
@@ -28,13 +28,17 @@ bool write_whole(std::string_view text, std::FILE* stream) {
 
 }  // namespace
 
+void be_silent(bool silent) { silent_now = silent; }
+
 void print(std::string_view text) {
+  if (silent_now) return;
   if (write_whole(base::escaped(text, "\n\t"), stdout)) return;
   throw base::Error(base::Blame::Work, "standard output",
                     "cannot be written: " + std::generic_category().message(errno));
 }
 
 void note(std::string_view line) {
+  if (silent_now) return;
   if (some_note_was_lost) return;  // nobody listens; a full pipe would wait once more
   if (!write_whole(base::escaped(line) + "\n", stderr)) some_note_was_lost = true;
 }
@@ -56,7 +60,7 @@ std::string short_count(double count) {
 }
 
 Progress::Progress(std::string label, bool quiet)
-    : label_(base::escaped(label)), shown_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
+    : label_(base::escaped(label)), shown_(!quiet && !silent_now && ::isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
   if (shown_) std::fputs("\r\033[2K", stderr);

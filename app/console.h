@@ -17,6 +17,9 @@ void print(std::string_view text);
 // One line on standard error. Work goes on where nobody listens any more.
 void note(std::string_view line);
 
+// For a process that is one of several and not their speaker: neither prints nor notes.
+void be_silent(bool silent);
+
 // Whether a note did not arrive, for the exit code: what was not said is not done.
 [[nodiscard]] bool lost_a_note();
 

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <exception>
 #include <new>
 #include <sstream>
+#include <thread>
 
 #include "app/command.h"
 #include "app/console.h"
@@ -17,6 +19,7 @@
 #include "base/files/output_file.h"
 #include "base/free_memory.h"
 #include "base/parallel.h"
+#include "base/ranks/start.h"
 
 namespace earthshine::app {
 namespace {
@@ -83,7 +86,43 @@ int usage_error(const CLI::App& program, const CLI::ParseError& error) {
   return call_is_wrong;
 }
 
-int run(int argc, char** argv) {
+int run(std::vector<std::string> arguments, base::Ranks* ranks);
+
+// Studies share out what they keep in points/, as with --part, and meet in between: the solution,
+// the shares, the report.
+int study_in_ranks(const std::vector<std::string>& arguments, base::Ranks& ranks) {
+  const auto task = [&](const std::string& part) {
+    std::vector<std::string> call = arguments;
+    call.insert(call.end(), {"--part", part});
+    return run(std::move(call), nullptr);
+  };
+  const bool speaks = ranks.number() == 0;
+  int code = speaks ? task("begin") : 0;
+  (void)ranks.gather("begun");
+  code = std::max(code, task(fmt::format("{}/{}", ranks.number() + 1, ranks.count())));
+  (void)ranks.gather("done");
+  return speaks ? std::max(code, task("merge")) : code;
+}
+
+// Refuses what ranks cannot share out. True for studies, which do it by their points.
+bool is_study_of_ranks(const CLI::App& program, const std::vector<std::string>& arguments) {
+  for (const std::string& word : arguments) {
+    if (!word.starts_with("--part") && !word.starts_with("--time-limit")) continue;
+    throw base::Error(base::Blame::Input, word, "does not go with ranks of mpirun", {},
+                      "Leave it out, or mpirun");
+  }
+  const std::string words = words_to(chosen_parser(program));
+  for (const char* known : {"study run ", "study orbit ", "study visibility ", "study accuracy "}) {
+    if (words == known) return true;
+  }
+  if (words == "render " || words == "solve ") return false;
+  throw base::Error(base::Blame::Input, words, "is the work of one process",
+                    "ranks share out render, solve and study run, orbit, visibility and accuracy",
+                    "Leave out mpirun");
+}
+
+// ranks: those that share out this call; nullptr: this process does all of it.
+int run(std::vector<std::string> arguments, base::Ranks* ranks) {
   CLI::App program(
       "Earthshine: light in a spacecraft's payload bay. Radiosity, final gather and the CCTV "
       "camera.",
@@ -92,6 +131,7 @@ int run(int argc, char** argv) {
   program.require_subcommand(1);
   program.formatter(std::make_shared<Help>());
   Common common;
+  common.arguments = arguments;
   std::uint64_t threads = 0;
   std::vector<Command> commands = {add_render(program),       add_solve(program),
                                    add_form_factors(program), add_plan(program),
@@ -100,10 +140,15 @@ int run(int argc, char** argv) {
   commands.push_back(add_fit_phong(program));
   for (Command& part : add_study(program)) commands.push_back(std::move(part));
   commands.push_back(add_report(program));
+  int exit_code = 0;
+  commands.push_back(add_merge(program, [&exit_code](const std::vector<std::string>& call) {
+    exit_code = run(call, nullptr);
+  }));
   add_common_options(program, common, threads);
   for (const Command& command : commands) add_common_options(*command.parser, common, threads);
   try {
-    program.parse(argc, argv);
+    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+    program.parse(arguments);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) return usage_error(program, error);
     std::ostringstream text, ignored;
@@ -114,10 +159,14 @@ int run(int argc, char** argv) {
   common.threads = static_cast<int>(threads);
   const base::ThreadLimit limit(common.threads);
   const base::MemoryLimit memory(common.max_memory_bytes);
+  if (ranks != nullptr && is_study_of_ranks(program, common.arguments)) {
+    return study_in_ranks(common.arguments, *ranks);
+  }
+  const base::RanksInForce in_force(ranks);
   for (const Command& command : commands) {
     if (command.parser->parsed() && command.run) command.run(common);
   }
-  return 0;
+  return exit_code;
 }
 
 // Interrupted or told to end: no half-written file stays behind, and the shell sees the signal.
@@ -132,29 +181,55 @@ int complain(std::string_view what, int exit_code) {
   return exit_code;
 }
 
+// What is wrong with the call all ranks find at once: the first says it and ends the others, who
+// wait as long as that takes. What is wrong with one of them alone it says itself.
+constexpr std::chrono::seconds time_to_speak{3};
+
+void end_rank(base::Ranks& ranks, int exit_code, const std::string& what) {
+  if (ranks.number() > 0) {
+    std::this_thread::sleep_for(time_to_speak);
+    be_silent(false);
+    note(fmt::format("earthshine: rank {} of {}: {}", ranks.number(), ranks.count(), what));
+  }
+  ranks.end_all(exit_code);
+}
+
 }  // namespace
 }  // namespace earthshine::app
 
 int main(int argc, char** argv) {
   using namespace earthshine;
+  const std::unique_ptr<base::Ranks> ranks = base::start_ranks(argc, argv);
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported where it is written to
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     // Whoever started the program may have it ignore a signal, as nohup does.
     if (std::signal(signal, app::end_by_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
-  try {
-    const int exit_code = app::run(argc, argv);
-    return exit_code == 0 && app::lost_a_note() ? app::work_failed : exit_code;
-  } catch (const base::Error& error) {
-    return app::complain(
-        error.what(), error.blame() == base::Blame::Input ? app::call_is_wrong : app::work_failed);
-  } catch (const app::StoppedShort& error) {
-    return app::complain(error.what(), app::stopped_short);
-  } catch (const std::bad_alloc&) {
-    return app::complain(
-        "out of memory; larger patches (quality.patch_edge) or a smaller picture need less",
-        app::work_failed);
-  } catch (const std::exception& error) {
-    return app::complain(error.what(), app::work_failed);
-  }
+  app::be_silent(ranks && ranks->number() > 0);
+  std::string what;
+  const auto failed = [&what](std::string_view why, int exit_code) {
+    what = why;
+    return app::complain(why, exit_code);
+  };
+  const auto run = [&] {
+    try {
+      const int exit_code = app::run({argv + std::min(argc, 1), argv + argc}, ranks.get());
+      return exit_code == 0 && app::lost_a_note() ? app::work_failed : exit_code;
+    } catch (const base::Error& error) {
+      const bool input = error.blame() == base::Blame::Input;
+      return failed(error.what(), input ? app::call_is_wrong : app::work_failed);
+    } catch (const app::StoppedShort& error) {
+      return failed(error.what(), app::stopped_short);
+    } catch (const std::bad_alloc&) {
+      return failed(
+          "out of memory; larger patches (quality.patch_edge) or a smaller picture need less",
+          app::work_failed);
+    } catch (const std::exception& error) {
+      return failed(error.what(), app::work_failed);
+    }
+  };
+  const int exit_code = run();
+  const bool done = exit_code == 0 || exit_code == app::stopped_short;
+  if (ranks && !done) app::end_rank(*ranks, exit_code, what);
+  return exit_code;
 }

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/free_memory.h"
+#include "base/ranks/ranks.h"
 
 namespace earthshine::app {
 namespace {
@@ -24,6 +25,7 @@ void refuse_too_much(const LoadedScene& loaded, const scenes::RayQuery& query,
   const auto free = static_cast<double>(*free_bytes);
   studies::MemoryNeed need = studies::memory_needed(sizes);
   if (need.total() > free && sizes.solves) {
+    const base::RanksInForce alone(nullptr);  // others may have no need to look
     studies::expect_rows(sizes, loaded.scene, query, solver);
     need = studies::memory_needed(sizes);
   }
@@ -82,12 +84,13 @@ void check_patch_memory(const LoadedScene& loaded, const scenes::RayQuery& query
 
 bool patches_fit(const LoadedScene& loaded, const radiosity::SolveOptions& solver,
                  std::size_t patches) {
-  const auto free_bytes = base::free_memory_bytes();
-  if (!free_bytes) return true;
   studies::MemoryCase sizes =
       studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
   studies::set_patches(sizes, patches, solver);
-  return studies::memory_needed(sizes).total() <= static_cast<double>(*free_bytes);
+  const auto free_bytes = base::free_memory_bytes();
+  // Machines differ, and ranks must decide alike.
+  return base::holds_on_all_ranks(!free_bytes || studies::memory_needed(sizes).total() <=
+                                                     static_cast<double>(*free_bytes));
 }
 
 void check_row_memory(const LoadedScene& loaded, const scenes::RayQuery& query, double patch_edge_m,

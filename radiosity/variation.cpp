@@ -2,12 +2,11 @@
 #include "radiosity/variation.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cmath>
 
 #include "base/numbers/random.h"
-#include "base/parallel.h"
+#include "base/ranks/ranks.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_parts.h"
 
@@ -153,7 +152,8 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
                                         std::span<const std::uint32_t> which,
                                         const RelativeLight& light) {
   std::vector<Unevenness> found(which.size());
-  std::atomic<std::uint64_t> all_rays{0};
+  constexpr std::size_t chunk = 64;
+  std::vector<std::uint64_t> rays_of((which.size() + chunk - 1) / chunk, 0);
   const auto gather_directions = static_cast<std::size_t>(options_.gather_directions);
   const auto lit_groups = static_cast<double>(
       std::max<std::ptrdiff_t>(1, std::count_if(light.scale.begin(), light.scale.end(),
@@ -240,8 +240,8 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
     }
     return std::uint64_t{2 * indirect_points * gather_directions};
   };
-  base::parallel_chunks(which.size(), 64, [&](std::size_t begin, std::size_t end) {
-    std::uint64_t rays = 0;
+  const auto look = [&](std::size_t begin, std::size_t end) {
+    std::uint64_t& rays = rays_of[begin / chunk];
     for (std::size_t k = begin; k < end; ++k) {
       const Rgb rho = reflectances_.of(patches, which[k]);
       if (base::max_component(rho) <= 0.0) continue;
@@ -256,9 +256,13 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
       }
       sum = {weight * sum.error, weight * sum.along_s, weight * sum.along_t};
     }
-    all_rays += rays;
-  });
-  rays_ += all_rays;
+  };
+  base::share_chunks(which.size(), chunk, look,
+                     [&](std::size_t begin, std::size_t end, base::Parcel& parcel) {
+                       parcel.pass_range(&found[begin], end - begin);
+                       parcel.pass(rays_of[begin / chunk]);
+                     });
+  for (const std::uint64_t rays : rays_of) rays_ += rays;
   return found;
 }
 

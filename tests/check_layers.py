@@ -15,7 +15,7 @@ import sys
 # Floors, and the rooms of each: a file may include its own room and those before it. "." is the floor's own
 # folder.
 ROOMS = {
-    "base": [".", "numbers", "input", "files", "pixels"],
+    "base": [".", "numbers", "ranks", "input", "files", "pixels"],
     "scenes": ["texture", ".", "text", "reflect", "light", "mesh/gltf", "mesh", "sky", "effects", "health", "round", "read"],
     "radiosity": ["patches", "bodies", "factors", "objects", "direct", ".", "store", "exact/polygon",
                   "exact/occlusion", "exact"],
@@ -24,7 +24,7 @@ ROOMS = {
     "degrade": ["stage", "parts", "moments", ".", "settings", "range", "certify"],
     "studies": [".", "cost", "error", "surfaces", "steer", "targets", "light", "sight", "why", "orbit",
                 "compare", "accuracy"],
-    "app": [".", "cctv", "render", "tools", "study", "report", "visibility", "compare", "accuracy"],
+    "app": [".", "parts", "cctv", "render", "tools", "study", "report", "views", "visibility", "compare", "accuracy"],
 }
 LAYERS = list(ROOMS)
 MOST_FILES = 20  # in a room
@@ -35,6 +35,7 @@ OWNERS = {
     "Eigen": (r"Eigen/", ["radiosity/*", "degrade/*"]),
     "OpenEXR": (r"(OpenEXR/|Imath/|Imf|Imath|Iex|half\.h)", ["base/files/exr_*"]),
     "oneTBB": (r"(tbb|oneapi)/", ["base/parallel.cpp"]),
+    "Open MPI": (r"mpi\.h", ["base/ranks/open_mpi.cpp"]),
     "toml++": (r"toml(\+\+|plusplus)", ["scenes/text/toml_file.cpp"]),
     "libpng": (r"png\.h", ["base/files/png_file.cpp", "base/files/png_reader.cpp",
                             "base/pixels/png_pixels.cpp"]),

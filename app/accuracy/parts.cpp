@@ -9,6 +9,7 @@
 #include "app/console.h"
 #include "app/memory.h"
 #include "base/error.h"
+#include "base/numbers/digest.h"
 
 namespace earthshine::app {
 namespace {
@@ -108,6 +109,15 @@ bool AccuracyParts::has(const studies::Batch& batch) const {
 
 bool AccuracyParts::has(const studies::AccuracyStep& step, std::uint64_t seed) const {
   return task_.store.has(cache_key_of(step, seed));
+}
+
+Json AccuracyParts::digests(const std::vector<studies::AccuracyStep>& ladder) const {
+  base::Digest scene, settings;
+  scene.add(std::string_view(dump(common_cache_key_)));
+  for (const studies::AccuracyStep& step : ladder) {
+    settings.add(std::string_view(dump(cache_key_of(step, task_.view.seed))));
+  }
+  return {{"scene", scene.text()}, {"settings", settings.text()}};
 }
 
 std::optional<CachedResult> AccuracyParts::stored(const Json& cache_key) {

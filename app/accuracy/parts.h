@@ -21,6 +21,8 @@ class AccuracyParts {
   [[nodiscard]] CachedResult point(const studies::AccuracyStep& step, std::uint64_t seed);
   [[nodiscard]] bool has(const studies::Batch& batch) const;
   [[nodiscard]] bool has(const studies::AccuracyStep& step, std::uint64_t seed) const;
+  // Of all that the study's parts depend on.
+  [[nodiscard]] Json digests(const std::vector<studies::AccuracyStep>& ladder) const;
   [[nodiscard]] static studies::StepCost cost_of(const Json& facts);
 
   // Steps to come: a solution that several of them read is solved for once.

@@ -9,7 +9,7 @@
 #include <ctime>
 #include <limits>
 
-#include "app/accuracy/parts.h"
+#include "app/accuracy/stages.h"
 #include "app/console.h"
 #include "base/error.h"
 #include "raytrace/camera/camera.h"
@@ -20,39 +20,18 @@ namespace {
 using studies::Batch;
 using studies::ReferencePair;
 
-constexpr int first_paths = 16;      // per pixel and side, before it is known how many are needed
-constexpr int most_paths = 1 << 14;  // per pixel and side
 constexpr double reference_share = 0.5;  // of a time limit
 
-// Both sides of a reference, batch by batch.
-struct PathReference {
-  raytrace::PathSet paths = raytrace::PathSet::All;
-  std::vector<Batch> batches[2];
-  std::vector<base::Image> pictures[2];
-
-  [[nodiscard]] ReferencePair pair() const {
-    return {studies::mean_of_batches(batches[0], pictures[0]),
-            studies::mean_of_batches(batches[1], pictures[1])};
-  }
-};
-
-class Study {
+class Study : AccuracyStages {
  public:
-  explicit Study(const AccuracyTask& task)
-      : task_(task),
-        scene_{task.loaded.scene, task.loaded.groups, task.loaded.effects, task.query},
-        parts_(task, scene_) {}
+  explicit Study(const AccuracyTask& task) : AccuracyStages(task) {}
 
   AccuracyResult run() {
-    const raytrace::CameraModel camera =
-        raytrace::make_camera_model(task_.view.camera, task_.view.columns, task_.view.rows);
     if (task_.loaded.groups.count() == 0 &&
         base::max_component(task_.loaded.scene.ambient_radiance) <= 0.0) {
       return nothing("nothing gives light: the picture is black, and has no error");
     }
-    counted_ = studies::surface_pixels(scene_, camera);
-    result_.pixels = std::size_t(std::count(counted_.begin(), counted_.end(), true));
-    if (result_.pixels == 0) {
+    if (!find_counted()) {
       return nothing("no pixel shows a surface that is no source: there is nothing to compare");
     }
     if (!trace_references()) {
@@ -85,33 +64,11 @@ class Study {
     return task_.call.time_limit_s - parts_.seconds();
   }
 
-  // One batch on both sides of every reference, so that a time limit leaves them alike.
-  void trace_round(std::vector<PathReference>& references, int index, int paths) {
-    for (PathReference& reference : references) {
-      for (int side = 0; side < 2; ++side) {
-        const Batch batch{reference.paths, side, index, paths};
-        CachedResult part = parts_.batch(batch);
-        result_.reference_cpu_seconds += part.facts["cpu_seconds"].get<double>();
-        reference.batches[side].push_back(batch);
-        reference.pictures[side].push_back(std::move(part.image));
-      }
-    }
-    result_.reference_paths += paths;
-  }
-
   // False if all is black.
   bool trace_references() {
-    const double finest = *std::min_element(task_.call.wanted.begin(), task_.call.wanted.end());
-    result_.wanted_resolution = finest / task_.call.reference_factor;
-    std::vector<PathReference> references(1);
-    if (studies::leaves_paths_out(task_.loaded.effects)) {
-      references.push_back({raytrace::PathSet::NoCaustics, {}, {}});
-    }
-    trace_round(references, 0, first_paths);
-    full_ = references.front().pair();
-    if (!(studies::mean_luminance(full_, counted_) > 0.0)) return false;
-    const std::vector<int> further = studies::further_batches(
-        first_paths, studies::resolution(full_, counted_), result_.wanted_resolution, most_paths);
+    std::vector<PathReference> references = new_references();
+    if (!trace_first(references)) return false;
+    const std::vector<int> further = further_rounds();
     const double first_seconds = parts_.seconds();
     for (std::size_t k = 0; k < further.size(); ++k) {
       const double expected = first_seconds * further[k] / first_paths;
@@ -132,12 +89,9 @@ class Study {
   }
 
   void draw_straight() {
-    const double finest = *std::min_element(task_.call.wanted.begin(), task_.call.wanted.end());
-    const studies::AccuracyStep step = studies::straight_step(task_.loaded.scene, finest);
     studies::NoisyPicture* sides[] = {&straight_.first, &straight_.second};
     for (int side = 0; side < 2; ++side) {
-      const CachedResult part =
-          parts_.point(step, studies::reference_seed(task_.view.seed, side, most_paths));
+      const CachedResult part = parts_.point(straight_step(), straight_seed(side));
       result_.reference_cpu_seconds += part.facts["cpu_seconds"].get<double>();
       const std::vector<float>& values = part.image.find("Y")->values;
       sides[side]->luminance.assign(values.begin(), values.end());
@@ -165,9 +119,7 @@ class Study {
   }
 
   void climb() {
-    studies::LadderOptions options = task_.call.ladder;
-    options.finest = *std::min_element(task_.call.wanted.begin(), task_.call.wanted.end());
-    ladder_ = studies::accuracy_ladder(task_.loaded.scene, task_.loaded.effects, options);
+    ladder_ = make_ladder();
     const std::vector<studies::AccuracyStep>& ladder = ladder_;
     parts_.expect(ladder);
     std::vector<studies::Taken> taken;
@@ -205,12 +157,7 @@ class Study {
     }
   }
 
-  const AccuracyTask& task_;
-  studies::StudyScene scene_;
-  AccuracyParts parts_;
-  AccuracyResult result_;
-  std::vector<bool> counted_;
-  ReferencePair full_, gathered_, straight_;
+  ReferencePair gathered_, straight_;
   bool differs_ = false;
   std::vector<studies::AccuracyStep> ladder_;
 };
@@ -218,5 +165,4 @@ class Study {
 }  // namespace
 
 AccuracyResult measure_accuracy(const AccuracyTask& task) { return Study(task).run(); }
-
 }  // namespace earthshine::app

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/study/result_cache.h"
+#include "app/parts/result_cache.h"
 #include "app/study/study.h"
 #include "studies/accuracy/accuracy.h"
 #include "studies/accuracy/findings.h"
@@ -57,5 +57,10 @@ struct AccuracyTask {
 
 // Throws base::Error (Work) with what is finished once view.stop says so.
 [[nodiscard]] AccuracyResult measure_accuracy(const AccuracyTask& task);
+
+// The work of a part: rounds of references, and steps by the solution that they read, dealt out in
+// turn, as they become dearer along the ladder. The first round, which says how many follow, is
+// found or done by every part.
+void share_accuracy(const AccuracyTask& task, PartCall& part);
 
 }  // namespace earthshine::app

@@ -15,8 +15,8 @@
 #include "app/memory.h"
 #include "app/options.h"
 #include "app/output.h"
+#include "app/parts/result_cache.h"
 #include "app/study/plot.h"
-#include "app/study/result_cache.h"
 #include "app/study/study.h"
 #include "base/files/output_file.h"
 #include "raytrace/camera/check.h"
@@ -60,7 +60,17 @@ void write_plots(const fs::path& folder, const AccuracyTask& task, const Accurac
                    folder.string(), fmt::join(scripts, ", ")));
 }
 
+void check_part(const AccuracyCall& call) {
+  const bool solves = call.part.task == PartCall::Task::Solve && !call.part.begins;
+  if (!solves && (!call.part.in_parts() || call.time_limit_s <= 0.0)) return;
+  throw base::Error(base::Blame::Input, "--part",
+                    solves ? "a ladder of settings has no solution that all of it reads"
+                           : "what fits in a time limit is told by one process",
+                    {}, solves ? "Run the parts at once" : "Leave out --time-limit");
+}
+
 void run(const AccuracyCall& call, const Common& common) {
+  check_part(call);
   const LoadedScene loaded = load(call.scene, common.quiet);
   const scenes::Camera& camera =
       choose_camera(loaded.scene, call.cameras.empty() ? "" : call.cameras.front());
@@ -92,6 +102,11 @@ void run(const AccuracyCall& call, const Common& common) {
     return patches_fit(loaded, solver, static_cast<std::size_t>(patches));
   };
   const AccuracyTask task{call, common, loaded, query, view, store};
+  if (call.part.in_parts()) {
+    PartCall part = call.part;
+    share_accuracy(task, part);
+    if (part.task != PartCall::Task::Merge) return;
+  }
   const AccuracyResult result = measure_accuracy(task);
   interrupt.reset();  // gnuplot is not waited for against a signal
   const Json json = accuracy_json(task, result);
@@ -136,6 +151,7 @@ Command add_study_accuracy(CLI::App& study) {
       "accuracy", "What a smaller error costs, by radiosity, distributed lights and paths");
   const auto call = std::make_shared<AccuracyCall>();
   add_study_options(*parser, *call);
+  add_part_options(*parser, call->part);
   parser->add_option("--camera", call->cameras, "Camera of the scene (default: its first)")
       ->type_name("NAME")
       ->expected(1)

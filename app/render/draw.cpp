@@ -5,6 +5,7 @@
 
 #include "app/console.h"
 #include "app/render/light.h"
+#include "app/render/render_parts.h"
 #include "raytrace/paths/path_tracer.h"
 
 namespace earthshine::app {
@@ -16,7 +17,7 @@ raytrace::Frame trace(const Studio& studio, const scenes::Camera& camera,
   return raytrace::trace_paths(
       loaded.scene, loaded.groups, loaded.effects, studio.query, camera,
       {options.columns, options.rows, options.gather_rays, options.per_light,
-       raytrace::PathSet::All, options.seed, options.stop},
+       raytrace::PathSet::All, options.seed, options.stop, options.crop},
       progress);
 }
 
@@ -36,19 +37,26 @@ double seconds_to_go(const Drawn& drawn, double wanted) {
 
 }  // namespace
 
+raytrace::Frame draw_frame(const Studio& studio, const scenes::Camera& camera,
+                           const raytrace::RenderOptions& options) {
+  const LoadedScene& loaded = studio.loaded;
+  Progress progress(fmt::format("render {}", camera.name), studio.common.quiet);
+  if (options.indirect == raytrace::Indirect::Paths) {
+    return trace(studio, camera, options, std::ref(progress));
+  }
+  return raytrace::render(loaded.scene, loaded.groups, loaded.effects, studio.query,
+                          studio.light.solution, camera, options, std::ref(progress));
+}
+
 Drawn draw_picture(const Studio& studio, const scenes::Camera& camera, StageTimes& times) {
   const LoadedScene& loaded = studio.loaded;
   Drawn drawn;
   drawn.options = picture_options(studio.call, studio.common, loaded, camera);
   drawn.options.time_limit_s = studio.time_limit_s;
   const raytrace::RenderOptions& options = drawn.options;
-  Progress progress(fmt::format("render {}", camera.name), studio.common.quiet);
   drawn.frame = times.measure("render", [&] {
-    if (options.indirect == raytrace::Indirect::Paths) {
-      return trace(studio, camera, options, std::ref(progress));
-    }
-    return raytrace::render(loaded.scene, loaded.groups, loaded.effects, studio.query,
-                            studio.light.solution, camera, options, std::ref(progress));
+    return studio.parts != nullptr ? studio.parts->joined(camera)
+                                   : draw_frame(studio, camera, options);
   });
   if (studio.call.no_error) {
     drawn.errors.not_captured = studies::not_captured(studio.scene(), options);

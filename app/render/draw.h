@@ -15,6 +15,9 @@ struct Drawn {
   studies::Limit limit = studies::Limit::None;
   double seconds_to_go = 0.0;  // about, until the wanted error, if it was not reached
 };
+// Rays alone, without a statement of what they are worth.
+[[nodiscard]] raytrace::Frame draw_frame(const Studio& studio, const scenes::Camera& camera,
+                                         const raytrace::RenderOptions& options);
 [[nodiscard]] Drawn draw_picture(const Studio& studio, const scenes::Camera& camera,
                                  StageTimes& times);
 

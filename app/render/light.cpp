@@ -13,13 +13,6 @@
 namespace earthshine::app {
 namespace {
 
-radiosity::SolveOptions solver_for(const RenderCall& call, const scenes::Scene& scene,
-                                   const Common& common) {
-  // A solution that is read is told by the settings that it was made with.
-  if (!call.solution.empty() || !steers(call, scene)) return solve_options(scene, common);
-  return studies::picture_solver(scene, scene.quality, common.seed);
-}
-
 // Within a time limit the solve gets about a fifth of the time: a coarse one tells how fast the
 // machine and the scene are. Patches and rays each grow as one over the error that they serve.
 Solved solve_within(const LightCall& wanted, double seconds, StageTimes& times) {
@@ -49,7 +42,7 @@ Solved solve_or_take(const LightCall& wanted, StageTimes& times) {
   const RenderCall& call = wanted.call;
   const LoadedScene& loaded = wanted.loaded;
   Solved light;
-  light.solver = solver_for(call, loaded.scene, wanted.common);
+  light.solver = solver_of(call, loaded.scene, wanted.common);
   if (call.indirect != raytrace::Indirect::Radiosity) return light;
   if (!loaded.effects.solution && call.solution.empty()) {
     if (loaded.groups.count() == 0) note("note: nothing gives light, the picture is black");
@@ -59,12 +52,23 @@ Solved solve_or_take(const LightCall& wanted, StageTimes& times) {
       !says_how_to_solve(loaded.scene.quality)) {
     return solve_within(wanted, call.time_limit_s, times);
   }
-  light.solution = solve_or_read(loaded, wanted.query, light.solver, call.solution, times);
+  const auto solve = [&] {
+    return solve_or_read(loaded, wanted.query, light.solver, call.solution, times);
+  };
+  const bool shares = wanted.share && call.solution.empty();
+  light.solution = shares ? wanted.share(solve) : solve();
   light.solved = true;
   return light;
 }
 
 }  // namespace
+
+radiosity::SolveOptions solver_of(const RenderCall& call, const scenes::Scene& scene,
+                                  const Common& common) {
+  // A solution that is read is told by the settings that it was made with.
+  if (!call.solution.empty() || !steers(call, scene)) return solve_options(scene, common);
+  return studies::picture_solver(scene, scene.quality, common.seed);
+}
 
 Solved solve_as_exactly(const ExactCall& call, StageTimes& times) {
   const LoadedScene& loaded = call.loaded;

@@ -3,6 +3,8 @@
 // it, within a time, or read from a file.
 #pragma once
 
+#include <functional>
+
 #include "app/render/render_call.h"
 
 namespace earthshine::app {
@@ -12,7 +14,12 @@ struct LightCall {
   const Common& common;
   const LoadedScene& loaded;
   const scenes::RayQuery& query;
+  // Where others read the same solution: called with the way to solve, where one is needed.
+  std::function<radiosity::Solution(const std::function<radiosity::Solution()>&)> share = {};
 };
+// With what settings the call's light is solved.
+[[nodiscard]] radiosity::SolveOptions solver_of(const RenderCall& call, const scenes::Scene& scene,
+                                                const Common& common);
 [[nodiscard]] Solved find_light(const LightCall& wanted, StageTimes& times);
 
 // Solves until the error over the surfaces is within the scene's `quality.error`.

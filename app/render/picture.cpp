@@ -14,6 +14,7 @@
 #include "app/render/render_call.h"
 #include "base/files/exr_file.h"
 #include "base/files/png_file.h"
+#include "base/ranks/ranks.h"
 #include "base/tone.h"
 #include "scenes/effects/quality.h"
 
@@ -68,7 +69,7 @@ Json json_of(const Studio& studio, const scenes::Camera& camera, const raytrace:
                {"finished_share", report.finished_share},
                {"partial", report.stopped}};
   // What a solution cost by kind of light is not kept in its file.
-  if (!studio.call.solution.empty()) json["rays"].erase("direct_by");
+  if (!studio.call.solution.empty() || studio.parts != nullptr) json["rays"].erase("direct_by");
   return json;
 }
 
@@ -161,7 +162,8 @@ raytrace::RenderOptions picture_options(const RenderCall& call, const Common& co
     }
   }
   options.seed = common.seed;
-  options.stop = Interrupt::asked;
+  // Ranks would not stop at the same place: a signal ends them all.
+  if (base::ranks() == nullptr) options.stop = Interrupt::asked;
   return options;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 
@@ -18,6 +19,7 @@
 #include "app/render/effect_table.h"
 #include "app/render/light.h"
 #include "app/render/render_call.h"
+#include "app/render/render_parts.h"
 #include "app/render/solution.h"
 #include "base/error.h"
 #include "base/files/output_file.h"
@@ -74,6 +76,23 @@ void check_call(const RenderCall& call) {
   }
 }
 
+// What a part cannot do alone, or what depends on the process.
+void check_part(const RenderCall& call) {
+  if (!call.part.in_parts()) return;
+  const std::array<std::pair<const char*, bool>, 6> not_in_parts = {
+      {{"--only-pixel", call.only_pixel},
+       {"--time-limit", call.time_limit_s > 0.0},
+       {"--report", !call.report.empty()},
+       {"--timings", call.timings},
+       {"--over", call.over.asked()},
+       {"--range", call.output.empty()}}};
+  for (const auto& [option, asked] : not_in_parts) {
+    if (!asked) continue;
+    throw Error(Blame::Input, "--part", fmt::format("does not go with {}", option), {},
+                "Leave one of the two out");
+  }
+}
+
 // "views/bay.exr" and camera A give "views/bay-A.exr".
 std::string with_camera(const std::string& path, const std::string& camera) {
   if (path.empty() || path.starts_with("/dev/")) return path;
@@ -126,6 +145,7 @@ std::vector<const scenes::Camera*> cameras_of(const std::vector<Wanted>& picture
 
 void run(RenderCall call, const Common& common) {
   check_call(call);
+  check_part(call);
   StageTimes times;
   LoadedScene loaded = times.measure("read", [&] { return load(call.scene, common.quiet); });
   const std::vector<Wanted> pictures = wanted_pictures(call, loaded.scene, common.quiet);
@@ -142,7 +162,9 @@ void run(RenderCall call, const Common& common) {
     call.size = Size{call.photo->width, call.photo->height};
   }
   std::vector<Json> ranges;
-  for (std::size_t k = 0; k < pictures.size() && !call.range.empty(); ++k) {
+  using Task = PartCall::Task;
+  const bool writes = call.part.task == Task::All || call.part.task == Task::Merge;
+  for (std::size_t k = 0; k < pictures.size() && writes && !call.range.empty(); ++k) {
     ranges.push_back(sense_range({loaded.scene, query, *pictures[k].camera, call.size},
                                  pictures[k].files.range, call.scene.overrides, common, times));
   }
@@ -166,8 +188,22 @@ void run(RenderCall call, const Common& common) {
     expected = times.measure("pilot", [&] { return expect(loaded, call, common, asked, query); });
   }
   const double cpu_before = base::cpu_seconds();
-  const Solved light = find_light({call, common, loaded, query}, times);
+  std::optional<RenderParts> parts;
+  if (call.part.in_parts()) {
+    parts.emplace(LightCall{call, common, loaded, query}, call.part, cameras_of(pictures), culled);
+  }
+  const Solved light =
+      parts ? parts->light(times) : find_light({call, common, loaded, query}, times);
   Studio studio{call, common, loaded, query, light};
+  if (call.part.task == Task::Solve) return;
+  if (call.part.task == Task::Share) {
+    const Interrupt interrupt;
+    return parts->draw_share(studio);
+  }
+  if (call.part.task == Task::Merge) {
+    parts->check_complete();
+    studio.parts = &*parts;
+  }
   Json reports = Json::array();
   std::vector<Picture> taken;
   bool whole = true;
@@ -223,6 +259,7 @@ Command add_render(CLI::App& program) {
               "Also the plan's table with what each effect really took, as JSON");
   add_over_options(*parser, call->over);
   add_window_options(*parser, *call);
+  add_part_options(*parser, call->part);
   add_solution_option(*parser, call->solution);
   add_picture_options(*parser, *call);
   parser->add_flag("--timings", call->timings,

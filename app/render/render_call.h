@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/command.h"
+#include "app/parts/part.h"
 #include "app/render/over.h"
 #include "radiosity/solution.h"
 #include "raytrace/render.h"
@@ -32,6 +33,7 @@ struct RenderCall {
   std::vector<std::string> aovs;
   bool per_light = false, timings = false, json = false;
   bool all_effects = false;  // also those that cannot matter
+  PartCall part;
   OverCall over;
   std::optional<base::Picture8> photo;  // of --over, once it is read
 
@@ -75,6 +77,8 @@ struct Solved {
   studies::Limit limit = studies::Limit::None;
 };
 
+class RenderParts;
+
 // What all pictures of a call share.
 struct Studio {
   const RenderCall& call;
@@ -85,8 +89,9 @@ struct Studio {
   [[nodiscard]] studies::StudyScene scene() const {
     return {loaded.scene, loaded.groups, loaded.effects, query};
   }
-  double time_limit_s = 0.0;  // for one picture; 0: none
-  std::size_t number = 0;     // of the picture among the call's
+  double time_limit_s = 0.0;           // for one picture; 0: none
+  std::size_t number = 0;              // of the picture among the call's
+  const RenderParts* parts = nullptr;  // what pictures are put together from; nullptr: drawn here
 };
 
 // The size, the layers and the rays of one camera's picture.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/command.h"
+#include "app/parts/part.h"
 #include "studies/orbit/study_file.h"
 #include "studies/study.h"
 
@@ -19,6 +20,7 @@ struct StudyCall {
   std::vector<std::string> cameras;  // empty: the study's own choice
   std::optional<Size> size;
   bool json = false;
+  PartCall part;
 };
 // -o, --size, --json and what add_scene_options adds.
 void add_study_options(CLI::App& command, StudyCall& call);

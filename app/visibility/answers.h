@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "app/visibility/scene.h"
+#include "app/views/scene.h"
 #include "studies/orbit/condition.h"
 #include "studies/orbit/study_file.h"
 

@@ -17,7 +17,7 @@ namespace earthshine::app {
 namespace {
 
 // Conditions that are kept together: a run that is killed loses no more of them.
-constexpr std::size_t batch = 16;
+constexpr std::size_t batch_size = 16;
 
 struct Place {
   std::size_t place, setting;
@@ -110,8 +110,8 @@ Json StudyConditions::cache_key(const StudyCamera& camera, const Json& frame_cac
 std::optional<std::vector<Json>> StudyConditions::find(const StudyCamera& camera,
                                                        const Json& frame_cache_key) const {
   std::vector<Json> all;
-  for (std::size_t first = 0; first < part_.conditions(); first += batch) {
-    const std::size_t last = std::min(first + batch, part_.conditions());
+  for (std::size_t batch = 0; batch < batches(); ++batch) {
+    const auto [first, last] = conditions_of(batch);
     std::string said;
     const auto stored = store_.find_facts(cache_key(camera, frame_cache_key, first, last), said);
     if (!stored) return std::nullopt;
@@ -120,8 +120,22 @@ std::optional<std::vector<Json>> StudyConditions::find(const StudyCamera& camera
   return all;
 }
 
+std::size_t StudyConditions::batches() const {
+  return (part_.conditions() + batch_size - 1) / batch_size;
+}
+
+Share StudyConditions::conditions_of(std::size_t batch) const {
+  return {batch * batch_size, std::min((batch + 1) * batch_size, part_.conditions())};
+}
+
+bool StudyConditions::has(const StudyCamera& camera, const Json& frame_cache_key,
+                          std::size_t batch) const {
+  const auto [first, last] = conditions_of(batch);
+  return store_.has(cache_key(camera, frame_cache_key, first, last));
+}
+
 std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studies::BasisView& view,
-                                         const Json& frame_cache_key,
+                                         const Json& frame_cache_key, Share batches,
                                          std::vector<StudyCost>& costs) {
   const auto start = std::chrono::steady_clock::now();
   const raytrace::Progress progress =
@@ -130,8 +144,8 @@ std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studie
   if (camera.cctv) cctv = camera.cctv->chain;
   std::vector<Json> all(part_.conditions());
   bool found = true;
-  for (std::size_t first = 0; first < all.size(); first += batch) {
-    const std::size_t last = std::min(first + batch, all.size());
+  for (std::size_t batch = batches.first; batch < batches.last; ++batch) {
+    const std::size_t first = conditions_of(batch).first, last = conditions_of(batch).last;
     if (progress) progress(first, all.size());
     const Json key = cache_key(camera, frame_cache_key, first, last);
     std::string said;

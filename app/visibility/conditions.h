@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "app/visibility/frames.h"
+#include "app/views/frames.h"
 #include "studies/orbit/condition.h"
 
 namespace earthshine::app {
@@ -18,10 +18,18 @@ class StudyConditions {
   StudyConditions(const StudyPart& part, const studies::StudyFile& study,
                   const std::filesystem::path& folder, const Common& common);
 
+  // Conditions are worked out and kept in batches.
+  [[nodiscard]] std::size_t batches() const;
+
   // One entry per condition: a list with one entry per target. Null for those that were not reached
-  // before an interruption. frame_cache_key: of the picture that the view was made of.
+  // before an interruption or are not in `batches`. frame_cache_key: of the picture that the view
+  // was made of.
   [[nodiscard]] std::vector<Json> judge(const StudyCamera& camera, const studies::BasisView& view,
-                                        const Json& frame_cache_key, std::vector<StudyCost>& costs);
+                                        const Json& frame_cache_key, Share batches,
+                                        std::vector<StudyCost>& costs);
+  // Whether it looks as if a batch was done before.
+  [[nodiscard]] bool has(const StudyCamera& camera, const Json& frame_cache_key,
+                         std::size_t batch) const;
 
   // The same if all of it was done before, without the picture.
   [[nodiscard]] std::optional<std::vector<Json>> find(const StudyCamera& camera,
@@ -32,6 +40,7 @@ class StudyConditions {
 
  private:
   [[nodiscard]] studies::ConditionOptions options() const;
+  [[nodiscard]] Share conditions_of(std::size_t batch) const;
 
   const StudyPart& part_;
   const studies::StudyFile& study_;

@@ -27,6 +27,7 @@ struct OrbitCall {
 
 struct FileCall {
   std::string file, folder;
+  PartCall part;
   bool json = false, dry_run = false;
 };
 
@@ -52,9 +53,11 @@ std::vector<double> positions_of(const std::string& text) {
   return positions;
 }
 
-void tell(const Json& found, bool json, bool dry_run) {
-  if (json) return print(dump(found));
-  print(dry_run ? plan_text(found) : study_text(found));
+// A part has nothing to tell.
+void tell(const std::optional<Json>& found, bool json, bool dry_run) {
+  if (!found) return;
+  if (json) return print(dump(*found));
+  print(dry_run ? plan_text(*found) : study_text(*found));
 }
 
 void run_orbit(const OrbitCall& call, const Common& common) {
@@ -63,12 +66,14 @@ void run_orbit(const OrbitCall& call, const Common& common) {
                                         : positions_of(call.at);
   study.timeline = call.at.empty() && call.positions > 1;
   StudyTask task{std::move(study), call.study.folder, "study orbit", call.dry_run};
+  task.part = call.study.part;
   tell(run_study(std::move(task), common), call.study.json, call.dry_run);
 }
 
 void run_file(const FileCall& call, const Common& common) {
   StudyTask task{studies::read_study_file(call.file), call.folder, "study run " + call.file,
                  call.dry_run};
+  task.part = call.part;
   tell(run_study(std::move(task), common), call.json, call.dry_run);
 }
 
@@ -81,6 +86,7 @@ Command add_study_orbit(CLI::App& study) {
   add_study_options(*parser, call->study);
   add_cameras_option(*parser, call->study);
   add_wanted_options(*parser, call->wanted, call->iris);
+  add_part_options(*parser, call->study.part);
   add_whole_number(*parser, "--positions", call->positions, 1, studies::most_positions,
                    "Positions, evenly over one turn from orbit noon");
   parser->add_option("--at", call->at, "Positions in degrees instead, with commas between")
@@ -102,6 +108,7 @@ Command add_study_run(CLI::App& study) {
   parser->add_option("-o,--output", call->folder, "Folder for the results; made if it is not there")
       ->type_name("DIR")
       ->required();
+  add_part_options(*parser, call->part);
   parser->add_flag("--dry-run", call->dry_run, "Only say what would be done, and its price");
   parser->add_flag("--json", call->json, "Results as JSON on standard output");
   return {parser, [call](const Common& common) { run_file(*call, common); }};

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "app/console.h"
-#include "app/study/result_cache.h"
+#include "app/parts/result_cache.h"
 #include "app/study/study.h"
 #include "base/error.h"
 #include "base/files/exr_file.h"

@@ -6,7 +6,7 @@
 #include <chrono>
 
 #include "app/console.h"
-#include "app/visibility/frames.h"
+#include "app/views/frames.h"
 #include "app/visibility/run.h"
 #include "base/parallel.h"
 #include "degrade/chain.h"
@@ -34,9 +34,10 @@ double chain_seconds(const StudyCamera& camera) {
 Json plan_of(const StudyPart& part, const std::filesystem::path& folder, const Common& common) {
   const LoadedScene& basis = part.basis_scene;
   std::error_code ignored;
-  const std::filesystem::path points = folder / "points";
+  const std::filesystem::path points = folder / points_folder;
+  const PartCall alone;
   std::optional<StudyFrames> frames;
-  if (std::filesystem::is_directory(points, ignored)) frames.emplace(part, points, common);
+  if (std::filesystem::is_directory(points, ignored)) frames.emplace(part, points, common, alone);
   std::vector<const scenes::Camera*> cameras;
   std::vector<raytrace::RenderOptions> pictures;
   Json listed = Json::array();

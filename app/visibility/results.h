@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/visibility/frames.h"
+#include "app/views/frames.h"
 #include "studies/orbit/study_file.h"
 
 namespace earthshine::app {

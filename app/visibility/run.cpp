@@ -17,6 +17,7 @@
 #include "app/visibility/pictures.h"
 #include "app/visibility/plan.h"
 #include "app/visibility/results.h"
+#include "app/visibility/shares.h"
 #include "base/error.h"
 #include "base/files/output_file.h"
 #include "scenes/text/message_text.h"
@@ -25,8 +26,6 @@ namespace earthshine::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* points_folder = "points";
 
 using Parts = std::vector<std::unique_ptr<StudyPart>>;
 
@@ -70,11 +69,7 @@ class Runner {
  public:
   Runner(const StudyTask& task, const Common& common, const Parts& parts,
          const ViewListener& listen)
-      : task_(task),
-        common_(common),
-        listen_(listen),
-        store_(fs::path(task.folder) / points_folder),
-        findings_(task.study) {
+      : task_(task), common_(common), listen_(listen), findings_(task.study) {
     findings_.command = task.command;
     findings_.seed = common.seed;
     findings_.parts = pointers(parts);
@@ -84,7 +79,7 @@ class Runner {
     const Interrupt interrupt;
     ways_.resize(task_.study.wanted.size());
     for (const StudyPart* part : findings_.parts) {
-      StudyFrames frames(*part, fs::path(task_.folder) / points_folder, common_);
+      StudyFrames frames(*part, fs::path(task_.folder) / points_folder, common_, task_.part);
       StudyConditions conditions(*part, task_.study, fs::path(task_.folder) / points_folder,
                                  common_);
       for (const StudyCamera& camera : part->cameras) {
@@ -108,17 +103,11 @@ class Runner {
     const Json frame_cache_key = frames.cache_key(camera);
     const PictureTask pictures{task_.study,  findings_.parts, part,   camera,
                                task_.folder, frame_cache_key, common_};
-    Json ways_cache_key = conditions.cache_key(camera, frame_cache_key, 0, part.conditions());
-    ways_cache_key["what"] = "answers";
-    for (const studies::WantedTarget& wanted : task_.study.wanted) {
-      ways_cache_key["wanted"].push_back(wanted.text);
-    }
-    ways_cache_key["iris"] = task_.study.iris;
-    ways_cache_key["path"] = part.path;
-    if (!take_finished(pictures, ways_cache_key, frames, conditions, found)) {
+    const CameraWork work(pictures, frames, conditions);
+    if (!take_finished(work, found)) {
       std::optional<StudyFrames::Frame> frame;
       if (!Interrupt::asked()) frame = frames.frame(camera, findings_.costs);
-      if (frame) work(pictures, ways_cache_key, *frame, conditions, found);
+      if (frame) look(work, *frame, found);
     }
     findings_.cameras.push_back(std::move(found));
     const auto& done = findings_.cameras.back().conditions;
@@ -139,57 +128,43 @@ class Runner {
   }
 
   // Where an earlier run has done all of it, so that not even the picture must be read.
-  bool take_finished(const PictureTask& pictures, const Json& ways_cache_key,
-                     const StudyFrames& frames, StudyConditions& conditions, CameraResults& found) {
-    if (listen_ || !pictures_are_there(pictures)) return false;
-    std::string said;
-    const auto ways = store_.find_facts(ways_cache_key, said);
-    const auto judged = conditions.find(pictures.camera, pictures.frame_cache_key);
+  bool take_finished(const CameraWork& work, CameraResults& found) {
+    if (listen_ || !pictures_are_there(work.pictures())) return false;
+    const auto ways = work.known_ways();
+    const auto judged = work.known_conditions();
     if (!ways || !judged) return false;
-    const auto frame = frames.known(pictures.camera, findings_.costs);
+    const auto frame = work.known_frame(findings_.costs);
     if (!frame) return false;
+    const PictureTask& pictures = work.pictures();
     take(pictures.part, *frame, found);
     found.conditions = *judged;
     findings_.costs.push_back(
         {fmt::format("conditions {} {}", pictures.part.id, found.camera->camera->name), 0.0, 0,
          true});
-    add_all(ways_of((*ways)["ways"]));
+    add_all(*ways);
     draw_pictures(pictures, nullptr, findings_.figures);
     return true;
   }
 
-  void work(const PictureTask& pictures, const Json& ways_cache_key, StudyFrames::Frame& frame,
-            StudyConditions& conditions, CameraResults& found) {
-    const StudyPart& part = pictures.part;
-    take(part, frame, found);
-    const studies::BasisView view = studies::make_basis_view(
-        *part.basis, *part.query, *pictures.camera.camera, std::move(frame.image));
-    found.conditions =
-        conditions.judge(pictures.camera, view, pictures.frame_cache_key, findings_.costs);
-    if (listen_) listen_(part, pictures.camera, view, frame);
-    if (Interrupt::asked()) return;
-    draw_pictures(pictures, &view, findings_.figures);
-    std::string said;
-    if (const auto kept = store_.find_facts(ways_cache_key, said)) {
-      return add_all(ways_of((*kept)["ways"]));
-    }
-    std::vector<std::vector<ViewingConfiguration>> ways(task_.study.wanted.size());
-    add_ways(part, task_.study, pictures.camera, view, ways);
-    store_.keep_facts(ways_cache_key, {{"ways", ways_json(ways)}});
-    add_all(ways);
+  void look(const CameraWork& work, StudyFrames::Frame& frame, CameraResults& found) {
+    const PictureTask& pictures = work.pictures();
+    take(pictures.part, frame, found);
+    const studies::BasisView view = work.view_of(frame);
+    found.conditions = work.judge(view, work.all_batches(), findings_.costs);
+    if (listen_) listen_(pictures.part, pictures.camera, view, frame);
+    if (!Interrupt::asked()) add_all(work.conclude(view, findings_.figures));
   }
 
   const StudyTask& task_;
   const Common& common_;
   const ViewListener& listen_;
-  ResultCache store_;
   StudyFindings findings_;
   std::vector<std::vector<ViewingConfiguration>> ways_;
 };
 
 }  // namespace
 
-Json run_study(StudyTask task, const Common& common, const ViewListener& listen) {
+std::optional<Json> run_study(StudyTask task, const Common& common, const ViewListener& listen) {
   const Parts parts = prepare_parts(task.study, common);
   check_models(task.study, pointers(parts));
   fill_pictures(task.study, *parts.front());
@@ -212,6 +187,9 @@ Json run_study(StudyTask task, const Common& common, const ViewListener& listen)
     base::remove_abandoned_files(fs::path(task.folder) / folder);
   }
 
+  if (task.part.in_parts() && !StudyShares(task, common, pointers(parts)).run()) {
+    return std::nullopt;
+  }
   Runner runner(task, common, parts, listen);
   runner.run();
   if (!runner.findings().complete && has_finished_results(task.folder)) {

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "app/visibility/frames.h"
+#include "app/views/frames.h"
 #include "studies/orbit/condition.h"
 #include "studies/orbit/study_file.h"
 
@@ -23,11 +23,14 @@ struct StudyTask {
   std::string command;  // what was called, for the report
   bool dry_run = false;
   std::vector<std::string> more_files = {};  // that the listener writes in the folder
+  PartCall part = {};
 };
 
-// The content of study.json; of a dry run what would be done and its price. Throws base::Error for
-// bad input before any work is done, and (Work) after everything was written if it was interrupted.
-[[nodiscard]] Json run_study(StudyTask task, const Common& common, const ViewListener& listen = {});
+// The content of study.json; of a dry run what would be done and its price; of a part, which writes
+// nothing but points/, nothing. Throws base::Error for bad input before any work is done, and
+// (Work) after everything was written if it was interrupted, or where a merge finds work missing.
+[[nodiscard]] std::optional<Json> run_study(StudyTask task, const Common& common,
+                                            const ViewListener& listen = {});
 
 // For people, of what a dry run gives.
 [[nodiscard]] std::string plan_text(const Json& plan);

@@ -172,8 +172,9 @@ class Tables {
 void run(const VisibilityCall& call, const Common& common) {
   StudyTask task{study_of(call.study, call.wanted, call.iris), call.study.folder,
                  "study visibility", call.dry_run};
+  task.part = call.study.part;
   if (call.dry_run) {
-    const Json plan = run_study(std::move(task), common);
+    const Json plan = *run_study(std::move(task), common);
     return print(call.study.json ? dump(plan) : plan_text(plan));
   }
   const LoadedScene loaded = load(call.study.scene, true);
@@ -189,11 +190,12 @@ void run(const VisibilityCall& call, const Common& common) {
   }
   task.more_files = file_names(loaded.scene, cameras);
   Tables tables(call.study, common);
-  const Json study = run_study(
+  const std::optional<Json> study = run_study(
       std::move(task), common,
       [&](const StudyPart& part, const StudyCamera& camera, const studies::BasisView& view,
           const StudyFrames::Frame& frame) { tables.add(part, camera, view, frame); });
-  const Json json = tables.write(study);
+  if (!study) return;  // a part
+  const Json json = tables.write(*study);
   if (call.study.json) return print(dump(json));
   std::string text = table_of(json["targets"]);
   for (const Json& row : json["targets"]) {
@@ -217,6 +219,7 @@ Command add_study_visibility(CLI::App& study) {
   add_study_options(*parser, call->study);
   add_cameras_option(*parser, call->study);
   add_wanted_options(*parser, call->wanted, call->iris);
+  add_part_options(*parser, call->study.part);
   parser->add_flag("--dry-run", call->dry_run, "Only say what would be done, and its price");
   return {parser, [call](const Common& common) { run(*call, common); }};
 }

@@ -21,6 +21,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/ranks/ranks.h"
 
 namespace earthshine::base {
 namespace {
@@ -169,6 +170,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::commit() {
+  if (ranks() != nullptr && ranks()->number() > 0) return;
   if (file_ >= 0) {
     struct stat old {};
     if (::stat(target_.c_str(), &old) == 0) static_cast<void>(::fchmod(file_, old.st_mode & 07777));
@@ -179,6 +181,31 @@ void OutputFile::commit() {
     flush_folder(folder_of(target_));
   }
   committed_ = true;
+}
+
+// A link is made or not made in one step, on NFS too, where a lock or a look beforehand would not
+// do. An answer that was lost on the way is asked for again there, and refused although the link
+// was made: then the file has two names. File systems without links have the rename alone.
+bool OutputFile::commit_if_new() {
+  if (file_ < 0) return true;  // a device
+  if (::fsync(file_) != 0 && errno != EINVAL) refuse(errno);
+  if (::link(temporary_.c_str(), target_.c_str()) != 0) {
+    const int problem = errno;
+    struct stat own {};
+    const bool made = ::stat(temporary_.c_str(), &own) == 0 && own.st_nlink > 1;
+    std::error_code ignored;
+    if (problem == EEXIST && !made) return false;
+    if (problem == EPERM || problem == ENOTSUP || problem == ENOSYS) {
+      if (fs::exists(target_, ignored)) return false;
+      commit();
+      return true;
+    }
+    if (problem != EEXIST) refuse(problem);
+  }
+  ::unlink(temporary_.c_str());
+  flush_folder(folder_of(target_));
+  committed_ = true;
+  return true;
 }
 
 void OutputFile::refuse(int error_number) const {
@@ -199,8 +226,10 @@ void remove_abandoned_files(const fs::path& folder) {
   }
 }
 
-void write_text(const fs::path& path, std::string_view text) {
-  OutputFile output(path);
+namespace {
+
+// Into the temporary file, down to the disk.
+void write_aside(const OutputFile& output, const fs::path& path, std::string_view text) {
   const auto close = [](std::FILE* f) { std::fclose(f); };
   std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(output.temporary().c_str(), "wb"),
                                                    close);
@@ -215,7 +244,20 @@ void write_text(const fs::path& path, std::string_view text) {
     throw Error(Blame::Work, path.string(), "cannot be written: " + system_reason(problem), {},
                 "Free some space or write elsewhere; an older file of that name was kept");
   }
+}
+
+}  // namespace
+
+void write_text(const fs::path& path, std::string_view text) {
+  OutputFile output(path);
+  write_aside(output, path, text);
   output.commit();
+}
+
+bool write_new_text(const fs::path& path, std::string_view text) {
+  OutputFile output(path);
+  write_aside(output, path, text);
+  return output.commit_if_new();
 }
 
 }  // namespace earthshine::base

@@ -22,7 +22,11 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
+  // Of several ranks (base/ranks) the first alone renames it; the others' is removed.
   void commit();
+  // The same only where the target is not there yet: false, and nothing is changed, if it is. Of
+  // several processes that write one file exactly one is told true.
+  [[nodiscard]] bool commit_if_new();
 
  private:
   [[noreturn]] void refuse(int error_number) const;
@@ -44,5 +48,7 @@ void remove_abandoned_files(const std::filesystem::path& folder);
 // Writes text to a file, aside and renamed. Throws as OutputFile does, and base::Error (Work) on a
 // full disk.
 void write_text(const std::filesystem::path& path, std::string_view text);
+// The same for a file that is not there yet; false, and nothing is changed, if it is.
+[[nodiscard]] bool write_new_text(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace earthshine::base

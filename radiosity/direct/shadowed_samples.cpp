@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 
 #include "base/numbers/random.h"
-#include "base/parallel.h"
+#include "base/ranks/ranks.h"
 #include "radiosity/bodies/closed_bodies.h"
 #include "scenes/light/thrown_light.h"
 
@@ -118,9 +117,9 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
                        const Source& source, std::uint64_t seed, std::uint64_t& rays) {
   Sampled sampled{std::vector<Rgb>(patches.count(), Rgb(0.0)),
                   std::vector<double>(patches.count(), 0.0)};
-  std::atomic<std::uint64_t> ray_count{0};
-  base::parallel_chunks(patches.count(), 256, [&](std::size_t begin, std::size_t end) {
-    std::uint64_t chunk_rays = 0;
+  constexpr std::size_t chunk = 256;
+  std::vector<std::uint64_t> chunk_rays((patches.count() + chunk - 1) / chunk, 0);
+  const auto sample = [&](std::size_t begin, std::size_t end) {
     std::vector<LightSample> samples;
     for (std::size_t i = begin; i < end; ++i) {
       const auto patch = static_cast<std::uint32_t>(i);
@@ -139,7 +138,7 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
         const Vec3 at = patches.point(patch, p[0], p[1]);
         if (!near.empty() && open.bodies->cover(at + lift - open.bodies->centre(), near)) continue;
         take_samples(source, query.ways().mirrors(), at, normal, p[2], p[3], samples);
-        for (const LightSample& sample : samples) receiver.add(taken, at + lift, sample);
+        for (const LightSample& one : samples) receiver.add(taken, at + lift, one);
         ++taken;
       }
       receiver.finish();
@@ -148,11 +147,16 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
       sampled.illuminance_lx[i] = receiver.sum() / n;
       sampled.variance[i] =
           std::max(0.0, receiver.sum_of_squares() - y * y / n) / (n * std::max(1.0, n - 1.0));
-      chunk_rays += receiver.rays();
+      chunk_rays[begin / chunk] += receiver.rays();
     }
-    ray_count += chunk_rays;
-  });
-  rays += ray_count;
+  };
+  base::share_chunks(patches.count(), chunk, sample,
+                     [&](std::size_t begin, std::size_t end, base::Parcel& parcel) {
+                       parcel.pass_range(&sampled.illuminance_lx[begin], end - begin);
+                       parcel.pass_range(&sampled.variance[begin], end - begin);
+                       parcel.pass(chunk_rays[begin / chunk]);
+                     });
+  for (const std::uint64_t count : chunk_rays) rays += count;
   return sampled;
 }
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/parallel.h"
+#include "base/ranks/ranks.h"
 #include "radiosity/factors/covered_patches.h"
 #include "radiosity/factors/object_runs.h"
 #include "radiosity/factors/row_caster.h"
@@ -127,15 +127,21 @@ FormFactors cast_rows(const scenes::Scene& scene, const scenes::RayQuery& query,
   std::vector<Band> bands(band_start.size() - 1);
   const RowCaster caster(scene, query, patches, factors.kept, options,
                          static_cast<std::uint32_t>(factors.rays_per_patch), runs, sky);
-  base::parallel_chunks(bands.size(), 1, [&](std::size_t begin, std::size_t end) {
+  const auto cast = [&](std::size_t band) {
     thread_local HitCounter counter(0);
     if (counter.patches() < patches.count()) counter = HitCounter(patches.count());
-    for (std::size_t band = begin; band < end; ++band) {
-      bands[band].back_hits.assign(scene.objects.size(), 0.0);
-      for (std::size_t i = band_start[band]; i < band_start[band + 1]; ++i) {
-        caster.cast(rows[i], counter, bands[band]);
-      }
+    bands[band].back_hits.assign(scene.objects.size(), 0.0);
+    for (std::size_t i = band_start[band]; i < band_start[band + 1]; ++i) {
+      caster.cast(rows[i], counter, bands[band]);
     }
+  };
+  base::share_loop(bands.size(), cast, [&](std::size_t band, base::Parcel& parcel) {
+    Band& found = bands[band];
+    parcel.pass(found.rows);
+    parcel.pass(found.back_hits);
+    parcel.pass(found.column);
+    parcel.pass(found.hits);
+    parcel.pass(found.sky_illuminance);
   });
   assemble(bands, factors);
   std::size_t i = 0;

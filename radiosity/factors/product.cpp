@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "base/ranks/ranks.h"
 #include "radiosity/factors/form_factors.h"
 
 namespace earthshine::radiosity {
@@ -80,9 +81,17 @@ void multiply(const FormFactors& factors, std::span<const double> x, std::span<d
   for (std::size_t first = 0; first < columns; first += most_blocks * lanes) {
     const std::size_t blocks = std::min((columns - first + lanes - 1) / lanes, most_blocks);
     const std::vector<Lanes> z = packed(factors, x, columns, first, blocks);
-    base::parallel_chunks(factors.count(), 256, [&](std::size_t begin, std::size_t end) {
-      multiply_blocks[blocks - 1](factors, z.data(), begin, end, columns, first, y);
-    });
+    const std::size_t used = std::min(columns - first, blocks * lanes);
+    base::share_chunks(
+        factors.count(), 256,
+        [&](std::size_t begin, std::size_t end) {
+          multiply_blocks[blocks - 1](factors, z.data(), begin, end, columns, first, y);
+        },
+        [&](std::size_t begin, std::size_t end, base::Parcel& parcel) {
+          for (std::size_t i = begin; i < end; ++i) {
+            parcel.pass_range(&y[i * columns + first], used);
+          }
+        });
   }
 }
 

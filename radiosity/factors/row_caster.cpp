@@ -110,11 +110,15 @@ bool RowCaster::trace(std::uint32_t patch, PatchRays::Sender sender, bool look_o
   return true;
 }
 
-std::vector<std::uint32_t> RowCaster::bodies_near(std::uint32_t patch) const {
+std::shared_ptr<const ClosedBodies> RowCaster::bodies() const {
   std::call_once(bodies_made_, [this] {
     bodies_ = std::make_shared<const ClosedBodies>(scene_, query_.centre());
   });
-  return bodies_->near(patches_, patch, 2.0 * query_.surface_offset_m());
+  return bodies_;
+}
+
+std::vector<std::uint32_t> RowCaster::bodies_near(std::uint32_t patch) const {
+  return bodies()->near(patches_, patch, 2.0 * query_.surface_offset_m());
 }
 
 void RowCaster::count_hits(const RayPacket& packet, const HitPacket& hits,

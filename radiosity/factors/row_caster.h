@@ -48,8 +48,8 @@ class RowCaster {
   // Appends the patch's row to the band.
   void cast(std::uint32_t patch, HitCounter& counter, Band& band) const;
 
-  // Null unless a row needed to know.
-  [[nodiscard]] std::shared_ptr<const ClosedBodies> bodies() const { return bodies_; }
+  // Made when they are first asked for, here or by a row.
+  [[nodiscard]] std::shared_ptr<const ClosedBodies> bodies() const;
 
  private:
   bool trace(std::uint32_t patch, PatchRays::Sender sender, bool look_out,
@@ -76,7 +76,7 @@ class RowCaster {
   bool leave_out_covered_, dark_sky_;
   PatchRays rays_;
   HitTargets targets_;
-  // Made when the first row asks: most scenes have no use for them.
+  // Made when somebody asks: most scenes have no use for them.
   mutable std::once_flag bodies_made_;
   mutable std::shared_ptr<const ClosedBodies> bodies_;
 };

@@ -112,8 +112,7 @@ void write_origin(Hdf5Writer& file, const SolutionOrigin& origin) {
 
 }  // namespace
 
-void write_solution(const std::filesystem::path& path, const Solution& solution,
-                    const SolutionOrigin& origin) {
+std::string solution_bytes(const Solution& solution, const SolutionOrigin& origin) {
   Hdf5Writer file;
   write_origin(file, origin);
   write_geometry(file, solution.patches);
@@ -123,7 +122,12 @@ void write_solution(const std::filesystem::path& path, const Solution& solution,
   visit_layout(store, layout);
   visit_light(store, solution);
   visit_report(store, solution.report);
-  base::write_text(path, file.finish());
+  return file.finish();
+}
+
+void write_solution(const std::filesystem::path& path, const Solution& solution,
+                    const SolutionOrigin& origin) {
+  base::write_text(path, solution_bytes(solution, origin));
 }
 
 }  // namespace earthshine::radiosity

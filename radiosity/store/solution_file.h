@@ -27,6 +27,9 @@ struct SolutionOrigin {
 void write_solution(const std::filesystem::path& path, const Solution& solution,
                     const SolutionOrigin& origin);
 
+// The bytes of that file.
+[[nodiscard]] std::string solution_bytes(const Solution& solution, const SolutionOrigin& origin);
+
 // Bit for bit what was written, but for the stage times. Throws base::Error (Input) if the file is
 // damaged, or stale: then the message names every part that differs.
 [[nodiscard]] Solution read_solution(const std::filesystem::path& path,

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <mutex>
 
-#include "base/parallel.h"
+#include "base/ranks/ranks.h"
 #include "raytrace/gather/gather_field.h"
 #include "raytrace/gather/gather_tiles.h"
 
@@ -17,11 +16,11 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
                              std::uint32_t round, const std::function<bool()>& stop) {
   Estimate& estimate = estimate_[number(kind)];
   const bool lobe = kind == Gathered::Lobe;
-  std::mutex mutex;
-  base::parallel_chunks(tile_count(window_), 1, [&](std::size_t t, std::size_t) {
+  std::vector<RayCounts> counts_of(tile_count(window_));
+  const auto cast_tile = [&](std::size_t t) {
     if (stop && stop()) return;
     PathWalker walker(world_);
-    RayCounts counts;
+    RayCounts& counts = counts_of[t];
     std::vector<Rgb> sum(image_layers_);
     for (const std::size_t p : points_of_tile(t)) {
       const GatherPoint& point = points_[p];
@@ -54,9 +53,12 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
       estimate.samples[p] += static_cast<float>(2 * each);
     }
     counts += walker.rays();
-    const std::lock_guard lock(mutex);
-    rays_of_[number(kind)] += counts;
+  };
+  base::share_loop(counts_of.size(), cast_tile, [&](std::size_t t, base::Parcel& parcel) {
+    parcel.pass(counts_of[t]);
+    for (const std::size_t p : points_of_tile(t)) estimate.pass(p, parcel);
   });
+  for (const RayCounts& tile : counts_of) rays_of_[number(kind)] += tile;
 }
 
 // L = integral of L_in (k_s / pi) cos^n alpha cos theta by a ray of density

@@ -2,9 +2,8 @@
 // GatherField's rays that read the radiosity solution.
 #include <array>
 #include <bit>
-#include <mutex>
 
-#include "base/parallel.h"
+#include "base/ranks/ranks.h"
 #include "raytrace/gather/gather_field.h"
 #include "raytrace/gather/gather_tiles.h"
 
@@ -94,7 +93,6 @@ class SolutionRays {
 void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uint32_t round,
                                 const std::function<bool()>& stop) {
   Estimate& estimate = estimate_[number(Gathered::Solution)];
-  std::mutex mutex;
   const auto rays_for = [&](std::size_t p) {
     const bool wanted = points_[p].reach_m > 0.0F && points_[p].reflectance > 0.0F;
     if (!wanted || more[p] < fewest_samples(Gathered::Solution)) return 0U;
@@ -106,7 +104,8 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
     const std::uint32_t of_class = 1U << factor;
     if ((classes & of_class) == 0) continue;
     const GatherRays rays(of_class);
-    base::parallel_chunks(tile_count(window_), 1, [&](std::size_t t, std::size_t) {
+    std::vector<RayCounts> counts(tile_count(window_));
+    const auto cast_tile = [&](std::size_t t) {
       if (stop && stop()) return;
       TilePoints points;
       const auto cast = [&] {
@@ -123,8 +122,7 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
                 static_cast<float>(luminance_of({&found.sums[k * layers_], image_layers_}));
             estimate.samples[p] += static_cast<float>(of_class);
           }
-          const std::lock_guard lock(mutex);
-          rays_of_[number(Gathered::Solution)] += found.counts;
+          counts[t] += found.counts;
         }
         points.count = 0;
       };
@@ -135,7 +133,15 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
         if (points.count == most_tile_points) cast();
       }
       if (points.count > 0) cast();
+    };
+    base::share_loop(counts.size(), cast_tile, [&](std::size_t t, base::Parcel& parcel) {
+      parcel.pass(counts[t]);
+      for (const std::size_t p : points_of_tile(t)) {
+        parcel.pass(inverse_length_[p]);
+        estimate.pass(p, parcel);
+      }
     });
+    for (const RayCounts& tile : counts) rays_of_[number(Gathered::Solution)] += tile;
   }
   for (std::size_t p = 0; p < points_.size(); ++p) {
     if (inverse_length_[p] > 0.0) {

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "raytrace/paths/path_tracer.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <mutex>
 #include <string>
 
-#include "base/parallel.h"
+#include "base/ranks/ranks.h"
+#include "raytrace/frame/join.h"
 #include "raytrace/paths/path_walker.h"
 
 namespace earthshine::raytrace {
@@ -41,8 +43,8 @@ PathWorld make_world(const scenes::Scene& scene, const scenes::LightGroups& grou
   return world;
 }
 
-base::Image make_image(const PathOptions& options, const std::vector<std::string>& layers) {
-  base::Image image = base::make_rgb_image(options.columns, options.rows);
+base::Image make_image(const Window& window, const std::vector<std::string>& layers) {
+  base::Image image = base::make_rgb_image(window.columns, window.rows);
   image.add("variance");
   for (const std::string& name : layers) {
     for (const char* channel : {".R", ".G", ".B"}) image.add("light_" + name + channel);
@@ -83,14 +85,6 @@ void store(const PathSums& sums, std::size_t pixel, base::Image& image) {
   image.channels[rgb].values[pixel] = static_cast<float>(sums.variance_of_mean());
 }
 
-double relative_noise(const base::Image& image) {
-  double error = 0.0, mean = 0.0;
-  for (const float v : image.channels[rgb].values) error += double(v);
-  for (const float y : base::luminance_of(image)) mean += double(y);
-  const auto n = static_cast<double>(image.pixel_count());
-  return mean > 0.0 ? std::sqrt(error / n) / (mean / n) : 0.0;
-}
-
 }  // namespace
 
 Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
@@ -106,41 +100,55 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
   const CameraModel model = make_camera_model(camera, options.columns, options.rows);
 
   Frame frame;
-  frame.window = {0, 0, options.columns, options.rows};
-  frame.image = make_image(options, options.per_light ? groups.names : std::vector<std::string>{});
-  const auto columns = static_cast<std::size_t>(options.columns);
-  const auto rows = static_cast<std::size_t>(options.rows);
+  const Window window =
+      options.window.columns > 0 ? options.window : Window{0, 0, options.columns, options.rows};
+  frame.window = window;
+  frame.image = make_image(window, options.per_light ? groups.names : std::vector<std::string>{});
+  const auto columns = static_cast<std::size_t>(window.columns);
+  const auto rows = static_cast<std::size_t>(window.rows);
   std::vector<RayCounts> row_rays(rows);
+  std::vector<char> finished(rows, 0);
   std::size_t done = 0;
   std::mutex progress_mutex;
-  base::parallel_chunks(rows, 1, [&](std::size_t y, std::size_t) {
+  const auto trace_row = [&](std::size_t y) {
     if (options.stop && options.stop()) return;
     PathWalker walker(world);
     for (std::size_t x = 0; x < columns; ++x) {
-      const std::size_t pixel = y * columns + x;
-      const base::Key key(options.seed, base::Stream::Path, pixel);
+      const std::size_t in_x = static_cast<std::size_t>(window.x) + x;
+      const std::size_t in_y = static_cast<std::size_t>(window.y) + y;
+      const base::Key key(options.seed, base::Stream::Path,
+                          in_y * static_cast<std::size_t>(options.columns) + in_x);
       PathSums sums{std::vector<Rgb>(world.layers, Rgb(0.0))};
       for (int path = 0; path < options.paths_per_pixel; ++path) {
         base::Rng rng(key.with(static_cast<std::uint64_t>(path)));
-        const double at_x = double(x) + rng.next();
-        const double at_y = double(y) + rng.next();
+        const double at_x = double(in_x) + rng.next();
+        const double at_y = double(in_y) + rng.next();
         const double lens_u = rng.next();
         const double lens_v = rng.next();
         sums.add(walker.walk(model.ray(at_x, at_y, lens_u, lens_v), rng));
       }
-      store(sums, pixel, frame.image);
+      store(sums, y * columns + x, frame.image);
     }
     row_rays[y] = walker.rays();
+    finished[y] = 1;
     const std::lock_guard lock(progress_mutex);
     ++done;
     if (progress) progress(done, rows);
+  };
+  base::share_loop(rows, trace_row, [&](std::size_t y, base::Parcel& parcel) {
+    parcel.pass(row_rays[y]);
+    parcel.pass(finished[y]);
+    for (base::Channel& channel : frame.image.channels) {
+      parcel.pass_range(&channel.values[y * columns], columns);
+    }
   });
   for (const RayCounts& rays : row_rays) frame.report.rays += rays;
+  done = static_cast<std::size_t>(std::count(finished.begin(), finished.end(), 1));
   frame.report.finished_share = static_cast<double>(done) / static_cast<double>(rows);
   frame.report.stopped = done < rows;
   frame.report.camera_samples = options.paths_per_pixel;
   frame.report.most_camera_samples = options.paths_per_pixel;
-  frame.report.relative_noise = relative_noise(frame.image);
+  frame.report.relative_noise = noise_of_paths(frame.image);
   frame.report.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return frame;

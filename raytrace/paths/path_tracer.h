@@ -44,6 +44,7 @@ struct PathOptions {
   std::uint64_t seed = 1;
   // Asked once per row; once it says true the rows that are left stay black.
   std::function<bool()> stop = {};
+  Window window = {};  // of the picture, within it; without columns the whole of it
 };
 
 // Channels R, G, B (cd/m^2); `variance`, of the pixel's mean luminance, (cd/m^2)^2; with per_light

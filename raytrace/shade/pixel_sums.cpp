@@ -6,7 +6,7 @@
 #include <cmath>
 #include <mutex>
 
-#include "base/parallel.h"
+#include "base/ranks/ranks.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -127,29 +127,51 @@ void shade_samples(const ShadingScene& shared, const CameraModel& camera,
   const int tiles_x = (window.columns + tile_edge_px - 1) / tile_edge_px;
   const int tiles_y = (window.rows + tile_edge_px - 1) / tile_edge_px;
   const auto tiles = static_cast<std::size_t>(tiles_x) * static_cast<std::size_t>(tiles_y);
+  std::vector<RayCounts> rays_of(tiles);
   std::mutex mutex;
-  base::parallel_chunks(tiles, 1, [&](std::size_t tile, std::size_t) {
-    if (stop && stop()) return;
+  // visit(x, y, pixel) of a tile's pixels.
+  const auto for_each_pixel = [&](std::size_t tile, const auto& visit) {
     const int x0 = static_cast<int>(tile % static_cast<std::size_t>(tiles_x)) * tile_edge_px;
     const int y0 = static_cast<int>(tile / static_cast<std::size_t>(tiles_x)) * tile_edge_px;
-    PixelShader shader(shared);
-    std::uint64_t count = 0;
     for (int y = y0; y < std::min(y0 + tile_edge_px, window.rows); ++y) {
       for (int x = x0; x < std::min(x0 + tile_edge_px, window.columns); ++x) {
-        const std::size_t pixel = window.index(window.x + x, window.y + y);
-        const std::uint32_t first = sums.samples[pixel];
-        if (wanted[pixel] <= first) continue;
-        const std::uint64_t before = shader.rays().total();
-        shade_pixel(shared, camera, window.x + x, window.y + y, first, wanted[pixel], shader);
-        sums.rays[pixel] += static_cast<float>(shader.rays().total() - before);
-        sums.add(pixel, shader, first, wanted[pixel] - first);
-        count += wanted[pixel] - first;
+        visit(window.x + x, window.y + y, window.index(window.x + x, window.y + y));
       }
     }
+  };
+  const auto shade_tile = [&](std::size_t tile) {
+    if (stop && stop()) return;
+    PixelShader shader(shared);
+    std::uint64_t count = 0;
+    for_each_pixel(tile, [&](int x, int y, std::size_t pixel) {
+      const std::uint32_t first = sums.samples[pixel];
+      if (wanted[pixel] <= first) return;
+      const std::uint64_t before = shader.rays().total();
+      shade_pixel(shared, camera, x, y, first, wanted[pixel], shader);
+      sums.rays[pixel] += static_cast<float>(shader.rays().total() - before);
+      sums.add(pixel, shader, first, wanted[pixel] - first);
+      count += wanted[pixel] - first;
+    });
+    rays_of[tile] = shader.rays();
     const std::lock_guard lock(mutex);
-    rays += shader.rays();
     if (progress && count > 0) progress(count);
+  };
+  base::share_loop(tiles, shade_tile, [&](std::size_t tile, base::Parcel& parcel) {
+    parcel.pass(rays_of[tile]);
+    for_each_pixel(tile, [&](int, int, std::size_t pixel) { sums.pass(pixel, parcel); });
   });
+  for (const RayCounts& tile : rays_of) rays += tile;
+}
+
+void PixelSums::pass(std::size_t pixel, base::Parcel& parcel) {
+  parcel.pass_range(&radiance[pixel * entries], entries);
+  parcel.pass(terms[pixel]);
+  parcel.pass(samples[pixel]);
+  parcel.pass(luminance[pixel]);
+  parcel.pass(luminance2[pixel]);
+  parcel.pass(half_difference[pixel]);
+  parcel.pass(source[pixel]);
+  parcel.pass(rays[pixel]);
 }
 
 std::vector<std::uint32_t> wanted_samples(const PixelSums& sums, double per_deviation,

@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "base/ranks/ranks.h"
 #include "raytrace/shade/shading.h"
 
 namespace earthshine::raytrace {
@@ -35,6 +36,8 @@ struct PixelSums {
   [[nodiscard]] double squared_error(std::size_t pixel) const;
   // Whether the pixel shows a surface that reflects and no edge of a source itself.
   [[nodiscard]] bool counts(std::size_t pixel) const;
+  // All of a pixel.
+  void pass(std::size_t pixel, base::Parcel& parcel);
   // Samples into the sums of a pixel.
   void add(std::size_t pixel, const PixelShader& shader, std::uint32_t first, std::uint32_t count);
 };

@@ -22,6 +22,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/ranks/ranks.h"
 #include "base/units.h"
 #include "raytrace/camera/camera.h"
 
@@ -57,6 +58,12 @@ struct Estimate {
         sum(points * layers_each, glm::vec3(0.0F)),
         luminance(points, {0.0F, 0.0F}),
         samples(points, 0.0F) {}
+  // A point's sums.
+  void pass(std::size_t point, base::Parcel& parcel) {
+    parcel.pass_range(&sum[point * layers], layers);
+    parcel.pass(luminance[point]);
+    parcel.pass(samples[point]);
+  }
 };
 
 // Which points share: those on the same surface, 2 steps of 1, 2, 4 ... pixels away.

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "app/command.h"
-#include "base/image.h"
+#include "base/files/exr_file.h"
 
 namespace earthshine::app {
 
@@ -23,6 +23,7 @@ namespace earthshine::app {
 struct CachedResult {
   Json facts;
   base::Image image;
+  base::ExrHeader header = {};  // of a picture that is part of another; not read back
 };
 
 class ResultCache {

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/visibility/frames.h"
+#include "app/views/frames.h"
 
 #include <fmt/format.h>
 
 #include "app/console.h"
 #include "app/interrupt.h"
 #include "app/memory.h"
+#include "app/parts/shared_solution.h"
 #include "app/study/study.h"
 #include "base/error.h"
-#include "base/numbers/digest.h"
 #include "radiosity/refine.h"
-#include "radiosity/store/solution_file.h"
-#include "radiosity/store/solution_key.h"
 #include "scenes/effects/quality.h"
 #include "scenes/sky/sky_parts.h"
 
@@ -37,18 +35,15 @@ scenes::Scene scene_to_cut(const scenes::Scene& basis) {
 }  // namespace
 
 StudyFrames::StudyFrames(const StudyPart& part, const std::filesystem::path& folder,
-                         const Common& common)
+                         const Common& common, const PartCall& how)
     : part_(part),
       common_(common),
+      how_(how),
       folder_(folder),
       store_(folder),
       solver_(solve_options(part.basis_scene.scene, common)) {
   scene_cache_key_ = scene_cache_key(part.basis_scene);
-  Json knobs = Json::object();
-  for (const radiosity::SolveKnob& knob : radiosity::solve_knobs(solver_)) {
-    std::visit([&](const auto& value) { knobs[knob.key] = value; }, knob.value);
-  }
-  scene_cache_key_["solver"] = knobs;
+  scene_cache_key_["solver"] = solver_cache_key(solver_);
 }
 
 raytrace::RenderOptions StudyFrames::options(const StudyCamera& camera) const {
@@ -79,39 +74,55 @@ Json StudyFrames::cache_key(const StudyCamera& camera) const {
   return cache_key;
 }
 
-const radiosity::Solution& StudyFrames::solution(std::vector<StudyCost>& costs) {
-  if (solution_) return *solution_;
+radiosity::Solution StudyFrames::solve(StageTimes& times) const {
   const LoadedScene& basis = part_.basis_scene;
-  base::Digest digest;
-  digest.add(std::string_view(dump(scene_cache_key_)));
-  const std::filesystem::path file = folder_ / ("solution-" + digest.text() + ".h5");
-  const radiosity::SolutionOrigin origin{basis.scene, basis.groups, solver_, EARTHSHINE_VERSION};
-  StudyCost cost{"solve " + part_.id, 0.0, 0, true};
-  StageTimes times;
+  const raytrace::Progress progress = progress_of_stages(common_)("solve " + part_.path);
+  if (progress) progress(0, 1);
+  radiosity::Solution found = times.measure("solve", [&] {
+    const scenes::Scene cut = scene_to_cut(basis.scene);
+    const scenes::LightGroups groups = scenes::find_light_groups(cut);
+    radiosity::Refined refined = radiosity::refine(
+        cut, groups, scenes::find_effects(cut, groups, {}), *part_.query, solver_);
+    return radiosity::solve(basis.scene, basis.groups, basis.effects, *part_.query, solver_,
+                            std::move(refined.patches));
+  });
+  note_balance(found);
+  return found;
+}
+
+radiosity::Solution StudyFrames::read_or_solve(const std::filesystem::path& file,
+                                               const radiosity::SolutionOrigin& origin,
+                                               StudyCost& cost, StageTimes& times) const {
   std::error_code ignored;
   if (std::filesystem::exists(file, ignored)) {
     try {
-      solution_ = times.measure("read", [&] { return radiosity::read_solution(file, origin); });
+      return times.measure("read", [&] { return radiosity::read_solution(file, origin); });
     } catch (const base::Error& error) {
       note(fmt::format("note: {}; it is recomputed", error.what()));
     }
   }
-  if (!solution_) {
-    const raytrace::Progress progress = progress_of_stages(common_)("solve " + part_.path);
-    if (progress) progress(0, 1);
-    solution_ = times.measure("solve", [&] {
-      const scenes::Scene cut = scene_to_cut(basis.scene);
-      const scenes::LightGroups groups = scenes::find_light_groups(cut);
-      radiosity::Refined refined = radiosity::refine(
-          cut, groups, scenes::find_effects(cut, groups, {}), *part_.query, solver_);
-      return radiosity::solve(basis.scene, basis.groups, basis.effects, *part_.query, solver_,
-                              std::move(refined.patches));
-    });
-    note_balance(*solution_);
-    cost.found = false;
-    cost.rays = solution_->report.form_factor_rays + solution_->report.shadow_rays;
-    radiosity::write_solution(file, *solution_, origin);
+  radiosity::Solution found = solve(times);
+  cost.found = false;
+  radiosity::write_solution(file, found, origin);
+  return found;
+}
+
+const radiosity::Solution& StudyFrames::solution(std::vector<StudyCost>& costs) {
+  if (solution_) return *solution_;
+  const LoadedScene& basis = part_.basis_scene;
+  const std::filesystem::path file = solution_file_in(folder_, scene_cache_key_);
+  const radiosity::SolutionOrigin origin{basis.scene, basis.groups, solver_, EARTHSHINE_VERSION};
+  StudyCost cost{"solve " + part_.id, 0.0, 0, true};
+  StageTimes times;
+  if (how_.in_parts()) {
+    SharedSolution shared =
+        shared_solution(file, origin, how_.wait_s, common_.quiet, [&] { return solve(times); });
+    cost.found = shared.found;
+    solution_ = std::move(shared.solution);
+  } else {
+    solution_ = read_or_solve(file, origin, cost, times);
   }
+  if (!cost.found) cost.rays = solution_->report.form_factor_rays + solution_->report.shadow_rays;
   cost.seconds = times.total();
   costs.push_back(cost);
   return *solution_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/visibility/scene.h"
+#include "app/views/scene.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

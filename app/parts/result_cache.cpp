@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/study/result_cache.h"
+#include "app/parts/result_cache.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <iterator>
 #include <map>
 
-#include "app/study/build_id.h"
+#include "app/parts/build_id.h"
 #include "base/error.h"
 #include "base/files/exr_file.h"
 #include "base/files/output_file.h"
@@ -146,7 +146,7 @@ bool ResultCache::has(const Json& cache_key) const {
 }
 
 void ResultCache::keep(const Json& cache_key, const CachedResult& part) const {
-  base::write_exr(folder_ / (stem_of(cache_key) + ".exr"), part.image);
+  base::write_exr(folder_ / (stem_of(cache_key) + ".exr"), part.image, part.header);
   base::write_text(folder_ / (stem_of(cache_key) + ".json"),
                    text_of_part(cache_key, part.facts, digest_of(part.image)));
 }

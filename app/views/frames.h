@@ -5,11 +5,16 @@
 
 #include <functional>
 
-#include "app/study/result_cache.h"
-#include "app/visibility/scene.h"
+#include "app/parts/part.h"
+#include "app/parts/result_cache.h"
+#include "app/views/scene.h"
+#include "radiosity/store/solution_file.h"
 #include "studies/study.h"
 
 namespace earthshine::app {
+
+// In the study's folder: what is kept.
+inline constexpr const char* points_folder = "points";
 
 // What was done or found, for the report.
 struct StudyCost {
@@ -21,7 +26,9 @@ struct StudyCost {
 
 class StudyFrames {
  public:
-  StudyFrames(const StudyPart& part, const std::filesystem::path& folder, const Common& common);
+  // how: in parts, all of them read one solution.
+  StudyFrames(const StudyPart& part, const std::filesystem::path& folder, const Common& common,
+              const PartCall& how);
 
   // The picture of a camera, with the layer "object"; nothing if it was interrupted.
   struct Frame {
@@ -40,14 +47,24 @@ class StudyFrames {
                                            std::vector<StudyCost>& costs) const;
   [[nodiscard]] bool has(const StudyCamera& camera) const { return store_.has(cache_key(camera)); }
 
+  // Digests of the scene, the solver's settings and the program.
+  [[nodiscard]] const Json& scene_key() const { return scene_cache_key_; }
+
   // Of all light groups; solved or read when it is first asked for.
   [[nodiscard]] const radiosity::Solution& solution(std::vector<StudyCost>& costs);
 
  private:
   [[nodiscard]] raytrace::RenderOptions options(const StudyCamera& camera) const;
 
+  [[nodiscard]] radiosity::Solution solve(StageTimes& times) const;
+  // The file's, or a new one in place of one that cannot be read.
+  [[nodiscard]] radiosity::Solution read_or_solve(const std::filesystem::path& file,
+                                                  const radiosity::SolutionOrigin& origin,
+                                                  StudyCost& cost, StageTimes& times) const;
+
   const StudyPart& part_;
   const Common& common_;
+  const PartCall& how_;
   std::filesystem::path folder_;
   ResultCache store_;
   radiosity::SolveOptions solver_;

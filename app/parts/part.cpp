@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/parts/part.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+
+#include "app/options.h"
+#include "app/parts/build_id.h"
+#include "base/error.h"
+#include "base/files/output_file.h"
+
+namespace earthshine::app {
+namespace {
+
+namespace fs = std::filesystem;
+using base::Blame;
+using base::Error;
+
+constexpr std::uint64_t most_parts = 1000000;
+constexpr const char* record_file = "parts.json";
+constexpr const char* part_forms =
+    "K/N with K from 1 to N, auto, auto/N (both in a job array), solve or merge";
+
+std::optional<std::uint64_t> number_in(const char* variable) {
+  const char* const text = std::getenv(variable);
+  if (text == nullptr) return std::nullopt;
+  const std::string word = text;
+  std::uint64_t number = 0;
+  const auto read = std::from_chars(word.data(), word.data() + word.size(), number);
+  if (read.ec == std::errc() && read.ptr == word.data() + word.size()) return number;
+  throw Error(Blame::Input, variable, fmt::format("\"{}\" is not a whole number", word), {},
+              "Write --part K/N");
+}
+
+[[noreturn]] void refuse_array(const std::string& found, const std::string& remedy) {
+  throw Error(Blame::Input, "--part auto", found, {}, remedy);
+}
+
+// Slurm tells where the array begins and how many tasks it has. PBS tells the index alone, as
+// PBS_ARRAY_INDEX (PBS Professional, OpenPBS) or PBS_ARRAYID (Torque).
+void read_array(PartCall& part) {
+  const auto task = number_in("SLURM_ARRAY_TASK_ID"), count = number_in("SLURM_ARRAY_TASK_COUNT");
+  if (!task) {
+    refuse_array("there is no SLURM_ARRAY_TASK_ID",
+                 "Write --part auto/N in a PBS array of the indices 1 to N, K/N elsewhere");
+  }
+  const std::uint64_t first = number_in("SLURM_ARRAY_TASK_MIN").value_or(1);
+  const std::uint64_t last = number_in("SLURM_ARRAY_TASK_MAX").value_or(0);
+  if (!count || *task < first || last != first + *count - 1) {
+    refuse_array(
+        "the indices of the Slurm array are not consecutive",
+        "Write --part auto/N, with all indices from 1 to N; some of them may be run alone");
+  }
+  part.number = *task - first + 1;
+  part.count = *count;
+}
+
+void read_index(PartCall& part) {
+  for (const char* variable : {"SLURM_ARRAY_TASK_ID", "PBS_ARRAY_INDEX", "PBS_ARRAYID"}) {
+    const auto index = number_in(variable);
+    if (!index) continue;
+    if (*index >= 1 && *index <= part.count) {
+      part.number = *index;
+      return;
+    }
+    throw Error(
+        Blame::Input, variable, fmt::format("{} is no part of {}", *index, part.count),
+        fmt::format("the indices of the array are those of the parts, 1 to {}", part.count));
+  }
+  refuse_array("there is no SLURM_ARRAY_TASK_ID, PBS_ARRAY_INDEX or PBS_ARRAYID",
+               "Write --part K/N outside a job array");
+}
+
+PartCall::Task read_part(const std::string& text, PartCall& part) {
+  using Task = PartCall::Task;
+  part.begins = text == "begin";  // not for people: main.cpp, of ranks
+  if (text == "solve" || part.begins) return Task::Solve;
+  if (text == "merge") return Task::Merge;
+  if (text == "auto") {
+    read_array(part);
+    return Task::Share;
+  }
+  const std::size_t slash = text.find('/');
+  if (slash == std::string::npos) {
+    throw CLI::ValidationError("--part", fmt::format("\"{}\" is not {}", text, part_forms));
+  }
+  part.count = read_whole_number("--part", text.substr(slash + 1), 1, most_parts);
+  if (text.substr(0, slash) == "auto") {
+    read_index(part);
+  } else {
+    part.number = read_whole_number("--part", text.substr(0, slash), 1, part.count);
+  }
+  return Task::Share;
+}
+
+// In single quotes where a shell would take the word for something else.
+std::string shell_word(const std::string& word) {
+  const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           std::string_view("-_./=:,+@%").find(c) != std::string_view::npos;
+  });
+  if (plain) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+Json json_of(const PartsRecord& record) {
+  return {{"parts", record.parts},
+          {"folder", record.folder.string()},
+          {"arguments", record.arguments},
+          {"digests", record.digests}};
+}
+
+std::optional<PartsRecord> record_in(const fs::path& folder) {
+  const fs::path path = folder / record_file;
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return std::nullopt;
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const Json json = Json::parse(text, nullptr, false);
+  try {
+    PartsRecord record;
+    json.at("parts").get_to(record.parts);
+    record.folder = json.at("folder").get<std::string>();
+    json.at("arguments").get_to(record.arguments);
+    record.digests = json.at("digests");
+    if (record.digests.is_object()) return record;
+  } catch (const Json::exception&) {  // told below
+  }
+  throw Error(Blame::Input, path.string(), "is not the record of a call in parts", {},
+              "Remove it, and run the parts again: finished work is kept");
+}
+
+// Names of the digests that are not the same.
+std::vector<std::string> differences(const PartsRecord& mine, const PartsRecord& there) {
+  std::vector<std::string> differ;
+  if (mine.arguments != there.arguments) {
+    differ.push_back(fmt::format("its arguments (there: {})", fmt::join(there.arguments, " ")));
+  }
+  if (mine.parts != there.parts && mine.parts > 0 && there.parts > 0) {
+    differ.push_back(fmt::format("the number of parts (there: {})", there.parts));
+  }
+  for (const auto& [name, digest] : mine.digests.items()) {
+    if (there.digests.value(name, "") != digest) differ.push_back("the " + name);
+  }
+  return differ;
+}
+
+}  // namespace
+
+void add_part_options(CLI::App& command, PartCall& part) {
+  command
+      .add_option_function<std::string>(
+          "--part", [&part](const std::string& text) { part.task = read_part(text, part); },
+          "A share of the work, kept for `merge`: K/N, or auto in a job array; solve: the solution "
+          "that all parts read")
+      ->type_name("K/N");
+  command
+      .add_option_function<std::string>(
+          "--wait",
+          [&part](const std::string& text) {
+            part.wait_s = static_cast<double>(read_whole_number("--wait", text, 0, 10000000));
+          },
+          "A part waits so long for another's solution before it makes its own (default 0)")
+      ->type_name("SECONDS");
+}
+
+Share share_of(const PartCall& part, std::size_t items) {
+  return {items * (part.number - 1) / part.count, items * part.number / part.count};
+}
+
+std::size_t part_of(std::size_t item, std::size_t items, std::size_t parts) {
+  // The first part whose share ends behind the item: items K / N > item.
+  return ((item + 1) * parts + items - 1) / items;
+}
+
+std::vector<std::string> part_free(const std::vector<std::string>& arguments) {
+  const std::set<std::string> flags = {"-q", "--quiet", "--json"};
+  const std::set<std::string> with_value = {"--part", "--wait", "-j", "--threads", "--max-memory"};
+  std::vector<std::string> kept;
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    const std::string& word = arguments[k];
+    if (with_value.contains(word)) {
+      ++k;
+      continue;
+    }
+    const bool joined = with_value.contains(word.substr(0, word.find('='))) ||
+                        (word.starts_with("-j") && !word.starts_with("--"));
+    if (!flags.contains(word) && !joined) kept.push_back(word);
+  }
+  return kept;
+}
+
+PartsRecord read_parts_record(const fs::path& folder) {
+  for (const fs::path& place : {folder, folder / "points"}) {
+    if (auto record = record_in(place)) return *record;
+  }
+  throw Error(Blame::Input, folder.string(), fmt::format("holds no {}", record_file),
+              "it is the folder of a call with --part: FILE.exr.parts of render, DIR of a study");
+}
+
+void join_parts(const fs::path& folder, const Common& common, const Json& digests, PartCall& part) {
+  const bool merges = part.task == PartCall::Task::Merge;
+  PartsRecord mine{part.count, fs::current_path(), part_free(common.arguments), digests};
+  mine.digests["program"] = build_id();
+  if (!merges) {
+    std::error_code problem;
+    fs::create_directories(folder, problem);
+    if (!fs::is_directory(folder)) {
+      throw Error(Blame::Input, folder.string(),
+                  "cannot be made a folder" + (problem ? ": " + problem.message() : ""), {},
+                  "Name another place to write");
+    }
+    base::remove_abandoned_files(folder);
+    if (part.begins) fs::remove(folder / record_file, problem);
+    if (base::write_new_text(folder / record_file, dump(json_of(mine)))) return;
+  }
+  PartsRecord there = read_parts_record(folder);
+  const std::vector<std::string> differ = differences(mine, there);
+  if (!differ.empty()) {
+    throw Error(Blame::Input, (folder / record_file).string(),
+                fmt::format("belongs to another call: {} changed", fmt::join(differ, ", ")),
+                "all parts of one call have the same scene, settings and program",
+                "Remove that file to begin anew, or name another place to write");
+  }
+  if (merges) {
+    part.count = there.parts;
+  } else if (there.parts == 0 && part.count > 0) {  // a solve came first
+    base::write_text(folder / record_file, dump(json_of(mine)));
+  }
+}
+
+void refuse_to_merge(const fs::path& folder, const std::vector<MissingWork>& missing) {
+  const PartsRecord record = read_parts_record(folder);
+  std::map<std::size_t, std::vector<std::string>> by_part;
+  for (const MissingWork& one : missing) by_part[one.part].push_back(one.what);
+  std::vector<std::string> words;
+  for (const std::string& word : record.arguments) words.push_back(shell_word(word));
+  std::string list;
+  for (const auto& [part, what] : by_part) {
+    list += fmt::format("\n  part {}: {}{}\n    earthshine {} --part {}/{}", part, what.front(),
+                        what.size() > 1 ? fmt::format(" and {} more", what.size() - 1) : "",
+                        fmt::join(words, " "), part, std::max<std::size_t>(1, record.parts));
+  }
+  throw Error(Blame::Work, folder.string(), "is not complete", {},
+              fmt::format("Run what is missing in {}, then merge again:{}",
+                          shell_word(record.folder.string()), list));
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/parts/shared_solution.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include "app/console.h"
+#include "app/interrupt.h"
+#include "base/error.h"
+#include "base/files/output_file.h"
+#include "base/numbers/digest.h"
+#include "radiosity/store/solution_key.h"
+
+namespace earthshine::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_there(const fs::path& file) {
+  std::error_code ignored;
+  return fs::exists(file, ignored);
+}
+
+// Whoever reads it first says what all must read.
+void agree_on_digest(const fs::path& file, const std::string& digest) {
+  const fs::path told = file.string() + ".json";
+  if (!is_there(told) && base::write_new_text(told, dump({{"digest", digest}}))) return;
+  std::ifstream stream(told, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_object() && json.value("digest", "") == digest) return;
+  throw base::Error(
+      base::Blame::Input, file.string(),
+      fmt::format("is another solution than the other parts have read (digest {})", digest),
+      fmt::format("{} has the digest of theirs", told.string()),
+      "Bring theirs back; or remove all of the folder and begin anew");
+}
+
+void wait_for(const fs::path& file, double wait_s, bool quiet) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration<double>(wait_s);
+  bool told = false;
+  while (!is_there(file) && Clock::now() < end && !Interrupt::asked()) {
+    if (!told && !quiet) note(fmt::format("waiting for {}", file.string()));
+    told = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+}
+
+}  // namespace
+
+std::string digest_of_file(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  base::Digest digest;
+  digest.add(std::string_view(bytes));
+  return digest.text();
+}
+
+SharedSolution shared_solution(const fs::path& file, const radiosity::SolutionOrigin& origin,
+                               double wait_s, bool quiet,
+                               const std::function<radiosity::Solution()>& solve) {
+  SharedSolution shared;
+  wait_for(file, wait_s, quiet);
+  shared.found = is_there(file);
+  if (!shared.found) {
+    shared.solution = solve();
+    shared.found = !base::write_new_text(file, radiosity::solution_bytes(shared.solution, origin));
+  }
+  if (shared.found) shared.solution = radiosity::read_solution(file, origin);
+  shared.digest = digest_of_file(file);
+  agree_on_digest(file, shared.digest);
+  return shared;
+}
+
+fs::path solution_file_in(const fs::path& folder, const Json& scene_cache_key) {
+  base::Digest digest;
+  digest.add(std::string_view(dump(scene_cache_key)));
+  return folder / ("solution-" + digest.text() + ".h5");
+}
+
+Json solver_cache_key(const radiosity::SolveOptions& options) {
+  Json knobs = Json::object();
+  for (const radiosity::SolveKnob& knob : radiosity::solve_knobs(options)) {
+    std::visit([&](const auto& value) { knobs[knob.key] = value; }, knob.value);
+  }
+  return knobs;
+}
+
+}  // namespace earthshine::app

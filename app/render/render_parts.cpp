@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/render/render_parts.h"
+
+#include <fmt/format.h>
+
+#include "app/console.h"
+#include "app/interrupt.h"
+#include "app/parts/frame_file.h"
+#include "app/parts/shared_solution.h"
+#include "app/provenance.h"
+#include "app/render/draw.h"
+#include "app/render/light.h"
+#include "base/error.h"
+#include "base/numbers/digest.h"
+#include "radiosity/store/solution_key.h"
+#include "raytrace/frame/join.h"
+#include "raytrace/passes/passes.h"
+
+namespace earthshine::app {
+namespace {
+
+std::string digest_of_json(const Json& json) {
+  base::Digest digest;
+  digest.add(std::string_view(dump(json)));
+  return digest.text();
+}
+
+// All that decides a picture besides scene and solution.
+Json settings_of(const RenderCall& call, const raytrace::RenderOptions& how) {
+  const raytrace::Window window = raytrace::window_of(how);
+  return {{"picture", {how.columns, how.rows}},
+          {"window", {window.x, window.y, window.columns, window.rows}},
+          {"gather", {how.gather_rays, how.shared.on, how.shared.smooth_share, how.shared.noise}},
+          {"samples", {how.shared.least_samples, how.shared.most_samples}},
+          {"indirect", indirect_name(how.indirect)},
+          {"lights", how.distributed_lights},
+          {"over", how.distributed_over},
+          {"layers", how.aovs},
+          {"per_light", how.per_light},
+          {"error", how.error},
+          {"states_error", !call.no_error},
+          {"seed", how.seed}};
+}
+
+}  // namespace
+
+RenderParts::RenderParts(const LightCall& wanted, PartCall& part,
+                         const std::vector<const scenes::Camera*>& cameras,
+                         const std::vector<scenes::Culling>& culled)
+    : wanted_(wanted),
+      part_(part),
+      cameras_(cameras),
+      solver_(solver_of(wanted.call, wanted.loaded.scene, wanted.common)),
+      folder_(wanted.call.output + ".parts") {
+  scene_key_ = scene_cache_key(wanted.loaded);
+  scene_key_["solver"] = solver_cache_key(solver_);
+  for (const scenes::Culling& effect : culled) scene_key_["left_out"].push_back(effect.effect);
+  Json views = Json::array(), settings = Json::array();
+  for (const scenes::Camera* camera : cameras_) {
+    options_.push_back(picture_options(wanted.call, wanted.common, wanted.loaded, *camera));
+    settings.push_back(settings_of(wanted.call, options_.back()));
+    views.push_back({camera->name, camera_cache_key(*camera), scenes::filter_name(camera->filter),
+                     camera->filter_width_px});
+  }
+  digests_ = {{"scene", digest_of_json(scene_key_)},
+              {"cameras", digest_of_json(views)},
+              {"settings", digest_of_json(settings)}};
+  join_parts(folder_, wanted.common, digests_, part);
+  store_.emplace(folder_);
+}
+
+Solved RenderParts::light(StageTimes& times) {
+  LightCall call = wanted_;
+  const auto digest_of = [this](const std::string& file) { solution_ = digest_of_file(file); };
+  if (!wanted_.call.solution.empty()) digest_of(wanted_.call.solution);
+  call.share = [&](const std::function<radiosity::Solution()>& solve) {
+    const std::filesystem::path file = solution_file_in(folder_, scene_key_);
+    if (part_.task == PartCall::Task::Merge && !std::filesystem::exists(file)) check_complete();
+    SharedSolution shared = shared_solution(
+        file, {wanted_.loaded.scene, wanted_.loaded.groups, solver_, EARTHSHINE_VERSION},
+        part_.wait_s, wanted_.common.quiet, solve);
+    solution_ = shared.digest;
+    return std::move(shared.solution);
+  };
+  return find_light(call, times);
+}
+
+raytrace::Window RenderParts::picture_of(std::size_t camera) const {
+  return {0, 0, options_[camera].columns, options_[camera].rows};
+}
+
+std::vector<RenderParts::Piece> RenderParts::pieces() const {
+  std::vector<Piece> pieces;
+  const bool whole = steers(wanted_.call, wanted_.loaded.scene);
+  std::vector<std::size_t> first = {0};  // of each camera's items among all
+  for (const raytrace::RenderOptions& options : options_) {
+    const int rows = raytrace::window_of(options).rows;
+    first.push_back(first.back() + (whole ? 1 : static_cast<std::size_t>(rows)));
+  }
+  PartCall part = part_;
+  for (part.number = 1; part.number <= part_.count; ++part.number) {
+    const Share share = share_of(part, first.back());
+    for (std::size_t k = 0; k < cameras_.size(); ++k) {
+      const std::size_t from = std::max(share.first, first[k]);
+      const std::size_t to = std::min(share.last, first[k + 1]);
+      if (from >= to) continue;
+      raytrace::Window window = raytrace::window_of(options_[k]);
+      if (!whole) {
+        window.y += static_cast<int>(from - first[k]);
+        window.rows = static_cast<int>(to - from);
+      }
+      pieces.push_back({k, part.number, window});
+    }
+  }
+  return pieces;
+}
+
+Json RenderParts::key_of(const Piece& piece) const {
+  const raytrace::Window& window = piece.window;
+  return {{"what", "share of a picture"},
+          {"call", digests_},
+          {"build", scene_key_["build"]},
+          {"solution", solution_},
+          {"camera", cameras_[piece.camera]->name},
+          {"window", {window.x, window.y, window.columns, window.rows}}};
+}
+
+void RenderParts::draw_share(const Studio& studio) const {
+  std::size_t mine = 0, drawn = 0;
+  for (const Piece& piece : pieces()) {
+    if (piece.part != part_.number) continue;
+    ++mine;
+    std::string said;
+    if (store_->find(key_of(piece), said)) continue;
+    if (!said.empty()) note("note: " + said);
+    raytrace::RenderOptions options = options_[piece.camera];
+    options.crop = piece.window;
+    const raytrace::Frame frame = draw_frame(studio, *cameras_[piece.camera], options);
+    if (frame.report.stopped) {
+      throw base::Error(base::Blame::Work, "render", "interrupted", {},
+                        "Run the same part again: it goes on with what is finished");
+    }
+    store_->keep(key_of(piece), kept_frame(frame, picture_of(piece.camera)));
+    ++drawn;
+  }
+  if (wanted_.common.quiet) return;
+  note(fmt::format("part {} of {}: {} drawn, {} there already, in {}", part_.number, part_.count,
+                   drawn, mine - drawn, folder_.string()));
+}
+
+void RenderParts::check_complete() const {
+  std::vector<MissingWork> missing;
+  for (const Piece& piece : pieces()) {
+    std::string said;
+    if (store_->find(key_of(piece), said)) continue;
+    const raytrace::Window& window = piece.window;
+    missing.push_back(
+        {fmt::format("camera {}, rows {} to {}{}", cameras_[piece.camera]->name, window.y,
+                     window.y + window.rows - 1, said.empty() ? "" : " (" + said + ")"),
+         piece.part});
+  }
+  if (!missing.empty() || part_.count == 0) refuse_to_merge(folder_, missing);
+}
+
+raytrace::Frame RenderParts::joined(const scenes::Camera& camera) const {
+  std::vector<raytrace::Frame> frames;
+  std::size_t number = 0;
+  for (const Piece& piece : pieces()) {
+    if (cameras_[piece.camera] != &camera) continue;
+    number = piece.camera;
+    std::string said;
+    std::optional<CachedResult> kept = store_->find(key_of(piece), said);
+    if (!kept) refuse_to_merge(folder_, {{said, piece.part}});  // it was there a moment ago
+    frames.push_back(frame_of(std::move(*kept)));
+  }
+  return raytrace::join(frames, raytrace::window_of(options_[number]));
+}
+
+}  // namespace earthshine::app

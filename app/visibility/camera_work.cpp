@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/visibility/camera_work.h"
+
+namespace earthshine::app {
+
+CameraWork::CameraWork(const PictureTask& pictures, StudyFrames& frames,
+                       StudyConditions& conditions)
+    : pictures_(pictures),
+      frames_(frames),
+      conditions_(conditions),
+      store_(pictures.folder / points_folder),
+      ways_key_(conditions.cache_key(pictures.camera, pictures.frame_cache_key, 0,
+                                     pictures.part.conditions())) {
+  ways_key_["what"] = "answers";
+  for (const studies::WantedTarget& wanted : pictures.study.wanted) {
+    ways_key_["wanted"].push_back(wanted.text);
+  }
+  ways_key_["iris"] = pictures.study.iris;
+  ways_key_["path"] = pictures.part.path;
+}
+
+bool CameraWork::is_done(Share batches) const {
+  for (std::size_t batch = batches.first; batch < batches.last; ++batch) {
+    if (!conditions_.has(pictures_.camera, pictures_.frame_cache_key, batch)) return false;
+  }
+  return frames_.has(pictures_.camera) &&
+         (batches.first > 0 || (pictures_are_there(pictures_) && store_.has(ways_key_)));
+}
+
+std::optional<CameraWork::Ways> CameraWork::known_ways() const {
+  std::string said;
+  const auto kept = store_.find_facts(ways_key_, said);
+  return kept ? std::optional(ways_of((*kept)["ways"])) : std::nullopt;
+}
+
+std::optional<std::vector<Json>> CameraWork::known_conditions() const {
+  return conditions_.find(pictures_.camera, pictures_.frame_cache_key);
+}
+
+std::optional<StudyFrames::Frame> CameraWork::known_frame(std::vector<StudyCost>& costs) const {
+  return frames_.known(pictures_.camera, costs);
+}
+
+studies::BasisView CameraWork::view_of(StudyFrames::Frame& frame) const {
+  return studies::make_basis_view(*pictures_.part.basis, *pictures_.part.query,
+                                  *pictures_.camera.camera, std::move(frame.image));
+}
+
+std::vector<Json> CameraWork::judge(const studies::BasisView& view, Share batches,
+                                    std::vector<StudyCost>& costs) const {
+  return conditions_.judge(pictures_.camera, view, pictures_.frame_cache_key, batches, costs);
+}
+
+CameraWork::Ways CameraWork::conclude(const studies::BasisView& view, Json& figures) const {
+  draw_pictures(pictures_, &view, figures);
+  if (auto kept = known_ways()) return std::move(*kept);
+  Ways ways(pictures_.study.wanted.size());
+  add_ways(pictures_.part, pictures_.study, pictures_.camera, view, ways);
+  store_.keep_facts(ways_key_, {{"ways", ways_json(ways)}});
+  return ways;
+}
+
+}  // namespace earthshine::app

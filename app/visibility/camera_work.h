@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// The work of a visibility study on one camera, found in points/ or done and kept there.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "app/views/frames.h"
+#include "app/visibility/answers.h"
+#include "app/visibility/conditions.h"
+#include "app/visibility/pictures.h"
+
+namespace earthshine::app {
+
+class CameraWork {
+ public:
+  using Ways = std::vector<std::vector<ViewingConfiguration>>;  // of each wanted target
+
+  // All must outlive it.
+  CameraWork(const PictureTask& pictures, StudyFrames& frames, StudyConditions& conditions);
+
+  [[nodiscard]] const PictureTask& pictures() const { return pictures_; }
+  [[nodiscard]] Share all_batches() const { return {0, conditions_.batches()}; }
+
+  // All that the results depend on besides the scene.
+  [[nodiscard]] const Json& settings() const { return ways_key_; }
+  // Whether it looks as if batches of conditions, and what comes with the first of them (pictures,
+  // ways), were done before.
+  [[nodiscard]] bool is_done(Share batches) const;
+  [[nodiscard]] std::optional<Ways> known_ways() const;
+  [[nodiscard]] std::optional<std::vector<Json>> known_conditions() const;
+  [[nodiscard]] std::optional<StudyFrames::Frame> known_frame(std::vector<StudyCost>& costs) const;
+
+  // Takes the frame's image.
+  [[nodiscard]] studies::BasisView view_of(StudyFrames::Frame& frame) const;
+  [[nodiscard]] std::vector<Json> judge(const studies::BasisView& view, Share batches,
+                                        std::vector<StudyCost>& costs) const;
+  // The camera's pictures, and what its wishes are answered by.
+  [[nodiscard]] Ways conclude(const studies::BasisView& view, Json& figures) const;
+
+ private:
+  const PictureTask& pictures_;
+  StudyFrames& frames_;
+  StudyConditions& conditions_;
+  ResultCache store_;
+  Json ways_key_;
+};
+
+}  // namespace earthshine::app

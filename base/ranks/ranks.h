@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ranks: processes on one machine or many that run the same call side by side and share out its
+// heavy loops. Without any (the plain program) such a loop is a parallel one of this process.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace earthshine::base {
+
+// What connects them. All ranks make the same calls in the same order.
+class Ranks {
+ public:
+  Ranks() = default;
+  virtual ~Ranks() = default;
+  Ranks(const Ranks&) = delete;
+  Ranks& operator=(const Ranks&) = delete;
+
+  [[nodiscard]] virtual int number() const = 0;  // of this process, from 0
+  [[nodiscard]] virtual int count() const = 0;
+  // The bytes of every rank, in their order, on every rank.
+  [[nodiscard]] virtual std::vector<std::string> gather(const std::string& mine) = 0;
+  // Ends all of them at once with this exit code.
+  [[noreturn]] virtual void end_all(int exit_code) = 0;
+};
+
+// Those in force; nullptr: this process is alone.
+[[nodiscard]] Ranks* ranks();
+
+// Puts them in force for as long as it lives.
+class RanksInForce {
+ public:
+  explicit RanksInForce(Ranks* ranks);
+  ~RanksInForce();
+  RanksInForce(const RanksInForce&) = delete;
+  RanksInForce& operator=(const RanksInForce&) = delete;
+
+ private:
+  Ranks* before_;
+};
+
+// Values on their way between ranks of the same program: pass() appends them to the bytes, or takes
+// them from there, in the same order.
+class Parcel {
+ public:
+  Parcel() = default;  // to be filled
+  explicit Parcel(std::string bytes) : bytes_(std::move(bytes)), fills_(false) {}
+
+  template <class Value>
+  void pass(Value& value) {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    pass_bytes(&value, sizeof value);
+  }
+  // As many as there are, on both sides.
+  template <class Value>
+  void pass_range(Value* first, std::size_t count) {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    pass_bytes(first, count * sizeof(Value));
+  }
+  // The size travels too.
+  template <class Value>
+  void pass(std::vector<Value>& values) {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    std::size_t size = values.size();
+    pass(size);
+    values.resize(size);
+    pass_bytes(values.data(), size * sizeof(Value));
+  }
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+
+ private:
+  void pass_bytes(void* value, std::size_t size) {
+    if (size == 0) return;
+    if (fills_) {
+      bytes_.append(static_cast<const char*>(value), size);
+      return;
+    }
+    if (size > bytes_.size() - at_) throw std::length_error("a parcel between ranks is too short");
+    std::memcpy(value, bytes_.data() + at_, size);
+    at_ += size;
+  }
+
+  std::string bytes_;
+  std::size_t at_ = 0;
+  bool fills_ = true;
+};
+
+// work(k) for every k in [0, count), in parallel: each by one rank, k by k in turn. transfer(k)
+// must pass all that work(k) changes, so that afterwards every rank has all of it. A single item is
+// worked out by every rank, without a word: what is called from within a parallel loop must be so.
+void share_loop(std::size_t count, const std::function<void(std::size_t k)>& work,
+                const std::function<void(std::size_t k, Parcel& parcel)>& transfer);
+
+// The same of body(begin, end) over [0, count) in chunks.
+void share_chunks(
+    std::size_t count, std::size_t chunk,
+    const std::function<void(std::size_t begin, std::size_t end)>& body,
+    const std::function<void(std::size_t begin, std::size_t end, Parcel& parcel)>& transfer);
+
+// Whether it holds on every rank.
+[[nodiscard]] bool holds_on_all_ranks(bool here);
+
+}  // namespace earthshine::base

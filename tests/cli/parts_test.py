@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures in parts: the bytes of one process, whatever order, number and fate of the parts."""
+import json
+import os
+import pathlib
+import random
+import shutil
+import signal
+import struct
+import subprocess
+import time
+import unittest
+
+import exr
+import program
+from program import BALL, Case
+
+# Pixels whose samples are told by their neighbours, by the whole picture, by nothing.
+WAYS = {
+    "shared": ("--set", "quality.gather=shared"),
+    "alone": ("--set", "quality.gather=per-sample", "--indirect", "none"),
+    "paths": ("--indirect", "paths"),
+    "lights": ("--indirect", "distributed", "--per-light"),
+    "to an error": ("--error", "0.2", "--aov", "direct,variance,object,crypto_object"),
+}
+CALL = ("render", "ball.toml", "--camera", "all", "-o", "v.exr", "--png", "v.png")
+OUTPUTS = ("v-A.exr", "v-above.exr", "v-A.png", "v-above.png")
+
+
+def other_build(folder):
+    """The program with another build id, as any change of its code or constants gives it."""
+    code = pathlib.Path(program.PROGRAM).read_bytes()
+    note = b"\x04\0\0\0\x14\0\0\0\x03\0\0\0GNU\0"  # sizes of name and digest, NT_GNU_BUILD_ID
+    at = code.index(note) + len(note)
+    other = folder / "other"
+    other.write_bytes(code[:at] + bytes([code[at] ^ 1]) + code[at + 1:])
+    other.chmod(0o755)
+    return other
+
+
+class PartCase(Case):
+    def setUp(self):
+        super().setUp()
+        self.write("ball.toml", BALL)
+
+    def bytes_of(self, names=OUTPUTS):
+        return {name: (self.folder / name).read_bytes() for name in names}
+
+    def whole(self, *more, call=CALL, names=OUTPUTS):
+        """What one process writes; taken away again."""
+        self.done(*call, *more)
+        found = self.bytes_of(names)
+        for name in names:
+            (self.folder / name).unlink()
+        return found
+
+    def started(self, *arguments, **more):
+        run = subprocess.Popen([program.PROGRAM, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **more)
+        self.addCleanup(run.wait)
+        self.addCleanup(run.kill)
+        return run
+
+    def merged(self):
+        for name in OUTPUTS:
+            self.assertFalse((self.folder / name).exists(), name)
+        self.done("merge", "v.exr.parts", "-q")
+        found = self.bytes_of()
+        for name in OUTPUTS:
+            (self.folder / name).unlink()
+        return found
+
+
+class SameBytes(PartCase):
+    def test_any_order_number_and_threads(self):
+        for name, way in WAYS.items():
+            whole = self.whole(*way)
+            for count in (1, 3, 5):
+                with self.subTest(name, parts=count):
+                    order = list(range(1, count + 1))
+                    random.Random(count).shuffle(order)
+                    for part in [*order, order[0]]:  # and one of them twice
+                        self.done(*CALL, *way, "--part", f"{part}/{count}", "-j", 1 + part % 3, "-q")
+                    self.assertEqual(self.merged(), whole)
+                    shutil.rmtree(self.folder / "v.exr.parts")
+
+    def test_the_report_but_for_what_it_took(self):
+        whole = self.json(*CALL)
+        for part in (2, 1):
+            self.done(*CALL, "--part", f"{part}/2", "-q")
+        merged = json.loads(self.done("merge", "v.exr.parts", "--json"))
+        for report in [*whole, *merged]:
+            for key in ("seconds", "peak_memory_mib", "rays"):
+                del report[key]
+        self.assertEqual(merged, whole)
+
+    def test_shares_are_rows_that_fill_the_pictures(self):
+        # 24 rows of A, then 20 of above: 44 in 3 parts are 14, 15 and 15 rows.
+        for part in (1, 2, 3):
+            self.done(*CALL, "--part", f"{part}/3", "-q")
+        windows = []
+        for path in (self.folder / "v.exr.parts").glob("*.exr"):
+            window = json.loads(path.with_suffix(".json").read_text())["facts"]["window"]
+            header, *_ = exr.read(path)
+            self.assertEqual(struct.unpack("<iiii", header["dataWindow"]),
+                             (window[0], window[1], window[0] + window[2] - 1, window[1] + window[3] - 1))
+            windows.append((window[2], window[1], window[3]))
+        self.assertEqual(sorted(windows), [(20, 0, 5), (20, 5, 15), (32, 0, 14), (32, 14, 10)])
+
+    def test_a_job_array_says_which_part(self):
+        whole = self.whole()
+        slurm = {"SLURM_ARRAY_TASK_MIN": "4", "SLURM_ARRAY_TASK_MAX": "5", "SLURM_ARRAY_TASK_COUNT": "2"}
+        for task in ("4", "5"):
+            run = self.run_program(*CALL, "--part", "auto", env=os.environ | slurm | {"SLURM_ARRAY_TASK_ID": task})
+            self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(self.merged(), whole)
+        shutil.rmtree(self.folder / "v.exr.parts")
+        for variable, index in (("PBS_ARRAY_INDEX", "1"), ("PBS_ARRAYID", "2"), ("SLURM_ARRAY_TASK_ID", "3")):
+            run = self.run_program(*CALL, "--part", "auto/3", env=os.environ | {variable: index})
+            self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(self.merged(), whole)
+
+    def test_one_solution(self):
+        self.done(*CALL, "--part", "solve", "-q")
+        (solution,) = (self.folder / "v.exr.parts").glob("solution-*.h5")
+        before = solution.stat()
+        for part in (1, 2):
+            self.done(*CALL, "--part", f"{part}/2", "-q")
+        after = solution.stat()
+        self.assertEqual((before.st_ino, before.st_mtime_ns), (after.st_ino, after.st_mtime_ns))
+        self.assertEqual(self.merged(), self.whole())
+        # One that is whole and stale, and one that is sound but not what the others have read.
+        mine = solution.read_bytes()
+        self.done("solve", "ball.toml", "--seed", "2", "-o", "other.h5", "-q")
+        solution.write_bytes((self.folder / "other.h5").read_bytes())
+        self.says(self.refused(*CALL, "--part", "1/2"), "stale")
+        solution.write_bytes(mine)
+        told = pathlib.Path(str(solution) + ".json")
+        told.write_text(told.read_text().replace(json.loads(told.read_text())["digest"], "0123456789abcdef"))
+        for call in ((*CALL, "--part", "1/2"), ("merge", "v.exr.parts")):
+            self.says(self.refused(*call), "another solution than the other parts have read")
+
+    def test_a_part_waits_for_the_solution(self):
+        waits = self.started(*CALL, "--part", "1/2", "--wait", "60", "-q")
+        parts = self.folder / "v.exr.parts"
+        while not (parts / "parts.json").exists():
+            time.sleep(0.01)
+        time.sleep(0.5)
+        self.assertEqual(list(parts.glob("solution*")), [])
+        self.done(*CALL, "--part", "solve", "-q")
+        self.assertEqual(waits.wait(), 0)
+        self.done(*CALL, "--part", "2/2", "-q")
+        self.assertEqual(self.merged(), self.whole())
+
+
+class Faults(PartCase):
+    def test_what_is_missing_is_listed_with_its_command(self):
+        self.done(*CALL, "--set", "camera.A.fov_deg=30 ", "--part", "2/3", "-q")
+        message = self.refused("merge", "v.exr.parts", code=1)
+        self.says(message, "not complete", "camera A, rows 0 to 13", "--part 1/3", "--part 3/3", "'camera.A.fov_deg=30 '")
+        self.assertNotIn("--part 2/3", message)
+        self.assertFalse((self.folder / "v-A.exr").exists())
+        for part in (1, 3):
+            self.done(*CALL, "--set", "camera.A.fov_deg=30 ", "--part", f"{part}/3", "-q")
+        self.assertEqual(self.merged(), self.whole("--set", "camera.A.fov_deg=30 "))
+
+    def test_kills_at_random_moments(self):
+        begin = time.monotonic()
+        whole = self.whole()
+        took = time.monotonic() - begin
+        chance = random.Random(1)
+        killed = 0
+        for _ in range(50):
+            run = self.started(*CALL, "--part", f"{chance.randint(1, 3)}/3", "-q")
+            time.sleep(took * chance.random())
+            run.send_signal(signal.SIGKILL)
+            run.wait()
+            killed += run.returncode == -signal.SIGKILL
+        self.assertGreater(killed, 10)
+        for part in (1, 2, 3):
+            self.done(*CALL, "--part", f"{part}/3", "-q")
+        self.assertEqual(self.merged(), whole)
+        self.assertEqual([p.name for p in (self.folder / "v.exr.parts").iterdir() if p.name.startswith(".")], [])
+
+    def test_two_schedulers_start_the_same_part(self):
+        whole = self.whole()
+        for part in ("1/2", "2/2"):
+            runs = [self.started(*CALL, "--part", part, "-q") for _ in range(4)]
+            self.assertEqual([run.wait() for run in runs], [0] * 4)
+        self.assertEqual(self.merged(), whole)
+
+    def test_a_part_of_another_build(self):
+        whole = self.whole()
+        other = other_build(self.folder)
+        subprocess.run([other, *CALL, "--part", "1/2", "-q"], cwd=self.folder, check=True)
+        self.says(self.refused(*CALL, "--part", "2/2"), "parts.json", "the program changed")
+        self.says(self.refused("merge", "v.exr.parts"), "the program changed")
+        (self.folder / "v.exr.parts" / "parts.json").unlink()
+        self.done(*CALL, "--part", "2/2", "-q")
+        self.says(self.refused("merge", "v.exr.parts", code=1), "--part 1/2")  # the other's work is none
+        self.done(*CALL, "--part", "1/2", "-q")
+        self.assertEqual(self.merged(), whole)
+
+    def test_a_part_of_another_scene_or_setting(self):
+        self.done(*CALL, "--part", "1/2", "-q")
+        self.says(self.refused(*CALL, "--seed", "2", "--part", "2/2"), "its arguments")
+        self.says(self.refused(*CALL, "--part", "2/3"), "the number of parts (there: 2)")
+        self.write("ball.toml", BALL.replace("radius = 0.5", "radius = 0.4"))
+        self.says(self.refused(*CALL, "--part", "2/2"), "the scene changed")
+        self.write("ball.toml", BALL.replace("position = [3, -3, 2]", "position = [3, -3, 3]"))
+        self.says(self.refused("merge", "v.exr.parts"), "the cameras changed")
+        self.write("ball.toml", BALL.replace("gather_rays = 16", "gather_rays = 32"))
+        self.says(self.refused("merge", "v.exr.parts"), "the settings changed")
+
+    def test_a_torn_part_is_missing(self):
+        for part in (1, 2):
+            self.done(*CALL, "--part", f"{part}/2", "-q")
+        whole = self.whole()
+        torn = sorted((self.folder / "v.exr.parts").glob("*.exr"))[0]
+        torn.write_bytes(torn.read_bytes()[:-20])
+        self.says(self.refused("merge", "v.exr.parts", code=1), "has lost its picture", "--part")
+        for part in (1, 2):
+            self.done(*CALL, "--part", f"{part}/2", "-q")
+        self.assertEqual(self.merged(), whole)
+
+    def test_clocks_that_differ_by_an_hour(self):
+        for part in (1, 2):
+            self.done(*CALL, "--part", f"{part}/2", "-q")
+            for path in (self.folder / "v.exr.parts").iterdir():
+                os.utime(path, (time.time() + 3600, time.time() + 3600 * (-1) ** part))
+        self.assertEqual(self.merged(), self.whole())
+
+    def test_a_full_disk_in_one_part(self):
+        whole = self.whole()
+        self.done(*CALL, "--part", "1/2", "-q")
+        # No file may grow past 2 kB: what a full disk is to the one who writes (EFBIG for ENOSPC).
+        limited = subprocess.run(["bash", "-c", "trap '' XFSZ; ulimit -f 2; exec \"$@\"", "sh", program.PROGRAM, *CALL,
+                                  "--part", "2/2", "-q"], cwd=self.folder, capture_output=True, text=True, check=False)
+        self.assertEqual(limited.returncode, 1, limited.stderr)
+        self.says(limited.stderr, "cannot be written")
+        self.says(self.refused("merge", "v.exr.parts", code=1), "--part 2/2")
+        self.done(*CALL, "--part", "2/2", "-q")
+        self.assertEqual(self.merged(), whole)
+
+    def test_calls_that_cannot_be_shared_out(self):
+        self.says(self.refused("render", "ball.toml", "--only-pixel", "1,1", "--part", "1/2"), "--only-pixel")
+        self.says(self.refused(*CALL, "--time-limit", "3", "--part", "1/2"), "--time-limit")
+        self.says(self.refused(*CALL, "--part", "3/2"), "3", "1 to 2")
+        self.says(self.refused(*CALL, "--part", "half"), "K/N")
+        self.says(self.refused(*CALL, "--part", "auto"), "SLURM_ARRAY_TASK_ID", "K/N")
+        self.says(self.refused("merge", "."), "parts.json")
+
+
+if __name__ == "__main__":
+    unittest.main()

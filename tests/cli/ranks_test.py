@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Ranks of Open MPI write what one process writes. Skipped where earthshine-mpi was not built or mpirun is not there."""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import unittest
+
+import program
+from program import BALL, CLOSED_BOX
+from tiny_bay import Case
+
+MPI = pathlib.Path(program.PROGRAM).with_name("earthshine-mpi")
+# More ranks than cores, in a container, as root; no launching by ssh.
+ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+                            "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_plm": "isolated",
+                            "OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_btl_base_warn_component_unused": "0"}
+# Open with shadows and two light groups; closed, lit by its walls.
+SCENES = {"ball.toml": BALL, "box.toml": CLOSED_BOX}
+RENDERS = {
+    "shared": ("--set", "quality.gather=shared", "--aov", "variance,object"),
+    "alone": ("--set", "quality.gather=per-sample", "--per-light"),
+    "paths": ("--indirect", "paths"),
+    "to an error": ("--error", "0.15"),
+}
+
+
+class Ranks(Case):
+    def setUp(self):
+        super().setUp()
+        for name, text in SCENES.items():
+            self.write(name, text)
+
+    def ranks(self, count, *arguments, code=0):
+        run = subprocess.run(["mpirun", "-n", str(count), MPI, *map(str, arguments)], cwd=self.folder, env=ENVIRONMENT,
+                             capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=300, check=False)
+        self.assertEqual(run.returncode, code, f"{arguments}: {run.stdout}{run.stderr}")
+        return run
+
+    def same(self, call, names, counts):
+        self.done(*call, "-q")
+        whole = {name: (self.folder / name).read_bytes() for name in names}
+        for count in counts:
+            for name in names:
+                (self.folder / name).unlink()
+            with self.subTest(call[0], ranks=count):
+                run = self.ranks(count, *call, "-q", "-j", 1 + count % 2)
+                self.assertLessEqual(run.stdout.count("light group"), 1)  # one rank speaks
+                for name in names:
+                    self.assertEqual((self.folder / name).read_bytes(), whole[name], name)
+                self.assertEqual([p.name for p in self.folder.iterdir() if p.name.startswith(".")], [])
+
+    def without_program(self, study):
+        """earthshine-mpi is another program than earthshine, and study.json says so."""
+        return {key: value for key, value in self.without_times(study).items() if key not in ("build", "provenance")}
+
+    def test_solutions(self):
+        for scene, more in (("ball.toml", ()), ("box.toml", ()), ("ball.toml", ("--error", "0.05"))):
+            self.same(("solve", scene, "-o", "s.h5", *more), ("s.h5",), (1, 2, 3, 5, 8))
+
+    def test_refined_patches(self):
+        self.same(("solve", "bay.toml", "-o", "s.h5", "--set", "quality.refine=true", "--set", "quality.max_patches=2000"),
+                  ("s.h5",), (2, 3))
+
+    def test_pictures(self):
+        for name, way in RENDERS.items():
+            with self.subTest(name):
+                self.same(("render", "ball.toml", "-o", "v.exr", "--png", "v.png", "--camera", "A", *way), ("v.exr", "v.png"),
+                          (2, 3) if name != "shared" else (1, 2, 3, 5, 8))
+
+    def test_studies(self):
+        call = ("study", "orbit", "bay.toml", "--positions", "36", "--wanted", "box>=0.5", "-o")
+        self.done(*call, "w", "-q")
+        for count in (2, 3):
+            run = self.ranks(count, *call, f"o{count}", "-q", "-j", 1)
+            self.assertIn("box", run.stdout)
+            self.assertEqual(*(self.without_program(self.study(folder)) for folder in (f"o{count}", "w")))
+            for path in (self.folder / "w" / "pictures").iterdir():
+                self.assertEqual((self.folder / f"o{count}" / "pictures" / path.name).read_bytes(), path.read_bytes())
+
+    def test_alone_without_mpirun(self):
+        self.done("render", "ball.toml", "--camera", "A", "-o", "v.exr", "-q")
+        whole = (self.folder / "v.exr").read_bytes()
+        subprocess.run([MPI, "render", "ball.toml", "--camera", "A", "-o", "v.exr", "-q"], cwd=self.folder, check=True)
+        self.assertEqual((self.folder / "v.exr").read_bytes(), whole)
+
+    def test_what_is_wrong_is_said_once(self):
+        run = self.ranks(3, "render", "none.toml", "-o", "v.exr", code=2)
+        self.assertEqual(run.stderr.count("earthshine: "), 1, run.stderr)
+        self.assertIn("none.toml", run.stderr)
+        for call in (("inspect", "ball.toml"), ("render", "ball.toml", "-o", "v.exr", "--part", "1/2"),
+                     ("render", "ball.toml", "-o", "v.exr", "--time-limit", "3")):
+            self.assertIn("earthshine: ", self.ranks(2, *call, code=2).stderr)
+
+    def test_a_rank_that_dies_ends_the_run(self):
+        run = subprocess.Popen(["mpirun", "-n", "3", MPI, "render", "ball.toml", "--camera", "A", "-o", "v.exr", "--indirect", "paths",
+                                "--set", "quality.gather_rays=65536", "-j", "1"], cwd=self.folder, env=ENVIRONMENT,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(run.stderr.close)
+        self.addCleanup(run.kill)
+        children = pathlib.Path(f"/proc/{run.pid}/task/{run.pid}/children")
+        ranks = []
+        while len(ranks) < 3:
+            ranks = children.read_text().split()
+        os.kill(int(ranks[1]), 9)
+        _, errors = run.communicate(timeout=60)
+        self.assertNotEqual(run.returncode, 0)
+        self.assertIn("signal 9", errors)
+        self.assertFalse((self.folder / "v.exr").exists())
+
+
+if __name__ == "__main__":
+    if not MPI.exists() or shutil.which("mpirun") is None:
+        sys.exit(77)
+    unittest.main()

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Studies in parts: what one process finds, but for seconds, whatever order, number and fate of the parts."""
+import json
+import random
+import signal
+import subprocess
+import time
+import unittest
+
+import program
+from tiny_bay import Case
+
+ORBIT = ("study", "orbit", "bay.toml", "--positions", "36", "--wanted", "box>=0.5", "-o")  # 3 batches a camera
+SEVERAL = {
+    "orbit": ORBIT,
+    "run": ("study", "run", "s.toml", "-o"),
+    "visibility": ("study", "visibility", "bay.toml", "-o"),
+    "accuracy": ("study", "accuracy", "bay.toml", "--camera", "A", "--size", "8x8", "--wanted", "0.3", "--lights", "4,8",
+                 "--paths", "4,16", "-o"),
+}
+TIMES = ("seconds", "render_seconds", "costs", "solve_seconds", "wall_seconds", "cpu_seconds", "solve_wall_seconds",
+         "solve_cpu_seconds", "estimate_cpu_seconds", "memory_mib", "on_front")
+
+
+class StudyParts(Case):
+    def strip(self, value):
+        if isinstance(value, dict):
+            return {key: self.strip(item) for key, item in value.items() if key not in TIMES}
+        return [self.strip(item) for item in value] if isinstance(value, list) else value
+
+    def results(self, folder):
+        """All files of a study: pictures as bytes, tables without what it took. Plots and pages hold seconds."""
+        found = {}
+        for path in sorted((self.folder / folder).rglob("*")):
+            name = str(path.relative_to(self.folder / folder))
+            if name.startswith("points") or path.suffix in (".html", ".svg", ".gp") or path.is_dir():
+                continue
+            found[name] = path.read_bytes()
+            if path.suffix == ".json":
+                found[name] = self.strip(json.loads(found[name]))
+        return found
+
+    def without_seconds(self, accuracy):
+        """Of an accuracy study: points and limits. Fronts and prices follow from CPU seconds, memory from threads."""
+        kept = dict(accuracy)
+        kept.pop("accuracy.csv")
+        kept["accuracy.json"] = {key: kept["accuracy.json"][key] for key in ("points", "limits", "reference", "not_run")}
+        return kept
+
+    def started(self, *arguments):
+        run = subprocess.Popen([program.PROGRAM, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(run.wait)
+        self.addCleanup(run.kill)
+        return run
+
+    def solutions(self, folder):
+        return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns)
+                for path in (self.folder / folder / "points").glob("*.h5")}
+
+    def test_any_order_and_number(self):
+        for name, call in SEVERAL.items():
+            self.done(*call, "w-" + name)
+            whole = self.results("w-" + name)
+            for count in (1, 3, 8):
+                with self.subTest(name, parts=count):
+                    folder = f"{name}-{count}"
+                    order = list(range(1, count + 1))
+                    random.Random(count).shuffle(order)
+                    for part in [*order, order[0]]:
+                        out = self.done(*call, folder, "--part", f"{part}/{count}", "-q", "-j", 1 + part % 2)
+                        self.assertEqual(out, "")
+                    self.assertEqual(set(self.results(folder)) - {"pictures"},
+                                     {file for file in whole if file.startswith("pictures")})
+                    self.done("merge", folder, "-q")
+                    merged = self.results(folder)
+                    if name == "accuracy":
+                        self.assertEqual(self.without_seconds(merged), self.without_seconds(whole))
+                    else:
+                        self.assertEqual(merged, whole)
+                    if name in ("orbit", "run"):  # nothing was done again
+                        self.assertEqual(set(self.costs(folder).values()), {True})
+
+    def test_one_solution_for_all(self):
+        self.done(*ORBIT, "o", "--part", "solve", "-q")
+        before = self.solutions("o")
+        self.assertEqual(len(before), 1)
+        for part in range(1, 5):
+            self.done(*ORBIT, "o", "--part", f"{part}/4", "-q")
+        self.done("merge", "o", "-q")
+        self.assertEqual(self.solutions("o"), before)
+        told = next((self.folder / "o" / "points").glob("*.h5.json"))
+        told.write_text('{"digest": "0123456789abcdef"}')
+        for path in (self.folder / "o" / "points").glob("*.exr"):
+            path.with_suffix(".json").unlink()
+        self.says(self.refused(*ORBIT, "o", "--part", "1/4"), "another solution than the other parts have read")
+
+    def test_parts_that_solve_at_once_read_one(self):
+        runs = [self.started(*ORBIT, "o", "--part", f"{part}/6", "-q") for part in range(1, 7)]
+        self.assertEqual([run.wait() for run in runs], [0] * 6)
+        self.assertEqual(len(self.solutions("o")), 1)
+        self.done(*ORBIT, "w")
+        self.done("merge", "o", "-q")
+        self.assertEqual(self.results("o"), self.results("w"))
+
+    def test_what_is_missing(self):
+        for part in (1, 3, 4):
+            self.done(*ORBIT, "o", "--part", f"{part}/4", "-q")
+        message = self.refused("merge", "o", code=1)
+        self.says(message, "not complete", "--part 2/4", "'box>=0.5'", "camera A of bay.toml, batch 2 of 3")
+        self.assertNotIn("--part 1/4", message)
+        self.assertFalse((self.folder / "o" / "study.json").exists())
+        self.done(*ORBIT, "o", "--part", "2/4", "-q")
+        self.done("merge", "o", "-q")
+
+    def test_another_study_or_scene(self):
+        self.done(*ORBIT, "o", "--part", "1/2", "-q")
+        self.says(self.refused("study", "orbit", "bay.toml", "--positions", "35", "-o", "o", "--part", "2/2"), "its arguments")
+        bay = (self.folder / "bay.toml").read_text()
+        self.write("bay.toml", bay.replace("intensity = 500", "intensity = 501"))
+        self.says(self.refused(*ORBIT, "o", "--part", "2/2"), "the scene, ")
+        self.write("bay.toml", bay.replace("fov_deg = 40", "fov_deg = 41"))
+        self.says(self.refused("merge", "o"), "the settings changed")
+
+    def test_kills_at_random_moments(self):
+        begin = time.monotonic()
+        self.done(*ORBIT, "w")
+        took = time.monotonic() - begin
+        chance = random.Random(1)
+        killed = 0
+        for _ in range(25):
+            run = self.started(*ORBIT, "o", "--part", f"{chance.randint(1, 4)}/4", "-q")
+            time.sleep(0.4 * took * chance.random())
+            run.send_signal(signal.SIGKILL)
+            run.wait()
+            killed += run.returncode == -signal.SIGKILL
+        self.assertGreater(killed, 2)
+        for part in range(1, 5):
+            self.done(*ORBIT, "o", "--part", f"{part}/4", "-q")
+        self.done("merge", "o", "-q")
+        self.assertEqual(self.results("o"), self.results("w"))
+        self.assertEqual([p.name for p in (self.folder / "o").rglob(".*")], [])
+
+    def test_accuracy_has_no_single_solution(self):
+        call = SEVERAL["accuracy"]
+        self.says(self.refused(*call, "o", "--part", "solve"), "no solution that all of it reads")
+        self.says(self.refused(*call, "o", "--part", "1/2", "--time-limit", "9"), "--time-limit")
+        self.done(*call, "o", "--part", "1/2", "-q")
+        self.says(self.refused("merge", "o", code=1), "--part 2/2")
+
+
+if __name__ == "__main__":
+    unittest.main()
