@@ -16,13 +16,13 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr std::string_view all_keys[] = {
-    "name",   "mesh",     "part",       "shape",    "material", "translate", "rotate",
-    "scale",  "target",   "inward",     "corners",  "min",      "max",       "center",
-    "radius", "segments", "from",       "to",       "caps",     "normal",    "orient",
-    "lights", "cameras",  "smooth_deg", "round_deg"};
+    "name",   "mesh",     "part",       "shape",     "material", "translate", "rotate",
+    "scale",  "target",   "inward",     "corners",   "min",      "max",       "center",
+    "radius", "segments", "from",       "to",        "caps",     "normal",    "orient",
+    "lights", "cameras",  "smooth_deg", "round_deg", "velocity"};
 constexpr std::string_view shapes[] = {"quad", "box", "sphere", "cylinder", "disk"};
-constexpr std::string_view common_keys[] = {"name",  "material", "translate", "rotate",
-                                            "scale", "target",   "inward",    "orient"};
+constexpr std::string_view common_keys[] = {"name",   "material", "translate", "rotate",  "scale",
+                                            "target", "inward",   "orient",    "velocity"};
 constexpr std::string_view orients[] = {"outward", "as-is", "two-sided"};
 constexpr Range lengths{-largest_length, largest_length};
 
@@ -202,6 +202,7 @@ void read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& s
   Object object;
   object.name = table.read_name();
   object.target = table.flag("target").value_or(false);
+  object.velocity_m_s = table.vector("velocity", {-1e4, 1e4}).value_or(Vec3(0.0));
   const auto named = table.text("mesh");
   const auto shape = table.choice("shape", shapes);
   if (named && shape) table.fail("shape", "stands beside \"mesh\"", "an object is one of the two");

@@ -50,6 +50,7 @@ class Collector {
     }
     of.direct += share * reach.luminance;
     of.unshadowed += reach.unshadowed;
+    of.on_back += share * reach.on_back;
     for (const Reach::Shadow& shadow : reach.shadows) entry.shadows[shadow.object] += shadow.rays;
   }
 
@@ -81,6 +82,14 @@ class Collector {
   std::vector<std::uint8_t> lit_;
   std::vector<Entry> sources_;
 };
+
+// From the middle of the points; 0 without any.
+double distance_to(const BasisView::Target& target, const Vec3& position) {
+  if (target.points.empty()) return 0.0;
+  Vec3 middle(0.0);
+  for (const SeenPoint& point : target.points) middle += point.position;
+  return glm::length(middle / static_cast<double>(target.points.size()) - position);
+}
 
 double luminance_of_groups(const BasisView::Target& target, const GroupWeights& weights,
                            std::size_t first, std::size_t count) {
@@ -146,7 +155,14 @@ TargetSources sources_on(const LightBasis& basis, const scenes::RayQuery& query,
               reach_of_earth(scene, query, target.points, *sky.earth, sky.sun, earth_directions),
               on ? 1.0 : 0.0);
     }
-    if (!on) all.source("earth").off = lit ? switched_off : "its night side is below";
+    if (!on) all.source("earth").off = lit ? switched_off : "has its night side below";
+    if (!lit && sky.sun) {
+      // What it would give by day.
+      scenes::Sun noon = *sky.sun;
+      noon.direction = -sky.earth->direction;
+      all.add("earth",
+              reach_of_earth(scene, query, target.points, *sky.earth, noon, earth_directions), 0.0);
+    }
     if (groups.earth != no_group) {
       all.source("earth").luminance =
           luminance_of_groups(target, weights, groups.earth, basis.earth_parts());
@@ -164,7 +180,11 @@ TargetSources sources_on(const LightBasis& basis, const scenes::RayQuery& query,
     }
   };
   for (std::size_t k = 0; k < target.lamps.size(); ++k) {
-    if (target.lamps[k]) add_group(groups.lamp[k], *target.lamps[k]);
+    if (!target.lamps[k]) continue;
+    add_group(groups.lamp[k], *target.lamps[k]);
+    double& nearest = all.source(groups.names[groups.lamp[k]]).distance_m;
+    const double distance = distance_to(target, scene.lamps[k].position);
+    nearest = nearest > 0.0 ? std::min(nearest, distance) : distance;
   }
   for (std::size_t m = 0; m < target.emitters.size(); ++m) {
     if (target.emitters[m]) add_group(groups.material[m], *target.emitters[m]);
