@@ -109,6 +109,14 @@ std::string pixel_text(const Json& pixel) {
   return text;
 }
 
+base::ToneMapped toned(const Studio& studio, const base::Image& image) {
+  const ToneChoice& choice = studio.call.tone;
+  if (!choice.shared()) return base::tone_map(image);
+  return base::expose(image,
+                      studio.white_cd_per_m2 ? *studio.white_cd_per_m2 : white_of(choice, {&image}),
+                      choice.curve);
+}
+
 void tell(const Studio& studio, const raytrace::Frame& frame, const StageTimes& times) {
   for (const auto& [stage, seconds] : times.stages()) {
     note(fmt::format("  {:<16} {:>10}", stage, duration(seconds)));
@@ -176,7 +184,7 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
   std::optional<base::ToneMapped> tone;
   std::optional<degrade::Result> screen;
   if (!files.png.empty()) {
-    tone = times.measure("tone map", [&] { return base::tone_map(frame.image); });
+    tone = times.measure("tone map", [&] { return toned(studio, frame.image); });
   }
   if (tone && call.photo) {
     tone->rgb = times.measure("over", [&] {
@@ -196,9 +204,17 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
     if (screen) write_cctv(files.cctv, *cctv, *screen);
     if (!files.output.empty()) base::write_exr(files.output, frame.image, header);
   });
-  Picture picture{
-      json_of(studio, camera, frame, times), !frame.report.stopped, drawn.limit, frame.report, {}};
+  Picture picture{json_of(studio, camera, frame, times),
+                  !frame.report.stopped,
+                  drawn.limit,
+                  frame.report,
+                  {},
+                  {}};
   picture.times = times;
+  if (tone && call.tone.shared()) {
+    picture.white_cd_per_m2 = tone->report.white_cd_per_m2;
+    picture.report["png_white_cd_m2"] = tone->report.white_cd_per_m2;
+  }
   const std::optional<double> wanted =
       call.no_error ? std::nullopt : studio.loaded.scene.quality.error;
   picture.report["error"] = error_json(drawn, wanted);

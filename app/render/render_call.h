@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/command.h"
+#include "app/options.h"
 #include "app/render/over.h"
 #include "radiosity/solution.h"
 #include "raytrace/render.h"
@@ -32,6 +33,7 @@ struct RenderCall {
   std::vector<std::string> aovs;
   bool per_light = false, timings = false, json = false;
   bool all_effects = false;  // also those that cannot matter
+  ToneChoice tone;
   OverCall over;
   std::optional<base::Picture8> photo;  // of --over, once it is read
 
@@ -85,8 +87,9 @@ struct Studio {
   [[nodiscard]] studies::StudyScene scene() const {
     return {loaded.scene, loaded.groups, loaded.effects, query};
   }
-  double time_limit_s = 0.0;  // for one picture; 0: none
-  std::size_t number = 0;     // of the picture among the call's
+  double time_limit_s = 0.0;                   // for one picture; 0: none
+  std::size_t number = 0;                      // of the picture among the call's
+  std::optional<double> white_cd_per_m2 = {};  // of its PNGs, once the first picture has said it
 };
 
 // The size, the layers and the rays of one camera's picture.
@@ -105,7 +108,8 @@ struct Picture {
   bool whole = true;
   studies::Limit limit = studies::Limit::None;  // what kept it from the wanted error
   raytrace::RenderReport rendered;
-  StageTimes times;  // of the whole call so far and of this picture
+  std::optional<double> white_cd_per_m2 = {};  // of its PNG, with --exposure
+  StageTimes times;                            // of the whole call so far and of this picture
 };
 [[nodiscard]] Picture take_picture(const Studio& studio, const scenes::Camera& camera,
                                    const PictureFiles& files, StageTimes times);

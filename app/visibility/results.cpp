@@ -164,6 +164,8 @@ Json study_json(const StudyFindings& findings) {
     const auto found = earth_error.find(condition["id"].get<std::string>());
     if (found != earth_error.end()) condition["earth_error"] = found->second;
   }
+  Json notes = notes_of(findings);
+  for (const std::string& note : black_back_notes(results)) notes.push_back(note);
   for (const StudyCost& cost : findings.costs) {
     costs.push_back({{"stage", cost.stage},
                      {"seconds", cost.seconds},
@@ -191,7 +193,7 @@ Json study_json(const StudyFindings& findings) {
             {"seed", findings.seed},
             {"scene_digest", digests.dump()}}},
           {"costs", costs},
-          {"notes", notes_of(findings)}};
+          {"notes", notes}};
 }
 
 std::string study_csv(const Json& study) {
@@ -263,6 +265,7 @@ std::string study_text(const Json& study) {
     text += fmt::format("{}: {}\n", answer["wanted"].get<std::string>(),
                         answer["text"].get<std::string>());
   }
+  for (const std::string& note : black_back_notes(study["results"])) text += note + "\n";
   return text;
 }
 

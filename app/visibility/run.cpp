@@ -95,6 +95,7 @@ class Runner {
     for (std::size_t k = 0; findings_.complete && k < ways_.size(); ++k) {
       findings_.answers.push_back(answer_json(task_.study.wanted[k], task_.study, ways_[k]));
     }
+    expose_figures(task_.folder, task_.tone, findings_.figures);
     findings_.pairs = pairs_json(task_.study, findings_.figures);
   }
 
