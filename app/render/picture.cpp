@@ -11,6 +11,7 @@
 #include "app/render/draw.h"
 #include "app/render/error_json.h"
 #include "app/render/light.h"
+#include "app/render/probe.h"
 #include "app/render/render_call.h"
 #include "base/files/exr_file.h"
 #include "base/files/png_file.h"
@@ -220,8 +221,14 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
   picture.report["error"] = error_json(drawn, wanted);
   if (screen) picture.report["cctv"] = cctv_json(*cctv, *screen);
   if (call.only_pixel) {
-    picture.report["pixel"] = pixel_json(studio.loaded.scene, frame);
-    if (!call.json) print(pixel_text(picture.report["pixel"]));
+    Json& pixel = picture.report["pixel"];
+    pixel = pixel_json(studio.loaded.scene, frame);
+    if (call.probe) pixel.update(probe_json(studio, camera, options, frame));
+    if (!call.json) {
+      const std::string text = pixel_text(pixel);
+      // The first line says which pixel, what follows its layers.
+      print(call.probe ? text.substr(0, text.find('\n') + 1) + probe_text(pixel) : text);
+    }
   }
   if (studio.common.quiet) return picture;
   tell(studio, frame, times);

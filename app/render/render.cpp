@@ -66,6 +66,10 @@ void check_call(const RenderCall& call) {
     throw Error(Blame::Input, "--indirect paths", "draws whole pictures, however long it takes", {},
                 "Leave out --crop, --only-pixel and --time-limit");
   }
+  if (call.probe && call.indirect != raytrace::Indirect::Radiosity) {
+    throw Error(Blame::Input, "--probe", "reads the radiosity solution", {},
+                "Leave --indirect out");
+  }
   if (!call.solution.empty() && call.indirect != raytrace::Indirect::Radiosity) {
     throw Error(Blame::Input, "--solution",
                 fmt::format("--indirect {} reads no solution", indirect_name(call.indirect)), {},

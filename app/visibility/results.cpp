@@ -9,6 +9,7 @@
 #include "app/study/study.h"
 #include "app/visibility/conditions.h"
 #include "app/visibility/sight_json.h"
+#include "studies/error/error_budget.h"
 
 namespace earthshine::app {
 namespace {
@@ -122,6 +123,24 @@ Json notes_of(const StudyFindings& findings) {
         "The Earth moves through the sky of this attitude: its limb is drawn by cells of the "
         "sphere, "
         "coarse where a camera sees it directly or in a mirror.");
+  }
+  for (const StudyPart* part : findings.parts) {
+    const std::string scene =
+        findings.parts.size() > 1 ? part->loaded.scene.name + ": " : std::string();
+    for (const std::string& warning : part->loaded.scene.warnings) {
+      notes.push_back(scene + "Found on loading: " + warning);
+    }
+    const studies::StudyScene of{part->basis_scene.scene, part->basis_scene.groups,
+                                 part->basis_scene.effects, *part->query};
+    for (const std::string& missing : studies::not_captured(of, {})) {
+      notes.push_back(scene + "Not simulated: " + missing + ".");
+    }
+  }
+  for (const CameraResults& found : findings.cameras) {
+    notes.push_back(fmt::format(
+        "Picture of camera {}: noise of {:.2g} % of the mean in the sum of all lights; the "
+        "conditions' own noise is larger where little of that light shines.",
+        found.camera->camera->name, 100.0 * found.relative_noise));
   }
   if (!findings.complete)
     notes.push_back("The study was stopped before its end; run it again to go on.");

@@ -119,7 +119,7 @@ class Runner {
     if (!take_finished(pictures, ways_cache_key, frames, conditions, found)) {
       std::optional<StudyFrames::Frame> frame;
       if (!Interrupt::asked()) frame = frames.frame(camera, findings_.costs);
-      if (frame) work(pictures, ways_cache_key, *frame, conditions, found);
+      if (frame) work(pictures, ways_cache_key, frames, *frame, conditions, found);
     }
     findings_.cameras.push_back(std::move(found));
     const auto& done = findings_.cameras.back().conditions;
@@ -159,12 +159,13 @@ class Runner {
     return true;
   }
 
-  void work(const PictureTask& pictures, const Json& ways_cache_key, StudyFrames::Frame& frame,
-            StudyConditions& conditions, CameraResults& found) {
+  void work(const PictureTask& pictures, const Json& ways_cache_key, StudyFrames& frames,
+            StudyFrames::Frame& frame, StudyConditions& conditions, CameraResults& found) {
     const StudyPart& part = pictures.part;
     take(part, frame, found);
-    const studies::BasisView view = studies::make_basis_view(
-        *part.basis, *part.query, *pictures.camera.camera, std::move(frame.image));
+    const studies::BasisView view =
+        studies::make_basis_view(*part.basis, *part.query, *pictures.camera.camera,
+                                 std::move(frame.image), &frames.solution(findings_.costs));
     found.conditions =
         conditions.judge(pictures.camera, view, pictures.frame_cache_key, findings_.costs);
     if (listen_) listen_(part, pictures.camera, view, frame);
@@ -193,6 +194,8 @@ class Runner {
 Json run_study(StudyTask task, const Common& common, const ViewListener& listen) {
   const Parts parts = prepare_parts(task.study, common);
   check_models(task.study, pointers(parts));
+  const std::string& scene = parts.front()->loaded.scene.name;
+  if (task.study.path.empty() && !scene.empty()) task.study.name = scene;
   fill_pictures(task.study, *parts.front());
   check_pictures(task.study, pointers(parts));
   if (task.dry_run) return plan_json(task.study, pointers(parts), task.folder, common);

@@ -64,6 +64,11 @@ Json target_json(const studies::Sight& sight, const std::string& name,
     lit_by.push_back({{"group", source.group}, {"share", source.lit}});
     light_by.push_back({{"group", source.group}, {"luminance", source.luminance}});
   }
+  Json light_from = Json::array();
+  for (const studies::LightShare& from : outcome.light_from) {
+    light_from.push_back(
+        {{"from", from.from}, {"reflected", from.reflected}, {"share", from.share}});
+  }
   const bool known = outcome.basis_error.has_value();
   return {{"target", name},
           {"verdict", std::string(word_of(sight.verdict))},
@@ -75,6 +80,7 @@ Json target_json(const studies::Sight& sight, const std::string& name,
           {"lit_fraction", to_json(outcome.lit_fraction)},
           {"lit_by", lit_by},
           {"light_by", light_by},
+          {"light_from", light_from},
           {"angle_deg", to_json(sight.angle_deg)},
           {"tv_lines", to_json(sight.tv_lines)},
           {"luminance", to_json(sight.luminance)},

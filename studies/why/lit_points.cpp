@@ -95,10 +95,12 @@ std::vector<SeenPoint> seen_points(const scenes::Scene& scene, const scenes::Ray
     const scenes::Material& material = scene.materials[scene.triangles[hit.triangle].material];
     const Vec3 normal = scenes::triangle_normal(scene, hit.triangle);
     const double reflectance = base::luminance(material.diffuse);
-    const bool black = !hit.front && material.has_black_back();
+    const bool shines = hit.front || material.two_sided;
     points.push_back({scenes::hit_position(scene, hit), hit.front ? normal : -normal,
-                      hit.front || material.two_sided ? reflectance : 0.0,
-                      black ? reflectance : 0.0});
+                      shines ? reflectance : 0.0,
+                      !hit.front && material.has_black_back() ? reflectance : 0.0,
+                      shines ? material.diffuse : Rgb(0.0),
+                      shines ? base::luminance(material.emit) / base::pi : 0.0});
   }
   return points;
 }

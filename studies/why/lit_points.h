@@ -20,6 +20,8 @@ struct SeenPoint {
   Vec3 normal{0.0};          // unit, on the side that the camera sees
   double reflectance = 0.0;  // diffuse, of luminance; 0 on the black back of a surface
   double as_front = 0.0;     // on a black back: what its front reflects
+  Rgb diffuse{0.0};          // as reflectance, in colour
+  double emitted = 0.0;      // luminance of its own light, cd/m^2
 };
 
 // Of at most `most` of the pixels, spread evenly over them: what the rays through their centres hit

@@ -78,6 +78,7 @@ struct SourceOnTarget {
   double direct = 0.0;      // luminance by its direct light alone (0 when off)
   double unshadowed = 0.0;  // the same if it were on with nothing in between
   double on_back = 0.0;     // what `direct` would be more if black backs were as their fronts
+  double straight = 0.0;    // of `direct`, what no object counts as its reflected light
   double distance_m = 0.0;  // of a lamp, to the middle of what is seen; 0: none, or not known
   std::vector<std::string> shadow_of = {};  // objects in between, most first
   // The picture with this group on, where it is off and the picture is at hand; otherwise only the

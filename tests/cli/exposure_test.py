@@ -19,7 +19,7 @@ class Render(tiny_bay.Case):
     def setUp(self):
         super().setUp()
         # M / (1 - rho) = 20 lm/m^2 from every wall: 20 / pi cd/m^2 everywhere.
-        (self.folder / "box.toml").write_text(CLOSED_BOX, encoding="utf-8")
+        self.write("box.toml", CLOSED_BOX)
 
     def byte(self, *options):
         self.done("render", "box.toml", "-o", "a.exr", "--png", "a.png", "--quiet", *options)
@@ -57,11 +57,47 @@ class Render(tiny_bay.Case):
         self.assertIn("none is written", self.refused("render", "box.toml", "-o", "a.exr", "--exposure", "auto"))
 
 
+class Probe(tiny_bay.Case):
+    """Where the light at a pixel comes from."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("box.toml", CLOSED_BOX)
+
+    def test_half_of_a_furnace_is_its_own(self):
+        # B = M / (1 - rho): of 20 lm/m^2 the wall gives 10 itself and reflects 10 of its own room.
+        report = self.json("render", "box.toml", "--probe", "12,8")
+        pixel = report["pixel"]
+        self.assertAlmostEqual(pixel["luminance_cd_m2"], 20 / math.pi, delta=0.02)
+        self.assertAlmostEqual(sum(entry["share"] for entry in pixel["light_by"]), 1, places=5)
+        shares = {(entry["from"], entry["reflected"]): entry["share"] for entry in pixel["light_from"]}
+        self.assertEqual(set(shares), {("its own light", False), ("room", True)})
+        self.assertAlmostEqual(shares["its own light", False], 0.5, delta=0.005)
+        self.assertAlmostEqual(shares["room", True], 0.5, delta=0.01)
+        self.assertAlmostEqual(pixel["left_over"], 0, delta=0.015)
+        said = self.done("render", "box.toml", "--probe", "12,8", "--quiet")
+        self.assertIn("by way of room", said)
+        self.assertIn("straight from its own light", said)
+
+    def test_what_is_refused(self):
+        self.assertIn("is not X,Y", self.refused("render", "box.toml", "--probe", "1"))
+        self.assertIn("reads the radiosity solution",
+                      self.refused("render", "box.toml", "--probe", "1,1", "--indirect", "none"))
+        self.refused("render", "box.toml", "--probe", "1,1", "--only-pixel", "1,1")
+
+
 class Study(tiny_bay.Case):
     CALL = ("study", "orbit", "bay.toml", "--at", "0,180", "--camera", "B")
 
     def test_all_pictures_have_one_white(self):
         study = self.json(*self.CALL, "-o", "o")
+        for result in study["results"]:
+            if result["target"] != "box":
+                continue
+            shares = [entry["share"] for entry in result["light_from"]]
+            self.assertEqual(shares, sorted(shares, reverse=True))
+            # No highlights here: what is straight and what comes by way of others is all, to the rays' noise.
+            self.assertAlmostEqual(sum(shares), 1, delta=0.06)
         clean = [figure for figure in study["figures"] if figure["clean"]]
         white, = {figure["white_cd_m2"] for figure in clean}
         self.assertEqual(len(clean), 2)
