@@ -49,6 +49,7 @@ std::string sight_row(const StudyResults& study, std::size_t index, const Column
             shares_text(result.light_by, Form::Plain) + "<td class=t>" +
             shares_text(result.light_from, Form::Percent);
   }
+  html += "<td class=t>" + (result.why.empty() ? dash : escaped(result.why));
   return html + "\n";
 }
 
@@ -89,6 +90,7 @@ std::string tables(const StudyResults& study, const Block& block, const Columns&
         "<th scope=\"col\">lit by</th><th scope=\"col\">light by, cd/m²</th>"
         "<th scope=\"col\">comes last from, %</th>";
   }
+  sight += "<th scope=\"col\">why not</th>";
   sight += "</tr></thead>\n<tbody>\n";
   std::string signal;
   for (const std::size_t k : results) {
