@@ -4,12 +4,51 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <system_error>
 
 namespace earthshine::app {
 namespace {
 
 constexpr int largest_edge_px = 16384;
+constexpr double white_of_ev0 = 78.0 / (100.0 * 0.65);  // cd/m^2
+
+// Number and unit: "12EV"; nothing where there is no number.
+std::optional<std::pair<double, std::string>> measure_of(const std::string& text) {
+  double number = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [stop, problem] = std::from_chars(text.data(), end, number);
+  if (problem != std::errc() || !std::isfinite(number)) return std::nullopt;
+  return std::pair{number, std::string(stop, end)};
+}
+
+// Nothing where `text` is none of what --exposure takes.
+std::optional<ToneChoice> tone_of(const std::string& text) {
+  ToneChoice tone;
+  const std::string_view start = "auto:";
+  if (text == "own") return tone;
+  if (text == "auto") {
+    tone.percent = usual_percent;
+    return tone;
+  }
+  const bool by_percent = text.starts_with(start);
+  const auto measure = measure_of(by_percent ? text.substr(start.size()) : text);
+  if (!measure) return std::nullopt;
+  const auto& [number, unit] = *measure;
+  if (by_percent) {
+    if (!unit.empty() || !(number > 0.0 && number <= 100.0)) return std::nullopt;
+    tone.percent = number;
+  } else if (unit == "EV") {
+    if (std::abs(number) > 60.0) return std::nullopt;
+    tone.white_cd_per_m2 = white_of_ev0 * std::exp2(number);
+  } else {
+    if ((!unit.empty() && unit != "cd/m2") || !(number >= 1e-12 && number <= 1e12)) {
+      return std::nullopt;
+    }
+    tone.white_cd_per_m2 = number;
+  }
+  return tone;
+}
 
 }  // namespace
 
@@ -37,6 +76,47 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
           },
           "Wanted relative error; the same as --set quality.error=E")
       ->type_name("E");
+}
+
+double white_of(const ToneChoice& tone, const std::vector<const base::Image*>& pictures) {
+  return tone.white_cd_per_m2 ? *tone.white_cd_per_m2 : base::white_at(pictures, *tone.percent);
+}
+
+void add_tone_options(CLI::App& command, ToneChoice& tone, const std::string& more) {
+  command
+      .add_option_function<std::string>(
+          "--exposure",
+          [&tone](const std::string& text) {
+            const std::optional<ToneChoice> read = tone_of(text);
+            if (!read) {
+              throw CLI::ValidationError(
+                  "--exposure", "\"" + text +
+                                    "\" is not own, auto, auto:PERCENT (above 0, to 100), EV such "
+                                    "as 12EV (-60 to 60) "
+                                    "or the luminance of white such as 3000cd/m2 (1e-12 to 1e12)");
+            }
+            tone.percent = read->percent;
+            tone.white_cd_per_m2 = read->white_cd_per_m2;
+          },
+          "White of PNGs: auto (brighter than 99.5 % of the lit pixels), auto:PERCENT, 12EV, "
+          "3000cd/m2, or own, a curve for each picture by its mean" +
+              more)
+      ->type_name("HOW");
+  command
+      .add_option_function<std::string>(
+          "--curve",
+          [&tone](const std::string& text) {
+            if (text != "shoulder" && text != "clip") {
+              throw CLI::ValidationError("--curve",
+                                         "\"" + text + "\" is not one of shoulder, clip");
+            }
+            tone.curve = text == "clip" ? base::ToneCurve::Clip : base::ToneCurve::Shoulder;
+          },
+          "With --exposure: shoulder (default; bright parts keep their differences), clip (linear "
+          "up "
+          "to white)")
+      ->type_name("HOW")
+      ->needs("--exposure");
 }
 
 void add_size_option(CLI::App& command, std::optional<Size>& size) {

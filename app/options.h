@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/command.h"
+#include "base/tone.h"
 
 namespace earthshine::app {
 
@@ -17,6 +18,23 @@ void add_scene_options(CLI::App& command, SceneInput& input);
 
 // --size CxR; stays empty where the camera's own size is meant.
 void add_size_option(CLI::App& command, std::optional<Size>& size);
+
+// How bright a PNG shows a picture: each by base::tone_map, or by a white that pictures share.
+struct ToneChoice {
+  std::optional<double> percent;          // of the lit pixels that are darker than white
+  std::optional<double> white_cd_per_m2;  // or white itself
+  base::ToneCurve curve = base::ToneCurve::Shoulder;
+
+  [[nodiscard]] bool shared() const { return percent || white_cd_per_m2; }
+};
+// The luminance of white of these pictures together. Needs a shared white.
+[[nodiscard]] double white_of(const ToneChoice& tone,
+                              const std::vector<const base::Image*>& pictures);
+inline constexpr double usual_percent = 99.5;  // of --exposure auto
+// --exposure own, auto, auto:PERCENT, EV (of ISO 100: white at 1.2 2^EV cd/m^2, by H = 78 lx s /
+// ISO for white and H = 0.65 L t / N^2, ISO 12232) or cd/m2; --curve shoulder or clip. `more`: what
+// else an option's help says.
+void add_tone_options(CLI::App& command, ToneChoice& tone, const std::string& more);
 
 // The words between the commas, also empty ones.
 [[nodiscard]] std::vector<std::string> split_at_commas(const std::string& text);

@@ -65,22 +65,20 @@ ToneReport choose_exposure(const std::vector<float>& luminance) {
   return {exposure, white / exposure};
 }
 
-ToneMapped apply_exposure(const Image& image, const std::vector<float>& luminance,
-                          const ToneReport& report) {
+// scale(luminance): of the colour that is shown over the colour that is there.
+template <class Scale>
+ToneMapped apply_curve(const Image& image, const std::vector<float>& luminance,
+                       const ToneReport& report, Scale scale_of) {
   ToneMapped result;
   result.rgb.assign(luminance.size() * 3, 0);
   result.report = report;
-  const double exposure = report.exposure;
-  const double white = std::max(1.0, exposure * report.white_cd_per_m2);
-
   const Channel* channels[3] = {image.find("R"), image.find("G"), image.find("B")};
   if (channels[0] == nullptr || channels[1] == nullptr || channels[2] == nullptr) {
     std::fill(std::begin(channels), std::end(channels), image.find("Y"));
   }
   parallel_chunks(luminance.size(), chunk_px, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const double signal = exposure * std::max(0.0, static_cast<double>(luminance[i]));
-      const double scale = exposure * (1.0 + signal / (white * white)) / (1.0 + signal);
+      const double scale = scale_of(std::max(0.0, static_cast<double>(luminance[i])));
       Rgb colour{channels[0]->values[i], channels[1]->values[i], channels[2]->values[i]};
       colour = glm::max(colour * scale, Rgb(0.0));
       // Divided rather than clipped, so that a bright lamp keeps its hue.
@@ -90,6 +88,25 @@ ToneMapped apply_exposure(const Image& image, const std::vector<float>& luminanc
     }
   });
   return result;
+}
+
+ToneMapped apply_exposure(const Image& image, const std::vector<float>& luminance,
+                          const ToneReport& report) {
+  const double exposure = report.exposure;
+  const double white = std::max(1.0, exposure * report.white_cd_per_m2);
+  return apply_curve(image, luminance, report, [=](double y) {
+    const double signal = exposure * y;
+    return exposure * (1.0 + signal / (white * white)) / (1.0 + signal);
+  });
+}
+
+constexpr double shoulder_from = 0.6;
+
+double shown(double signal, ToneCurve curve) {
+  if (curve == ToneCurve::Clip) return std::min(1.0, signal);
+  if (signal <= shoulder_from) return signal;
+  const double room = 1.0 - shoulder_from;
+  return 1.0 - room * std::exp(-(signal - shoulder_from) / room);
 }
 
 double srgb_curve(double linear) {
@@ -135,6 +152,34 @@ ToneMapped tone_map(const Image& image) {
   const std::vector<float> luminance = luminance_of(image);
   refuse_non_finite(image, luminance);
   return apply_exposure(image, luminance, choose_exposure(luminance));
+}
+
+ToneMapped expose(const Image& image, double white_cd_per_m2, ToneCurve curve) {
+  const std::vector<float> luminance = luminance_of(image);
+  refuse_non_finite(image, luminance);
+  const double exposure = 1.0 / white_cd_per_m2;
+  return apply_curve(image, luminance, {exposure, white_cd_per_m2},
+                     [=](double y) { return y > 0.0 ? shown(exposure * y, curve) / y : exposure; });
+}
+
+double white_at(const std::vector<const Image*>& pictures, double percent) {
+  std::vector<float> lit;
+  for (const Image* picture : pictures) {
+    const std::vector<float> luminance = luminance_of(*picture);
+    refuse_non_finite(*picture, luminance);
+    for (const float y : luminance) {
+      if (y > 0.0F) lit.push_back(y);
+    }
+  }
+  if (lit.empty()) return 1.0;
+  std::sort(lit.begin(), lit.end());
+  const auto at = [](auto first, auto last, double share) {
+    return first +
+           static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(last - first - 1)));
+  };
+  const float bright = *at(lit.begin(), lit.end(), 0.995);
+  const auto from = std::lower_bound(lit.begin(), lit.end(), 1e-5F * bright);
+  return static_cast<double>(*at(from, lit.end(), percent / 100.0));
 }
 
 ToneMapped tone_map_with(const Image& image, const ToneReport& exposure) {

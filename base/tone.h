@@ -35,4 +35,16 @@ struct ToneMapped {
 // equal grey in both. A white below signal 1 counts as 1. Throws as above.
 [[nodiscard]] ToneMapped tone_map_with(const Image& image, const ToneReport& exposure);
 
+// As a photograph is exposed: linear in the luminance, with a white that is given.
+//   Shoulder  L / white up to 0.6, then 1 - 0.4 exp(-(L / white - 0.6) / 0.4): white itself is at
+//             0.85 of the screen's, what is brighter keeps its differences
+//   Clip      min(1, L / white): pixels can be read back, what is brighter than white is white
+// Colours keep their ratios, as above. Throws as tone_map does.
+enum class ToneCurve { Shoulder, Clip };
+[[nodiscard]] ToneMapped expose(const Image& image, double white_cd_per_m2, ToneCurve curve);
+
+// The luminance that `percent` of the lit pixels of all pictures together lie below (lit as for
+// tone_map, by the brightest of them); 1 for black pictures.
+[[nodiscard]] double white_at(const std::vector<const Image*>& pictures, double percent);
+
 }  // namespace earthshine::base

@@ -49,6 +49,9 @@ struct Material {
   std::shared_ptr<const MaterialMaps> maps;  // null: no textures. diffuse and emit are the means
 
   [[nodiscard]] bool emits() const { return base::max_component(emit) > 0.0; }
+  [[nodiscard]] bool has_black_back() const {
+    return !two_sided && !(base::max_component(transmit) > 0.0);
+  }
   [[nodiscard]] bool has_holes() const { return maps && maps->opacity.texture; }
   [[nodiscard]] bool lets_light_through() const {
     return base::max_component(transmit) > 0.0 || has_holes();
@@ -84,6 +87,9 @@ struct Instance {
 struct Object {
   std::string name;
   bool target = false;  // visibility studies measure it
+  // Against the cameras; pictures show it where it stands, studies add what a tube's lag makes of
+  // it.
+  Vec3 velocity_m_s{0.0};
   Orient orient = Orient::Mended;
   std::uint32_t first_triangle = 0;
   std::uint32_t triangle_count = 0;

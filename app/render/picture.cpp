@@ -11,6 +11,7 @@
 #include "app/render/draw.h"
 #include "app/render/error_json.h"
 #include "app/render/light.h"
+#include "app/render/probe.h"
 #include "app/render/render_call.h"
 #include "base/files/exr_file.h"
 #include "base/files/png_file.h"
@@ -110,6 +111,14 @@ std::string pixel_text(const Json& pixel) {
   return text;
 }
 
+base::ToneMapped toned(const Studio& studio, const base::Image& image) {
+  const ToneChoice& choice = studio.call.tone;
+  if (!choice.shared()) return base::tone_map(image);
+  return base::expose(image,
+                      studio.white_cd_per_m2 ? *studio.white_cd_per_m2 : white_of(choice, {&image}),
+                      choice.curve);
+}
+
 void tell(const Studio& studio, const raytrace::Frame& frame, const StageTimes& times) {
   for (const auto& [stage, seconds] : times.stages()) {
     note(fmt::format("  {:<16} {:>10}", stage, duration(seconds)));
@@ -178,7 +187,7 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
   std::optional<base::ToneMapped> tone;
   std::optional<degrade::Result> screen;
   if (!files.png.empty()) {
-    tone = times.measure("tone map", [&] { return base::tone_map(frame.image); });
+    tone = times.measure("tone map", [&] { return toned(studio, frame.image); });
   }
   if (tone && call.photo) {
     tone->rgb = times.measure("over", [&] {
@@ -198,16 +207,30 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
     if (screen) write_cctv(files.cctv, *cctv, *screen);
     if (!files.output.empty()) base::write_exr(files.output, frame.image, header);
   });
-  Picture picture{
-      json_of(studio, camera, frame, times), !frame.report.stopped, drawn.limit, frame.report, {}};
+  Picture picture{json_of(studio, camera, frame, times),
+                  !frame.report.stopped,
+                  drawn.limit,
+                  frame.report,
+                  {},
+                  {}};
   picture.times = times;
+  if (tone && call.tone.shared()) {
+    picture.white_cd_per_m2 = tone->report.white_cd_per_m2;
+    picture.report["png_white_cd_m2"] = tone->report.white_cd_per_m2;
+  }
   const std::optional<double> wanted =
       call.no_error ? std::nullopt : studio.loaded.scene.quality.error;
   picture.report["error"] = error_json(drawn, wanted);
   if (screen) picture.report["cctv"] = cctv_json(*cctv, *screen);
   if (call.only_pixel) {
-    picture.report["pixel"] = pixel_json(studio.loaded.scene, frame);
-    if (!call.json) print(pixel_text(picture.report["pixel"]));
+    Json& pixel = picture.report["pixel"];
+    pixel = pixel_json(studio.loaded.scene, frame);
+    if (call.probe) pixel.update(probe_json(studio, camera, options, frame));
+    if (!call.json) {
+      const std::string text = pixel_text(pixel);
+      // The first line says which pixel, what follows its layers.
+      print(call.probe ? text.substr(0, text.find('\n') + 1) + probe_text(pixel) : text);
+    }
   }
   if (studio.common.quiet) return picture;
   tell(studio, frame, times);

@@ -47,6 +47,10 @@ void check_call(const RenderCall& call) {
   check_ending(call.range, "--range", ".exr");
   check_ending(call.report, "--report", ".json");
   check_over(call);
+  if (call.tone.shared() && call.png.empty()) {
+    throw Error(Blame::Input, "--exposure", "is how a PNG is shown, and none is written", {},
+                "Name one with --png, or leave --exposure out");
+  }
   const bool range_alone = !call.range.empty() && call.png.empty() && call.cctv.empty();
   if (call.output.empty() && !call.only_pixel && !call.over.asked() && !range_alone) {
     throw Error(Blame::Input, "--output", "is missing", {},
@@ -63,6 +67,10 @@ void check_call(const RenderCall& call) {
   if (call.indirect == raytrace::Indirect::Paths && (call.crop || call.time_limit_s > 0.0)) {
     throw Error(Blame::Input, "--indirect paths", "draws whole pictures, however long it takes", {},
                 "Leave out --crop, --only-pixel and --time-limit");
+  }
+  if (call.probe && call.indirect != raytrace::Indirect::Radiosity) {
+    throw Error(Blame::Input, "--probe", "reads the radiosity solution", {},
+                "Leave --indirect out");
   }
   if (!call.solution.empty() && call.indirect != raytrace::Indirect::Radiosity) {
     throw Error(Blame::Input, "--solution",
@@ -215,6 +223,7 @@ void run(RenderCall call, const Common& common) {
         studio.time_limit_s = std::max(1e-3, left / static_cast<double>(pictures.size() - k));
       }
       studio.number = k;
+      if (k > 0) studio.white_cd_per_m2 = taken.front().white_cd_per_m2;
       Picture picture = take_picture(studio, *pictures[k].camera, pictures[k].files, times);
       times.add({{"pictures", picture.report["seconds"]["render"].get<double>()}});
       whole = picture.whole;
@@ -253,6 +262,8 @@ Command add_render(CLI::App& program) {
   file_option("--png", call->png, "Also a tone-mapped picture");
   file_option("--cctv", call->cctv, "Also the picture on the camera's CCTV monitor (PNG)");
   parser->get_option("--cctv")->group("What is written");
+  add_tone_options(*parser, call->tone,
+                   " (default); of several cameras the first one's white is that of all");
   file_option("--range", call->range,
               "Also, or alone, what the camera's range sensor reports (OpenEXR)");
   file_option("--report", call->report,

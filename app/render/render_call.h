@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/command.h"
+#include "app/options.h"
 #include "app/parts/part.h"
 #include "app/render/over.h"
 #include "radiosity/solution.h"
@@ -25,6 +26,7 @@ struct RenderCall {
   std::optional<Size> size;
   std::optional<raytrace::Window> crop;  // one pixel with only_pixel
   bool only_pixel = false;
+  bool probe = false;         // with only_pixel: where its light comes from
   double time_limit_s = 0.0;  // of the whole command; 0: none
   bool no_error = false;      // none is stated
   raytrace::Indirect indirect = raytrace::Indirect::Radiosity;
@@ -34,6 +36,7 @@ struct RenderCall {
   bool per_light = false, timings = false, json = false;
   bool all_effects = false;  // also those that cannot matter
   PartCall part;
+  ToneChoice tone;
   OverCall over;
   std::optional<base::Picture8> photo;  // of --over, once it is read
 
@@ -89,8 +92,9 @@ struct Studio {
   [[nodiscard]] studies::StudyScene scene() const {
     return {loaded.scene, loaded.groups, loaded.effects, query};
   }
-  double time_limit_s = 0.0;           // for one picture; 0: none
-  std::size_t number = 0;              // of the picture among the call's
+  double time_limit_s = 0.0;                   // for one picture; 0: none
+  std::size_t number = 0;                      // of the picture among the call's
+  std::optional<double> white_cd_per_m2 = {};  // of its PNGs, once the first picture has said it
   const RenderParts* parts = nullptr;  // what pictures are put together from; nullptr: drawn here
 };
 
@@ -110,7 +114,8 @@ struct Picture {
   bool whole = true;
   studies::Limit limit = studies::Limit::None;  // what kept it from the wanted error
   raytrace::RenderReport rendered;
-  StageTimes times;  // of the whole call so far and of this picture
+  std::optional<double> white_cd_per_m2 = {};  // of its PNG, with --exposure
+  StageTimes times;                            // of the whole call so far and of this picture
 };
 [[nodiscard]] Picture take_picture(const Studio& studio, const scenes::Camera& camera,
                                    const PictureFiles& files, StageTimes times);

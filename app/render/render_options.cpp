@@ -86,23 +86,32 @@ void add_window_options(CLI::App& parser, RenderCall& call) {
           },
           "Only this part of the picture, as it is in the whole one")
       ->type_name("X,Y,CxR");
-  parser
-      .add_option_function<std::string>(
-          "--only-pixel",
-          [&call](const std::string& text) {
-            const auto n = numbers_like("#,#", text);
-            if (!n) {
-              throw CLI::ValidationError(
-                  "--only-pixel", "\"" + text +
-                                      "\" is not X,Y in whole pixels from the top left corner, "
-                                      "such as 100,40");
-            }
-            call.crop = raytrace::Window{(*n)[0], (*n)[1], 1, 1};
-            call.only_pixel = true;
-          },
-          "Replays one pixel and prints all of it; -o is not needed")
-      ->type_name("X,Y")
-      ->excludes("--crop");
+  const auto pixel_option = [&](const std::string& name, bool probe, const char* help) {
+    return parser
+        .add_option_function<std::string>(
+            name,
+            [&call, name, probe](const std::string& text) {
+              const auto n = numbers_like("#,#", text);
+              if (!n) {
+                throw CLI::ValidationError(
+                    name, "\"" + text +
+                              "\" is not X,Y in whole pixels from the top left corner, such as "
+                              "100,40");
+              }
+              call.crop = raytrace::Window{(*n)[0], (*n)[1], 1, 1};
+              call.only_pixel = true;
+              call.probe = probe;
+              call.per_light = call.per_light || probe;
+            },
+            help)
+        ->type_name("X,Y")
+        ->excludes("--crop");
+  };
+  pixel_option("--only-pixel", false, "Replays one pixel and prints all of it; -o is not needed");
+  pixel_option("--probe", true,
+               "Names where the light of one pixel comes from, by source and by last bounce; -o is "
+               "not needed")
+      ->excludes("--only-pixel");
   parser
       .add_flag("--no-error", call.no_error,
                 "State no error: as many samples as the settings say, each one for the picture")

@@ -150,6 +150,11 @@ void read_result_list(const ReportPart& top, StudyResults& study, const Names& n
     result.signal = figures_of(part, signal_columns);
     result.lit_by = shares_of(part, "lit_by", "share");
     result.light_by = shares_of(part, "light_by", "luminance");
+    for (const ReportPart& from : part.list("light_from")) {
+      result.light_from.push_back(
+          {(from.flag("reflected", false) ? "by way of " : "") + from.text("from"),
+           from.number("share")});
+    }
     result.cut_by_frame = part.flag("cut_by_frame", false);
     result.why = part.text("why");
     for (const ReportPart& reason : part.list("reasons")) {

@@ -117,7 +117,7 @@ struct ResultEntry {
   Verdict verdict;
   std::array<Number, sight_columns.size()> sight;
   std::array<Number, signal_columns.size()> signal;
-  std::vector<GroupShare> lit_by, light_by;
+  std::vector<GroupShare> lit_by, light_by, light_from;
   bool cut_by_frame;
   std::string why;
   std::vector<Reason> reasons;

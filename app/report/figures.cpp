@@ -46,8 +46,10 @@ std::string sight_row(const StudyResults& study, std::size_t index, const Column
   }
   if (columns.groups) {
     html += "<td class=t>" + shares_text(result.lit_by, Form::Percent) + "<td class=t>" +
-            shares_text(result.light_by, Form::Plain);
+            shares_text(result.light_by, Form::Plain) + "<td class=t>" +
+            shares_text(result.light_from, Form::Percent);
   }
+  html += "<td class=t>" + (result.why.empty() ? dash : escaped(result.why));
   return html + "\n";
 }
 
@@ -84,8 +86,11 @@ std::string tables(const StudyResults& study, const Block& block, const Columns&
   };
   std::string sight = start("what is seen") + head(sight_columns, columns.sight, true);
   if (columns.groups) {
-    sight += "<th scope=\"col\">lit by</th><th scope=\"col\">light by, cd/m²</th>";
+    sight +=
+        "<th scope=\"col\">lit by</th><th scope=\"col\">light by, cd/m²</th>"
+        "<th scope=\"col\">comes last from, %</th>";
   }
+  sight += "<th scope=\"col\">why not</th>";
   sight += "</tr></thead>\n<tbody>\n";
   std::string signal;
   for (const std::size_t k : results) {
@@ -117,7 +122,9 @@ std::string figures_html(const StudyResults& study) {
   for (std::size_t k = 0; full && k < signal_columns.size(); ++k) columns.signal.push_back(k);
   std::string html =
       "<p>Luminances are of the clean picture. P: probability. lit: share of the visible part that "
-      "a lamp or the Sun reaches directly. +: cut by the picture’s border.</p>\n";
+      "a lamp or the Sun reaches directly. comes last from: straight from a source, or by way of "
+      "what "
+      "reflects it on. +: cut by the picture’s border.</p>\n";
   if (!full) {
     html += fmt::format(
         "<p>Of {} results these tables have the columns that decide; study.json and the CSV files "

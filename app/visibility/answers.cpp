@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/study/study.h"
 #include "base/parallel.h"
@@ -70,6 +71,12 @@ Rated rate(const ViewingConfiguration& way, double wanted, bool closed) {
   return rated;
 }
 
+// Two digits, without a power of ten: 0.0013.
+std::string in_digits(double value) {
+  const int places = value < 10.0 ? 1 - static_cast<int>(std::floor(std::log10(value))) : 0;
+  return fmt::format("{:.{}f}", value, std::max(0, places));
+}
+
 std::string lamp_text(const std::vector<ViewingConfiguration>& ways, double wanted) {
   const ViewingConfiguration* best = nullptr;
   const ViewingConfiguration* tried = nullptr;
@@ -89,10 +96,14 @@ std::string lamp_text(const std::vector<ViewingConfiguration>& ways, double want
                        studies::most_lamp_factor, wanted);
   }
   if (*best->least_factor <= 0.0) return fmt::format(" {}no lamps are needed.", where);
-  const bool less = *best->least_factor <= studies::least_lamp_factor;
-  return fmt::format(
-      " {}the least light that does is {}{:.2g} times that of lamps {}, by camera {}.", where,
-      less ? "below " : "", *best->least_factor, best->lamps, best->camera);
+  const double factor = *best->least_factor;
+  const std::string how =
+      factor < 1.0 ? fmt::format("could be dimmed to {}{} %",
+                                 factor <= studies::least_lamp_factor ? "less than " : "",
+                                 in_digits(100.0 * factor))
+                   : fmt::format("must be {:.2g} times as bright", factor);
+  return fmt::format(" {}lamps {} {}; camera {} then still sees it so.", where, best->lamps, how,
+                     best->camera);
 }
 
 // The camera's CCTV with that iris mode; its own for an empty one.

@@ -41,9 +41,11 @@ std::optional<StudyFrames::Frame> CameraWork::known_frame(std::vector<StudyCost>
   return frames_.known(pictures_.camera, costs);
 }
 
-studies::BasisView CameraWork::view_of(StudyFrames::Frame& frame) const {
+studies::BasisView CameraWork::view_of(StudyFrames::Frame& frame,
+                                       std::vector<StudyCost>& costs) const {
   return studies::make_basis_view(*pictures_.part.basis, *pictures_.part.query,
-                                  *pictures_.camera.camera, std::move(frame.image));
+                                  *pictures_.camera.camera, std::move(frame.image),
+                                  &frames_.solution(costs));
 }
 
 std::vector<Json> CameraWork::judge(const studies::BasisView& view, Share batches,

@@ -32,7 +32,8 @@ class CameraWork {
   [[nodiscard]] std::optional<StudyFrames::Frame> known_frame(std::vector<StudyCost>& costs) const;
 
   // Takes the frame's image.
-  [[nodiscard]] studies::BasisView view_of(StudyFrames::Frame& frame) const;
+  [[nodiscard]] studies::BasisView view_of(StudyFrames::Frame& frame,
+                                           std::vector<StudyCost>& costs) const;
   [[nodiscard]] std::vector<Json> judge(const studies::BasisView& view, Share batches,
                                         std::vector<StudyCost>& costs) const;
   // The camera's pictures, and what its wishes are answered by.

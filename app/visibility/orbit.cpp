@@ -23,12 +23,14 @@ struct OrbitCall {
   std::string at;  // positions in degrees, in any order, with commas between
   std::vector<std::string> wanted, iris;
   bool dry_run = false;
+  ToneChoice tone = {usual_percent, {}};
 };
 
 struct FileCall {
   std::string file, folder;
   PartCall part;
   bool json = false, dry_run = false;
+  ToneChoice tone = {usual_percent, {}};
 };
 
 std::vector<double> positions_of(const std::string& text) {
@@ -65,14 +67,14 @@ void run_orbit(const OrbitCall& call, const Common& common) {
   study.positions_deg = call.at.empty() ? studies::even_positions(static_cast<int>(call.positions))
                                         : positions_of(call.at);
   study.timeline = call.at.empty() && call.positions > 1;
-  StudyTask task{std::move(study), call.study.folder, "study orbit", call.dry_run};
+  StudyTask task{std::move(study), call.study.folder, "study orbit", call.dry_run, call.tone};
   task.part = call.study.part;
   tell(run_study(std::move(task), common), call.study.json, call.dry_run);
 }
 
 void run_file(const FileCall& call, const Common& common) {
   StudyTask task{studies::read_study_file(call.file), call.folder, "study run " + call.file,
-                 call.dry_run};
+                 call.dry_run, call.tone};
   task.part = call.part;
   tell(run_study(std::move(task), common), call.json, call.dry_run);
 }
@@ -94,6 +96,7 @@ Command add_study_orbit(CLI::App& study) {
       ->check(not_empty())
       ->excludes("--positions");
   parser->add_flag("--dry-run", call->dry_run, "Only say what would be done, and its price");
+  add_tone_options(*parser, call->tone, study_tone_help);
   return {parser, [call](const Common& common) { run_orbit(*call, common); }};
 }
 
@@ -111,6 +114,7 @@ Command add_study_run(CLI::App& study) {
   add_part_options(*parser, call->part);
   parser->add_flag("--dry-run", call->dry_run, "Only say what would be done, and its price");
   parser->add_flag("--json", call->json, "Results as JSON on standard output");
+  add_tone_options(*parser, call->tone, study_tone_help);
   return {parser, [call](const Common& common) { run_file(*call, common); }};
 }
 

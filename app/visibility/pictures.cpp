@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "app/console.h"
 #include "app/parts/result_cache.h"
@@ -93,51 +92,6 @@ base::Image draw_distributed(const StudyPart& part, const StudyCamera& camera,
 
 }  // namespace
 
-void fill_pictures(studies::StudyFile& study, const StudyPart& part) {
-  if (!study.pictures.empty()) return;
-  const std::vector<double>& positions = part.positions_deg;
-  std::optional<double> midnight;
-  for (const double position : positions) {
-    const auto off = [](double deg) { return std::abs(std::remainder(deg - 180.0, 360.0)); };
-    if (!midnight || off(position) < off(*midnight)) midnight = position;
-  }
-  for (const StudyCamera& camera : part.cameras) {
-    const std::string name = camera.camera->name;
-    const auto add = [&](const std::string& suffix, const std::string& what,
-                         std::optional<double> position, Shows shows) {
-      PictureWish wish;
-      wish.name = name + suffix;
-      wish.title = fmt::format("Camera {}, {}", name, what);
-      wish.camera = name;
-      wish.position_deg = position;
-      wish.shows = shows;
-      study.pictures.push_back(wish);
-    };
-    const auto add_place = [&](const std::string& suffix, const std::string& what,
-                               std::optional<double> position) {
-      add(suffix, what, position, Shows::Clean);
-      if (!camera.cctv) return;
-      add(suffix + "-cctv", what + ", on the monitor", position, Shows::Cctv);
-      study.pairs.push_back({fmt::format("Camera {}, {}: clean and on the monitor", name, what),
-                             name + suffix, name + suffix + "-cctv"});
-    };
-    if (positions.size() < 2) {
-      add_place("", "as the scene has it",
-                positions.empty() ? std::nullopt : std::optional(positions.front()));
-      continue;
-    }
-    const std::string first = fmt::format("-{:g}-deg", positions.front());
-    const std::string last = fmt::format("-{:g}-deg", *midnight);
-    add_place(first, fmt::format("orbit {:g} deg", positions.front()), positions.front());
-    if (*midnight == positions.front()) continue;
-    add_place(last, fmt::format("orbit {:g} deg", *midnight), midnight);
-    const std::string kind = camera.cctv ? "-cctv" : "";
-    study.pairs.push_back(
-        {fmt::format("Camera {}: orbit {:g} and {:g} deg", name, positions.front(), *midnight),
-         name + first + kind, name + last + kind});
-  }
-}
-
 void check_pictures(const studies::StudyFile& study, const std::vector<const StudyPart*>& parts) {
   for (const PictureWish& wish : study.pictures) {
     const auto refuse = [&](const std::string& found, const std::string& allowed) {
@@ -223,8 +177,10 @@ bool is_there(const PictureTask& task, const PictureWish& wish) {
   const auto facts = ResultCache(task.folder / "points").find_facts(cache_key_of(task, wish), said);
   if (!facts) return false;
   const std::string stem = file_of(task.study, wish);
-  return (*facts)["png_bytes"] == bytes_of(task.folder / (stem + ".png")) &&
-         (*facts)["exr_bytes"] == bytes_of(task.folder / (stem + ".exr"));
+  // The PNG of a clean picture is written last, of all together.
+  const bool png =
+      !by_cctv(wish.shows) || (*facts)["png_bytes"] == bytes_of(task.folder / (stem + ".png"));
+  return png && (*facts)["exr_bytes"] == bytes_of(task.folder / (stem + ".exr"));
 }
 
 void draw(const PictureTask& task, const PictureWish& wish, const studies::BasisView& view) {
@@ -239,9 +195,6 @@ void draw(const PictureTask& task, const PictureWish& wish, const studies::Basis
   if (by_cctv(wish.shows)) {
     const CctvSetup cctv = cctv_of_wish(part, task.camera, wish, task.common);
     write_cctv(stem + ".png", cctv, run_chain(cctv, radiance));
-  } else {
-    base::write_png(stem + ".png", radiance.width, radiance.height, 3,
-                    base::tone_map(radiance).rgb);
   }
   ResultCache(task.folder / "points")
       .keep_facts(cache_key_of(task, wish),
@@ -263,8 +216,37 @@ void draw_pictures(const PictureTask& task, const studies::BasisView* view, Json
     figures.push_back({{"name", wish->name},
                        {"file", stem + ".png"},
                        {"exr", stem + ".exr"},
-                       {"caption", wish->title}});
+                       {"caption", wish->title},
+                       {"clean", !by_cctv(wish->shows)}});
   }
+}
+
+std::optional<double> expose_alike(const NamedPictures& pictures, const ToneChoice& tone) {
+  std::optional<double> white;
+  if (tone.shared()) {
+    std::vector<const base::Image*> images;
+    for (const auto& [path, image] : pictures) images.push_back(&image);
+    white = white_of(tone, images);
+  }
+  for (const auto& [path, image] : pictures) {
+    const base::ToneMapped shown =
+        white ? base::expose(image, *white, tone.curve) : base::tone_map(image);
+    base::write_png(path, image.width, image.height, 3, shown.rgb);
+  }
+  return white;
+}
+
+void expose_figures(const std::filesystem::path& folder, const ToneChoice& tone, Json& figures) {
+  NamedPictures pictures;
+  std::vector<Json*> clean;
+  for (Json& figure : figures) {
+    if (!figure["clean"].get<bool>()) continue;
+    pictures.emplace_back(folder / figure["file"].get<std::string>(),
+                          base::read_exr(folder / figure["exr"].get<std::string>()).image);
+    clean.push_back(&figure);
+  }
+  const std::optional<double> white = expose_alike(pictures, tone);
+  for (Json* figure : clean) (*figure)["white_cd_m2"] = to_json(white);
 }
 
 Json pairs_json(const studies::StudyFile& study, const Json& figures) {

@@ -3,17 +3,16 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "app/options.h"
 #include "app/views/scene.h"
 #include "studies/orbit/condition.h"
 #include "studies/orbit/study_file.h"
 
 namespace earthshine::app {
-
-// What the study asks for; where it asks for nothing, each camera by the first lamp setting at the
-// first place and, along an orbit, nearest to midnight, clean and by CCTV.
-void fill_pictures(studies::StudyFile& study, const StudyPart& part);
 
 // Throws base::Error (Input) where a wish names a camera, a lamp setting or a position that the
 // study does not have. parts: of all scenes; the first one that has the camera draws it.
@@ -34,6 +33,14 @@ struct PictureTask {
 // Draws those that are not there into folder/pictures, adds figures of study.json to `figures`.
 // view: null where all are there.
 void draw_pictures(const PictureTask& task, const studies::BasisView* view, Json& figures);
+
+// Pictures, and the PNG files that show them.
+using NamedPictures = std::vector<std::pair<std::filesystem::path, base::Image>>;
+// Writes the PNGs: of one white for all, or each by its own curve. Returns that white.
+std::optional<double> expose_alike(const NamedPictures& pictures, const ToneChoice& tone);
+// The same for the clean pictures among figures of study.json that are there, of their EXR files;
+// fills "white_cd_m2".
+void expose_figures(const std::filesystem::path& folder, const ToneChoice& tone, Json& figures);
 
 // "pairs" of study.json, of the figures that were drawn.
 [[nodiscard]] Json pairs_json(const studies::StudyFile& study, const Json& figures);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 
 #include "app/console.h"
 #include "app/views/frames.h"
@@ -143,6 +144,51 @@ std::string plan_text(const Json& plan) {
                     "{} pictures for the report\nabout {} on this machine, without the "
                     "reasons of targets that fail\n",
                     plan["pictures"].get<std::size_t>(), duration(plan["seconds"].get<double>()));
+}
+
+void fill_pictures(studies::StudyFile& study, const StudyPart& part) {
+  if (!study.pictures.empty()) return;
+  const std::vector<double>& positions = part.positions_deg;
+  std::optional<double> midnight;
+  for (const double position : positions) {
+    const auto off = [](double deg) { return std::abs(std::remainder(deg - 180.0, 360.0)); };
+    if (!midnight || off(position) < off(*midnight)) midnight = position;
+  }
+  for (const StudyCamera& camera : part.cameras) {
+    const std::string name = camera.camera->name;
+    const auto add = [&](const std::string& suffix, const std::string& what,
+                         std::optional<double> position, studies::Shows shows) {
+      studies::PictureWish wish;
+      wish.name = name + suffix;
+      wish.title = fmt::format("Camera {}, {}", name, what);
+      wish.camera = name;
+      wish.position_deg = position;
+      wish.shows = shows;
+      study.pictures.push_back(wish);
+    };
+    const auto add_place = [&](const std::string& suffix, const std::string& what,
+                               std::optional<double> position) {
+      add(suffix, what, position, studies::Shows::Clean);
+      if (!camera.cctv) return;
+      add(suffix + "-cctv", what + ", on the monitor", position, studies::Shows::Cctv);
+      study.pairs.push_back({fmt::format("Camera {}, {}: clean and on the monitor", name, what),
+                             name + suffix, name + suffix + "-cctv"});
+    };
+    if (positions.size() < 2) {
+      add_place("", "as the scene has it",
+                positions.empty() ? std::nullopt : std::optional(positions.front()));
+      continue;
+    }
+    const std::string first = fmt::format("-{:g}-deg", positions.front());
+    const std::string last = fmt::format("-{:g}-deg", *midnight);
+    add_place(first, fmt::format("orbit {:g} deg", positions.front()), positions.front());
+    if (*midnight == positions.front()) continue;
+    add_place(last, fmt::format("orbit {:g} deg", *midnight), midnight);
+    const std::string kind = camera.cctv ? "-cctv" : "";
+    study.pairs.push_back(
+        {fmt::format("Camera {}: orbit {:g} and {:g} deg", name, positions.front(), *midnight),
+         name + first + kind, name + last + kind});
+  }
 }
 
 }  // namespace earthshine::app

@@ -16,4 +16,8 @@ namespace earthshine::app {
                              const std::vector<const StudyPart*>& parts,
                              const std::filesystem::path& folder, const Common& common);
 
+// What the study asks for; where it asks for nothing, each camera by the first lamp setting at the
+// first place and, along an orbit, nearest to midnight, clean and by CCTV.
+void fill_pictures(studies::StudyFile& study, const StudyPart& part);
+
 }  // namespace earthshine::app

@@ -9,6 +9,7 @@
 #include "app/study/study.h"
 #include "app/visibility/conditions.h"
 #include "app/visibility/sight_json.h"
+#include "studies/error/error_budget.h"
 
 namespace earthshine::app {
 namespace {
@@ -123,6 +124,24 @@ Json notes_of(const StudyFindings& findings) {
         "sphere, "
         "coarse where a camera sees it directly or in a mirror.");
   }
+  for (const StudyPart* part : findings.parts) {
+    const std::string scene =
+        findings.parts.size() > 1 ? part->loaded.scene.name + ": " : std::string();
+    for (const std::string& warning : part->loaded.scene.warnings) {
+      notes.push_back(scene + "Found on loading: " + warning);
+    }
+    const studies::StudyScene of{part->basis_scene.scene, part->basis_scene.groups,
+                                 part->basis_scene.effects, *part->query};
+    for (const std::string& missing : studies::not_captured(of, {})) {
+      notes.push_back(scene + "Not simulated: " + missing + ".");
+    }
+  }
+  for (const CameraResults& found : findings.cameras) {
+    notes.push_back(fmt::format(
+        "Picture of camera {}: noise of {:.2g} % of the mean in the sum of all lights; the "
+        "conditions' own noise is larger where little of that light shines.",
+        found.camera->camera->name, 100.0 * found.relative_noise));
+  }
   if (!findings.complete)
     notes.push_back("The study was stopped before its end; run it again to go on.");
   return notes;
@@ -164,6 +183,8 @@ Json study_json(const StudyFindings& findings) {
     const auto found = earth_error.find(condition["id"].get<std::string>());
     if (found != earth_error.end()) condition["earth_error"] = found->second;
   }
+  Json notes = notes_of(findings);
+  for (const std::string& note : black_back_notes(results)) notes.push_back(note);
   for (const StudyCost& cost : findings.costs) {
     costs.push_back({{"stage", cost.stage},
                      {"seconds", cost.seconds},
@@ -191,7 +212,7 @@ Json study_json(const StudyFindings& findings) {
             {"seed", findings.seed},
             {"scene_digest", digests.dump()}}},
           {"costs", costs},
-          {"notes", notes_of(findings)}};
+          {"notes", notes}};
 }
 
 std::string study_csv(const Json& study) {
@@ -263,6 +284,7 @@ std::string study_text(const Json& study) {
     text += fmt::format("{}: {}\n", answer["wanted"].get<std::string>(),
                         answer["text"].get<std::string>());
   }
+  for (const std::string& note : black_back_notes(study["results"])) text += note + "\n";
   return text;
 }
 

@@ -40,7 +40,7 @@ struct StudyFindings {
 // visibility.csv: a row per condition, camera and target.
 [[nodiscard]] std::string study_csv(const Json& study);
 
-// For people: a line per camera, target and lamp setting, and the answers.
+// For people: a line per camera, target and lamp setting, the answers, and black backs.
 [[nodiscard]] std::string study_text(const Json& study);
 
 }  // namespace earthshine::app

@@ -90,6 +90,7 @@ class Runner {
     for (std::size_t k = 0; findings_.complete && k < ways_.size(); ++k) {
       findings_.answers.push_back(answer_json(task_.study.wanted[k], task_.study, ways_[k]));
     }
+    expose_figures(task_.folder, task_.tone, findings_.figures);
     findings_.pairs = pairs_json(task_.study, findings_.figures);
   }
 
@@ -149,7 +150,7 @@ class Runner {
   void look(const CameraWork& work, StudyFrames::Frame& frame, CameraResults& found) {
     const PictureTask& pictures = work.pictures();
     take(pictures.part, frame, found);
-    const studies::BasisView view = work.view_of(frame);
+    const studies::BasisView view = work.view_of(frame, findings_.costs);
     found.conditions = work.judge(view, work.all_batches(), findings_.costs);
     if (listen_) listen_(pictures.part, pictures.camera, view, frame);
     if (!Interrupt::asked()) add_all(work.conclude(view, findings_.figures));
@@ -167,6 +168,8 @@ class Runner {
 std::optional<Json> run_study(StudyTask task, const Common& common, const ViewListener& listen) {
   const Parts parts = prepare_parts(task.study, common);
   check_models(task.study, pointers(parts));
+  const std::string& scene = parts.front()->loaded.scene.name;
+  if (task.study.path.empty() && !scene.empty()) task.study.name = scene;
   fill_pictures(task.study, *parts.front());
   check_pictures(task.study, pointers(parts));
   if (task.dry_run) return plan_json(task.study, pointers(parts), task.folder, common);

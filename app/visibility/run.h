@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "app/options.h"
 #include "app/views/frames.h"
 #include "studies/orbit/condition.h"
 #include "studies/orbit/study_file.h"
@@ -12,6 +13,9 @@
 namespace earthshine::app {
 
 inline constexpr const char* results_table = "results.csv";
+
+inline constexpr const char* study_tone_help =
+    "; default auto, one white for all pictures of the study together";
 
 // Told each camera's view and its rows of study.json, one list of targets per condition.
 using ViewListener = std::function<void(const StudyPart&, const StudyCamera&,
@@ -22,6 +26,7 @@ struct StudyTask {
   std::string folder;
   std::string command;  // what was called, for the report
   bool dry_run = false;
+  ToneChoice tone = {usual_percent, {}};     // of the clean pictures, together
   std::vector<std::string> more_files = {};  // that the listener writes in the folder
   PartCall part = {};
 };

@@ -85,7 +85,7 @@ void StudyShares::do_share() {
     if (work.is_done(batches)) return;
     std::optional<StudyFrames::Frame> frame = frames.frame(work.pictures().camera, costs_);
     if (!frame) return;  // interrupted
-    const studies::BasisView view = work.view_of(*frame);
+    const studies::BasisView view = work.view_of(*frame, costs_);
     (void)work.judge(view, batches, costs_);
     Json figures = Json::array();
     if (batches.first == 0 && !Interrupt::asked()) (void)work.conclude(view, figures);

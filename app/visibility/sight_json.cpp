@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/visibility/sight_json.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "app/study/study.h"
 
 namespace earthshine::app {
@@ -60,6 +64,11 @@ Json target_json(const studies::Sight& sight, const std::string& name,
     lit_by.push_back({{"group", source.group}, {"share", source.lit}});
     light_by.push_back({{"group", source.group}, {"luminance", source.luminance}});
   }
+  Json light_from = Json::array();
+  for (const studies::LightShare& from : outcome.light_from) {
+    light_from.push_back(
+        {{"from", from.from}, {"reflected", from.reflected}, {"share", from.share}});
+  }
   const bool known = outcome.basis_error.has_value();
   return {{"target", name},
           {"verdict", std::string(word_of(sight.verdict))},
@@ -67,9 +76,11 @@ Json target_json(const studies::Sight& sight, const std::string& name,
           {"pixels", sight.pixels},
           {"visible_fraction", to_json(sight.visible_fraction)},
           {"cut_by_frame", sight.cut_by_frame},
+          {"black_back", to_json(sight.black_back)},
           {"lit_fraction", to_json(outcome.lit_fraction)},
           {"lit_by", lit_by},
           {"light_by", light_by},
+          {"light_from", light_from},
           {"angle_deg", to_json(sight.angle_deg)},
           {"tv_lines", to_json(sight.tv_lines)},
           {"luminance", to_json(sight.luminance)},
@@ -112,7 +123,7 @@ Json flat_row(const Json& condition, const Json& result) {
   }
   for (const char* key : {"pixels", "visible_fraction", "cut_by_frame", "lit_fraction", "angle_deg",
                           "tv_lines", "luminance", "surround", "weber", "johnson_cycles",
-                          "saturated", "crushed", "luminance_error"}) {
+                          "saturated", "crushed", "luminance_error", "black_back"}) {
     row[key] = result[key];
   }
   for (const char* key : {"mean", "weber", "snr", "cnr", "rose", "snr_d", "dprime"}) {
@@ -125,6 +136,37 @@ Json flat_row(const Json& condition, const Json& result) {
   row["eye_detect"] = eye.is_object() ? eye["probability"]["detect"] : Json();
   row["why"] = result["why"];
   return row;
+}
+
+std::vector<std::string> black_back_notes(const Json& results) {
+  struct Seen {
+    std::string camera, target;
+    int count = 0, of = 0;
+    double share = 0.0;
+  };
+  std::vector<Seen> list;
+  for (const Json& result : results) {
+    if (result["black_back"].is_null()) continue;
+    const std::string camera = result["camera"], target = result["target"];
+    auto seen = std::find_if(list.begin(), list.end(), [&](const Seen& s) {
+      return s.camera == camera && s.target == target;
+    });
+    if (seen == list.end()) seen = list.insert(list.end(), {camera, target});
+    const double share = result["black_back"];
+    ++seen->of;
+    seen->count += share >= studies::SightOptions{}.most_black_back ? 1 : 0;
+    seen->share = std::max(seen->share, share);
+  }
+  std::vector<std::string> notes;
+  for (const Seen& seen : list) {
+    if (seen.count == 0) continue;
+    notes.push_back(fmt::format(
+        "Camera {} looks at the black back of {} ({:.0f} % of what it sees, in {} of {} results): "
+        "its surface has one side. How its real back looks is not known, so it counts as doubtful "
+        "at best; turn it round, or give its material two_sided = true.",
+        seen.camera, seen.target, 100.0 * seen.share, seen.count, seen.of));
+  }
+  return notes;
 }
 
 }  // namespace earthshine::app

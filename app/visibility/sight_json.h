@@ -15,4 +15,8 @@ namespace earthshine::app {
 // One flat row, for CSV.
 [[nodiscard]] Json flat_row(const Json& condition, const Json& result);
 
+// A sentence for each camera and target of which a black back is seen: that is not the target as it
+// will look.
+[[nodiscard]] std::vector<std::string> black_back_notes(const Json& results);
+
 }  // namespace earthshine::app

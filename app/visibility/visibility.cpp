@@ -14,10 +14,10 @@
 #include "app/options.h"
 #include "app/output.h"
 #include "app/study/study.h"
+#include "app/visibility/pictures.h"
 #include "app/visibility/run.h"
+#include "app/visibility/sight_json.h"
 #include "base/files/output_file.h"
-#include "base/files/png_file.h"
-#include "base/tone.h"
 
 namespace earthshine::app {
 namespace {
@@ -31,6 +31,7 @@ struct VisibilityCall {
   StudyCall study;
   std::vector<std::string> wanted, iris;
   bool dry_run = false;
+  ToneChoice tone = {usual_percent, {}};
 };
 
 std::string picture_name(const scenes::Scene& scene, const scenes::Camera& camera) {
@@ -93,7 +94,8 @@ std::string table_of(const Json& rows) {
 // What the tables have said from the beginning, from the same picture as the rest of the study.
 class Tables {
  public:
-  Tables(const StudyCall& call, const Common& common) : call_(call), common_(common) {}
+  Tables(const StudyCall& call, const ToneChoice& tone, const Common& common)
+      : call_(call), tone_(tone), common_(common) {}
 
   void add(const StudyPart& part, const StudyCamera& looking, const studies::BasisView& view,
            const StudyFrames::Frame& frame) {
@@ -103,8 +105,7 @@ class Tables {
     base::Image image =
         studies::weighted_sum(view.layers, part.basis->groups().names, part.basis->weights(0, 0));
     image.channels.push_back(*view.layers.find("object"));
-    base::write_png(folder / picture_name(scene, camera), image.width, image.height, 3,
-                    base::tone_map(image).rgb);
+    pictures_.emplace_back(folder / picture_name(scene, camera), image);
     std::optional<studies::ClippedResels> clipped;
     Json cctv;
     if (looking.cctv) {
@@ -134,6 +135,7 @@ class Tables {
 
   // study: the content of study.json.
   [[nodiscard]] Json write(const Json& study) {
+    expose_alike(pictures_, tone_);
     double solve_seconds = 0.0;
     for (const Json& cost : study["costs"]) {
       if (cost["stage"] == "solve s0") solve_seconds = cost["seconds"];
@@ -165,13 +167,15 @@ class Tables {
 
  private:
   const StudyCall& call_;
+  const ToneChoice& tone_;
   const Common& common_;
+  NamedPictures pictures_;
   Json views_ = Json::array(), rows_ = Json::array();
 };
 
 void run(const VisibilityCall& call, const Common& common) {
   StudyTask task{study_of(call.study, call.wanted, call.iris), call.study.folder,
-                 "study visibility", call.dry_run};
+                 "study visibility", call.dry_run, call.tone};
   task.part = call.study.part;
   if (call.dry_run) {
     const Json plan = *run_study(std::move(task), common);
@@ -189,7 +193,7 @@ void run(const VisibilityCall& call, const Common& common) {
     if (call.study.cameras.empty()) cameras.push_back(&camera);
   }
   task.more_files = file_names(loaded.scene, cameras);
-  Tables tables(call.study, common);
+  Tables tables(call.study, call.tone, common);
   const std::optional<Json> study = run_study(
       std::move(task), common,
       [&](const StudyPart& part, const StudyCamera& camera, const studies::BasisView& view,
@@ -207,6 +211,7 @@ void run(const VisibilityCall& call, const Common& common) {
     text += fmt::format("{}: {}\n", answer["wanted"].get<std::string>(),
                         answer["text"].get<std::string>());
   }
+  for (const std::string& note : black_back_notes(study["results"])) text += note + "\n";
   print(text);
 }
 
@@ -221,6 +226,7 @@ Command add_study_visibility(CLI::App& study) {
   add_wanted_options(*parser, call->wanted, call->iris);
   add_part_options(*parser, call->study.part);
   parser->add_flag("--dry-run", call->dry_run, "Only say what would be done, and its price");
+  add_tone_options(*parser, call->tone, study_tone_help);
   return {parser, [call](const Common& common) { run(*call, common); }};
 }
 

@@ -11,15 +11,20 @@ const describe = (table, cell) => {
   const heading = table.tHead.rows[table.tHead.rows.length - 1].cells[cell.cellIndex];
   const place = heading.textContent.trim();
   const [camera, target] = [row.cells[0].textContent, row.cells[1].textContent];
-  let text = `Camera ${camera}, ${target}, ${place}: ${cell.textContent.trim()}.`;
+  const text = `Camera ${camera}, ${target}, ${place}: ${cell.textContent.trim()}.`;
   const figures = document.getElementById(`r${cell.dataset.r}`);
   if (!figures) return text;
   const titles = figures.closest("table").tHead.rows[0].cells;
+  const told = [];
   for (let k = 4; k < figures.cells.length; ++k) {
     const value = figures.cells[k].textContent;
-    if (value !== "–") text += ` ${titles[k].textContent}: ${value};`;
+    if (value === "–") continue;
+    // The reason of this very condition stands before the figures.
+    const why = titles[k].textContent === "why not";
+    if (why) told.unshift(`${value[0].toUpperCase()}${value.slice(1)}.`);
+    else told.push(`${titles[k].textContent}: ${value};`);
   }
-  return text.replace(/;$/, ".");
+  return [text, ...told].join(" ").replace(/;$/, ".");
 };
 
 const step = (table, cell, key) => {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* title = "[[object]] with instance_of";
 constexpr std::string_view instance_keys[] = {"name",  "instance_of", "translate", "rotate",
-                                              "scale", "material",    "target"};
+                                              "scale", "material",    "target",    "velocity"};
 
 // From where the original stands to where the instance does.
 Instance relation(std::uint32_t object, const Placement& from, const Placement& to) {
@@ -103,6 +103,7 @@ void add(Scene& scene, const TableReader& table, Instance instance,
   object.source = "instance of " + original.name;
   object.unused.clear();
   object.target = table.flag("target").value_or(false);
+  object.velocity_m_s = read_velocity(table);
   ShelvedMesh none;
   MaterialChoice choice(scene, table, none, own_material_count);
 

@@ -16,13 +16,13 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr std::string_view all_keys[] = {
-    "name",   "mesh",     "part",       "shape",     "material",   "translate", "rotate",
-    "scale",  "target",   "inward",     "corners",   "min",        "max",       "center",
-    "radius", "segments", "from",       "to",        "caps",       "normal",    "orient",
-    "lights", "cameras",  "smooth_deg", "round_deg", "instance_of"};
+    "name",   "mesh",     "part",       "shape",     "material",    "translate", "rotate",
+    "scale",  "target",   "inward",     "corners",   "min",         "max",       "center",
+    "radius", "segments", "from",       "to",        "caps",        "normal",    "orient",
+    "lights", "cameras",  "smooth_deg", "round_deg", "instance_of", "velocity"};
 constexpr std::string_view shapes[] = {"quad", "box", "sphere", "cylinder", "disk"};
-constexpr std::string_view common_keys[] = {"name",  "material", "translate", "rotate",
-                                            "scale", "target",   "inward",    "orient"};
+constexpr std::string_view common_keys[] = {"name",   "material", "translate", "rotate",  "scale",
+                                            "target", "inward",   "orient",    "velocity"};
 constexpr std::string_view orients[] = {"outward", "as-is", "two-sided"};
 constexpr Range lengths{-largest_length, largest_length};
 
@@ -197,11 +197,16 @@ ShelvedMesh& MeshShelf::take(const std::filesystem::path& named, const base::Loc
   return *shelved;
 }
 
+Vec3 read_velocity(const TableReader& table) {
+  return table.vector("velocity", {-1e4, 1e4}).value_or(Vec3(0.0));
+}
+
 Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& shelf) {
   TableReader table(node, "[[object]]", all_keys);
   Object object;
   object.name = table.read_name();
   object.target = table.flag("target").value_or(false);
+  object.velocity_m_s = read_velocity(table);
   const auto named = table.text("mesh");
   const auto shape = table.choice("shape", shapes);
   if (named && shape) table.fail("shape", "stands beside \"mesh\"", "an object is one of the two");

@@ -81,6 +81,9 @@ class MeshShelf {
 // translate, rotate, scale and inward of an object.
 [[nodiscard]] Placement read_placement(const TableReader& table, double unit_m);
 
+// velocity of an object, m/s.
+[[nodiscard]] Vec3 read_velocity(const TableReader& table);
+
 // Adds the object's triangles, and the materials that only its mesh defines, to the scene. Says how
 // it is placed.
 Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& shelf);

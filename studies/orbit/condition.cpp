@@ -4,11 +4,33 @@
 #include <map>
 #include <string>
 
+#include "radiosity/direct/explicit_emitters.h"
 #include "studies/orbit/target_sources.h"
 
 namespace earthshine::studies {
 
 namespace {
+
+// Of each target's points: their number is most_source_points at most.
+constexpr int rays_per_point = 8;
+
+std::vector<LightShare> shares_of(const scenes::Scene& scene, const BasisView::Target& target,
+                                  const std::vector<SourceOnTarget>& sources,
+                                  const GroupWeights& weights, double luminance) {
+  std::vector<LightShare> shares;
+  if (!(luminance > 0.0) || !target.by_way) return shares;
+  for (const SourceOnTarget& source : sources) {
+    shares.push_back({source.group, false, source.straight / luminance});
+  }
+  for (const ByWayOf& way : *target.by_way) {
+    double light = 0.0;
+    for (std::size_t g = 0; g < way.by_group.size(); ++g) {
+      light += base::luminance(weights.weight[g] * way.by_group[g]);
+    }
+    shares.push_back({scene.objects[way.object].name, true, light / luminance});
+  }
+  return sorted_shares(std::move(shares));
+}
 
 bool wants_reasons(const Sight& sight, const ConditionOptions& options) {
   using Explain = ConditionOptions::Explain;
@@ -20,8 +42,10 @@ bool wants_reasons(const Sight& sight, const ConditionOptions& options) {
 }  // namespace
 
 BasisView make_basis_view(const LightBasis& basis, const scenes::RayQuery& query,
-                          const scenes::Camera& camera, base::Image layers) {
+                          const scenes::Camera& camera, base::Image layers,
+                          const radiosity::Solution* solution) {
   BasisView view;
+  view.straight_emitters = radiosity::emitter_is_explicit(basis.scene());
   view.camera = &camera;
   view.layers = std::move(layers);
   const scenes::Scene& scene = basis.scene();
@@ -34,6 +58,10 @@ BasisView make_basis_view(const LightBasis& basis, const scenes::RayQuery& query
                               target.seen, most_source_points);
     seen.by_group = mean_by_group(view.layers, basis.groups().names, target.view.measured);
     reach_of_lamps(basis, query, seen);
+    if (solution != nullptr) {
+      seen.by_way = light_by_way_of(scene, query, *solution, basis.groups().count(), seen.points,
+                                    rays_per_point);
+    }
     view.targets.push_back(std::move(seen));
   }
   return view;
@@ -48,15 +76,19 @@ Outcome judge_condition(const LightBasis& basis, const scenes::RayQuery& query,
   outcome.radiance = weighted_sum(view.layers, basis.groups().names, weights);
   outcome.sight = measure_sight(view.plan, outcome.radiance, cctv, options.why.sight);
   const SkyPlace& sky = basis.places()[place];
+  const scenes::Scene& scene = basis.scene();
   outcome.sun_share = sun_share_of(sky);
   std::map<std::string, base::Image> lit_by;  // the picture with a source on that is off
   for (std::size_t t = 0; t < view.targets.size(); ++t) {
     const BasisView::Target& target = view.targets[t];
     TargetOutcome found;
-    const TargetSources sources = sources_on(basis, query, target, weights, sky);
+    const TargetSources sources =
+        sources_on(basis, query, target, view.straight_emitters, weights, sky);
     found.sources = sources.sources;
     if (!target.points.empty()) found.lit_fraction = sources.lit_fraction;
     found.basis_error = basis_error(weights, target.by_group);
+    found.light_from = shares_of(scene, target, found.sources, weights,
+                                 outcome.sight.targets[t].luminance.value_or(0.0));
     if (wants_reasons(outcome.sight.targets[t], options)) {
       for (SourceOnTarget& source : found.sources) {
         if (source.off != switched_off && !source.off.starts_with(dimmed_to)) continue;

@@ -12,6 +12,7 @@
 #include "scenes/ray_query.h"
 #include "studies/light/light_basis.h"
 #include "studies/sight/sight.h"
+#include "studies/why/last_bounce.h"
 #include "studies/why/lit_points.h"
 #include "studies/why/why_not.h"
 
@@ -28,16 +29,21 @@ struct BasisView {
     std::vector<SeenPoint> points;
     std::vector<Rgb> by_group;
     std::vector<std::optional<Reach>> lamps, emitters;
+    std::optional<std::vector<ByWayOf>> by_way;  // of the points; none without a solution
   };
   std::vector<Target> targets;
+  std::vector<bool> straight_emitters;  // per material: radiosity::emitter_is_explicit
 };
 // layers: as raytrace::render gives them for basis.scene() with per_light and the layer "object".
-// query: of the scene, whose geometry the basis does not change.
+// query: of the scene, whose geometry the basis does not change. solution: of the basis' scene;
+// null: TargetOutcome::light_from stays empty.
 [[nodiscard]] BasisView make_basis_view(const LightBasis& basis, const scenes::RayQuery& query,
-                                        const scenes::Camera& camera, base::Image layers);
+                                        const scenes::Camera& camera, base::Image layers,
+                                        const radiosity::Solution* solution = nullptr);
 
 struct TargetOutcome {
   std::vector<SourceOnTarget> sources;  // "sun", "earth", lamps and emitters by light group
+  std::vector<LightShare> light_from;   // by source and by last bounce, of its luminance
   std::optional<double> lit_fraction;   // by any source that is on; none out of view
   WhyNot why;                           // empty unless asked for
   std::optional<BasisError> basis_error;

@@ -38,7 +38,8 @@ class Collector {
   }
 
   // share: what the source gives in this condition, 0 when off.
-  void add(const std::string& group, const Reach& reach, double share) {
+  // straight: no form factor carries its direct light, which would make it that of its object.
+  void add(const std::string& group, const Reach& reach, double share, bool straight = true) {
     SourceOnTarget& of = source(group);
     Entry& entry = *std::find_if(sources_.begin(), sources_.end(),
                                  [&](const Entry& e) { return &e.of == &of; });
@@ -49,7 +50,9 @@ class Collector {
       lit_[k] |= reach.lit[k];
     }
     of.direct += share * reach.luminance;
+    if (straight) of.straight += share * reach.luminance;
     of.unshadowed += reach.unshadowed;
+    of.on_back += share * reach.on_back;
     for (const Reach::Shadow& shadow : reach.shadows) entry.shadows[shadow.object] += shadow.rays;
   }
 
@@ -82,6 +85,14 @@ class Collector {
   std::vector<Entry> sources_;
 };
 
+// From the middle of the points; 0 without any.
+double distance_to(const BasisView::Target& target, const Vec3& position) {
+  if (target.points.empty()) return 0.0;
+  Vec3 middle(0.0);
+  for (const SeenPoint& point : target.points) middle += point.position;
+  return glm::length(middle / static_cast<double>(target.points.size()) - position);
+}
+
 double luminance_of_groups(const BasisView::Target& target, const GroupWeights& weights,
                            std::size_t first, std::size_t count) {
   double sum = 0.0;
@@ -112,7 +123,8 @@ void reach_of_lamps(const LightBasis& basis, const scenes::RayQuery& query,
 }
 
 TargetSources sources_on(const LightBasis& basis, const scenes::RayQuery& query,
-                         const BasisView::Target& target, const GroupWeights& weights,
+                         const BasisView::Target& target,
+                         const std::vector<bool>& straight_emitters, const GroupWeights& weights,
                          const SkyPlace& sky) {
   const scenes::Scene& scene = basis.scene();
   const scenes::LightGroups& groups = basis.groups();
@@ -146,15 +158,22 @@ TargetSources sources_on(const LightBasis& basis, const scenes::RayQuery& query,
               reach_of_earth(scene, query, target.points, *sky.earth, sky.sun, earth_directions),
               on ? 1.0 : 0.0);
     }
-    if (!on) all.source("earth").off = lit ? switched_off : "its night side is below";
+    if (!on) all.source("earth").off = lit ? switched_off : "has its night side below";
+    if (!lit && sky.sun) {
+      // What it would give by day.
+      scenes::Sun noon = *sky.sun;
+      noon.direction = -sky.earth->direction;
+      all.add("earth",
+              reach_of_earth(scene, query, target.points, *sky.earth, noon, earth_directions), 0.0);
+    }
     if (groups.earth != no_group) {
       all.source("earth").luminance =
           luminance_of_groups(target, weights, groups.earth, basis.earth_parts());
     }
   }
-  const auto add_group = [&](std::size_t group, const Reach& reach) {
+  const auto add_group = [&](std::size_t group, const Reach& reach, bool straight) {
     const double share = base::luminance(weights.weight[group]);
-    all.add(groups.names[group], reach, share);
+    all.add(groups.names[group], reach, share, straight);
     SourceOnTarget& source = all.source(groups.names[group]);
     source.luminance = luminance_of_groups(target, weights, group, 1);
     if (share <= 0.0) {
@@ -164,10 +183,16 @@ TargetSources sources_on(const LightBasis& basis, const scenes::RayQuery& query,
     }
   };
   for (std::size_t k = 0; k < target.lamps.size(); ++k) {
-    if (target.lamps[k]) add_group(groups.lamp[k], *target.lamps[k]);
+    if (!target.lamps[k]) continue;
+    add_group(groups.lamp[k], *target.lamps[k], true);
+    double& nearest = all.source(groups.names[groups.lamp[k]]).distance_m;
+    const double distance = distance_to(target, scene.lamps[k].position);
+    nearest = nearest > 0.0 ? std::min(nearest, distance) : distance;
   }
   for (std::size_t m = 0; m < target.emitters.size(); ++m) {
-    if (target.emitters[m]) add_group(groups.material[m], *target.emitters[m]);
+    if (target.emitters[m]) {
+      add_group(groups.material[m], *target.emitters[m], straight_emitters[m]);
+    }
   }
   return all.finish();
 }

@@ -28,8 +28,9 @@ struct TargetSources {
   double lit_fraction = 0.0;
 };
 [[nodiscard]] TargetSources sources_on(const LightBasis& basis, const scenes::RayQuery& query,
-                                       const BasisView::Target& target, const GroupWeights& weights,
-                                       const SkyPlace& sky);
+                                       const BasisView::Target& target,
+                                       const std::vector<bool>& straight_emitters,
+                                       const GroupWeights& weights, const SkyPlace& sky);
 
 // Share of the Sun's disc that the Earth leaves free; 0 without a Sun.
 [[nodiscard]] double sun_share_of(const SkyPlace& sky);

@@ -58,6 +58,9 @@ Verdict verdict_of(const Sight& sight, const TargetView& view, const SightOption
   if (!(sight.visible_fraction >= options.hidden_fraction)) return Verdict::Hidden;
   if (!sight.probability) return Verdict::Doubtful;
   const Probability& p = *sight.probability;
+  if (sight.black_back >= options.most_black_back) {
+    return p.detect >= options.doubtful_probability ? Verdict::Doubtful : Verdict::NotSeen;
+  }
   if (p.identify >= options.seen_probability) return Verdict::Identified;
   if (p.recognise >= options.seen_probability) return Verdict::Recognised;
   if (p.detect >= options.seen_probability) return Verdict::Detected;
@@ -114,6 +117,8 @@ CameraSight measure_sight(const SightPlan& plan, const base::Image& radiance,
       sight.luminance = light->luminance;
       sight.surround = light->surround;
       sight.weber = light->contrast;
+      sight.black_back =
+          static_cast<double>(target.view.black_back.size()) / static_cast<double>(sight.pixels);
       sight.angle_deg = target.extent.angle_deg;
       sight.tv_lines = target.extent.pixels;
       sight.eye = eye_sight(target, *light, luminance, found.mean_luminance, options);

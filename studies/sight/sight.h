@@ -26,6 +26,8 @@ struct SightOptions {
   double seen_probability = 0.5;      // from which on a verdict says so
   double doubtful_probability = 0.1;  // below: not seen
   double hidden_fraction = 0.1;       // visible fraction below which a target is hidden
+  double field_s = 1.0 / 60.0;        // of the CCTV: what its lag goes by
+  double most_black_back = 0.5;       // share of its seen pixels from which on a target is doubtful
   CyclesNeeded cycles;
   EyeOptions eye;
 };
@@ -84,6 +86,7 @@ struct Sight {
   std::optional<MonitorSight> monitor;               // with a CCTV
   std::optional<double> johnson_cycles;              // with a CCTV and a surround
   std::optional<double> saturated, crushed;          // shares of the seen pixels; with a CCTV
+  std::optional<double> black_back;                  // share of them that shows a black back
   std::optional<EyeSight> eye;
 };
 
@@ -117,8 +120,9 @@ struct CameraSight {
 };
 
 // radiance: R, G, B or Y in cd/m^2, of the plan's size. cctv: its seed does not matter. The camera
-// is taken to have looked at a still scene for long. Throws as degrade::degrade does, and
-// base::Error (Input) if the sizes differ.
+// is taken to have looked for long at a scene that is still but for targets that move. A target of
+// which black backs show is at best doubtful: how its real back looks is not known. Throws as
+// degrade::degrade does, and base::Error (Input) if the sizes differ.
 [[nodiscard]] CameraSight measure_sight(const SightPlan& plan, const base::Image& radiance,
                                         const std::optional<degrade::Setup>& cctv,
                                         const SightOptions& options = {});

@@ -102,11 +102,15 @@ double least_modulation(const Needed& needed, double frequency) {
   return std::max(3.0 * std::sqrt(std::max(variance, 0.0)) / needed.delta, needed.of_the_eye);
 }
 
-double limiting_frequency(const degrade::Setup& setup, double direction, const Needed& needed) {
+double limiting_frequency(const degrade::Setup& setup, const Trail& trail, double direction,
+                          const Needed& needed) {
   if (!(needed.delta > 0.0) || least_modulation(needed, 0.0) >= 1.0) return 0.0;
   constexpr double nyquist = 0.5;
   return degrade::frequency_at(
-      [&](double f) { return chain_modulation(setup, direction, f) - least_modulation(needed, f); },
+      [&](double f) {
+        return chain_modulation(setup, direction, f) * trail.modulation(direction, f) -
+               least_modulation(needed, f);
+      },
       0.0, nyquist);
 }
 
@@ -134,11 +138,16 @@ void count_levels(const SightPlan& plan, const SightTarget& target, const CctvSi
 // The rest of the figures, where there is a surround.
 void compare(TargetSignal& out, const TargetResels& at, const ShownMoments& moments,
              const CctvSignal& line, const degrade::Setup& setup, const SightOptions& options,
-             int frames, const Extent& extent) {
+             int frames, const Extent& extent, const Trail& trail) {
   SignalSight& s = out.signal;
   MonitorSight& m = out.monitor;
   s.surround = mean_of(moments.mean, at.surround);
   m.surround = screen_mean(line, moments, at.surround);
+  const double left = trail.share(out.lines);
+  if (left < 1.0) {
+    s.mean = *s.surround + left * (s.mean - *s.surround);
+    m.luminance = *m.surround + left * (m.luminance - *m.surround);
+  }
   s.weber = weber_of(s.mean, *s.surround);
   m.weber = weber_of(m.luminance, *m.surround);
   const double delta = difference(s.mean, *s.surround);
@@ -154,9 +163,10 @@ void compare(TargetSignal& out, const TargetResels& at, const ShownMoments& mome
   s.dprime = ideal_observer(moments, at.seen, *s.surround, noise.variance_a);
 
   // Parts are large, so that the phosphor's spread is nothing to their means.
+  const double of_parts = at.parts.empty() ? 1.0 : left;
   const double light =
-      difference_of_parts(at, moments.luminance, difference(m.luminance, *m.surround));
-  s.difference = difference_of_parts(at, moments.mean, delta);
+      of_parts * difference_of_parts(at, moments.luminance, difference(m.luminance, *m.surround));
+  s.difference = of_parts * difference_of_parts(at, moments.mean, delta);
   const double least = options.eye.threshold_factor *
                        threshold_difference(std::max(line.screen_luminance, *m.surround));
   if (*m.surround > 0.0) m.threshold = least / *m.surround;
@@ -165,7 +175,7 @@ void compare(TargetSignal& out, const TargetResels& at, const ShownMoments& mome
                                 mean_of(moments.variance_in_time, at.surround));
   const Needed needed{*s.difference, mean_variance, in_time, light > 0.0 ? least / light : 1.0,
                       out.lines};
-  s.limiting_frequency = limiting_frequency(setup, extent.direction_rad, needed);
+  s.limiting_frequency = limiting_frequency(setup, trail, extent.direction_rad, needed);
   out.cycles = out.lines * *s.limiting_frequency;
   // Of the parts together: each has its share of the whole's looks.
   const double snr_d = over(*s.difference, difference_variance);
@@ -176,7 +186,30 @@ void compare(TargetSignal& out, const TargetResels& at, const ShownMoments& mome
                                 std::min(johnson.identify, most)};
 }
 
+Trail trail_of(const SightPlan& plan, const TargetView& view, const CctvSignal& line,
+               const SightOptions& options) {
+  const double along = view.motion_px_s[0] * line.columns / plan.map.columns,
+               across = view.motion_px_s[1] * line.rows / plan.map.rows;
+  return {line.lag_per_field, std::hypot(along, across) * options.field_s,
+          std::atan2(across, along)};
+}
+
 }  // namespace
+
+double Trail::share(double extent) const {
+  if (!(speed > 0.0) || !(lag > 0.0)) return 1.0;
+  double sum = 0.0, weight = 1.0 - lag;
+  for (double behind = 0.0; behind < extent && weight > 1e-9; behind += speed, weight *= lag) {
+    sum += weight * (1.0 - behind / extent);
+  }
+  return sum;
+}
+
+double Trail::modulation(double direction, double frequency) const {
+  if (!(speed > 0.0) || !(lag > 0.0)) return 1.0;
+  const double phase = 2.0 * base::pi * frequency * speed * std::cos(direction - direction_rad);
+  return (1.0 - lag) / std::sqrt(1.0 - 2.0 * lag * std::cos(phase) + lag * lag);
+}
 
 double chain_modulation(const degrade::Setup& setup, double direction_rad, double frequency) {
   degrade::CctvCamera camera = setup.camera;
@@ -251,7 +284,8 @@ std::vector<std::optional<TargetSignal>> target_signals(const SightPlan& plan,
     out.lines = target.extent.pixels * line.rows / plan.map.rows;
     count_levels(plan, target, line, out);
     if (at[t].surround.empty()) continue;
-    compare(out, at[t], moments, line, setup, options, frames, target.extent);
+    compare(out, at[t], moments, line, setup, options, frames, target.extent,
+            trail_of(plan, target.view, line, options));
   }
   return signals;
 }

@@ -24,6 +24,17 @@ struct TargetSignal {
                                                                       const degrade::Setup& setup,
                                                                       const SightOptions& options);
 
+// What a tube's lag leaves of a target that moves by `speed` resels a field in `direction_rad`. The
+// signal of a field is (1 - lag) sum lag^k of the light k fields ago, when the target stood k speed
+// behind. share: of its difference from the surround, the mean over a box of `extent` resels,
+// (1 - lag) sum lag^k max(0, 1 - k speed / extent).
+struct Trail {
+  double lag = 0.0, speed = 0.0, direction_rad = 0.0;
+  [[nodiscard]] double share(double extent) const;
+  // Of `frequency` cycles per resel in a direction: (1 - lag) / |1 - lag e^(2 pi i u speed)|.
+  [[nodiscard]] double modulation(double direction, double frequency) const;
+};
+
 // Modulation that the chain leaves of `frequency` cycles per resel in a direction of the picture
 // (radians from along to across): lens, area average of the resel, tube, video line, and on the
 // screen the resel held over its width and the phosphor. Stages that are off leave all.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "base/error.h"
@@ -72,7 +73,9 @@ std::vector<std::uint32_t> surround_of(const ObjectMap& map,
   return surround;
 }
 
-// The pixels whose centre shows `object` when nothing else is there.
+constexpr std::uint8_t shows_back = 2;  // in the mask of cast_alone; 1: any other of its surfaces
+
+// The pixels whose centre shows `object` when nothing else is there, and whether its black back.
 Mask cast_alone(const scenes::Scene& scene, const scenes::Camera& camera, std::uint32_t object,
                 int columns, int rows) {
   scenes::Scene alone;
@@ -88,8 +91,11 @@ Mask cast_alone(const scenes::Scene& scene, const scenes::Camera& camera, std::u
     for (std::size_t y = begin; y < end; ++y) {
       for (int x = 0; x < columns; ++x) {
         const raytrace::Ray ray = model.ray(x + 0.5, static_cast<double>(y) + 0.5, 0.0, 0.0);
+        const scenes::Hit hit = query.closest(ray.origin, ray.direction);
+        if (hit.missed()) continue;
+        const scenes::Material& material = scene.materials[alone.triangles[hit.triangle].material];
         mask[y * static_cast<std::size_t>(columns) + static_cast<std::size_t>(x)] =
-            query.closest(ray.origin, ray.direction).missed() ? 0 : 1;
+            !hit.front && material.has_black_back() ? shows_back : 1;
       }
     }
   });
@@ -127,6 +133,30 @@ bool reaches_frame(const scenes::Scene& scene, const raytrace::CameraModel& mode
     }
   }
   return false;
+}
+
+// Pixels per second that its middle moves by, to the right and down; none behind the camera.
+std::array<double, 2> motion_of(const scenes::Scene& scene, const raytrace::CameraModel& model,
+                                std::uint32_t object, int columns, int rows) {
+  const scenes::Object& record = scene.objects[object];
+  if (record.velocity_m_s == Vec3(0.0) || record.triangle_count == 0) return {0.0, 0.0};
+  Vec3 low(std::numeric_limits<double>::infinity()), high = -low;
+  for (std::uint32_t k = 0; k < record.triangle_count; ++k) {
+    for (const std::uint32_t v : scene.triangles[record.first_triangle + k].vertex) {
+      low = glm::min(low, scene.vertices[v]);
+      high = glm::max(high, scene.vertices[v]);
+    }
+  }
+  const Vec3 way = 0.5 * (low + high) - model.position;
+  const double depth = glm::dot(way, model.forward);
+  if (!(depth > 0.0)) return {0.0, 0.0};
+  // d/dt (x / z) = (x' - x z' / z) / z along each axis of the picture.
+  const auto along = [&](const Vec3& axis) {
+    const double toward = glm::dot(record.velocity_m_s, model.forward);
+    return (glm::dot(record.velocity_m_s, axis) - glm::dot(way, axis) * toward / depth) / depth;
+  };
+  return {along(model.right) * 0.5 * columns / model.half_width,
+          -along(model.up) * 0.5 * rows / model.half_height};
 }
 
 bool touches_border(const Mask& mask, int columns, int rows) {
@@ -180,13 +210,16 @@ std::vector<TargetView> find_targets(const scenes::Scene& scene, const scenes::C
     // The same ray may pass a silhouette on the other side by a rounding error; what is seen is
     // there.
     for (std::size_t i = 0; i < alone.size(); ++i) {
-      if (map.object[i] == static_cast<std::int32_t>(object)) alone[i] = 1;
+      if (map.object[i] != static_cast<std::int32_t>(object)) continue;
+      if (alone[i] == shows_back) view.black_back.push_back(static_cast<std::uint32_t>(i));
+      alone[i] = 1;
     }
-    view.pixels_alone = static_cast<std::size_t>(std::count(alone.begin(), alone.end(), 1));
+    view.pixels_alone =
+        alone.size() - static_cast<std::size_t>(std::count(alone.begin(), alone.end(), 0));
     find_blockers(view, map, alone);
-    view.in_frame =
-        view.pixels_alone > 0 ||
-        reaches_frame(scene, raytrace::make_camera_model(camera, map.columns, map.rows), object);
+    const raytrace::CameraModel model = raytrace::make_camera_model(camera, map.columns, map.rows);
+    view.in_frame = view.pixels_alone > 0 || reaches_frame(scene, model, object);
+    view.motion_px_s = motion_of(scene, model, object, map.columns, map.rows);
     view.cut_by_frame = touches_border(alone, map.columns, map.rows);
     views.push_back(std::move(view));
   }

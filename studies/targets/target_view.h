@@ -8,6 +8,7 @@
 //             whatever they show: what lies behind, what stands in front, the sky
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -49,12 +50,17 @@ struct TargetView {
   // than a quarter of them is core. Pixel indices in ascending order.
   std::vector<std::uint32_t> measured;
   std::vector<std::uint32_t> surround;  // empty where the target fills the picture
+  // Seen pixels that show the black back of a one-sided surface: how a real back looks is not
+  // known.
+  std::vector<std::uint32_t> black_back;
+  // Of the target's middle across the picture, to the right and down, by Object::velocity_m_s.
+  std::array<double, 2> motion_px_s = {0.0, 0.0};
 
   [[nodiscard]] bool in_view() const { return pixels > 0; }
 };
 
 // The view of one object of the map, without what a cast of the object alone would add
-// (pixels_alone, cut_by_frame, hidden, hidden_by).
+// (pixels_alone, cut_by_frame, hidden, hidden_by, black_back) and without its motion.
 [[nodiscard]] TargetView find_target(const ObjectMap& map, std::uint32_t object);
 
 // All objects of the scene marked as targets, in its order. Each is cast once more without the rest

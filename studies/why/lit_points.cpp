@@ -48,11 +48,13 @@ Reach reach_of(const scenes::Scene& scene, const scenes::RayQuery& query,
       }
       reach.lit[i] = 1;
       reach.luminance += luminance;
+      reach.on_back += point.as_front * light.illuminance_lx * cosine / base::pi;
     }
   }
   if (!points.empty()) {
     reach.luminance /= static_cast<double>(points.size());
     reach.unshadowed /= static_cast<double>(points.size());
+    reach.on_back /= static_cast<double>(points.size());
   }
   for (const auto& [object, rays] : between) reach.shadows.push_back({object, rays});
   std::stable_sort(reach.shadows.begin(), reach.shadows.end(),
@@ -92,8 +94,13 @@ std::vector<SeenPoint> seen_points(const scenes::Scene& scene, const scenes::Ray
     if (hit.missed()) continue;
     const scenes::Material& material = scene.materials[scene.triangles[hit.triangle].material];
     const Vec3 normal = scenes::triangle_normal(scene, hit.triangle);
+    const double reflectance = base::luminance(material.diffuse);
+    const bool shines = hit.front || material.two_sided;
     points.push_back({scenes::hit_position(scene, hit), hit.front ? normal : -normal,
-                      hit.front || material.two_sided ? base::luminance(material.diffuse) : 0.0});
+                      shines ? reflectance : 0.0,
+                      !hit.front && material.has_black_back() ? reflectance : 0.0,
+                      shines ? material.diffuse : Rgb(0.0),
+                      shines ? base::luminance(material.emit) / base::pi : 0.0});
   }
   return points;
 }

@@ -19,6 +19,9 @@ struct SeenPoint {
   Vec3 position{0.0};
   Vec3 normal{0.0};          // unit, on the side that the camera sees
   double reflectance = 0.0;  // diffuse, of luminance; 0 on the black back of a surface
+  double as_front = 0.0;     // on a black back: what its front reflects
+  Rgb diffuse{0.0};          // as reflectance, in colour
+  double emitted = 0.0;      // luminance of its own light, cd/m^2
 };
 
 // Of at most `most` of the pixels, spread evenly over them: what the rays through their centres hit
@@ -35,6 +38,7 @@ struct Reach {
   std::vector<std::uint8_t> facing;  // would, if nothing stood between
   // Mean luminance by its direct light, cd/m^2, diffuse: as it is, and with nothing in between.
   double luminance = 0.0, unshadowed = 0.0;
+  double on_back = 0.0;  // what it would be more if black backs were as their fronts
   // What stands between, and in how many of the points' rays: most first.
   struct Shadow {
     std::uint32_t object = 0;

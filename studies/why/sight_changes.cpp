@@ -10,25 +10,31 @@
 namespace earthshine::studies {
 namespace {
 
-// The channels that carry light.
-template <class Visit>
-void for_light(base::Image& image, Visit visit) {
-  for (base::Channel& channel : image.channels) {
-    if (channel.name == "R" || channel.name == "G" || channel.name == "B" || channel.name == "Y") {
-      visit(channel.values);
-    }
-  }
-}
-
-void stop(Scenario& scenario, std::initializer_list<const char*> stages) {
-  for (const char* stage : stages) scenario.cctv->options.off.emplace_back(stage);
-}
-
 std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
 
-// Bright light counts as light in the signal: S per cd/m^2 where the iris stands.
-double signal_per_luminance(const degrade::CctvCamera& camera, const degrade::Exposure& exposure) {
-  return degrade::lens_transfer(camera, exposure.f_number) / camera.white_lux * exposure.gain;
+// How far a lamp that is too far is taken to be away, as a share of its distance.
+constexpr double nearer = 0.25;
+// Of the reference white: below, a lamp's distance may be to blame.
+constexpr double dark_signal = 0.25;
+// Weber contrast below which a target is as bright as its surround.
+constexpr double no_contrast = 0.02;
+
+double mean_over(const base::Image& image, const std::vector<std::uint32_t>& pixels) {
+  const std::vector<float> luminance = base::luminance_of(image);
+  double sum = 0.0;
+  for (const std::uint32_t pixel : pixels) sum += static_cast<double>(luminance[pixel]);
+  return sum / static_cast<double>(std::max<std::size_t>(1, pixels.size()));
+}
+
+// Too dark, and not because an iris closed.
+bool is_dark(const WhyNotInputs& in, std::size_t index) {
+  const Sight& sight = in.sight.targets[index];
+  if (!in.cctv || !in.sight.exposure) return true;  // an eye
+  if (in.cctv->camera.iris != degrade::IrisMode::Fixed && !in.sight.exposure->underexposed) {
+    return false;
+  }
+  return sight.luminance.value_or(0.0) * signal_per_luminance(in.cctv->camera, *in.sight.exposure) <
+         dark_signal;
 }
 
 }  // namespace
@@ -43,6 +49,29 @@ Scenario scenario_of(const WhyNotInputs& in, std::size_t index, const SightOptio
     }
   }
   return scenario;
+}
+
+Scenario without_all(const Scenario& scenario, const std::vector<Change>& changes) {
+  Scenario changed = scenario;
+  const auto apply = [&](bool light) {
+    for (const Change& change : changes) {
+      if ((change.cause == Cause::Unlit) == light) change.apply(changed);
+    }
+  };
+  apply(true);
+  apply(false);
+  return changed;
+}
+
+double signal_per_luminance(const degrade::CctvCamera& camera, const degrade::Exposure& exposure) {
+  return degrade::lens_transfer(camera, exposure.f_number) / camera.white_lux * exposure.gain;
+}
+
+void hold_exposure(Scenario& scenario, const degrade::Exposure& exposure) {
+  degrade::CctvCamera& camera = scenario.cctv->camera;
+  camera.iris = degrade::IrisMode::Fixed;
+  camera.f_number = exposure.f_number;
+  camera.gain_db = 20.0 * std::log10(exposure.gain);
 }
 
 std::optional<Change> without_hiding(const WhyNotInputs& in, std::size_t index) {
@@ -97,26 +126,27 @@ std::string darkness_of(const SourceOnTarget& source) {
 }
 
 std::vector<Change> with_light(const WhyNotInputs& in, std::size_t index,
-                               const std::vector<SourceOnTarget>& sources) {
-  std::vector<Change> changes;
+                               const std::vector<SourceOnTarget>& sources, std::size_t most) {
+  const std::vector<std::uint32_t>& measured = in.plan.targets[index].view.measured;
+  const double now = in.sight.targets[index].luminance.value_or(0.0);
+  std::vector<std::pair<double, Change>> by_light;
   for (const SourceOnTarget& source : sources) {
     const double more = source.unshadowed - source.direct;
     const bool picture = !source.off.empty() && source.when_on != nullptr;
-    if (!picture && !(more > 0.0)) continue;
     std::string why = darkness_of(source);
-    if (why.empty()) continue;
     Change change;
     change.cause = Cause::Unlit;
     change.by = source.group;
     change.share = 1.0 - source.lit;
-    change.text = "unlit: " + why;
+    change.without = "with it";
     if (picture) {
       change.apply = [on = source.when_on](Scenario& scenario) {
         for (base::Channel& channel : scenario.radiance.channels) {
           if (const base::Channel* lit = on->find(channel.name)) channel.values = lit->values;
         }
       };
-    } else {
+      by_light.emplace_back(mean_over(*source.when_on, measured) - now, change);
+    } else if (!why.empty() && more > 0.0) {
       change.apply = [&in, index, more](Scenario& scenario) {
         for_light(scenario.radiance, [&](std::vector<float>& values) {
           for (const std::uint32_t pixel : in.plan.targets[index].seen) {
@@ -124,54 +154,68 @@ std::vector<Change> with_light(const WhyNotInputs& in, std::size_t index,
           }
         });
       };
+      by_light.emplace_back(more, change);
+    } else if (why.empty() && source.distance_m > 0.0 && source.direct > 0.0 &&
+               source.luminance > 0.5 * now && is_dark(in, index)) {
+      // Its share of the target's light, over the whole picture: what stands beside is as far.
+      const double share = std::min(1.0, source.luminance / now);
+      const double factor = 1.0 + share * (1.0 / (nearer * nearer) - 1.0);
+      why = fmt::format("{} is too far ({:.3g} m), it gives {:.2g} cd/m^2", source.group,
+                        source.distance_m, source.luminance);
+      change.without = "four times nearer";
+      change.apply = [factor](Scenario& scenario) {
+        for_light(scenario.radiance, [&](std::vector<float>& values) {
+          for (float& value : values) value *= static_cast<float>(factor);
+        });
+      };
+      by_light.emplace_back((factor - 1.0) * now, change);
+    } else {
+      continue;
     }
-    changes.push_back(std::move(change));
+    by_light.back().second.text = "unlit: " + why;
+  }
+  std::stable_sort(by_light.begin(), by_light.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Change> changes;
+  for (auto& [light, change] : by_light) {
+    if (changes.size() < most) changes.push_back(std::move(change));
   }
   return changes;
 }
 
-std::optional<Change> without_saturation(const WhyNotInputs& in, std::size_t index) {
-  const Sight& sight = in.sight.targets[index];
-  if (!in.cctv || !in.sight.exposure || !sight.luminance) return std::nullopt;
-  const degrade::Exposure& exposure = *in.sight.exposure;
-  const double brighter = std::max(*sight.luminance, sight.surround.value_or(0.0));
-  const double level = brighter * signal_per_luminance(in.cctv->camera, exposure);
-  if (!(sight.saturated > 0.01) && level < 0.9) return std::nullopt;
-  const double stops = std::max(2.0, std::log2(2.0 * level));
+std::optional<Change> without_black_back(const WhyNotInputs& in, std::size_t index,
+                                         const std::vector<SourceOnTarget>& sources) {
+  const std::vector<std::uint32_t>& back = in.plan.targets[index].view.black_back;
+  const double share = in.sight.targets[index].black_back.value_or(0.0);
+  if (!(share >= 0.1)) return std::nullopt;  // a corner of it is no reason
+  double more = 0.0;
+  for (const SourceOnTarget& source : sources) more += source.on_back;
   Change change;
-  change.cause = Cause::Saturated;
-  change.share = sight.saturated;
-  change.text = sight.saturated > 0.01
-                    ? fmt::format("saturated ({} of it)", percent(*sight.saturated))
-                    : "saturated round it";
-  change.apply = [exposure, stops](Scenario& scenario) {
-    degrade::CctvCamera& camera = scenario.cctv->camera;
-    camera.iris = degrade::IrisMode::Fixed;
-    camera.f_number = exposure.f_number * std::exp2(0.5 * stops);
-    camera.gain_db = 20.0 * std::log10(exposure.gain);
+  change.cause = Cause::BlackBack;
+  change.share = share;
+  change.text = fmt::format("black back seen ({} of it): its surface has one side", percent(share));
+  change.without = "with a back like its front";
+  // The mean was taken over all points, this goes on those that show the back.
+  change.apply = [&back, more = more / share](Scenario& scenario) {
+    for_light(scenario.radiance, [&](std::vector<float>& values) {
+      for (const std::uint32_t pixel : back) values[pixel] += static_cast<float>(more);
+    });
+    for (SightTarget& target : scenario.plan.targets) target.view.black_back.clear();
   };
   return change;
-}
-
-std::vector<Change> without_blur_or_noise(const WhyNotInputs& in) {
-  if (!in.cctv) return {};
-  Change blur, noise;
-  blur.cause = Cause::Blur;
-  blur.text = "blurred away";
-  blur.apply = [](Scenario& s) { stop(s, {"lens-spread", "blur", "bandwidth", "spread"}); };
-  noise.cause = Cause::Noise;
-  noise.text = "lost in noise";
-  noise.apply = [](Scenario& s) { stop(s, {"signal-noise", "read-noise"}); };
-  return {blur, noise};
 }
 
 std::vector<Change> without_limits_of_the_eye(const WhyNotInputs& in, std::size_t index) {
   const Sight& sight = in.sight.targets[index];
   Change contrast, small;
   contrast.cause = Cause::Contrast;
-  contrast.text = "too little contrast for the eye's threshold";
+  const bool none = sight.weber && std::abs(*sight.weber) < no_contrast;
+  contrast.text = none ? fmt::format("as bright as what is round it (contrast {:.1f} %)",
+                                     100.0 * std::abs(*sight.weber))
+                       : "too little contrast for the eye's threshold";
+  contrast.without = none ? "on a black ground" : "to an eye without one";
   const auto tell = [&](const std::optional<double>& weber, const std::optional<double>& least) {
-    if (!weber || !least) return;
+    if (none || !weber || !least) return;
     contrast.text +=
         fmt::format(" ({:.1f} % against {:.1f} %)", 100.0 * std::abs(*weber), 100.0 * *least);
   };
@@ -180,7 +224,14 @@ std::vector<Change> without_limits_of_the_eye(const WhyNotInputs& in, std::size_
   } else if (sight.eye) {
     tell(sight.eye->weber, sight.eye->threshold);
   }
-  contrast.apply = [](Scenario& s) { s.options.eye.threshold_factor = 0.0; };
+  contrast.apply = [none](Scenario& s) {
+    s.options.eye.threshold_factor = 0.0;
+    if (!none) return;
+    for_light(s.radiance, [&](std::vector<float>& values) {
+      for (const std::uint32_t pixel : s.plan.targets.front().view.surround) values[pixel] = 0.0F;
+    });
+  };
+  small.without = "if it were large";
   small.cause = Cause::Small;
   small.text = "too small";
   if (sight.tv_lines) {

@@ -30,26 +30,15 @@ double probability_of(const Scenario& scenario, const Task& task) {
 struct Trial {
   Change change;
   double probability = 0.0;
+  // The same thing's lesser changes, which may do as well.
+  std::vector<Change> lesser = {};
 };
-
-const char* without(Cause cause) {
-  switch (cause) {
-    case Cause::Unlit:
-      return "with it";
-    case Cause::Contrast:
-      return "to an eye without one";
-    case Cause::Small:
-      return "if it were large";
-    default:
-      return "without it";
-  }
-}
 
 Reason reason_of(const Change& change, std::optional<double> probability) {
   Reason reason{change.cause, change.by, change.share, probability, change.text};
   if (probability) {
     const char* mark = change.text.find(':') == std::string::npos ? ":" : ";";
-    reason.text += fmt::format("{} {} {:.2f}", mark, without(change.cause), *probability);
+    reason.text += fmt::format("{} {} {:.2f}", mark, change.without, *probability);
   }
   return reason;
 }
@@ -67,92 +56,105 @@ std::string joined(const std::vector<Reason>& reasons, const char* between) {
   return text;
 }
 
-// Of the bright things the one that helps most; those together only where they help more.
-void keep_best_iris(std::vector<Trial>& trials, double least_gain) {
-  const auto is_iris = [](const Trial& t) { return t.change.cause == Cause::Iris; };
-  const Trial* best = nullptr;
-  for (const Trial& trial : trials) {
-    if (!is_iris(trial)) continue;
-    const bool several = trial.change.by.find(", ") != std::string::npos;
-    if (best == nullptr || trial.probability > best->probability + (several ? least_gain : 0.0)) {
-      best = &trial;
+// Tries changes of one target.
+class Trials {
+ public:
+  Trials(const WhyNotInputs& in, std::size_t index, const Task& task, const WhyNotOptions& options)
+      : in_(in),
+        index_(index),
+        task_(task),
+        options_(options),
+        start_(scenario_of(in, index, options.sight)) {}
+
+  [[nodiscard]] double without(const std::vector<Change>& changes) const {
+    return probability_of(without_all(start_, changes), task_);
+  }
+  [[nodiscard]] bool cures(double probability) const { return probability >= options_.wanted; }
+  [[nodiscard]] bool any_cures() const {
+    return std::any_of(list_.begin(), list_.end(),
+                       [&](const Trial& t) { return cures(t.probability); });
+  }
+  [[nodiscard]] const std::vector<Trial>& list() const { return list_; }
+
+  void add(std::vector<Change> changes) {
+    for (Change& change : changes) {
+      const double p = without({change});
+      list_.push_back({std::move(change), p});
     }
   }
-  if (best == nullptr) return;
-  Trial kept = *best;
-  const auto at = std::find_if(trials.begin(), trials.end(), is_iris) - trials.begin();
-  trials.erase(std::remove_if(trials.begin(), trials.end(), is_iris), trials.end());
-  trials.insert(trials.begin() + at, std::move(kept));
-}
-
-// Takes away what helps most, and again, until the task is done or nothing helps any more.
-WhyNot several(const Scenario& start, std::vector<Trial> trials, const Task& task, double now,
-               const WhyNotOptions& options) {
-  Scenario scenario = start;
-  for (const Trial& trial : trials) trial.change.apply(scenario);
-  if (probability_of(scenario, task) < options.wanted) return {};  // not even all together
-  scenario = start;
-  std::vector<std::size_t> taken;
-  std::vector<bool> used(trials.size(), false);
-  while (now < options.wanted) {
-    std::size_t best = trials.size();
-    double most = now;
-    for (std::size_t k = 0; k < trials.size(); ++k) {
-      if (used[k]) continue;
-      Scenario next = scenario;
-      trials[k].change.apply(next);
-      const double p = probability_of(next, task);
-      if (best == trials.size() || p > most) {
-        best = k;
-        most = p;
+  void add(std::optional<Change> change) {
+    if (change) add(std::vector<Change>{std::move(*change)});
+  }
+  // The brightest thing of which the least change is enough; else what opens the iris most, or
+  // strays most.
+  void add_bright_things() {
+    std::vector<BrightThings> things = without_bright_things(in_, index_, options_.bright_things);
+    for (const BrightThings& thing : things) {
+      // What takes away most is asked first: where that does not help, nor does less of it.
+      if (thing.changes.size() > 1 && !cures(without({thing.changes.back()}))) continue;
+      for (const Change& change : thing.changes) {
+        const double p = without({change});
+        if (!cures(p)) continue;
+        list_.push_back({change, p});
+        return;
       }
     }
-    if (best == trials.size()) break;
-    used[best] = true;
-    taken.push_back(best);
-    trials[best].change.apply(scenario);
-    now = std::max(now, most);
+    const auto most = std::max_element(
+        things.begin(), things.end(),
+        [](const BrightThings& a, const BrightThings& b) { return a.stops < b.stops; });
+    if (most == things.end()) return;
+    Change strongest = std::move(most->changes.back());
+    most->changes.pop_back();
+    const double p = without({strongest});
+    list_.push_back({std::move(strongest), p, std::move(most->changes)});
   }
-  WhyNot why;
-  if (now < options.wanted) return why;
-  // What was taken first may turn out not to be needed.
-  for (std::size_t k = 0; k + 1 < taken.size();) {
-    Scenario without = start;
-    for (std::size_t j = 0; j < taken.size(); ++j) {
-      if (j != k) trials[taken[j]].change.apply(without);
-    }
-    if (probability_of(without, task) < options.wanted) {
-      ++k;
-    } else {
-      taken.erase(taken.begin() + static_cast<std::ptrdiff_t>(k));
-    }
-  }
-  std::sort(taken.begin(), taken.end());
-  for (const std::size_t k : taken) {
-    Reason reason = reason_of(trials[k].change, {});
-    reason.probability_without = trials[k].probability;
-    why.reasons.push_back(std::move(reason));
-  }
-  why.probability_without_all = now;
-  why.text = fmt::format("{}; without all of that {:.2f}", joined(why.reasons, " and "), now);
-  return why;
-}
 
-std::vector<Change> all_changes(const WhyNotInputs& in, std::size_t index,
-                                const std::vector<SourceOnTarget>& sources,
-                                const WhyNotOptions& options) {
-  std::vector<Change> changes;
-  const auto add = [&](std::vector<Change> more) {
-    std::move(more.begin(), more.end(), std::back_inserter(changes));
-  };
-  if (auto change = without_hiding(in, index)) changes.push_back(std::move(*change));
-  add(with_light(in, index, sources));
-  add(with_iris_opened(in, index, options.bright_things));
-  if (auto change = without_saturation(in, index)) changes.push_back(std::move(*change));
-  add(without_blur_or_noise(in));
-  add(without_limits_of_the_eye(in, index));
-  return changes;
-}
+  // All that are needed together; no reasons where not even all would do.
+  [[nodiscard]] WhyNot several() const {
+    std::vector<Trial> needed = list_;
+    if (!cures(without_these(needed))) return {};
+    for (std::size_t k = needed.size(); k-- > 0;) {
+      std::vector<Trial> fewer = needed;
+      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(k));
+      if (cures(without_these(fewer))) needed = std::move(fewer);
+    }
+    for (Trial& trial : needed) {
+      const Change whole = trial.change;
+      for (const Change& lesser : trial.lesser) {
+        trial.change = lesser;
+        if (cures(without_these(needed))) break;
+        trial.change = whole;
+      }
+    }
+    std::stable_sort(needed.begin(), needed.end(), [](const Trial& a, const Trial& b) {
+      return a.change.cause < b.change.cause;
+    });
+    WhyNot why;
+    for (const Trial& trial : needed) {
+      Reason reason = reason_of(trial.change, {});
+      reason.probability_without = without({trial.change});
+      why.reasons.push_back(std::move(reason));
+    }
+    why.probability_without_all = without_these(needed);
+    why.text = fmt::format("{}; without all of that {:.2f}", joined(why.reasons, " and "),
+                           *why.probability_without_all);
+    return why;
+  }
+
+ private:
+  [[nodiscard]] double without_these(const std::vector<Trial>& trials) const {
+    std::vector<Change> changes;
+    for (const Trial& trial : trials) changes.push_back(trial.change);
+    return without(changes);
+  }
+
+  const WhyNotInputs& in_;
+  const std::size_t index_;
+  const Task& task_;
+  const WhyNotOptions& options_;
+  const Scenario start_;
+  std::vector<Trial> list_;
+};
 
 // What is left to say where nothing helps.
 Reason nothing_helps(const Sight& sight, const std::vector<SourceOnTarget>& sources) {
@@ -180,8 +182,9 @@ Reason nothing_helps(const Sight& sight, const std::vector<SourceOnTarget>& sour
 }  // namespace
 
 std::string_view word_of(Cause cause) {
-  constexpr std::array<std::string_view, 9> words = {
-      "out-of-view", "hidden", "unlit", "iris", "saturated", "blur", "noise", "contrast", "small"};
+  constexpr std::array<std::string_view, 13> words = {
+      "out-of-view", "hidden", "black-back", "unlit",      "iris",     "glare", "saturated",
+      "lag",         "blur",   "noise",      "room-light", "contrast", "small"};
   return words[static_cast<std::size_t>(cause)];
 }
 
@@ -199,44 +202,57 @@ WhyNot why_not(const WhyNotInputs& in, std::size_t index,
   if (sight.pixels == 0) {
     return only(hiding ? reason_of(*hiding, {}) : Reason{Cause::Hidden, {}, 1.0, {}, "hidden"});
   }
+  const std::optional<Change> back = without_black_back(in, index, sources);
+  const bool mostly_back = sight.black_back >= options.sight.most_black_back;
   if (!sight.probability) {
-    return only({Cause::Contrast, {}, {}, {}, "fills the picture: nothing to tell it from"});
+    return only(
+        mostly_back && back
+            ? reason_of(*back, {})
+            : Reason{Cause::Contrast, {}, {}, {}, "fills the picture: nothing to tell it from"});
   }
   const auto fails = [&](const Task& task) { return *sight.probability.*task.of < options.wanted; };
   const bool hidden = sight.verdict == Verdict::Hidden;
   const auto failing = std::find_if(tasks.begin(), tasks.end(), fails);
-  if (failing == tasks.end()) return hidden && hiding ? only(reason_of(*hiding, {})) : WhyNot();
+  if (failing == tasks.end()) {
+    if (hidden && hiding) return only(reason_of(*hiding, {}));
+    return mostly_back && back ? only(reason_of(*back, {})) : WhyNot();
+  }
   const Task& task = *failing;
   const double now = *sight.probability.*task.of;
 
-  const Scenario start = scenario_of(in, index, options.sight);
-  std::vector<Trial> trials;
-  for (Change& change : all_changes(in, index, sources, options)) {
-    Scenario changed = start;
-    change.apply(changed);
-    const double probability = probability_of(changed, task);
-    trials.push_back({std::move(change), probability});
-  }
-  keep_best_iris(trials, options.least_gain);
-  const auto cures = [&](const Trial& t) { return t.probability >= options.wanted; };
-  // What the viewer lacks says nothing where the picture could be better.
-  const auto is_viewers = [](const Trial& t) { return t.change.cause >= Cause::Contrast; };
-  if (std::any_of(trials.begin(), trials.end(),
-                  [&](const Trial& t) { return cures(t) && !is_viewers(t); })) {
-    trials.erase(std::remove_if(trials.begin(), trials.end(), is_viewers), trials.end());
-  }
-  const bool one_is_enough = std::any_of(trials.begin(), trials.end(), cures);
+  Trials trials(in, index, task, options);
+  trials.add(hiding);
+  trials.add(back);
+  trials.add(with_light(in, index, sources));
+  trials.add_bright_things();
+  trials.add(with_better_cctv(in, index));
   WhyNot why;
-  if (!one_is_enough) why = several(start, trials, task, now, options);
-  for (const Trial& trial : trials) {
-    if (!why.reasons.empty() && why.probability_without_all) break;
-    const bool must = hidden && trial.change.cause == Cause::Hidden;
-    if (must || (one_is_enough ? cures(trial) : trial.probability >= now + options.least_gain)) {
-      why.reasons.push_back(reason_of(trial.change, trial.probability));
+  if (!trials.any_cures()) {
+    why = trials.several();
+    // What the viewer lacks says nothing where the picture could be better.
+    if (why.reasons.empty()) {
+      trials.add(without_limits_of_the_eye(in, index));
+      if (!trials.any_cures()) why = trials.several();
     }
   }
+  const bool one_is_enough = trials.any_cures();
+  const auto must = [&](const Reason& reason) {
+    return (hidden && reason.cause == Cause::Hidden) ||
+           (mostly_back && reason.cause == Cause::BlackBack);
+  };
+  const auto is_there = [&](const Reason& reason) {
+    return std::any_of(why.reasons.begin(), why.reasons.end(),
+                       [&](const Reason& r) { return r.cause == reason.cause; });
+  };
+  const bool all_needed = why.probability_without_all.has_value();
+  for (const Trial& trial : trials.list()) {
+    const Reason reason = reason_of(trial.change, trial.probability);
+    const bool helps = one_is_enough ? trials.cures(trial.probability)
+                                     : trial.probability >= now + options.least_gain;
+    if (must(reason) ? !is_there(reason) : helps && !all_needed) why.reasons.push_back(reason);
+  }
   if (why.reasons.empty()) why.reasons.push_back(nothing_helps(sight, sources));
-  if (why.text.empty()) why.text = joined(why.reasons, "; ");
+  if (!all_needed || why.text.empty()) why.text = joined(why.reasons, "; ");
   why.text = task.prefix + why.text;
   return why;
 }

@@ -149,5 +149,30 @@ TEST(Srgb, EveryByteBeginsWhereTheCurveRoundsToIt) {
   EXPECT_EQ(srgb_byte(7.0), 255);
 }
 
+// 1 - 0.4 exp(-(1 - 0.6) / 0.4) = 1 - 0.4 / e = 0.8528 at white, 1 - 0.4 exp(-3.5) = 0.9879 at
+// twice that; straight below 0.6 of it.
+TEST(Tone, ShoulderIsStraightBelowAndNeverClips) {
+  const ToneMapped shown =
+      expose(grey_image({1.0F, 3.0F, 5.0F, 10.0F, 20.0F}), 10.0, ToneCurve::Shoulder);
+  const double wanted[] = {0.1, 0.3, 0.5, 1.0 - 0.4 * std::exp(-1.0), 1.0 - 0.4 * std::exp(-3.5)};
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(shown.rgb[3 * i], srgb_byte(wanted[i])) << i;
+}
+
+TEST(Tone, ClippedPictureIsLinearUpToWhite) {
+  const ToneMapped shown = expose(grey_image({0.0F, 2.5F, 10.0F, 11.0F}), 10.0, ToneCurve::Clip);
+  const std::uint8_t wanted[] = {0, srgb_byte(0.25), 255, 255};
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(shown.rgb[3 * i], wanted[i]) << i;
+}
+
+// Of 1000 and 1000 pixels together, half of them black: lit ones are numbers 0 to 999 of the ramp,
+// of which the 90th percentile is number 899 (0.9 * 999 = 899.1).
+TEST(Tone, WhiteIsThePercentileOfTheLitPixelsOfAllPictures) {
+  const std::vector<float> scene = ramp();
+  const Image lit = grey_image(scene), dark = grey_image(std::vector<float>(1000, 0.0F));
+  EXPECT_EQ(white_at({&lit, &dark}, 90.0), static_cast<double>(scene[899]));
+  EXPECT_EQ(white_at({&lit, &dark}, 100.0), static_cast<double>(scene[999]));
+  EXPECT_EQ(white_at({&dark}, 90.0), 1.0);
+}
+
 }  // namespace
 }  // namespace earthshine::base

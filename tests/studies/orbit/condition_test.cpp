@@ -88,7 +88,7 @@ TEST(Condition, ASourceThatIsOffSaysWhy) {
   EXPECT_EQ(source_of(noon, "lamp").lit, 0.0);
   EXPECT_EQ(source_of(night, "sun").off, "in the Earth's shadow");
   EXPECT_EQ(source_of(night, "sun").luminance, 0.0);
-  EXPECT_EQ(source_of(night, "earth").off, "its night side is below");
+  EXPECT_EQ(source_of(night, "earth").off, "has its night side below");
   EXPECT_EQ(source_of(night, "lamp").off, "");
   EXPECT_EQ(judge.at(0, 0).sun_share, 1.0);
   EXPECT_EQ(judge.at(1, 0).sun_share, 0.0);
@@ -127,6 +127,24 @@ TEST(Condition, BehindAWallNothingIsLit) {
     EXPECT_EQ(source.direct, 0.0) << group;
     EXPECT_GT(source.unshadowed, 0.0) << group;
   }
+}
+
+// What the Earth's night side would give by day is what it gives at noon, with the Sun behind the
+// spacecraft.
+TEST(Condition, NightSideSaysWhatTheDaySideWouldGive) {
+  const Judge judge(plate_and_lamp().scene, tests::orbit_places({0, 180}, EarthModel::Lambert));
+  const SourceOnTarget noon = source_of(judge.at(0, 0).targets[0], "earth"),
+                       night = source_of(judge.at(1, 0).targets[0], "earth");
+  EXPECT_GT(noon.direct, 0.0);
+  EXPECT_EQ(night.direct, 0.0);
+  EXPECT_NEAR(night.unshadowed, noon.unshadowed, 1e-6 * noon.unshadowed);
+}
+
+TEST(Condition, LampsKnowHowFarTheTargetIs) {
+  const Judge judge(plate_and_lamp().scene, noon_and_midnight());
+  const TargetOutcome noon = judge.at(0, 0).targets[0];
+  EXPECT_NEAR(source_of(noon, "lamp").distance_m, std::sqrt(0.04 + 0.01 + 36.0), 0.02);
+  EXPECT_EQ(source_of(noon, "sun").distance_m, 0.0);
 }
 
 // Half of the plate under a roof: the points are pixels' centres, 1 of 16 rows at the edge.

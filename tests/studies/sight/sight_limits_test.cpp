@@ -166,5 +166,51 @@ TEST(SightLimits, JohnsonDecidesWhereContrastIsAmple) {
   }
 }
 
+// The fields of a bar of `extent` resels that moves by `speed` a field through a tube that lags:
+// what the line holds of it where it stands, after long.
+TEST(SightLimits, TrailIsThatOfALaggingTube) {
+  constexpr int extent = 12, speed = 5, fields = 400, width = extent + speed * fields;
+  constexpr double lag = 0.7;
+  std::vector<double> charge(width, 0.0);
+  for (int k = 0; k <= fields - 1; ++k) {
+    for (int x = 0; x < width; ++x) {
+      const double light = x >= k * speed && x < k * speed + extent ? 1.0 : 0.0;
+      charge[static_cast<std::size_t>(x)] =
+          (1.0 - lag) * light + lag * charge[static_cast<std::size_t>(x)];
+    }
+  }
+  double mean = 0.0;
+  for (int x = 0; x < extent; ++x) {
+    mean += charge[static_cast<std::size_t>((fields - 1) * speed + x)] / extent;
+  }
+  EXPECT_NEAR((Trail{lag, speed, 0.0}.share(extent)), mean, 1e-8);
+  EXPECT_EQ((Trail{lag, 0.0, 0.0}.share(extent)), 1.0);
+  EXPECT_EQ((Trail{0.0, speed, 0.0}.share(extent)), 1.0);
+  EXPECT_NEAR((Trail{lag, extent, 0.0}.share(extent)), 1.0 - lag, 1e-12);
+}
+
+// Half a period a field: the fields stand against each other, (1 - lag) / (1 + lag). Across the way
+// nothing is lost.
+TEST(SightLimits, TrailTakesFineStructureAlongItsWayOnly) {
+  const Trail trail{0.6, 2.0, 0.0};
+  EXPECT_NEAR(trail.modulation(0.0, 0.25), 0.4 / 1.6, 1e-12);
+  EXPECT_NEAR(trail.modulation(0.5 * base::pi, 0.25), 1.0, 1e-12);
+  EXPECT_NEAR(trail.modulation(0.0, 0.0), 1.0, 1e-12);
+}
+
+TEST(SightLimits, BlackBackIsDoubtfulAtBest) {
+  auto picture = tests::discs_on(40.0, {{60.0, 60.0, 20.0, 0.0}}, 120, 120);
+  EXPECT_EQ(tests::sight_of(picture, {}).verdict, Verdict::Identified);
+  EXPECT_EQ(*tests::sight_of(picture, {}).black_back, 0.0);
+  SightTarget& target = picture.plan.targets[0];
+  target.view.black_back.assign(
+      target.seen.begin(),
+      target.seen.begin() + static_cast<std::ptrdiff_t>(target.seen.size() / 2));
+  target.view.black_back.pop_back();  // less than half of it
+  EXPECT_EQ(tests::sight_of(picture, {}).verdict, Verdict::Identified);
+  target.view.black_back = target.seen;
+  EXPECT_EQ(tests::sight_of(picture, {}).verdict, Verdict::Doubtful);
+}
+
 }  // namespace
 }  // namespace earthshine::studies

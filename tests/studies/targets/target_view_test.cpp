@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "tests/studies/plates.h"
@@ -135,6 +136,39 @@ TEST(TargetView, TargetBeyondTheFrameSaysSo) {
   const TargetView view = only_target(builder.scene, away, 16);
   EXPECT_EQ(view.pixels_alone, 0U);
   EXPECT_FALSE(view.cut_by_frame);
+}
+
+TEST(TargetView, BlackBacksAreCountedWhereASurfaceHasOneSide) {
+  const auto seen_back = [](bool up, bool two_sided, double transmit) {
+    auto builder = tests::plate_on_ground(0.4, 0.6);
+    builder.scene.objects[1].target = false;
+    scenes::Material material = tests::grey(0.6);
+    material.two_sided = two_sided;
+    material.transmit = Rgb(transmit);
+    builder.plate(builder.material(material), 1.0, 0.5, up);
+    builder.scene.objects[2].target = true;
+    const TargetView view = only_target(builder.scene, tests::above(2.5, 2.0), 32);
+    EXPECT_GT(view.pixels, 100U);
+    return static_cast<double>(view.black_back.size()) / static_cast<double>(view.pixels);
+  };
+  EXPECT_EQ(seen_back(true, false, 0.0), 0.0);
+  EXPECT_EQ(seen_back(false, false, 0.0), 1.0);
+  EXPECT_EQ(seen_back(false, true, 0.0), 0.0);
+  EXPECT_EQ(seen_back(false, false, 0.1), 0.0);  // glass shows what is behind it
+}
+
+// 2 m across 32 pixels: 0.5 m/s are 8 pixels a second, up is against the rows. Along the camera's
+// axis the middle stands still.
+TEST(TargetView, MotionIsThatOfTheMiddleAcrossThePicture) {
+  const auto motion = [](const Vec3& velocity) {
+    auto builder = tests::plate_on_ground(0.4, 0.6);
+    builder.scene.objects[1].velocity_m_s = velocity;
+    return only_target(builder.scene, tests::above(2.0, 2.0), 32).motion_px_s;
+  };
+  EXPECT_NEAR(motion({0.5, 0, 0})[0], 8.0, 1e-9);
+  EXPECT_NEAR(motion({0.5, 0, 0})[1], 0.0, 1e-9);
+  EXPECT_NEAR(motion({0, 0.5, 0})[1], -8.0, 1e-9);
+  EXPECT_NEAR(std::hypot(motion({0, 0, 3})[0], motion({0, 0, 3})[1]), 0.0, 1e-9);
 }
 
 TEST(TargetView, PictureWithoutObjectsIsRefused) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <utility>
 
 #include "tests/studies/plates.h"
 
@@ -79,6 +80,20 @@ TEST(LitPoints, SourceBehindTheSurfaceFacesNothing) {
   EXPECT_EQ(share_of(sun.facing), 0.0);
   EXPECT_EQ(share_of(sun.lit), 0.0);
   EXPECT_EQ(sun.unshadowed, 0.0);
+}
+
+// A black back gives nothing, but what its front would: rho E / pi.
+TEST(LitPoints, BlackBackKnowsWhatItsFrontWouldGive) {
+  Lit lit;
+  for (const std::size_t k : {2U, 3U}) {
+    std::uint32_t* corner = lit.builder.scene.triangles[k].vertex;
+    std::swap(corner[1], corner[2]);
+  }
+  const scenes::RayQuery query = lit.look();
+  const Reach sun = reach_of_direction(lit.builder.scene, query, lit.points, Vec3(0, 0, 1), 1000.0);
+  const double full = reflectance * 1000.0 / base::pi;
+  EXPECT_EQ(sun.luminance, 0.0);
+  EXPECT_NEAR(sun.on_back, full, 1e-9 * full);
 }
 
 TEST(LitPoints, ShareOfSeveralSourcesIsThatOfAny) {

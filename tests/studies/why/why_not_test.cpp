@@ -179,8 +179,8 @@ TEST(WhyNot, TinyTargetIsBlurredAway) {
   degrade::Setup setup = with_noise(plain_cctv(edge, edge, 100.0), 1e-5);
   setup.camera.blur_h = setup.camera.blur_v = 4.0;
   const Told told = ask(discs_on(40.0, {{60.0, 60.0, 3.0, 60.0}}, edge, edge), setup);
-  expect_only(told, Cause::Blur, "");
-  EXPECT_EQ(told.why.text.find("blurred away: without it "), 0U) << told.why.text;
+  expect_only(told, Cause::Blur, "tube");
+  EXPECT_EQ(told.why.text.find("blurred by the sensor: without it "), 0U) << told.why.text;
 }
 
 TEST(WhyNot, DarkTargetIsLostInNoise) {
@@ -202,7 +202,8 @@ TEST(WhyNot, TargetAsBrightAsItsSurroundIsToldSo) {
   const Told told =
       ask(discs_on(40.0, {{60.0, 60.0, 10.0, 40.0}}, edge, edge), plain_cctv(edge, edge, 100.0));
   ASSERT_EQ(told.why.reasons.size(), 1U);
-  EXPECT_EQ(told.why.text, "as bright as what is round it (contrast 0.0 %)");
+  EXPECT_EQ(told.why.text,
+            "as bright as what is round it (contrast 0.0 %): on a black ground 1.00");
 }
 
 TEST(WhyNot, NeedsSeveralWhereNoOneIsEnough) {
