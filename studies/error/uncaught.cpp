@@ -14,7 +14,7 @@
 namespace earthshine::studies {
 namespace {
 
-constexpr std::size_t points = 8192;
+constexpr std::size_t points = 2048;
 constexpr std::size_t most_named = 3;
 
 using scenes::RayPacket;

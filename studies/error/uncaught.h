@@ -24,7 +24,7 @@ struct UncaughtLight {
 // Which sources are asked about.
 enum class SourcesOf { All, WithoutSize };
 
-// From shadow rays of 8192 points on all surfaces and as many on mirrors and glass: shares are good
+// From shadow rays of 2048 points on all surfaces and as many on mirrors and glass: shares are good
 // to some hundredths of themselves. Flat mirrors are as `indirect` has them.
 [[nodiscard]] UncaughtLight uncaught_light(const StudyScene& scene, raytrace::Indirect indirect,
                                            SourcesOf which);
