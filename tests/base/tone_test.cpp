@@ -168,8 +168,9 @@ TEST(Tone, ClippedPictureIsLinearUpToWhite) {
 // of which the 90th percentile is number 899 (0.9 * 999 = 899.1).
 TEST(Tone, WhiteIsThePercentileOfTheLitPixelsOfAllPictures) {
   const std::vector<float> scene = ramp();
-  const Image lit = grey_image(scene), dark = grey_image(std::vector<float>(1000, 0.0F));
-  EXPECT_EQ(white_at({&lit, &dark}, 90.0), static_cast<double>(scene[899]));
+  const Image lit = grey_image(scene), dark = grey_image(std::vector<float>(1000, 0.0F)),
+              faint = grey_image(std::vector<float>(1000, 0.05F));  // below 1e-5 of the brightest
+  EXPECT_EQ(white_at({&lit, &dark, &faint}, 90.0), static_cast<double>(scene[899]));
   EXPECT_EQ(white_at({&lit, &dark}, 100.0), static_cast<double>(scene[999]));
   EXPECT_EQ(white_at({&dark}, 90.0), 1.0);
 }

@@ -141,9 +141,12 @@ TEST(Condition, NightSideSaysWhatTheDaySideWouldGive) {
 }
 
 TEST(Condition, LampsKnowHowFarTheTargetIs) {
-  const Judge judge(plate_and_lamp().scene, noon_and_midnight());
+  // The plate's middle at x = 0.3, a lamp 6 m over (0.2, 0.1).
+  auto builder = plate_and_lamp();
+  for (std::size_t k = 4; k < 8; ++k) builder.scene.vertices[k].x += 0.3;
+  const Judge judge(builder.scene, noon_and_midnight());
   const TargetOutcome noon = judge.at(0, 0).targets[0];
-  EXPECT_NEAR(source_of(noon, "lamp").distance_m, std::sqrt(0.04 + 0.01 + 36.0), 0.02);
+  EXPECT_NEAR(source_of(noon, "lamp").distance_m, std::sqrt(0.01 + 0.01 + 36.0), 0.005);
   EXPECT_EQ(source_of(noon, "sun").distance_m, 0.0);
 }
 

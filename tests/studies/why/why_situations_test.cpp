@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "studies/why/sight_changes.h"
 #include "tests/studies/why/situations.h"
 
 namespace earthshine::studies {
@@ -45,6 +46,24 @@ bool names(const WhyNot& why, const Case& wanted) {
   return why.text.find(wanted.text) != std::string::npos &&
          std::any_of(why.reasons.begin(), why.reasons.end(),
                      [&](const Reason& r) { return word_of(r.cause) == wanted.cause; });
+}
+
+// A picture with a lamp on takes the place of the one that is there; what else is taken away must
+// change that one: 10, then 5 more.
+TEST(WhySituations, LightIsSwitchedOnBeforeWhatElseIsTakenAway) {
+  Scenario start;
+  start.radiance = base::make_rgb_image(1, 1);
+  Change light, hiding;
+  light.cause = Cause::Unlit;
+  light.apply = [](Scenario& s) {
+    for_light(s.radiance, [](std::vector<float>& values) { values[0] = 10.0F; });
+  };
+  hiding.cause = Cause::Hidden;
+  hiding.apply = [](Scenario& s) {
+    for_light(s.radiance, [](std::vector<float>& values) { values[0] += 5.0F; });
+  };
+  EXPECT_EQ(without_all(start, {hiding, light}).radiance.channels[0].values[0], 15.0F);
+  EXPECT_EQ(without_all(start, {light, hiding}).radiance.channels[0].values[0], 15.0F);
 }
 
 class OneCause : public testing::TestWithParam<Case> {};
