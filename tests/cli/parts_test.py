@@ -133,6 +133,7 @@ class SameBytes(PartCase):
 
     def test_one_solution(self):
         self.done(*CALL, "--part", "solve", "-q")
+        self.says(self.refused("merge", "v.exr.parts", code=1), "no part was run", "1/N to N/N")
         (solution,) = (self.folder / "v.exr.parts").glob("solution-*.h5")
         before = solution.stat()
         for part in (1, 2):
