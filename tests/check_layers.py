@@ -24,7 +24,8 @@ ROOMS = {
     "degrade": ["stage", "parts", "moments", ".", "settings", "range", "certify"],
     "studies": [".", "cost", "error", "surfaces", "steer", "targets", "light", "sight", "why", "orbit",
                 "compare", "accuracy"],
-    "app": [".", "parts", "cctv", "render", "tools", "study", "report", "views", "visibility", "compare", "accuracy"],
+    "app": [".", "parts", "cctv", "call", "render", "tools", "study", "report", "views", "visibility", "compare",
+            "accuracy"],
 }
 LAYERS = list(ROOMS)
 MOST_FILES = 20  # in a room

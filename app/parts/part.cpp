@@ -233,6 +233,10 @@ void join_parts(const fs::path& folder, const Common& common, const Json& digest
                 "all parts of one call have the same scene, settings and program",
                 "Remove that file to begin anew, or name another place to write");
   }
+  if (merges && there.parts == 0) {
+    throw Error(Blame::Work, folder.string(), "holds a solution alone: no part was run", {},
+                "Make the same call with --part 1/N to N/N");
+  }
   if (merges) {
     part.count = there.parts;
   } else if (there.parts == 0 && part.count > 0) {  // a solve came first

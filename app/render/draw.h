@@ -3,7 +3,7 @@
 // until it is as exact as wanted.
 #pragma once
 
-#include "app/render/render_call.h"
+#include "app/call/render_call.h"
 
 namespace earthshine::app {
 

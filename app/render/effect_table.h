@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "app/call/render_call.h"
 #include "app/command.h"
-#include "app/render/render_call.h"
 #include "studies/cost/cost.h"
 #include "studies/cost/memory.h"
 

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "app/render/render_call.h"
+#include "app/call/render_call.h"
 
 namespace earthshine::app {
 

@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "app/call/render_call.h"
 #include "app/cctv/cctv.h"
 #include "app/console.h"
 #include "app/interrupt.h"
@@ -12,7 +13,6 @@
 #include "app/render/error_json.h"
 #include "app/render/light.h"
 #include "app/render/probe.h"
-#include "app/render/render_call.h"
 #include "base/files/exr_file.h"
 #include "base/files/png_file.h"
 #include "base/ranks/ranks.h"

@@ -7,12 +7,12 @@
 #include <bit>
 #include <memory>
 
+#include "app/call/render_call.h"
 #include "app/cctv/cctv_plan.h"
 #include "app/console.h"
 #include "app/memory.h"
 #include "app/options.h"
 #include "app/render/effect_table.h"
-#include "app/render/render_call.h"
 #include "base/free_memory.h"
 #include "base/parallel.h"
 #include "radiosity/refine.h"

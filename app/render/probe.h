@@ -2,7 +2,7 @@
 // Where the light at a pixel comes from: by source, with all paths, and by last bounce.
 #pragma once
 
-#include "app/render/render_call.h"
+#include "app/call/render_call.h"
 
 namespace earthshine::app {
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "app/call/render_call.h"
 #include "app/cctv/cctv.h"
 #include "app/cctv/range.h"
 #include "app/console.h"
@@ -18,7 +19,6 @@
 #include "app/provenance.h"
 #include "app/render/effect_table.h"
 #include "app/render/light.h"
-#include "app/render/render_call.h"
 #include "app/render/render_parts.h"
 #include "app/render/solution.h"
 #include "base/error.h"

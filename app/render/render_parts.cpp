@@ -159,7 +159,7 @@ void RenderParts::check_complete() const {
                      window.y + window.rows - 1, said.empty() ? "" : " (" + said + ")"),
          piece.part});
   }
-  if (!missing.empty() || part_.count == 0) refuse_to_merge(folder_, missing);
+  if (!missing.empty()) refuse_to_merge(folder_, missing);
 }
 
 raytrace::Frame RenderParts::joined(const scenes::Camera& camera) const {

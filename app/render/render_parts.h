@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "app/call/render_call.h"
 #include "app/parts/part.h"
 #include "app/parts/result_cache.h"
-#include "app/render/render_call.h"
 
 namespace earthshine::app {
 

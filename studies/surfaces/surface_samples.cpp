@@ -2,11 +2,10 @@
 #include "studies/surfaces/surface_samples.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "base/numbers/random.h"
-#include "base/parallel.h"
+#include "base/ranks/ranks.h"
 #include "radiosity/bodies/closed_bodies.h"
 #include "scenes/reflect/bihemispherical_albedo.h"
 #include "scenes/sky/sky_parts.h"
@@ -103,7 +102,9 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
   found.escaped.assign(light.count(), 0.0);
   found.lost.assign(light.count(), 0.0);
   found.residual.resize(light.count());
-  std::atomic<std::uint64_t> all_rays{sight.rays()};
+  found.rays = sight.rays();
+  constexpr std::size_t chunk = 32;  // of patches; told_after is a multiple of it
+  std::vector<std::uint64_t> rays_of((which.size() + chunk - 1) / chunk, 0);
   const auto look_at = [&](std::size_t begin, std::size_t end) {
     PatchLooks looks(scene_, kept_, table, groups, sky_parts);
     std::array<std::vector<scenes::LightSample>, 2> taken;
@@ -208,16 +209,31 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
       }
       sums.finish(mean, residual);
     }
-    all_rays += looks.rays();
+    rays_of[begin / chunk] += looks.rays();
+  };
+  const auto transfer = [&](std::size_t begin, std::size_t end, base::Parcel& parcel) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t patch = which[k];
+      parcel.pass_range(&found.lamps[patch * columns], columns);
+      parcel.pass_range(&found.gathered[patch * columns], columns);
+      parcel.pass_range(&found.sky[patch * sky_parts], sky_parts);
+      parcel.pass(found.escaped[patch]);
+      parcel.pass(found.lost[patch]);
+      parcel.pass(found.residual[patch]);
+    }
+    parcel.pass(rays_of[begin / chunk]);
   };
   for (std::size_t first = 0; first < which.size(); first += told_after) {
     const std::size_t count = std::min(told_after, which.size() - first);
-    base::parallel_chunks(count, 32, [&](std::size_t begin, std::size_t end) {
-      look_at(first + begin, first + end);
-    });
+    base::share_chunks(
+        count, chunk,
+        [&](std::size_t begin, std::size_t end) { look_at(first + begin, first + end); },
+        [&](std::size_t begin, std::size_t end, base::Parcel& parcel) {
+          transfer(first + begin, first + end, parcel);
+        });
     if (progress) progress(first + count, which.size());
   }
-  found.rays = all_rays;
+  for (const std::uint64_t rays : rays_of) found.rays += rays;
   return found;
 }
 

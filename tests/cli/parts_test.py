@@ -84,6 +84,17 @@ class SameBytes(PartCase):
                     self.assertEqual(self.merged(), whole)
                     shutil.rmtree(self.folder / "v.exr.parts")
 
+    def test_a_picture_that_is_steered_is_one_piece(self):
+        # Rounds of samples follow from the error of all of the picture: rows alone would get others.
+        way = ("--error", "0.05", "--camera", "A", "-o", "v.exr")
+        self.done("render", "ball.toml", *way, "-q")
+        whole = (self.folder / "v.exr").read_bytes()
+        for part in (3, 1, 2):
+            self.done("render", "ball.toml", *way, "--part", f"{part}/3", "-q")
+        self.assertEqual(len(list((self.folder / "v.exr.parts").glob("*.exr"))), 1)
+        self.done("merge", "v.exr.parts", "-q")
+        self.assertEqual((self.folder / "v.exr").read_bytes(), whole)
+
     def test_the_report_but_for_what_it_took(self):
         whole = self.json(*CALL)
         for part in (2, 1):
@@ -122,6 +133,7 @@ class SameBytes(PartCase):
 
     def test_one_solution(self):
         self.done(*CALL, "--part", "solve", "-q")
+        self.says(self.refused("merge", "v.exr.parts", code=1), "no part was run", "1/N to N/N")
         (solution,) = (self.folder / "v.exr.parts").glob("solution-*.h5")
         before = solution.stat()
         for part in (1, 2):

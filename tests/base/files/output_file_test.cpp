@@ -132,6 +132,18 @@ TEST(OutputFile, TwoWritersOfOneFileDoNotMeet) {
   EXPECT_EQ(read_bytes(folder / "a.txt"), "first");
 }
 
+TEST(OutputFile, OfTwoThatWriteANewFileTheFirstStays) {
+  const TemporaryFolder folder;
+  OutputFile first(folder / "a.txt"), second(folder / "a.txt");
+  write_bytes(first.temporary(), "first");
+  write_bytes(second.temporary(), "second");
+  EXPECT_TRUE(first.commit_if_new());
+  EXPECT_FALSE(second.commit_if_new());
+  EXPECT_FALSE(write_new_text(folder / "a.txt", "third"));
+  EXPECT_EQ(read_bytes(folder / "a.txt"), "first");
+  EXPECT_EQ(std::filesystem::hard_link_count(folder / "a.txt"), 1U);
+}
+
 TEST(OutputFile, APipeIsRefusedAndDoesNotKeepAnybodyWaiting) {
   const TemporaryFolder folder;
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);

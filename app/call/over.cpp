@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/render/over.h"
+#include "app/call/over.h"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,9 @@
 #include <system_error>
 #include <vector>
 
+#include "app/call/render_call.h"
 #include "app/console.h"
 #include "app/options.h"
-#include "app/render/render_call.h"
 #include "base/error.h"
 #include "base/files/overlay.h"
 #include "raytrace/camera/camera.h"

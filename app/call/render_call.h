@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "app/call/over.h"
 #include "app/command.h"
 #include "app/options.h"
 #include "app/parts/part.h"
-#include "app/render/over.h"
 #include "radiosity/solution.h"
 #include "raytrace/render.h"
 #include "scenes/effects/culling.h"

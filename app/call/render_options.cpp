@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "app/call/render_call.h"
 #include "app/options.h"
-#include "app/render/render_call.h"
 #include "radiosity/bodies/walls.h"
 #include "scenes/effects/quality.h"
 
