@@ -211,7 +211,7 @@ void run(const VisibilityCall& call, const Common& common) {
     text += fmt::format("{}: {}\n", answer["wanted"].get<std::string>(),
                         answer["text"].get<std::string>());
   }
-  for (const std::string& note : black_back_notes(study["results"])) text += note + "\n";
+  for (const std::string& note : black_back_notes((*study)["results"])) text += note + "\n";
   print(text);
 }
 
