@@ -219,6 +219,21 @@ TEST_F(GltfMaterials, LampsAndCamerasComeWhenAskedFor) {
   EXPECT_EQ(camera.columns, 2 * camera.rows);
 }
 
+TEST_F(GltfMaterials, LampsThatCannotBeAreNamed) {
+  const auto unused = [&](const std::string& light) {
+    return read("{}",
+                R"(, "extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [)" +
+                    light + "]}}",
+                R"(, "extensions": {"KHR_lights_punctual": {"light": 0}})", "lights = true\n")
+        .objects.at(0)
+        .unused;
+  };
+  EXPECT_EQ(unused(R"({"type": "point", "intensity": 5})"), "");
+  EXPECT_TRUE(holds(unused(R"({"type": "laser", "intensity": 5})"), {"1 lights of an unknown"}));
+  EXPECT_TRUE(holds(unused(R"({"type": "point", "intensity": -5})"), {"1 intensities out of"}));
+}
+
 TEST_F(GltfMaterials, QuantisedPositionsAreTheNumbersTheyStandFor) {
   const std::string required = R"(, "extensionsUsed": ["KHR_mesh_quantization"],
       "extensionsRequired": ["KHR_mesh_quantization"])";
