@@ -49,12 +49,6 @@ Around polygons_around(const Mesh& mesh, const std::vector<std::uint32_t>& ids) 
 
 }  // namespace
 
-std::vector<Vec3> polygon_normals(const Mesh& mesh) {
-  std::vector<Vec3> normals = area_vectors(mesh);
-  for (Vec3& normal : normals) normal = unit(normal);
-  return normals;
-}
-
 std::vector<Vec3> corner_normals(const Mesh& mesh, const std::vector<std::uint32_t>& ids,
                                  std::optional<double> crease_deg) {
   const std::vector<Vec3> areas = area_vectors(mesh);

@@ -9,9 +9,6 @@
 
 namespace earthshine::scenes {
 
-// Of each polygon, of unit length (Newell); 0 for one without area.
-[[nodiscard]] std::vector<Vec3> polygon_normals(const Mesh& mesh);
-
 // One for each of mesh.indices, of unit length, on its polygon's side: the file's own where it has
 // one; else, with crease_deg, the mean of the normals of the polygons around the corner's place
 // that are turned less than that against its own, by area; else its polygon's. ids: of the

@@ -100,14 +100,14 @@ void guard_toml(std::string_view text, const std::string& file) {
                   fmt::format("a line has at most {} bytes", max_toml_line_bytes), "Break it");
     }
     if (byte == 0) {
-      throw Error(Blame::Input, here, "a NUL byte", "a scene file is plain text");
+      throw Error(Blame::Input, here, "a NUL byte", "a TOML file is plain text");
     }
     std::size_t length = 1;
     if (byte >= 0x80) {
       length = base::utf8_length(text.substr(i));
       if (length == 0) {
         throw Error(Blame::Input, here, fmt::format("the byte 0x{:02x} is not UTF-8", byte),
-                    "a scene file is UTF-8 text", "Save it as UTF-8");
+                    "a TOML file is UTF-8 text", "Save it as UTF-8");
       }
       if (scanner.inside == Inside::Bare) {
         throw Error(

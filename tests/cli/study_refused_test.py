@@ -25,9 +25,11 @@ class Refused(Case):
         self.refused_cleanly("study", "visibility", "bay.toml", "--camera", "Z")
 
     def test_scenes_that_will_not_do(self):
-        self.write("still.toml", BAY.replace('[orbit]\naltitude_km = 425\nattitude = "bay-to-space"\n', "")
-                   .replace("[sun]", "[sun]\ndirection = [0, 0, 1]").replace("[earth]\n", ""))
-        self.says(self.orbit(scene="still.toml"), "[orbit]", "altitude_km")
+        still = (BAY.replace('[orbit]\naltitude_km = 425\nattitude = "bay-to-space"\n', "")
+                 .replace("[sun]", "[sun]\ndirection = [0, 0, 1]"))
+        for earth in ("", "[earth]\ndirection = [0, 0, -1]\naltitude_km = 425\n"):
+            self.write("still.toml", still.replace("[earth]\n", earth))
+            self.says(self.orbit(scene="still.toml"), "still.toml: has no [orbit]", "altitude_km")
         self.write("inside.toml", BAY.replace("position = [0, 0, 6]", "position = [0, 0, 0.3]"))
         self.says(self.orbit(scene="inside.toml"), "box")
         self.write("blind.toml", BAY.split("[[camera]]")[0])
@@ -41,6 +43,9 @@ class Refused(Case):
             self.write("bad.toml", text)
             self.says(self.refused_cleanly("study", "run", "bad.toml"), *words)
         run(STUDY.replace('targets = ["box"]', 'targets = ["bok"]'), '"bok"', '"box"')
+        run(STUDY + "\0", "bad.toml:", "NUL", "a TOML file is plain text")
+        run(STUDY.replace("[180, 0]", "[180, nan]"), "bad.toml:10", "nan", "-360 to 360")
+        run(STUDY.replace("right = 0.5", "right = -0.5"), "bad.toml:18", "-0.5", "from 0")
         run(STUDY.replace("set = { right = 0.5 }", "set = { moon = 0.5 }"), '"moon"', "left")
         run(STUDY.replace("position_deg = 180", "position_deg = 90"), "bad.toml:", "90", "positions")
         run(STUDY.replace('lamps = "right alone"', 'lamps = "none"'), "bad.toml:", '"none"', "right alone")

@@ -66,6 +66,22 @@ TEST(NearLamps, OnlyWhatTheyShineAtIsCut) {
   EXPECT_EQ(cut(floor_under_lamp(1e-3, scenes::LampKind::Spot)).count(), even);  // looks away
 }
 
+// Beside a lamp of 0.2 m the light changes no faster for being nearer: nothing longer than 0.05 m
+// is left, and nothing as short is halved.
+TEST(NearLamps, NothingIsCutForLessThanTheSizeOfTheLamp) {
+  scenes::Scene scene = floor_under_lamp(1e-3, scenes::LampKind::Disk);
+  scene.lamps[0].radius_m = 0.2;
+  scene.lamps[0].axis = Vec3(0.0, 0.0, -1.0);
+  const Patches patches = cut(scene);
+  double shortest = start_edge;
+  for (std::uint32_t i = 0; i < patches.count(); ++i) {
+    const CellSize size = cell_size(patches, i);
+    shortest = std::min({shortest, size.s_m, size.t_m});
+  }
+  EXPECT_LE(shortest, 0.05);
+  EXPECT_GT(shortest, 0.025);
+}
+
 // A square of half edge a is seen from height h over its centre under the solid angle
 // 4 atan(a^2 / (h sqrt(2 a^2 + h^2))): that share of 1000 lm / 4 pi lands.
 TEST(NearLamps, HalfOfTheirLightLands) {

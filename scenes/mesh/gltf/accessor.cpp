@@ -115,7 +115,7 @@ double number_at(const unsigned char* bytes, GltfNumber number, bool normalized)
 }
 
 // The first `components` numbers; the rest are 0.
-Vec3 vector_at(const unsigned char* bytes, const GltfAccessor& accessor,
+Vec3 vector_at(const unsigned char* bytes, const GltfAccessor& accessor, std::string_view attribute,
                const std::filesystem::path& path) {
   Vec3 v(0.0);
   const std::size_t size = number_bytes(accessor.number);
@@ -123,8 +123,8 @@ Vec3 vector_at(const unsigned char* bytes, const GltfAccessor& accessor,
     v[c] =
         number_at(bytes + size * static_cast<std::size_t>(c), accessor.number, accessor.normalized);
     if (std::abs(v[c]) <= largest_coordinate) continue;
-    gltf_fail(path, fmt::format("a vertex at ({}, {}, {})", v.x, v.y, v.z),
-              fmt::format("coordinates are finite and at most {}", largest_coordinate));
+    gltf_fail(path, fmt::format("the {} of a vertex has {}", attribute, v[c]),
+              fmt::format("its numbers are finite and at most {}", largest_coordinate));
   }
   return v;
 }
@@ -173,13 +173,13 @@ std::vector<Vec3> read_gltf_vectors(const GltfModel& model, int number, int comp
         view_elements(model, accessor.view, accessor.offset, accessor.count, size, true, path);
     vectors.reserve(accessor.count);
     for (std::size_t i = 0; i < accessor.count; ++i) {
-      vectors.push_back(vector_at(elements[i], accessor, path));
+      vectors.push_back(vector_at(elements[i], accessor, attribute, path));
     }
   } else {
     vectors.assign(accessor.count, Vec3(0.0));  // zeros by the specification, unless sparse
   }
   each_sparse(model, accessor, size, path, [&](std::size_t i, const unsigned char* bytes) {
-    vectors[i] = vector_at(bytes, accessor, path);
+    vectors[i] = vector_at(bytes, accessor, attribute, path);
   });
   return vectors;
 }

@@ -60,7 +60,11 @@ std::map<std::string, std::size_t> unused_of(const tinygltf::Model& model) {
     }
   }
   for (const tinygltf::Light& light : model.lights) {
-    count(light.type == "directional" ? "directional lights (say [sun])" : lamps_of_file, 1);
+    const bool is_lamp = light.type == "point" || light.type == "spot";
+    count(is_lamp                       ? lamps_of_file
+          : light.type == "directional" ? "directional lights (say [sun])"
+                                        : "lights of an unknown type",
+          1);
   }
   count(cameras_of_file, model.cameras.size());
   count("skins", model.skins.size());

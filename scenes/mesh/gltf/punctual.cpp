@@ -16,7 +16,9 @@ GltfLamp lamp_of(const tinygltf::Light& source, GltfModel& model) {
   Lamp& lamp = made.lamp;
   lamp.name = source.name;
   lamp.axis = {0.0, 0.0, -1.0};
-  lamp.intensity_cd = colour_of(source.color, 1.0) * in_range(source.intensity, strongest_lamp);
+  const double intensity_cd = in_range(source.intensity, strongest_lamp);
+  lamp.intensity_cd = colour_of(source.color, 1.0) * intensity_cd;
+  if (intensity_cd != source.intensity) ++model.unused["intensities out of range, brought there"];
   if (source.type == "spot") {
     lamp.kind = LampKind::Spot;
     const auto full = [](double half_angle) {

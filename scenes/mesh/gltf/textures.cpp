@@ -78,8 +78,10 @@ TextureSlot slot_of(const tinygltf::Value& table, const char* key) {
 }
 
 TextureMap GltfTextures::read(const TextureSlot& slot, bool is_srgb) {
-  if (slot.index < 0 || static_cast<std::size_t>(slot.index) >= model_.textures.size()) return {};
-  const tinygltf::Texture& texture = model_.textures[static_cast<std::size_t>(slot.index)];
+  if (slot.index < 0) return {};
+  const bool exists = static_cast<std::size_t>(slot.index) < model_.textures.size();
+  const tinygltf::Texture texture =
+      exists ? model_.textures[static_cast<std::size_t>(slot.index)] : tinygltf::Texture();
   TextureReading reading;
   reading.is_srgb = is_srgb;
   const auto sampler = static_cast<std::size_t>(texture.sampler);
@@ -90,11 +92,20 @@ TextureMap GltfTextures::read(const TextureSlot& slot, bool is_srgb) {
   }
   const auto number = static_cast<std::size_t>(texture.source);
   const bool has_image = texture.source >= 0 && number < model_.images.size();
-  reading.name = has_image && !model_.images[number].uri.empty()
-                     ? decoded(model_.images[number].uri)
-                     : fmt::format("{}, image {}", path_.string(), texture.source);
+  if (!has_image) {
+    reading.name = fmt::format("{}, texture {}", path_.string(), slot.index);
+  } else if (const std::string& uri = model_.images[number].uri; !uri.empty()) {
+    reading.name = decoded(uri);
+  } else {
+    reading.name = fmt::format("{}, image {}", path_.string(), number);
+  }
   TextureMap map;
   map.texture = shelf_.take(reading, [&] {
+    if (!exists) {
+      throw base::Error(base::Blame::Input, base::Location{path_.string()},
+                        fmt::format("texture {} does not exist", slot.index),
+                        fmt::format("the file has {}", model_.textures.size()));
+    }
     if (!has_image) {
       throw base::Error(base::Blame::Input, base::Location{path_.string()},
                         fmt::format("texture {} has no image of a kind that is read", slot.index),

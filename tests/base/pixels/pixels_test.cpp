@@ -66,6 +66,18 @@ TEST(Pixels, BrokenPicturesAreRefused) {
   for (std::size_t cut = 2; cut < jpeg.size() - 2; cut += 37) {
     EXPECT_NE(refusal(jpeg.substr(0, cut)).find("broken JPEG"), std::string::npos) << cut;
   }
+  // Without the mark of its end alone: libjpeg warns once, and all pixels are there.
+  EXPECT_NE(refusal(jpeg.substr(0, jpeg.size() - 2)).find("cut short"), std::string::npos);
+}
+
+TEST(Pixels, EdgesAreFromOneToTheLargest) {
+  constexpr std::uint64_t most = largest_picture_edge_px;
+  EXPECT_NO_THROW(check_size(most, 1, "a.png"));
+  EXPECT_NO_THROW(check_size(1, most, "a.png"));
+  EXPECT_THROW(check_size(most + 1, 1, "a.png"), Error);
+  EXPECT_THROW(check_size(1, most + 1, "a.png"), Error);
+  EXPECT_THROW(check_size(0, 1, "a.png"), Error);
+  EXPECT_THROW(check_size(1, 0, "a.png"), Error);
 }
 
 }  // namespace

@@ -12,10 +12,10 @@ namespace earthshine::radiosity {
 namespace {
 
 // A square of 2 m in the plane z = 0, u along x and v along y, its left half black and its right
-// half white.
-scenes::Scene textured_square(bool as_parallelogram, int white = 255) {
+// half white. With holes the left half is not there.
+scenes::Scene textured_square(bool as_parallelogram, int white = 255, bool holes = false) {
   tests::SceneBuilder builder;
-  base::Pixels pixels{2, 1, {0, 0, 0, 255}};
+  base::Pixels pixels{2, 1, {0, 0, 0, static_cast<std::uint8_t>(holes ? 0 : 255)}};
   for (const int c : {white, white, white, 255})
     pixels.rgba.push_back(static_cast<std::uint8_t>(c));
   scenes::TextureReading reading;
@@ -24,6 +24,7 @@ scenes::Scene textured_square(bool as_parallelogram, int white = 255) {
   auto maps = std::make_shared<scenes::MaterialMaps>();
   maps->diffuse.texture = std::make_shared<const scenes::Texture>(pixels, reading);
   maps->diffuse.transform = std::make_shared<const scenes::TextureTransform>();
+  if (holes) maps->opacity = maps->diffuse;
   scenes::Material material = tests::grey(0.8);
   material.maps = maps;
   builder.plate(builder.material(material), 2.0, 0.0, true);
@@ -57,6 +58,26 @@ TEST(PatchAlbedo, MaterialHasTheMeanOfItsTextureAndPatchesHaveTheirs) {
     }
     EXPECT_NEAR(sum, 0.4 * 4.0, 0.01);  // what the square reflects in all
   }
+}
+
+// Of patches over both halves: the square is white by half; of its halves along the diagonal from
+// (-1, -1) to (1, 1) the lower one by 3/4, the upper one by 1/4.
+TEST(PatchAlbedo, IsTheMeanByArea) {
+  for (const bool as_parallelogram : {true, false}) {
+    const scenes::Scene scene = textured_square(as_parallelogram);
+    const Patches patches = subdivide(scene, 10.0);
+    for (std::uint32_t i = 0; i < patches.count(); ++i) {
+      const bool lower = patches.facets[patches.facet[i]].triangle == 0;
+      const double white = as_parallelogram ? 0.5 : lower ? 0.75 : 0.25;
+      EXPECT_NEAR(patch_diffuse(scene, patches, i).r, 0.8 * white, 0.8 * 0.01);
+    }
+  }
+}
+
+// Of one patch over both halves: the white one times 0.8. Over all of it that would be 0.4.
+TEST(PatchAlbedo, IsTheMeanOfWhatIsThere) {
+  const scenes::Scene scene = textured_square(true, 255, true);
+  EXPECT_NEAR(patch_diffuse(scene, subdivide(scene, 10.0), 0).r, 0.8, 1e-9);
 }
 
 TEST(PatchAlbedo, PlaceInTheTriangleIsWhereTheParametersAre) {

@@ -11,9 +11,13 @@ namespace {
 Scene with_lamp_at(const std::string& height, const std::string& kind = "point",
                    const std::string& normal = "[0, 0, 1]") {
   const test::SceneFolder folder;
-  const std::string size = kind == "disk" ? "center = [0.3, 0.4, " + height +
-                                                "]\nnormal = " + normal + "\nradius = 0.1\n"
-                                          : "position = [0.3, 0.4, " + height + "]\n";
+  const std::string place = " = [0.3, 0.4, " + height + "]\n";
+  std::string size = "position" + place;
+  if (kind == "disk") size = "center" + place + "normal = " + normal + "\nradius = 0.1\n";
+  if (kind == "rectangle") {  // shines up along edge_u x edge_v, or down
+    const std::string edge_v = normal == "[0, 0, 1]" ? "[0, 0.1, 0]" : "[0, -0.1, 0]";
+    size = "center" + place + "edge_u = [0.1, 0, 0]\nedge_v = " + edge_v + "\n";
+  }
   return folder.read(
       "format = 1\n[[material]]\nname = \"m\"\ndiffuse = 0.5\n[[light]]\nname = \"lamp\"\ntype = "
       "\"" +
@@ -61,13 +65,15 @@ TEST(LiftLamps, NamesWhatStandsBetweenSheets) {
   EXPECT_TRUE(test::holds(scene.warnings.back(), {"\"lamp\"", "between", "move it"}));
 }
 
-// Flush with the floor a disk may shine up; one that shines down is lifted.
+// Flush with the floor a flat lamp may shine up; one that shines down is lifted.
 TEST(LiftLamps, OfAFlatLampOnlyWhereItShines) {
-  for (const std::string height : {"0", "1e-5"}) {
-    const Scene down = with_lamp_at(height, "disk", "[0, 0, -1]");
-    EXPECT_NEAR(down.lamps[0].position.z, 1.6e-4, 1e-12);
-    EXPECT_EQ(down.warnings.size(), 1U);
-    EXPECT_TRUE(with_lamp_at(height, "disk").warnings.empty());
+  for (const std::string kind : {"disk", "rectangle"}) {
+    for (const std::string height : {"0", "1e-5"}) {
+      const Scene down = with_lamp_at(height, kind, "[0, 0, -1]");
+      EXPECT_NEAR(down.lamps[0].position.z, 1.6e-4, 1e-12);
+      EXPECT_EQ(down.warnings.size(), 1U);
+      EXPECT_TRUE(with_lamp_at(height, kind).warnings.empty());
+    }
   }
 }
 

@@ -46,6 +46,8 @@ TEST(MtlMaterials, DissolveLetsThroughAndBendsOnlyWhereTheModelRefracts) {
   EXPECT_EQ(pane.transmit, Rgb(0.75, 0.375, 0.0));
   EXPECT_EQ(pane.ior, 1.0);
   EXPECT_EQ(material_of("Kd 0.4\nTr 0.75\n").transmit, Rgb(0.75));
+  EXPECT_EQ(material_of("Ks 0.4\nd 0.25\nillum 5\n").mirror, Rgb(0.1));
+  EXPECT_EQ(material_of("Ks 0.4\nNs 20\nd 0.25\nillum 3\n").specular, Rgb(0.1 * 11.0));
   for (const int model : {6, 7}) {
     EXPECT_EQ(material_of(fmt::format("d 0\nNi 1.5\nillum {}\n", model)).ior, 1.5);
   }
@@ -67,12 +69,15 @@ TEST(MtlMaterials, TexturesHaveTheirOptionsAndNamesWithBlanks) {
   const test::SceneFolder folder;
   const std::vector<std::uint8_t> grey(12, 188);
   base::write_png(folder.path() / "old wood.png", 2, 2, 3, grey);
+  base::write_png(folder.path() / "edge.png", 2, 1, 1, std::vector<std::uint8_t>{0, 255});
   Mesh mesh;
   const std::filesystem::path folders[] = {folder.path()};
   parse_mtl(
       "newmtl m\nKd 0.5\nmap_Kd -s 2 4 1 -o 0.25 0.5 -clamp on old wood.png\nmap_Ke -mm 0 2 a.png\n"
-      "newmtl n\nmap_Kd old wood.png\nmap_d -imfchan m old wood.png\n",
+      "newmtl n\nmap_Kd old wood.png\nmap_d -imfchan m old wood.png\n"
+      "newmtl clamped\nmap_Kd -clamp on edge.png\nnewmtl repeated\nmap_Kd -clamp off edge.png\n",
       folder.path() / "a.mtl", folders, mesh);
+  ASSERT_EQ(mesh.warnings.size(), 1U);  // none but that of map_Ke: every texture was read
   const TextureMap& map = mesh.materials.at(0).maps->diffuse;
   EXPECT_EQ(map.texture->name(), "old wood.png");
   // v runs up in the file and down here: (u, v) = (0.1, 0.2), w = 0.8, becomes u' = 0.25 + 0.2 and
@@ -82,6 +87,9 @@ TEST(MtlMaterials, TexturesHaveTheirOptionsAndNamesWithBlanks) {
   EXPECT_NEAR(place.y, -0.3, 1e-12);
   EXPECT_TRUE(mesh.materials.at(1).has_holes());
   EXPECT_EQ(mesh.materials.at(1).diffuse, Rgb(1.0));  // a texture without its Kd
+  // Three pictures to the left: the black edge, or half way from the white one to it.
+  EXPECT_NEAR(mesh.materials.at(2).maps->diffuse.texture->at({-3.0, 0.5}).r, 0.0, 1e-9);
+  EXPECT_NEAR(mesh.materials.at(3).maps->diffuse.texture->at({-3.0, 0.5}).r, 0.5, 1e-9);
   EXPECT_EQ(mesh.unused, (std::map<std::string, std::size_t>{{"map_Ke with options", 1}}));
 }
 

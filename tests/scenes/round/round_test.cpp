@@ -10,6 +10,7 @@
 #include "scenes/health/mend.h"
 #include "scenes/mesh/shapes.h"
 #include "scenes/ray_query.h"
+#include "scenes/round/corner_normals.h"
 #include "tests/scenes/scene_text.h"
 
 namespace earthshine::scenes {
@@ -113,6 +114,9 @@ TEST(Round, FlatFacesAndCreasesStayAsTheyAre) {
   const Mesh whole = rounded(box, {60.0, 1.0}, {});
   EXPECT_EQ(whole.vertices.size(), box.vertices.size());
   EXPECT_EQ(whole.indices, box.indices);
+  // Small turns are turns too: 3 degrees an edge in pieces of 1.
+  const Mesh fine = make_cylinder({0, 0, 0}, {0, 0, 1}, 1.0, 120, false);
+  EXPECT_GE(scene_of(fine, "smooth_deg = 30\nround_deg = 1\n").triangles.size(), 3U * 240U);
   // Beyond the right angle of its edges the same box is a pillow.
   EXPECT_GT(scene_of(box, "smooth_deg = 91\nround_deg = 10\n").triangles.size(), 500U);
   expect_closed(scene_of(box, "smooth_deg = 91\nround_deg = 10\n"));
@@ -141,6 +145,19 @@ TEST(Round, TextureCoordinatesAreMixed) {
     // Along the axis nothing is bent.
     EXPECT_NEAR(double(made.uv[made.uv_indices[k]].y), made.vertices[made.indices[k]].z, 0.02);
   }
+}
+
+TEST(CornerNormals, StandOnTheirPolygonsSide) {
+  Mesh mesh;
+  mesh.part_sets.emplace_back();
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};  // its front looks up
+  add_polygon(mesh, std::array<std::uint32_t, 3>{0, 1, 2}, 0, no_index);
+  mesh.normals = {{0, 0, 2}, {0.6F, 0, -0.8F}, {0, 0, 0}};
+  mesh.normal_indices = {0, 1, 2};
+  const std::vector<Vec3> normals = corner_normals(mesh, {0, 1, 2}, std::nullopt);
+  EXPECT_LT(glm::length(normals[0] - Vec3(0, 0, 1)), 1e-6);
+  EXPECT_LT(glm::length(normals[1] - Vec3(-0.6, 0, 0.8)), 1e-6);
+  EXPECT_LT(glm::length(normals[2] - Vec3(0, 0, 1)), 1e-6);  // none of the file's: the polygon's
 }
 
 TEST(Round, PlyAndGltfHaveNormalsToo) {

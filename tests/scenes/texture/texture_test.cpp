@@ -21,6 +21,8 @@ base::Pixels picture(int width, int height, const std::vector<int>& greys, int a
 TEST(Texture, ColoursAreDecodedFromSrgbAndDataIsNot) {
   // IEC 61966-2-1: 128/255 encodes 0.2158605; the mean of what is decoded is not the decoded mean.
   EXPECT_NEAR(Texture(picture(1, 1, {128}), {}).at({0.5, 0.5}).g, 0.2158605, 1e-5);
+  // Below 0.04045 the code is a straight line: 10/255/12.92.
+  EXPECT_NEAR(Texture(picture(1, 1, {10}), {}).at({0.5, 0.5}).g, 0.0030353, 1e-5);
   TextureReading plain;
   plain.is_srgb = false;
   EXPECT_NEAR(Texture(picture(1, 1, {128}), plain).at({0.5, 0.5}).g, 128.0 / 255.0, 1e-5);
@@ -64,6 +66,18 @@ TEST(Texture, PlacesLieBetweenTexelCentresAndWrapAsAsked) {
   EXPECT_NEAR(at(0.501), 1.0, 1e-9);
 }
 
+TEST(Texture, RowsRunDownAndWrapOnTheirOwn) {
+  TextureReading reading;
+  reading.is_srgb = false;
+  reading.wrap_v = Wrap::Clamp;
+  const Texture texture(picture(2, 2, {0, 51, 204, 255}), reading);
+  EXPECT_NEAR(texture.at({0.25, 0.25}).r, 0.0, 1e-9);
+  EXPECT_NEAR(texture.at({0.25, 0.75}).r, 0.8, 1e-9);
+  EXPECT_NEAR(texture.at({0.25, 0.375}).r, 0.2, 1e-9);  // a quarter of the way
+  EXPECT_NEAR(texture.at({0.25, -3.0}).r, 0.0, 1e-9);   // half of both if repeated
+  EXPECT_NEAR(texture.at({0.0, 9.0}).r, 0.9, 1e-9);     // along u it is
+}
+
 TEST(Texture, MasksAreAlphaOrElseGrey) {
   TextureReading mask;
   mask.is_mask = true;
@@ -78,7 +92,14 @@ TEST(Texture, OtherContentIsAnotherDigest) {
   EXPECT_EQ(one, Texture(picture(2, 1, {0, 255}), {}).digest());
   EXPECT_NE(one, Texture(picture(2, 1, {0, 254}), {}).digest());
   EXPECT_NE(one, Texture(picture(1, 2, {0, 255}), {}).digest());
-  EXPECT_NE(one, Texture(picture(2, 1, {0, 255}), crisp).digest());
+  TextureReading plain, mask, clamped, mirrored;
+  plain.is_srgb = false;
+  mask.is_mask = true;
+  clamped.wrap_u = Wrap::Clamp;
+  mirrored.wrap_v = Wrap::Mirror;
+  for (const TextureReading& other : {crisp, plain, mask, clamped, mirrored}) {
+    EXPECT_NE(one, Texture(picture(2, 1, {0, 255}), other).digest());
+  }
 }
 
 }  // namespace

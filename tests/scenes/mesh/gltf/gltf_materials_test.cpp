@@ -97,12 +97,12 @@ TEST_F(GltfMaterials, SpecularGlossinessEmissionAndUnlit) {
   const Scene glossy = read(R"({"emissiveFactor": [1, 0.5, 0], "extensions": {
       "KHR_materials_emissive_strength": {"emissiveStrength": 20},
       "KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [0.4, 0.4, 0.4, 1],
-        "specularFactor": [0.2, 0.2, 0.2], "glossinessFactor": 0.5}}})",
+        "specularFactor": [0.2, 0.2, 0.2], "glossinessFactor": 0.75}}})",
                             R"(, "extensionsUsed": ["KHR_materials_pbrSpecularGlossiness"],
       "extensionsRequired": ["KHR_materials_pbrSpecularGlossiness"])");
   const Material& made = glossy.materials.at(0);
   EXPECT_NEAR(made.diffuse.r, 0.8 * 0.4, 1e-12);
-  EXPECT_NEAR(made.specular.r, 0.2 * phong_of_ggx(0.25).peak, 1e-12);
+  EXPECT_NEAR(made.specular.r, 0.2 * phong_of_ggx(0.0625).peak, 1e-12);
   EXPECT_NEAR(made.emit.r, 20.0 * base::pi, 1e-9);
   EXPECT_NEAR(made.emit.g, 10.0 * base::pi, 1e-9);
   EXPECT_EQ(glossy.objects.at(0).unused, "");
@@ -132,8 +132,7 @@ TEST_F(GltfMaterials, GlassPassesItsColourAndBendsOnlyWhereItIsThick) {
 }
 
 TEST_F(GltfMaterials, TexturesAreTurnedCounterClockwiseAndMetalHasTheirMean) {
-  base::write_png(folder_.path() / "a b.png", 2, 1, 3,
-                  std::vector<std::uint8_t>{255, 255, 255, 0, 0, 0});
+  base::write_png(folder_.path() / "a b.png", 2, 2, 1, std::vector<std::uint8_t>{255, 0, 0, 255});
   const std::string more =
       R"(, "images": [{"uri": "a%20b.png"}], "textures": [{"source": 0, "sampler": 0}],
       "samplers": [{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}])";
@@ -142,17 +141,50 @@ TEST_F(GltfMaterials, TexturesAreTurnedCounterClockwiseAndMetalHasTheirMean) {
       {"offset": [0.5, 0.25], "rotation": 1.57079632679489662, "scale": [2, 4]}}})";
   const Scene plain =
       read(R"({"pbrMetallicRoughness": {"metallicFactor": 0, )" + turned + "}}", more);
+  ASSERT_TRUE(plain.materials.at(0).maps);
   const TextureMap& map = plain.materials.at(0).maps->diffuse;
   // (u, v) = (0.1, 0.2) scaled is (0.2, 0.8); a quarter turn counter-clockwise, v running down,
   // takes (1, 0) to (0, -1) and (0, 1) to (1, 0): (0.8, -0.2); shifted (1.3, 0.05).
   const glm::dvec2 place = map.transform->apply({0.1, 0.2});
   EXPECT_NEAR(place.x, 1.3, 1e-12);
   EXPECT_NEAR(place.y, 0.05, 1e-12);
-  EXPECT_NEAR(map.texture->at({-3.0, 0.5}).r, 1.0, 1e-9);  // clamped
+  // Repeated or mirrored, u = -3.25 would be 0.75: black; clamped it is 0. Mirrored, v = 1.75 is
+  // 0.25; repeated or clamped it would be 0.75 or 1: black.
+  EXPECT_NEAR(map.texture->at({-3.25, 0.25}).r, 1.0, 1e-9);
+  EXPECT_NEAR(map.texture->at({0.25, 1.75}).r, 1.0, 1e-9);
+  EXPECT_NEAR(map.texture->at({0.499, 0.25}).r, 1.0, 1e-9);  // nearest texel
   EXPECT_TRUE(holds(plain.warnings.at(0), {"no texture coordinates"}));
   const Scene metal =
       read(R"({"pbrMetallicRoughness": {"roughnessFactor": 0, )" + turned + "}}", more);
   EXPECT_NEAR(metal.materials.at(0).mirror.g, 0.5, 1e-4);
+  // Means of 0.5 halve both factors: a^2 = 0.25^2; half metal, half a dielectric whose light is
+  // diffuse but for F0 = 0.04.
+  const Scene half =
+      read(R"({"pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 0}}})", more);
+  const Material& made = half.materials.at(0);
+  EXPECT_NEAR(made.shininess, phong_of_ggx(0.25).shininess, 1e-3);
+  EXPECT_NEAR(made.diffuse.r, 0.5 * 0.96, 1e-4);
+  EXPECT_NEAR(made.specular.r, (0.5 + 0.5 * 0.04) * phong_of_ggx(0.25).peak, 1e-3);
+}
+
+TEST_F(GltfMaterials, TexturesThatAreNotThereAreNamed) {
+  const std::string textured = R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 7}}})";
+  const Scene scene = read(textured, R"(, "textures": [{}])");
+  ASSERT_EQ(scene.warnings.size(), 1U);
+  EXPECT_TRUE(holds(scene.warnings[0], {"a.gltf", "texture 7 does not exist", "the file has 1"}));
+}
+
+TEST_F(GltfMaterials, NumbersThatAreNoneAreRefusedByTheirName) {
+  const float nan = std::nanf("");
+  std::string bytes = triangle_buffer();
+  std::memcpy(bytes.data() + 4, &nan, sizeof nan);
+  folder_.put("a.bin", bytes);
+  try {
+    static_cast<void>(read("{}"));
+    ADD_FAILURE() << "was not refused";
+  } catch (const base::Error& error) {
+    EXPECT_TRUE(holds(error.what(), {"a.gltf", "POSITION of a vertex has nan", "finite"}));
+  }
 }
 
 TEST_F(GltfMaterials, LampsAndCamerasComeWhenAskedFor) {
@@ -185,6 +217,21 @@ TEST_F(GltfMaterials, LampsAndCamerasComeWhenAskedFor) {
   EXPECT_NEAR(glm::length(camera.up - Vec3(0, 0, 1)), 0.0, 1e-12);
   EXPECT_NEAR(camera.fov_deg, 180.0 / base::pi, 1e-9);
   EXPECT_EQ(camera.columns, 2 * camera.rows);
+}
+
+TEST_F(GltfMaterials, LampsThatCannotBeAreNamed) {
+  const auto unused = [&](const std::string& light) {
+    return read("{}",
+                R"(, "extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [)" +
+                    light + "]}}",
+                R"(, "extensions": {"KHR_lights_punctual": {"light": 0}})", "lights = true\n")
+        .objects.at(0)
+        .unused;
+  };
+  EXPECT_EQ(unused(R"({"type": "point", "intensity": 5})"), "");
+  EXPECT_TRUE(holds(unused(R"({"type": "laser", "intensity": 5})"), {"1 lights of an unknown"}));
+  EXPECT_TRUE(holds(unused(R"({"type": "point", "intensity": -5})"), {"1 intensities out of"}));
 }
 
 TEST_F(GltfMaterials, QuantisedPositionsAreTheNumbersTheyStandFor) {
