@@ -27,8 +27,12 @@ double half_size(const scenes::Lamp& lamp) {
 
 class LampCuts {
  public:
-  explicit LampCuts(const scenes::Scene& scene) : lamps_(scene.lamps) {
-    for (scenes::Lamp& lamp : lamps_) lamp.intensity_cd = lamp.exitance = Rgb(1.0);
+  explicit LampCuts(const scenes::Scene& scene) {
+    for (scenes::Lamp lamp : scene.lamps) {
+      if (base::max_component(lamp.intensity_cd + lamp.exitance) <= 0.0) continue;
+      lamp.intensity_cd = lamp.exitance = Rgb(1.0);
+      lamps_.push_back(lamp);
+    }
   }
 
   [[nodiscard]] Cut cut(const Patches& patches, std::uint32_t patch) const {

@@ -172,15 +172,31 @@ void LightSampler::add(Light light, int copies) {
   }
 }
 
-bool LightSampler::below_horizon(std::size_t index, const Vec3& normal) const {
+bool LightSampler::may_reach(std::size_t index, const Vec3& point, const Vec3& normal) const {
   const Light& light = of(index);
-  if (light.kind != Kind::Sun && light.kind != Kind::SunPart) return false;
+  const scenes::FlatMirror* mirror = mirror_of(index);
+  if (mirror != nullptr && !shows(*mirror, light, point)) return false;
+  if (light.kind != Kind::Sun && light.kind != Kind::SunPart) return true;
   const scenes::Sun& sun =
       light.kind == Kind::Sun ? *scene_.sun : scene_.sky_parts->suns[light.index];
   constexpr double rounding = 1e-9;
-  const scenes::FlatMirror* mirror = mirror_of(index);
   const Vec3 facing = mirror != nullptr ? mirror->turned(normal) : normal;
-  return glm::dot(sun.direction, facing) < -base::radians(sun.angular_radius_deg) - rounding;
+  return glm::dot(sun.direction, facing) >= -base::radians(sun.angular_radius_deg) - rounding;
+}
+
+// Lamps without extent are seen by one ray, which meets the mirror or not.
+bool LightSampler::shows(const scenes::FlatMirror& mirror, const Light& light,
+                         const Vec3& point) const {
+  const double height = mirror.height_m(point);
+  if (height <= 0.0) return false;
+  if (light.kind != Kind::Lamp) return true;
+  const scenes::Lamp& lamp = scene_.lamps[light.index];
+  if (lamp.kind == scenes::LampKind::Rectangle || lamp.kind == scenes::LampKind::Disk) return true;
+  const double lamp_height = mirror.height_m(lamp.position);
+  if (lamp_height <= 0.0) return false;
+  const Vec3 image = mirror.image(point);
+  const Vec3 met = image + height / (height + lamp_height) * (lamp.position - image);
+  return glm::length(met - mirror.centre) <= mirror.radius_m * (1.0 + 1e-6);
 }
 
 scenes::LightSample LightSampler::sample(std::size_t index, const Vec3& point, double u,

@@ -48,9 +48,9 @@ class LightSampler {
   [[nodiscard]] std::size_t count() const { return lights_.size() * (1 + mirrors_.size()); }
   [[nodiscard]] std::size_t group(std::size_t light) const { return of(light).group; }
   [[nodiscard]] scenes::LightKind kind(std::size_t light) const;
-  // Whether the whole of it is below the horizon of a surface that faces `normal`: known without a
-  // sample for Suns alone.
-  [[nodiscard]] bool below_horizon(std::size_t light, const Vec3& normal) const;
+  // False where no sample can reach a surface that faces `normal`, as far as it is known without
+  // one: a Sun below the horizon, a lamp whose image is not seen in the mirror from there.
+  [[nodiscard]] bool may_reach(std::size_t light, const Vec3& point, const Vec3& normal) const;
   [[nodiscard]] scenes::LightSample sample(std::size_t light, const Vec3& point, double u,
                                            double v) const;
 
@@ -77,6 +77,8 @@ class LightSampler {
                        std::vector<scenes::LightChoice>& chosen) const;
   [[nodiscard]] scenes::LightSample sample_straight(const Light& light, const Vec3& point, double u,
                                                     double v) const;
+  [[nodiscard]] bool shows(const scenes::FlatMirror& mirror, const Light& light,
+                           const Vec3& point) const;
   void add(Light light, int copies);
   void gather_clusters(bool per_group);
   [[nodiscard]] scenes::LightTree tree_of(const std::vector<std::size_t>& lamps) const;

@@ -151,6 +151,7 @@ void PathWalker::light_directly(const Surface& surface) {
   const base::Key key(static_cast<std::uint64_t>(rng_->next() * 0x1p53), base::Stream::LightSample,
                       0);
   for (std::size_t k = 0; k < world_.lights.count(); ++k) {
+    if (!world_.lights.may_reach(k, surface.position, surface.normal)) continue;
     const double u = base::uniform(key.with(k), 0);
     const double v = base::uniform(key.with(k), 1);
     const scenes::LightSample light = world_.lights.sample(k, surface.position, u, v);

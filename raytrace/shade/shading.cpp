@@ -196,7 +196,7 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
        base::max_component(surface.material.specular), surface.material.shininess},
       double(choice[0]) + 0x1p-24 * double(choice[1]), chosen_);
   for (const auto& [k, chance_weight] : chosen_) {
-    if (shared_.lights.below_horizon(k, surface.normal)) continue;
+    if (!shared_.lights.may_reach(k, surface.position, surface.normal)) continue;
     const auto u = light_point(k);
     const scenes::LightSample light = shared_.lights.sample(k, surface.position, u[0], u[1]);
     const double cosine = glm::dot(light.direction, surface.normal);

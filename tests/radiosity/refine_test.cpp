@@ -158,7 +158,7 @@ TEST(Refine, AFaintLampCountsLikeTheSun) {
   builder.scene = scene;
   builder.plate(0, 1.0, -1.0, false);
   builder.scene.lamps.push_back(lamp_at({0.2, 0.2, -1.1}, 1e-4));
-  const Solution refined = tests::Prepared(builder.scene).solve(refining(0.25, 400));
+  const Solution refined = tests::Prepared(builder.scene).solve(refining(0.25, 1600));
   const Patches& patches = refined.patches;
   EXPECT_GT(patches.facets[0].leaves, 50U);
   EXPECT_GT(patches.facets.back().leaves, 50U);

@@ -143,7 +143,7 @@ TEST(SurfaceError, CountsBothSidesOfASheet) {
 
 TEST(SurfaceError, IsMadeOutByAFinerCutWhereThereIsNoCoarser) {
   LitPlate plate;
-  plate.scene.lamps.at(0).position.z = 2.0;  // too far to have the plate cut
+  plate.scene.lamps.at(0).position.z = 5.0;  // too far to have the plate cut
   const tests::Prepared prepared(plate.scene);
   const radiosity::Solution solution = prepared.solve(even(1.0));
   ASSERT_EQ(solution.patches.count(), 1U);
