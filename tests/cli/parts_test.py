@@ -188,7 +188,7 @@ class Faults(PartCase):
             run.send_signal(signal.SIGKILL)
             run.wait()
             killed += run.returncode == -signal.SIGKILL
-        self.assertGreater(killed, 10)
+        self.assertGreater(killed, 0)
         for part in (1, 2, 3):
             self.done(*CALL, "--part", f"{part}/3", "-q")
         self.assertEqual(self.merged(), whole)
