@@ -21,6 +21,8 @@
 namespace earthshine::app {
 namespace {
 
+constexpr double network_bytes_per_s = 12.5e9;  // assumed: 100 Gbit/s (docs/scaling.md)
+
 std::vector<const scenes::Camera*> planned_cameras(const RenderCall& call,
                                                    const scenes::Scene& scene) {
   if (!call.cameras.empty()) return wanted_cameras(call.cameras, scene);
@@ -73,8 +75,37 @@ void add_memory(Json& report, const LoadedScene& loaded, const RenderCall& call,
   }
 }
 
+// Of the solution or the largest picture.
+double most_mib(const Json& report) {
+  double most = report["memory"]["total_mib"].get<double>();
+  for (const Json& image : report["images"]) {
+    most = std::max(most, image["memory"]["total_mib"].get<double>());
+  }
+  return most;
+}
+
+// What `ranks` processes of earthshine-mpi take, each of which holds all of the matrix.
+void add_ranks(Json& report, const studies::Bill& bill, int ranks) {
+  double pixels = 0.0;
+  for (const Json& image : report["images"]) {
+    pixels += image["resolution"][0].get<double>() * image["resolution"][1].get<double>();
+  }
+  const studies::RanksCost cost =
+      studies::ranks_cost(bill, report["right_hand_sides"].get<std::size_t>(), pixels);
+  report["ranks"] = {{"count", ranks},
+                     {"threads_each", base::available_threads()},
+                     {"memory_mib_each", most_mib(report)},
+                     {"memory_mib_all", most_mib(report) * ranks},
+                     {"seconds", studies::seconds_on_ranks(cost, ranks, network_bytes_per_s)},
+                     {"shared_seconds", cost.shared_s},
+                     {"unshared_seconds", cost.alone_s},
+                     {"exchanged_bytes", ranks > 1 ? cost.bytes : 0.0},
+                     {"network_bytes_per_second", network_bytes_per_s}};
+}
+
 void add_seconds(Json& report, const LoadedScene& loaded, const RenderCall& call,
-                 const Common& common, const scenes::Asked& asked, const scenes::RayQuery& query) {
+                 const Common& common, const scenes::Asked& asked, const scenes::RayQuery& query,
+                 int ranks) {
   const Expectation expected = expect(loaded, call, common, asked, query);
   add_expectation(report["effects"], expected);
   const studies::Bill& bill = expected.pilot.bill;
@@ -90,9 +121,10 @@ void add_seconds(Json& report, const LoadedScene& loaded, const RenderCall& call
                         {"cpu_seconds", studies::total_seconds(bill) * base::available_threads()},
                         {"pilot_seconds", expected.pilot.seconds},
                         {"pilot_cpu_seconds", expected.pilot.cpu_seconds}};
+  if (ranks > 0) add_ranks(report, bill, ranks);
 }
 
-Json report_of(const RenderCall& call, const Common& common) {
+Json report_of(const RenderCall& call, const Common& common, int ranks) {
   LoadedScene loaded = load(call.scene, common.quiet);
   const scenes::Asked asked = asked_of(call, planned_cameras(call, loaded.scene));
   const std::vector<scenes::Culling> culled = decide_effects(loaded, call, asked);
@@ -121,7 +153,7 @@ Json report_of(const RenderCall& call, const Common& common) {
                                solves ? static_cast<std::uint64_t>(knobs.gather_rays) : 0);
   const scenes::RayQuery query(loaded.scene);
   add_memory(report, loaded, call, common, asked, query);
-  add_seconds(report, loaded, call, common, asked, query);
+  add_seconds(report, loaded, call, common, asked, query, ranks);
   return report;
 }
 
@@ -130,13 +162,20 @@ std::string too_much_text(const Json& report) {
   const auto free_bytes = base::free_memory_bytes();
   if (!free_bytes) return "";
   const double free_mib = static_cast<double>(*free_bytes) / 1048576.0;
-  double most = report["memory"]["total_mib"].get<double>();
-  for (const Json& image : report["images"]) {
-    most = std::max(most, image["memory"]["total_mib"].get<double>());
-  }
-  if (most <= free_mib) return "";
+  if (most_mib(report) <= free_mib) return "";
   return fmt::format("that may not fit: {:.0f} MiB are {}; render looks closer and refuses\n",
                      free_mib, base::memory_is_limited() ? "allowed by --max-memory" : "free");
+}
+
+std::string ranks_text(const Json& ranks) {
+  return fmt::format(
+      "on {} rank(s), each with {} such core(s) of its own: at best {}, of them {} that no number "
+      "of "
+      "ranks shortens; {:.0f} MiB in each rank, which holds all of the matrix, {:.0f} MiB "
+      "together\n",
+      ranks["count"].get<int>(), ranks["threads_each"].get<int>(),
+      duration(ranks["seconds"].get<double>()), duration(ranks["unshared_seconds"].get<double>()),
+      ranks["memory_mib_each"].get<double>(), ranks["memory_mib_all"].get<double>());
 }
 
 std::string text_of(const Json& report) {
@@ -180,6 +219,7 @@ std::string text_of(const Json& report) {
     const auto stages = image["cctv_stages"].get<std::vector<std::string>>();
     if (!stages.empty()) text += fmt::format("  cctv: {}\n", fmt::join(stages, ", "));
   }
+  if (report.contains("ranks")) text += ranks_text(report["ranks"]);
   return text;
 }
 
@@ -194,10 +234,13 @@ Command add_plan(CLI::App& program) {
   parser->add_flag_callback(
       "--cctv", [call] { call->cctv = "asked"; },
       "As if the pictures on the CCTV monitors were asked for");
+  const auto ranks = std::make_shared<int>(0);
+  parser->add_option("--ranks", *ranks, "What so many ranks of earthshine-mpi take, each of them")
+      ->check(CLI::Range(1, 65536));
   parser->add_flag("--json", call->json, "JSON on standard output");
-  return {parser, [call](const Common& common) {
+  return {parser, [call, ranks](const Common& common) {
             check_aovs(*call);
-            const Json report = report_of(*call, common);
+            const Json report = report_of(*call, common, *ranks);
             print(call->json ? dump(report) : text_of(report));
           }};
 }

@@ -40,6 +40,7 @@ radiosity::SolveReport scaled(const radiosity::SolveReport& small, const SolveSc
   report.form_factor_rays = times(small.form_factor_rays, more * scale.rays);
   report.refinement_rays = times(small.refinement_rays, rounds);
   report.nonzeros = static_cast<std::size_t>(entries);
+  report.iterations = small.iterations;  // as reflectances have it, not patches
   for (const auto& [name, seconds] : small.seconds) {
     double by = more;
     if (name == "form factors") by = more * scale.rays;

@@ -63,4 +63,23 @@ double total_seconds(const Bill& bill) {
   return sum;
 }
 
+RanksCost ranks_cost(const Bill& bill, std::size_t columns, double pixels) {
+  RanksCost cost;
+  for (const auto& [name, seconds] : bill.solve.seconds) {
+    // Cutting into patches is each rank's own; the looks of refinement are shared.
+    const bool alone = name == "balance" || name == "ledger" ||
+                       (name == "patches" && bill.solve.refinement_rays == 0);
+    (alone ? cost.alone_s : cost.shared_s) += seconds;
+  }
+  for (const raytrace::RenderReport& report : bill.pictures) cost.shared_s += report.seconds;
+  const double exchanged = static_cast<double>(bill.solve.patches) * static_cast<double>(columns);
+  cost.bytes = 8.0 * static_cast<double>(bill.solve.nonzeros) +
+               8.0 * exchanged * bill.solve.iterations + 24.0 * pixels;
+  return cost;
+}
+
+double seconds_on_ranks(const RanksCost& cost, int ranks, double bytes_per_s) {
+  return cost.alone_s + cost.shared_s / ranks + (ranks > 1 ? cost.bytes / bytes_per_s : 0.0);
+}
+
 }  // namespace earthshine::studies

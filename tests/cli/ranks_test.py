@@ -2,9 +2,11 @@
 """Ranks of Open MPI write what one process writes. Skipped where earthshine-mpi was not built or mpirun is not there."""
 import os
 import pathlib
+import random
 import shutil
 import subprocess
 import sys
+import time
 import unittest
 
 import program
@@ -95,21 +97,54 @@ class Ranks(Case):
                      ("render", "ball.toml", "-o", "v.exr", "--time-limit", "3")):
             self.assertIn("earthshine: ", self.ranks(2, *call, code=2).stderr)
 
-    def test_a_rank_that_dies_ends_the_run(self):
-        run = subprocess.Popen(["mpirun", "-n", "3", MPI, "render", "ball.toml", "--camera", "A", "-o", "v.exr", "--indirect", "paths",
-                                "--set", "quality.gather_rays=65536", "-j", "1"], cwd=self.folder, env=ENVIRONMENT,
-                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    def started(self, count, *arguments):
+        """mpirun, and the ranks as soon as all are there."""
+        run = subprocess.Popen(["mpirun", "-n", str(count), MPI, *arguments, "-j", "1"], cwd=self.folder, env=ENVIRONMENT,
+                               stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         self.addCleanup(run.stderr.close)
         self.addCleanup(run.kill)
         children = pathlib.Path(f"/proc/{run.pid}/task/{run.pid}/children")
         ranks = []
-        while len(ranks) < 3:
+        while len(ranks) < count:
             ranks = children.read_text().split()
+        return run, ranks
+
+    def test_a_rank_that_dies_ends_the_run(self):
+        run, ranks = self.started(3, "render", "ball.toml", "--camera", "A", "-o", "v.exr", "--indirect", "paths",
+                                  "--set", "quality.gather_rays=65536")
         os.kill(int(ranks[1]), 9)
         _, errors = run.communicate(timeout=60)
         self.assertNotEqual(run.returncode, 0)
         self.assertIn("signal 9", errors)
         self.assertFalse((self.folder / "v.exr").exists())
+
+    def test_the_next_run_ends_what_a_kill_left(self):
+        """Any rank, killed at ten moments of a run's time: the study is there whole or not at all, and the next run's is the
+        one that nobody disturbed."""
+        call = ("study", "orbit", "bay.toml", "--positions", "36", "--wanted", "box>=0.5", "-q", "-o")
+        begun = time.monotonic()
+        self.ranks(3, *call, "w", "-j", 1)
+        whole, seconds = self.without_times(self.study("w")), time.monotonic() - begun
+        chance = random.Random(20)
+        killed = 0
+        for kill in range(10):
+            folder, rank, wait = f"o{kill}", chance.randrange(3), seconds * (kill + chance.random()) / 10
+            with self.subTest(rank=rank, seconds=wait):
+                run, ranks = self.started(3, *call, folder)
+                time.sleep(wait)
+                try:
+                    os.kill(int(ranks[rank]), 9)
+                except ProcessLookupError:  # the run was faster than the first
+                    pass
+                run.communicate(timeout=60)
+                killed += run.returncode != 0
+                if (self.folder / folder / "study.json").exists():
+                    self.assertEqual(self.without_times(self.study(folder)), whole)
+                subprocess.run([MPI, *call, folder], cwd=self.folder, stdout=subprocess.DEVNULL, check=True)
+                self.assertEqual(self.without_times(self.study(folder)), whole)
+                for path in (self.folder / "w" / "pictures").iterdir():
+                    self.assertEqual((self.folder / folder / "pictures" / path.name).read_bytes(), path.read_bytes())
+        self.assertGreater(killed, 0)
 
 
 if __name__ == "__main__":
