@@ -109,8 +109,8 @@ void add_window_options(CLI::App& parser, RenderCall& call) {
   };
   pixel_option("--only-pixel", false, "Replays one pixel and prints all of it; -o is not needed");
   pixel_option("--probe", true,
-               "Names where the light of one pixel comes from, by source and by last bounce; -o is "
-               "not needed")
+               "Draws one pixel alone and names where its light comes from, by source and by last "
+               "bounce; -o is not needed")
       ->excludes("--only-pixel");
   parser
       .add_flag("--no-error", call.no_error,
