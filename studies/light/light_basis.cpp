@@ -17,8 +17,7 @@ using scenes::no_group;
 
 constexpr double same_direction = 1e-9;  // rad
 constexpr int cell_side = 12;            // directions across a cell for its mean radiance
-constexpr double no_lamp = 1e-30;  // of a lamp that is off: its patches stay as they are with it
-constexpr double no_sun = 1e-12;   // factor of a Sun that is off while the Earth shines by it
+constexpr double no_sun = 1e-12;         // factor of a Sun that is off while the Earth shines by it
 // What a smooth radiance may reach between two of them over what it reaches there: 1 / 12^2 of a
 // parabola's range over the cell, and a half more for what is none.
 constexpr double between_directions = 1.01;
@@ -144,7 +143,7 @@ scenes::Scene LightBasis::scene_at(std::size_t place, std::size_t setting) const
     scene.earth->radiance *= earth;
   }
   for (scenes::Lamp& lamp : scene.lamps) {
-    const Rgb times = glm::max(factor(settings_[setting], lamp.name, lamp.group), Rgb(no_lamp));
+    const Rgb times = factor(settings_[setting], lamp.name, lamp.group);
     lamp.intensity_cd *= times;
     lamp.exitance *= times;
   }

@@ -37,6 +37,15 @@ void expect_equal_pictures(const base::Image& a, const base::Image& b, std::size
   }
 }
 
+// Lamps without any light cut no patches: a trace of it keeps those of the scene with all lamps.
+scenes::Scene with_a_trace(scenes::Scene scene) {
+  for (scenes::Lamp& lamp : scene.lamps) {
+    lamp.intensity_cd = glm::max(lamp.intensity_cd, Rgb(1e-30));
+    lamp.exitance = glm::max(lamp.exitance, Rgb(1e-30));
+  }
+  return scene;
+}
+
 void expect_exact(const LightBasis& basis, const scenes::Camera& camera) {
   const raytrace::Frame layers = tests::basis_picture(basis, camera);
   const std::size_t groups = basis.groups().count();
@@ -45,7 +54,7 @@ void expect_exact(const LightBasis& basis, const scenes::Camera& camera) {
       SCOPED_TRACE(std::to_string(place) + ", " + basis.settings()[setting].name);
       expect_equal_pictures(
           weighted_sum(layers.image, basis.groups().names, basis.weights(place, setting)),
-          tests::same_rays(basis.scene_at(place, setting), camera).image, groups);
+          tests::same_rays(with_a_trace(basis.scene_at(place, setting)), camera).image, groups);
     }
   }
 }
