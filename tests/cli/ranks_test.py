@@ -115,7 +115,8 @@ class Ranks(Case):
         os.kill(int(ranks[1]), 9)
         _, errors = run.communicate(timeout=60)
         self.assertNotEqual(run.returncode, 0)
-        self.assertIn("signal 9", errors)
+        # Open MPI has other words for a process that dies before it has joined.
+        self.assertRegex(errors, "signal 9|non-zero exit code")
         self.assertFalse((self.folder / "v.exr").exists())
 
     def test_the_next_run_ends_what_a_kill_left(self):
