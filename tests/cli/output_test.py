@@ -87,9 +87,13 @@ class Output(program.Case):
                 "none", "--set", "quality.gather_rays=1", "--aov", "albedo,normal,position,depth,range"]
         left = []
         while not left:
+            (self.folder / "a.exr").unlink(missing_ok=True)
             with subprocess.Popen(call, cwd=self.folder, stderr=subprocess.DEVNULL) as run:
                 def parts():
-                    return [path for path in self.folder.glob(".*.part") if path.stat().st_size > 0]
+                    try:
+                        return [path for path in self.folder.glob(".*.part") if path.stat().st_size > 0]
+                    except FileNotFoundError:  # it has just got its name
+                        return []
                 while run.poll() is None and not parts():
                     time.sleep(0.002)
                 run.kill()
