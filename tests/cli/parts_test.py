@@ -177,8 +177,9 @@ class Faults(PartCase):
         self.assertEqual(self.merged(), self.whole("--set", "camera.A.fov_deg=30 "))
 
     def test_kills_at_random_moments(self):
-        begin = time.monotonic()
         whole = self.whole()
+        begin = time.monotonic()
+        self.done(*CALL, "--part", "1/3", "-q")
         took = time.monotonic() - begin
         chance = random.Random(1)
         killed = 0
@@ -188,7 +189,9 @@ class Faults(PartCase):
             run.send_signal(signal.SIGKILL)
             run.wait()
             killed += run.returncode == -signal.SIGKILL
-        self.assertGreater(killed, 0)
+            if run.returncode == 0:  # a share that is there would be passed over in no time
+                shutil.rmtree(self.folder / "v.exr.parts")
+        self.assertGreater(killed, 10)
         for part in (1, 2, 3):
             self.done(*CALL, "--part", f"{part}/3", "-q")
         self.assertEqual(self.merged(), whole)
