@@ -68,10 +68,10 @@ class Looks {
 class ShadowQueue {
  public:
   ShadowQueue(const scenes::RayQuery& query, Looks& looks) : query_(query), looks_(looks) {}
-  void add(const Vec3& origin, const scenes::LightSample& sample, double value, std::size_t point,
-           std::size_t set, std::size_t group) {
+  void add(const Vec3& origin, const scenes::LightSample& sample, const Rgb& value,
+           std::size_t point, std::size_t set, std::size_t group) {
     const double reach = sample.distance_m * (1.0 - 1e-5) - 2.0 * query_.surface_offset_m();
-    if (value <= 0.0 || reach <= 0.0) return;
+    if (base::luminance(value) <= 0.0 || reach <= 0.0) return;
     query_.set(packet_, count_, origin, sample.direction, reach);
     mirror_[count_] = sample.mirror;
     value_[count_] = value;
@@ -84,7 +84,7 @@ class ShadowQueue {
     query_.light_shares(packet_, mirror_.data(), count_, shares.data());
     for (std::size_t k = 0; k < count_; ++k) {
       const auto [point, set, group] = target_[k];
-      looks_.at(point, set, group) += value_[k] * base::luminance(shares[k]);
+      looks_.at(point, set, group) += base::luminance(value_[k] * shares[k]);
     }
     rays_ += count_;
     count_ = 0;
@@ -98,7 +98,7 @@ class ShadowQueue {
   std::size_t count_ = 0;
   std::uint64_t rays_ = 0;
   std::array<std::uint32_t, RayPacket::width> mirror_{};
-  std::array<double, RayPacket::width> value_{};
+  std::array<Rgb, RayPacket::width> value_{};
   std::array<std::array<std::size_t, 3>, RayPacket::width> target_{};
 };
 
@@ -182,10 +182,10 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
             take_samples(source, query_.ways().mirrors(), at, normal, u[0], u[1], taken);
             for (const scenes::LightSample& sample : taken) {
               const double cosine = glm::dot(sample.direction, normal);
-              const double y = base::luminance(rho * sample.normal_illuminance_lx);
-              queue.add(at + lift, sample,
-                        cosine * y * light.scale[source.group] / static_cast<double>(samples),
-                        point, set, source.group);
+              const double weight =
+                  cosine * light.scale[source.group] / static_cast<double>(samples);
+              queue.add(at + lift, sample, weight * rho * sample.normal_illuminance_lx, point, set,
+                        source.group);
             }
           }
         }

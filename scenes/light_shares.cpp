@@ -5,8 +5,6 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr int most_panes = 256;  // that a ray goes through: beyond it, nothing is left
-
 // Goes on along one ray from its first hit, toward the source.
 class Way {
  public:

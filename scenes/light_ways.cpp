@@ -98,8 +98,7 @@ LightWays::LightWays(const Scene& scene) {
     faces_.push_back({triangle_normal(scene, t),
                       is_straight_glass(material) ? material.transmit : Rgb(0.0),
                       material.mirror,
-                      {no_mirror, no_mirror},
-                      material.two_sided});
+                      {no_mirror, no_mirror}});
   }
   if (!faces_.empty()) find_mirrors(scene);
 }
@@ -131,10 +130,10 @@ void LightWays::find_mirrors(const Scene& scene) {
   }
 }
 
-Rgb LightWays::kept(std::uint32_t triangle) const {
+Rgb LightWays::kept(std::uint32_t triangle, bool front) const {
   const Face* at = face(triangle);
   if (at == nullptr) return Rgb(1.0);
-  const Rgb thrown = at->mirror[0] != no_mirror ? at->reflected : Rgb(0.0);
+  const Rgb thrown = at->mirror[front ? 0 : 1] != no_mirror ? at->reflected : Rgb(0.0);
   return glm::max(Rgb(0.0), Rgb(1.0) - at->through - thrown);
 }
 

@@ -12,6 +12,7 @@
 namespace earthshine::scenes {
 
 inline constexpr std::uint32_t no_mirror = 0xFFFFFFFFU;
+inline constexpr int most_panes = 256;  // that a ray goes through: beyond it, nothing is left
 
 // One side of all that reflects in one plane. A source is seen in it where its image would be, as
 // far as the mirror reaches.
@@ -46,16 +47,15 @@ class LightWays {
     Rgb through{0.0};    // share that goes straight on
     Rgb reflected{0.0};  // } share that a flat mirror throws, and its number
     std::uint32_t mirror[2] = {no_mirror, no_mirror};  // } by front, back
-    bool two_sided = false;
   };
   [[nodiscard]] const Face* face(std::uint32_t triangle) const {
     if (faces_.empty() || number_[triangle] == no_mirror) return nullptr;
     return &faces_[number_[triangle]];
   }
 
-  // Of light straight from a source, the share that ends at a triangle: neither let through nor
-  // thrown on.
-  [[nodiscard]] Rgb kept(std::uint32_t triangle) const;
+  // Of light straight from a source, the share that ends at a side of a triangle: neither let
+  // through nor thrown on.
+  [[nodiscard]] Rgb kept(std::uint32_t triangle, bool front) const;
 
  private:
   void find_mirrors(const Scene& scene);

@@ -90,7 +90,15 @@ RayQuery::RayQuery(const Scene& source) : embree_(std::make_unique<Embree>()), w
   }
   // Measured while Embree 3.13 builds at its highest quality; a third of it stays.
   constexpr std::uint64_t bytes_per_triangle = 450;
-  base::check_room(own_triangles * bytes_per_triangle, source.path.string());
+  std::vector<bool> is_original(source.objects.size(), false);  // built once more, for instances
+  for (const Object& object : source.objects) {
+    if (object.instance) is_original[object.instance->object] = true;
+  }
+  std::uint64_t built = own_triangles;
+  for (std::size_t o = 0; o < is_original.size(); ++o) {
+    if (is_original[o]) built += source.objects[o].triangle_count;
+  }
+  base::check_room(built * bytes_per_triangle, source.path.string());
   if (!source.triangles.empty()) {
     Vec3 low = source.vertices.front(), high = low;
     for (const Vec3& p : source.vertices) {

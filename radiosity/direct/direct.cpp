@@ -22,8 +22,10 @@ struct Landing {
   [[nodiscard]] Rgb flux(std::size_t patch, const Rgb& lx) const {
     return area_m2[patch] * (kept.empty() ? lx : kept[patch] * lx);
   }
-  [[nodiscard]] double share(std::size_t patch) const {
-    return kept.empty() ? 1.0 : base::luminance(kept[patch]);
+  // Of the luminance of such light.
+  [[nodiscard]] double share(std::size_t patch, const Rgb& lx) const {
+    const double all = base::luminance(lx);
+    return kept.empty() || all <= 0.0 ? 1.0 : base::luminance(kept[patch] * lx) / all;
   }
 };
 
@@ -42,7 +44,7 @@ double landing_scale(const Sampled& sampled, const Landing& landing, double land
                      const SourceFlux& flux) {
   double landed_variance = 0.0;
   for (std::size_t i = 0; i < landing.area_m2.size(); ++i) {
-    const double area = landing.area_m2[i], share = landing.share(i);
+    const double area = landing.area_m2[i], share = landing.share(i, sampled.illuminance_lx[i]);
     landed_variance += area * area * sampled.variance[i] * share * share;
   }
   const double all = base::luminance(flux.emitted_lm);
@@ -78,45 +80,48 @@ struct Shares {
 
 // Follows a ray from a source as shadow rays come the other way: straight on through glass, off
 // flat mirrors once. What comes to a second one counts as met by a black back, as what ends within
-// a body of glass does: no patch is lit by it.
+// a body of glass does: no patch is lit by it. `weight` is what the ray carries in each
+// channel, of a source of many colours that of their mean.
 class SourceRays {
  public:
   SourceRays(const scenes::Scene& scene, const scenes::RayQuery& query)
       : scene_(scene), query_(query) {}
 
-  void follow(const Vec3& origin, const Vec3& direction, double weight, int panes, bool thrown,
+  void follow(const Vec3& origin, const Vec3& direction, const Rgb& weight, int panes, bool thrown,
               Shares& part) const {
     const scenes::Hit hit = query_.closest(origin, direction);
     if (hit.missed()) {
-      part.escaped += weight;
+      part.escaped += base::luminance(weight);
       return;
     }
     const scenes::LightWays::Face* face = query_.ways().face(hit.triangle);
     const bool is_back =
         !hit.front && !scene_.materials[scene_.triangles[hit.triangle].material].two_sided;
-    const double through = face != nullptr ? base::luminance(face->through) : 0.0;
+    const Rgb through = face != nullptr ? weight * face->through : Rgb(0.0);
     const std::uint32_t mirror =
         face != nullptr ? face->mirror[hit.front ? 0 : 1] : scenes::no_mirror;
-    const double reflected = mirror != scenes::no_mirror ? base::luminance(face->reflected) : 0.0;
-    if (is_back) part.black += weight * (1.0 - through - reflected);
-    if (face == nullptr || panes == most_panes) return;
+    const Rgb reflected = mirror != scenes::no_mirror ? weight * face->reflected : Rgb(0.0);
+    if (is_back) part.black += base::luminance(weight - through - reflected);
+    if (face == nullptr) return;
+    if (panes == scenes::most_panes) {
+      part.black += base::luminance(through + reflected);
+      return;
+    }
     const Vec3 at = scenes::hit_position(scene_, hit);
     const Vec3 lift = (hit.front ? 1.0 : -1.0) * query_.surface_offset_m() * face->normal;
-    if (through > 0.0) {
-      follow(at - lift, direction, weight * through, panes + 1, thrown, part);
+    if (base::max_component(through) > 0.0) {
+      follow(at - lift, direction, through, panes + 1, thrown, part);
     }
     if (mirror == scenes::no_mirror) return;
     if (thrown) {
-      part.black += weight * reflected;
+      part.black += base::luminance(reflected);
     } else {
-      follow(at + lift, query_.ways().mirrors()[mirror].turned(direction), weight * reflected,
-             panes + 1, true, part);
+      follow(at + lift, query_.ways().mirrors()[mirror].turned(direction), reflected, panes + 1,
+             true, part);
     }
   }
 
  private:
-  static constexpr int most_panes = 64;
-
   const scenes::Scene& scene_;
   const scenes::RayQuery& query_;
 };
@@ -125,6 +130,9 @@ class SourceRays {
 void find_shares(const scenes::Scene& scene, const scenes::RayQuery& query, const Emit& emit,
                  std::uint64_t key, int rays, std::uint64_t seed, SourceFlux& flux) {
   const SourceRays source_rays(scene, query);
+  const double emitted = base::luminance(flux.emitted_lm);
+  if (emitted <= 0.0) return;
+  const Rgb colour = flux.emitted_lm / emitted;
   const base::SobolOwen4 sobol(base::Key(seed, base::Stream::LampFlux, key));
   const Shares shares = base::ordered_sum(
       static_cast<std::size_t>(rays), 4096, Shares{}, [&](std::size_t begin, std::size_t end) {
@@ -135,7 +143,7 @@ void find_shares(const scenes::Scene& scene, const scenes::RayQuery& query, cons
           if (ray.weight <= 0.0) continue;
           part.all += ray.weight;
           const Vec3 origin = ray.origin + ray.direction * query.surface_offset_m();
-          source_rays.follow(origin, ray.direction, ray.weight, 0, false, part);
+          source_rays.follow(origin, ray.direction, ray.weight * colour, 0, false, part);
         }
         return part;
       });

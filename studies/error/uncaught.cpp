@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "base/numbers/random.h"
 #include "base/parallel.h"
@@ -70,7 +69,7 @@ class Finder {
         found.glass.possible |= sent.by_glass > 0.0;
       }
     }
-    if (senders.sides.empty()) return found;
+    if (senders.sides.empty() || !any_asked()) return {};
     double falls = 0.0;
     for (const Falling& at : falling_on(all, 0)) falls += at.straight * all.area_m2() / points;
     const std::vector<Falling> on_senders = falling_on(senders, points);
@@ -164,6 +163,13 @@ class Finder {
       default:
         return false;
     }
+  }
+
+  [[nodiscard]] bool any_asked() const {
+    for (std::size_t light = 0; light < lights_.count(); ++light) {
+      if (is_asked(light)) return true;
+    }
+    return false;
   }
 
   void fill(Uncaught& found, const std::map<std::uint32_t, double>& flux, double falls) const {

@@ -162,12 +162,15 @@ class ErrorBudget(program.Case):
         wide = between + ", and what N lights in place of a wide source change"
         self.write("plain.toml", PLAIN)
         self.write("mirror.toml", MIRROR)
+        self.write("wide.toml", MIRROR.replace('type = "point"\nposition = [1.5, 0, 2]\nintensity = [900, 800, 700]', (
+            'type = "rectangle"\ncenter = [1.5, 0, 2]\nedge_u = [0, 0.2, 0]\nedge_v = [0.2, 0, 0]\nexitance = 3e4')))
         self.write("glass.toml", GLASS)
         self.write("sheet.toml", GLASS.replace("ior = 1.5", "ior = 1.5\ntwo_sided = true"))
         for scene, how, missing in (
                 ("plain", "radiosity", []), ("ball", "radiosity", []), ("mirror", "radiosity", [thrown]),
                 ("glass", "radiosity", [through]), ("sheet", "radiosity", []), ("plain", "paths", []), ("ball", "paths", []),
                 ("mirror", "paths", [traced]),
+                ("wide", "paths", []),  # every source there has a size, which paths meet
                 ("plain", "distributed", [wide]), ("plain", "none", [between]), ("mirror", "none", [between, thrown])):
             found = self.render("--indirect", how, scene=scene + ".toml")["error"]["not_captured"]
             self.assertEqual(len(found), len(missing), (scene, how, found))

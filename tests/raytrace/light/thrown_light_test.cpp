@@ -120,6 +120,22 @@ TEST(ThrownLight, GlassKeepsColoursApart) {
   EXPECT_NEAR(lx.b / lx.g, 4.0 / 9.0, 1e-9);
 }
 
+// Of a blue lamp blue glass and a blue mirror hide nothing, whatever their luminance says: the flux
+// that they pass on is what the samples found, and the scale that makes them agree is 1.
+TEST(ThrownLight, FluxIsFollowedInItsColour) {
+  const Rgb blue(0.0, 0.0, 1.0);
+  for (const bool of_glass : {true, false}) {
+    Floor scene;
+    scenes::Material material = tests::grey(0.0);
+    (of_glass ? material.transmit : material.mirror) = blue;
+    material.two_sided = of_glass;
+    scene.plate(scene.material(material), 8.0, of_glass ? 1.0 : 3.0, of_glass);
+    scene.scene.lamps.push_back(point_lamp({0, 0, 2}, 100.0));
+    scene.scene.lamps[0].intensity_cd *= blue;
+    EXPECT_NEAR(find(scene.scene).scale, 1.0, 1e-3) << of_glass;
+  }
+}
+
 TEST(ThrownLight, TwoPanesMultiplyAndAPlateOfTwoFacesIsTwo) {
   for (const bool sheets : {true, false}) {
     Floor scene;
@@ -256,6 +272,20 @@ TEST(ThrownLight, SunComesThroughAWindow) {
   sun.illuminance_lx = Rgb(20000.0);
   scene.scene.sun = sun;
   expect_all(find(scene.scene), 0.85 * 20000.0 * sun.direction.z, 1e-3);
+}
+
+// A side in the plane of a large mirror that looks the other way is thrown by no shadow ray, and
+// keeps its light.
+TEST(ThrownLight, EachSideOfASheetKeepsItsOwn) {
+  tests::SceneBuilder scene;
+  scenes::Material sheet = mirror(0.6);
+  sheet.two_sided = true;
+  scene.plate(scene.material(mirror(0.6)), 10.0, 0.0, true);
+  scene.quad(scene.material(sheet), {20, 0, 0}, {21, 0, 0}, {21, 1, 0}, {20, 1, 0});
+  const scenes::LightWays ways(scene.scene);
+  ASSERT_EQ(ways.mirrors().size(), 1U);  // the sheet's back has 1 of 102 m^2
+  EXPECT_NEAR(ways.kept(2, true).g, 0.4, 1e-12);
+  EXPECT_EQ(ways.kept(2, false).g, 1.0);
 }
 
 TEST(ThrownLight, CrowdOfLampsIsThrownToo) {
