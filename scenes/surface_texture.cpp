@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/numbers/even_points.h"
 #include "scenes/mask.h"
 #include "scenes/texture/texture.h"
 
@@ -13,11 +14,6 @@ namespace {
 
 // Of a triangle for its mean, along each side: sixteen samples to a texel, within these bounds.
 constexpr int fewest_samples = 4, most_samples = 64;
-
-// Point k of the R2 lattice (Roberts 2018): even over the square, in step with no pattern.
-glm::dvec2 lattice_point(int k) {
-  return glm::fract(0.5 + (k + 1.0) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
-}
 
 glm::dvec2 uv_at(const Scene& scene, const SurfacePlace& place) {
   const auto& vertex = scene.triangles[place.triangle].vertex;
@@ -69,7 +65,7 @@ void add_triangle(const Scene& scene, std::uint32_t triangle, const MaterialMaps
   SurfacePlace place{triangle, 0.0, 0.0, std::sqrt(area) / n};
   const double share = area / (double(n) * n);
   for (int k = 0; k < n * n; ++k) {
-    const glm::dvec2 square = lattice_point(k);
+    const glm::dvec2 square = base::even_point(static_cast<std::size_t>(k));
     const double root = std::sqrt(square.x);  // even over the triangle
     place.u = root * (1.0 - square.y);
     place.v = root * square.y;

@@ -26,7 +26,8 @@ struct RenderCall {
   std::optional<Size> size;
   std::optional<raytrace::Window> crop;  // one pixel with only_pixel
   bool only_pixel = false;
-  bool probe = false;         // with only_pixel: where its light comes from
+  bool probe = false;  // with only_pixel: where its light comes from
+  [[nodiscard]] const char* pixel_option() const { return probe ? "--probe" : "--only-pixel"; }
   double time_limit_s = 0.0;  // of the whole command; 0: none
   bool no_error = false;      // none is stated
   raytrace::Indirect indirect = raytrace::Indirect::Radiosity;

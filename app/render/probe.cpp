@@ -46,18 +46,25 @@ Json probe_json(const Studio& studio, const scenes::Camera& camera,
       static_cast<std::uint32_t>(frame.window.x);
   const std::vector<studies::SeenPoint> points = studies::seen_points(
       scene, studio.query, camera, options.columns, options.rows, {&pixel, 1}, 1);
-  double rest = 1.0;
+  double rest = 1.0, others = 0.0;
   if (luminance > 0.0 && !points.empty()) {
     for (const studies::LightShare& share :
          studies::light_shares(scene, studio.loaded.groups, studio.query, studio.light.solution,
                                points, luminance, probe_rays)) {
+      rest -= share.share;
+      if (share.share < studies::least_light_share) {
+        others += share.share;
+        continue;
+      }
       from.push_back(
           {{"from", share.from}, {"reflected", share.reflected}, {"share", share.share}});
-      rest -= share.share;
     }
   }
-  return {
-      {"light_by", by}, {"light_from", from}, {"left_over", luminance > 0.0 ? Json(rest) : Json()}};
+  const bool is_lit = luminance > 0.0;
+  return {{"light_by", by},
+          {"light_from", from},
+          {"others", is_lit ? Json(others) : Json()},
+          {"left_over", is_lit ? Json(rest) : Json()}};
 }
 
 std::string probe_text(const Json& probe) {
@@ -75,6 +82,8 @@ std::string probe_text(const Json& probe) {
                         share_text(entry["share"].get<double>()));
   }
   if (!probe["left_over"].is_null()) {
+    text += fmt::format("  {:<24} {:>8}\n", "others, below 1 % each",
+                        share_text(probe["others"].get<double>()));
     text += fmt::format("  {:<24} {:>8}\n", "highlights, mirrors, rest",
                         share_text(probe["left_over"].get<double>()));
   }

@@ -88,7 +88,7 @@ void check_call(const RenderCall& call) {
 void check_part(const RenderCall& call) {
   if (!call.part.in_parts()) return;
   const std::array<std::pair<const char*, bool>, 6> not_in_parts = {
-      {{"--only-pixel", call.only_pixel},
+      {{call.pixel_option(), call.only_pixel},
        {"--time-limit", call.time_limit_s > 0.0},
        {"--report", !call.report.empty()},
        {"--timings", call.timings},
@@ -121,8 +121,8 @@ std::vector<Wanted> wanted_pictures(const RenderCall& call, const scenes::Scene&
     note("note: no --camera, taking the first, \"" + scene.cameras.front().name + "\"");
   }
   if ((call.only_pixel || call.over.asked()) && cameras.size() > 1) {
-    throw Error(Blame::Input, call.only_pixel ? "--only-pixel" : "--over", "belongs to one camera",
-                {}, "Name one --camera");
+    throw Error(Blame::Input, call.only_pixel ? call.pixel_option() : "--over",
+                "belongs to one camera", {}, "Name one --camera");
   }
   std::vector<Wanted> wanted;
   std::vector<std::string> outputs;

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "base/numbers/even_points.h"
 #include "radiosity/direct/explicit_emitters.h"
 #include "scenes/light/thrown_light.h"
 #include "scenes/sky/sky.h"
@@ -13,10 +14,6 @@
 
 namespace earthshine::raytrace {
 namespace {
-
-// R2 lattice (Roberts 2018): point k of any number, spread evenly over the unit square.
-constexpr double r2_u = 0.7548776662466927;
-constexpr double r2_v = 0.5698402909980532;
 
 // Up to this many lamps all get shadow rays: choosing among them costs more than it saves.
 constexpr std::size_t few_lamps = 32;
@@ -166,8 +163,8 @@ void LightSampler::add(Light light, int copies) {
   for (int k = 0; k < copies; ++k) {
     light.u = (k + 0.5) / copies;
     light.v = light.kind == Kind::Earth ? fraction(k * 0.6180339887498949)  // Fibonacci cap
-                                        : fraction(0.5 + k * r2_v);
-    if (light.kind != Kind::Earth) light.u = fraction(0.5 + k * r2_u);
+                                        : fraction(0.5 + k * base::r2_v);
+    if (light.kind != Kind::Earth) light.u = fraction(0.5 + k * base::r2_u);
     lights_.push_back(light);
   }
 }

@@ -14,22 +14,17 @@ namespace {
 // Of each target's points: their number is most_source_points at most.
 constexpr int rays_per_point = 8;
 
-std::vector<LightShare> shares_of(const scenes::Scene& scene, const BasisView::Target& target,
+std::vector<LightShare> shares_of(const LightBasis& basis, const BasisView::Target& target,
                                   const std::vector<SourceOnTarget>& sources,
                                   const GroupWeights& weights, double luminance) {
-  std::vector<LightShare> shares;
-  if (!(luminance > 0.0) || !target.by_way) return shares;
-  for (const SourceOnTarget& source : sources) {
-    shares.push_back({source.group, false, source.straight / luminance});
-  }
-  for (const ByWayOf& way : *target.by_way) {
-    double light = 0.0;
-    for (std::size_t g = 0; g < way.by_group.size(); ++g) {
-      light += base::luminance(weights.weight[g] * way.by_group[g]);
-    }
-    shares.push_back({scene.objects[way.object].name, true, light / luminance});
-  }
-  return sorted_shares(std::move(shares));
+  if (!(luminance > 0.0) || !target.last_bounce) return {};
+  LightShares shares(basis.scene(), basis.groups());
+  for (const SourceOnTarget& source : sources) shares.add(source.group, false, source.straight);
+  shares.add_own(target.points, weights.weight);
+  shares.add(*target.last_bounce, weights.weight);
+  std::vector<LightShare> all = shares.of(luminance);
+  std::erase_if(all, [](const LightShare& share) { return share.share < least_light_share; });
+  return all;
 }
 
 bool wants_reasons(const Sight& sight, const ConditionOptions& options) {
@@ -52,16 +47,15 @@ BasisView make_basis_view(const LightBasis& basis, const scenes::RayQuery& query
   ObjectMap map = object_map(view.layers);
   std::vector<TargetView> targets = find_targets(scene, camera, map);
   view.plan = plan_sight(camera, std::move(map), std::move(targets));
+  std::optional<LastBounces> bounces;
+  if (solution != nullptr) bounces.emplace(scene, basis.groups(), query, *solution);
   for (const SightTarget& target : view.plan.targets) {
     BasisView::Target seen;
     seen.points = seen_points(scene, query, camera, view.layers.width, view.layers.height,
                               target.seen, most_source_points);
     seen.by_group = mean_by_group(view.layers, basis.groups().names, target.view.measured);
     reach_of_lamps(basis, query, seen);
-    if (solution != nullptr) {
-      seen.by_way = light_by_way_of(scene, query, *solution, basis.groups().count(), seen.points,
-                                    rays_per_point);
-    }
+    if (bounces) seen.last_bounce = bounces->of(seen.points, rays_per_point);
     view.targets.push_back(std::move(seen));
   }
   return view;
@@ -76,7 +70,6 @@ Outcome judge_condition(const LightBasis& basis, const scenes::RayQuery& query,
   outcome.radiance = weighted_sum(view.layers, basis.groups().names, weights);
   outcome.sight = measure_sight(view.plan, outcome.radiance, cctv, options.why.sight);
   const SkyPlace& sky = basis.places()[place];
-  const scenes::Scene& scene = basis.scene();
   outcome.sun_share = sun_share_of(sky);
   std::map<std::string, base::Image> lit_by;  // the picture with a source on that is off
   for (std::size_t t = 0; t < view.targets.size(); ++t) {
@@ -87,7 +80,7 @@ Outcome judge_condition(const LightBasis& basis, const scenes::RayQuery& query,
     found.sources = sources.sources;
     if (!target.points.empty()) found.lit_fraction = sources.lit_fraction;
     found.basis_error = basis_error(weights, target.by_group);
-    found.light_from = shares_of(scene, target, found.sources, weights,
+    found.light_from = shares_of(basis, target, found.sources, weights,
                                  outcome.sight.targets[t].luminance.value_or(0.0));
     if (wants_reasons(outcome.sight.targets[t], options)) {
       for (SourceOnTarget& source : found.sources) {

@@ -29,7 +29,7 @@ struct BasisView {
     std::vector<SeenPoint> points;
     std::vector<Rgb> by_group;
     std::vector<std::optional<Reach>> lamps, emitters;
-    std::optional<std::vector<ByWayOf>> by_way;  // of the points; none without a solution
+    std::optional<LastBounce> last_bounce;  // of the points; none without a solution
   };
   std::vector<Target> targets;
   std::vector<bool> straight_emitters;  // per material: radiosity::emitter_is_explicit

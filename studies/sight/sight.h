@@ -21,12 +21,11 @@ namespace earthshine::studies {
 
 struct SightOptions {
   double eye_integration_s = 0.2;     // over which the viewer's eye averages frames
-  double frame_s = 1.0 / 30.0;        // of the CCTV
+  double frame_s = 1.0 / 30.0;        // of the CCTV: two fields
   double even_chance_snr = 2.8;       // SNR_D that is seen in half of all cases (Rosell, Willson)
   double seen_probability = 0.5;      // from which on a verdict says so
   double doubtful_probability = 0.1;  // below: not seen
   double hidden_fraction = 0.1;       // visible fraction below which a target is hidden
-  double field_s = 1.0 / 60.0;        // of the CCTV: what its lag goes by
   double most_black_back = 0.5;       // share of its seen pixels from which on a target is doubtful
   CyclesNeeded cycles;
   EyeOptions eye;

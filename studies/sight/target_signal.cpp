@@ -153,6 +153,7 @@ void compare(TargetSignal& out, const TargetResels& at, const ShownMoments& mome
   const double delta = difference(s.mean, *s.surround);
   const double own = mean_of(moments.variance, at.measured),
                both = 0.5 * (own + mean_of(moments.variance, at.surround));
+  s.snr = over(s.mean, own);
   const MeanNoise noise = mean_noise(line, moments, at.seen, at.surround, frames);
   s.cnr = over(delta, both);
   // CNR sqrt(N n / sum r), where N n / sum r is how much less the mean scatters than a resel.
@@ -160,7 +161,7 @@ void compare(TargetSignal& out, const TargetResels& at, const ShownMoments& mome
   s.rose = over(delta, mean_variance);
   const double difference_variance = noise.variance_a + noise.variance_b - 2.0 * noise.covariance;
   s.snr_d = over(delta, difference_variance);
-  s.dprime = ideal_observer(moments, at.seen, *s.surround, noise.variance_a);
+  s.dprime = left * ideal_observer(moments, at.seen, *s.surround, noise.variance_a);
 
   // Parts are large, so that the phosphor's spread is nothing to their means.
   const double of_parts = at.parts.empty() ? 1.0 : left;
@@ -190,7 +191,8 @@ Trail trail_of(const SightPlan& plan, const TargetView& view, const CctvSignal& 
                const SightOptions& options) {
   const double along = view.motion_px_s[0] * line.columns / plan.map.columns,
                across = view.motion_px_s[1] * line.rows / plan.map.rows;
-  return {line.lag_per_field, std::hypot(along, across) * options.field_s,
+  return {line.lag_per_field,
+          0.5 * std::hypot(along, across) * options.frame_s,  // lag goes by fields
           std::atan2(across, along)};
 }
 

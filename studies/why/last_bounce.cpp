@@ -2,56 +2,103 @@
 #include "studies/why/last_bounce.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
+#include "base/numbers/even_points.h"
 #include "base/units.h"
 #include "radiosity/direct/explicit_emitters.h"
-#include "raytrace/incoming/radiance_table.h"
+#include "scenes/light/lamp_light.h"
 #include "scenes/sky/sky.h"
+#include "scenes/surface_texture.h"
 
 namespace earthshine::studies {
 namespace {
 
-constexpr double least_share = 0.01;
-
-double fraction(double x) { return x - std::floor(x); }
-
-// Even over the hemisphere about z by the cosine: the plastic number's additive sequence.
-Vec3 cosine_direction(std::size_t k) {
-  const double u = fraction(0.5 + 0.7548776662466927 * static_cast<double>(k + 1)),
-               v = fraction(0.5 + 0.5698402909980532 * static_cast<double>(k + 1));
-  const double r = std::sqrt(u), phi = 2.0 * base::pi * v;
-  return {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0, 1.0 - u))};
+Rgb weight_of(std::span<const Rgb> weights, std::size_t group) {
+  return weights.empty() ? Rgb(1.0) : weights[group];
 }
 
 }  // namespace
 
-std::vector<ByWayOf> light_by_way_of(const scenes::Scene& scene, const scenes::RayQuery& query,
-                                     const radiosity::Solution& solution, std::size_t groups,
-                                     std::span<const SeenPoint> points, int rays) {
-  if (solution.patches.count() == 0 || points.empty()) return {};
-  const raytrace::LeakMask nothing_parted;
-  const raytrace::RadianceTable table(solution, solution.radiosity, true, nothing_parted);
+LastBounces::LastBounces(const scenes::Scene& scene, const scenes::LightGroups& groups,
+                         const scenes::RayQuery& query, const radiosity::Solution& solution)
+    : scene_(scene),
+      groups_(groups),
+      query_(query),
+      table_(solution, solution.radiosity, true, nothing_parted_),
+      is_explicit_(radiosity::emitter_is_explicit(scene)) {}
+
+LastBounce LastBounces::of(std::span<const SeenPoint> points, int rays) const {
+  LastBounce light;
+  if (table_.empty() || points.empty()) return light;
+  light.straight.assign(groups_.count(), Rgb(0.0));
   std::map<std::uint32_t, std::vector<Rgb>> found;
   const double all = static_cast<double>(points.size()) * rays;
   for (std::size_t p = 0; p < points.size(); ++p) {
     const SeenPoint& point = points[p];
     const base::Frame3 frame = base::frame_around(point.normal);
-    const Vec3 origin = point.position + query.surface_offset_m() * point.normal;
-    for (int k = 0; k < rays; ++k) {
-      const Vec3 local =
-          cosine_direction(p * static_cast<std::size_t>(rays) + static_cast<std::size_t>(k));
-      const scenes::Hit hit = query.closest(origin, frame.to_world(local));
+    const Vec3 origin = point.position + query_.surface_offset_m() * point.normal;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(rays); ++k) {
+      const glm::dvec2 place = base::even_point(p * static_cast<std::size_t>(rays) + k);
+      const scenes::Hit hit =
+          query_.closest(origin, scenes::cosine_direction(frame, place.x, place.y));
       if (hit.missed()) continue;
-      std::vector<Rgb>& by_group = found[scene.triangles[hit.triangle].object];
-      by_group.resize(groups, Rgb(0.0));
-      table.add(hit, point.diffuse / all, by_group);
+      const scenes::Triangle& triangle = scene_.triangles[hit.triangle];
+      std::vector<Rgb>& by_group = found[triangle.object];
+      by_group.resize(groups_.count(), Rgb(0.0));
+      table_.add(hit, point.diffuse / all, by_group);
+      const scenes::Material& material = scene_.materials[triangle.material];
+      const std::size_t group = groups_.material[triangle.material];
+      const bool shines = hit.front || material.two_sided;
+      if (group == scenes::no_group || is_explicit_[triangle.material] || !shines) continue;
+      const Rgb own = point.diffuse / all * scenes::emit_at(scene_, material, hit) / base::pi;
+      by_group[group] -= own;
+      light.straight[group] += own;
     }
   }
-  std::vector<ByWayOf> list;
-  for (auto& [object, by_group] : found) list.push_back({object, std::move(by_group)});
-  return list;
+  for (auto& [object, by_group] : found) light.by_way.push_back({object, std::move(by_group)});
+  return light;
+}
+
+void LightShares::add(std::string_view from, bool reflected, double luminance) {
+  const auto found = std::find_if(list_.begin(), list_.end(), [&](const LightShare& s) {
+    return s.from == from && s.reflected == reflected;
+  });
+  (found == list_.end() ? list_.emplace_back(LightShare{std::string(from), reflected, 0.0})
+                        : *found)
+      .share += luminance;
+}
+
+void LightShares::add(const LastBounce& light, std::span<const Rgb> weight) {
+  for (std::size_t g = 0; g < light.straight.size(); ++g) {
+    add(groups_.names[g], false, base::luminance(weight_of(weight, g) * light.straight[g]));
+  }
+  for (const LastBounce::ByWayOf& way : light.by_way) {
+    double luminance = 0.0;
+    for (std::size_t g = 0; g < way.by_group.size(); ++g) {
+      luminance += base::luminance(weight_of(weight, g) * way.by_group[g]);
+    }
+    add(scene_.objects[way.object].name, true, luminance);
+  }
+}
+
+void LightShares::add_own(std::span<const SeenPoint> points, std::span<const Rgb> weight) {
+  double luminance = 0.0;
+  for (const SeenPoint& point : points) {
+    const std::size_t group = groups_.material[point.material];
+    if (group == scenes::no_group) continue;
+    luminance += base::luminance(weight_of(weight, group) * point.emitted);
+  }
+  add(own_light, false, luminance / static_cast<double>(std::max<std::size_t>(1, points.size())));
+}
+
+std::vector<LightShare> LightShares::of(double luminance) const {
+  std::vector<LightShare> shares = list_;
+  for (LightShare& share : shares) share.share /= luminance;
+  std::erase_if(shares, [](const LightShare& s) { return s.share == 0.0; });
+  std::stable_sort(shares.begin(), shares.end(),
+                   [](const LightShare& a, const LightShare& b) { return a.share > b.share; });
+  return shares;
 }
 
 std::vector<LightShare> light_shares(const scenes::Scene& scene, const scenes::LightGroups& groups,
@@ -59,56 +106,33 @@ std::vector<LightShare> light_shares(const scenes::Scene& scene, const scenes::L
                                      const radiosity::Solution& solution,
                                      std::span<const SeenPoint> points, double luminance,
                                      int rays) {
-  std::vector<LightShare> shares;
-  const auto add = [&](const std::string& from, bool reflected, double light) {
-    const auto found = std::find_if(shares.begin(), shares.end(), [&](const LightShare& s) {
-      return s.from == from && s.reflected == reflected;
-    });
-    LightShare& share =
-        found == shares.end() ? shares.emplace_back(LightShare{from, reflected, 0.0}) : *found;
-    share.share += light / luminance;
-  };
+  LightShares shares(scene, groups);
   constexpr int samples = 64;  // of each lamp
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
     if (groups.lamp[k] == scenes::no_group) continue;
-    add(groups.names[groups.lamp[k]], false,
-        reach_of_lamp(scene, query, points, scene.lamps[k], samples).luminance);
+    shares.add(groups.names[groups.lamp[k]], false,
+               reach_of_lamp(scene, query, points, scene.lamps[k], samples).luminance);
   }
-  const std::vector<bool> straight = radiosity::emitter_is_explicit(scene);
+  const std::vector<bool> is_explicit = radiosity::emitter_is_explicit(scene);
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-    if (groups.material[m] == scenes::no_group || !straight[m]) continue;
+    if (groups.material[m] == scenes::no_group || !is_explicit[m]) continue;
     const scenes::EmitterSet emitters(scene, m);
-    add(groups.names[groups.material[m]], false,
-        reach_of_emitters(scene, query, points, emitters, samples).luminance);
+    shares.add(groups.names[groups.material[m]], false,
+               reach_of_emitters(scene, query, points, emitters, samples).luminance);
   }
   if (scene.sun && groups.sun != scenes::no_group) {
-    add("sun", false,
-        scenes::visible_sun_share(scene) *
-            reach_of_direction(scene, query, points, scene.sun->direction,
-                               base::luminance(scene.sun->illuminance_lx))
-                .luminance);
+    shares.add("sun", false,
+               scenes::visible_sun_share(scene) *
+                   reach_of_direction(scene, query, points, scene.sun->direction,
+                                      base::luminance(scene.sun->illuminance_lx))
+                       .luminance);
   }
   if (groups.earth != scenes::no_group) {
-    add("earth", false, reach_of_earth(scene, query, points, 1024).luminance);
+    shares.add("earth", false, reach_of_earth(scene, query, points, 1024).luminance);
   }
-  double own = 0.0;
-  for (const SeenPoint& point : points) {
-    own += point.emitted / static_cast<double>(points.size());
-  }
-  if (own > 0.0) add(own_light, false, own);
-  for (const ByWayOf& way : light_by_way_of(scene, query, solution, groups.count(), points, rays)) {
-    double light = 0.0;
-    for (const Rgb& of_group : way.by_group) light += base::luminance(of_group);
-    add(scene.objects[way.object].name, true, light);
-  }
-  return sorted_shares(std::move(shares));
-}
-
-std::vector<LightShare> sorted_shares(std::vector<LightShare> shares) {
-  std::erase_if(shares, [](const LightShare& s) { return !(s.share >= least_share); });
-  std::stable_sort(shares.begin(), shares.end(),
-                   [](const LightShare& a, const LightShare& b) { return a.share > b.share; });
-  return shares;
+  shares.add_own(points);
+  shares.add(LastBounces(scene, groups, query, solution).of(points, rays));
+  return shares.of(luminance);
 }
 
 }  // namespace earthshine::studies

@@ -6,9 +6,11 @@
 #include <limits>
 #include <map>
 
+#include "base/numbers/even_points.h"
 #include "base/units.h"
 #include "raytrace/camera/camera.h"
 #include "scenes/sky/sky.h"
+#include "scenes/surface_texture.h"
 
 namespace earthshine::studies {
 namespace {
@@ -62,16 +64,6 @@ Reach reach_of(const scenes::Scene& scene, const scenes::RayQuery& query,
   return reach;
 }
 
-// Even over the unit square: the plastic number's additive sequence (Roberts 2018).
-struct Place {
-  double u, v;
-};
-Place place_of(int k) {
-  const auto fraction = [](double x) { return x - std::floor(x); };
-  return {fraction(0.5 + 0.7548776662466927 * (k + 1)),
-          fraction(0.5 + 0.5698402909980532 * (k + 1))};
-}
-
 Beam beam_of(const scenes::LightSample& sample, int samples) {
   return {sample.direction, sample.distance_m,
           base::luminance(sample.normal_illuminance_lx) / samples};
@@ -94,13 +86,14 @@ std::vector<SeenPoint> seen_points(const scenes::Scene& scene, const scenes::Ray
     if (hit.missed()) continue;
     const scenes::Material& material = scene.materials[scene.triangles[hit.triangle].material];
     const Vec3 normal = scenes::triangle_normal(scene, hit.triangle);
-    const double reflectance = base::luminance(material.diffuse);
+    const Rgb diffuse = scenes::diffuse_at(scene, material, hit);
+    const double reflectance = base::luminance(diffuse);
     const bool shines = hit.front || material.two_sided;
-    points.push_back({scenes::hit_position(scene, hit), hit.front ? normal : -normal,
-                      shines ? reflectance : 0.0,
-                      !hit.front && material.has_black_back() ? reflectance : 0.0,
-                      shines ? material.diffuse : Rgb(0.0),
-                      shines ? base::luminance(material.emit) / base::pi : 0.0});
+    points.push_back(
+        {scenes::hit_position(scene, hit), hit.front ? normal : -normal, shines ? reflectance : 0.0,
+         !hit.front && material.has_black_back() ? reflectance : 0.0, shines ? diffuse : Rgb(0.0),
+         shines ? scenes::emit_at(scene, material, hit) / base::pi : Rgb(0.0),
+         scene.triangles[hit.triangle].material});
   }
   return points;
 }
@@ -115,8 +108,8 @@ Reach reach_of_direction(const scenes::Scene& scene, const scenes::RayQuery& que
 Reach reach_of_lamp(const scenes::Scene& scene, const scenes::RayQuery& query,
                     std::span<const SeenPoint> points, const scenes::Lamp& lamp, int samples) {
   return reach_of(scene, query, points, samples, [&](const SeenPoint& point, int k) {
-    const Place place = place_of(k);
-    return beam_of(scenes::sample_lamp(lamp, point.position, place.u, place.v), samples);
+    const glm::dvec2 place = base::even_point(static_cast<std::size_t>(k));
+    return beam_of(scenes::sample_lamp(lamp, point.position, place.x, place.y), samples);
   });
 }
 
@@ -124,8 +117,8 @@ Reach reach_of_emitters(const scenes::Scene& scene, const scenes::RayQuery& quer
                         std::span<const SeenPoint> points, const scenes::EmitterSet& emitters,
                         int samples) {
   return reach_of(scene, query, points, samples, [&](const SeenPoint& point, int k) {
-    const Place place = place_of(k);
-    return beam_of(emitters.sample(point.position, place.u, place.v), samples);
+    const glm::dvec2 place = base::even_point(static_cast<std::size_t>(k));
+    return beam_of(emitters.sample(point.position, place.x, place.y), samples);
   });
 }
 
@@ -140,8 +133,8 @@ Reach reach_of_earth(const scenes::Scene& scene, const scenes::RayQuery& query,
   const double solid_angle = scenes::cone_solid_angle_sr(half_angle) / directions;
   std::vector<Beam> beams;
   for (int k = 0; k < directions; ++k) {
-    const Place place = place_of(k);
-    const Vec3 direction = scenes::sample_cone(earth.direction, half_angle, place.u, place.v);
+    const glm::dvec2 place = base::even_point(static_cast<std::size_t>(k));
+    const Vec3 direction = scenes::sample_cone(earth.direction, half_angle, place.x, place.y);
     const double radiance = base::luminance(scenes::earth_radiance(sky, direction));
     if (!(radiance > 0.0)) continue;
     beams.push_back({direction, std::numeric_limits<double>::infinity(), radiance * solid_angle});

@@ -21,7 +21,8 @@ struct SeenPoint {
   double reflectance = 0.0;  // diffuse, of luminance; 0 on the black back of a surface
   double as_front = 0.0;     // on a black back: what its front reflects
   Rgb diffuse{0.0};          // as reflectance, in colour
-  double emitted = 0.0;      // luminance of its own light, cd/m^2
+  Rgb emitted{0.0};          // its own light, cd/m^2
+  std::uint32_t material = 0;
 };
 
 // Of at most `most` of the pixels, spread evenly over them: what the rays through their centres hit

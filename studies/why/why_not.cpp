@@ -119,11 +119,14 @@ class Trials {
       if (cures(without_these(fewer))) needed = std::move(fewer);
     }
     for (Trial& trial : needed) {
-      const Change whole = trial.change;
-      for (const Change& lesser : trial.lesser) {
+      const Trial whole = trial;
+      for (const Change& lesser : whole.lesser) {
         trial.change = lesser;
-        if (cures(without_these(needed))) break;
-        trial.change = whole;
+        if (cures(without_these(needed))) {
+          trial.probability = without({lesser});
+          break;
+        }
+        trial.change = whole.change;
       }
     }
     std::stable_sort(needed.begin(), needed.end(), [](const Trial& a, const Trial& b) {
@@ -132,7 +135,7 @@ class Trials {
     WhyNot why;
     for (const Trial& trial : needed) {
       Reason reason = reason_of(trial.change, {});
-      reason.probability_without = without({trial.change});
+      reason.probability_without = trial.probability;
       why.reasons.push_back(std::move(reason));
     }
     why.probability_without_all = without_these(needed);
@@ -249,7 +252,12 @@ WhyNot why_not(const WhyNotInputs& in, std::size_t index,
     const Reason reason = reason_of(trial.change, trial.probability);
     const bool helps = one_is_enough ? trials.cures(trial.probability)
                                      : trial.probability >= now + options.least_gain;
-    if (must(reason) ? !is_there(reason) : helps && !all_needed) why.reasons.push_back(reason);
+    if (must(reason) && all_needed && !is_there(reason)) {
+      why.text = reason.text + "; " + why.text;
+      why.reasons.insert(why.reasons.begin(), reason);
+    } else if (must(reason) ? !is_there(reason) : helps && !all_needed) {
+      why.reasons.push_back(reason);
+    }
   }
   if (why.reasons.empty()) why.reasons.push_back(nothing_helps(sight, sources));
   if (!all_needed || why.text.empty()) why.text = joined(why.reasons, "; ");

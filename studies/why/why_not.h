@@ -20,8 +20,8 @@
 // not. If no single one does, all are taken away together, and those that are then put back, the
 // last of the order above first, without the task failing again are no reasons. `contrast` and
 // `small`, which are the viewer's, are asked only where nothing before him would do. Of bright
-// things the brightest that is enough is named. A black back is always a reason. Reasons stand in
-// the order above.
+// things the brightest that is enough is named. A black back that makes the target doubtful is
+// always a reason. Reasons stand in the order above.
 #pragma once
 
 #include <optional>

@@ -65,15 +65,17 @@ class Probe(tiny_bay.Case):
         self.write("box.toml", CLOSED_BOX)
 
     def test_half_of_a_furnace_is_its_own(self):
-        # B = M / (1 - rho): of 20 lm/m^2 the wall gives 10 itself and reflects 10 of its own room.
+        # B = M / (1 - rho): of 20 lm/m^2 the wall gives 10 itself; of the 10 that it reflects half is what the room's walls give
+        # themselves, and half what they reflect.
         report = self.json("render", "box.toml", "--probe", "12,8")
         pixel = report["pixel"]
         self.assertAlmostEqual(pixel["luminance_cd_m2"], 20 / math.pi, delta=0.02)
         self.assertAlmostEqual(sum(entry["share"] for entry in pixel["light_by"]), 1, places=5)
         shares = {(entry["from"], entry["reflected"]): entry["share"] for entry in pixel["light_from"]}
-        self.assertEqual(set(shares), {("its own light", False), ("room", True)})
+        self.assertEqual(set(shares), {("its own light", False), ("wall", False), ("room", True)})
         self.assertAlmostEqual(shares["its own light", False], 0.5, delta=0.005)
-        self.assertAlmostEqual(shares["room", True], 0.5, delta=0.01)
+        self.assertAlmostEqual(shares["wall", False], 0.25, delta=0.005)
+        self.assertAlmostEqual(shares["room", True], 0.25, delta=0.005)
         self.assertAlmostEqual(pixel["left_over"], 0, delta=0.015)
         said = self.done("render", "box.toml", "--probe", "12,8", "--quiet")
         self.assertIn("by way of room", said)
@@ -81,6 +83,8 @@ class Probe(tiny_bay.Case):
 
     def test_what_is_refused(self):
         self.assertIn("is not X,Y", self.refused("render", "box.toml", "--probe", "1"))
+        self.assertIn("--probe: belongs to one camera",
+                      self.refused("render", "bay.toml", "--probe", "1,1", "--camera", "all"))
         self.assertIn("reads the radiosity solution",
                       self.refused("render", "box.toml", "--probe", "1,1", "--indirect", "none"))
         self.refused("render", "box.toml", "--probe", "1,1", "--only-pixel", "1,1")

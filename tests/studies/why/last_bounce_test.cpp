@@ -19,7 +19,8 @@ double share_of(const std::vector<LightShare>& shares, const std::string& from, 
 }
 
 // A unit cube of walls that all emit M and reflect rho = 0.5: B = M / (1 - rho) everywhere, of
-// which M is a point's own light and rho B comes by way of the walls. From the middle of the floor
+// which M is a point's own light, rho M comes straight from the walls and rho (B - M) by way of
+// them. From the middle of the floor
 // the ceiling fills F = 4 / (2 pi) 2 x / sqrt(1 + x^2) atan(x / sqrt(1 + x^2)), x = 1/2: 0.2394,
 // and each of the others a quarter of the rest.
 TEST(LastBounce, InAFurnaceSharesAreFormFactors) {
@@ -35,20 +36,22 @@ TEST(LastBounce, InAFurnaceSharesAreFormFactors) {
   point.normal = Vec3(0, 0, 1);
   point.diffuse = Rgb(0.5);
   point.reflectance = 0.5;
-  point.emitted = 1.0 / base::pi;
+  point.emitted = Rgb(1.0 / base::pi);
   constexpr int rays = 16384;
   const std::vector<LightShare> shares = light_shares(
       builder.scene, prepared.groups, prepared.query, solution, {&point, 1}, 2.0 / base::pi, rays);
   EXPECT_NEAR(share_of(shares, own_light, false), 0.5, 1e-9);
+  EXPECT_NEAR(share_of(shares, prepared.groups.names[prepared.groups.material[m]], false), 0.25,
+              1e-3);
   const double x = 0.5, h = std::sqrt(1.0 + x * x);
   const double ceiling = 4.0 / (2.0 * base::pi) * 2.0 * x / h * std::atan(x / h);
   // Of p with `rays` independent rays the standard error is sqrt(p (1 - p) / rays); an even
-  // sequence does better. Times the reflected half.
-  const auto within = [](double p) { return 0.5 * 4.0 * std::sqrt(p * (1.0 - p) / rays); };
-  EXPECT_NEAR(share_of(shares, "quad-5", true), 0.5 * ceiling, within(ceiling));
+  // sequence does better. Times the reflected quarter.
+  const auto within = [](double p) { return 0.25 * 4.0 * std::sqrt(p * (1.0 - p) / rays); };
+  EXPECT_NEAR(share_of(shares, "quad-5", true), 0.25 * ceiling, within(ceiling));
   for (const char* wall : {"quad-0", "quad-1", "quad-2", "quad-3"}) {
     const double p = (1.0 - ceiling) / 4.0;
-    EXPECT_NEAR(share_of(shares, wall, true), 0.5 * p, within(p)) << wall;
+    EXPECT_NEAR(share_of(shares, wall, true), 0.25 * p, within(p)) << wall;
   }
   double sum = 0.0;
   for (const LightShare& share : shares) sum += share.share;
