@@ -22,6 +22,10 @@ constexpr double smallest_share = 1.0 / 16.0;
 
 double fraction(double x) { return x - std::floor(x); }
 
+bool is_wide(const scenes::Lamp& lamp) {
+  return lamp.kind == scenes::LampKind::Rectangle || lamp.kind == scenes::LampKind::Disk;
+}
+
 }  // namespace
 
 LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups& groups,
@@ -51,9 +55,12 @@ LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups
   }
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
     if (groups.lamp[k] == scenes::no_group) continue;
-    const bool wide = scene.lamps[k].kind == scenes::LampKind::Rectangle ||
-                      scene.lamps[k].kind == scenes::LampKind::Disk;
-    add({Kind::Lamp, groups.lamp[k], k}, wide ? copies : 1);
+    const bool wide = is_wide(scene.lamps[k]);
+    Light light{Kind::Lamp, groups.lamp[k], k};
+    if (scene.lamps[k].kind == scenes::LampKind::Spot) {
+      light.field_cosine = scenes::field_cosine(scene.lamps[k]);
+    }
+    add(light, wide ? copies : 1);
     if (wide) surfaces_.lights.push_back(k);
   }
   surfaces_.tree = tree_of(surfaces_.lights);
@@ -169,31 +176,31 @@ void LightSampler::add(Light light, int copies) {
   }
 }
 
+// What sends one ray to a point, the Sun but for its width, and lamps without size, sends it from
+// before the surface, within its cone and, by a mirror, off where that is.
 bool LightSampler::may_reach(std::size_t index, const Vec3& point, const Vec3& normal) const {
+  constexpr double rounding = 1e-9;
   const Light& light = of(index);
   const scenes::FlatMirror* mirror = mirror_of(index);
-  if (mirror != nullptr && !shows(*mirror, light, point)) return false;
-  if (light.kind != Kind::Sun && light.kind != Kind::SunPart) return true;
-  const scenes::Sun& sun =
-      light.kind == Kind::Sun ? *scene_.sun : scene_.sky_parts->suns[light.index];
-  constexpr double rounding = 1e-9;
+  const double height = mirror != nullptr ? mirror->height_m(point) : 0.0;
+  if (mirror != nullptr && height <= 0.0) return false;
   const Vec3 facing = mirror != nullptr ? mirror->turned(normal) : normal;
-  return glm::dot(sun.direction, facing) >= -base::radians(sun.angular_radius_deg) - rounding;
-}
-
-// Lamps without extent are seen by one ray, which meets the mirror or not.
-bool LightSampler::shows(const scenes::FlatMirror& mirror, const Light& light,
-                         const Vec3& point) const {
-  const double height = mirror.height_m(point);
-  if (height <= 0.0) return false;
-  if (light.kind != Kind::Lamp) return true;
+  if (light.kind == Kind::Sun || light.kind == Kind::SunPart) {
+    const scenes::Sun& sun =
+        light.kind == Kind::Sun ? *scene_.sun : scene_.sky_parts->suns[light.index];
+    return glm::dot(sun.direction, facing) >= -base::radians(sun.angular_radius_deg) - rounding;
+  }
+  if (light.kind != Kind::Lamp || is_wide(scene_.lamps[light.index])) return true;
   const scenes::Lamp& lamp = scene_.lamps[light.index];
-  if (lamp.kind == scenes::LampKind::Rectangle || lamp.kind == scenes::LampKind::Disk) return true;
-  const double lamp_height = mirror.height_m(lamp.position);
+  const Vec3 from = mirror != nullptr ? mirror->image(point) : point, way = lamp.position - from;
+  const double distance = glm::length(way);
+  if (glm::dot(way, facing) < -rounding * distance) return false;
+  if (-glm::dot(way, lamp.axis) < (light.field_cosine - rounding) * distance) return false;
+  if (mirror == nullptr) return true;
+  const double lamp_height = mirror->height_m(lamp.position);
   if (lamp_height <= 0.0) return false;
-  const Vec3 image = mirror.image(point);
-  const Vec3 met = image + height / (height + lamp_height) * (lamp.position - image);
-  return glm::length(met - mirror.centre) <= mirror.radius_m * (1.0 + 1e-6);
+  const Vec3 met = from + height / (height + lamp_height) * way;
+  return glm::length(met - mirror->centre) <= mirror->radius_m * (1.0 + 1e-6);
 }
 
 scenes::LightSample LightSampler::sample(std::size_t index, const Vec3& point, double u,

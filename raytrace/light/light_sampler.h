@@ -49,7 +49,8 @@ class LightSampler {
   [[nodiscard]] std::size_t group(std::size_t light) const { return of(light).group; }
   [[nodiscard]] scenes::LightKind kind(std::size_t light) const;
   // False where no sample can reach a surface that faces `normal`, as far as it is known without
-  // one: a Sun below the horizon, a lamp whose image is not seen in the mirror from there.
+  // one: a Sun below the horizon, a lamp behind the surface or not turned to it, one whose image is
+  // not seen in the mirror from there.
   [[nodiscard]] bool may_reach(std::size_t light, const Vec3& point, const Vec3& normal) const;
   [[nodiscard]] scenes::LightSample sample(std::size_t light, const Vec3& point, double u,
                                            double v) const;
@@ -62,7 +63,8 @@ class LightSampler {
     std::size_t index = 0;  // of the lamp, emitter set or Sun of a sky in parts
     bool fixed = false;     // distributed: always the same (u, v)
     double u = 0.5, v = 0.5;
-    double share = 1.0;  // of the source's light
+    double share = 1.0;          // of the source's light
+    double field_cosine = -2.0;  // spot lamps: of half their field; others shine all round
   };
   struct Cluster {
     scenes::LightTree tree;
@@ -77,8 +79,6 @@ class LightSampler {
                        std::vector<scenes::LightChoice>& chosen) const;
   [[nodiscard]] scenes::LightSample sample_straight(const Light& light, const Vec3& point, double u,
                                                     double v) const;
-  [[nodiscard]] bool shows(const scenes::FlatMirror& mirror, const Light& light,
-                           const Vec3& point) const;
   void add(Light light, int copies);
   void gather_clusters(bool per_group);
   [[nodiscard]] scenes::LightTree tree_of(const std::vector<std::size_t>& lamps) const;

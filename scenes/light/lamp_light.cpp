@@ -13,7 +13,6 @@ namespace {
 using base::pi;
 
 double beam_cosine(const Lamp& lamp) { return std::cos(base::radians(lamp.beam_deg / 2)); }
-double field_cosine(const Lamp& lamp) { return std::cos(base::radians(lamp.field_deg / 2)); }
 
 Vec3 disk_point(const Lamp& lamp, double u, double v) {
   const base::Frame3 frame = base::frame_around(lamp.axis);
@@ -51,9 +50,12 @@ double relative_intensity(const Lamp& lamp, const Vec3& direction) {
 
 }  // namespace
 
+double field_cosine(const Lamp& lamp) { return std::cos(base::radians(lamp.field_deg / 2)); }
+
 double spot_profile(const Lamp& lamp, double cos_angle) {
-  const double inner = beam_cosine(lamp), outer = field_cosine(lamp);
+  const double inner = beam_cosine(lamp);
   if (cos_angle >= inner) return 1.0;
+  const double outer = field_cosine(lamp);
   if (cos_angle <= outer) return 0.0;
   const double x = (cos_angle - outer) / (inner - outer);
   return x * x * (3.0 - 2.0 * x);

@@ -18,6 +18,8 @@ struct LightSample {
   std::uint32_t mirror = no_mirror;  // that throws it; the distance is that of the whole way
 };
 
+// The cosine of half the field, beyond which a spot lamp sends nothing.
+[[nodiscard]] double field_cosine(const Lamp& lamp);
 // Shape of a spot's intensity against the angle from its axis: 1 inside beam_deg, smoothstep in the
 // cosine, 0 outside field_deg. Its flux is I 2 pi (1 - (cos(beam/2) + cos(field/2)) / 2) exactly.
 [[nodiscard]] double spot_profile(const Lamp& lamp, double cos_angle);
