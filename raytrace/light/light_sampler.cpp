@@ -56,11 +56,7 @@ LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
     if (groups.lamp[k] == scenes::no_group) continue;
     const bool wide = is_wide(scene.lamps[k]);
-    Light light{Kind::Lamp, groups.lamp[k], k};
-    if (scene.lamps[k].kind == scenes::LampKind::Spot) {
-      light.field_cosine = scenes::field_cosine(scene.lamps[k]);
-    }
-    add(light, wide ? copies : 1);
+    add({Kind::Lamp, groups.lamp[k], k}, wide ? copies : 1);
     if (wide) surfaces_.lights.push_back(k);
   }
   surfaces_.tree = tree_of(surfaces_.lights);
@@ -73,6 +69,7 @@ LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups
     emitters_.emplace_back(scene, m);
   }
   gather_clusters(per_group);
+  find_one_rays();
 }
 
 void LightSampler::gather_clusters(bool per_group) {
@@ -176,31 +173,45 @@ void LightSampler::add(Light light, int copies) {
   }
 }
 
-// What sends one ray to a point, the Sun but for its width, and lamps without size, sends it from
-// before the surface, within its cone and, by a mirror, off where that is.
+void LightSampler::find_one_rays() {
+  one_rays_.resize(count());
+  for (std::size_t k = 0; k < count(); ++k) {
+    const scenes::FlatMirror* mirror = mirror_of(k);
+    if (of(k).kind != Kind::Lamp || is_wide(scene_.lamps[of(k).index])) continue;
+    const scenes::Lamp& lamp = scene_.lamps[of(k).index];
+    OneRay& ray = one_rays_[k];
+    ray.is_all = true;
+    ray.position = mirror != nullptr ? mirror->image(lamp.position) : lamp.position;
+    ray.axis = mirror != nullptr ? mirror->turned(lamp.axis) : lamp.axis;
+    if (lamp.kind == scenes::LampKind::Spot) ray.field_cosine = scenes::field_cosine(lamp);
+    if (mirror != nullptr) ray.lamp_height_m = mirror->height_m(lamp.position);
+  }
+}
+
 bool LightSampler::may_reach(std::size_t index, const Vec3& point, const Vec3& normal) const {
   constexpr double rounding = 1e-9;
-  const Light& light = of(index);
   const scenes::FlatMirror* mirror = mirror_of(index);
+  const OneRay& ray = one_rays_[index];
+  const Vec3 way = ray.position - point;
+  const double distance = glm::length(way);
+  if (ray.is_all && glm::dot(way, normal) < -rounding * distance) return false;
+  if (ray.is_all && -glm::dot(way, ray.axis) < (ray.field_cosine - rounding) * distance) {
+    return false;
+  }
   const double height = mirror != nullptr ? mirror->height_m(point) : 0.0;
   if (mirror != nullptr && height <= 0.0) return false;
-  const Vec3 facing = mirror != nullptr ? mirror->turned(normal) : normal;
-  if (light.kind == Kind::Sun || light.kind == Kind::SunPart) {
-    const scenes::Sun& sun =
-        light.kind == Kind::Sun ? *scene_.sun : scene_.sky_parts->suns[light.index];
-    return glm::dot(sun.direction, facing) >= -base::radians(sun.angular_radius_deg) - rounding;
+  if (ray.is_all) {
+    if (mirror == nullptr) return true;
+    if (ray.lamp_height_m <= 0.0) return false;
+    const Vec3 met = point + height / (height + ray.lamp_height_m) * way;
+    return glm::length(met - mirror->centre) <= mirror->radius_m * (1.0 + 1e-6);
   }
-  if (light.kind != Kind::Lamp || is_wide(scene_.lamps[light.index])) return true;
-  const scenes::Lamp& lamp = scene_.lamps[light.index];
-  const Vec3 from = mirror != nullptr ? mirror->image(point) : point, way = lamp.position - from;
-  const double distance = glm::length(way);
-  if (glm::dot(way, facing) < -rounding * distance) return false;
-  if (-glm::dot(way, lamp.axis) < (light.field_cosine - rounding) * distance) return false;
-  if (mirror == nullptr) return true;
-  const double lamp_height = mirror->height_m(lamp.position);
-  if (lamp_height <= 0.0) return false;
-  const Vec3 met = from + height / (height + lamp_height) * way;
-  return glm::length(met - mirror->centre) <= mirror->radius_m * (1.0 + 1e-6);
+  const Light& light = of(index);
+  if (light.kind != Kind::Sun && light.kind != Kind::SunPart) return true;
+  const scenes::Sun& sun =
+      light.kind == Kind::Sun ? *scene_.sun : scene_.sky_parts->suns[light.index];
+  const Vec3 facing = mirror != nullptr ? mirror->turned(normal) : normal;
+  return glm::dot(sun.direction, facing) >= -base::radians(sun.angular_radius_deg) - rounding;
 }
 
 scenes::LightSample LightSampler::sample(std::size_t index, const Vec3& point, double u,

@@ -63,8 +63,15 @@ class LightSampler {
     std::size_t index = 0;  // of the lamp, emitter set or Sun of a sky in parts
     bool fixed = false;     // distributed: always the same (u, v)
     double u = 0.5, v = 0.5;
-    double share = 1.0;          // of the source's light
+    double share = 1.0;  // of the source's light
+  };
+  // What lamps without size, or their images, send to a point: one ray, within the lamp's cone and
+  // off where the mirror is.
+  struct OneRay {
+    bool is_all = false;         // that the light is
     double field_cosine = -2.0;  // spot lamps: of half their field; others shine all round
+    double lamp_height_m = 0.0;  // over the mirror
+    Vec3 position{0.0}, axis{0.0};
   };
   struct Cluster {
     scenes::LightTree tree;
@@ -81,6 +88,7 @@ class LightSampler {
                                                     double v) const;
   void add(Light light, int copies);
   void gather_clusters(bool per_group);
+  void find_one_rays();
   [[nodiscard]] scenes::LightTree tree_of(const std::vector<std::size_t>& lamps) const;
 
   const scenes::Scene& scene_;
@@ -88,6 +96,7 @@ class LightSampler {
   std::span<const scenes::FlatMirror> mirrors_;
   std::optional<scenes::Lamp> earth_area_;
   std::vector<Light> lights_;
+  std::vector<OneRay> one_rays_;     // by number of the light, images too
   std::vector<std::size_t> always_;  // lights that are not left to chance
   std::vector<Cluster> clusters_;
   Cluster surfaces_{scenes::LightTree({}), {}};  // lamps that a ray can meet, by their number there
