@@ -121,7 +121,8 @@ std::string figures_html(const StudyResults& study) {
   }
   for (std::size_t k = 0; full && k < signal_columns.size(); ++k) columns.signal.push_back(k);
   std::string html =
-      "<p>Luminances are of the clean picture. P: probability. lit: share of the visible part that "
+      "<p>Luminances are of the clean picture, 0.2126 R + 0.7152 G + 0.0722 B. P: probability. "
+      "lit: share of the visible part that "
       "a lamp or the Sun reaches directly. comes last from: straight from a source, or by way of "
       "what "
       "reflects it on. +: cut by the picture’s border.</p>\n";
