@@ -205,6 +205,7 @@ Json study_json(const StudyFindings& findings) {
           {"answers", findings.answers},
           {"pairs", findings.pairs},
           {"figures", findings.figures},
+          {"thumbnails", findings.thumbnails},
           {"settings", settings_of(findings)},
           {"provenance",
            {{"program", std::string("earthshine ") + EARTHSHINE_VERSION},
