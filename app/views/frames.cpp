@@ -139,7 +139,8 @@ std::optional<StudyFrames::Frame> StudyFrames::known(const StudyCamera& camera,
   return Frame{{},
                (*facts)["relative_noise"].get<double>(),
                (*facts)["seconds"].get<double>(),
-               (*facts)["patches"].get<std::size_t>()};
+               (*facts)["patches"].get<std::size_t>(),
+               (*facts)["limits"].get<std::vector<std::string>>()};
 }
 
 std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
@@ -152,7 +153,8 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
     const double seconds = facts["seconds"].get<double>();
     costs.push_back({stage, seconds, facts["rays"].get<std::uint64_t>(), true});
     return Frame{unpacked_layers(std::move(*stored)), facts["relative_noise"].get<double>(),
-                 seconds, facts["patches"].get<std::size_t>()};
+                 seconds, facts["patches"].get<std::size_t>(),
+                 facts["limits"].get<std::vector<std::string>>()};
   }
   if (!said.empty()) note("note: " + said);
   const LoadedScene& basis = part_.basis_scene;
@@ -166,6 +168,7 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
   const Json facts = {{"seconds", drawn.report.seconds},
                       {"relative_noise", drawn.report.relative_noise},
                       {"rays", drawn.report.rays.total()},
+                      {"limits", limits_of_balance(light)},
                       {"patches", light.report.patches}};
   // Of the few layers without an orbit no digit is spared.
   const int digits =
@@ -175,7 +178,7 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
   drawn.image = unpacked_layers(std::move(kept));
   costs.push_back({stage, drawn.report.seconds, drawn.report.rays.total(), false});
   return Frame{std::move(drawn.image), drawn.report.relative_noise, drawn.report.seconds,
-               light.report.patches};
+               light.report.patches, limits_of_balance(light)};
 }
 
 }  // namespace earthshine::app

@@ -121,6 +121,7 @@ class Runner {
     found.relative_noise = frame.relative_noise;
     found.render_seconds = frame.seconds;
     findings_.patches[part.id] = frame.patches;
+    findings_.limits[part.id] = frame.limits;
   }
 
   void add_all(const std::vector<std::vector<ViewingConfiguration>>& more) {

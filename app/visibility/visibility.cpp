@@ -14,9 +14,9 @@
 #include "app/options.h"
 #include "app/output.h"
 #include "app/study/study.h"
+#include "app/views/sight_json.h"
 #include "app/visibility/pictures.h"
 #include "app/visibility/run.h"
-#include "app/visibility/sight_json.h"
 #include "base/files/output_file.h"
 
 namespace earthshine::app {
