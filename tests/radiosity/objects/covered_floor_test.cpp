@@ -87,6 +87,21 @@ TEST(CoveredFloor, StandardErrorsHoldWhatPointsLeaveOpenOfTheArea) {
   EXPECT_NEAR(square, 1.0, 4.0 * std::sqrt(2.0 / seeds) + 0.04);
 }
 
+// A floor that sees nothing but the sky, but for a slab of a tenth of a millimetre on it, sends all
+// of it there however large its open part is found: 64 points in each of 16 replicates leave the
+// area open by about 1.5 % / 4, and that is no error of F. One hit of 1024 rays is the least that
+// is said.
+TEST(CoveredFloor, WhatPointsLeaveOpenOfTheAreaIsNoErrorOfAShareOfIt) {
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  builder.quad(m, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
+  tests::add_box(builder, m, {0.21, 0.5, 0.0}, {0.51, 0.9, 1e-4});
+  const ObjectFormFactors o = by_rays(builder.scene, 2.0, 1024, 1, true);
+  EXPECT_NEAR(o.sky[0], 1.0, 2e-3);
+  EXPECT_GE(o.sky_std_error[0], 0.9e-3);
+  EXPECT_LE(o.sky_std_error[0], 2e-3);
+}
+
 TEST(CoveredFloor, AWhollyCoveredObjectSendsNothingAndReceivesNothing) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
