@@ -77,24 +77,30 @@ double peak_memory_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts KiB
 }
 
-void note_balance(const radiosity::Solution& solution) {
+std::vector<std::string> limits_of_balance(const radiosity::Solution& solution) {
   const radiosity::BalanceReport& balance = solution.report.balance;
+  std::vector<std::string> limits;
   if (balance.held > 0.001) {
-    note(
-        fmt::format("warning: so few form-factor rays that patches keep {:.1g} of their light for "
+    limits.push_back(
+        fmt::format("so few form-factor rays that patches keep {:.1g} of their light for "
                     "themselves, as no other patch has room for it; raise quality.form_factor_rays",
                     balance.held));
   }
-  if (balance.balanced || balance.sweeps == 0) return;
+  if (balance.balanced || balance.sweeps == 0) return limits;
   std::string where;
   if (balance.worst < solution.patches.count()) {
     const std::uint32_t object = solution.patches.object(balance.worst);
     where = fmt::format(", worst at \"{}\"", solution.report.objects.at(object).name);
   }
-  note(
-      fmt::format("warning: the form factors conserve energy to {:.1e} of the surface only, after "
+  limits.push_back(
+      fmt::format("the form factors conserve energy to {:.1e} of the surface only, after "
                   "{} sweeps{}; raise quality.form_factor_rays to come nearer",
                   balance.after, balance.sweeps, where));
+  return limits;
+}
+
+void note_balance(const radiosity::Solution& solution) {
+  for (const std::string& limit : limits_of_balance(solution)) note("warning: " + limit);
 }
 
 void note_backs(const radiosity::SolveReport& report) {

@@ -2,7 +2,7 @@
 // node check.mjs REPORT.html PLAIN.html FOLDER: opens both pages in headless Chromium as a reader
 // would, by keyboard too, and puts screenshots and a PDF into FOLDER.
 // Exit code 0 all well, 1 something is wrong, 77 there is no browser or no node_modules.
-import { existsSync, mkdirSync, statSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, statSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -124,11 +124,20 @@ const checkKeyboard = async (page) => {
   await page.keyboard.press("ArrowRight");
   const second = await reading();
   check(/^Camera /.test(first) && first !== second, "arrow keys read the matrix", `${first} | ${second}`);
+  // The first brings the panel into view where it is not.
   await page.keyboard.press("Enter");
+  if (await focused(page, () => document.activeElement.matches("td"))) await page.keyboard.press("Enter");
   check(
     await focused(page, () => document.activeElement.matches("tr[id]") && document.activeElement.checkVisibility()),
     "Enter goes to the cell's row",
   );
+
+  const failing = page.locator("table.matrix td.v4[data-p]").first();
+  await failing.click();
+  const panel = failing.locator("xpath=ancestor::*[@data-lamps]/following-sibling::*[1]");
+  const shown = await panel.locator("img").count();
+  const told = await panel.locator("p").first().textContent();
+  check(shown === 2 && /Not seen\. \S/.test(told), "a failing cell shows picture, monitor and reason", `${shown} ${told}`);
 
   const slider = page.locator("img-comparison-slider").first();
   await slider.focus();
@@ -171,6 +180,8 @@ const checkPage = async () => {
   const pdf = join(folder, "report.pdf");
   await page.pdf({ path: pdf, preferCSSPageSize: true });
   check(statSync(pdf).size > 20000, "it prints");
+  const pages = readFileSync(pdf, "latin1").match(/\/Type\s*\/Page\b/g).length;
+  check(pages <= 12, "on at most 12 pages", pages);
   await page.emulateMedia({ media: "print" });
   await drawAll(page);
   await wholePage(page, "report-print.png");
@@ -190,6 +201,15 @@ const checkLooks = async (name, options) => {
   await context.close();
 };
 
+const checkPhone = async () => {
+  const { page, context } = await open(page_file, { viewport: { width: 390, height: 844 } });
+  const heights = await page.evaluate(() =>
+    [...document.querySelectorAll("main > section")].map(({ id, offsetHeight }) => [id, offsetHeight]));
+  const long = heights.filter(([, height]) => height > 3000);
+  check(heights.length > 5 && long.length === 0, "no section is longer than 3000 px on a phone", long);
+  await context.close();
+};
+
 const checkPlain = async () => {
   const { page, context, complaints } = await open(plain_file);
   check((await page.locator("script").count()) === 0, "the plain page has no script");
@@ -202,6 +222,7 @@ const checkPlain = async () => {
 await checkPage();
 await checkLooks("narrow", { viewport: { width: 400, height: 800 } });
 await checkLooks("dark", { colorScheme: "dark" });
+await checkPhone();
 await checkPlain();
 await browser.close();
 console.log(faults === 0 ? "all well" : `${faults} faults`);

@@ -68,6 +68,10 @@ Json json_of(const CompareCall& call, const scenes::Camera& camera,
                         {"verdict", word_of(judged[k].verdict)},
                         {"sentence", judged[k].sentence}});
   }
+  Json noisy = Json::array();
+  for (const std::size_t k : studies::errors_below_the_references_noise(comparison)) {
+    noisy.push_back(comparison.methods[k].method.name);
+  }
   return {{"study", "compare"},
           {"version", EARTHSHINE_VERSION},
           {"scene", call.scene.path},
@@ -87,6 +91,7 @@ Json json_of(const CompareCall& call, const scenes::Camera& camera,
            {{"luminance_factor", studies::misleading_factor},
             {"contrast_difference", studies::misleading_contrast}}},
           {"noise_floor", comparison.reference_noise.relative_rmse},
+          {"errors_below_noise_floor", noisy},
           {"wide_sources", comparison.wide_sources},
           {"levels_out_at_lights", to_json(levels_out_at(comparison, false))},
           {"lights", lights_rows(comparison)},

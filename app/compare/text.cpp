@@ -22,8 +22,27 @@ std::string fixed_table(const studies::Comparison& comparison) {
                         100.0 * difference.off_share);
   }
   const studies::PictureDifference& noise = comparison.reference_noise;
-  return text + fmt::format("{:<18} {:>39} {:>7.2f} %  of the reference itself\n", "noise-floor",
-                            "", 100.0 * noise.relative_rmse);
+  return text +
+         fmt::format(
+             "{:<18} {:>39} {:>7.2f} %  of the reference itself\n"
+             "RMSE and bias: of the luminance, over the reference's mean; off: by a factor {}\n",
+             "noise-floor", "", 100.0 * noise.relative_rmse, studies::misleading_factor);
+}
+
+// Errors smaller than what the reference itself is uncertain by are found, as the mean over all
+// pixels is far surer than one of them, but only to their standard error.
+std::string noise_text(const studies::Comparison& comparison) {
+  std::vector<std::string> judged;
+  for (const std::size_t k : studies::errors_below_the_references_noise(comparison)) {
+    const studies::MethodResult& result = comparison.methods[k];
+    judged.push_back(fmt::format("{} ({:.2g} +- {:.1g} %)", result.method.name,
+                                 100.0 * result.difference.relative_rmse,
+                                 100.0 * result.difference.standard_error));
+  }
+  return fmt::format(
+      "The references are noisier, {:.2g} %, than the errors that they judge of: {}. A smaller "
+      "--error, or more rays, make them surer.",
+      100.0 * comparison.reference_noise.relative_rmse, fmt::join(judged, ", "));
 }
 
 std::string lights_text(const studies::Comparison& comparison, bool over_area) {
@@ -54,6 +73,9 @@ std::vector<std::string> findings(const studies::Comparison& comparison) {
     lines.push_back(lights_text(comparison, false));
     const studies::Method& last = std::prev(comparison.methods.end(), 2)->method;
     if (!last.distributed_over.empty()) lines.push_back(lights_text(comparison, true));
+  }
+  if (!studies::errors_below_the_references_noise(comparison).empty()) {
+    lines.push_back(noise_text(comparison));
   }
   lines.push_back(fmt::format(
       "Misled: a target's luminance is off by more than a factor {}, or its contrast by more "

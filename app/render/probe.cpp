@@ -68,13 +68,13 @@ Json probe_json(const Studio& studio, const scenes::Camera& camera,
 }
 
 std::string probe_text(const Json& probe) {
-  std::string text = "light by source, all its paths together:\n";
+  std::string text = "light by source, all its paths together (luminance):\n";
   for (const Json& entry : probe["light_by"]) {
     text += fmt::format("  {:<24} {:>10.4g} cd/m2 {:>8}\n", entry["group"].get<std::string>(),
                         entry["luminance_cd_m2"].get<double>(),
                         entry["share"].is_null() ? "-" : share_text(entry["share"].get<double>()));
   }
-  text += "light by where it comes from last (diffuse, at the pixel's centre):\n";
+  text += "light by where it comes from last (diffuse, at the pixel's centre; of the luminance):\n";
   for (const Json& entry : probe["light_from"]) {
     text += fmt::format("  {:<24} {:>8}\n",
                         (entry["reflected"].get<bool>() ? "by way of " : "straight from ") +

@@ -148,7 +148,6 @@ std::string ledger_text(const Json& groups) {
   return text;
 }
 
-// Luminous amounts (Y of the three channels); the channels are in the JSON.
 std::string solve_text(const Json& json) {
   std::string text = fmt::format(
       "{} patches, {} form-factor rays, {} shadow rays\n{} iterations, solved to {:.2g}; column "
@@ -165,7 +164,8 @@ std::string solve_text(const Json& json) {
                         rounds.back()["error"].get<double>());
   }
   text += ledger_text(json["groups"]);
-  text += fmt::format("\n{:<24} {:>12} {:>14} {:>16}\n", "object", "area m2", "illuminance lx",
+  text += "\nAll by luminance, 0.2126 R + 0.7152 G + 0.0722 B; by channel: --json\n";
+  text += fmt::format("{:<24} {:>12} {:>14} {:>16}\n", "object", "area m2", "illuminance lx",
                       "radiosity lm/m2");
   for (const Json& o : json["objects"]) {
     text += fmt::format("{:<24} {:>12.6g} {:>14.6g} {:>16.6g}\n", o["name"].get<std::string>(),

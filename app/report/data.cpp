@@ -220,6 +220,19 @@ void read_pictures(const ReportPart& top, StudyResults& study) {
   for (const ReportPart& part : top.list("figures")) study.figures.push_back(picture_of(part));
 }
 
+void read_thumbnails(const ReportPart& top, StudyResults& study, const Names& names) {
+  for (const ReportPart& part : top.list("thumbnails")) {
+    const std::string condition = part.needed_text("condition"),
+                      camera = part.needed_text("camera");
+    const std::size_t at =
+        names.conditions.find(part, "condition", condition, condition, "conditions");
+    const CameraKey key{study.conditions[at].scene, camera};
+    study.thumbnails.push_back(
+        {at, names.cameras.find(part, "camera", camera, key, "cameras of that scene"),
+         part.needed_text("file"), part.text("monitor_file")});
+  }
+}
+
 }  // namespace
 
 StudyResults read_results(const std::string& file, const Json& json) {
@@ -244,6 +257,7 @@ StudyResults read_results(const std::string& file, const Json& json) {
   read_timelines(top, study, names);
   read_answers(top, study);
   read_pictures(top, study);
+  read_thumbnails(top, study, names);
   for (const ReportPart& part : top.list("costs")) {
     study.costs.push_back({part.text("stage"), part.number("seconds"), part.number("rays")});
   }

@@ -140,6 +140,11 @@ struct PairEntry {
   std::string title;
   PictureEntry left, right;
 };
+// Of a condition as a camera shows it; monitor: "" without a CCTV.
+struct ThumbnailEntry {
+  std::size_t condition, camera;
+  std::string file, monitor;
+};
 struct CostEntry {
   std::string stage;
   Number seconds, rays;
@@ -157,6 +162,7 @@ struct StudyResults {
   std::vector<AnswerEntry> answers;
   std::vector<PairEntry> pairs;
   std::vector<PictureEntry> figures;
+  std::vector<ThumbnailEntry> thumbnails;
   std::vector<CostEntry> costs;
   std::vector<std::string> notes;
   Json settings, provenance;

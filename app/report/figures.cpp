@@ -67,13 +67,17 @@ bool has_signal(const ResultEntry& result) {
                      [](const Number& value) { return value.has_value(); });
 }
 
-std::string details(const std::string& title, const Block& block, bool open,
-                    const std::string& table) {
+// Paper has these tables of studies that it can hold in a few pages; else their files have them.
+constexpr std::size_t most_printed = 100;
+
+std::string details(const StudyResults& study, const std::string& title, const Block& block,
+                    bool open, const std::string& table) {
   return fmt::format(
-      "<details class=\"rows\" data-lamps=\"{}\"{}>\n<summary>{}</summary>\n"
+      "<details class=\"rows{}\" data-lamps=\"{}\"{}>\n<summary>{}</summary>\n"
       "<div class=\"scroll\" role=\"region\" aria-label=\"{}\" tabindex=\"0\">\n{}</div>\n"
       "</details>\n",
-      escaped(block.lamps), open ? " open" : "", title, title, table);
+      study.results.size() > most_printed ? " unprinted" : "", escaped(block.lamps),
+      open ? " open" : "", title, title, table);
 }
 
 std::string tables(const StudyResults& study, const Block& block, const Columns& columns,
@@ -99,10 +103,11 @@ std::string tables(const StudyResults& study, const Block& block, const Columns&
       signal += signal_row(study, k, columns);
     }
   }
-  std::string html = details(title + ": what is seen, " + counted(results.size(), "row", "rows"),
-                             block, open, sight + "</tbody>\n</table>\n");
+  std::string html =
+      details(study, title + ": what is seen, " + counted(results.size(), "row", "rows"), block,
+              open, sight + "</tbody>\n</table>\n");
   if (!signal.empty()) {
-    html += details(title + ": signal, monitor and eye", block, false,
+    html += details(study, title + ": signal, monitor and eye", block, false,
                     start("signal, monitor and eye") + head(signal_columns, columns.signal, false) +
                         "</tr></thead>\n<tbody>\n" + signal + "</tbody>\n</table>\n");
   }
@@ -121,7 +126,8 @@ std::string figures_html(const StudyResults& study) {
   }
   for (std::size_t k = 0; full && k < signal_columns.size(); ++k) columns.signal.push_back(k);
   std::string html =
-      "<p>Luminances are of the clean picture. P: probability. lit: share of the visible part that "
+      "<p>Luminances are of the clean picture, 0.2126 R + 0.7152 G + 0.0722 B. P: probability. "
+      "lit: share of the visible part that "
       "a lamp or the Sun reaches directly. comes last from: straight from a source, or by way of "
       "what "
       "reflects it on. +: cut by the picture’s border.</p>\n";
@@ -129,6 +135,12 @@ std::string figures_html(const StudyResults& study) {
     html += fmt::format(
         "<p>Of {} results these tables have the columns that decide; study.json and the CSV files "
         "beside this page have every figure.</p>\n",
+        study.results.size());
+  }
+  if (study.results.size() > most_printed) {
+    html += fmt::format(
+        "<p class=\"paper\">On paper the tables of these {} results are left out; results.csv has "
+        "them.</p>\n",
         study.results.size());
   }
   for (const Block& block : blocks_of(study)) {

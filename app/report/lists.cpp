@@ -55,7 +55,11 @@ std::string conditions_table(const StudyResults& study) {
         figure(condition.earth_error, Form::Percent));
   }
   if (rows.empty()) return "";
-  return "<details class=\"rows\"><summary>" +
+  // On paper the summary's columns say it.
+  constexpr std::size_t most_conditions_printed = 40;
+  const char* const kind =
+      study.conditions.size() > most_conditions_printed ? "rows unprinted" : "rows";
+  return fmt::format("<details class=\"{}\"><summary>", kind) +
          counted(study.conditions.size(), "condition", "conditions") + "</summary>\n" +
          table("Conditions",
                {"Condition", "Name", "Lamps", "Position, °", "Time, s", "Phase", "Sun free, %",
@@ -68,7 +72,13 @@ std::string conditions_table(const StudyResults& study) {
 std::string value_html(const Json& value, int depth = 0) {
   if (depth > 6) return "…";
   if (value.is_null()) return dash;
-  if (value.is_string()) return text_or_dash(value.get<std::string>());
+  if (value.is_string()) {
+    const std::string text = value.get<std::string>();
+    const Json inner = text.starts_with("{") || text.starts_with("[")
+                           ? Json::parse(text, nullptr, false)
+                           : Json(Json::value_t::discarded);
+    return inner.is_discarded() ? text_or_dash(text) : value_html(inner, depth + 1);
+  }
   if (value.is_object()) {
     std::string html = "<dl>";
     for (const auto& [key, inner] : value.items()) {

@@ -52,23 +52,38 @@ std::string column_row(const StudyResults& study, const Block& block) {
   return html + "</tr>\n";
 }
 
-std::string cell(const StudyResults& study, std::size_t result) {
+using ThumbnailOf = std::map<std::pair<std::size_t, std::size_t>, std::size_t>;
+
+ThumbnailOf thumbnails_of(const StudyResults& study) {
+  ThumbnailOf found;
+  for (std::size_t k = 0; k < study.thumbnails.size(); ++k) {
+    found[{study.thumbnails[k].camera, study.thumbnails[k].condition}] = k;
+  }
+  return found;
+}
+
+// shown: which small picture goes with it, "" for none.
+std::string cell(const StudyResults& study, std::size_t result, const std::string& shown) {
   const Verdict verdict = study.results[result].verdict;
   const VerdictWords& words = words_of(verdict);
-  return fmt::format("<td class=v{} data-r={}>{}<i>{}</i>", static_cast<int>(verdict), result,
-                     words.mark, words.rest);
+  return fmt::format("<td class=v{} data-r={}{}>{}<i>{}</i>", static_cast<int>(verdict), result,
+                     shown, words.mark, words.rest);
 }
 
 std::string row(const StudyResults& study, const Block& block, std::size_t camera,
-                std::size_t target, const std::map<std::size_t, std::size_t>& by_condition) {
-  std::string cells;
+                std::size_t target, const std::map<std::size_t, std::size_t>& by_condition,
+                const ThumbnailOf& thumbnails) {
+  std::string cells, shown;
   std::size_t seen = 0;
   for (const std::size_t k : block.conditions) {
+    // Between two pictures no verdict of this camera changes: the last one stands for the place.
+    const auto small = thumbnails.find({camera, k});
+    if (small != thumbnails.end()) shown = fmt::format(" data-p={}", small->second);
     const auto found = by_condition.find(k);
     if (found == by_condition.end()) {
       cells += "<td class=vx>·<i> no result</i>";
     } else {
-      cells += cell(study, found->second);
+      cells += cell(study, found->second, shown);
       if (is_seen(study.results[found->second].verdict)) ++seen;
     }
   }
@@ -84,6 +99,7 @@ std::string table(const StudyResults& study, const Block& block) {
     rows[{result.camera, result.target}][result.condition] = k;
   }
   if (rows.empty()) return "";
+  const ThumbnailOf thumbnails = thumbnails_of(study);
   const std::string title = block_title(study, block);
   std::string html = fmt::format(
       "<div class=\"scroll\" role=\"region\" aria-label=\"Summary: {}\" tabindex=\"0\" "
@@ -94,7 +110,7 @@ std::string table(const StudyResults& study, const Block& block) {
       block.conditions.size());
   html += phase_row(study, block) + column_row(study, block) + "</thead>\n<tbody>\n";
   for (const auto& [names, by_condition] : rows) {
-    html += row(study, block, names.first, names.second, by_condition);
+    html += row(study, block, names.first, names.second, by_condition, thumbnails);
   }
   return html + "</tbody>\n</table>\n</div>\n";
 }

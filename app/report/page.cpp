@@ -65,8 +65,9 @@ std::string header(const StudyResults& study, bool plain) {
 std::vector<ReportSection> sections_of(const StudyResults& study,
                                        const std::filesystem::path& folder, bool plain) {
   std::vector<ReportSection> sections = {
-      {"notes", "What to know", notes_html(study)},
+      {"short", "In short", short_html(study)},
       {"answers", "Answers", answers_html(study)},
+      {"notes", "What to know", notes_html(study)},
       {"summary", "Summary", matrix_html(study)},
       {"timelines", "Over the orbit", timelines_html(study)},
       {"pictures", "Pictures", pictures_html(study, folder)},

@@ -16,6 +16,7 @@ struct ReportSection {
   std::string html;  // what stands below the heading; "": nothing to show
 };
 
+[[nodiscard]] std::string short_html(const StudyResults& study);
 [[nodiscard]] std::string notes_html(const StudyResults& study);
 [[nodiscard]] std::string answers_html(const StudyResults& study);
 [[nodiscard]] std::string matrix_html(const StudyResults& study);

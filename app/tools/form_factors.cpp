@@ -74,24 +74,27 @@ void find_exactly(const scenes::Scene& scene, const scenes::RayQuery& query,
   found.exact = exact.report;
   // The area rules of pairs in plain sight are good to this share of F.
   constexpr double area_rule_error = 2e-5;
-  const auto error_of = [&](double f) {
-    return std::hypot(exact.report.estimated_error, area_rule_error * f);
-  };
   radiosity::ObjectFormFactors& o = found.between;
-  for (std::size_t i = 0; i < o.F.size(); ++i) {
-    std::transform(o.F[i].begin(), o.F[i].end(), o.std_error[i].begin(), error_of);
-  }
-  // Sky and black backs share what is left of a row, as rays found them.
-  std::vector<double> split(o.F.size(), 0.0);
+  // Sky and black backs share what is left of a row, as rays found them; what is open of a face is
+  // found by points.
+  std::vector<double> split(o.F.size(), 0.0), open(o.F.size(), 0.0);
   for (std::uint32_t i = 0; i < facets.count(); ++i) {
-    const double error = facets.area_m2[i] * exact.report.split_std_error[i];
-    split[facets.object(i)] += error * error;
+    const double apart = facets.area_m2[i] * exact.report.split_std_error[i];
+    const double points = facets.area_m2[i] * exact.report.open_std_error[i];
+    split[facets.object(i)] += apart * apart;
+    open[facets.object(i)] += points * points;
   }
   for (std::size_t i = 0; i < o.F.size(); ++i) {
-    if (o.area_m2[i] <= 0.0) continue;
-    const double error =
-        std::hypot(error_of(o.sky[i] + o.black[i]), std::sqrt(split[i]) / o.area_m2[i]);
-    o.sky_std_error[i] = o.black_std_error[i] = error;
+    if (o.open_area_m2[i] <= 0.0) continue;
+    const double of_area = std::sqrt(open[i]) / o.open_area_m2[i];
+    const auto error_of = [&](double f) {
+      return std::hypot(std::hypot(exact.report.estimated_error, area_rule_error * f), of_area * f);
+    };
+    std::transform(o.F[i].begin(), o.F[i].end(), o.std_error[i].begin(), error_of);
+    const double rest = o.sky[i] + o.black[i];
+    o.sky_std_error[i] = o.black_std_error[i] =
+        std::hypot(std::hypot(exact.report.estimated_error, area_rule_error * rest),
+                   std::hypot(std::sqrt(split[i]) / o.open_area_m2[i], of_area * (1.0 - rest)));
   }
 }
 
@@ -134,6 +137,7 @@ Found find(const FactorsCall& call, const Common& common) {
 Json json_of(const Found& found) {
   Json json = {{"objects", found.names},
                {"area_m2", found.between.area_m2},
+               {"open_area_m2", found.between.open_area_m2},
                {"F", found.between.F},
                {"sky", found.between.sky},
                {"black", found.between.black},
@@ -162,10 +166,11 @@ Json json_of(const Found& found) {
 // A pair a line, the way tables of view factors are exchanged.
 std::string csv_of(const Found& found) {
   const radiosity::ObjectFormFactors& o = found.between;
-  std::string text = "from,to,from_area_m2,F,std_error\n";
+  std::string text = "from,to,from_area_m2,F,std_error,from_open_area_m2\n";
   for (std::size_t i = 0; i < found.names.size(); ++i) {
     const auto line = [&](const std::string& to, double f, double error) {
-      text += fmt::format("{},{},{},{},{}\n", csv_cell(found.names[i]), to, o.area_m2[i], f, error);
+      text += fmt::format("{},{},{},{},{},{}\n", csv_cell(found.names[i]), to, o.area_m2[i], f,
+                          error, o.open_area_m2[i]);
     };
     for (std::size_t k = 0; k < found.names.size(); ++k) {
       line(csv_cell(found.names[k]), o.F[i][k], o.std_error[i][k]);
@@ -210,8 +215,22 @@ std::string largest_entries(const Found& found) {
   return text;
 }
 
+// Of which objects bodies cover a part, which then takes none.
+std::string covered(const Found& found) {
+  std::string text;
+  for (std::size_t i = 0; i < found.names.size(); ++i) {
+    const double all = found.between.area_m2[i], open = found.between.open_area_m2[i];
+    if (open >= all) continue;
+    text +=
+        fmt::format("{}: {:.4g} of {:.4g} m2 lie in or under bodies; F is over the other {:.4g}\n",
+                    found.names[i], all - open, all, open);
+  }
+  return text.empty() ? text : "\n" + text;
+}
+
 std::string text_of(const Found& found) {
   std::string text = found.names.size() <= widest_table ? matrix(found) : largest_entries(found);
+  text += covered(found);
   double worst_error = 0.0;
   for (const auto& row : found.between.std_error) {
     for (const double e : row) worst_error = std::max(worst_error, e);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/tools/orbit_facts.h"
+#include "base/units.h"
 
 namespace earthshine::app {
 namespace {
@@ -14,6 +15,10 @@ namespace {
 std::string numbers(const Json& three, const char* format = "{:g} {:g} {:g}") {
   return fmt::format(fmt::runtime(format), three[0].get<double>(), three[1].get<double>(),
                      three[2].get<double>());
+}
+
+double luminance_of(const Json& three) {
+  return base::luminance({three[0].get<double>(), three[1].get<double>(), three[2].get<double>()});
 }
 
 std::string joined(const Json& words) {
@@ -78,11 +83,11 @@ std::string lights_table(const Json& report) {
   std::string text;
   for (const Json& lamp : report["lamps"]) {
     const Json& source = lamp["source"];
-    text += fmt::format("lamp {}: {}{}, group {}, {} lm, at {}\n", lamp["name"].get<std::string>(),
-                        lamp["type"].get<std::string>(),
+    text += fmt::format("lamp {}: {}{}, group {}, {} lm ({:.6g} by luminance), at {}\n",
+                        lamp["name"].get<std::string>(), lamp["type"].get<std::string>(),
                         source.is_null() ? "" : " (" + source.get<std::string>() + ")",
                         lamp["group"].get<std::string>(), numbers(lamp["flux_lm"]),
-                        numbers(lamp["position_m"]));
+                        luminance_of(lamp["flux_lm"]), numbers(lamp["position_m"]));
   }
   for (const Json& area : report["areas"]) {
     text += fmt::format("area {}: {:.6g} m2, for distributed lights\n",

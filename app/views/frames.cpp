@@ -8,6 +8,7 @@
 #include "app/memory.h"
 #include "app/parts/shared_solution.h"
 #include "app/study/study.h"
+#include "app/views/kept_layers.h"
 #include "base/error.h"
 #include "radiosity/refine.h"
 #include "scenes/effects/quality.h"
@@ -138,7 +139,8 @@ std::optional<StudyFrames::Frame> StudyFrames::known(const StudyCamera& camera,
   return Frame{{},
                (*facts)["relative_noise"].get<double>(),
                (*facts)["seconds"].get<double>(),
-               (*facts)["patches"].get<std::size_t>()};
+               (*facts)["patches"].get<std::size_t>(),
+               (*facts)["limits"].get<std::vector<std::string>>()};
 }
 
 std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
@@ -147,10 +149,12 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
   std::string said;
   const std::string stage = fmt::format("picture {} {}", part_.id, camera.camera->name);
   if (std::optional<CachedResult> stored = store_.find(key, said)) {
-    const double seconds = stored->facts["seconds"].get<double>();
-    costs.push_back({stage, seconds, stored->facts["rays"].get<std::uint64_t>(), true});
-    return Frame{std::move(stored->image), stored->facts["relative_noise"].get<double>(), seconds,
-                 stored->facts["patches"].get<std::size_t>()};
+    const Json facts = stored->facts;
+    const double seconds = facts["seconds"].get<double>();
+    costs.push_back({stage, seconds, facts["rays"].get<std::uint64_t>(), true});
+    return Frame{unpacked_layers(std::move(*stored)), facts["relative_noise"].get<double>(),
+                 seconds, facts["patches"].get<std::size_t>(),
+                 facts["limits"].get<std::vector<std::string>>()};
   }
   if (!said.empty()) note("note: " + said);
   const LoadedScene& basis = part_.basis_scene;
@@ -164,11 +168,17 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
   const Json facts = {{"seconds", drawn.report.seconds},
                       {"relative_noise", drawn.report.relative_noise},
                       {"rays", drawn.report.rays.total()},
+                      {"limits", limits_of_balance(light)},
                       {"patches", light.report.patches}};
-  store_.keep(key, {facts, drawn.image});
+  // Of the few layers without an orbit no digit is spared.
+  const int digits =
+      part_.basis->in_parts() ? round_layers(drawn.image, drawn.report.relative_noise) : 0;
+  CachedResult kept = packed_layers(std::move(drawn.image), digits, facts);
+  store_.keep(key, kept);
+  drawn.image = unpacked_layers(std::move(kept));
   costs.push_back({stage, drawn.report.seconds, drawn.report.rays.total(), false});
   return Frame{std::move(drawn.image), drawn.report.relative_noise, drawn.report.seconds,
-               light.report.patches};
+               light.report.patches, limits_of_balance(light)};
 }
 
 }  // namespace earthshine::app

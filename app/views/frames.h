@@ -35,7 +35,8 @@ class StudyFrames {
     base::Image image;
     double relative_noise = 0.0;
     double seconds = 0.0;
-    std::size_t patches = 0;  // of the solution it was drawn from
+    std::size_t patches = 0;               // of the solution it was drawn from
+    std::vector<std::string> limits = {};  // that the solution reached
   };
   [[nodiscard]] std::optional<Frame> frame(const StudyCamera& camera,
                                            std::vector<StudyCost>& costs);

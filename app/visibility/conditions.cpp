@@ -9,7 +9,7 @@
 #include "app/console.h"
 #include "app/interrupt.h"
 #include "app/study/study.h"
-#include "app/visibility/sight_json.h"
+#include "app/views/sight_json.h"
 #include "base/parallel.h"
 #include "studies/orbit/target_sources.h"
 

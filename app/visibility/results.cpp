@@ -7,8 +7,8 @@
 #include <map>
 
 #include "app/study/study.h"
+#include "app/views/sight_json.h"
 #include "app/visibility/conditions.h"
-#include "app/visibility/sight_json.h"
 #include "studies/error/error_budget.h"
 
 namespace earthshine::app {
@@ -101,19 +101,35 @@ Json settings_of(const StudyFindings& findings) {
           {"seed", findings.seed}};
 }
 
+// What loading found, what the solution fell short of and what is not simulated.
+void add_notes_of_scene(const StudyFindings& findings, const StudyPart& part, Json& notes) {
+  const scenes::Scene& loaded = part.loaded.scene;
+  const std::string scene = findings.parts.size() > 1 ? loaded.name + ": " : std::string();
+  for (const std::string& warning : loaded.warnings) {
+    notes.push_back(scene + "Found on loading: " + warning);
+  }
+  for (const Json& limit : findings.limits.value(part.id, Json::array())) {
+    notes.push_back(scene + "Limit reached: " + limit.get<std::string>() + ".");
+  }
+  const studies::StudyScene of{part.basis_scene.scene, part.basis_scene.groups,
+                               part.basis_scene.effects, *part.query};
+  for (const std::string& missing : studies::not_captured(of, {})) {
+    notes.push_back(scene + "Not simulated: " + missing + ".");
+  }
+}
+
 Json notes_of(const StudyFindings& findings) {
   Json notes = Json::array();
   bool along = false, moving = false;
   for (const StudyPart* part : findings.parts) {
+    const auto& earth = part->basis->scene().earth;
     along = along || part->basis->in_parts();
-    moving = moving || (part->basis->in_parts() && part->basis->scene().earth &&
-                        part->basis->scene().earth->half_angle_deg >= 180.0);
+    moving = moving || (part->basis->in_parts() && earth && earth->half_angle_deg >= 180.0);
   }
   if (along) {
     notes.push_back(
         "Along the orbit the Earth's light is a sum over cells of even radiance; luminance_error "
-        "is "
-        "its likely size in each target's luminance, luminance_bound cannot be exceeded by it.");
+        "is its likely size in each target's luminance, luminance_bound cannot be exceeded by it.");
     notes.push_back(
         "A partly hidden Sun counts as a whole one, dimmed; its penumbra has the width of "
         "the whole disc.");
@@ -121,26 +137,18 @@ Json notes_of(const StudyFindings& findings) {
   if (moving) {
     notes.push_back(
         "The Earth moves through the sky of this attitude: its limb is drawn by cells of the "
-        "sphere, "
-        "coarse where a camera sees it directly or in a mirror.");
+        "sphere, coarse where a camera sees it directly or in a mirror.");
   }
-  for (const StudyPart* part : findings.parts) {
-    const std::string scene =
-        findings.parts.size() > 1 ? part->loaded.scene.name + ": " : std::string();
-    for (const std::string& warning : part->loaded.scene.warnings) {
-      notes.push_back(scene + "Found on loading: " + warning);
-    }
-    const studies::StudyScene of{part->basis_scene.scene, part->basis_scene.groups,
-                                 part->basis_scene.effects, *part->query};
-    for (const std::string& missing : studies::not_captured(of, {})) {
-      notes.push_back(scene + "Not simulated: " + missing + ".");
-    }
-  }
+  for (const StudyPart* part : findings.parts) add_notes_of_scene(findings, *part, notes);
   for (const CameraResults& found : findings.cameras) {
     notes.push_back(fmt::format(
         "Picture of camera {}: noise of {:.2g} % of the mean in the sum of all lights; the "
         "conditions' own noise is larger where little of that light shines.",
         found.camera->camera->name, 100.0 * found.relative_noise));
+    const auto wanted = found.part->loaded.scene.quality.error;
+    if (wanted && found.relative_noise > *wanted) {
+      notes.push_back(fmt::format("Limit reached: the scene wants {:.2g} %.", 100.0 * *wanted));
+    }
   }
   if (!findings.complete)
     notes.push_back("The study was stopped before its end; run it again to go on.");
@@ -205,6 +213,7 @@ Json study_json(const StudyFindings& findings) {
           {"answers", findings.answers},
           {"pairs", findings.pairs},
           {"figures", findings.figures},
+          {"thumbnails", findings.thumbnails},
           {"settings", settings_of(findings)},
           {"provenance",
            {{"program", std::string("earthshine ") + EARTHSHINE_VERSION},

@@ -28,8 +28,10 @@ struct StudyFindings {
   std::uint64_t seed = 1;
   std::vector<const StudyPart*> parts;
   std::vector<CameraResults> cameras;
-  Json answers = Json::array(), pairs = Json::array(), figures = Json::array();
+  Json answers = Json::array(), pairs = Json::array(), figures = Json::array(),
+       thumbnails = Json::array();
   std::vector<StudyCost> costs;
+  Json limits = Json::object();  // reached by each scene's solution, lists of texts by its id
   std::map<std::string, std::size_t> patches;  // of each scene, by its id
   bool complete = true;
 };

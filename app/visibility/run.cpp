@@ -18,6 +18,7 @@
 #include "app/visibility/plan.h"
 #include "app/visibility/results.h"
 #include "app/visibility/shares.h"
+#include "app/visibility/thumbnails.h"
 #include "base/error.h"
 #include "base/files/output_file.h"
 #include "scenes/text/message_text.h"
@@ -120,6 +121,7 @@ class Runner {
     found.relative_noise = frame.relative_noise;
     found.render_seconds = frame.seconds;
     findings_.patches[part.id] = frame.patches;
+    findings_.limits[part.id] = frame.limits;
   }
 
   void add_all(const std::vector<std::vector<ViewingConfiguration>>& more) {
@@ -133,7 +135,7 @@ class Runner {
     if (listen_ || !pictures_are_there(work.pictures())) return false;
     const auto ways = work.known_ways();
     const auto judged = work.known_conditions();
-    if (!ways || !judged) return false;
+    if (!ways || !judged || !thumbnails_are_there(work, *judged)) return false;
     const auto frame = work.known_frame(findings_.costs);
     if (!frame) return false;
     const PictureTask& pictures = work.pictures();
@@ -144,6 +146,7 @@ class Runner {
          true});
     add_all(*ways);
     draw_pictures(pictures, nullptr, findings_.figures);
+    draw_thumbnails(work, nullptr, *judged, findings_.thumbnails);
     return true;
   }
 
@@ -153,7 +156,9 @@ class Runner {
     const studies::BasisView view = work.view_of(frame, findings_.costs);
     found.conditions = work.judge(view, work.all_batches(), findings_.costs);
     if (listen_) listen_(pictures.part, pictures.camera, view, frame);
-    if (!Interrupt::asked()) add_all(work.conclude(view, findings_.figures));
+    if (Interrupt::asked()) return;
+    add_all(work.conclude(view, findings_.figures));
+    draw_thumbnails(work, &view, found.conditions, findings_.thumbnails);
   }
 
   const StudyTask& task_;

@@ -14,9 +14,9 @@
 #include "app/options.h"
 #include "app/output.h"
 #include "app/study/study.h"
+#include "app/views/sight_json.h"
 #include "app/visibility/pictures.h"
 #include "app/visibility/run.h"
-#include "app/visibility/sight_json.h"
 #include "base/files/output_file.h"
 
 namespace earthshine::app {
@@ -88,7 +88,9 @@ std::string table_of(const Json& rows) {
         cell(row["saturated_share"], 100.0, " %"), cell(row["crushed_share"], 100.0, " %"));
   }
   if (rows.empty()) return "The scene marks no object as a target.\n";
-  return text + "+ : reaches the picture's border, more of it may lie outside.\n";
+  return text +
+         "Luminances of the clean picture, 0.2126 R + 0.7152 G + 0.0722 B.\n"
+         "+ : reaches the picture's border, more of it may lie outside.\n";
 }
 
 // What the tables have said from the beginning, from the same picture as the rest of the study.

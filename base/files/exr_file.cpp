@@ -12,7 +12,9 @@
 #include <ImfOutputFile.h>
 #include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
+#include <half.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -83,6 +85,17 @@ class CheckedStream : public Imf::OStream {
               "An older file of that name was kept");
 }
 
+// A row of a channel in 16 bits: a second copy of all rows would cost half of the picture again.
+struct HalfRow {
+  const Channel& channel;
+  std::vector<Imath::half> values;
+  void fill(int y) {
+    const auto from = channel.values.begin() +
+                      static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * values.size());
+    std::copy_n(from, values.size(), values.begin());
+  }
+};
+
 }  // namespace
 
 void write_exr(const std::filesystem::path& path, const Image& image, const ExrHeader& attributes) {
@@ -96,6 +109,8 @@ void write_exr(const std::filesystem::path& path, const Image& image, const ExrH
     Imf::Header header(image.width, image.height);
     set_exr_attributes(header, attributes);
     Imf::FrameBuffer buffer;
+    std::vector<HalfRow> half_rows;
+    half_rows.reserve(attributes.half_channels.size());
     for (const Channel& channel : image.channels) {
       if (channel.values.size() != image.pixel_count()) {
         refuse_writing(path, "channel \"" + channel.name + "\" has a wrong number of values");
@@ -103,13 +118,27 @@ void write_exr(const std::filesystem::path& path, const Image& image, const ExrH
       if (header.channels().findChannel(channel.name) != nullptr) {
         refuse_writing(path, "there are two channels \"" + channel.name + "\"");
       }
+      const auto& half = attributes.half_channels;
+      if (std::find(half.begin(), half.end(), channel.name) != half.end()) {
+        header.channels().insert(channel.name, Imf::Channel(Imf::HALF));
+        half_rows.push_back(
+            {channel, std::vector<Imath::half>(static_cast<std::size_t>(image.width))});
+        Imath::half* row = half_rows.back().values.data() - header.dataWindow().min.x;
+        buffer.insert(channel.name,
+                      Imf::Slice(Imf::HALF, reinterpret_cast<char*>(row), sizeof(Imath::half), 0));
+        continue;
+      }
       header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
       char* values = reinterpret_cast<char*>(const_cast<float*>(channel.values.data()));
       buffer.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, values, header.dataWindow()));
     }
     Imf::OutputFile file(stream, header);
     file.setFrameBuffer(buffer);
-    file.writePixels(image.height);
+    for (int y = 0; !half_rows.empty() && y < image.height; ++y) {
+      for (HalfRow& row : half_rows) row.fill(y);
+      file.writePixels(1);
+    }
+    if (half_rows.empty()) file.writePixels(image.height);
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {

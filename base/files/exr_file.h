@@ -26,6 +26,8 @@ struct ExrHeader {
   struct Whole {
     int columns = 0, rows = 0, x = 0, y = 0;
   } whole = {};
+  // Channels to be written in 16 bits, rounded to the nearest half; not read back.
+  std::vector<std::string> half_channels = {};
 };
 
 struct ExrFile {
@@ -33,9 +35,10 @@ struct ExrFile {
   ExrHeader header;
 };
 
-// Writes 32-bit float channels, ZIP compressed, with Rec. 709 chromaticities and whiteLuminance = 1
-// (pixels are radiance in cd/m^2). Written aside and renamed: a failure leaves an older file whole.
-// Throws base::Error (Work) when the file cannot be written.
+// Writes 32-bit float channels, or 16-bit ones where the header says so, ZIP compressed, with Rec.
+// 709 chromaticities and whiteLuminance = 1 (pixels are radiance in cd/m^2). Written aside and
+// renamed: a failure leaves an older file whole. Throws base::Error (Work) when the file cannot be
+// written.
 void write_exr(const std::filesystem::path& path, const Image& image, const ExrHeader& header = {});
 
 // Reads every channel of a scan-line or tiled file as float (of a multi-part file the first part);

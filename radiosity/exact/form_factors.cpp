@@ -8,6 +8,7 @@
 
 #include "base/numbers/random.h"
 #include "base/parallel.h"
+#include "radiosity/exact/open_share.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -38,14 +39,15 @@ void check(const scenes::Scene& scene, const Patches& patches) {
 
 constexpr std::uint32_t gap_rays = 1U << 16;
 
-// Where the rays of a patch end that meet no patch.
+// Where the rays of a patch end that meet no patch. Those from covered points do not count.
 struct Open {
   int sky = 0, black = 0;
   Rgb radiance{0.0};  // sum over the rays to the sky
 };
 
 Open cast_open(const scenes::RayQuery& query, const Patches& patches, std::uint32_t patch,
-               std::uint32_t rays, std::uint64_t seed, const SkyRadiance& sky) {
+               std::uint32_t rays, std::uint64_t seed, const SkyRadiance& sky,
+               const ClosedBodies* bodies = nullptr, std::span<const std::uint32_t> near = {}) {
   Open open;
   const base::SobolOwen4 sobol(base::Key(seed, base::Stream::ExactOpening, patch));
   const base::Frame3 frame = base::frame_around(patches.normal(patch));
@@ -66,6 +68,8 @@ Open cast_open(const scenes::RayQuery& query, const Patches& patches, std::uint3
     }
     query.closest(packet, count, hits);
     for (std::uint32_t k = 0; k < count; ++k) {
+      const Vec3 origin(packet.origin_x[k], packet.origin_y[k], packet.origin_z[k]);
+      if (bodies != nullptr && bodies->cover(origin, near)) continue;
       if (hits.triangle[k] == scenes::no_triangle) {
         ++open.sky;
         if (sky) open.radiance += sky(directions[k]);
@@ -83,10 +87,12 @@ double pair_m2(const PairExchange& pairs, std::size_t i, std::size_t j) {
   return pairs.upper_m2[i < j ? pairs.index(i, j) : pairs.index(j, i)];
 }
 
-void fill_rows(const PairExchange& pairs, const Patches& patches, FormFactors& factors) {
+void fill_rows(const PairExchange& pairs, const std::vector<double>& open_m2,
+               FormFactors& factors) {
   const std::size_t count = pairs.count;
   const auto factor = [&](std::size_t i, std::size_t j) {
-    return static_cast<float>(std::min(1.0, pair_m2(pairs, i, j) / patches.area_m2[i]));
+    if (open_m2[i] <= 0.0 || open_m2[j] <= 0.0) return 0.0F;
+    return static_cast<float>(std::min(1.0, pair_m2(pairs, i, j) / open_m2[i]));
   };
   std::vector<std::uint64_t> nonzero(count, 0);
   base::parallel_chunks(count, 64, [&](std::size_t begin, std::size_t end) {
@@ -131,6 +137,10 @@ double credible_defect(double row_square_error) {
 // Shares of sky and black backs, and the scale that makes the row close to the last digit.
 void close_row(FormFactors& factors, std::size_t i, const Open& open, double credible,
                ExactReport& report) {
+  if (!factors.open.share.empty() && factors.open.share[i] <= 0.0) {
+    factors.black[i] = factors.lost[i] = 1.0;
+    return;
+  }
   const double landed = landed_share(factors, i), defect = std::abs(1.0 - landed);
   const int open_rays = open.sky + open.black;
   double rest = 0.0;
@@ -158,6 +168,27 @@ void close_row(FormFactors& factors, std::size_t i, const Open& open, double cre
     factors.sky_illuminance[i] = open.radiance * (base::pi * factors.sky[i] / open.sky);
 }
 
+// Covered points lie behind black backs, or look past everything where no sky shines: only such
+// patches are asked about. None: nothing is covered.
+std::vector<PatchCover> find_cover(const scenes::Scene& scene, const scenes::RayQuery& query,
+                                   const Patches& patches, const std::vector<Open>& open,
+                                   std::uint64_t seed, OpenParts& parts) {
+  const bool dark_sky = !scene.sun && !scene.earth;
+  std::vector<std::uint32_t> maybe;
+  for (std::uint32_t i = 0; i < open.size(); ++i) {
+    if (open[i].black > 0 || (open[i].sky > 0 && dark_sky)) maybe.push_back(i);
+  }
+  if (maybe.empty()) return {};
+  const auto bodies = std::make_shared<const ClosedBodies>(scene, query.centre());
+  std::vector<PatchCover> covers = measure_cover(*bodies, query, patches, maybe, seed);
+  if (std::all_of(covers.begin(), covers.end(), [](const auto& c) { return c.open == 1.0; })) {
+    return {};
+  }
+  parts.bodies = bodies;
+  for (const PatchCover& cover : covers) parts.share.push_back(cover.open);
+  return covers;
+}
+
 }  // namespace
 
 ExactFormFactors exact_form_factors(const scenes::Scene& scene, const scenes::RayQuery& query,
@@ -179,21 +210,33 @@ ExactFormFactors exact_form_factors(const scenes::Scene& scene, const scenes::Ra
   }
   factors.sky_illuminance.assign(count, Rgb(0.0));
 
-  const PairExchange pairs = exchange_of_pairs(patches, options.tolerance);
-  fill_rows(pairs, patches, factors);
-  std::vector<double> credible(count);
-  std::transform(pairs.row_square_error.begin(), pairs.row_square_error.end(), credible.begin(),
-                 credible_defect);
+  std::vector<PatchCover> covers;
   std::vector<Open> open(count);
-  base::parallel_chunks(count, 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto patch = static_cast<std::uint32_t>(i);
-      open[i] = cast_open(query, patches, patch, rays, options.seed, sky);
-      // Open by more than errors can be, through a gap that few rays find.
-      const bool found_none = open[i].sky + open[i].black == 0;
-      if (found_none && 1.0 - landed_share(factors, i) > credible[i] && rays < gap_rays) {
-        open[i] = cast_open(query, patches, patch, gap_rays, options.seed, sky);
-      }
+  std::vector<double> credible(count);
+  const auto look_out = [&](std::size_t i, std::uint32_t ray_count) {
+    const auto patch = static_cast<std::uint32_t>(i);
+    const bool whole = covers.empty() || covers[i].open == 1.0;
+    open[i] = cast_open(query, patches, patch, ray_count, options.seed, sky,
+                        whole ? nullptr : factors.open.bodies.get(),
+                        whole ? std::span<const std::uint32_t>() : covers[i].near);
+  };
+  base::parallel_chunks(count, 1, [&](std::size_t i, std::size_t) { look_out(i, rays); });
+  covers = find_cover(scene, query, patches, open, options.seed, factors.open);
+
+  const PairExchange pairs = exchange_of_pairs(patches, options.tolerance);
+  fill_rows(pairs, open_areas(factors.open, patches.area_m2), factors);
+  result.report.open_std_error.assign(count, 0.0);
+  base::parallel_chunks(count, 1, [&](std::size_t i, std::size_t) {
+    credible[i] = credible_defect(pairs.row_square_error[i]);
+    if (!covers.empty() && covers[i].open < 1.0) {
+      look_out(i, rays);
+      result.report.open_std_error[i] = covers[i].std_error;
+      credible[i] += 4.0 * covers[i].std_error / std::max(covers[i].open, covers[i].std_error);
+    }
+    // Open by more than errors can be, through a gap that few rays find.
+    const bool found_none = open[i].sky + open[i].black == 0;
+    if (found_none && 1.0 - landed_share(factors, i) > credible[i] && rays < gap_rays) {
+      look_out(i, gap_rays);
     }
   });
   result.report.pairs = count < 2 ? 0 : std::uint64_t{count} * (count - 1) / 2;

@@ -6,6 +6,7 @@
 //   F_ij = row_scale_i hits_ij,  hits_ij the computed F_ij as float,  column_scale = kept = 1
 //   sum_j F_ij + F_i,sky + F_i,black = 1 to the last digits
 //
+// F_ij is the mean over what no body covers of patch i (factors.open), as in the factors by rays.
 // What a row leaves open, 1 - sum_j F_ij, is split between the sky and black backs by rays of the
 // patch; a row none of whose rays ends on either and whose sum is 1 within its errors is closed and
 // scaled to 1. Every defect that was scaled away is in the report.
@@ -31,6 +32,7 @@ struct ExactReport {
   // Per patch, of F_i,sky and F_i,black alike: what the rays leave open about the split between
   // them.
   std::vector<double> split_std_error;
+  std::vector<double> open_std_error;  // per patch, of factors.open.share, which points find
   std::size_t closed_rows = 0;
   double max_closed_defect = 0.0;  // greatest |1 - sum_j F_ij| of closed rows before scaling
   std::size_t overfull_rows = 0;   // open rows with sum_j F_ij > 1, scaled to 1

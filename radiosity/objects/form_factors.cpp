@@ -45,11 +45,12 @@ Tally tally(const FormFactors& f, const Patches& patches, std::size_t objects) {
   return result;
 }
 
-// Adds weight(patch) * area * share of every patch to its object's row.
+// Adds weight(patch) * area * share of every patch to its object's row. area_m2: what is open.
 template <class Weight>
-void add(const Tally& from, const Patches& patches, Weight weight, ObjectTable& table) {
+void add(const Tally& from, const Patches& patches, std::span<const double> area_m2, Weight weight,
+         ObjectTable& table) {
   for (std::uint32_t i = 0; i + 1 < from.start.size(); ++i) {
-    const double w = weight(i) * patches.area_m2[i];
+    const double w = weight(i) * area_m2[i];
     double* row = table.row(patches.object(i));
     for (std::uint32_t e = from.start[i]; e < from.start[i + 1]; ++e) {
       row[from.column[e]] += w * from.share[e];
@@ -75,7 +76,8 @@ double reciprocity_error(const ObjectFormFactors& o) {
   double worst = 0.0;
   for (std::size_t i = 0; i < o.F.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
-      const double there = o.area_m2[i] * o.F[i][k], back = o.area_m2[k] * o.F[k][i];
+      const double there = o.open_area_m2[i] * o.F[i][k];
+      const double back = o.open_area_m2[k] * o.F[k][i];
       if (o.F[i][k] > 4.0 * o.std_error[i][k] && o.F[k][i] > 4.0 * o.std_error[k][i]) {
         worst = std::max(worst, std::abs(there - back) / std::max(there, back));
       }
@@ -84,20 +86,28 @@ double reciprocity_error(const ObjectFormFactors& o) {
   return worst;
 }
 
-ObjectFormFactors per_area(const ObjectTable& table, std::vector<double> area_m2) {
+struct Areas {
+  std::vector<double> all, open;  // per object, m^2
+};
+
+ObjectFormFactors per_area(const ObjectTable& table, const Areas& areas) {
   const std::size_t n = table.objects();
   ObjectFormFactors o;
-  o.area_m2 = std::move(area_m2);
+  o.area_m2 = areas.all;
+  o.open_area_m2 = areas.open;
   o.F.assign(n, std::vector<double>(n, 0.0));
   o.std_error = o.F;
   o.sky.assign(n, 0.0);
   o.black = o.sky_std_error = o.black_std_error = o.sky;
   for (std::size_t i = 0; i < n; ++i) {
-    if (o.area_m2[i] <= 0.0) continue;
+    if (o.open_area_m2[i] <= 0.0) {
+      if (o.area_m2[i] > 0.0) o.black[i] = 1.0;  // as a covered patch's row
+      continue;
+    }
     const double* row = table.row(i);
-    for (std::size_t k = 0; k < n; ++k) o.F[i][k] = row[k] / o.area_m2[i];
-    o.sky[i] = row[n] / o.area_m2[i];
-    o.black[i] = row[n + 1] / o.area_m2[i];
+    for (std::size_t k = 0; k < n; ++k) o.F[i][k] = row[k] / o.open_area_m2[i];
+    o.sky[i] = row[n] / o.open_area_m2[i];
+    o.black[i] = row[n + 1] / o.open_area_m2[i];
   }
   return o;
 }
@@ -113,9 +123,10 @@ double row_error(const ObjectFormFactors& o) {
   return worst;
 }
 
-std::vector<double> object_areas(const scenes::Scene& scene, const Patches& patches) {
-  std::vector<double> area(scene.objects.size(), 0.0);
-  for (std::uint32_t i = 0; i < patches.count(); ++i) area[patches.object(i)] += patches.area_m2[i];
+std::vector<double> object_areas(std::size_t objects, const Patches& patches,
+                                 std::span<const double> area_m2) {
+  std::vector<double> area(objects, 0.0);
+  for (std::uint32_t i = 0; i < patches.count(); ++i) area[patches.object(i)] += area_m2[i];
   return area;
 }
 
@@ -137,7 +148,7 @@ void set_std_errors(const std::vector<ObjectTable>& signed_tables,
                     const std::vector<double>& rays_per_m2, bool joined, ObjectFormFactors& o) {
   const std::size_t n = o.F.size();
   for (std::size_t i = 0; i < n; ++i) {
-    const double area = o.area_m2[i];
+    const double area = o.open_area_m2[i];
     if (area <= 0.0) continue;
     for (std::size_t k = 0; k < n + 2; ++k) {
       double square = 0.0;
@@ -160,14 +171,15 @@ std::size_t widen_by_disagreement(const ObjectFormFactors& cast, ObjectFormFacto
   std::size_t pairs = 0;
   for (std::size_t i = 0; i < o.F.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
-      const double there = cast.area_m2[i] * cast.F[i][k], back = cast.area_m2[k] * cast.F[k][i];
-      const double noise = std::hypot(cast.area_m2[i] * cast.std_error[i][k],
-                                      cast.area_m2[k] * cast.std_error[k][i]);
+      const std::vector<double>& area_m2 = cast.open_area_m2;
+      const double there = area_m2[i] * cast.F[i][k], back = area_m2[k] * cast.F[k][i];
+      const double noise =
+          std::hypot(area_m2[i] * cast.std_error[i][k], area_m2[k] * cast.std_error[k][i]);
       const double apart = std::abs(there - back);
       if (!(apart > errors_apart * noise)) continue;
       ++pairs;
-      o.std_error[i][k] = std::max(o.std_error[i][k], 0.5 * apart / o.area_m2[i]);
-      o.std_error[k][i] = std::max(o.std_error[k][i], 0.5 * apart / o.area_m2[k]);
+      o.std_error[i][k] = std::max(o.std_error[i][k], 0.5 * apart / area_m2[i]);
+      o.std_error[k][i] = std::max(o.std_error[k][i], 0.5 * apart / area_m2[k]);
     }
   }
   return pairs;
@@ -182,9 +194,13 @@ ObjectFormFactors object_form_factors(const scenes::Scene& scene, const Patches&
   for (std::size_t e = 0; e < scaled.hits.size(); ++e) {
     scaled.hits[e] *= static_cast<float>(factors.column_scale[factors.column[e]]);
   }
+  const std::vector<double> open_m2 = open_areas(factors.open, patches.area_m2);
   add(
-      tally(scaled, patches, table.objects()), patches, [](std::uint32_t) { return 1.0; }, table);
-  ObjectFormFactors result = per_area(table, object_areas(scene, patches));
+      tally(scaled, patches, table.objects()), patches, open_m2, [](std::uint32_t) { return 1.0; },
+      table);
+  ObjectFormFactors result =
+      per_area(table, {object_areas(table.objects(), patches, patches.area_m2),
+                       object_areas(table.objects(), patches, open_m2)});
   result.max_row_error = patch_row_error(factors);
   result.max_reciprocity_error = reciprocity_error(result);
   return result;
@@ -197,6 +213,10 @@ ObjectFormFactors object_form_factors_by_rays(const scenes::Scene& scene,
   const std::size_t objects = scene.objects.size();
   ObjectTable mean(objects);
   std::vector<ObjectTable> signed_tables(signings, ObjectTable(objects));
+  Areas areas{object_areas(objects, patches, patches.area_m2), {}};
+  areas.open = areas.all;
+  // Signed as the tables: how much of each object happened to count as covered.
+  std::vector<std::vector<double>> signed_covered(signings, std::vector<double>(objects, 0.0));
   report = {};
   std::vector<std::uint16_t> halves(signings * patches.count());
   base::parallel_chunks(halves.size(), 4096, [&](std::size_t begin, std::size_t end) {
@@ -207,42 +227,65 @@ ObjectFormFactors object_form_factors_by_rays(const scenes::Scene& scene,
   for (std::uint32_t r = 0; r < replicates; ++r) {
     const FormFactors f =
         cast_form_factors(scene, query, patches,
-                          {options.rays_per_patch / static_cast<int>(replicates), options.seed, r});
+                          {.rays_per_patch = options.rays_per_patch / static_cast<int>(replicates),
+                           .seed = options.seed,
+                           .replicate = r,
+                           .leave_out_covered = true});
+    const std::vector<double> open_m2 = open_areas(f.open, patches.area_m2);
     report.rays_per_patch += f.rays_per_patch;
     report.rays += f.ray_count;
     report.row_error_before = std::max(report.row_error_before, patch_row_error(f));
     const Tally hits = tally(f, patches, objects);
     const double part = 1.0 / replicates;
     add(
-        hits, patches, [part](std::uint32_t) { return part; }, mean);
+        hits, patches, open_m2, [part](std::uint32_t) { return part; }, mean);
+    for (std::uint32_t i = 0; i < patches.count(); ++i) {
+      areas.open[patches.object(i)] -= part * (patches.area_m2[i] - open_m2[i]);
+    }
     base::parallel_chunks(signings, 1, [&](std::size_t b, std::size_t) {
       const auto sign = [&](std::uint32_t patch) {
         return ((halves[patch * signings + b] >> r) & 1) != 0 ? part : -part;
       };
-      add(hits, patches, sign, signed_tables[b]);
+      add(hits, patches, open_m2, sign, signed_tables[b]);
+      for (std::uint32_t i = 0; i < patches.count(); ++i) {
+        signed_covered[b][patches.object(i)] += sign(i) * (patches.area_m2[i] - open_m2[i]);
+      }
     });
   }
   report.replicates = static_cast<int>(replicates);
-  const std::vector<double> area = object_areas(scene, patches);
   std::vector<double> rays_per_m2(objects, 0.0);
+  for (std::size_t k = 0; k < objects; ++k) {
+    if (areas.open[k] < 1e-12 * areas.all[k]) areas.open[k] = 0.0;  // all of it, to rounding
+  }
   for (std::uint32_t i = 0; i < patches.count(); ++i) {
     rays_per_m2[patches.object(i)] += report.rays_per_patch;
   }
   for (std::size_t k = 0; k < objects; ++k) {
-    rays_per_m2[k] = area[k] > 0.0 ? rays_per_m2[k] / area[k] : 0.0;
+    // Rays from covered points do not count: as many a square metre as over the whole.
+    rays_per_m2[k] = areas.all[k] > 0.0 ? rays_per_m2[k] / areas.all[k] : 0.0;
   }
-  ObjectFormFactors result = per_area(mean, area);
+  ObjectFormFactors result = per_area(mean, areas);
+  // F = x / a, a = A - covered, which points find: dF = (dx + F dcovered) / a.
+  base::parallel_chunks(signings, 1, [&](std::size_t b, std::size_t) {
+    for (std::size_t i = 0; i < objects; ++i) {
+      if (areas.open[i] <= 0.0) continue;
+      double* row = signed_tables[b].row(i);
+      for (std::size_t k = 0; k < objects + 2; ++k) {
+        row[k] += mean.row(i)[k] / areas.open[i] * signed_covered[b][i];
+      }
+    }
+  });
   set_std_errors(signed_tables, rays_per_m2, false, result);
   report.reciprocity_error_before = reciprocity_error(result);
   report.reconciled =
       !options.raw && !scenes::any_passes_light_on(scene) && !scenes::any_has_holes(scene);
   if (report.reconciled) {
-    const Reconciliation reconcile(mean, area, rays_per_m2);
+    const Reconciliation reconcile(mean, areas.open, rays_per_m2);
     reconcile.apply(mean, true);
     base::parallel_chunks(
         signings, 1, [&](std::size_t b, std::size_t) { reconcile.apply(signed_tables[b], false); });
     const ObjectFormFactors cast = std::move(result);
-    result = per_area(mean, area);
+    result = per_area(mean, areas);
     set_std_errors(signed_tables, rays_per_m2, true, result);
     report.disagreeing_pairs = widen_by_disagreement(cast, result);
   }

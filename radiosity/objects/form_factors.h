@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Form factors between whole objects of the scene (all their sides), with standard errors.
+// Form factors between whole objects of the scene (all their sides), with standard errors. As in a
+// solve, what lies in a body (closed_bodies.h) takes no part: means are over what is open.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,8 @@ struct ObjectFormFactors {
   std::vector<std::vector<double>> F, std_error;
   std::vector<double> sky, sky_std_error;      // F to the sky
   std::vector<double> black, black_std_error;  // F to black backs
-  std::vector<double> area_m2;                 // emitting area: both sides of sheets
+  std::vector<double> area_m2;                 // both sides of sheets, with what bodies cover
+  std::vector<double> open_area_m2;            // A_i: what sends and receives
   // max_i |sum_j F_ij + sky_i + black_i - 1|, mirrors' and glass's shares left out of the sum
   double max_row_error = 0.0;
   // max over pairs of |A_i F_ij - A_j F_ji| / max(A_i F_ij, A_j F_ji), where both exceed 4 standard

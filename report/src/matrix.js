@@ -6,6 +6,7 @@ const cellsOf = (row) => [...row.cells].filter((cell) => !cell.matches("th, .n")
 
 const shownRows = (table) => [...table.tBodies[0].rows].filter((row) => !row.hidden);
 
+// Verdict and reason of a cell, and all its other figures.
 const describe = (table, cell) => {
   const row = cell.parentElement;
   const heading = table.tHead.rows[table.tHead.rows.length - 1].cells[cell.cellIndex];
@@ -13,18 +14,32 @@ const describe = (table, cell) => {
   const [camera, target] = [row.cells[0].textContent, row.cells[1].textContent];
   const text = `Camera ${camera}, ${target}, ${place}: ${cell.textContent.trim()}.`;
   const figures = document.getElementById(`r${cell.dataset.r}`);
-  if (!figures) return text;
+  if (!figures) return [text, ""];
   const titles = figures.closest("table").tHead.rows[0].cells;
   const told = [];
+  let reason = "";
   for (let k = 4; k < figures.cells.length; ++k) {
-    const value = figures.cells[k].textContent;
+    const value = figures.cells[k].textContent.trim();
     if (value === "–") continue;
-    // The reason of this very condition stands before the figures.
     const why = titles[k].textContent === "why not";
-    if (why) told.unshift(`${value[0].toUpperCase()}${value.slice(1)}.`);
+    if (why) reason = ` ${value[0].toUpperCase()}${value.slice(1)}.`;
     else told.push(`${titles[k].textContent}: ${value};`);
   }
-  return [text, ...told].join(" ").replace(/;$/, ".");
+  return [text + reason, told.join(" ").replace(/;$/, ".")];
+};
+
+// The small picture that goes with a cell, clean and on the monitor, with the place it is of.
+const showPictures = (table, cell, into) => {
+  into.replaceChildren();
+  const figure = document.getElementById(`p${cell.dataset.p}`);
+  if (!figure) return;
+  for (const image of figure.querySelectorAll("img")) into.append(image.cloneNode());
+  const caption = document.createElement("p");
+  const same = [...cell.parentElement.cells].find((other) => other.dataset.p === cell.dataset.p) === cell;
+  caption.textContent = same
+    ? figure.textContent.trim()
+    : `Pictured: ${figure.textContent.trim()}; from there to here no verdict of this camera changes.`;
+  into.append(caption);
 };
 
 const step = (table, cell, key) => {
@@ -51,6 +66,11 @@ const step = (table, cell, key) => {
   }
 };
 
+const inView = (element) => {
+  const { top, bottom } = element.getBoundingClientRect();
+  return top >= 0 && bottom <= innerHeight;
+};
+
 // Opens what hides the row and goes there.
 const goToRow = (cell) => {
   const row = document.getElementById(`r${cell.dataset.r}`);
@@ -64,11 +84,21 @@ const goToRow = (cell) => {
 
 const enhance = (table) => {
   table.setAttribute("role", "grid");
+  const panel = document.createElement("div");
+  panel.className = "reading";
+  panel.setAttribute("role", "status");
   const hint = document.createElement("p");
-  hint.className = "reading";
-  hint.setAttribute("role", "status");
-  hint.textContent = "Choose a cell for its figures; the arrow keys move, Enter goes to its row.";
-  table.closest(".scroll").after(hint);
+  const shots = document.createElement("div");
+  shots.className = "shots";
+  const figures = document.createElement("p");
+  panel.append(hint, shots, figures);
+  hint.textContent =
+    "Choose a cell for its picture, its reason and its figures; the arrow keys move, Enter goes to its row.";
+  table.closest(".scroll").after(panel);
+  const read = (cell) => {
+    [hint.textContent, figures.textContent] = describe(table, cell);
+    showPictures(table, cell, shots);
+  };
   let current = null;
   const choose = (cell, focus) => {
     if (current) current.tabIndex = -1;
@@ -76,7 +106,7 @@ const enhance = (table) => {
     cell.tabIndex = 0;
     if (focus) cell.focus();
     else return;
-    hint.textContent = describe(table, cell);
+    read(cell);
   };
   const first = table.querySelector("tbody td[data-r]");
   if (first) choose(first, false);
@@ -87,13 +117,15 @@ const enhance = (table) => {
   });
   table.addEventListener("focusin", (event) => {
     const cell = chosen(event);
-    if (cell) hint.textContent = describe(table, cell);
+    if (cell) read(cell);
   });
   table.addEventListener("keydown", (event) => {
     const cell = chosen(event);
     if (!cell) return;
     if (event.key === "Enter") {
-      goToRow(cell);
+      // What is seen and why, first; once more, and the row of all its figures.
+      if (cell.dataset.p && !inView(panel)) panel.scrollIntoView({ block: "nearest" });
+      else goToRow(cell);
       event.preventDefault();
       return;
     }

@@ -5,7 +5,7 @@ export const preparePrinting = (timelines) => {
   let opened = [];
   addEventListener("beforeprint", () => {
     timelines.drawAll();
-    opened = [...document.querySelectorAll("details:not([open])")];
+    opened = [...document.querySelectorAll("details:not([open]):not(.unprinted)")];
     for (const part of opened) part.open = true;
   });
   addEventListener("afterprint", () => {

@@ -139,6 +139,10 @@ struct Comparison {
                                                 const std::vector<float>& second,
                                                 const ObjectMap& map);
 
+// Methods, by number, whose error is less than what the reference itself is uncertain by.
+[[nodiscard]] std::vector<std::size_t> errors_below_the_references_noise(
+    const Comparison& comparison);
+
 // Of the first or second reference: half the edge and four times the patches.
 [[nodiscard]] radiosity::SolveOptions reference_solver(radiosity::SolveOptions options,
                                                        std::uint64_t number);

@@ -169,6 +169,10 @@ def study(positions=24, cameras=2, targets=3, lamps=2):
             {"title": "Camera B by night, clean and CCTV", "left": {"file": "pictures/night-b.png", "caption": "clean"},
              "right": {"file": "pictures/night-b-cctv.png", "caption": "on the CCTV monitor"}}],
         "figures": [{"file": "pictures/day-b.png", "caption": "Camera B by day, tone-mapped"}],
+        "thumbnails": [
+            {"condition": name, "camera": cameras[0], "file": "pictures/night-b.png",
+             "monitor_file": "pictures/night-b-cctv.png"}
+            for name, condition in conditions.items() if condition["position_deg"] in (0, 180)],
         "settings": {"positions": positions, "size": "512x512", "iris": "average", "wanted": "tss>=0.9, eureca>=0.99"},
         "provenance": {"program": "earthshine 0.1.0", "compiler": "GCC 12.2", "seed": 1,
                        "libraries": {"embree": "3.13.5", "Eigen": "3.4.0"}, "scene_digest": "5d3e0f1a2b4c6978"},

@@ -87,7 +87,7 @@ class Content(Report):
                      study["answers"][0]["text"], "Camera B by night, clean and CCTV", "the tail stands in front",
                      "288 results", "bay lamps on", "Eclipse: 135° to 225°. Penumbra: 120°, 240°."):
             self.assertIn(text, page.text)
-        self.assertEqual(len(page.all("img")), 5)
+        self.assertEqual(len(page.all("img")), 5 + 2 * len(study["thumbnails"]))
         self.assertTrue(all(image["alt"] for image in page.all("img")))
         rows = [row for row in page.all("tr") if re.fullmatch(r"r\d+", row.get("id", ""))]
         self.assertEqual(len(rows), len(study["results"]))
@@ -191,7 +191,7 @@ class Studies(Report):
         self.says(Page(self.study(empty)).text, "no camera", "0 results")
         full = report_sample.study(positions=4)
         self.says(Page(self.study(full | {"targets": [], "results": [], "timelines": []})).text, "no object as a target")
-        self.says(Page(self.study(full | {"conditions": [], "results": [], "timelines": []})).text, "no condition")
+        self.says(Page(self.study(full | {"conditions": [], "results": [], "timelines": [], "thumbnails": []})).text, "no condition")
         self.says(Page(self.study(full | {"results": []})).text, "no result yet")
         blind = full | {"results": [report_sample.out_of_view(r["condition"], r["camera"], r["target"])
                                     for r in full["results"]]}

@@ -9,6 +9,27 @@ from tiny_bay import BAY, STUDY, VERDICTS, Case
 class Orbit(Case):
     CALL = ("study", "orbit", "bay.toml", "--positions", "6", "--wanted", "box>=0.5", "--iris", "fixed,peak")
 
+    def check_thumbnails(self, study):
+        """In small: the first place, midnight, and each place at which a verdict is another than before."""
+        wanted = set()
+        for camera in {result["camera"] for result in study["results"]}:
+            before = None
+            for condition in study["conditions"]:
+                verdicts = [result["verdict"] for result in study["results"]
+                            if (result["camera"], result["condition"]) == (camera, condition["id"])]
+                if condition["position_deg"] in (0, 180) or verdicts != before:
+                    wanted.add((camera, condition["id"]))
+                before = verdicts
+        shown = study["thumbnails"]
+        self.assertEqual({(small["camera"], small["condition"]) for small in shown}, wanted)
+        cctv = {camera["name"]: camera["cctv"] is not None for camera in study["cameras"]}
+        for small in shown:
+            self.assertEqual(small["monitor_file"] is not None, cctv[small["camera"]])
+            for file in filter(None, (small["file"], small["monitor_file"])):
+                self.assertTrue((self.folder / "o" / file).is_file(), file)
+        page = (self.folder / "o" / "report.html").read_text(encoding="utf-8")
+        self.assertEqual(page.count('<figure id="p'), len(shown))
+
     def test_folder_and_results(self):
         printed = self.json(*self.CALL, "-o", "o")
         study = self.no_nonsense("o")
@@ -51,6 +72,7 @@ class Orbit(Case):
             self.assertTrue((self.folder / "o" / figure["file"]).is_file())
             self.assertTrue((self.folder / "o" / figure["exr"]).is_file())
         self.assertGreater(len(study["pairs"]), 0)
+        self.check_thumbnails(study)
         answer, = study["answers"]
         self.assertTrue(answer["found"])
         self.assertIn(answer["camera"], "AB")

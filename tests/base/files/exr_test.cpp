@@ -49,6 +49,34 @@ TEST(Exr, EveryBitOfEveryChannelComesBack) {
   }
 }
 
+// Halves keep 10 binary digits after the point, from 2^-14 on: what has no more of them comes back
+// bit for bit, what has is the nearest half, off by 2^-11 at most; the other channels stay as they
+// are.
+TEST(Exr, NamedChannelsAreHalvesAndOthersAreNot) {
+  const TemporaryFolder folder;
+  Image image = pattern(37, 35);
+  std::vector<float>& exact = image.add("exact");
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    exact[i] =
+        std::ldexp(1.0F + static_cast<float>(i % 1024) / 1024.0F, static_cast<int>(i % 29) - 14);
+  }
+  ExrHeader header;
+  header.half_channels = {"exact", "B"};
+  write_exr(folder / "a.exr", image, header);
+  const Image back = read_exr(folder / "a.exr").image;
+  for (const Channel& channel : image.channels) {
+    if (channel.name == "B") continue;
+    EXPECT_EQ(back.find(channel.name)->values, channel.values) << channel.name;
+  }
+  const std::vector<float>&sent = image.find("B")->values, &read = back.find("B")->values;
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    EXPECT_NEAR(read[i], sent[i], std::ldexp(sent[i], -11));
+  }
+  const Imf::InputFile file((folder / "a.exr").string().c_str());
+  EXPECT_EQ(file.header().channels()["exact"].type, Imf::HALF);
+  EXPECT_EQ(file.header().channels()["Z"].type, Imf::FLOAT);
+}
+
 TEST(Exr, HeaderSaysCandelaRec709FloatAndZip) {
   const TemporaryFolder folder;
   write_exr(folder / "a.exr", pattern(4, 4));

@@ -180,6 +180,17 @@ TEST(CompareVerdict, WithoutWideSourcesThereIsNothingToDistribute) {
       << sentence(comparison);
 }
 
+// The mean of two references is off by 2 %: errors below that are named, the reference is not.
+TEST(Compare, ErrorsBelowTheReferencesOwnNoiseAreNamed) {
+  Comparison comparison;
+  comparison.methods.resize(4);
+  comparison.methods[1].difference.relative_rmse = 0.01;
+  comparison.methods[2].difference.relative_rmse = 0.02;
+  comparison.methods[3].difference.relative_rmse = 0.0;
+  comparison.reference_noise.relative_rmse = 0.02;
+  EXPECT_EQ(errors_below_the_references_noise(comparison), (std::vector<std::size_t>{1, 3}));
+}
+
 TEST(CompareVerdict, NoiseThatCouldTurnItRoundIsSaid) {
   auto builder = tests::plate_on_ground(0.4, 0.6);
   builder.scene.sun = tests::overhead_sun(1000.0);

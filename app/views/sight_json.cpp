@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/visibility/sight_json.h"
+#include "app/views/sight_json.h"
 
 #include <fmt/format.h>
 

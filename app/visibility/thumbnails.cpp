@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/visibility/thumbnails.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/files/png_file.h"
+#include "base/parallel.h"
+#include "base/tone.h"
+
+namespace earthshine::app {
+namespace {
+
+constexpr int widest_px = 160;
+
+double degrees_apart(double a, double b) { return std::abs(std::remainder(a - b, 360.0)); }
+
+std::size_t nearest_place(const std::vector<double>& positions_deg, double wanted_deg) {
+  const auto nearer = [wanted_deg](double a, double b) {
+    return degrees_apart(a, wanted_deg) < degrees_apart(b, wanted_deg);
+  };
+  return static_cast<std::size_t>(
+      std::min_element(positions_deg.begin(), positions_deg.end(), nearer) - positions_deg.begin());
+}
+
+bool same_verdicts(const Json& one, const Json& other) {
+  for (std::size_t target = 0; target < one.size(); ++target) {
+    if (one[target]["verdict"] != other[target]["verdict"]) return false;
+  }
+  return true;
+}
+
+// Means over squares of `step` pixels, `channels` values side by side.
+template <class Value, class Sum>
+std::vector<Value> shrunk(const std::vector<Value>& from, int width, int height, int channels,
+                          int step) {
+  const int columns = width / step, rows = height / step;
+  std::vector<Value> to;
+  for (int y = 0; y < rows; ++y) {
+    for (int k = 0; k < columns * channels; ++k) {
+      Sum sum = 0;
+      for (int v = 0; v < step; ++v) {
+        for (int u = 0; u < step; ++u) {
+          const int x = (k / channels * step + u) * channels + k % channels;
+          sum += from[static_cast<std::size_t>((y * step + v) * width * channels + x)];
+        }
+      }
+      to.push_back(static_cast<Value>(sum / static_cast<Sum>(step * step)));
+    }
+  }
+  return to;
+}
+
+int step_of(int width) { return (width + widest_px - 1) / widest_px; }
+
+void write_small(const std::filesystem::path& path, const base::Image& radiance) {
+  const int step = step_of(radiance.width);
+  base::Image small{radiance.width / step, radiance.height / step, {}};
+  for (const char* name : {"R", "G", "B"}) {
+    small.add(name) =
+        shrunk<float, float>(radiance.find(name)->values, radiance.width, radiance.height, 1, step);
+  }
+  base::write_png(path, small.width, small.height, 3, base::tone_map(small).rgb);
+}
+
+void write_small(const std::filesystem::path& path, const degrade::Result& shown) {
+  const int step = step_of(shown.columns);
+  base::write_png(
+      path, shown.columns / step, shown.rows / step, shown.channels,
+      shrunk<std::uint8_t, int>(shown.pixels, shown.columns, shown.rows, shown.channels, step));
+}
+
+// Camera names may be alike but for characters that a file's name cannot have.
+std::string stem_of(const PictureTask& task, std::size_t condition) {
+  const auto number = &task.camera - task.part.cameras.data();
+  return fmt::format("pictures/small-{}-{}-c{}", task.part.id, number + 1, condition);
+}
+
+std::vector<std::string> files_of(const PictureTask& task, std::size_t condition) {
+  const std::string stem = stem_of(task, condition);
+  if (!task.camera.cctv) return {stem + ".png"};
+  return {stem + ".png", stem + "-cctv.png"};
+}
+
+Json key_of(const CameraWork& work, const std::vector<std::size_t>& conditions) {
+  Json key = work.settings();
+  key["what"] = "thumbnails";
+  key["width"] = widest_px;
+  key["pictured"] = conditions;
+  return key;
+}
+
+Json bytes_of_all(const PictureTask& task, const std::vector<std::size_t>& conditions) {
+  Json bytes = Json::array();
+  for (const std::size_t k : conditions) {
+    for (const std::string& file : files_of(task, k)) {
+      std::error_code problem;
+      const std::uintmax_t size = std::filesystem::file_size(task.folder / file, problem);
+      bytes.push_back(problem ? 0 : size);
+    }
+  }
+  return bytes;
+}
+
+void draw_small(const PictureTask& task, const studies::BasisView& view, std::size_t condition) {
+  const std::size_t places = task.part.basis->places().size();
+  const base::Image radiance =
+      studies::weighted_sum(view.layers, task.part.basis->groups().names,
+                            task.part.basis->weights(condition % places, condition / places));
+  const std::vector<std::string> files = files_of(task, condition);
+  write_small(task.folder / files.front(), radiance);
+  if (task.camera.cctv)
+    write_small(task.folder / files.back(), run_chain(*task.camera.cctv, radiance));
+}
+
+}  // namespace
+
+std::vector<std::size_t> pictured_conditions(const StudyPart& part,
+                                             const std::vector<Json>& judged) {
+  std::vector<std::size_t> pictured;
+  const std::size_t places = part.basis->places().size();
+  const bool along = part.positions_deg.size() > 1;
+  const std::size_t noon = along ? nearest_place(part.positions_deg, 0.0) : 0;
+  const std::size_t midnight = along ? nearest_place(part.positions_deg, 180.0) : 0;
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    const std::size_t place = k % places;
+    if (judged[k].is_null()) continue;
+    if (!along || place == 0 || place == noon || place == midnight || judged[k - 1].is_null() ||
+        !same_verdicts(judged[k], judged[k - 1])) {
+      pictured.push_back(k);
+    }
+  }
+  return pictured;
+}
+
+bool thumbnails_are_there(const CameraWork& work, const std::vector<Json>& judged) {
+  const std::vector<std::size_t> conditions = pictured_conditions(work.pictures().part, judged);
+  std::string said;
+  const auto facts = ResultCache(work.pictures().folder / points_folder)
+                         .find_facts(key_of(work, conditions), said);
+  return facts && (*facts)["bytes"] == bytes_of_all(work.pictures(), conditions);
+}
+
+void draw_thumbnails(const CameraWork& work, const studies::BasisView* view,
+                     const std::vector<Json>& judged, Json& thumbnails) {
+  const PictureTask& task = work.pictures();
+  const std::vector<std::size_t> conditions = pictured_conditions(task.part, judged);
+  if (view != nullptr && !thumbnails_are_there(work, judged)) {
+    base::parallel_chunks(conditions.size(), 1, [&](std::size_t k, std::size_t) {
+      draw_small(task, *view, conditions[k]);
+    });
+    ResultCache(task.folder / points_folder)
+        .keep_facts(key_of(work, conditions), {{"bytes", bytes_of_all(task, conditions)}});
+  }
+  for (const std::size_t k : conditions) {
+    const std::vector<std::string> files = files_of(task, k);
+    thumbnails.push_back({{"condition", fmt::format("{}-c{}", task.part.id, k)},
+                          {"camera", task.camera.camera->name},
+                          {"file", files.front()},
+                          {"monitor_file", task.camera.cctv ? Json(files.back()) : Json()}});
+  }
+}
+
+}  // namespace earthshine::app
