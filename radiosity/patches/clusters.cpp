@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "scenes/health/topology.h"
+#include "scenes/ray_query.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -206,22 +207,24 @@ Clusters find_clusters(const scenes::Scene& scene, double edge_m, Members wanted
   }
   ClusterMembers& members = found.members;
   members.of_triangle.assign(scene.triangles.size(), no_member);
-  members.area_to.push_back(0.0);
+  members.triangle.reserve(all.size());
   for (const auto& [begin, end] : clusters) {
     found.first.push_back(static_cast<std::uint32_t>(members.triangle.size()));
     for (std::size_t k = begin; k < end; ++k) {
-      const std::uint32_t t = all[k].triangle;
-      const auto& v = scene.triangles[t].vertex;
-      members.of_triangle[t] = static_cast<std::uint32_t>(members.triangle.size());
-      members.triangle.push_back(t);
-      members.corner.push_back({v[0], v[1], v[2]});
-      members.area_to.push_back(members.area_to.back() + facet_of_triangle(scene.vertices[v[0]],
-                                                                           scene.vertices[v[1]],
-                                                                           scene.vertices[v[2]])
-                                                             .area_m2);
+      members.of_triangle[all[k].triangle] = static_cast<std::uint32_t>(members.triangle.size());
+      members.triangle.push_back(all[k].triangle);
     }
   }
   found.first.push_back(static_cast<std::uint32_t>(members.triangle.size()));
+  if (wanted == Members::Unordered) return found;
+  members.corner.reserve(members.triangle.size());
+  members.area_to.reserve(members.triangle.size() + 1);
+  members.area_to.push_back(0.0);
+  for (const std::uint32_t t : members.triangle) {
+    const auto& v = scene.triangles[t].vertex;
+    members.corner.push_back({v[0], v[1], v[2]});
+    members.area_to.push_back(members.area_to.back() + scenes::triangle_area(scene, t));
+  }
   return found;
 }
 
