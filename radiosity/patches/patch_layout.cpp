@@ -120,8 +120,6 @@ PatchLayout layout_of(const Patches& patches) {
 }
 
 Patches rebuild_patches(const scenes::Scene& scene, PatchLayout layout) {
-  demand(std::isfinite(layout.cluster_edge_m) && layout.cluster_edge_m >= 0.0,
-         "the edge of clusters is no length");
   // Facets without a cut give the geometry.
   Patches patches =
       subdivide(scene, std::numeric_limits<double>::infinity(), layout.cluster_edge_m);

@@ -96,6 +96,14 @@ TEST(Clusters, EdgesOfABodyPartThem) {
   }
   builder.scene.triangles.back().object = 1;
   EXPECT_EQ(subdivide(builder.scene, 2.0, 2.0).count(), 3U);
+  // Two treads and the riser between them: the treads are alike, but do not hang together.
+  tests::SceneBuilder stair;
+  stair.material(tests::grey(0.5));
+  tests::fine_wall(stair, m, {0, 0, 0}, {0.4, 0, 0}, {0, 1, 0}, 8);
+  tests::fine_wall(stair, m, {0.4, 0, 0}, {0, 0, 0.1}, {0, 1, 0}, 8);
+  tests::fine_wall(stair, m, {0.4, 0, 0.1}, {0.4, 0, 0}, {0, 1, 0}, 8);
+  for (scenes::Triangle& t : stair.scene.triangles) t.object = 0;
+  EXPECT_EQ(subdivide(stair.scene, 2.0, 2.0).count(), 3U);
 }
 
 // However it is halved: every triangle is in as many patches of its side as hold its area, patches
@@ -169,20 +177,18 @@ TEST(Clusters, APointsPlaceFindsItsPatch) {
   EXPECT_LT(other, tried / 1000);
 }
 
-// Points of a cluster fall on each triangle in proportion to its area: of n = 2^16 points of a
-// lattice in x a triangle of share p gets n p to within one, as its part of x is one interval; and
-// over a triangle their mean is its centre: with x and y even, to 1 % of its size.
+// Points of a cluster fall on each triangle in proportion to its area, here from 1/16 to 7/16 wide:
+// of n = 2^16 points of a lattice in x a triangle of share p gets n p to within one, as its part of
+// x is one interval; and over a triangle their mean is its centre: with x and y even, to 1 % of its
+// size.
 TEST(Clusters, PointsAreUniformInArea) {
   tests::SceneBuilder builder;
-  tests::fine_sphere(builder, builder.material(tests::grey(0.5)), {0, 0, 0}, 1.0, 24);
-  const Patches patches = subdivide(builder.scene, 3.0, 3.0);
-  std::uint32_t patch = 0;
-  for (std::uint32_t i = 0; i < patches.count(); ++i) {
-    if (patches.facets[patches.facet[i]].members > patches.facets[patches.facet[patch]].members) {
-      patch = i;
-    }
-  }
-  ASSERT_GE(patches.facets[patches.facet[patch]].members, 8U);
+  tests::fine_wall(builder, builder.material(tests::grey(0.5)), {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4);
+  for (Vec3& p : builder.scene.vertices) p.x *= p.x;
+  const Patches patches = subdivide(builder.scene, 1.0, 1.0);
+  ASSERT_EQ(patches.count(), 1U);
+  ASSERT_EQ(patches.facets[0].members, 32U);
+  constexpr std::uint32_t patch = 0;
   constexpr int n = 1 << 16, rows = 16;
   std::map<std::uint32_t, int> hits;
   std::map<std::uint32_t, Vec3> sum;
@@ -192,7 +198,7 @@ TEST(Clusters, PointsAreUniformInArea) {
     ++hits[t];
     sum.try_emplace(t, 0.0).first->second += patches.point(patch, x, y);
   }
-  EXPECT_EQ(hits.size(), patches.facets[patches.facet[patch]].members);
+  EXPECT_EQ(hits.size(), 32U);
   for (const auto& [t, count] : hits) {
     const double area = scenes::triangle_area(builder.scene, t);
     EXPECT_NEAR(count, n * area / patches.area_m2[patch], 1.0 + 1e-6);
