@@ -8,7 +8,6 @@
 #include <set>
 
 #include "base/numbers/random.h"
-#include "radiosity/factors/form_factors.h"
 #include "radiosity/factors/hit_targets.h"
 #include "radiosity/patches/patch_layout.h"
 #include "radiosity/patches/split.h"
@@ -254,40 +253,6 @@ TEST(Clusters, BoxesHoldTheirPoints) {
       EXPECT_TRUE(s >= -1e-9 && s <= 1.0 + 1e-9 && t >= -1e-9 && t <= 1.0 + 1e-9) << i;
     }
   }
-}
-
-// Rays of a cluster start on its triangles and leave on their side: those of a convex body meet
-// none of it.
-TEST(Clusters, RaysOfAConvexBodyLeaveIt) {
-  tests::SceneBuilder builder;
-  tests::fine_sphere(builder, builder.material(tests::grey(0.5)), {0, 0, 0}, 1.0, 24);
-  const scenes::RayQuery query(builder.scene);
-  const Patches patches = subdivide(builder.scene, 0.5, 0.5);
-  FormFactorOptions options;
-  options.rays_per_patch = 256;
-  const FormFactors factors = cast_form_factors(builder.scene, query, patches, options);
-  EXPECT_TRUE(factors.column.empty());
-  for (const double sky : factors.sky) EXPECT_EQ(sky, 1.0);
-}
-
-// A closed room in which everything emits M and reflects rho has B = M / (1 - rho) everywhere, on
-// a sphere of 99 904 triangles too, whose few patches see rounded neighbours; and energy adds up.
-TEST(Clusters, AFurnaceWithAFineSphereIsExact) {
-  tests::SceneBuilder builder;
-  const std::uint32_t m = builder.material(tests::grey(0.6, 0.4));
-  builder.room({m, m, m, m, m, m});
-  tests::fine_sphere(builder, m, {0.5, 0.5, 0.45}, 0.25, 158);
-  ASSERT_GT(builder.scene.triangles.size(), 99000U);
-  const tests::Prepared prepared(builder.scene);
-  SolveOptions options;
-  options.patch_edge_m = 0.2;
-  options.form_factor_rays = 256;
-  const Solution solution = prepared.solve(options);
-  ASSERT_NE(solution.patches.clustered, nullptr);
-  EXPECT_LT(solution.patches.count(), 1500U);
-  for (const float b : solution.radiosity) EXPECT_NEAR(b, 1.0, 1e-6);
-  for (const GroupLedger& group : solution.report.groups) EXPECT_LT(group.imbalance, 1e-12);
-  EXPECT_TRUE(solution.report.balance.balanced);
 }
 
 }  // namespace
