@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "radiosity/patches/cluster_members.h"
 #include "radiosity/patches/split.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/triangle_point.h"
@@ -47,26 +48,52 @@ class LampCuts {
  private:
   // How long the patch may be; below `enough` or not at all.
   [[nodiscard]] double allowed(const Patches& patches, std::uint32_t patch, double enough) const {
-    const auto corner = patches.corners(patch);
-    const Vec3 normal = patches.normal(patch), middle = patches.point(patch, 0.5, 0.5);
+    const bool several = patches.is_several(patch);
+    const auto corner = several ? std::array<Vec3, 4>{} : patches.corners(patch);
+    const Vec3 normal = several ? Vec3(0.0) : patches.normal(patch);
+    const Vec3 middle = patches.point(patch, 0.5, 0.5);
     double least = std::numeric_limits<double>::infinity();
     for (const scenes::Lamp& lamp : lamps_) {
       // No point of the patch is farther than that from its middle.
       if (glm::length(middle - lamp.position) > 3.0 * enough) continue;
-      if (glm::dot(lamp.position - middle, normal) <= 0.0) continue;
-      const auto nearest = [&](std::size_t b, std::size_t c) {
-        return scenes::nearest_on_triangle(lamp.position, corner[0], corner[b], corner[c]);
-      };
-      const Vec3 first = nearest(1, 2), second = nearest(2, 3);
-      const double to_first = glm::length(first - lamp.position);
-      const double to_second = glm::length(second - lamp.position);
-      const double scale = std::max(std::min(to_first, to_second), half_size(lamp));
+      if (!several && glm::dot(lamp.position - middle, normal) <= 0.0) continue;
+      const Near near = several ? near_of_several(lamp, patches, patch) : near_of(lamp, corner);
+      const double scale = std::max(near.distance_m, half_size(lamp));
       if (scale >= std::min(least, enough)) continue;
-      if (shines_at(lamp, to_first < to_second ? first : second) || shines_at(lamp, middle)) {
-        least = scale;
-      }
+      if (shines_at(lamp, near.point) || shines_at(lamp, middle)) least = scale;
     }
     return least;
+  }
+
+  struct Near {
+    Vec3 point{0.0};
+    double distance_m = std::numeric_limits<double>::infinity();
+  };
+  static Near near_of(const scenes::Lamp& lamp, const std::array<Vec3, 4>& corner) {
+    const auto nearest = [&](std::size_t b, std::size_t c) {
+      return scenes::nearest_on_triangle(lamp.position, corner[0], corner[b], corner[c]);
+    };
+    const Vec3 first = nearest(1, 2), second = nearest(2, 3);
+    const double to_first = glm::length(first - lamp.position);
+    const double to_second = glm::length(second - lamp.position);
+    return {to_first < to_second ? first : second, std::min(to_first, to_second)};
+  }
+  // Of those triangles whose side of the patch the lamp is on.
+  static Near near_of_several(const scenes::Lamp& lamp, const Patches& patches,
+                              std::uint32_t patch) {
+    const ClusterMembers& members = *patches.clustered;
+    const ClusterSpan span = span_of(patches.facets[patches.facet[patch]], patches.cell[patch]);
+    const double side = patches.is_back[patch] != 0 ? -1.0 : 1.0;
+    Near near;
+    for (std::uint32_t m = span.first; m < span.first + span.count; ++m) {
+      const auto& [a, b, c] = members.corner[m];
+      const Vec3 &pa = members.vertices[a], &pb = members.vertices[b], &pc = members.vertices[c];
+      if (side * glm::dot(lamp.position - pa, glm::cross(pb - pa, pc - pa)) <= 0.0) continue;
+      const Vec3 point = scenes::nearest_on_triangle(lamp.position, pa, pb, pc);
+      const double distance_m = glm::length(point - lamp.position);
+      if (distance_m < near.distance_m) near = {point, distance_m};
+    }
+    return near;
   }
 
   static bool shines_at(const scenes::Lamp& lamp, const Vec3& point) {
@@ -81,7 +108,7 @@ class LampCuts {
 }  // namespace
 
 Patches subdivide_near_lamps(const scenes::Scene& scene, double edge_m) {
-  Patches patches = subdivide(scene, edge_m);
+  Patches patches = subdivide(scene, edge_m, edge_m);
   const LampCuts cuts(scene);
   const std::size_t most = 2 * patches.count() + most_more;
   while (patches.count() < most) {

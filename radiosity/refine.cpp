@@ -233,6 +233,9 @@ class Refinement {
 
 std::size_t most_refined_patches(const scenes::Scene& scene, const SolveOptions& options) {
   const RefineOptions& refine = options.refine;
+  if (refine.max_patches == 0 && options.patch_edge_m <= refine.start_edge_m) {
+    return count_patches(scene, options.patch_edge_m);  // no fewer than the coarse cut has
+  }
   const std::size_t budget =
       refine.max_patches > 0 ? refine.max_patches : count_patches(scene, options.patch_edge_m);
   return std::max(budget, count_patches(scene, refine.start_edge_m));

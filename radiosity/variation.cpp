@@ -165,12 +165,12 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
   const auto direct = [&](std::uint32_t patch, const Rgb& rho, Looks& looks) {
     const base::Key key(options_.seed, base::Stream::Refinement, identity(patches, patch));
     const base::SobolOwen4 where(key);
-    const Vec3 normal = patches.normal(patch), lift = normal * query_.surface_offset_m();
     ShadowQueue queue(query_, looks);
     std::vector<scenes::LightSample> taken;
     for (std::size_t point = 0; point < looks.points(); ++point) {
       const auto p = where.point2(static_cast<std::uint32_t>(point));
-      const Vec3 at = patches.point(patch, p[0], p[1]);
+      const auto [at, normal] = patches.at(patch, p[0], p[1]);
+      const Vec3 lift = normal * query_.surface_offset_m();
       looks.place(point, p[0], p[1]);
       for (std::size_t k = 0; k < sources_.size(); ++k) {
         const Source& source = sources_[k].source;
@@ -196,11 +196,9 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
   };
   const auto indirect = [&](std::uint32_t patch, double rho, Looks& looks) {
     const base::Key key(options_.seed, base::Stream::Refinement, identity(patches, patch));
-    const base::Frame3 frame = base::frame_around(patches.normal(patch));
-    const Vec3 lift = frame.normal * query_.surface_offset_m();
     RayPacket packet;
     scenes::HitPacket hits;
-    std::array<Vec3, RayPacket::width> directions;
+    std::array<Vec3, RayPacket::width> local;  // the same at all points
     const double weight = rho / static_cast<double>(gather_directions);
     for (std::size_t set = 0; set < 2; ++set) {
       const base::SobolOwen4 toward(key.with(0xFFFF0000ULL + set));
@@ -208,14 +206,17 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
         for (std::size_t k = 0; k < RayPacket::width; ++k) {
           const auto u = toward.point2(static_cast<std::uint32_t>(first + k));
           const float r = std::sqrt(u[0]), phi = 2.0F * static_cast<float>(base::pi) * u[1];
-          directions[k] =
-              frame.to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0F - u[0])});
+          local[k] = {r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0F - u[0])};
         }
         for (std::size_t point = 0; point < indirect_points; ++point) {
           const double x = point < 2 ? 0.25 : 0.75, y = point % 2 == 0 ? 0.25 : 0.75;
-          const Vec3 origin = patches.point(patch, x, y) + lift;
+          const auto [at, normal] = patches.at(patch, x, y);
+          const base::Frame3 frame = base::frame_around(normal);
+          const Vec3 origin = at + frame.normal * query_.surface_offset_m();
+          std::array<Vec3, RayPacket::width> directions;
           looks.place(point, x, y);
           for (std::size_t k = 0; k < RayPacket::width; ++k) {
+            directions[k] = frame.to_world(local[k]);
             query_.set(packet, k, origin, directions[k]);
           }
           query_.closest(packet, RayPacket::width, hits);

@@ -90,6 +90,7 @@ class Hdf5Reader {
   }
   [[nodiscard]] std::vector<std::string> texts(const std::string& name) const;
   [[nodiscard]] std::string text_attribute(const std::string& name) const;
+  [[nodiscard]] bool has_attribute(const std::string& name) const;
   [[nodiscard]] double number_attribute(const std::string& name) const;
   [[nodiscard]] std::uint64_t count_attribute(const std::string& name) const;
 

@@ -168,6 +168,10 @@ std::string Hdf5Reader::text_attribute(const std::string& name) const {
   return text_at(text, 0, text.size());
 }
 
+bool Hdf5Reader::has_attribute(const std::string& name) const {
+  return file_->open_attribute(name).valid();
+}
+
 double Hdf5Reader::number_attribute(const std::string& name) const {
   double value = 0.0;
   read_attribute(name, &value, Hdf5Number::Float64);

@@ -178,11 +178,9 @@ bool ClosedBodies::light_is_in_rooms(const scenes::Scene& scene,
 
 std::vector<std::uint32_t> ClosedBodies::near(const Patches& patches, std::uint32_t patch,
                                               double margin_m) const {
-  Vec3 low(std::numeric_limits<double>::infinity()), high = -low;
-  for (const Vec3& p : patches.corners(patch)) {
-    low = glm::min(low, p - centre_);
-    high = glm::max(high, p - centre_);
-  }
+  auto [low, high] = patches.box(patch);
+  low -= centre_;
+  high -= centre_;
   std::vector<std::uint32_t> found;
   for (std::uint32_t b = 0; b < bodies_.size(); ++b) {
     if (bodies_[b].surface.may_wind(low - margin_m, high + margin_m)) found.push_back(b);

@@ -23,11 +23,11 @@ constexpr int most_draws = 64;
 // Adds up shadowed samples eight at a time.
 class Receiver {
  public:
-  Receiver(const scenes::RayQuery& query, const Vec3& normal, int points)
-      : query_(query), normal_(normal), by_point_(static_cast<std::size_t>(points), 0.0) {}
+  Receiver(const scenes::RayQuery& query, int points)
+      : query_(query), by_point_(static_cast<std::size_t>(points), 0.0) {}
 
-  void add(int point, const Vec3& origin, const LightSample& sample) {
-    const double cosine = glm::dot(sample.direction, normal_);
+  void add(int point, const Vec3& origin, const Vec3& normal, const LightSample& sample) {
+    const double cosine = glm::dot(sample.direction, normal);
     if (cosine <= 0.0 || base::max_component(sample.normal_illuminance_lx) <= 0.0) return;
     // Stops short of the source, which may be a surface of the scene itself.
     const double reach = sample.distance_m * (1.0 - 1e-5) - 2.0 * query_.surface_offset_m();
@@ -63,7 +63,6 @@ class Receiver {
   }
 
   const scenes::RayQuery& query_;
-  Vec3 normal_;
   RayPacket packet_;
   std::uint32_t mirror_[RayPacket::width];
   Rgb contribution_[RayPacket::width];
@@ -127,18 +126,17 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
       if (share <= 0.0) continue;
       std::vector<std::uint32_t> near;
       if (share < 1.0) near = open.bodies->near(patches, patch, 2.0 * query.surface_offset_m());
-      const Vec3 normal = patches.normal(patch);
-      const Vec3 lift = normal * query.surface_offset_m();
       const base::SobolOwen4 sobol(base::Key(seed, base::Stream::DirectLight, i).with(source.key));
       const int points = points_for(source, patches, patch);
-      Receiver receiver(query, normal, points);
+      Receiver receiver(query, points);
       int taken = 0;
       for (int k = 0; taken < points && k < most_draws * points; ++k) {
         const auto p = sobol.point(static_cast<std::uint32_t>(k));
-        const Vec3 at = patches.point(patch, p[0], p[1]);
+        const auto [at, normal] = patches.at(patch, p[0], p[1]);
+        const Vec3 lift = normal * query.surface_offset_m();
         if (!near.empty() && open.bodies->cover(at + lift - open.bodies->centre(), near)) continue;
         take_samples(source, query.ways().mirrors(), at, normal, p[2], p[3], samples);
-        for (const LightSample& one : samples) receiver.add(taken, at + lift, one);
+        for (const LightSample& one : samples) receiver.add(taken, at + lift, normal, one);
         ++taken;
       }
       receiver.finish();

@@ -14,8 +14,10 @@ HitTargets::HitTargets(const Patches& patches, const std::vector<bool>& passes_o
     target.first_back = facet.first_back;
     target.tree = facet.tree;
     target.passes_on = passes_on[facet.material] ? 1 : 0;
-    target.kind = static_cast<std::uint8_t>(
-        facet.parallelogram ? triangle_kinds + patches.second_half[k] : facet.apex);
+    target.kind =
+        static_cast<std::uint8_t>(facet.is_cluster()    ? cluster_kind
+                                  : facet.parallelogram ? triangle_kinds + patches.second_half[k]
+                                                        : facet.apex);
   }
 }
 

@@ -29,6 +29,12 @@ class HitTargets {
     const Target& target = targets_[triangle];
     const std::uint32_t first = front ? target.first_front : target.first_back;
     if (first == no_patch) return no_patch;
+    if (target.kind == cluster_kind) {
+      return target.tree == no_tree
+                 ? first
+                 : first + patches_.leaf(patches_.facets[patches_.of_triangle[triangle]],
+                                         patches_.parameters(triangle, double(u), double(v)));
+    }
     const Linear& to = linear[target.kind];
     const float s = to.s[0] + to.s[1] * u + to.s[2] * v;
     float t = to.t[0] + to.t[1] * u + to.t[2] * v;
@@ -52,7 +58,7 @@ class HitTargets {
   struct Linear {
     float s[3], t[3];
   };
-  static constexpr std::uint8_t triangle_kinds = 3;
+  static constexpr std::uint8_t triangle_kinds = 3, cluster_kind = 5;
   static constexpr Linear linear[5] = {{{0, 1, 1}, {0, 0, 1}},
                                        {{1, -1, 0}, {1, -1, -1}},
                                        {{1, 0, -1}, {0, 1, 0}},

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/turn.h"
+#include "radiosity/patches/cluster_members.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -18,9 +19,29 @@ constexpr double inset = 1e-4;
 }  // namespace
 
 PatchRays::Sender PatchRays::sender(std::uint32_t patch, base::Key key) const {
-  const Facet& facet = patches_.facets[patches_.facet[patch]];
-  const base::Frame3 frame = base::frame_around(patches_.normal(patch));
-  const Rectangle r = patches_.rectangle(patch);
+  const Facet& owner = patches_.facets[patches_.facet[patch]];
+  if (patches_.is_several(patch)) {
+    const glm::vec3 unused(0.0F);
+    return {base::SobolSet4::Scramble(key),
+            unused,
+            unused,
+            unused,
+            unused,
+            unused,
+            unused,
+            0.0F,
+            0.0F,
+            0.0F,
+            0.0F,
+            false,
+            patch};
+  }
+  const ClusterSpan alone =
+      owner.is_cluster() ? span_of(owner, patches_.cell[patch]) : ClusterSpan{};
+  const Facet& facet = owner.is_cluster() ? patches_.clustered->facet(alone.first) : owner;
+  const Rectangle r = owner.is_cluster() ? alone.part : patches_.rectangle(patch);
+  const Vec3 normal = patches_.is_back[patch] != 0 ? -facet.normal : facet.normal;
+  const base::Frame3 frame = base::frame_around(normal);
   const bool flat = facet.parallelogram;
   // A triangle's area grows with s^2: uniform in the trapezoid between s0 and s1.
   const double low = flat ? r.s0 : r.s0 * r.s0, high = flat ? r.s1 : r.s1 * r.s1;
@@ -36,12 +57,27 @@ PatchRays::Sender PatchRays::sender(std::uint32_t patch, base::Key key) const {
           static_cast<float>(high - low - 2.0 * s_inset),
           static_cast<float>(r.t0 + t_inset),
           static_cast<float>(r.t1 - r.t0 - 2.0 * t_inset),
-          flat};
+          flat,
+          no_patch};
+}
+
+void PatchRays::make_of_several(std::uint32_t patch, const base::SobolSet4::Points& p,
+                                scenes::RayPacket& rays) const {
+  const auto off_edges = [](float x) { return inset + (1.0 - 2.0 * inset) * double(x); };
+  for (std::uint32_t k = 0; k < width; ++k) {
+    const SurfacePoint at = patches_.at(patch, off_edges(p.x[2][k]), off_edges(p.x[3][k]));
+    const base::Turned way = base::turn(p.x[1][k]);
+    const float radius = std::sqrt(p.x[0][k]), height = std::sqrt(1.0F - p.x[0][k]);
+    const Vec3 direction =
+        base::frame_around(at.normal).to_world({radius * way.cosine, radius * way.sine, height});
+    query_.set(rays, k, at.position + query_.surface_offset_m() * at.normal, direction);
+  }
 }
 
 void PatchRays::make(const Sender& from, std::uint32_t first, scenes::RayPacket& rays) const {
   base::SobolSet4::Points p;
   samples_.points(first, from.scramble, p);
+  if (from.several != no_patch) return make_of_several(from.several, p, rays);
   alignas(32) float s[width], t[width];
   for (std::uint32_t k = 0; k < width; ++k) s[k] = from.s0 + from.s_span * p.x[2][k];
   for (std::uint32_t k = 0; k < width; ++k) t[k] = from.t0 + from.t_span * p.x[3][k];

@@ -29,6 +29,7 @@ class PatchRays {
     glm::vec3 tangent, bitangent, normal;
     float s0, s_span, t0, t_span;  // of s for parallelograms, of s^2 for triangles
     bool parallelogram;
+    std::uint32_t several;  // the patch, if it is several triangles; then only `scramble` is used
   };
   [[nodiscard]] Sender sender(std::uint32_t patch, base::Key key) const;
 
@@ -41,6 +42,9 @@ class PatchRays {
   void make(const Sender& sender, std::uint32_t first, scenes::RayPacket& rays) const;
 
  private:
+  void make_of_several(std::uint32_t patch, const base::SobolSet4::Points& points,
+                       scenes::RayPacket& rays) const;
+
   const Patches& patches_;
   const scenes::RayQuery& query_;
   base::SobolSet4 samples_;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 #include "radiosity/factors/form_factors.h"
@@ -24,7 +23,7 @@ struct Pilot {
 
 Pilot cast_pilot(const scenes::Scene& scene, const scenes::RayQuery& query, double edge_m,
                  int rays_per_patch) {
-  const Patches patches = subdivide(scene, edge_m);
+  const Patches patches = subdivide(scene, edge_m, edge_m);
   const std::size_t wanted = rays_cast / static_cast<std::size_t>(std::max(1, rays_per_patch));
   const std::size_t count = std::min(std::clamp(wanted, fewest_rows, most_rows), patches.count());
   std::vector<std::uint32_t> rows(count);
@@ -39,13 +38,22 @@ Pilot cast_pilot(const scenes::Scene& scene, const scenes::RayQuery& query, doub
                       [](double share) { return share > 0.0; })};
 }
 
+// Both sides of sheets.
+double surface_m2(const scenes::Scene& scene) {
+  double area_m2 = 0.0;
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    const bool sheet = scene.materials[scene.triangles[t].material].two_sided;
+    area_m2 += (sheet ? 2.0 : 1.0) * scenes::triangle_area(scene, t);
+  }
+  return area_m2;
+}
+
 }  // namespace
 
 ExpectedRows expected_rows(const scenes::Scene& scene, const scenes::RayQuery& query,
                            std::size_t patches, int rays_per_patch) {
   if (patches == 0 || scene.triangles.empty()) return {};
-  const Patches uncut = subdivide(scene, std::numeric_limits<double>::infinity());
-  const double area_m2 = std::accumulate(uncut.area_m2.begin(), uncut.area_m2.end(), 0.0);
+  const double area_m2 = surface_m2(scene);
   const auto edge_for = [&](double count) { return std::sqrt(area_m2 / count); };
   const auto wanted = static_cast<double>(std::min(patches, largest_pilot));
   const Pilot fine = cast_pilot(scene, query, edge_for(wanted), rays_per_patch);
@@ -60,9 +68,10 @@ ExpectedRows expected_rows(const scenes::Scene& scene, const scenes::RayQuery& q
 }
 
 double expected_unreached(const scenes::Scene& scene, std::size_t patches, int rays_per_patch) {
-  const Patches uncut = subdivide(scene, std::numeric_limits<double>::infinity());
-  const double area_m2 = std::accumulate(uncut.area_m2.begin(), uncut.area_m2.end(), 0.0);
-  const double density = double(patches) / area_m2;
+  const double density = double(patches) / surface_m2(scene);
+  // Facets and clusters, uncut.
+  const Patches uncut =
+      subdivide(scene, std::numeric_limits<double>::infinity(), std::sqrt(1.0 / density));
   double unreached = 0.0;
   for (const double facet_m2 : uncut.area_m2) {
     const double cells = std::max(1.0, facet_m2 * density);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "radiosity/patches/patch_albedo.h"
 
-#include <array>
 #include <cmath>
 
 #include "scenes/reflect/bihemispherical_albedo.h"
@@ -17,9 +16,7 @@ using ColourAt = Rgb (*)(const scenes::Scene&, const scenes::Material&,
 
 Rgb mean_over(const scenes::Scene& scene, const Patches& patches, std::uint32_t patch,
               ColourAt colour_at) {
-  const Facet& facet = patches.facets[patches.facet[patch]];
-  const scenes::Material& material = scene.materials[facet.material];
-  const Rectangle r = patches.rectangle(patch);
+  const scenes::Material& material = scene.materials[patches.material(patch)];
   const double width = std::sqrt(patches.area_m2[patch]) / samples;
   Rgb sum(0.0), with_holes(0.0);
   int there = 0;
@@ -28,11 +25,7 @@ Rgb mean_over(const scenes::Scene& scene, const Patches& patches, std::uint32_t 
       // Each row a little further along, so that the samples are in step with no pattern.
       const double y = (j + 0.5) / samples;
       const double x = (i + glm::fract(0.5 + j * 0.6180339887498949)) / samples;
-      // Uniform in area, as Patches::point.
-      const double s = facet.parallelogram
-                           ? r.s0 + x * (r.s1 - r.s0)
-                           : std::sqrt(r.s0 * r.s0 + x * (r.s1 * r.s1 - r.s0 * r.s0));
-      const TrianglePlace at = triangle_place(facet, {s, r.t0 + y * (r.t1 - r.t0)});
+      const TrianglePlace at = patches.on_triangle(patch, x, y);
       const Rgb colour = colour_at(scene, material, {at.triangle, at.u, at.v, width});
       with_holes += colour;
       if (!scenes::is_there(scene, at.triangle, at.u, at.v)) continue;
@@ -45,19 +38,6 @@ Rgb mean_over(const scenes::Scene& scene, const Patches& patches, std::uint32_t 
 }
 
 }  // namespace
-
-TrianglePlace triangle_place(const Facet& facet, Parameters where) {
-  const double s = where.s, t = where.t;
-  if (facet.parallelogram) {
-    if (s >= t) return {facet.triangle, s - t, t};
-    return {facet.triangle + 1, s, t - s};
-  }
-  std::array<double, 3> weight{};
-  weight[facet.apex] = 1.0 - s;
-  weight[(facet.apex + 1) % 3] = s * (1.0 - t);
-  weight[(facet.apex + 2) % 3] = s * t;
-  return {facet.triangle, weight[1], weight[2]};
-}
 
 Rgb patch_diffuse(const scenes::Scene& scene, const Patches& patches, std::uint32_t patch) {
   const scenes::Material& material = scene.materials[patches.material(patch)];

@@ -8,14 +8,6 @@
 
 namespace earthshine::radiosity {
 
-// Triangle and weights of its second and third vertex at a place of the facet: the inverse of
-// Patches::parameters.
-struct TrianglePlace {
-  std::uint32_t triangle;
-  double u, v;
-};
-[[nodiscard]] TrianglePlace triangle_place(const Facet& facet, Parameters where);
-
 // The mean of k_d over what is there of the patch; without a texture the material's.
 [[nodiscard]] Rgb patch_diffuse(const scenes::Scene& scene, const Patches& patches,
                                 std::uint32_t patch);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "radiosity/patches/cluster_members.h"
+
 namespace earthshine::radiosity {
 namespace {
 
@@ -23,7 +25,7 @@ void demand(bool holds, const char* otherwise) {
 class Leaves {
  public:
   Leaves(const Facet& facet, const std::vector<std::uint32_t>& tree, std::vector<bool>& used)
-      : tree_(tree), used_(used), cells_(facet.leaves), seen_(facet.leaves) {
+      : facet_(facet), tree_(tree), used_(used), cells_(facet.leaves), seen_(facet.leaves) {
     const std::uint64_t grid = std::uint64_t{facet.s_count} * facet.t_count;
     for (std::uint32_t s = 0; s < facet.s_count; ++s) {
       for (std::uint32_t t = 0; t < facet.t_count; ++t) {
@@ -59,6 +61,8 @@ class Leaves {
     demand((along_t ? cell.t_cuts : cell.s_cuts) < deepest_level && cell.s <= last_row &&
                cell.t <= last_row,
            "the tree is too deep");
+    demand(!along_t || !facet_.is_cluster() || span_of(facet_, cell).count == 1,
+           "several triangles are halved along t");
     for (std::uint32_t k = 0; k < 2; ++k) {
       Cell half = cell;
       if (along_t) {
@@ -72,6 +76,7 @@ class Leaves {
     }
   }
 
+  const Facet& facet_;
   const std::vector<std::uint32_t>& tree_;
   std::vector<bool>& used_;
   std::vector<Cell> cells_;
@@ -110,12 +115,14 @@ PatchLayout layout_of(const Patches& patches) {
   }
   layout.tree = patches.tree;
   layout.area_m2 = patches.area_m2;
+  layout.cluster_edge_m = patches.cluster_edge_m;
   return layout;
 }
 
 Patches rebuild_patches(const scenes::Scene& scene, PatchLayout layout) {
   // Facets without a cut give the geometry.
-  Patches patches = subdivide(scene, std::numeric_limits<double>::infinity());
+  Patches patches =
+      subdivide(scene, std::numeric_limits<double>::infinity(), layout.cluster_edge_m);
   const std::size_t facets = patches.facets.size();
   for (const auto* column : {&layout.s_count, &layout.t_count, &layout.first_front,
                              &layout.first_back, &layout.leaves, &layout.tree_start}) {
@@ -141,6 +148,7 @@ Patches rebuild_patches(const scenes::Scene& scene, PatchLayout layout) {
     facet.tree = layout.tree_start[k];
     const std::uint64_t grid = std::uint64_t{facet.s_count} * facet.t_count;
     demand(grid > 0 && grid <= facet.leaves, "a facet's grid has no cell or more than leaves");
+    demand(grid == 1 || !facet.is_cluster(), "a cluster has a grid");
     placed += std::uint64_t{facet.leaves} * (sheet ? 2 : 1);
     demand(placed <= count, "the facets have more leaves than there are patches");
     demand((facet.first_back != no_patch) == sheet, "a sheet has no back, or another surface has");

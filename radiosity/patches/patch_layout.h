@@ -16,6 +16,7 @@ struct PatchLayout {
   std::vector<std::uint32_t> s_count, t_count, first_front, first_back, leaves, tree_start;
   std::vector<std::uint32_t> tree;
   std::vector<double> area_m2;  // per patch
+  double cluster_edge_m = 0.0;  // as in Patches
 };
 
 [[nodiscard]] PatchLayout layout_of(const Patches& patches);

@@ -1,88 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "radiosity/patches/patches.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "radiosity/patches/cluster_members.h"
+
 namespace earthshine::radiosity {
 namespace {
-
-constexpr std::uint64_t most_patches = std::uint64_t{1} << 26;
-
-std::uint32_t divisions(double length_m, double edge_m) {
-  // A length that is a whole number of edges up to rounding is not cut once more. One cut more
-  // often than there may be patches is refused by their number, which must not be more than a
-  // number holds.
-  const double count = std::ceil(length_m / edge_m - 1e-9);
-  return static_cast<std::uint32_t>(std::clamp(count, 1.0, most_patches + 1.0));
-}
-
-// Triangles k and k + 1 are the halves (0,1,2), (0,2,3) of a parallelogram.
-bool forms_parallelogram(const scenes::Scene& scene, std::size_t k) {
-  if (k + 1 >= scene.triangles.size()) return false;
-  const scenes::Triangle& first = scene.triangles[k];
-  const scenes::Triangle& second = scene.triangles[k + 1];
-  if (first.polygon != second.polygon || first.material != second.material ||
-      first.object != second.object) {
-    return false;
-  }
-  if (first.vertex[0] != second.vertex[0] || first.vertex[2] != second.vertex[1]) return false;
-  const Vec3& p0 = scene.vertices[first.vertex[0]];
-  const Vec3& p1 = scene.vertices[first.vertex[1]];
-  const Vec3& p2 = scene.vertices[first.vertex[2]];
-  const Vec3& p3 = scene.vertices[second.vertex[2]];
-  const double size = glm::length(p2 - p0);
-  return glm::length((p1 - p0) - (p2 - p3)) <= 1e-6 * size;
-}
-
-Facet parallelogram_facet(const scenes::Scene& scene, std::size_t k, double edge_m) {
-  Facet facet;
-  facet.parallelogram = true;
-  facet.corner = scene.vertices[scene.triangles[k].vertex[0]];
-  facet.a = scene.vertices[scene.triangles[k].vertex[1]] - facet.corner;
-  facet.b = scene.vertices[scene.triangles[k + 1].vertex[2]] - facet.corner;
-  const Vec3 cross = glm::cross(facet.a, facet.b);
-  facet.area_m2 = glm::length(cross);
-  facet.normal = cross / facet.area_m2;
-  facet.s_count = divisions(glm::length(facet.a), edge_m);
-  facet.t_count = divisions(glm::length(facet.b), edge_m);
-  return facet;
-}
-
-Facet triangle_facet(const scenes::Scene& scene, std::size_t k, double edge_m) {
-  Facet facet;
-  const auto& vertex = scene.triangles[k].vertex;
-  std::array<Vec3, 3> p{scene.vertices[vertex[0]], scene.vertices[vertex[1]],
-                        scene.vertices[vertex[2]]};
-  // The apex is the corner opposite the shortest edge; edge k runs between corners k + 1 and k + 2.
-  double shortest = std::numeric_limits<double>::infinity();
-  for (std::uint8_t corner = 0; corner < 3; ++corner) {
-    const double length = glm::length(p[(corner + 1) % 3] - p[(corner + 2) % 3]);
-    if (length < shortest) {
-      shortest = length;
-      facet.apex = corner;
-    }
-  }
-  facet.corner = p[facet.apex];
-  facet.a = p[(facet.apex + 1) % 3] - facet.corner;
-  facet.b = p[(facet.apex + 2) % 3] - facet.corner;
-  const Vec3 cross = glm::cross(facet.a, facet.b);
-  facet.area_m2 = 0.5 * glm::length(cross);
-  facet.normal = glm::normalize(cross);
-  facet.s_count = divisions(std::max(glm::length(facet.a), glm::length(facet.b)), edge_m);
-  facet.t_count = divisions(shortest, edge_m);
-  return facet;
-}
 
 Vec3 on_facet(const Facet& f, double s, double t) {
   if (f.parallelogram) return f.corner + s * f.a + t * f.b;
   return f.corner + s * (f.a + t * (f.b - f.a));
 }
 
+// Uniform in area: that of a triangle grows with s^2.
+Parameters parameters_at(const Facet& f, const Rectangle& r, double x, double y) {
+  const double t = r.t0 + y * (r.t1 - r.t0);
+  if (f.parallelogram) return {r.s0 + x * (r.s1 - r.s0), t};
+  return {std::sqrt(r.s0 * r.s0 + x * (r.s1 * r.s1 - r.s0 * r.s0)), t};
+}
+
+Parameters in_triangle(std::uint8_t apex, double u, double v) {
+  // Weights of the two corners beside the apex, in order.
+  const std::array<double, 3> weight{1.0 - u - v, u, v};
+  const double wa = weight[(apex + 1) % 3], wb = weight[(apex + 2) % 3];
+  const double s = wa + wb;
+  return {s, s > 0.0 ? wb / s : 0.0};
+}
+
+// The facet, or the triangle of a cluster, that holds the point (x, y) of a patch.
+struct Holder {
+  Facet facet;
+  Parameters where;
+};
+Holder holder_of(const Patches& patches, std::uint32_t patch, double x, double y) {
+  const Facet& f = patches.facets[patches.facet[patch]];
+  if (!f.is_cluster()) return {f, parameters_at(f, patches.rectangle(patch), x, y)};
+  const ClusterSpan span = span_of(f, patches.cell[patch]);
+  const Facet member = patches.clustered->facet(patches.clustered->pick(span, x));
+  return {member, parameters_at(member, span.part, x, y)};
+}
+
 }  // namespace
+
+TrianglePlace triangle_place(const Facet& facet, Parameters where) {
+  const double s = where.s, t = where.t;
+  if (facet.parallelogram) {
+    if (s >= t) return {facet.triangle, s - t, t};
+    return {facet.triangle + 1, s, t - s};
+  }
+  std::array<double, 3> weight{};
+  weight[facet.apex] = 1.0 - s;
+  weight[(facet.apex + 1) % 3] = s * (1.0 - t);
+  weight[(facet.apex + 2) % 3] = s * t;
+  return {facet.triangle, weight[1], weight[2]};
+}
 
 Rectangle rectangle_of(const Facet& facet, const Cell& cell) {
   const double rows = std::ldexp(facet.s_count, cell.s_cuts);
@@ -95,22 +69,28 @@ double area_of(const Facet& facet, const Rectangle& r) {
   return facet.area_m2 * (r.s1 * r.s1 - r.s0 * r.s0) * (r.t1 - r.t0);
 }
 
+double area_of(const Patches& patches, const Facet& facet, const Cell& cell) {
+  if (facet.is_cluster()) return patches.clustered->area(span_of(facet, cell));
+  return area_of(facet, rectangle_of(facet, cell));
+}
+
 Parameters Patches::parameters(std::uint32_t triangle, double u, double v) const {
   const Facet& f = facets[of_triangle[triangle]];
+  if (f.is_cluster()) {
+    const std::uint32_t member = clustered->of_triangle[triangle];
+    return clustered->parameters(f, member, in_triangle(clustered->facet(member).apex, u, v));
+  }
   if (f.parallelogram) {
     return second_half[triangle] != 0 ? Parameters{u, u + v} : Parameters{u + v, v};
   }
-  // Weights of the two corners beside the apex, in order.
-  const std::array<double, 3> weight{1.0 - u - v, u, v};
-  const double wa = weight[(f.apex + 1) % 3], wb = weight[(f.apex + 2) % 3];
-  const double s = wa + wb;
-  return {s, s > 0.0 ? wb / s : 0.0};
+  return in_triangle(f.apex, u, v);
 }
 
 std::uint32_t Patches::find(std::uint32_t triangle, double u, double v, bool front) const {
   const Facet& f = facets[of_triangle[triangle]];
   const std::uint32_t first = front ? f.first_front : f.first_back;
   if (first == no_patch) return no_patch;
+  if (f.is_cluster() && f.tree == no_tree) return first;
   return first + leaf(f, parameters(triangle, u, v));
 }
 
@@ -138,92 +118,54 @@ Rectangle Patches::rectangle(std::uint32_t patch) const {
 }
 
 std::array<Vec3, 4> Patches::corners(std::uint32_t patch) const {
+  const auto turned = [&](const std::array<Vec3, 4>& p) {
+    return is_back[patch] != 0 ? std::array<Vec3, 4>{p[0], p[3], p[2], p[1]} : p;
+  };
+  const auto of = [&](const Facet& f, const Rectangle& r) {
+    return turned({on_facet(f, r.s0, r.t0), on_facet(f, r.s1, r.t0), on_facet(f, r.s1, r.t1),
+                   on_facet(f, r.s0, r.t1)});
+  };
   const Facet& f = facets[facet[patch]];
-  const Rectangle r = rectangle(patch);
-  const Vec3 p00 = on_facet(f, r.s0, r.t0), p10 = on_facet(f, r.s1, r.t0);
-  const Vec3 p11 = on_facet(f, r.s1, r.t1), p01 = on_facet(f, r.s0, r.t1);
-  if (is_back[patch] != 0) return {p00, p01, p11, p10};
-  return {p00, p10, p11, p01};
+  if (!f.is_cluster()) return of(f, rectangle(patch));
+  const ClusterSpan span = span_of(f, cell[patch]);
+  if (span.count > 1) return turned(clustered->corners(span));
+  return of(clustered->facet(span.first), span.part);
 }
 
-Vec3 Patches::point(std::uint32_t patch, double x, double y) const {
+std::pair<Vec3, Vec3> Patches::box(std::uint32_t patch) const {
   const Facet& f = facets[facet[patch]];
-  const Rectangle r = rectangle(patch);
-  const double t = r.t0 + y * (r.t1 - r.t0);
-  if (f.parallelogram) return on_facet(f, r.s0 + x * (r.s1 - r.s0), t);
-  // Area grows with s^2: uniform in the trapezoid between s0 and s1.
-  return on_facet(f, std::sqrt(r.s0 * r.s0 + x * (r.s1 * r.s1 - r.s0 * r.s0)), t);
+  if (f.is_cluster()) return clustered->box(span_of(f, cell[patch]));
+  const std::array<Vec3, 4> c = corners(patch);
+  return {glm::min(glm::min(c[0], c[1]), glm::min(c[2], c[3])),
+          glm::max(glm::max(c[0], c[1]), glm::max(c[2], c[3]))};
+}
+
+SurfacePoint Patches::at(std::uint32_t patch, double x, double y) const {
+  const auto [f, where] = holder_of(*this, patch, x, y);
+  return {on_facet(f, where.s, where.t), is_back[patch] != 0 ? -f.normal : f.normal};
+}
+
+TrianglePlace Patches::on_triangle(std::uint32_t patch, double x, double y) const {
+  const auto [f, where] = holder_of(*this, patch, x, y);
+  return triangle_place(f, where);
 }
 
 Vec3 Patches::normal(std::uint32_t patch) const {
-  const Vec3& n = facets[facet[patch]].normal;
+  const Facet& f = facets[facet[patch]];
+  const Vec3 n = f.is_cluster() ? clustered->normal(span_of(f, cell[patch])) : f.normal;
   return is_back[patch] != 0 ? -n : n;
 }
 
-namespace {
-
-// Calls take(facet, pair) for every facet in the scene's order, its patches numbered, and gives
-// their number.
-template <class Take>
-std::uint64_t for_each_facet(const scenes::Scene& scene, double edge_m, Take take) {
-  std::uint64_t total = 0;
-  for (std::size_t k = 0; k < scene.triangles.size(); ++k) {
-    const bool pair = forms_parallelogram(scene, k);
-    Facet facet = pair ? parallelogram_facet(scene, k, edge_m) : triangle_facet(scene, k, edge_m);
-    facet.triangle = static_cast<std::uint32_t>(k);
-    facet.material = scene.triangles[k].material;
-    facet.object = scene.triangles[k].object;
-    const bool sheet = scene.materials[facet.material].two_sided;
-    const std::uint64_t cells = std::uint64_t{facet.s_count} * facet.t_count;
-    if (total + 2 * cells > most_patches) {
-      throw base::Error(
-          base::Blame::Input, scene.path.string(),
-          fmt::format("patches of {:g} m cut the scene into more than {}", edge_m, most_patches),
-          {}, "Raise quality.patch_edge");
-    }
-    facet.leaves = static_cast<std::uint32_t>(cells);
-    facet.first_front = static_cast<std::uint32_t>(total);
-    total += cells;
-    if (sheet) {
-      facet.first_back = static_cast<std::uint32_t>(total);
-      total += cells;
-    }
-    take(facet, pair);
-    if (pair) ++k;
-  }
-  return total;
+Vec3 Patches::normal_at(std::uint32_t triangle, bool front) const {
+  const Facet& f = facets[of_triangle[triangle]];
+  const Vec3 n =
+      f.is_cluster() ? clustered->facet(clustered->of_triangle[triangle]).normal : f.normal;
+  return front ? n : -n;
 }
 
-}  // namespace
-
-std::size_t count_patches(const scenes::Scene& scene, double edge_m) {
-  return for_each_facet(scene, edge_m, [](const Facet&, bool) {});
-}
-
-Patches subdivide(const scenes::Scene& scene, double edge_m) {
-  Patches patches;
-  patches.of_triangle.resize(scene.triangles.size());
-  patches.second_half.assign(scene.triangles.size(), 0);
-  for_each_facet(scene, edge_m, [&](const Facet& facet, bool pair) {
-    const auto index = static_cast<std::uint32_t>(patches.facets.size());
-    patches.of_triangle[facet.triangle] = index;
-    if (pair) {
-      patches.of_triangle[facet.triangle + 1] = index;
-      patches.second_half[facet.triangle + 1] = 1;
-    }
-    const int sides = facet.first_back == no_patch ? 1 : 2;
-    for (int side = 0; side < sides; ++side) {
-      for (std::uint32_t c = 0; c < facet.leaves; ++c) {
-        const Cell cell{c / facet.t_count, c % facet.t_count};
-        patches.area_m2.push_back(area_of(facet, rectangle_of(facet, cell)));
-        patches.facet.push_back(index);
-        patches.cell.push_back(cell);
-        patches.is_back.push_back(static_cast<std::uint8_t>(side));
-      }
-    }
-    patches.facets.push_back(facet);
-  });
-  return patches;
+bool Patches::is_several(std::uint32_t patch) const {
+  const Facet& f = facets[facet[patch]];
+  return f.is_cluster() && span_of(f, cell[patch]).count > 1;
 }
 
 }  // namespace earthshine::radiosity

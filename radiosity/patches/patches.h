@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "scenes/scene.h"
@@ -23,6 +25,8 @@ inline constexpr std::uint32_t no_tree = 0xFFFFFFFFU;
 //   shortest edge)
 //                  to that edge, t along it; cells are trapezoids, and long thin triangles get
 //                  square ones
+// Or a cluster of small triangles (clusters.h), whose parameters only number them
+// (cluster_members.h): normal and area are those of all, corner, a and b are not used.
 struct Facet {
   Vec3 corner, a, b;
   Vec3 normal;  // unit, of the front
@@ -37,11 +41,26 @@ struct Facet {
   std::uint32_t material = 0, object = 0;
   std::uint8_t apex = 0;  // which vertex of the triangle is the corner
   bool parallelogram = false;
+  std::uint32_t members = 0, first_member = 0;  // triangles of a cluster; 0: it is none
+
+  [[nodiscard]] bool is_cluster() const { return members > 0; }
 };
 
 struct Parameters {
   double s, t;
 };
+
+// A place in a triangle of the scene: weights of its second and third vertex.
+struct TrianglePlace {
+  std::uint32_t triangle;
+  double u, v;
+};
+
+struct SurfacePoint {
+  Vec3 position, normal;  // unit, on the patch's own side
+};
+
+struct ClusterMembers;
 
 // A leaf: cell (s, t) of the (s_count << s_cuts) x (t_count << t_cuts) cells that its facet would
 // have if all of its grid had been halved as often.
@@ -69,6 +88,8 @@ class Patches {
   std::vector<std::uint32_t> tree;
   static constexpr std::uint32_t split_cell = 0x80000000U;
   static constexpr std::uint32_t halves_t = 0x40000000U;
+  std::shared_ptr<const ClusterMembers> clustered;  // null: there is no cluster
+  double cluster_edge_m = 0.0;                      // that clusters were made for; 0: none
 
   [[nodiscard]] std::size_t count() const { return area_m2.size(); }
 
@@ -90,11 +111,22 @@ class Patches {
 
   [[nodiscard]] Rectangle rectangle(std::uint32_t patch) const;
   // Counter-clockwise about the patch's own normal; where a triangle's apex is a corner it stands
-  // twice.
+  // twice. Of several triangles: of a rectangle about their mean normal that they all lie over.
   [[nodiscard]] std::array<Vec3, 4> corners(std::uint32_t patch) const;
+  [[nodiscard]] std::pair<Vec3, Vec3> box(std::uint32_t patch) const;  // low, high
   // A point of the patch, uniform in area for uniform (x, y) in [0,1]^2.
-  [[nodiscard]] Vec3 point(std::uint32_t patch, double x, double y) const;
-  [[nodiscard]] Vec3 normal(std::uint32_t patch) const;  // on the patch's own side
+  [[nodiscard]] SurfacePoint at(std::uint32_t patch, double x, double y) const;
+  [[nodiscard]] Vec3 point(std::uint32_t patch, double x, double y) const {
+    return at(patch, x, y).position;
+  }
+  // The same as a place in its triangle.
+  [[nodiscard]] TrianglePlace on_triangle(std::uint32_t patch, double x, double y) const;
+  // On the patch's own side; of several triangles that of their mean by area.
+  [[nodiscard]] Vec3 normal(std::uint32_t patch) const;
+  // Of the triangle itself, on that side of it.
+  [[nodiscard]] Vec3 normal_at(std::uint32_t triangle, bool front) const;
+  // Whether the patch is several triangles of a cluster.
+  [[nodiscard]] bool is_several(std::uint32_t patch) const;
   [[nodiscard]] std::uint32_t material(std::uint32_t patch) const {
     return facets[facet[patch]].material;
   }
@@ -103,15 +135,22 @@ class Patches {
   }
 };
 
-// Cuts every surface so that no cell is longer than edge_m along its facet's directions.
+// Cuts every surface so that no cell is longer than edge_m along its facet's directions, after
+// small triangles were joined to clusters of about cluster_edge_m (clusters.h; 0: none).
 // Throws base::Error (Input) when more than 2^26 patches would result.
-[[nodiscard]] Patches subdivide(const scenes::Scene& scene, double edge_m);
+[[nodiscard]] Patches subdivide(const scenes::Scene& scene, double edge_m,
+                                double cluster_edge_m = 0.0);
 
-// How many that would be, without making them. Throws as subdivide does.
+// How many that would be with clusters of the same edge, without making them. Throws as subdivide
+// does.
 [[nodiscard]] std::size_t count_patches(const scenes::Scene& scene, double edge_m);
 
-// Area and place in parameters of a cell of a facet.
+// Area and place in parameters of a cell of a facet, no cluster's.
 [[nodiscard]] Rectangle rectangle_of(const Facet& facet, const Cell& cell);
 [[nodiscard]] double area_of(const Facet& facet, const Rectangle& rectangle);
+// The place in the triangle: the inverse of Patches::parameters.
+[[nodiscard]] TrianglePlace triangle_place(const Facet& facet, Parameters where);
+// Of a cell of any facet.
+[[nodiscard]] double area_of(const Patches& patches, const Facet& facet, const Cell& cell);
 
 }  // namespace earthshine::radiosity

@@ -3,12 +3,18 @@
 
 #include <array>
 
+#include "radiosity/patches/cluster_members.h"
+
 namespace earthshine::radiosity {
 namespace {
 
 constexpr std::uint64_t most_cells = std::uint64_t{1} << 20;  // along one side of a facet
 
+constexpr std::uint8_t most_digits = 30;  // of the parameter s of a cluster
+
 bool can_cut_cell(const Facet& facet, const Cell& cell, Cut cut) {
+  if (facet.is_cluster() && cut == Cut::S) return cell.s_cuts < most_digits;
+  if (facet.is_cluster() && span_of(facet, cell).count > 1) return false;
   if (cut == Cut::S) return (std::uint64_t{facet.s_count} << (cell.s_cuts + 1)) <= most_cells;
   return cut == Cut::T && (std::uint64_t{facet.t_count} << (cell.t_cuts + 1)) <= most_cells;
 }
@@ -30,6 +36,8 @@ class Cutter {
   Cutter(const Patches& old, const std::vector<Cut>& wanted) : old_(old), wanted_(wanted) {
     result_.patches.of_triangle = old.of_triangle;
     result_.patches.second_half = old.second_half;
+    result_.patches.clustered = old.clustered;
+    result_.patches.cluster_edge_m = old.cluster_edge_m;
     result_.patches.facets.reserve(old.facets.size());
   }
 
@@ -115,7 +123,7 @@ class Cutter {
     const auto first = static_cast<std::uint32_t>(patches.count());
     const auto index = static_cast<std::uint32_t>(patches.facets.size());
     for (const Leaf& leaf : leaves_) {
-      patches.area_m2.push_back(area_of(made, rectangle_of(made, leaf.cell)));
+      patches.area_m2.push_back(area_of(patches, made, leaf.cell));
       patches.facet.push_back(index);
       patches.cell.push_back(leaf.cell);
       patches.is_back.push_back(side);
@@ -148,7 +156,8 @@ void grade(const Patches& patches, std::vector<Cut>& wanted) {
     const std::uint32_t patch = queue.back();
     queue.pop_back();
     const Facet& facet = patches.facets[patches.facet[patch]];
-    if (facet.tree == no_tree) continue;  // no cell has been cut more often than another
+    // No cell has been cut more often than another, or which ones are neighbours is not known.
+    if (facet.tree == no_tree || facet.is_cluster()) continue;
     const Rectangle r = patches.rectangle(patch);
     const double ds = 0.25 * (r.s1 - r.s0), dt = 0.25 * (r.t1 - r.t0);
     const std::uint32_t first = patches.is_back[patch] != 0 ? facet.first_back : facet.first_front;
@@ -179,6 +188,10 @@ bool can_cut(const Patches& patches, std::uint32_t patch, Cut cut) {
 }
 
 CellSize cell_size(const Patches& patches, std::uint32_t patch) {
+  if (patches.is_several(patch)) {
+    const auto [low, high] = patches.box(patch);
+    return {base::max_component(high - low), 0.0};
+  }
   const std::array<Vec3, 4> c = patches.corners(patch);
   const auto longest = [&](int a, int b, int d, int e) {
     return std::max(glm::length(c[static_cast<std::size_t>(a)] - c[static_cast<std::size_t>(b)]),

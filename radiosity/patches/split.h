@@ -28,7 +28,8 @@ void grade(const Patches& patches, std::vector<Cut>& wanted);
 
 [[nodiscard]] bool can_cut(const Patches& patches, std::uint32_t patch, Cut cut);
 
-// Lengths of a cell along s and along t, m; of a trapezoid the longest.
+// Lengths of a cell along s and along t, m; of a trapezoid the longest. Of several triangles of a
+// cluster, which are halved along s only, that of their box and 0.
 struct CellSize {
   double s_m, t_m;
 };

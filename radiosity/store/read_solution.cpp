@@ -74,6 +74,9 @@ struct Reading {
       for (std::size_t k = 0; k < records.size(); ++k) records[k].*member = numbers[k];
     }
   }
+  void optional(const char* name, double& value) {
+    if (file.has_attribute(name)) value = file.number_attribute(name);
+  }
   template <class T>
   void value(const char* name, T& value) {
     if constexpr (std::is_floating_point_v<T>) {

@@ -5,6 +5,7 @@
 //   column(name, std::vector<T>&, shape, unit, meaning)     numbers
 //   rows(name, records, member, unit, meaning)              one member of every record
 //   value(name, T&)                                         an attribute of the file
+//   optional(name, double&)                                 the same, left out where it is 0
 #pragma once
 
 #include "radiosity/patches/patch_layout.h"
@@ -25,6 +26,7 @@ void visit_layout(Store& store, Layout& layout) {
   per_facet("facets/tree_start", layout.tree_start, "start in facets/tree; 2^32-1: no cell split");
   store.column("facets/tree", layout.tree, {store.tree}, "",
                "leaf number, or 2^31 + start of its two halves, + 2^30 if they lie along t");
+  store.optional("cluster_edge_m", layout.cluster_edge_m);
   store.column("area", layout.area_m2, {store.patches}, "m2", "area of the patch");
 }
 

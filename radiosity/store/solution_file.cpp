@@ -52,6 +52,9 @@ struct Writing {
       file.array<Number>(name, numbers, shape, {unit, meaning});
     }
   }
+  void optional(const char* name, double value) {
+    if (value != 0.0) file.attribute(name, value);
+  }
   template <class T>
   void value(const char* name, const T& value) {
     if constexpr (std::is_floating_point_v<T>) {

@@ -7,7 +7,9 @@
 #include <numeric>
 #include <tuple>
 
+#include "radiosity/patches/cluster_members.h"
 #include "radiosity/patches/patch_albedo.h"
+
 namespace earthshine::radiosity {
 namespace {
 
@@ -135,6 +137,20 @@ void add_vertex(scenes::GltfPart& part, const Vec3& place, const Rgb& colour) {
   }
 }
 
+// The triangles of a cluster, of one colour.
+void add_several(scenes::GltfPart& part, const Patches& patches, std::uint32_t patch,
+                 const Rgb& colour) {
+  const ClusterMembers& members = *patches.clustered;
+  const ClusterSpan span = span_of(patches.facets[patches.facet[patch]], patches.cell[patch]);
+  const bool back = patches.is_back[patch] != 0;
+  for (std::uint32_t m = span.first; m < span.first + span.count; ++m) {
+    auto first = static_cast<std::uint32_t>(part.positions.size() / 3);
+    for (const std::uint32_t v : members.corner[m]) add_vertex(part, members.vertices[v], colour);
+    part.indices.insert(part.indices.end(),
+                        {first, first + (back ? 2U : 1U), first + (back ? 1U : 2U)});
+  }
+}
+
 }  // namespace
 
 SolutionMesh solution_mesh(const scenes::Scene& scene, const Solution& solution) {
@@ -152,6 +168,12 @@ SolutionMesh solution_mesh(const scenes::Scene& scene, const Solution& solution)
   for (std::uint32_t i = 0; i < patches.count(); ++i) {
     scenes::GltfPart& part = mesh.parts[patches.object(i)];
     const auto first = static_cast<std::uint32_t>(part.positions.size() / 3);
+    area += patches.area_m2[i];
+    if (base::max_component(scale * radiosity[i]) > 1.0) clipped += patches.area_m2[i];
+    if (patches.is_several(i)) {
+      add_several(part, patches, i, scale * radiosity[i]);
+      continue;
+    }
     for (std::size_t k = 4 * std::size_t{i}; k < 4 * std::size_t{i} + 4; ++k) {
       add_vertex(part, corners.place(k), scale * shown[k]);
     }
@@ -165,8 +187,6 @@ SolutionMesh solution_mesh(const scenes::Scene& scene, const Solution& solution)
     if (!same(2, 3) && !same(3, 0)) {
       part.indices.insert(part.indices.end(), {first, first + 2, first + 3});
     }
-    area += patches.area_m2[i];
-    if (base::max_component(scale * radiosity[i]) > 1.0) clipped += patches.area_m2[i];
   }
   mesh.clipped_share = clipped / area;
   return mesh;

@@ -42,7 +42,10 @@ BrightPatches::BrightPatches(const radiosity::Solution& solution) : source_(&sol
 BrightPatches::Aim BrightPatches::aim(double choice, double x, double y) const {
   const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, choice);
   const std::uint32_t patch = patches_[static_cast<std::size_t>(found - cumulative_.begin())];
-  return {patch, source_->point(patch, x, y)};
+  const radiosity::SurfacePoint at = source_->at(patch, x, y);
+  const std::uint32_t triangle =
+      source_->is_several(patch) ? source_->on_triangle(patch, x, y).triangle : scenes::no_triangle;
+  return {patch, triangle, at.position, at.normal};
 }
 
 double BrightPatches::density_per_sr(std::uint32_t patch, double distance_m,

@@ -22,7 +22,8 @@ class BrightPatches {
 
   struct Aim {
     std::uint32_t patch;
-    Vec3 point;
+    std::uint32_t triangle;  // of a patch of several triangles; else scenes::no_triangle
+    Vec3 point, normal;      // on the patch's side
   };
   // A point on one of them, chosen in proportion to its flux.
   [[nodiscard]] Aim aim(double choice, double x, double y) const;

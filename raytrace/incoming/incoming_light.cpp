@@ -46,10 +46,14 @@ double IncomingLight::kept_part(const scenes::Hit& hit, const Vec3& direction,
   if (share.cosine <= 0.0) return 1.0;
   const radiosity::Patches& patches = bright_.patches();
   const std::uint32_t patch = patches.find(hit.triangle, hit.u, hit.v, hit.front);
-  if (share.aimed_at != radiosity::no_patch) return patch == share.aimed_at ? 1.0 : 0.0;
+  if (share.aimed_at != radiosity::no_patch) {
+    // A curved patch may stand in its own way.
+    const bool there = share.triangle == scenes::no_triangle || share.triangle == hit.triangle;
+    return patch == share.aimed_at && there ? 1.0 : 0.0;
+  }
   if (patch == radiosity::no_patch) return 1.0;
-  const double density =
-      bright_.density_per_sr(patch, hit.t, glm::dot(direction, patches.normal(patch)));
+  const double density = bright_.density_per_sr(
+      patch, hit.t, glm::dot(direction, patches.normal_at(hit.triangle, hit.front)));
   const double found = share.found_rays * share.cosine / pi;
   return found / (found + share.aimed_rays * density);
 }
@@ -76,11 +80,11 @@ IncomingLight::Aimed IncomingLight::aim(const Vec3& origin, const Vec3& normal, 
   if (distance <= 0.0) return aimed;
   aimed.direction = way / distance;
   const double cosine = glm::dot(aimed.direction, normal);
-  const double at_patch = -glm::dot(aimed.direction, bright_.patches().normal(target.patch));
+  const double at_patch = -glm::dot(aimed.direction, target.normal);
   if (cosine <= 0.0 || at_patch <= 0.0) return aimed;
   const double density = bright_.density_per_sr(target.patch, distance, at_patch);
   aimed.weight = (cosine / pi) / (found_rays * cosine / pi + aimed_rays * density);
-  aimed.share = {cosine, target.patch, found_rays, aimed_rays};
+  aimed.share = {cosine, target.patch, target.triangle, found_rays, aimed_rays};
   return aimed;
 }
 

@@ -20,6 +20,7 @@ namespace earthshine::raytrace {
 struct RayShare {
   double cosine = 0.0;  // at the surface it left; 0: it shares with no other ray
   std::uint32_t aimed_at = radiosity::no_patch;  // the patch that an aimed ray must meet to count
+  std::uint32_t triangle = scenes::no_triangle;  // and of a cluster the triangle
   double found_rays = 1.0, aimed_rays = 1.0;     // cast from that surface point each way
 };
 

@@ -17,6 +17,7 @@ using Pair = std::pair<std::uint32_t, std::uint32_t>;
 void neighbours_of(const radiosity::Patches& patches, const radiosity::Facet& facet,
                    std::vector<Pair>& pairs) {
   pairs.clear();
+  if (facet.is_cluster()) return;
   if (facet.tree == radiosity::no_tree) {
     const std::uint32_t columns = facet.t_count;
     for (std::uint32_t leaf = 0; leaf < facet.leaves; ++leaf) {

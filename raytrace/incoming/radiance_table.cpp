@@ -48,7 +48,7 @@ void RadianceTable::fill_knots() {
   std::size_t size = 0;
   side_knots_.assign(facets.size(), {0, 0});
   for (std::size_t f = 0; f < facets.size(); ++f) {
-    if (facets[f].tree == radiosity::no_tree) continue;
+    if (facets[f].tree == radiosity::no_tree || facets[f].is_cluster()) continue;
     const std::size_t one_side = facets[f].leaves * knots_per_cell * layers_;
     side_knots_[f][1] = size;
     size += one_side;
@@ -61,7 +61,7 @@ void RadianceTable::fill_knots() {
     std::vector<KnotTerm> terms;
     for (std::size_t f = begin; f < end; ++f) {
       const radiosity::Facet& facet = facets[f];
-      if (facet.tree == radiosity::no_tree) continue;
+      if (facet.tree == radiosity::no_tree || facet.is_cluster()) continue;
       for (std::uint32_t k = 0; k < facet.leaves * knots_per_cell; ++k) {
         const std::uint32_t leaf = k / knots_per_cell, knot = k % knots_per_cell;
         terms.clear();
@@ -107,6 +107,12 @@ void RadianceTable::add(const scenes::Hit& hit, const Rgb& weight, std::span<Rgb
   const radiosity::Facet& facet = patches_->facets[patches_->of_triangle[hit.triangle]];
   const std::uint32_t first = hit.front ? facet.first_front : facet.first_back;
   if (first == radiosity::no_patch) return;
+  if (facet.is_cluster()) {
+    const std::uint32_t patch = patches_->find(hit.triangle, hit.u, hit.v, hit.front);
+    const glm::vec4* own = &radiance_[patch * layers_];
+    for (std::size_t layer = 0; layer < layers_; ++layer) out[layer] += weight * Rgb(own[layer]);
+    return;
+  }
   const radiosity::Parameters p = patches_->parameters(hit.triangle, hit.u, hit.v);
   if (facet.tree != radiosity::no_tree) return add_uneven(facet, hit.front, p, weight, out);
   const Neighbours s = neighbours(p.s, facet.s_count);

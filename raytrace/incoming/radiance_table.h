@@ -16,6 +16,7 @@ namespace earthshine::raytrace {
 // layers: 1 (all light groups summed) or one per group. Between the centres of a facet's cells the
 // radiance is interpolated bilinearly, which makes the error of reading it fall with the square of
 // the patch edge; where cells of different sizes meet, between the knots of knots.h.
+// Cells of a cluster (radiosity/patches/clusters.h) show one radiance each.
 // Across what stands between two cells (leak_mask.h) nothing is interpolated: a cell takes its own
 // radiance where it would take that of one that it does not see.
 class RadianceTable {

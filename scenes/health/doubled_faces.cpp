@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "base/numbers/random.h"
 #include "scenes/health/topology.h"
 #include "scenes/text/message_text.h"
 
@@ -23,24 +25,48 @@ struct Face {
   Vec3 area{0.0};                      // m^2, along its normal
 };
 
+// Polygons whose corners another one may have too: those alike in a digest of the corners.
 std::vector<Face> faces_of(const Scene& scene) {
   const std::vector<std::uint32_t> ids = welded(scene.vertices);
   std::vector<Face> faces;
-  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
-    const Triangle& triangle = scene.triangles[t];
-    if (t == 0 || triangle.polygon != scene.triangles[t - 1].polygon)
-      faces.push_back({t, 0, {}, {}});
-    Face& face = faces.back();
-    ++face.count;
-    const Vec3 a = scene.vertices[triangle.vertex[0]];
-    face.area += 0.5 * glm::cross(scene.vertices[triangle.vertex[1]] - a,
-                                  scene.vertices[triangle.vertex[2]] - a);
-    for (const std::uint32_t v : triangle.vertex) face.corners.push_back(ids[v]);
+  std::vector<std::uint64_t> digests;
+  Face face;
+  const auto each = [&](const auto& take) {
+    std::size_t number = 0;
+    for (std::uint32_t t = 0; t < scene.triangles.size(); t += face.count, ++number) {
+      face.first = t;
+      face.count = 0;
+      face.corners.clear();
+      for (std::uint32_t k = t;
+           k < scene.triangles.size() && scene.triangles[k].polygon == scene.triangles[t].polygon;
+           ++k, ++face.count) {
+        for (const std::uint32_t v : scene.triangles[k].vertex) face.corners.push_back(ids[v]);
+      }
+      std::sort(face.corners.begin(), face.corners.end());
+      face.corners.erase(std::unique(face.corners.begin(), face.corners.end()), face.corners.end());
+      take(number);
+    }
+  };
+  each([&](std::size_t) {
+    std::uint64_t digest = 0;
+    for (const std::uint32_t corner : face.corners) digest = base::mix64(digest ^ corner);
+    digests.push_back(digest);
+  });
+  std::vector<std::uint8_t> seen(std::bit_ceil(4 * digests.size() + 1), 0);  // 0, 1, more
+  for (const std::uint64_t digest : digests) {
+    std::uint8_t& times = seen[digest & (seen.size() - 1)];
+    times = times == 0 ? 1 : 2;
   }
-  for (Face& face : faces) {
-    std::sort(face.corners.begin(), face.corners.end());
-    face.corners.erase(std::unique(face.corners.begin(), face.corners.end()), face.corners.end());
-  }
+  each([&](std::size_t number) {
+    if (seen[digests[number] & (seen.size() - 1)] < 2) return;
+    face.area = Vec3(0.0);
+    for (std::uint32_t t = face.first; t < face.first + face.count; ++t) {
+      const auto& v = scene.triangles[t].vertex;
+      const Vec3 a = scene.vertices[v[0]];
+      face.area += 0.5 * glm::cross(scene.vertices[v[1]] - a, scene.vertices[v[2]] - a);
+    }
+    faces.push_back(face);
+  });
   return faces;
 }
 

@@ -2,10 +2,12 @@
 #include "scenes/health/topology.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <tuple>
+
+#include "base/numbers/random.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -62,18 +64,44 @@ class Winding {
 
 std::vector<EdgeUse> edge_uses(const Scene& scene, const Object& object,
                                std::span<const std::uint32_t> ids) {
-  std::vector<EdgeUse> uses;
-  uses.reserve(std::size_t{3} * object.triangle_count);
-  for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
-    const Triangle& triangle = scene.triangles[object.first_triangle + t];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = ids[triangle.vertex[k]], b = ids[triangle.vertex[(k + 1) % 3]];
-      if (a != b) uses.push_back({std::min(a, b), std::max(a, b), t, a < b});
+  const auto each = [&](const auto& take) {
+    for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+      const Triangle& triangle = scene.triangles[object.first_triangle + t];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = ids[triangle.vertex[k]], b = ids[triangle.vertex[(k + 1) % 3]];
+        if (a != b) take(EdgeUse{std::min(a, b), std::max(a, b), t, a < b});
+      }
     }
-  }
-  std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
+  };
+  const auto in_order = [](const EdgeUse& a, const EdgeUse& b) {
     return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+  };
+  std::uint32_t lowest = 0xFFFFFFFFU, highest = 0;
+  std::size_t count = 0;
+  each([&](const EdgeUse& use) {
+    lowest = std::min(lowest, use.low);
+    highest = std::max(highest, use.low);
+    ++count;
   });
+  if (count == 0) return {};
+  const std::size_t places = std::size_t{highest} - lowest + 1;
+  if (places > 8 * count) {  // a small object on vertices of a large one
+    std::vector<EdgeUse> uses;
+    uses.reserve(count);
+    each([&](const EdgeUse& use) { uses.push_back(use); });
+    std::sort(uses.begin(), uses.end(), in_order);
+    return uses;
+  }
+  // Each goes to the place of its lower vertex; there are few at any.
+  std::vector<std::uint32_t> next(places + 1, 0);
+  each([&](const EdgeUse& use) { ++next[use.low - lowest + 1]; });
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<EdgeUse> uses(next.back());
+  each([&](const EdgeUse& use) { uses[next[use.low - lowest]++] = use; });
+  for (auto begin = uses.begin(), end = begin; begin != uses.end(); begin = end) {
+    while (end != uses.end() && end->low == begin->low) ++end;
+    std::sort(begin, end, in_order);
+  }
   return uses;
 }
 
@@ -101,16 +129,19 @@ void measure(const Scene& scene, SurfacePart& part) {
 }  // namespace
 
 std::vector<std::uint32_t> welded(std::span<const Vec3> vertices) {
-  std::vector<std::uint32_t> order(vertices.size()), id(vertices.size());
-  std::iota(order.begin(), order.end(), 0U);
-  const auto key = [&](std::uint32_t v) {
-    return std::tie(vertices[v].x, vertices[v].y, vertices[v].z);
-  };
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const bool same = k > 0 && key(order[k - 1]) == key(order[k]);
-    id[order[k]] = same ? id[order[k - 1]] : order[k];
+  // A table of the first vertex at each place, at most half full.
+  constexpr std::uint32_t empty = 0xFFFFFFFFU;
+  const std::size_t slots = std::bit_ceil(2 * vertices.size() + 1);
+  std::vector<std::uint32_t> table(slots, empty), id(vertices.size());
+  for (std::uint32_t v = 0; v < vertices.size(); ++v) {
+    std::uint64_t hash = 0;
+    for (int c = 0; c < 3; ++c) {
+      hash = base::mix64(hash ^ std::bit_cast<std::uint64_t>(vertices[v][c] + 0.0));  // -0 is 0
+    }
+    std::size_t at = hash & (slots - 1);
+    while (table[at] != empty && vertices[table[at]] != vertices[v]) at = (at + 1) & (slots - 1);
+    if (table[at] == empty) table[at] = v;
+    id[v] = table[at];
   }
   return id;
 }
@@ -126,18 +157,19 @@ std::vector<SurfacePart> surface_parts(const Scene& scene, const Object& object,
     const EdgeUse &a = uses[begin], &b = uses[begin + 1];
     if (!winding.unite(a.triangle, b.triangle, a.rising == b.rising)) torn.push_back(a.triangle);
   }
-  std::map<std::uint32_t, std::size_t> number;
+  std::vector<std::uint32_t> number(object.triangle_count);  // of the part
   std::vector<SurfacePart> parts;
   for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
     const auto [root, against] = winding.find(t);
-    const auto [entry, fresh] = number.emplace(root, parts.size());
-    if (fresh) parts.emplace_back();
-    parts[entry->second].triangles.push_back(object.first_triangle + t);
-    parts[entry->second].turned.push_back(against);
+    if (root == t) {  // the part's first triangle
+      number[t] = static_cast<std::uint32_t>(parts.size());
+      parts.emplace_back();
+    }
+    number[t] = number[root];
+    parts[number[t]].triangles.push_back(object.first_triangle + t);
+    parts[number[t]].turned.push_back(against);
   }
-  const auto part_of = [&](std::uint32_t t) -> SurfacePart& {
-    return parts[number.at(winding.find(t).root)];
-  };
+  const auto part_of = [&](std::uint32_t t) -> SurfacePart& { return parts[number[t]]; };
   for (const std::uint32_t t : torn) part_of(t).orientable = false;
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
     while (end < uses.size() && uses[end].edge() == uses[begin].edge()) ++end;

@@ -12,7 +12,7 @@
 
 namespace earthshine::scenes {
 
-// Numbers for vertices, the same for those at the same place to the last bit.
+// Of each vertex the first one at the same place, to the last bit.
 [[nodiscard]] std::vector<std::uint32_t> welded(std::span<const Vec3> vertices);
 
 // Triangles that hang together by edges which two of them share.

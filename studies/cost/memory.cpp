@@ -19,8 +19,9 @@ constexpr double program_bytes = 18e6;  // code and libraries
 constexpr double vertex_bytes = 24.0 + 12.0;          // the scene's, the ray structure's copy
 constexpr double triangle_bytes = 24.0 + 12.0 + 4.0;  // the scene's, the copy, of_triangle
 constexpr double hierarchy_bytes = 150.0;             // per triangle
-// Per triangle where there are patches: its facet, and itself as a target of rays.
-constexpr double facet_bytes = sizeof(radiosity::Facet) + 32.0;
+// Where there are patches: per facet, of which there are no more than triangles or patches; per
+// triangle, as a target of rays; per triangle of a cluster.
+constexpr double facet_bytes = sizeof(radiosity::Facet), target_bytes = 32.0, member_bytes = 40.0;
 
 constexpr double patch_bytes = 8.0 + 4.0 + sizeof(radiosity::Cell) + 1.0 + 8.0;
 // Of rows and columns: scales and shares; while they are balanced also sums in 16 bands and the
@@ -61,7 +62,10 @@ MemoryNeed memory_needed(const MemoryCase& m) {
                                         triangles * (triangle_bytes + hierarchy_bytes)}}};
   if (m.texture_bytes > 0) standing.parts.push_back({"textures", double(m.texture_bytes)});
   if (m.solves || m.columns > 0) {
-    standing.parts.push_back({"patches", patches * patch_bytes + triangles * facet_bytes});
+    const double member = patches < triangles ? member_bytes : 0.0;
+    standing.parts.push_back({"patches", patches * patch_bytes +
+                                             std::min(patches, triangles) * facet_bytes +
+                                             triangles * (target_bytes + member)});
   }
   // One after the other: the matrix is cast and balanced, the system solved, the picture drawn.
   MemoryNeed casting = standing, solving = standing;

@@ -34,6 +34,15 @@ std::uint64_t identity(const radiosity::Patches& patches, std::uint32_t patch) {
 
 scenes::Hit hit_at(const radiosity::Patches& patches, std::uint32_t patch, double x, double y) {
   const radiosity::Facet& facet = patches.facets[patches.facet[patch]];
+  if (facet.is_cluster()) {
+    const auto [triangle, u, v] = patches.on_triangle(patch, x, y);
+    scenes::Hit hit;
+    hit.triangle = triangle;
+    hit.u = u;
+    hit.v = v;
+    hit.front = patches.is_back[patch] == 0;
+    return hit;
+  }
   const radiosity::Rectangle r = patches.rectangle(patch);
   const double t = r.t0 + y * (r.t1 - r.t0);
   scenes::Hit hit;
@@ -124,8 +133,6 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
       const base::Key key =
           base::Key(seed_, base::Stream::ErrorBudget, identity(patches, patch)).with(pass);
       const base::SobolOwen4 where(key);
-      const base::Frame3 frame = base::frame_around(patches.normal(patch));
-      const Vec3 lift = frame.normal * scene_.query.surface_offset_m();
       near.clear();
       if (bodies != nullptr) {
         near = bodies->near(patches, patch, 2.0 * scene_.query.surface_offset_m());
@@ -135,7 +142,9 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
       residual.taken = 0;
       for (std::size_t point = 0; point < work.points; ++point) {
         const auto p = where.point2(static_cast<std::uint32_t>(point));
-        const Vec3 at = patches.point(patch, double(p[0]), double(p[1]));
+        const auto [at, normal] = patches.at(patch, double(p[0]), double(p[1]));
+        const base::Frame3 frame = base::frame_around(normal);
+        const Vec3 lift = frame.normal * scene_.query.surface_offset_m();
         if (!near.empty() && bodies->cover(at + lift - bodies->centre(), near)) continue;
         ++residual.taken;
         for (std::size_t k = 0; k < sources_.size(); ++k) {

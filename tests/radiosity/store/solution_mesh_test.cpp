@@ -6,16 +6,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/support/scene_builder.h"
+#include "tests/support/fine_meshes.h"
 
 namespace earthshine::radiosity {
 namespace {
 
 // A scene cut into patches, with one light group and the radiosity that a test gives each patch.
 template <class Value>
-Solution given(const scenes::Scene& scene, double edge_m, Value value) {
+Solution given(const scenes::Scene& scene, double edge_m, Value value,
+               double cluster_edge_m = 0.0) {
   Solution solution;
-  solution.patches = subdivide(scene, edge_m);
+  solution.patches = subdivide(scene, edge_m, cluster_edge_m);
   solution.columns = 3;
   for (std::uint32_t i = 0; i < solution.patches.count(); ++i) {
     for (int c = 0; c < 3; ++c) {
@@ -162,6 +163,29 @@ TEST(SolutionMesh, EmittingSurfacesShineAndADarkSceneIsBlack) {
   const SolutionMesh nothing = solution_mesh(builder.scene, dark);
   EXPECT_EQ(nothing.lm_m2_per_unit, 0.0);
   EXPECT_EQ(colour(nothing.parts[1], 0), Vec3(0.0));
+}
+
+// A sheet of 128 triangles in one cluster: all of them are there, facing their side.
+TEST(SolutionMesh, BothSidesOfAClusterHaveAllItsTriangles) {
+  tests::SceneBuilder builder;
+  scenes::Material sheet = tests::grey(0.5);
+  sheet.two_sided = true;
+  tests::fine_wall(builder, builder.material(sheet), {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 8);
+  const Solution solution = given(
+      builder.scene, 2.0, [](const Patches&, std::uint32_t) { return Rgb(1.0); }, 2.0);
+  ASSERT_EQ(solution.patches.count(), 2U);
+  const SolutionMesh mesh = solution_mesh(builder.scene, solution);
+  const scenes::GltfPart& part = mesh.parts[0];
+  ASSERT_EQ(part.indices.size(), 2U * 3U * 128U);
+  double up = 0.0, down = 0.0;
+  for (std::size_t k = 0; k < part.indices.size(); k += 3) {
+    const Vec3 a = vertex(part, part.indices[k]), b = vertex(part, part.indices[k + 1]),
+               c = vertex(part, part.indices[k + 2]);
+    const double area = 0.5 * glm::cross(b - a, c - a).z;
+    (area > 0.0 ? up : down) += area;
+  }
+  EXPECT_NEAR(up, 1.0, 1e-6);
+  EXPECT_NEAR(down, -1.0, 1e-6);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "scenes/health/mend.h"
 
 #include <array>
+#include <cmath>
 
 #include "scenes/health/topology.h"
 #include "tests/scenes/cube_scenes.h"
@@ -167,6 +168,22 @@ TEST(SolidAngleOf, IsAllInsideAndNothingOutside) {
   EXPECT_NEAR(solid_angle_of(scene, part, {5.0, 0.5, 0.5}), 0.0, 1e-12);
   // On a face half of it, on an edge a quarter.
   EXPECT_NEAR(solid_angle_of(scene, part, {1.0, 0.5, 0.5}), 2.0 * base::pi, 1e-9);
+}
+
+// Of each vertex the first at its place: zeros of both signs are one place, neighbouring numbers
+// are two, and a thousand places keep apart.
+TEST(Topology, WeldedVerticesAreTheFirstAtTheirPlace) {
+  std::vector<Vec3> vertices{{0.0, 1.0, 2.0}, {-0.0, 1.0, 2.0}, {std::nextafter(0.0, 1.0), 1, 2}};
+  for (int k = 0; k < 1000; ++k) vertices.emplace_back(k % 10, k / 10 % 10, k / 100 + 3.0);
+  for (int k = 0; k < 1000; ++k) vertices.push_back(vertices[3 + (7 * k) % 1000]);
+  const std::vector<std::uint32_t> id = welded(vertices);
+  EXPECT_EQ(id[0], 0U);
+  EXPECT_EQ(id[1], 0U);
+  EXPECT_EQ(id[2], 2U);
+  for (std::uint32_t k = 0; k < 1000; ++k) {
+    EXPECT_EQ(id[3 + k], 3 + k);
+    EXPECT_EQ(id[1003 + k], 3 + (7 * k) % 1000);
+  }
 }
 
 }  // namespace
