@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "app/accuracy/stages.h"
+#include "app/console.h"
 #include "app/parts/part.h"
 
 namespace earthshine::app {
@@ -53,6 +54,9 @@ class AccuracyShare : AccuracyStages {
       }
     }
     if (!missing.empty()) refuse_to_merge(task_.call.folder, missing);
+    if (part.number <= pieces.size() || task_.common.quiet) return;
+    note(fmt::format("part {} of {}: nothing to do: the study has {} pieces", part.number,
+                     part.count, pieces.size()));
   }
 
  private:

@@ -27,6 +27,7 @@ FrameParts::FrameParts(const PartCall& part, const TapeCall& pictures,
                        const std::vector<TapeFrame>& tape, const std::vector<std::string>& outputs,
                        const CctvSetup& setup, const Common& common)
     : part_(part),
+      quiet_(common.quiet),
       tape_(tape),
       folder_(outputs.front() + ".parts"),
       digests_(digests_of_call(pictures, setup)),
@@ -65,7 +66,7 @@ Share FrameParts::to_do() const {
   for (std::size_t place = mine.first; place < mine.last; ++place) {
     if (report_of(place).is_null()) return {place, mine.last};
   }
-  note(fmt::format("part {} of {}: nothing to do", part_.number, part_.count));
+  if (!quiet_) note(fmt::format("part {} of {}: nothing to do", part_.number, part_.count));
   return {};
 }
 

@@ -37,6 +37,7 @@ class FrameParts {
   [[nodiscard]] Json report_of(std::size_t place) const;
 
   PartCall part_;
+  bool quiet_;
   const std::vector<TapeFrame>& tape_;
   std::vector<std::string> outputs_;
   std::filesystem::path folder_;

@@ -64,8 +64,7 @@ RenderParts::RenderParts(const LightCall& wanted, PartCall& part,
 
 Solved RenderParts::light(StageTimes& times) {
   LightCall call = wanted_;
-  const auto digest_of = [this](const std::string& file) { solution_ = digest_of_file(file); };
-  if (!wanted_.call.solution.empty()) digest_of(wanted_.call.solution);
+  if (!wanted_.call.solution.empty()) solution_ = digest_of_file(wanted_.call.solution);
   call.share = [&](const std::function<radiosity::Solution()>& solve) {
     const std::filesystem::path file = solution_file_in(folder_, scene_key_);
     if (part_.task == PartCall::Task::Merge && !std::filesystem::exists(file)) check_complete();

@@ -193,6 +193,8 @@ class StudyParts(Case):
     def test_more_parts_than_work(self):
         note = self.run_program(*ORBIT, "o", "--part", "1/100").stderr
         self.says(note, "part 1 of 100: nothing to do: the study has 6 batches")
+        note = self.run_program(*SEVERAL["accuracy"], "a", "--part", "99/100").stderr
+        self.says(note, "part 99 of 100: nothing to do: the study has ")
 
     def test_accuracy_in_too_little_memory(self):
         """A step whose memory cannot be had is left out for the reason that one process gives, by the part that has it."""
