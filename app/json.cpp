@@ -5,10 +5,34 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/error.h"
+#include "base/input/input_file.h"
+#include "base/numbers/digest.h"
+
 namespace earthshine::app {
+namespace {
+
+constexpr std::size_t largest_json_bytes = std::size_t{1} << 30;
+
+}  // namespace
 
 std::string dump(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string digest_of(const Json& json) {
+  base::Digest digest;
+  digest.add(std::string_view(dump(json)));
+  return digest.text();
+}
+
+Json json_in(const std::filesystem::path& path) {
+  try {
+    return Json::parse(base::read_input_file(path, largest_json_bytes, {path.string()}), nullptr,
+                       false);
+  } catch (const base::Error&) {
+    return Json::value_t::discarded;
+  }
 }
 
 std::string csv_cell(std::string text) {

@@ -2,6 +2,7 @@
 // JSON and CSV as the program writes them.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -17,6 +18,10 @@ using Json = nlohmann::ordered_json;
 }
 // Indented text with a final newline. Numbers that are not finite become null.
 [[nodiscard]] std::string dump(const Json& json);
+// Of that text.
+[[nodiscard]] std::string digest_of(const Json& json);
+// What the program wrote into a file; discarded (nlohmann) where there is none or it is broken.
+[[nodiscard]] Json json_in(const std::filesystem::path& path);
 
 // A number, or null.
 template <class Number>

@@ -97,10 +97,12 @@ int study_in_ranks(const std::vector<std::string>& arguments, base::Ranks& ranks
     return run(std::move(call), nullptr);
   };
   const bool speaks = ranks.number() == 0;
+  const bool plans = std::find(arguments.begin(), arguments.end(), "--dry-run") != arguments.end();
+  if (plans) return speaks ? run(arguments, nullptr) : 0;
   int code = speaks ? task("begin") : 0;
-  (void)ranks.gather("begun");
+  base::meet(ranks);
   code = std::max(code, task(fmt::format("{}/{}", ranks.number() + 1, ranks.count())));
-  (void)ranks.gather("done");
+  base::meet(ranks);
   return speaks ? std::max(code, task("merge")) : code;
 }
 
@@ -176,6 +178,14 @@ void end_by_signal(int signal) {
   std::raise(signal);
 }
 
+void take_signals() {
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported where it is written to
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    // Whoever started the program may have it ignore a signal, as nohup does.
+    if (std::signal(signal, end_by_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
+}
+
 int complain(std::string_view what, int exit_code) {
   note(fmt::format("earthshine: {}", what));
   return exit_code;
@@ -199,13 +209,7 @@ void end_rank(base::Ranks& ranks, int exit_code, const std::string& what) {
 
 int main(int argc, char** argv) {
   using namespace earthshine;
-  const std::unique_ptr<base::Ranks> ranks = base::start_ranks(argc, argv);
-  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported where it is written to
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    // Whoever started the program may have it ignore a signal, as nohup does.
-    if (std::signal(signal, app::end_by_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
-  }
-  app::be_silent(ranks && ranks->number() > 0);
+  std::unique_ptr<base::Ranks> ranks;
   std::string what;
   const auto failed = [&what](std::string_view why, int exit_code) {
     what = why;
@@ -213,6 +217,9 @@ int main(int argc, char** argv) {
   };
   const auto run = [&] {
     try {
+      ranks = base::start_ranks(argc, argv);
+      app::take_signals();
+      app::be_silent(ranks && ranks->number() > 0);
       const int exit_code = app::run({argv + std::min(argc, 1), argv + argc}, ranks.get());
       return exit_code == 0 && app::lost_a_note() ? app::work_failed : exit_code;
     } catch (const base::Error& error) {

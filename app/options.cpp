@@ -66,13 +66,11 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
       .add_option_function<std::string>(
           "--error",
           [&input](const std::string& text) {
-            double error = 0.0;
-            const char* end = text.data() + text.size();
-            const auto [stop, problem] = std::from_chars(text.data(), end, error);
-            if (problem != std::errc() || stop != end) {
+            const auto error = measure_of(text);
+            if (!error || !error->second.empty()) {
               throw CLI::ValidationError("--error", "\"" + text + "\" is not a number");
             }
-            input.overrides.push_back(fmt::format("quality.error={}", error));
+            input.overrides.push_back(fmt::format("quality.error={}", error->first));
           },
           "Wanted relative error; the same as --set quality.error=E")
       ->type_name("E");
@@ -102,20 +100,11 @@ void add_tone_options(CLI::App& command, ToneChoice& tone, const std::string& mo
           "3000cd/m2, or own, a curve for each picture by its mean" +
               more)
       ->type_name("HOW");
-  command
-      .add_option_function<std::string>(
-          "--curve",
-          [&tone](const std::string& text) {
-            if (text != "shoulder" && text != "clip") {
-              throw CLI::ValidationError("--curve",
-                                         "\"" + text + "\" is not one of shoulder, clip");
-            }
-            tone.curve = text == "clip" ? base::ToneCurve::Clip : base::ToneCurve::Shoulder;
-          },
-          "With --exposure: shoulder (default; bright parts keep their differences), clip (linear "
-          "up "
-          "to white)")
-      ->type_name("HOW")
+  add_choice<base::ToneCurve, base::ToneCurve>(
+      command, "--curve", tone.curve,
+      {{"shoulder", base::ToneCurve::Shoulder}, {"clip", base::ToneCurve::Clip}},
+      "With --exposure: shoulder (default; bright parts keep their differences), clip (linear up "
+      "to white)")
       ->needs("--exposure");
 }
 

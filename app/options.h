@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/command.h"
@@ -51,6 +52,25 @@ void add_whole_number(CLI::App& command, const std::string& flags, std::uint64_t
 // An option that takes a finite number within [least, most].
 void add_number(CLI::App& command, const std::string& flags, std::optional<double>& value,
                 double least, double most, const std::string& help);
+
+// An option that takes one of a few words, each for a value of `kept`.
+template <class Kept, class Value>
+CLI::Option* add_choice(CLI::App& command, const std::string& name, Kept& kept,
+                        const std::vector<std::pair<std::string, Value>>& choices,
+                        const std::string& help) {
+  const auto read = [name, &kept, choices](const std::string& text) {
+    std::string words;
+    for (const auto& [word, value] : choices) {
+      if (word == text) {
+        kept = value;
+        return;
+      }
+      words += (words.empty() ? "" : ", ") + word;
+    }
+    throw CLI::ValidationError(name, "\"" + text + "\" is not one of " + words);
+  };
+  return command.add_option_function<std::string>(name, read, help)->type_name("HOW");
+}
 
 // --max-memory SIZE, with a unit: 500MiB, 2GiB.
 void add_memory_option(CLI::App& command, std::uint64_t& bytes);

@@ -55,14 +55,18 @@ void check_outputs(const std::vector<std::string>& paths, const Files& inputs) {
   }
 }
 
-void prepare_folder(const std::string& folder, const std::vector<std::string>& files,
-                    const Files& inputs) {
+void make_folder(const fs::path& folder) {
   std::error_code problem;
   fs::create_directories(folder, problem);
-  if (!fs::is_directory(folder)) {
-    const std::string why = problem ? ": " + problem.message() : "";
-    throw Error(Blame::Input, folder, "cannot be made a folder" + why, {}, "Name another folder");
-  }
+  if (fs::is_directory(folder)) return;
+  const std::string why = problem ? ": " + problem.message() : "";
+  throw Error(Blame::Input, folder.string(), "cannot be made a folder" + why, {},
+              "Name another folder");
+}
+
+void prepare_folder(const std::string& folder, const std::vector<std::string>& files,
+                    const Files& inputs) {
+  make_folder(folder);
   std::vector<std::string> paths;
   paths.reserve(files.size());
   for (const std::string& file : files) paths.push_back((fs::path(folder) / file).string());

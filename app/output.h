@@ -17,6 +17,9 @@ using Files = std::vector<std::filesystem::path>;
 // those of a scene.
 void check_outputs(const std::vector<std::string>& paths, const Files& inputs);
 
+// Throws base::Error (Input) where there is no folder and none can be made.
+void make_folder(const std::filesystem::path& folder);
+
 // Makes the folder where there is none and sees that each of the files can be written in it, as
 // check_outputs does.
 void prepare_folder(const std::string& folder, const std::vector<std::string>& files,

@@ -9,7 +9,6 @@
 #include "app/console.h"
 #include "app/memory.h"
 #include "base/error.h"
-#include "base/numbers/digest.h"
 
 namespace earthshine::app {
 namespace {
@@ -104,20 +103,24 @@ studies::StepCost AccuracyParts::cost_of(const Json& facts) {
 }
 
 bool AccuracyParts::has(const studies::Batch& batch) const {
-  return task_.store.has(cache_key_of(batch));
+  return is_stored(cache_key_of(batch));
 }
 
 bool AccuracyParts::has(const studies::AccuracyStep& step, std::uint64_t seed) const {
-  return task_.store.has(cache_key_of(step, seed));
+  return is_stored(cache_key_of(step, seed));
+}
+
+bool AccuracyParts::is_stored(const Json& cache_key) const {
+  std::string ignored;
+  return task_.store.find(cache_key, ignored).has_value();
 }
 
 Json AccuracyParts::digests(const std::vector<studies::AccuracyStep>& ladder) const {
-  base::Digest scene, settings;
-  scene.add(std::string_view(dump(common_cache_key_)));
+  Json settings = Json::array();
   for (const studies::AccuracyStep& step : ladder) {
-    settings.add(std::string_view(dump(cache_key_of(step, task_.view.seed))));
+    settings.push_back(cache_key_of(step, task_.view.seed));
   }
-  return {{"scene", scene.text()}, {"settings", settings.text()}};
+  return {{"scene", digest_of(common_cache_key_)}, {"settings", digest_of(settings)}};
 }
 
 std::optional<CachedResult> AccuracyParts::stored(const Json& cache_key) {
@@ -134,10 +137,17 @@ void AccuracyParts::end_early() const {
                                 finished_, task_.call.folder));
 }
 
+void AccuracyParts::see_that_work_is_wanted() const {
+  if (task_.view.stop()) end_early();
+  if (task_.call.part.task != PartCall::Task::Merge) return;
+  throw base::Error(base::Blame::Work, task_.call.folder, "has lost work since it was looked at",
+                    {}, "Merge again: what is missing is listed");
+}
+
 CachedResult AccuracyParts::batch(const studies::Batch& batch) {
   const Json cache_key = cache_key_of(batch);
   if (auto part = stored(cache_key)) return *part;
-  if (task_.view.stop()) end_early();
+  see_that_work_is_wanted();
   Progress progress("reference", task_.common.quiet);
   const double before = cpu_seconds();
   auto image = studies::trace_batch(scene_, task_.view, batch, std::ref(progress));
@@ -151,7 +161,7 @@ CachedResult AccuracyParts::batch(const studies::Batch& batch) {
 CachedResult AccuracyParts::point(const studies::AccuracyStep& step, std::uint64_t seed) {
   const Json cache_key = cache_key_of(step, seed);
   if (auto part = stored(cache_key)) return *part;
-  if (task_.view.stop()) end_early();
+  see_that_work_is_wanted();
   const radiosity::SolveOptions solver = studies::solver_of(scene_, step, seed);
   const auto alike = std::count_if(
       expected_.begin(), expected_.end(),
@@ -187,6 +197,20 @@ std::string AccuracyParts::does_not_fit(const studies::AccuracyStep& step) const
     return error.what();
   }
   return "";
+}
+
+Json AccuracyParts::key_of_left_out(const studies::AccuracyStep& step) const {
+  return {{"what", "left out"}, {"step", cache_key_of(step, task_.view.seed)}};
+}
+
+void AccuracyParts::leave_out(const studies::AccuracyStep& step, const std::string& why) const {
+  task_.store.keep_facts(key_of_left_out(step), {{"why", why}});
+}
+
+std::string AccuracyParts::left_out(const studies::AccuracyStep& step) const {
+  std::string ignored;
+  const auto facts = task_.store.find_facts(key_of_left_out(step), ignored);
+  return facts ? (*facts)["why"].get<std::string>() : "";
 }
 
 double AccuracyParts::seconds() const {

@@ -19,6 +19,7 @@ class AccuracyParts {
   [[nodiscard]] CachedResult batch(const studies::Batch& batch);
   // A step's picture, channel Y, and its cost.
   [[nodiscard]] CachedResult point(const studies::AccuracyStep& step, std::uint64_t seed);
+  // Whether it is in the store, with its picture.
   [[nodiscard]] bool has(const studies::Batch& batch) const;
   [[nodiscard]] bool has(const studies::AccuracyStep& step, std::uint64_t seed) const;
   // Of all that the study's parts depend on.
@@ -30,6 +31,10 @@ class AccuracyParts {
   // Why the step's memory cannot be had; "" if it can.
   [[nodiscard]] std::string does_not_fit(const studies::AccuracyStep& step) const;
 
+  // Keeps that reason in place of the step, for the merge; "" where there is none.
+  void leave_out(const studies::AccuracyStep& step, const std::string& why) const;
+  [[nodiscard]] std::string left_out(const studies::AccuracyStep& step) const;
+
   [[nodiscard]] double seconds() const;  // wall, since the beginning
   // How the machine turns CPU seconds into wall seconds just now, for what is still to come.
   [[nodiscard]] double wall_per_cpu() const;
@@ -38,8 +43,12 @@ class AccuracyParts {
  private:
   [[nodiscard]] Json cache_key_of(const studies::Batch& batch) const;
   [[nodiscard]] Json cache_key_of(const studies::AccuracyStep& step, std::uint64_t seed) const;
+  [[nodiscard]] Json key_of_left_out(const studies::AccuracyStep& step) const;
+  [[nodiscard]] bool is_stored(const Json& cache_key) const;
   [[nodiscard]] std::optional<CachedResult> stored(const Json& cache_key);
   [[noreturn]] void end_early() const;
+  // Before work that is not stored: throws base::Error (Work) where none is to be done.
+  void see_that_work_is_wanted() const;
 
   const AccuracyTask& task_;
   const studies::StudyScene& scene_;

@@ -27,13 +27,7 @@ class Study : AccuracyStages {
   explicit Study(const AccuracyTask& task) : AccuracyStages(task) {}
 
   AccuracyResult run() {
-    if (task_.loaded.groups.count() == 0 &&
-        base::max_component(task_.loaded.scene.ambient_radiance) <= 0.0) {
-      return nothing("nothing gives light: the picture is black, and has no error");
-    }
-    if (!find_counted()) {
-      return nothing("no pixel shows a surface that is no source: there is nothing to compare");
-    }
+    if (const std::string why = nothing_to_measure(); !why.empty()) return nothing(why);
     if (!trace_references()) {
       return nothing(
           fmt::format("no light was found on what the camera sees, with {} paths a pixel",
@@ -123,9 +117,13 @@ class Study : AccuracyStages {
     const std::vector<studies::AccuracyStep>& ladder = ladder_;
     parts_.expect(ladder);
     std::vector<studies::Taken> taken;
+    std::vector<bool> stored;
+    for (const studies::AccuracyStep& step : ladder) {
+      stored.push_back(parts_.has(step, task_.view.seed));
+    }
     for (std::size_t k = 0; k < ladder.size(); ++k) {
       const studies::AccuracyStep& step = ladder[k];
-      if (!parts_.has(step, task_.view.seed)) {
+      if (!stored[k]) {
         const double expected = parts_.wall_per_cpu() * studies::expected_seconds(step, taken);
         if (expected > time_left() || time_left() <= 0.0) {
           result_.not_run.push_back(
@@ -133,7 +131,8 @@ class Study : AccuracyStages {
                                         duration(expected), duration(std::max(0.0, time_left())))});
           continue;
         }
-        const std::string unfit = parts_.does_not_fit(step);
+        const bool merges = task_.call.part.task == PartCall::Task::Merge;
+        const std::string unfit = merges ? parts_.left_out(step) : parts_.does_not_fit(step);
         if (!unfit.empty()) {
           result_.not_run.push_back({step.name(), unfit});
           continue;
@@ -147,7 +146,7 @@ class Study : AccuracyStages {
       taken.push_back({step, cost.cpu_seconds});
       double left = 0.0;
       for (std::size_t j = k + 1; j < ladder.size(); ++j) {
-        if (!parts_.has(ladder[j], task_.view.seed)) {
+        if (!stored[j]) {
           left += parts_.wall_per_cpu() * studies::expected_seconds(ladder[j], taken);
         }
       }

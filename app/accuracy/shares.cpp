@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "app/accuracy/stages.h"
+#include "app/console.h"
 #include "app/parts/part.h"
 
 namespace earthshine::app {
@@ -27,24 +28,19 @@ class AccuracyShare : AccuracyStages {
 
   void share(PartCall& part) {
     using Task = PartCall::Task;
-    std::vector<PathReference> references = new_references();
-    std::vector<AccuracyPiece> pieces = pieces_of_round(references, 0, first_paths);
-    const std::vector<AccuracyPiece> first = pieces;
     ladder_ = make_ladder();
     parts_.expect(ladder_);
-    join_parts(std::filesystem::path(task_.call.folder) / "points", task_.common,
+    join_parts(std::filesystem::path(task_.call.folder) / points_folder, task_.common,
                parts_.digests(ladder_), part);
-    if (part.task == Task::Solve) return;
+    if (part.task == Task::Solve || !nothing_to_measure().empty()) return;
+    std::vector<PathReference> references = new_references();
     std::vector<MissingWork> missing;
-    for (const AccuracyPiece& piece : first) {
-      if (part.task != Task::Merge) {
-        piece.work();
-      } else if (!piece.is_done()) {
-        missing.push_back({piece.name, 1});
-      }
+    for (const AccuracyPiece& piece : pieces_of_round(references, 0, first_paths)) {
+      if (part.task == Task::Merge && !piece.is_done()) missing.push_back({piece.name, 1});
     }
     if (!missing.empty()) refuse_to_merge(task_.call.folder, missing);
-    if (!find_counted() || !trace_first(references)) return;
+    if (!trace_first(references)) return;
+    std::vector<AccuracyPiece> pieces;
     const std::vector<int> further = further_rounds();
     for (std::size_t k = 0; k < further.size(); ++k) {
       append(pieces, pieces_of_round(references, static_cast<int>(k) + 1, further[k]));
@@ -58,6 +54,9 @@ class AccuracyShare : AccuracyStages {
       }
     }
     if (!missing.empty()) refuse_to_merge(task_.call.folder, missing);
+    if (part.number <= pieces.size() || task_.common.quiet) return;
+    note(fmt::format("part {} of {}: nothing to do: the study has {} pieces", part.number,
+                     part.count, pieces.size()));
   }
 
  private:
@@ -110,14 +109,26 @@ class AccuracyShare : AccuracyStages {
       pieces.push_back({steps.front().name(),
                         [this, steps = steps, seed = seed] {
                           return std::all_of(steps.begin(), steps.end(), [&](const auto& step) {
-                            return parts_.has(step, seed);
+                            return parts_.has(step, seed) ||
+                                   (seed == task_.view.seed && !parts_.left_out(step).empty());
                           });
                         },
                         [this, steps = steps, seed = seed] {
-                          for (const auto& step : steps) (void)parts_.point(step, seed);
+                          for (const auto& step : steps) take_step(step, seed);
                         }});
     }
     return pieces;
+  }
+
+  // A step of the ladder whose memory cannot be had here is left out, as one process does.
+  void take_step(const studies::AccuracyStep& step, std::uint64_t seed) {
+    const bool may_be_left_out = seed == task_.view.seed && !parts_.has(step, seed);
+    const std::string unfit = may_be_left_out ? parts_.does_not_fit(step) : "";
+    if (unfit.empty()) {
+      (void)parts_.point(step, seed);
+    } else {
+      parts_.leave_out(step, unfit);
+    }
   }
 
   std::vector<studies::AccuracyStep> ladder_;

@@ -51,12 +51,17 @@ std::vector<PathReference> AccuracyStages::new_references() const {
   return references;
 }
 
-bool AccuracyStages::find_counted() {
+std::string AccuracyStages::nothing_to_measure() {
+  if (task_.loaded.groups.count() == 0 &&
+      base::max_component(task_.loaded.scene.ambient_radiance) <= 0.0) {
+    return "nothing gives light: the picture is black, and has no error";
+  }
   const raytrace::CameraModel camera =
       raytrace::make_camera_model(task_.view.camera, task_.view.columns, task_.view.rows);
   counted_ = studies::surface_pixels(scene_, camera);
   result_.pixels = std::size_t(std::count(counted_.begin(), counted_.end(), true));
-  return result_.pixels > 0;
+  if (result_.pixels > 0) return "";
+  return "no pixel shows a surface that is no source: there is nothing to compare";
 }
 
 bool AccuracyStages::trace_first(std::vector<PathReference>& references) {

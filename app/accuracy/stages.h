@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "app/accuracy/parts.h"
@@ -27,8 +28,8 @@ class AccuracyStages {
   explicit AccuracyStages(const AccuracyTask& task);
 
   [[nodiscard]] double finest() const;  // of the wanted errors
-  // False if no pixel is to be compared.
-  bool find_counted();
+  // Why there is nothing to measure, as far as it is known without a path; "": there may be.
+  [[nodiscard]] std::string nothing_to_measure();
   [[nodiscard]] std::vector<PathReference> new_references() const;
   // One batch on both sides of every reference, so that a time limit leaves them alike.
   void trace_round(std::vector<PathReference>& references, int index, int paths);

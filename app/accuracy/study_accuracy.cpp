@@ -29,7 +29,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* table_csv = "accuracy.csv";
 constexpr const char* accuracy_file = "accuracy.json";
-constexpr const char* points_folder = "points";
 constexpr std::uint64_t most_lights = 1U << 16U, most_asked_paths = 1U << 20U;
 
 std::vector<std::string> file_names() {

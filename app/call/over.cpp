@@ -3,10 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
-#include <map>
-#include <system_error>
 #include <vector>
 
 #include "app/call/render_call.h"
@@ -57,36 +54,12 @@ void add_over_options(CLI::App& command, OverCall& call) {
       .add_option("--over", call.photo,
                   "Lay the scene over this photograph (PNG), into the file of --png")
       ->type_name("PHOTO.png");
-  const std::map<std::string, OverStyle> names = {
-      {"wire", OverStyle::Wire}, {"blend", OverStyle::Blend}, {"both", OverStyle::Both}};
-  command
-      .add_option_function<std::string>(
-          "--over-style",
-          [&call, names](const std::string& text) {
-            const auto known = names.find(text);
-            if (known == names.end()) {
-              throw CLI::ValidationError("--over-style",
-                                         "\"" + text + "\" is not one of wire, blend, both");
-            }
-            call.style = known->second;
-          },
-          "wire (default): visible edges; blend: the tone-mapped picture; both")
-      ->type_name("HOW");
-  command
-      .add_option_function<std::string>(
-          "--over-alpha",
-          [&call](const std::string& text) {
-            double alpha = 0.0;
-            const char* end = text.data() + text.size();
-            const auto [stop, problem] = std::from_chars(text.data(), end, alpha);
-            if (problem != std::errc() || stop != end || !(alpha >= 0.0 && alpha <= 1.0)) {
-              throw CLI::ValidationError("--over-alpha",
-                                         "\"" + text + "\" is not a number from 0 to 1");
-            }
-            call.alpha = alpha;
-          },
-          "Opacity of what is laid over (default: lines 1, picture 0.5)")
-      ->type_name("A");
+  add_choice<std::optional<OverStyle>, OverStyle>(
+      command, "--over-style", call.style,
+      {{"wire", OverStyle::Wire}, {"blend", OverStyle::Blend}, {"both", OverStyle::Both}},
+      "wire (default): visible edges; blend: the tone-mapped picture; both");
+  add_number(command, "--over-alpha", call.alpha, 0.0, 1.0,
+             "Opacity of what is laid over (default: lines 1, picture 0.5)");
 }
 
 void check_over(const RenderCall& call) {

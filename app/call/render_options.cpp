@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -41,25 +40,14 @@ std::optional<std::vector<int>> numbers_like(std::string_view pattern, std::stri
 
 void add_indirect_options(CLI::App& parser, RenderCall& call) {
   using raytrace::Indirect;
-  const std::map<std::string, Indirect> names = {{"radiosity", Indirect::Radiosity},
-                                                 {"distributed", Indirect::Distributed},
-                                                 {"none", Indirect::None},
-                                                 {"paths", Indirect::Paths}};
-  parser
-      .add_option_function<std::string>(
-          "--indirect",
-          [&call, names](const std::string& text) {
-            const auto known = names.find(text);
-            if (known == names.end()) {
-              throw CLI::ValidationError(
-                  "--indirect",
-                  "\"" + text + "\" is not one of radiosity, distributed, none, paths");
-            }
-            call.indirect = known->second;
-          },
-          "radiosity (default), distributed (many lights, no interreflection), none, paths (slow "
-          "reference)")
-      ->type_name("HOW");
+  add_choice<Indirect, Indirect>(
+      parser, "--indirect", call.indirect,
+      {{"radiosity", Indirect::Radiosity},
+       {"distributed", Indirect::Distributed},
+       {"none", Indirect::None},
+       {"paths", Indirect::Paths}},
+      "radiosity (default), distributed (many lights, no interreflection), none, paths (slow "
+      "reference)");
   add_whole_number(parser, "--distributed-lights", call.distributed_lights, 1, 1U << 20U,
                    "Lights of --indirect distributed (default 64)");
   parser

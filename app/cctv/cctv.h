@@ -30,6 +30,9 @@ struct CctvSetup {
 // A camera that ships, with its monitor. Throws base::Error (Input) for an unknown name.
 [[nodiscard]] CctvSetup cctv_of_preset(const std::string& name, const Common& common);
 
+// Whether a frame depends on those before it: by an iris that takes its time, or by lag.
+[[nodiscard]] bool remembers(const degrade::CctvCamera& camera);
+
 [[nodiscard]] degrade::Result run_chain(const CctvSetup& setup, const base::Image& radiance);
 
 // The value of a setting; an enumerator as its word.

@@ -8,12 +8,12 @@
 #include <array>
 #include <charconv>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 
+#include "app/interrupt.h"
 #include "app/options.h"
+#include "app/output.h"
 #include "app/parts/build_id.h"
 #include "base/error.h"
 #include "base/files/output_file.h"
@@ -45,8 +45,7 @@ std::optional<std::uint64_t> number_in(const char* variable) {
   throw Error(Blame::Input, "--part auto", found, {}, remedy);
 }
 
-// Slurm tells where the array begins and how many tasks it has. PBS tells the index alone, as
-// PBS_ARRAY_INDEX (PBS Professional, OpenPBS) or PBS_ARRAYID (Torque).
+// Slurm tells where the array begins and how many tasks it has.
 void read_array(PartCall& part) {
   const auto task = number_in("SLURM_ARRAY_TASK_ID"), count = number_in("SLURM_ARRAY_TASK_COUNT");
   if (!task) {
@@ -64,6 +63,8 @@ void read_array(PartCall& part) {
   part.count = *count;
 }
 
+// PBS tells the index alone, as PBS_ARRAY_INDEX (PBS Professional, OpenPBS) or PBS_ARRAYID
+// (Torque).
 void read_index(PartCall& part) {
   for (const char* variable : {"SLURM_ARRAY_TASK_ID", "PBS_ARRAY_INDEX", "PBS_ARRAYID"}) {
     const auto index = number_in(variable);
@@ -125,9 +126,7 @@ std::optional<PartsRecord> record_in(const fs::path& folder) {
   const fs::path path = folder / record_file;
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return std::nullopt;
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = json_in(path);
   try {
     PartsRecord record;
     json.at("parts").get_to(record.parts);
@@ -202,7 +201,7 @@ std::vector<std::string> part_free(const std::vector<std::string>& arguments) {
 }
 
 PartsRecord read_parts_record(const fs::path& folder) {
-  for (const fs::path& place : {folder, folder / "points"}) {
+  for (const fs::path& place : {folder, folder / points_folder}) {
     if (auto record = record_in(place)) return *record;
   }
   throw Error(Blame::Input, folder.string(), fmt::format("holds no {}", record_file),
@@ -214,15 +213,10 @@ void join_parts(const fs::path& folder, const Common& common, const Json& digest
   PartsRecord mine{part.count, fs::current_path(), part_free(common.arguments), digests};
   mine.digests["program"] = build_id();
   if (!merges) {
-    std::error_code problem;
-    fs::create_directories(folder, problem);
-    if (!fs::is_directory(folder)) {
-      throw Error(Blame::Input, folder.string(),
-                  "cannot be made a folder" + (problem ? ": " + problem.message() : ""), {},
-                  "Name another place to write");
-    }
+    make_folder(folder);
     base::remove_abandoned_files(folder);
-    if (part.begins) fs::remove(folder / record_file, problem);
+    std::error_code ignored;
+    if (part.begins) fs::remove(folder / record_file, ignored);
     if (base::write_new_text(folder / record_file, dump(json_of(mine)))) return;
   }
   PartsRecord there = read_parts_record(folder);
@@ -242,6 +236,12 @@ void join_parts(const fs::path& folder, const Common& common, const Json& digest
   } else if (there.parts == 0 && part.count > 0) {  // a solve came first
     base::write_text(folder / record_file, dump(json_of(mine)));
   }
+}
+
+void end_part_if_interrupted() {
+  if (!Interrupt::asked()) return;
+  throw Error(Blame::Work, "--part", "interrupted", {},
+              "Run the same part again: it goes on with what is finished");
 }
 
 void refuse_to_merge(const fs::path& folder, const std::vector<MissingWork>& missing) {

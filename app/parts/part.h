@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,11 +23,14 @@ struct PartCall {
   };
   Task task = Task::All;
   std::size_t number = 0, count = 0;  // from 1; of a share
-  double wait_s = 0.0;                // for another process's solution
+  double wait_s = 0.0;                // of a share: for another process's solution
   bool begins = false;                // of a solve: a call of before in the same place is forgotten
 
   [[nodiscard]] bool in_parts() const { return task != Task::All; }
 };
+
+// In a study's folder: what is kept.
+inline constexpr const char* points_folder = "points";
 
 // --part K/N, auto, auto/N, solve or merge; --wait SECONDS.
 void add_part_options(CLI::App& command, PartCall& part);
@@ -62,6 +64,9 @@ void join_parts(const std::filesystem::path& folder, const Common& common, const
 
 // Of a folder that join_parts() made, or of the folder of a study. Throws base::Error (Input).
 [[nodiscard]] PartsRecord read_parts_record(const std::filesystem::path& folder);
+
+// Throws base::Error (Work) once a signal has asked for an end (app/interrupt.h).
+void end_part_if_interrupted();
 
 // What a merge did not find.
 struct MissingWork {

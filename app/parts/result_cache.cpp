@@ -5,10 +5,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <fstream>
-#include <iterator>
 #include <map>
 
+#include "app/output.h"
 #include "app/parts/build_id.h"
 #include "base/error.h"
 #include "base/files/exr_file.h"
@@ -21,14 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string stem_of(const Json& cache_key) {
-  base::Digest digest;
-  digest.add(std::string_view(dump(cache_key)));
-  return digest.text();
-}
-
 // Files keep channels by name, whatever their order in memory.
-std::string digest_of(const base::Image& image) {
+std::string digest_of_image(const base::Image& image) {
   std::vector<const base::Channel*> channels;
   for (const base::Channel& channel : image.channels) channels.push_back(&channel);
   std::sort(channels.begin(), channels.end(),
@@ -48,7 +41,7 @@ std::string digest_of(const base::Image& image) {
 std::string text_of_part(const Json& cache_key, const Json& facts, const Json& picture) {
   return dump({{"cache_key", cache_key},
                {"facts", facts},
-               {"digest", stem_of(Json::parse(dump(facts)))},
+               {"digest", digest_of(Json::parse(dump(facts)))},
                {"picture", picture}});
 }
 
@@ -84,26 +77,18 @@ Json camera_cache_key(const scenes::Camera& camera) {
 }
 
 ResultCache::ResultCache(const fs::path& folder) : folder_(folder) {
-  std::error_code problem;
-  fs::create_directories(folder, problem);
-  if (!fs::is_directory(folder)) {
-    throw base::Error(base::Blame::Input, folder.string(),
-                      "cannot be made a folder" + (problem ? ": " + problem.message() : ""), {},
-                      "Name another folder");
-  }
+  make_folder(folder);
   const base::OutputFile writable(folder / "points.json");
 }
 
 std::optional<Json> ResultCache::read(const Json& cache_key, std::string& said) const {
-  const fs::path path = folder_ / (stem_of(cache_key) + ".json");
+  const fs::path path = folder_ / (digest_of(cache_key) + ".json");
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return std::nullopt;
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  Json json = Json::parse(text, nullptr, false);
+  Json json = json_in(path);
   const bool whole = json.is_object() && json.contains("cache_key") && json.contains("facts") &&
                      json["facts"].is_object() && json.contains("picture") &&
-                     json.contains("digest") && json["digest"] == stem_of(json["facts"]);
+                     json.contains("digest") && json["digest"] == digest_of(json["facts"]);
   if (!whole || json["cache_key"] != cache_key) {
     said = fmt::format("{} {}; it is recomputed", path.string(),
                        whole ? "belongs to something else" : "is broken");
@@ -117,16 +102,17 @@ std::optional<CachedResult> ResultCache::find(const Json& cache_key, std::string
   if (!json) return std::nullopt;
   const auto again = [&](const std::string& why) {
     said = fmt::format("{} {}; it is recomputed",
-                       (folder_ / (stem_of(cache_key) + ".json")).string(), why);
+                       (folder_ / (digest_of(cache_key) + ".json")).string(), why);
     return std::nullopt;
   };
   CachedResult part{(*json)["facts"], {}};
   try {
-    part.image = base::read_exr(folder_ / (stem_of(cache_key) + ".exr")).image;
+    part.image = base::read_exr(folder_ / (digest_of(cache_key) + ".exr")).image;
   } catch (const base::Error& error) {
     return again(fmt::format("has lost its picture ({})", error.what()));
   }
-  if ((*json)["picture"] != digest_of(part.image)) return again("has another picture beside it");
+  if ((*json)["picture"] != digest_of_image(part.image))
+    return again("has another picture beside it");
   return part;
 }
 
@@ -136,19 +122,19 @@ std::optional<Json> ResultCache::find_facts(const Json& cache_key, std::string& 
 }
 
 void ResultCache::keep_facts(const Json& cache_key, const Json& facts) const {
-  base::write_text(folder_ / (stem_of(cache_key) + ".json"),
+  base::write_text(folder_ / (digest_of(cache_key) + ".json"),
                    text_of_part(cache_key, facts, Json()));
 }
 
 bool ResultCache::has(const Json& cache_key) const {
-  std::error_code ignored;
-  return fs::exists(folder_ / (stem_of(cache_key) + ".json"), ignored);
+  std::string ignored;
+  return read(cache_key, ignored).has_value();
 }
 
 void ResultCache::keep(const Json& cache_key, const CachedResult& part) const {
-  base::write_exr(folder_ / (stem_of(cache_key) + ".exr"), part.image, part.header);
-  base::write_text(folder_ / (stem_of(cache_key) + ".json"),
-                   text_of_part(cache_key, part.facts, digest_of(part.image)));
+  base::write_exr(folder_ / (digest_of(cache_key) + ".exr"), part.image, part.header);
+  base::write_text(folder_ / (digest_of(cache_key) + ".json"),
+                   text_of_part(cache_key, part.facts, digest_of_image(part.image)));
 }
 
 }  // namespace earthshine::app

@@ -34,7 +34,7 @@ class ResultCache {
   // None if there is no such part. One that is there but torn, foreign or not of its picture is
   // named in `said` and counts as not there.
   [[nodiscard]] std::optional<CachedResult> find(const Json& cache_key, std::string& said) const;
-  // Whether it looks as if there was one; it may turn out to be torn.
+  // Whether its facts are there, whole; its picture is not looked at.
   [[nodiscard]] bool has(const Json& cache_key) const;
   void keep(const Json& cache_key, const CachedResult& part) const;
 

@@ -4,14 +4,14 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <fstream>
-#include <iterator>
+#include <limits>
 #include <thread>
 
 #include "app/console.h"
 #include "app/interrupt.h"
 #include "base/error.h"
 #include "base/files/output_file.h"
+#include "base/input/input_file.h"
 #include "base/numbers/digest.h"
 #include "radiosity/store/solution_key.h"
 
@@ -29,9 +29,7 @@ bool is_there(const fs::path& file) {
 void agree_on_digest(const fs::path& file, const std::string& digest) {
   const fs::path told = file.string() + ".json";
   if (!is_there(told) && base::write_new_text(told, dump({{"digest", digest}}))) return;
-  std::ifstream stream(told, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = json_in(told);
   if (json.is_object() && json.value("digest", "") == digest) return;
   throw base::Error(
       base::Blame::Input, file.string(),
@@ -49,24 +47,28 @@ void wait_for(const fs::path& file, double wait_s, bool quiet) {
     told = true;
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }
+  if (!is_there(file)) end_part_if_interrupted();
 }
 
 }  // namespace
 
 std::string digest_of_file(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
   base::Digest digest;
-  digest.add(std::string_view(bytes));
+  digest.add(std::string_view(
+      base::read_input_file(path, std::numeric_limits<std::size_t>::max(), {path.string()})));
   return digest.text();
 }
 
 SharedSolution shared_solution(const fs::path& file, const radiosity::SolutionOrigin& origin,
-                               double wait_s, bool quiet,
+                               const PartCall& part, bool quiet,
                                const std::function<radiosity::Solution()>& solve) {
   SharedSolution shared;
-  wait_for(file, wait_s, quiet);
+  if (part.task == PartCall::Task::Share) wait_for(file, part.wait_s, quiet);
   shared.found = is_there(file);
+  if (!shared.found && part.task == PartCall::Task::Merge) {
+    throw base::Error(base::Blame::Work, file.string(), "is not there", {},
+                      "Make the same call with --part solve, then merge again");
+  }
   if (!shared.found) {
     shared.solution = solve();
     shared.found = !base::write_new_text(file, radiosity::solution_bytes(shared.solution, origin));
@@ -78,9 +80,7 @@ SharedSolution shared_solution(const fs::path& file, const radiosity::SolutionOr
 }
 
 fs::path solution_file_in(const fs::path& folder, const Json& scene_cache_key) {
-  base::Digest digest;
-  digest.add(std::string_view(dump(scene_cache_key)));
-  return folder / ("solution-" + digest.text() + ".h5");
+  return folder / ("solution-" + digest_of(scene_cache_key) + ".h5");
 }
 
 Json solver_cache_key(const radiosity::SolveOptions& options) {

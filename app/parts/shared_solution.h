@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/command.h"
+#include "app/parts/part.h"
 #include "radiosity/store/solution_file.h"
 
 namespace earthshine::app {
@@ -18,13 +19,14 @@ struct SharedSolution {
   bool found = false;  // another process, or an earlier one, made it
 };
 
-// Reads `file` where it is there, or comes within wait_s; else solves and keeps it there, unless
-// another process was first: then that one's is read, so that all have the same bits, whatever
-// machine found them. Beside it, FILE.json holds its digest; throws base::Error (Input) where that
-// is another, or the file is damaged or stale.
+// Reads `file` where it is there, or comes within the time that a share waits; else solves and
+// keeps it there, unless another process was first: then that one's is read, so that all have the
+// same bits, whatever machine found them. Beside it, FILE.json holds its digest; throws base::Error
+// (Input) where that is another, or the file is damaged or stale, and (Work) where it is missing at
+// a merge, or the wait is interrupted.
 [[nodiscard]] SharedSolution shared_solution(const std::filesystem::path& file,
-                                             const radiosity::SolutionOrigin& origin, double wait_s,
-                                             bool quiet,
+                                             const radiosity::SolutionOrigin& origin,
+                                             const PartCall& part, bool quiet,
                                              const std::function<radiosity::Solution()>& solve);
 
 [[nodiscard]] std::string digest_of_file(const std::filesystem::path& path);

@@ -11,19 +11,12 @@
 #include "app/render/draw.h"
 #include "app/render/light.h"
 #include "base/error.h"
-#include "base/numbers/digest.h"
 #include "radiosity/store/solution_key.h"
 #include "raytrace/frame/join.h"
 #include "raytrace/passes/passes.h"
 
 namespace earthshine::app {
 namespace {
-
-std::string digest_of_json(const Json& json) {
-  base::Digest digest;
-  digest.add(std::string_view(dump(json)));
-  return digest.text();
-}
 
 // All that decides a picture besides scene and solution.
 Json settings_of(const RenderCall& call, const raytrace::RenderOptions& how) {
@@ -62,23 +55,22 @@ RenderParts::RenderParts(const LightCall& wanted, PartCall& part,
     views.push_back({camera->name, camera_cache_key(*camera), scenes::filter_name(camera->filter),
                      camera->filter_width_px});
   }
-  digests_ = {{"scene", digest_of_json(scene_key_)},
-              {"cameras", digest_of_json(views)},
-              {"settings", digest_of_json(settings)}};
+  digests_ = {{"scene", digest_of(scene_key_)},
+              {"cameras", digest_of(views)},
+              {"settings", digest_of(settings)}};
   join_parts(folder_, wanted.common, digests_, part);
   store_.emplace(folder_);
 }
 
 Solved RenderParts::light(StageTimes& times) {
   LightCall call = wanted_;
-  const auto digest_of = [this](const std::string& file) { solution_ = digest_of_file(file); };
-  if (!wanted_.call.solution.empty()) digest_of(wanted_.call.solution);
+  if (!wanted_.call.solution.empty()) solution_ = digest_of_file(wanted_.call.solution);
   call.share = [&](const std::function<radiosity::Solution()>& solve) {
     const std::filesystem::path file = solution_file_in(folder_, scene_key_);
     if (part_.task == PartCall::Task::Merge && !std::filesystem::exists(file)) check_complete();
     SharedSolution shared = shared_solution(
-        file, {wanted_.loaded.scene, wanted_.loaded.groups, solver_, EARTHSHINE_VERSION},
-        part_.wait_s, wanted_.common.quiet, solve);
+        file, {wanted_.loaded.scene, wanted_.loaded.groups, solver_, EARTHSHINE_VERSION}, part_,
+        wanted_.common.quiet, solve);
     solution_ = shared.digest;
     return std::move(shared.solution);
   };
@@ -136,16 +128,15 @@ void RenderParts::draw_share(const Studio& studio) const {
     raytrace::RenderOptions options = options_[piece.camera];
     options.crop = piece.window;
     const raytrace::Frame frame = draw_frame(studio, *cameras_[piece.camera], options);
-    if (frame.report.stopped) {
-      throw base::Error(base::Blame::Work, "render", "interrupted", {},
-                        "Run the same part again: it goes on with what is finished");
-    }
+    if (frame.report.stopped) end_part_if_interrupted();
     store_->keep(key_of(piece), kept_frame(frame, picture_of(piece.camera)));
     ++drawn;
   }
   if (wanted_.common.quiet) return;
-  note(fmt::format("part {} of {}: {} drawn, {} there already, in {}", part_.number, part_.count,
-                   drawn, mine - drawn, folder_.string()));
+  const std::string done = mine == 0 ? "nothing to do: there are fewer rows or pictures than parts"
+                                     : fmt::format("{} drawn, {} there already, in {}", drawn,
+                                                   mine - drawn, folder_.string());
+  note(fmt::format("part {} of {}: {}", part_.number, part_.count, done));
 }
 
 void RenderParts::check_complete() const {

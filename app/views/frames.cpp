@@ -117,7 +117,7 @@ const radiosity::Solution& StudyFrames::solution(std::vector<StudyCost>& costs) 
   StageTimes times;
   if (how_.in_parts()) {
     SharedSolution shared =
-        shared_solution(file, origin, how_.wait_s, common_.quiet, [&] { return solve(times); });
+        shared_solution(file, origin, how_, common_.quiet, [&] { return solve(times); });
     cost.found = shared.found;
     solution_ = std::move(shared.solution);
   } else {
@@ -143,6 +143,11 @@ std::optional<StudyFrames::Frame> StudyFrames::known(const StudyCamera& camera,
                (*facts)["limits"].get<std::vector<std::string>>()};
 }
 
+bool StudyFrames::has(const StudyCamera& camera) const {
+  std::string ignored;
+  return store_.find(cache_key(camera), ignored).has_value();
+}
+
 std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
                                                      std::vector<StudyCost>& costs) {
   const Json key = cache_key(camera);
@@ -155,6 +160,11 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
     return Frame{unpacked_layers(std::move(*stored)), facts["relative_noise"].get<double>(),
                  seconds, facts["patches"].get<std::size_t>(),
                  facts["limits"].get<std::vector<std::string>>()};
+  }
+  if (how_.task == PartCall::Task::Merge) {
+    throw base::Error(base::Blame::Work, folder_.string(),
+                      "has lost work since it was looked at" + (said.empty() ? "" : ": " + said),
+                      {}, "Merge again: what is missing is listed");
   }
   if (!said.empty()) note("note: " + said);
   const LoadedScene& basis = part_.basis_scene;

@@ -3,8 +3,6 @@
 // folder: the radiosity solution of all light groups, and a picture with a layer for each.
 #pragma once
 
-#include <functional>
-
 #include "app/parts/part.h"
 #include "app/parts/result_cache.h"
 #include "app/views/scene.h"
@@ -12,9 +10,6 @@
 #include "studies/study.h"
 
 namespace earthshine::app {
-
-// In the study's folder: what is kept.
-inline constexpr const char* points_folder = "points";
 
 // What was done or found, for the report.
 struct StudyCost {
@@ -46,13 +41,18 @@ class StudyFrames {
   // What is known of a picture that is there, without reading it.
   [[nodiscard]] std::optional<Frame> known(const StudyCamera& camera,
                                            std::vector<StudyCost>& costs) const;
-  [[nodiscard]] bool has(const StudyCamera& camera) const { return store_.has(cache_key(camera)); }
+  // Whether a picture is there, whole.
+  [[nodiscard]] bool has(const StudyCamera& camera) const;
+  // Of all that is kept of the study.
+  [[nodiscard]] const ResultCache& store() const { return store_; }
 
   // Digests of the scene, the solver's settings and the program.
   [[nodiscard]] const Json& scene_key() const { return scene_cache_key_; }
 
   // Of all light groups; solved or read when it is first asked for.
   [[nodiscard]] const radiosity::Solution& solution(std::vector<StudyCost>& costs);
+  // Where no more of its cameras come: its memory is free for those of other scenes.
+  void forget_solution() { solution_.reset(); }
 
  private:
   [[nodiscard]] raytrace::RenderOptions options(const StudyCamera& camera) const;

@@ -123,9 +123,9 @@ std::vector<std::string> modes_of(const studies::StudyFile& study, const StudyCa
 
 }  // namespace
 
-void add_ways(const StudyPart& part, const studies::StudyFile& study, const StudyCamera& camera,
-              const studies::BasisView& view,
-              std::vector<std::vector<ViewingConfiguration>>& ways) {
+void add_configurations(const StudyPart& part, const studies::StudyFile& study,
+                        const StudyCamera& camera, const studies::BasisView& view,
+                        std::vector<std::vector<ViewingConfiguration>>& ways) {
   if (study.wanted.empty()) return;
   const studies::LightBasis& basis = *part.basis;
   const std::size_t places = basis.places().size();
@@ -170,7 +170,7 @@ void add_ways(const StudyPart& part, const studies::StudyFile& study, const Stud
   }
 }
 
-Json ways_json(const std::vector<std::vector<ViewingConfiguration>>& ways) {
+Json configurations_json(const std::vector<std::vector<ViewingConfiguration>>& ways) {
   Json all = Json::array();
   for (const std::vector<ViewingConfiguration>& of_wanted : ways) {
     Json& list = all.emplace_back(Json::array());
@@ -189,7 +189,7 @@ Json ways_json(const std::vector<std::vector<ViewingConfiguration>>& ways) {
   return all;
 }
 
-std::vector<std::vector<ViewingConfiguration>> ways_of(const Json& kept) {
+std::vector<std::vector<ViewingConfiguration>> configurations_of(const Json& kept) {
   const auto number = [](const Json& value) {
     return value.is_null() ? std::nullopt : std::optional(value.get<double>());
   };

@@ -22,13 +22,14 @@ struct ViewingConfiguration {
   bool tried_factors = false;  // false: the setting has no lamps on
 };
 
-// Adds the ways of one camera to those of each wanted target.
-void add_ways(const StudyPart& part, const studies::StudyFile& study, const StudyCamera& camera,
-              const studies::BasisView& view, std::vector<std::vector<ViewingConfiguration>>& ways);
+// Adds the viewing configurations of one camera to those of each wanted target.
+void add_configurations(const StudyPart& part, const studies::StudyFile& study,
+                        const StudyCamera& camera, const studies::BasisView& view,
+                        std::vector<std::vector<ViewingConfiguration>>& ways);
 
 // To keep them, and back.
-[[nodiscard]] Json ways_json(const std::vector<std::vector<ViewingConfiguration>>& ways);
-[[nodiscard]] std::vector<std::vector<ViewingConfiguration>> ways_of(const Json& kept);
+[[nodiscard]] Json configurations_json(const std::vector<std::vector<ViewingConfiguration>>& ways);
+[[nodiscard]] std::vector<std::vector<ViewingConfiguration>> configurations_of(const Json& kept);
 
 // An entry of study.json's "answers".
 [[nodiscard]] Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& study,

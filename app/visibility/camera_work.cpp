@@ -8,29 +8,28 @@ CameraWork::CameraWork(const PictureTask& pictures, StudyFrames& frames,
     : pictures_(pictures),
       frames_(frames),
       conditions_(conditions),
-      store_(pictures.folder / points_folder),
-      ways_key_(conditions.cache_key(pictures.camera, pictures.frame_cache_key, 0,
-                                     pictures.part.conditions())) {
-  ways_key_["what"] = "answers";
+      answers_key_(conditions.cache_key(pictures.camera, pictures.frame_cache_key, 0,
+                                        pictures.part.conditions())) {
+  answers_key_["what"] = "answers";
   for (const studies::WantedTarget& wanted : pictures.study.wanted) {
-    ways_key_["wanted"].push_back(wanted.text);
+    answers_key_["wanted"].push_back(wanted.text);
   }
-  ways_key_["iris"] = pictures.study.iris;
-  ways_key_["path"] = pictures.part.path;
+  answers_key_["iris"] = pictures.study.iris;
+  answers_key_["path"] = pictures.part.path;
 }
 
 bool CameraWork::is_done(Share batches) const {
   for (std::size_t batch = batches.first; batch < batches.last; ++batch) {
     if (!conditions_.has(pictures_.camera, pictures_.frame_cache_key, batch)) return false;
   }
-  return frames_.has(pictures_.camera) &&
-         (batches.first > 0 || (pictures_are_there(pictures_) && store_.has(ways_key_)));
+  return batches.first > 0 || (pictures_.store.has(answers_key_) && pictures_are_there(pictures_) &&
+                               frames_.has(pictures_.camera));
 }
 
-std::optional<CameraWork::Ways> CameraWork::known_ways() const {
+std::optional<CameraWork::Configurations> CameraWork::known_configurations() const {
   std::string said;
-  const auto kept = store_.find_facts(ways_key_, said);
-  return kept ? std::optional(ways_of((*kept)["ways"])) : std::nullopt;
+  const auto kept = pictures_.store.find_facts(answers_key_, said);
+  return kept ? std::optional(configurations_of((*kept)["ways"])) : std::nullopt;
 }
 
 std::optional<std::vector<Json>> CameraWork::known_conditions() const {
@@ -53,13 +52,14 @@ std::vector<Json> CameraWork::judge(const studies::BasisView& view, Share batche
   return conditions_.judge(pictures_.camera, view, pictures_.frame_cache_key, batches, costs);
 }
 
-CameraWork::Ways CameraWork::conclude(const studies::BasisView& view, Json& figures) const {
+CameraWork::Configurations CameraWork::conclude(const studies::BasisView& view,
+                                                Json& figures) const {
   draw_pictures(pictures_, &view, figures);
-  if (auto kept = known_ways()) return std::move(*kept);
-  Ways ways(pictures_.study.wanted.size());
-  add_ways(pictures_.part, pictures_.study, pictures_.camera, view, ways);
-  store_.keep_facts(ways_key_, {{"ways", ways_json(ways)}});
-  return ways;
+  if (auto kept = known_configurations()) return std::move(*kept);
+  Configurations found(pictures_.study.wanted.size());
+  add_configurations(pictures_.part, pictures_.study, pictures_.camera, view, found);
+  pictures_.store.keep_facts(answers_key_, {{"ways", configurations_json(found)}});
+  return found;
 }
 
 }  // namespace earthshine::app

@@ -14,7 +14,7 @@ namespace earthshine::app {
 
 class CameraWork {
  public:
-  using Ways = std::vector<std::vector<ViewingConfiguration>>;  // of each wanted target
+  using Configurations = std::vector<std::vector<ViewingConfiguration>>;  // of each wanted target
 
   // All must outlive it.
   CameraWork(const PictureTask& pictures, StudyFrames& frames, StudyConditions& conditions);
@@ -23,11 +23,11 @@ class CameraWork {
   [[nodiscard]] Share all_batches() const { return {0, conditions_.batches()}; }
 
   // All that the results depend on besides the scene.
-  [[nodiscard]] const Json& settings() const { return ways_key_; }
-  // Whether it looks as if batches of conditions, and what comes with the first of them (pictures,
-  // ways), were done before.
+  [[nodiscard]] const Json& settings() const { return answers_key_; }
+  // Whether batches of conditions, and what comes with the first of them (the camera's picture, the
+  // study's pictures of it, the viewing configurations), were done before.
   [[nodiscard]] bool is_done(Share batches) const;
-  [[nodiscard]] std::optional<Ways> known_ways() const;
+  [[nodiscard]] std::optional<Configurations> known_configurations() const;
   [[nodiscard]] std::optional<std::vector<Json>> known_conditions() const;
   [[nodiscard]] std::optional<StudyFrames::Frame> known_frame(std::vector<StudyCost>& costs) const;
 
@@ -37,14 +37,13 @@ class CameraWork {
   [[nodiscard]] std::vector<Json> judge(const studies::BasisView& view, Share batches,
                                         std::vector<StudyCost>& costs) const;
   // The camera's pictures, and what its wishes are answered by.
-  [[nodiscard]] Ways conclude(const studies::BasisView& view, Json& figures) const;
+  [[nodiscard]] Configurations conclude(const studies::BasisView& view, Json& figures) const;
 
  private:
   const PictureTask& pictures_;
   StudyFrames& frames_;
   StudyConditions& conditions_;
-  ResultCache store_;
-  Json ways_key_;
+  Json answers_key_;
 };
 
 }  // namespace earthshine::app

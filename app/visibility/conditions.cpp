@@ -67,8 +67,8 @@ Json conditions_json(const StudyPart& part) {
 }
 
 StudyConditions::StudyConditions(const StudyPart& part, const studies::StudyFile& study,
-                                 const std::filesystem::path& folder, const Common& common)
-    : part_(part), study_(study), common_(common), store_(folder) {}
+                                 const ResultCache& store, const Common& common)
+    : part_(part), study_(study), common_(common), store_(store) {}
 
 studies::ConditionOptions StudyConditions::options() const {
   studies::ConditionOptions options;

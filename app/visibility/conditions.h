@@ -15,8 +15,8 @@ namespace earthshine::app {
 
 class StudyConditions {
  public:
-  StudyConditions(const StudyPart& part, const studies::StudyFile& study,
-                  const std::filesystem::path& folder, const Common& common);
+  StudyConditions(const StudyPart& part, const studies::StudyFile& study, const ResultCache& store,
+                  const Common& common);
 
   // Conditions are worked out and kept in batches.
   [[nodiscard]] std::size_t batches() const;
@@ -27,7 +27,7 @@ class StudyConditions {
   [[nodiscard]] std::vector<Json> judge(const StudyCamera& camera, const studies::BasisView& view,
                                         const Json& frame_cache_key, Share batches,
                                         std::vector<StudyCost>& costs);
-  // Whether it looks as if a batch was done before.
+  // Whether a batch was done before.
   [[nodiscard]] bool has(const StudyCamera& camera, const Json& frame_cache_key,
                          std::size_t batch) const;
 
@@ -45,7 +45,7 @@ class StudyConditions {
   const StudyPart& part_;
   const studies::StudyFile& study_;
   const Common& common_;
-  ResultCache store_;
+  const ResultCache& store_;
 };
 
 }  // namespace earthshine::app

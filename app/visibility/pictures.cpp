@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "app/console.h"
-#include "app/parts/result_cache.h"
 #include "app/study/study.h"
 #include "base/error.h"
 #include "base/files/exr_file.h"
@@ -174,7 +173,7 @@ std::uintmax_t bytes_of(const std::filesystem::path& path) {
 
 bool is_there(const PictureTask& task, const PictureWish& wish) {
   std::string said;
-  const auto facts = ResultCache(task.folder / "points").find_facts(cache_key_of(task, wish), said);
+  const auto facts = task.store.find_facts(cache_key_of(task, wish), said);
   if (!facts) return false;
   const std::string stem = file_of(task.study, wish);
   // The PNG of a clean picture is written last, of all together.
@@ -196,9 +195,8 @@ void draw(const PictureTask& task, const PictureWish& wish, const studies::Basis
     const CctvSetup cctv = cctv_of_wish(part, task.camera, wish, task.common);
     write_cctv(stem + ".png", cctv, run_chain(cctv, radiance));
   }
-  ResultCache(task.folder / "points")
-      .keep_facts(cache_key_of(task, wish),
-                  {{"png_bytes", bytes_of(stem + ".png")}, {"exr_bytes", bytes_of(stem + ".exr")}});
+  task.store.keep_facts(cache_key_of(task, wish), {{"png_bytes", bytes_of(stem + ".png")},
+                                                   {"exr_bytes", bytes_of(stem + ".exr")}});
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/options.h"
+#include "app/parts/result_cache.h"
 #include "app/views/scene.h"
 #include "studies/orbit/condition.h"
 #include "studies/orbit/study_file.h"
@@ -26,6 +27,7 @@ struct PictureTask {
   const StudyCamera& camera;
   std::filesystem::path folder;  // of the study; pictures/ and points/ are in it
   const Json& frame_cache_key;   // of the camera's picture with all layers
+  const ResultCache& store;      // points/
   const Common& common;
 };
 // Whether all of them are there from an earlier run.

@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include "app/console.h"
 #include "app/interrupt.h"
@@ -46,9 +44,7 @@ std::vector<const StudyPart*> pointers(const Parts& parts) {
 
 // Whether the folder holds the results of a run that came to its end.
 bool has_finished_results(const fs::path& folder) {
-  std::ifstream file(folder / study_file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  const Json study = Json::parse(text, nullptr, false);
+  const Json study = json_in(folder / study_file);
   return study.is_object() && study.value("complete", false);
 }
 
@@ -81,8 +77,7 @@ class Runner {
     ways_.resize(task_.study.wanted.size());
     for (const StudyPart* part : findings_.parts) {
       StudyFrames frames(*part, fs::path(task_.folder) / points_folder, common_, task_.part);
-      StudyConditions conditions(*part, task_.study, fs::path(task_.folder) / points_folder,
-                                 common_);
+      StudyConditions conditions(*part, task_.study, frames.store(), common_);
       for (const StudyCamera& camera : part->cameras) {
         if (!look_through(*part, camera, frames, conditions)) findings_.complete = false;
       }
@@ -103,8 +98,8 @@ class Runner {
                     StudyConditions& conditions) {
     CameraResults found{&part, &camera, 0.0, 0.0, std::vector<Json>(part.conditions())};
     const Json frame_cache_key = frames.cache_key(camera);
-    const PictureTask pictures{task_.study,  findings_.parts, part,   camera,
-                               task_.folder, frame_cache_key, common_};
+    const PictureTask pictures{task_.study,  findings_.parts, part,           camera,
+                               task_.folder, frame_cache_key, frames.store(), common_};
     const CameraWork work(pictures, frames, conditions);
     if (!take_finished(work, found)) {
       std::optional<StudyFrames::Frame> frame;
@@ -133,7 +128,7 @@ class Runner {
   // Where an earlier run has done all of it, so that not even the picture must be read.
   bool take_finished(const CameraWork& work, CameraResults& found) {
     if (listen_ || !pictures_are_there(work.pictures())) return false;
-    const auto ways = work.known_ways();
+    const auto ways = work.known_configurations();
     const auto judged = work.known_conditions();
     if (!ways || !judged || !thumbnails_are_there(work, *judged)) return false;
     const auto frame = work.known_frame(findings_.costs);

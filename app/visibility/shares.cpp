@@ -7,22 +7,21 @@
 
 #include "app/console.h"
 #include "app/interrupt.h"
-#include "base/error.h"
-#include "base/numbers/digest.h"
 
 namespace earthshine::app {
-namespace {
 
-std::string digest_of(const Json& json) {
-  base::Digest digest;
-  digest.add(std::string_view(dump(json)));
-  return digest.text();
-}
-
-}  // namespace
+StudyShares::Scene::Scene(const StudyPart& scene, const StudyTask& task, const Common& common)
+    : part(scene),
+      frames(scene, std::filesystem::path(task.folder) / points_folder, common, task.part),
+      conditions(scene, task.study, frames.store(), common) {}
 
 StudyShares::StudyShares(StudyTask& task, const Common& common, std::vector<const StudyPart*> parts)
-    : task_(task), common_(common), parts_(std::move(parts)) {}
+    : task_(task), common_(common), parts_(std::move(parts)) {
+  for (const StudyPart* part : parts_) {
+    scenes_.emplace_back(*part, task, common);
+    all_batches_ += part->cameras.size() * scenes_.back().conditions.batches();
+  }
+}
 
 bool StudyShares::run() {
   using Task = PartCall::Task;
@@ -46,15 +45,15 @@ std::filesystem::path StudyShares::points() const {
 
 void StudyShares::for_each_camera(const Visit& visit) {
   std::size_t first = 0;
-  for (const StudyPart* part : parts_) {
-    StudyFrames frames(*part, points(), common_, task_.part);
-    StudyConditions conditions(*part, task_.study, points(), common_);
-    for (const StudyCamera& camera : part->cameras) {
-      const Json key = frames.cache_key(camera);
-      const PictureTask pictures{task_.study, parts_, *part, camera, task_.folder, key, common_};
-      visit(CameraWork(pictures, frames, conditions), frames, first);
-      first += conditions.batches();
+  for (Scene& scene : scenes_) {
+    for (const StudyCamera& camera : scene.part.cameras) {
+      const Json key = scene.frames.cache_key(camera);
+      const PictureTask pictures{task_.study,  parts_, scene.part,           camera,
+                                 task_.folder, key,    scene.frames.store(), common_};
+      visit(CameraWork(pictures, scene.frames, scene.conditions), scene.frames, first);
+      first += scene.conditions.batches();
     }
+    scene.frames.forget_solution();
   }
 }
 
@@ -67,16 +66,8 @@ Json StudyShares::digests() {
   return {{"scene", digest_of(scenes)}, {"settings", digest_of(settings)}};
 }
 
-std::size_t StudyShares::count_batches() {
-  std::size_t all = 0;
-  for_each_camera([&](const CameraWork& work, StudyFrames&, std::size_t first) {
-    all = first + work.all_batches().last;
-  });
-  return all;
-}
-
 void StudyShares::do_share() {
-  const Share mine = share_of(task_.part, count_batches());
+  const Share mine = share_of(task_.part, all_batches_);
   for_each_camera([&](const CameraWork& work, StudyFrames& frames, std::size_t first) {
     const std::size_t from = std::max(mine.first, first);
     const std::size_t to = std::min(mine.last, first + work.all_batches().last);
@@ -90,23 +81,25 @@ void StudyShares::do_share() {
     Json figures = Json::array();
     if (batches.first == 0 && !Interrupt::asked()) (void)work.conclude(view, figures);
   });
-  if (Interrupt::asked()) {
-    throw base::Error(base::Blame::Work, "study", "interrupted", {},
-                      "Run the same part again: it goes on with what is finished");
-  }
+  end_part_if_interrupted();
   if (common_.quiet) return;
-  note(fmt::format("part {} of {}: batches {} to {} are in {}", task_.part.number, task_.part.count,
-                   mine.first + 1, mine.last, points().string()));
+  const std::string done =
+      mine.first == mine.last
+          ? fmt::format("nothing to do: the study has {} batches", all_batches_)
+          : fmt::format("batches {} to {} are in {}", mine.first + 1, mine.last, points().string());
+  note(fmt::format("part {} of {}: {}", task_.part.number, task_.part.count, done));
 }
 
 void StudyShares::solve() {
-  for (const StudyPart* part : parts_) {
-    (void)StudyFrames(*part, points(), common_, task_.part).solution(costs_);
+  for (Scene& scene : scenes_) {
+    end_part_if_interrupted();
+    (void)scene.frames.solution(costs_);
+    scene.frames.forget_solution();
   }
 }
 
 void StudyShares::check_complete() {
-  const std::size_t all = count_batches(), parts = std::max<std::size_t>(1, task_.part.count);
+  const std::size_t parts = std::max<std::size_t>(1, task_.part.count);
   std::vector<MissingWork> missing;
   for_each_camera([&](const CameraWork& work, StudyFrames&, std::size_t first) {
     const std::size_t count = work.all_batches().last;
@@ -116,7 +109,7 @@ void StudyShares::check_complete() {
       missing.push_back(
           {fmt::format("camera {} of {}, batch {} of {}", pictures.camera.camera->name,
                        pictures.part.path, batch + 1, count),
-           part_of(first + batch, all, parts)});
+           part_of(first + batch, all_batches_, parts)});
     }
   });
   if (!missing.empty()) refuse_to_merge(task_.folder, missing);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <list>
 #include <vector>
 
 #include "app/visibility/camera_work.h"
@@ -21,12 +22,18 @@ class StudyShares {
   [[nodiscard]] bool run();
 
  private:
+  struct Scene {
+    Scene(const StudyPart& scene, const StudyTask& task, const Common& common);
+
+    const StudyPart& part;
+    StudyFrames frames;
+    StudyConditions conditions;
+  };
   // first: number of the camera's first batch among all.
   using Visit = std::function<void(const CameraWork&, StudyFrames& frames, std::size_t first)>;
   void for_each_camera(const Visit& visit);
   [[nodiscard]] std::filesystem::path points() const;
   [[nodiscard]] Json digests();
-  [[nodiscard]] std::size_t count_batches();
   void do_share();
   void solve();
   void check_complete();
@@ -34,6 +41,8 @@ class StudyShares {
   StudyTask& task_;
   const Common& common_;
   std::vector<const StudyPart*> parts_;
+  std::list<Scene> scenes_;
+  std::size_t all_batches_ = 0;
   std::vector<StudyCost> costs_;
 };
 

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <mutex>
+#include <string>
 
+#include "base/error.h"
 #include "base/ranks/start.h"
 
 namespace earthshine::base {
@@ -19,29 +22,40 @@ class OpenMpi : public Ranks {
   OpenMpi() {
     MPI_Comm_rank(MPI_COMM_WORLD, &number_);
     MPI_Comm_size(MPI_COMM_WORLD, &count_);
+    const MPI_Aint bytes = number_ == 0 ? 2 * sizeof(std::uint64_t) : 0;
+    std::uint64_t* counters = nullptr;
+    MPI_Win_allocate(bytes, sizeof(std::uint64_t), MPI_INFO_NULL, MPI_COMM_WORLD,
+                     static_cast<void*>(&counters), &window_);
+    if (number_ == 0) std::fill_n(counters, 2, 0);
+    MPI_Barrier(MPI_COMM_WORLD);
+    MPI_Win_lock_all(MPI_MODE_NOCHECK, window_);
   }
-  ~OpenMpi() override { MPI_Finalize(); }
+  ~OpenMpi() override {
+    MPI_Win_unlock_all(window_);
+    MPI_Win_free(&window_);
+    MPI_Finalize();
+  }
 
   [[nodiscard]] int number() const override { return number_; }
   [[nodiscard]] int count() const override { return count_; }
 
-  // Each rank in turn sends to all, in pieces: no rank needs room for more than what it will keep.
-  [[nodiscard]] std::vector<std::string> gather(const std::string& mine) override {
-    const std::uint64_t size = mine.size();
-    std::vector<std::uint64_t> sizes(static_cast<std::size_t>(count_));
-    MPI_Allgather(&size, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
-    std::vector<std::string> all(sizes.size());
-    for (int rank = 0; rank < count_; ++rank) {
-      std::string& bytes = all[static_cast<std::size_t>(rank)];
-      if (rank == number_) bytes = mine;
-      bytes.resize(sizes[static_cast<std::size_t>(rank)]);
-      for (std::uint64_t at = 0; at < bytes.size(); at += most_at_once) {
-        const auto count =
-            static_cast<int>(std::min<std::uint64_t>(most_at_once, bytes.size() - at));
-        MPI_Bcast(&bytes[at], count, MPI_BYTE, rank, MPI_COMM_WORLD);
-      }
+  void broadcast(std::string& bytes, int from) override {
+    std::uint64_t size = bytes.size();
+    MPI_Bcast(&size, 1, MPI_UINT64_T, from, MPI_COMM_WORLD);
+    bytes.resize(size);
+    for (std::uint64_t at = 0; at < size; at += most_at_once) {
+      const auto count = static_cast<int>(std::min<std::uint64_t>(most_at_once, size - at));
+      MPI_Bcast(&bytes[at], count, MPI_BYTE, from, MPI_COMM_WORLD);
     }
-    return all;
+  }
+
+  [[nodiscard]] std::size_t take() override { return add_to_counter(1, MPI_SUM); }
+
+  // Two counters in turn: this one is set back while the ranks may be taking from the other, and
+  // before they come back to it they have heard the first rank again.
+  void end_of_taking() override {
+    if (number_ == 0) (void)add_to_counter(0, MPI_REPLACE);
+    counter_ = 1 - counter_;
   }
 
   [[noreturn]] void end_all(int exit_code) override {
@@ -50,20 +64,43 @@ class OpenMpi : public Ranks {
   }
 
  private:
+  // What it held before. One thread at a time speaks.
+  std::uint64_t add_to_counter(std::uint64_t number, MPI_Op how) {
+    const std::lock_guard alone(speaking_);
+    std::uint64_t before = 0;
+    MPI_Fetch_and_op(&number, &before, MPI_UINT64_T, 0, counter_, how, window_);
+    MPI_Win_flush(0, window_);
+    return before;
+  }
+
   int number_ = 0, count_ = 1;
+  MPI_Win window_ = MPI_WIN_NULL;  // two counters, at the first rank
+  MPI_Aint counter_ = 0;           // which of them counts now
+  std::mutex speaking_;
 };
 
 }  // namespace
 
-// Other threads work while one speaks, but none of them speaks.
 std::unique_ptr<Ranks> start_ranks(int& argc, char**& argv) {
-  // Without mpirun or srun there is nobody to talk to.
-  if (std::getenv("OMPI_COMM_WORLD_SIZE") == nullptr && std::getenv("PMIX_RANK") == nullptr) {
-    return nullptr;
+  const bool by_mpirun = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr;
+  std::unique_ptr<OpenMpi> ranks;
+  if (by_mpirun || std::getenv("PMIX_RANK") != nullptr) {
+    int given = 0;
+    MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &given);
+    if (given < MPI_THREAD_SERIALIZED) {
+      throw Error(Blame::Work, "Open MPI", "was built for one thread alone", {},
+                  "Install one with threads");
+    }
+    ranks = std::make_unique<OpenMpi>();
   }
-  int given = 0;
-  MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &given);
-  return std::make_unique<OpenMpi>();
+  const char* const tasks = std::getenv("SLURM_STEP_NUM_TASKS");
+  const bool alone = ranks == nullptr || ranks->count() == 1;
+  if (alone && !by_mpirun && tasks != nullptr && std::atoi(tasks) > 1) {
+    throw Error(Blame::Input, "srun",
+                "started " + std::string(tasks) + " processes that do not know of each other", {},
+                "Add --mpi=pmix to srun, or take earthshine for processes that work alone");
+  }
+  return ranks;
 }
 
 }  // namespace earthshine::base

@@ -2,6 +2,7 @@
 #include "base/ranks/ranks.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include "base/parallel.h"
@@ -9,7 +10,36 @@
 namespace earthshine::base {
 namespace {
 
+using Work = std::function<void(std::size_t)>;
+using Transfer = std::function<void(std::size_t, Parcel&)>;
+
 Ranks* in_force = nullptr;
+
+void work_alone(std::size_t count, const Work& work) {
+  parallel_chunks(count, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) work(k);
+  });
+}
+
+// Each rank in turn tells all others the items that it has worked out: none of them needs room for
+// more than one rank's beside what it will keep.
+void exchange(Ranks& all, std::vector<std::size_t>& mine, const Transfer& transfer) {
+  for (int rank = 0; rank < all.count(); ++rank) {
+    const bool speaks = rank == all.number();
+    Parcel sent;
+    if (speaks) {
+      sent.pass(mine);
+      for (const std::size_t k : mine) transfer(k, sent);
+    }
+    std::string bytes = sent.take_bytes();
+    all.broadcast(bytes, rank);
+    if (speaks) continue;
+    Parcel got(std::move(bytes));
+    std::vector<std::size_t> theirs;
+    got.pass(theirs);
+    for (const std::size_t k : theirs) transfer(k, got);
+  }
+}
 
 }  // namespace
 
@@ -19,38 +49,56 @@ RanksInForce::RanksInForce(Ranks* ranks) : before_(std::exchange(in_force, ranks
 
 RanksInForce::~RanksInForce() { in_force = before_; }
 
-void share_loop(std::size_t count, const std::function<void(std::size_t)>& work,
-                const std::function<void(std::size_t, Parcel&)>& transfer) {
-  Ranks* const all = count > 1 ? ranks() : nullptr;
-  const std::size_t step = all == nullptr ? 1 : static_cast<std::size_t>(all->count());
-  const std::size_t first = all == nullptr ? 0 : static_cast<std::size_t>(all->number());
-  const std::size_t own = count > first ? (count - first + step - 1) / step : 0;
-  parallel_chunks(own, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) work(first + k * step);
-  });
-  if (step == 1) return;
-  Parcel sent;
-  for (std::size_t k = first; k < count; k += step) transfer(k, sent);
-  const std::vector<std::string> got = all->gather(sent.bytes());
-  for (std::size_t rank = 0; rank < step; ++rank) {
-    if (rank == first) continue;
-    Parcel parcel(got[rank]);
-    for (std::size_t k = rank; k < count; k += step) transfer(k, parcel);
+void meet(Ranks& ranks) {
+  for (int rank = 0; rank < ranks.count(); ++rank) {
+    std::string nothing;
+    ranks.broadcast(nothing, rank);
   }
+}
+
+void share_loop(std::size_t count, const Work& work, const Transfer& transfer) {
+  if (count < 2 || ranks() == nullptr) return work_alone(count, work);
+  std::vector<std::uint8_t> is_mine(count);
+  const auto take_all = [&](std::size_t, std::size_t) {
+    for (std::size_t k = ranks()->take(); k < count; k = ranks()->take()) {
+      work(k);
+      is_mine[k] = 1;
+    }
+  };
+  parallel_chunks(static_cast<std::size_t>(available_threads()), 1, take_all);
+  std::vector<std::size_t> mine;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (is_mine[k] != 0) mine.push_back(k);
+  }
+  exchange(*ranks(), mine, transfer);
+  ranks()->end_of_taking();
 }
 
 void share_chunks(std::size_t count, std::size_t chunk,
                   const std::function<void(std::size_t, std::size_t)>& body,
                   const std::function<void(std::size_t, std::size_t, Parcel&)>& transfer) {
+  const std::size_t chunks = (count + chunk - 1) / chunk;
   const auto end_of = [&](std::size_t k) { return std::min(count, (k + 1) * chunk); };
-  share_loop((count + chunk - 1) / chunk, [&](std::size_t k) { body(k * chunk, end_of(k)); },
-             [&](std::size_t k, Parcel& parcel) { transfer(k * chunk, end_of(k), parcel); });
+  const auto work = [&](std::size_t k) { body(k * chunk, end_of(k)); };
+  if (chunks < 2 || ranks() == nullptr) return work_alone(chunks, work);
+  std::vector<std::size_t> mine;
+  for (auto k = static_cast<std::size_t>(ranks()->number()); k < chunks;
+       k += static_cast<std::size_t>(ranks()->count())) {
+    mine.push_back(k);
+  }
+  work_alone(mine.size(), [&](std::size_t i) { work(mine[i]); });
+  exchange(*ranks(), mine,
+           [&](std::size_t k, Parcel& parcel) { transfer(k * chunk, end_of(k), parcel); });
 }
 
 bool holds_on_all_ranks(bool here) {
-  if (ranks() == nullptr) return here;
-  const std::vector<std::string> all = ranks()->gather(here ? "1" : "0");
-  return std::all_of(all.begin(), all.end(), [](const std::string& one) { return one == "1"; });
+  bool everywhere = here;
+  for (int rank = 0; ranks() != nullptr && rank < ranks()->count(); ++rank) {
+    std::string there = here ? "1" : "0";
+    ranks()->broadcast(there, rank);
+    everywhere = everywhere && there == "1";
+  }
+  return everywhere;
 }
 
 }  // namespace earthshine::base

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace earthshine::base {
@@ -23,8 +24,13 @@ class Ranks {
 
   [[nodiscard]] virtual int number() const = 0;  // of this process, from 0
   [[nodiscard]] virtual int count() const = 0;
-  // The bytes of every rank, in their order, on every rank.
-  [[nodiscard]] virtual std::vector<std::string> gather(const std::string& mine) = 0;
+  // The bytes of rank `from`, on every rank.
+  virtual void broadcast(std::string& bytes, int from) = 0;
+  // Of a loop's items, by number from 0, one that no rank has taken yet; from any thread. After the
+  // last of them numbers go on.
+  [[nodiscard]] virtual std::size_t take() = 0;
+  // Between two loops that take(): every rank has taken, and heard all ranks since.
+  virtual void end_of_taking() = 0;
   // Ends all of them at once with this exit code.
   [[noreturn]] virtual void end_all(int exit_code) = 0;
 };
@@ -71,7 +77,7 @@ class Parcel {
     values.resize(size);
     pass_bytes(values.data(), size * sizeof(Value));
   }
-  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+  [[nodiscard]] std::string take_bytes() { return std::move(bytes_); }
 
  private:
   void pass_bytes(void* value, std::size_t size) {
@@ -90,13 +96,17 @@ class Parcel {
   bool fills_ = true;
 };
 
-// work(k) for every k in [0, count), in parallel: each by one rank, k by k in turn. transfer(k)
-// must pass all that work(k) changes, so that afterwards every rank has all of it. A single item is
-// worked out by every rank, without a word: what is called from within a parallel loop must be so.
+// Returns once every rank has called it.
+void meet(Ranks& ranks);
+
+// work(k) for every k in [0, count), in parallel, each by the rank that comes to it first: for
+// items of a millisecond or more. transfer(k) must pass all that work(k) changes, so that
+// afterwards every rank has all of it. A single item is worked out by every rank, without a word:
+// what is called from within a parallel loop must be so.
 void share_loop(std::size_t count, const std::function<void(std::size_t k)>& work,
                 const std::function<void(std::size_t k, Parcel& parcel)>& transfer);
 
-// The same of body(begin, end) over [0, count) in chunks.
+// The same of body(begin, end) over [0, count) in chunks, dealt out in turn: for cheap ones.
 void share_chunks(
     std::size_t count, std::size_t chunk,
     const std::function<void(std::size_t begin, std::size_t end)>& body,

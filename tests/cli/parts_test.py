@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures in parts: the bytes of one process, whatever order, number and fate of the parts."""
+"""Pictures and sequences in parts: the bytes of one process, whatever order, number and fate of the parts."""
 import json
 import os
 import pathlib
@@ -165,6 +165,56 @@ class SameBytes(PartCase):
         self.assertEqual(self.merged(), self.whole())
 
 
+class Sequences(PartCase):
+    """degrade: the frames of a camera that remembers those before, and of one that does not."""
+    CALL = ("degrade", "0.exr", "1.exr", "2.exr", "3.exr", "4.exr", "-o", "f#.png", "--twin", "t#.exr", "--scene", "ball.toml",
+            "--f-number", "4")
+    OUTPUTS = tuple(f"f{k}.png" for k in range(5)) + tuple(f"t{k}.exr" for k in range(5))
+
+    def setUp(self):
+        super().setUp()
+        self.cctv("iris_slew = 1.0\nlag = 0.4\n")
+        for k in range(5):
+            self.done("render", "ball.toml", "-o", f"{k}.exr", "--camera", "above", "--size", "16x16", "-q", "--set",
+                      f"sun.illuminance={1000 * 4 ** k}")
+
+    def cctv(self, settings):
+        table = f'\n[[cctv]]\nname = "slow"\n{settings}'
+        self.write("ball.toml", BALL.replace('name = "above"', 'name = "above"\ncctv = "slow"') + table)
+
+    def test_any_order_and_number(self):
+        for settings, more in (("iris_slew = 1.0\nlag = 0.4\n", ()), ("interlace = true\n", ("--seed", "3"))):
+            self.cctv(settings)
+            call = (*(self.CALL if not more else self.CALL[:-2]), *more)
+            report = self.json(*call)
+            whole = self.whole(call=call, names=self.OUTPUTS)
+            for count in (1, 2, 3, 7):
+                with self.subTest(settings, parts=count):
+                    for part in range(count, 0, -1):
+                        self.done(*call, "--part", f"{part}/{count}", "-q", "-j", 1 + part % 2)
+                    self.assertEqual(json.loads(self.done("merge", "f#.png.parts", "--json", "-q")), report)
+                    self.assertEqual(self.bytes_of(self.OUTPUTS), whole)
+                    shutil.rmtree(self.folder / "f#.png.parts")
+                    for name in self.OUTPUTS:
+                        (self.folder / name).unlink()
+
+    def test_missing_torn_and_changed(self):
+        self.done(*self.CALL, "--part", "1/2", "-q")
+        self.says(self.refused("merge", "f#.png.parts", code=1), "frame 2 and 2 more", "--part 2/2")
+        self.done(*self.CALL, "--part", "2/2", "-q")
+        self.done("merge", "f#.png.parts", "-q")
+        whole = self.bytes_of(self.OUTPUTS)
+        (self.folder / "t3.exr").write_bytes(whole["t3.exr"][:-1])
+        self.says(self.refused("merge", "f#.png.parts", code=1), "frame 3", "--part 2/2")
+        self.done(*self.CALL, "--part", "2/2", "-q")
+        self.done("merge", "f#.png.parts", "-q")
+        self.assertEqual(self.bytes_of(self.OUTPUTS), whole)
+        self.says(self.run_program(*self.CALL, "--part", "2/2").stderr, "part 2 of 2: nothing to do")
+        (self.folder / "4.exr").write_bytes((self.folder / "0.exr").read_bytes())
+        self.says(self.refused(*self.CALL, "--part", "2/2"), "the pictures changed")
+        self.says(self.refused(*self.CALL, "--part", "solve"), "no solution")
+
+
 class Faults(PartCase):
     def test_what_is_missing_is_listed_with_its_command(self):
         self.done(*CALL, "--set", "camera.A.fov_deg=30 ", "--part", "2/3", "-q")
@@ -256,6 +306,32 @@ class Faults(PartCase):
         self.says(self.refused("merge", "v.exr.parts", code=1), "--part 2/2")
         self.done(*CALL, "--part", "2/2", "-q")
         self.assertEqual(self.merged(), whole)
+
+    def test_a_disk_that_is_full(self):
+        """ENOSPC of a file system in memory that is filled up while a part is away."""
+        script = """set -e
+mount -t tmpfs -o size=4m tmpfs full; cp ball.toml full; cd full
+"$@" --part 1/2 -q
+dd if=/dev/zero of=filler bs=1k 2>/dev/null || true
+for words in "--part 2/2" ""; do
+  if [ "$words" ]; then set +e; "$@" --part 2/2 -q; else set +e; "$0" merge v.exr.parts; fi
+  test $? = 1 || exit 9; set -e
+done
+ls -A v.exr.parts | grep '^[.]' && exit 8
+rm filler
+"$@" --part 2/2 -q; "$0" merge v.exr.parts -q; cp v-*.exr v-*.png ..
+"""
+        (self.folder / "full").mkdir()
+        mounts = ["unshare", "--user", "--map-root-user", "--mount"]
+        if subprocess.run([*mounts, "mount", "-t", "tmpfs", "tmpfs", "full"], cwd=self.folder, capture_output=True,
+                          check=False).returncode != 0:
+            self.skipTest("no file system can be mounted here")
+        whole = self.whole()
+        run = subprocess.run([*mounts, "bash", "-c", script, program.PROGRAM, program.PROGRAM, *CALL], cwd=self.folder,
+                             capture_output=True, text=True, check=False)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        self.says(run.stderr, "No space left on device", "is not complete", "--part 2/2")
+        self.assertEqual(self.bytes_of(), whole)
 
     def test_calls_that_cannot_be_shared_out(self):
         self.says(self.refused("render", "ball.toml", "--only-pixel", "1,1", "--part", "1/2"), "--only-pixel")

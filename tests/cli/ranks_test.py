@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Ranks of Open MPI write what one process writes. Skipped where earthshine-mpi was not built or mpirun is not there."""
+import contextlib
+import json
 import os
 import pathlib
 import random
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -97,6 +100,50 @@ class Ranks(Case):
                      ("render", "ball.toml", "-o", "v.exr", "--time-limit", "3")):
             self.assertIn("earthshine: ", self.ranks(2, *call, code=2).stderr)
 
+    def test_a_plan_is_made_once(self):
+        plan = self.ranks(2, "study", "orbit", "bay.toml", "-o", "o", "--positions", "3", "--dry-run", "--json").stdout
+        self.assertTrue(json.loads(plan)["dry_run"])  # two would be no JSON
+        self.assertFalse((self.folder / "o").exists())
+
+    def test_processes_of_srun_that_are_alone(self):
+        """srun without --mpi=pmix: nothing but SLURM_STEP_NUM_TASKS says that there are others. mpirun of one is one."""
+        call = ("inspect", "ball.toml")
+        run = subprocess.run([MPI, *call], cwd=self.folder, env=os.environ | {"SLURM_STEP_NUM_TASKS": "4"},
+                             capture_output=True, text=True, check=False)
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.says(run.stderr, "started 4 processes that do not know of each other", "--mpi=pmix")
+        for program_, tasks in ((MPI, "1"), (program.PROGRAM, "4")):
+            subprocess.run([program_, *call], cwd=self.folder, env=os.environ | {"SLURM_STEP_NUM_TASKS": tasks},
+                           stdout=subprocess.DEVNULL, check=True)
+
+    def test_work_goes_to_whoever_is_free(self):
+        """Two ranks of one thread share W = W1 + W2 CPU seconds of a picture. One is stopped while the other works for W: it
+        has nothing left to do then, where rows dealt out beforehand would leave it all of its half."""
+        call = ("render", "ball.toml", "--camera", "A", "-o", "v.exr", "--indirect", "paths", "-q", "--set",
+                "quality.gather_rays=16384")
+        begun = os.times()
+        self.done(*call, "-j", "1")
+        ended = os.times()
+        work = ended.children_user - begun.children_user
+        whole = (self.folder / "v.exr").read_bytes()
+        run, ranks = self.started(2, *call)
+        while self.processor_seconds(ranks[1]) < 0.3 + 0.1 * work:
+            time.sleep(0.01)
+        os.kill(int(ranks[1]), signal.SIGSTOP)
+        at_stop = self.processor_seconds(ranks[1])
+        while self.processor_seconds(ranks[0]) < 1.1 * work:
+            time.sleep(0.01)
+        os.kill(int(ranks[1]), signal.SIGCONT)
+        at_end = at_stop
+        while run.poll() is None:
+            with contextlib.suppress(OSError):
+                at_end = self.processor_seconds(ranks[1])
+            time.sleep(0.01)
+        self.assertEqual(run.returncode, 0)
+        self.assertEqual((self.folder / "v.exr").read_bytes(), whole)
+        # Half of the work would be 0.4 W more than it had; one row and the file's encoding are less than 0.2 W.
+        self.assertLess(at_end - at_stop, 0.2 * work)
+
     def started(self, count, *arguments):
         """mpirun, and the ranks as soon as all are there."""
         run = subprocess.Popen(["mpirun", "-n", str(count), MPI, *arguments, "-j", "1"], cwd=self.folder, env=ENVIRONMENT,
@@ -127,7 +174,7 @@ class Ranks(Case):
         self.assertFalse((self.folder / "v.exr").exists())
 
     def test_the_next_run_ends_what_a_kill_left(self):
-        """Any rank, killed at ten moments of a run's time: the study is there whole or not at all, and the next run's is the
+        """Any rank, killed at EARTHSHINE_KILLS (ten) moments of a run's time: the study is there whole or not at all, and the next run's is the
         one that nobody disturbed."""
         call = ("study", "orbit", "bay.toml", "--positions", "36", "--wanted", "box>=0.5", "-q", "-o")
         begun = time.monotonic()
@@ -135,8 +182,9 @@ class Ranks(Case):
         whole, seconds = self.without_times(self.study("w")), time.monotonic() - begun
         chance = random.Random(20)
         killed = 0
-        for kill in range(10):
-            folder, rank, wait = f"o{kill}", chance.randrange(3), seconds * (kill + chance.random()) / 10
+        kills = int(os.environ.get("EARTHSHINE_KILLS", "10"))
+        for kill in range(kills):
+            folder, rank, wait = f"o{kill}", chance.randrange(3), seconds * (kill + chance.random()) / kills
             with self.subTest(rank=rank, seconds=wait):
                 run, ranks = self.started(3, *call, folder)
                 time.sleep(wait)

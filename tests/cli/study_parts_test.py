@@ -146,6 +146,93 @@ class StudyParts(Case):
         self.assertEqual(self.results("o"), self.results("w"))
         self.assertEqual([p.name for p in (self.folder / "o").rglob(".*")], [])
 
+    def test_a_torn_part_is_missing(self):
+        """What merge read or trusted is broken in turn: it lists the part, writes nothing, and the part mends it. Everything
+        in points/ but the call's record belongs to one of them."""
+        for part in (1, 2):
+            self.done(*ORBIT, "o", "--part", f"{part}/2", "-q")
+        kept = sorted(path for path in (self.folder / "o" / "points").iterdir()
+                      if path.suffix in (".json", ".exr") and not path.name.startswith(("parts", "solution")))
+        sound = {path: path.read_bytes() for path in kept}
+        self.assertGreater(len(sound), 10)
+        for torn in kept:
+            with self.subTest(torn.name):
+                torn.write_bytes(sound[torn][:-20])
+                message = self.refused("merge", "o", code=1)
+                self.says(message, "not complete", "--part ")
+                self.assertFalse((self.folder / "o" / "study.json").exists())
+                for part in (1, 2):
+                    if f"--part {part}/2" in message:
+                        self.done(*ORBIT, "o", "--part", f"{part}/2", "-q")
+                self.done("merge", "o", "-q")
+                (self.folder / "o" / "study.json").unlink()
+
+    def test_a_merge_does_not_solve(self):
+        call = SEVERAL["visibility"]  # whose report reads the solution again
+        self.done(*call, "o", "--part", "1/1", "-q")
+        (solution,) = (self.folder / "o" / "points").glob("solution-*.h5")
+        solution.unlink()
+        self.says(self.refused("merge", "o", code=1), solution.name, "--part solve")
+        self.assertFalse(solution.exists())
+        self.done(*call, "o", "--part", "solve", "-q")
+        self.done("merge", "o", "-q")
+
+    def test_a_signal_ends_the_wait_for_a_solution(self):
+        run = self.started(*ORBIT, "o", "--part", "1/2", "--wait", "60", "-q")
+        points = self.folder / "o" / "points"
+        while not (points / "parts.json").exists():
+            time.sleep(0.01)
+        time.sleep(0.5)
+        run.send_signal(signal.SIGTERM)
+        self.assertEqual(run.wait(30), 1)
+        self.assertEqual(list(points.glob("solution*")), [])
+
+    def test_who_solves_waits_for_nobody(self):
+        begun = time.monotonic()
+        self.done(*ORBIT, "o", "--part", "solve", "--wait", "30", "-q")
+        self.assertLess(time.monotonic() - begun, 30.0)
+
+    def test_more_parts_than_work(self):
+        note = self.run_program(*ORBIT, "o", "--part", "1/100").stderr
+        self.says(note, "part 1 of 100: nothing to do: the study has 6 batches")
+        note = self.run_program(*SEVERAL["accuracy"], "a", "--part", "99/100").stderr
+        self.says(note, "part 99 of 100: nothing to do: the study has ")
+
+    def test_accuracy_in_too_little_memory(self):
+        """A step whose memory cannot be had is left out for the reason that one process gives, by the part that has it."""
+        call = (*SEVERAL["accuracy"], "w", "--max-memory", "1MiB", "-q")
+        self.done(*call)
+        whole = self.without_seconds(self.results("w"))
+        self.assertEqual(whole["accuracy.json"]["points"], [])
+        for part in (1, 2):
+            self.done(*call[:-4], "o", "--max-memory", "1MiB", "--part", f"{part}/2", "-q")
+        self.done("merge", "o", "-q")
+        self.assertEqual(self.without_seconds(self.results("o")), whole)
+        # With more, the same part does what it left out.
+        for part in (1, 2):
+            self.done(*call[:-4], "o", "--part", f"{part}/2", "-q")
+        self.done("merge", "o", "-q")
+        self.assertEqual(self.results("o")["accuracy.json"]["not_run"], [])
+
+    def test_accuracy_of_a_dark_scene_traces_nothing(self):
+        bay = (self.folder / "bay.toml").read_text()
+        dark = bay[:bay.index("[[light]]")] + bay[bay.index("[[camera]]"):]
+        self.write("bay.toml", dark)
+        call = SEVERAL["accuracy"]
+        self.done(*call, "o", "--part", "1/1", "-q")
+        self.assertEqual(list((self.folder / "o" / "points").glob("*.exr")), [])
+        self.says(self.done("merge", "o"), "nothing gives light")
+
+    def test_accuracy_counts_a_torn_picture_as_missing(self):
+        call = SEVERAL["accuracy"]
+        self.done(*call, "o", "--part", "1/1", "-q")
+        for torn in sorted((self.folder / "o" / "points").glob("*.exr"))[::5]:
+            torn.write_bytes(torn.read_bytes()[:-20])
+            self.says(self.refused("merge", "o", code=1), "--part 1/1")
+            self.assertFalse((self.folder / "o" / "accuracy.json").exists())
+            self.done(*call, "o", "--part", "1/1", "-q")
+        self.done("merge", "o", "-q")
+
     def test_accuracy_has_no_single_solution(self):
         call = SEVERAL["accuracy"]
         self.says(self.refused(*call, "o", "--part", "solve"), "no solution that all of it reads")

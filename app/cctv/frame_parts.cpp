@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/cctv/frame_parts.h"
+
+#include <fmt/format.h>
+
+#include "app/console.h"
+#include "app/parts/build_id.h"
+#include "app/parts/shared_solution.h"
+
+namespace earthshine::app {
+namespace {
+
+Json digests_of_call(const TapeCall& pictures, const CctvSetup& setup) {
+  Json files = Json::array();
+  for (const std::string& file : pictures.inputs) files.push_back(digest_of_file(file));
+  const degrade::Options& options = setup.chain.options;
+  const Json settings = {{"camera", settings_json(setup.chain.camera)},
+                         {"monitor", monitor_json(setup.chain.monitor)},
+                         {"view", options.view},
+                         {"fov_deg", options.fov_deg}};
+  return {{"pictures", digest_of(files)}, {"settings", digest_of(settings)}};
+}
+
+}  // namespace
+
+FrameParts::FrameParts(const PartCall& part, const TapeCall& pictures,
+                       const std::vector<TapeFrame>& tape, const std::vector<std::string>& outputs,
+                       const CctvSetup& setup, const Common& common)
+    : part_(part),
+      quiet_(common.quiet),
+      tape_(tape),
+      folder_(outputs.front() + ".parts"),
+      digests_(digests_of_call(pictures, setup)),
+      store_(folder_) {
+  for (const std::string& output : outputs) {
+    if (!output.empty()) outputs_.push_back(output);
+  }
+  join_parts(folder_, common, digests_, part_);
+}
+
+Json FrameParts::key_of(std::size_t place) const {
+  return {
+      {"what", "frame"}, {"call", digests_}, {"build", build_id()}, {"frame", tape_[place].number}};
+}
+
+Json FrameParts::digests_of_files(std::size_t place) const {
+  Json digests = Json::array();
+  for (const std::string& output : outputs_) {
+    const std::string file = numbered(output, tape_[place].number);
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return Json::array();
+    digests.push_back(digest_of_file(file));
+  }
+  return digests;
+}
+
+Json FrameParts::report_of(std::size_t place) const {
+  std::string ignored;
+  const auto facts = store_.find_facts(key_of(place), ignored);
+  return facts && (*facts)["files"] == digests_of_files(place) ? (*facts)["report"] : Json();
+}
+
+Share FrameParts::to_do() const {
+  if (part_.task != PartCall::Task::Share) return {};
+  const Share mine = share_of(part_, tape_.size());
+  for (std::size_t place = mine.first; place < mine.last; ++place) {
+    if (report_of(place).is_null()) return {place, mine.last};
+  }
+  if (!quiet_) note(fmt::format("part {} of {}: nothing to do", part_.number, part_.count));
+  return {};
+}
+
+void FrameParts::keep(std::size_t place, const Json& report) const {
+  store_.keep_facts(key_of(place), {{"files", digests_of_files(place)}, {"report", report}});
+}
+
+Json FrameParts::reports() const {
+  Json reports = Json::array();
+  std::vector<MissingWork> missing;
+  for (std::size_t place = 0; place < tape_.size(); ++place) {
+    reports.push_back(report_of(place));
+    if (!reports.back().is_null()) continue;
+    missing.push_back(
+        {fmt::format("frame {}", tape_[place].number), part_of(place, tape_.size(), part_.count)});
+  }
+  if (!missing.empty()) refuse_to_merge(folder_, missing);
+  return reports;
+}
+
+}  // namespace earthshine::app
