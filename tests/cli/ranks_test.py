@@ -174,7 +174,7 @@ class Ranks(Case):
         self.assertFalse((self.folder / "v.exr").exists())
 
     def test_the_next_run_ends_what_a_kill_left(self):
-        """Any rank, killed at EARTHSHINE_KILLS (ten) moments of a run's time: the study is there whole or not at all, and the next run's is the
+        """Any rank, killed at EARTHSHINE_KILLS (ten) moments of a run: the study is there whole or not at all, and the next is the
         one that nobody disturbed."""
         call = ("study", "orbit", "bay.toml", "--positions", "36", "--wanted", "box>=0.5", "-q", "-o")
         begun = time.monotonic()

@@ -147,15 +147,14 @@ class StudyParts(Case):
         self.assertEqual([p.name for p in (self.folder / "o").rglob(".*")], [])
 
     def test_a_torn_part_is_missing(self):
-        """What merge read or trusted is broken in turn: it lists the part, writes nothing, and the part mends it. Everything
-        in points/ but the call's record belongs to one of them."""
+        """Half of what a merge reads or trusts is broken in turn: it lists the part, writes nothing, and the part mends it."""
         for part in (1, 2):
             self.done(*ORBIT, "o", "--part", f"{part}/2", "-q")
         kept = sorted(path for path in (self.folder / "o" / "points").iterdir()
                       if path.suffix in (".json", ".exr") and not path.name.startswith(("parts", "solution")))
         sound = {path: path.read_bytes() for path in kept}
         self.assertGreater(len(sound), 10)
-        for torn in kept:
+        for torn in kept[::2]:  # their names are digests: any kind may come
             with self.subTest(torn.name):
                 torn.write_bytes(sound[torn][:-20])
                 message = self.refused("merge", "o", code=1)
