@@ -100,6 +100,7 @@ const enhance = (table) => {
     showPictures(table, cell, shots);
   };
   let current = null;
+  let looked = null; // the cell whose panel has been brought into view
   const choose = (cell, focus) => {
     if (current) current.tabIndex = -1;
     current = cell;
@@ -124,8 +125,9 @@ const enhance = (table) => {
     if (!cell) return;
     if (event.key === "Enter") {
       // What is seen and why, first; once more, and the row of all its figures.
-      if (cell.dataset.p && !inView(panel)) panel.scrollIntoView({ block: "nearest" });
+      if (cell.dataset.p && looked !== cell && !inView(panel)) panel.scrollIntoView({ block: "nearest" });
       else goToRow(cell);
+      looked = cell;
       event.preventDefault();
       return;
     }
