@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <sstream>
@@ -176,6 +178,19 @@ void end_by_signal(int signal) {
   std::raise(signal);
 }
 
+// Libraries throw where nothing may be thrown: oneTBB, as it ends, where no thread can be made.
+[[noreturn]] void end_by_exception() {
+  base::remove_unfinished_files();
+  try {
+    std::rethrow_exception(std::current_exception());
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "earthshine: %s\n", error.what());  // no memory may be left for note()
+  } catch (...) {
+    std::fputs("earthshine: ended by a fault of a library\n", stderr);
+  }
+  std::_Exit(work_failed);
+}
+
 int complain(std::string_view what, int exit_code) {
   note(fmt::format("earthshine: {}", what));
   return exit_code;
@@ -205,6 +220,7 @@ int main(int argc, char** argv) {
     // Whoever started the program may have it ignore a signal, as nohup does.
     if (std::signal(signal, app::end_by_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
+  std::set_terminate(app::end_by_exception);
   app::be_silent(ranks && ranks->number() > 0);
   std::string what;
   const auto failed = [&what](std::string_view why, int exit_code) {

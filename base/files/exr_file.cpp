@@ -7,6 +7,7 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
+#include <ImfInputFile.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfOutputFile.h>
@@ -18,6 +19,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <new>
 #include <string_view>
 #include <system_error>
 
@@ -85,6 +87,15 @@ class CheckedStream : public Imf::OStream {
               "An older file of that name was kept");
 }
 
+// Where no memory is left to pack rows with, the library leaves them out and says nothing.
+bool has_all_rows(const std::filesystem::path& path) {
+  try {
+    return Imf::InputFile(path.c_str(), 0).isComplete();
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
 // A row of a channel in 16 bits: a second copy of all rows would cost half of the picture again.
 struct HalfRow {
   const Channel& channel;
@@ -146,6 +157,11 @@ void write_exr(const std::filesystem::path& path, const Image& image, const ExrH
   }
   stream.close();
   if (stream.problem() != 0) refuse_writing(path, stream.reason());
+  std::error_code ignored;
+  const bool is_device = !std::filesystem::is_regular_file(output.temporary(), ignored);
+  if (!is_device && !has_all_rows(output.temporary())) {
+    refuse_writing(path, "rows are missing; there may be too little memory");
+  }
   output.commit();
 }
 
@@ -270,6 +286,8 @@ ExrFile read_exr(const std::filesystem::path& path) {
     part.readPixels(window.min.y, window.max.y);
   } catch (const Error&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    throw;  // not the file's fault
   } catch (const std::exception& e) {
     refuse_reading(path, std::string("cannot be read as OpenEXR: ") + e.what());
   }
