@@ -3,7 +3,7 @@
 run afterwards writes the bytes of one that nothing happened to.
 
 Some calls of each kind are made to fail; all of them, and what was found as a table, with EARTHSHINE_FAULTS=all
-(20 minutes). EARTHSHINE_FAULTS=NAME does so for one command. Exit code 77 where the calls cannot be stopped: elsewhere
+(10 minutes). EARTHSHINE_FAULTS=NAME does so for one command. Exit code 77 where the calls cannot be stopped: elsewhere
 than on Linux on x86-64, or with a sanitizer, which wants to be preloaded itself.
 """
 import errno
