@@ -56,6 +56,7 @@ void wait_for(const fs::path& file, double wait_s, bool quiet) {
 std::string digest_of_file(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (bytes.empty()) throw base::Error(base::Blame::Work, path.string(), "cannot be read");
   base::Digest digest;
   digest.add(std::string_view(bytes));
   return digest.text();
