@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <sstream>
@@ -178,8 +180,24 @@ void end_by_signal(int signal) {
   std::raise(signal);
 }
 
+// Libraries throw where nothing may be thrown: oneTBB, as it ends, where no thread can be made.
+[[noreturn]] void end_by_exception() {
+  base::remove_unfinished_files();
+  const std::exception_ptr thrown = std::current_exception();
+  try {
+    if (thrown) std::rethrow_exception(thrown);
+    std::fputs("earthshine: ended by a fault of a library\n", stderr);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "earthshine: %s\n", error.what());  // no memory may be left for note()
+  } catch (...) {
+    std::fputs("earthshine: ended by a fault of a library\n", stderr);
+  }
+  std::_Exit(work_failed);
+}
+
 void take_signals() {
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported where it is written to
+  std::set_terminate(end_by_exception);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     // Whoever started the program may have it ignore a signal, as nohup does.
     if (std::signal(signal, end_by_signal) == SIG_IGN) std::signal(signal, SIG_IGN);

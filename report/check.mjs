@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// node check.mjs REPORT.html PLAIN.html FOLDER: opens both pages in headless Chromium as a reader
+// node check.mjs REPORT.html PLAIN.html HOSTILE.html FOLDER: opens the pages in headless Chromium as a reader
 // would, by keyboard too, and puts screenshots and a PDF into FOLDER.
 // Exit code 0 all well, 1 something is wrong, 77 there is no browser or no node_modules.
 import { existsSync, mkdirSync, readFileSync, statSync } from "node:fs";
@@ -23,7 +23,7 @@ try {
 }
 const axePath = createRequire(import.meta.url).resolve("axe-core/axe.min.js");
 
-const [page_file, plain_file, folder = "out"] = process.argv.slice(2);
+const [page_file, plain_file, hostile_file, folder = "out"] = process.argv.slice(2);
 mkdirSync(folder, { recursive: true });
 let faults = 0;
 const check = (holds, what, found = "") => {
@@ -219,11 +219,33 @@ const checkPlain = async () => {
   await context.close();
 };
 
+// Names that would run, turn or widen the page (tests/cli/report_browser.py).
+const checkHostile = async () => {
+  for (const width of [400, 1280]) {
+    const { page, context, complaints } = await open(hostile_file, { viewport: { width, height: 800 } });
+    await drawAll(page);
+    await asBefore(page);
+    const found = await page.evaluate(() => ({
+      owned: "owned" in window,
+      foreign: document.querySelectorAll("[onload], [onerror], img[src='x'], svg[onload]").length,
+      sections: [...document.querySelectorAll("main > section")].filter((section) => section.checkVisibility()).length,
+      overflow: document.documentElement.scrollWidth - innerWidth,
+    }));
+    check(!found.owned && found.foreign === 0, `hostile names, ${width} px: nothing runs`, JSON.stringify(found));
+    check(found.sections > 5, `hostile names, ${width} px: all sections are shown`, found.sections);
+    check(found.overflow <= 0, `hostile names, ${width} px: nothing sticks out`, `${found.overflow} px`);
+    await page.screenshot({ path: join(folder, `report-hostile-${width}.png`) });
+    check(complaints.length === 0, `hostile names, ${width} px: no error, no request`, complaints.join("; "));
+    await context.close();
+  }
+};
+
 await checkPage();
 await checkLooks("narrow", { viewport: { width: 400, height: 800 } });
 await checkLooks("dark", { colorScheme: "dark" });
 await checkPhone();
 await checkPlain();
+await checkHostile();
 await browser.close();
 console.log(faults === 0 ? "all well" : `${faults} faults`);
 process.exit(faults === 0 ? 0 : 1);

@@ -7,6 +7,7 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
+#include <ImfInputFile.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfOutputFile.h>
@@ -85,6 +86,15 @@ class CheckedStream : public Imf::OStream {
               "An older file of that name was kept");
 }
 
+// Where no memory is left to pack rows with, the library leaves them out and says nothing.
+bool has_all_rows(const std::filesystem::path& path) {
+  try {
+    return Imf::InputFile(path.c_str(), 0).isComplete();
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
 // A row of a channel in 16 bits: a second copy of all rows would cost half of the picture again.
 struct HalfRow {
   const Channel& channel;
@@ -146,6 +156,11 @@ void write_exr(const std::filesystem::path& path, const Image& image, const ExrH
   }
   stream.close();
   if (stream.problem() != 0) refuse_writing(path, stream.reason());
+  std::error_code ignored;
+  const bool is_device = !std::filesystem::is_regular_file(output.temporary(), ignored);
+  if (!is_device && !has_all_rows(output.temporary())) {
+    refuse_writing(path, "rows are missing; there may be too little memory");
+  }
   output.commit();
 }
 

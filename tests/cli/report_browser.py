@@ -5,6 +5,7 @@ usage: report_browser.py PROGRAM OUT    screenshots and a PDF go to OUT
 
 Exit code 77 where there is no browser, no Node.js or no report/node_modules.
 """
+import json
 import pathlib
 import shutil
 import subprocess
@@ -13,6 +14,28 @@ import tempfile
 
 TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 SKIPPED = 77
+
+# What users may call their cameras, targets, lamps, groups and studies. Were one of them run, `owned` would be there.
+HOSTILE = {
+    "B": "B" + "W" * 10000,
+    "C": "</script><script>window.owned = 1</script>",
+    "tss": "\"><img src=x onerror='window.owned = 1'>",
+    "eureca": "\u202egnp.exe\u2066 \U0001f680\U0001f469\u200d\U0001f680\u0000",
+    "grapple-fixture": "]]>--><!--<style>*{display:none}</style>",
+    "bay lamps on": "<svg onload=window.owned=1> " + "x" * 10000,
+    "bay-lamps": "');window.owned=1;('\u2028 \U0001f6f0\ufe0f",
+    "STS-46, day and night": "javascript:window.owned=1//" + "\u05d0" * 10000,
+    "STS-46 payload bay": "\u202e" * 10000,
+}
+
+
+def hostile(value):
+    """The study with those names, wherever they stand alone."""
+    if isinstance(value, dict):
+        return {hostile(key): hostile(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [hostile(item) for item in value]
+    return HOSTILE.get(value, value) if isinstance(value, str) else value
 
 
 def main():
@@ -29,6 +52,10 @@ def main():
             subprocess.run([program, "report", folder, *more], check=True)
             pages.append(folder / page)
             (folder / "report.html").rename(pages[-1])
+        study = folder / "study.json"
+        study.write_text(json.dumps(hostile(json.loads(study.read_text(encoding="utf-8")))), encoding="utf-8")
+        subprocess.run([program, "report", folder], check=True)
+        pages.append(folder / "report.html")
         if "<script>" not in pages[0].read_text(encoding="utf-8"):
             print("skipped: the program was built without the report's script")
             return SKIPPED

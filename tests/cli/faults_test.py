@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: Apache-2.0
+"""System calls that fail, one after the other, in every command that writes: no file is torn, no failure is kept back, a
+run afterwards writes the bytes of one that nothing happened to.
+
+Some calls of each kind are made to fail; all of them, and what was found as a table, with EARTHSHINE_FAULTS=all
+(10 minutes). EARTHSHINE_FAULTS=NAME does so for one command. Exit code 77 where the calls cannot be stopped: elsewhere
+than on Linux on x86-64, or with a sanitizer, which wants to be preloaded itself.
+"""
+import errno
+import json
+import os
+import pathlib
+import platform
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import program
+import tiny_bay
+
+QUALITY = "[quality]\npatch_edge = 2\nrefine = false\nform_factor_rays = 16\ngather_rays = 4\n"
+SCENES = {name: re.sub("resolution = .*", "resolution = [16, 12]", re.sub("cctv = .*", "", text.split("[quality]")[0])) + QUALITY
+          for name, text in (("ball.toml", program.BALL), ("bay.toml", tiny_bay.BAY))}
+STUDY = """format = 1
+scene = "bay.toml"
+targets = ["box"]
+cameras = ["B"]
+size = "16x12"
+
+[orbit]
+positions_deg = [0]
+
+[[picture]]
+name = "noon"
+camera = "B"
+position_deg = 0
+"""
+RENDER = ("render", "ball.toml", "--camera", "A", "-o", "a.exr")
+ORBIT = ("study", "orbit", "bay.toml", "-o", "d", "--positions", "2")
+SOLVE = ("solve", "ball.toml", "-o", "s.h5", "--glb", "s.glb")
+RUN = ("study", "run", "s.toml", "-o", "d")
+VISIBILITY = ("study", "visibility", "bay.toml", "-o", "d")
+COMPARE = ("study", "compare", "ball.toml", "-o", "d", "--lights", "2")
+PICTURES = (*RENDER, "--png", "a.png")
+DEGRADE = ("degrade", "a.exr", "-o", "c.png", "--scene", "ball.toml")
+RELIGHT = ("relight", "a.exr", "--set", "sun=0.5", "-o", "b.exr", "--png", "b.png")
+OLDER = ("--seed", "2")
+# What is called before, so that there is something to read and something to go over; the call.
+COMMANDS = {
+    "render": ([(*PICTURES, *OLDER)], PICTURES),
+    "render --part": ([(*RENDER, *OLDER)], (*RENDER, "--part", "1/2")),
+    "merge": ([(*RENDER, *OLDER), (*RENDER, "--part", "1/2"), (*RENDER, "--part", "2/2")], ("merge", "a.exr.parts")),
+    "solve": ([(*SOLVE, *OLDER)], SOLVE),
+    "degrade": ([RENDER, (*DEGRADE, *OLDER)], DEGRADE),
+    "relight": ([(*RENDER, *OLDER, "--per-light"), RELIGHT, (*RENDER, "--per-light")], RELIGHT),
+    "fit-phong": ([], ("fit-phong", "paint.csv")),
+    "study run": ([(*RUN, *OLDER)], RUN),
+    "study orbit": ([(*ORBIT, *OLDER)], ORBIT),
+    "study visibility": ([(*VISIBILITY, *OLDER)], VISIBILITY),
+    "study compare": ([(*COMPARE, *OLDER)], COMPARE),
+    "report": ([ORBIT], ("report", "d")),
+}
+# The kind of call, what it answers, whether all later ones fail too.
+FAULTS = {
+    "full disk": ("write", errno.ENOSPC, True),
+    "write": ("write", errno.EIO, False),
+    "rename": ("rename", errno.EIO, False),
+    "open": ("open", errno.EIO, False),
+    "flush": ("fsync", errno.EIO, False),
+    "memory": ("memory", errno.ENOMEM, True),
+    "memory once": ("memory", errno.ENOMEM, False),
+}
+WANTED = os.environ.get("EARTHSHINE_FAULTS", "")
+PICKED = 1  # calls of each kind of fault in each command, when not all are
+
+
+def files_of(folder):
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def results_of(files):
+    """Without what a study says of the work that it found done, and the page that shows it."""
+    found = dict(files)
+    for path in ("d/study.json", "d/visibility.json"):
+        if path in found:
+            found[path] = tiny_bay.Case.without_times(json.loads(found[path]) | {"solve_seconds": None})
+            found["d/report.html"] = b""
+    return found
+
+
+class Faults(program.Case):
+    @classmethod
+    def setUpClass(cls):
+        cls.made = tempfile.TemporaryDirectory(prefix="earthshine-shim-")
+        cls.addClassCleanup(cls.made.cleanup)
+        cls.shim = pathlib.Path(cls.made.name) / "shim.so"
+        source = pathlib.Path(__file__).with_name("fault_shim.c")
+        subprocess.run(["cc", "-O1", "-shared", "-fPIC", "-o", cls.shim, source], check=True)
+
+    def setUp(self):
+        super().setUp()
+        self.count = pathlib.Path(self.made.name) / "count"
+        self.found, self.ended = [], 0
+
+    def run_faulty(self, folder, call, kind, at=0, number=errno.EIO, stays=False):
+        fault = {"LD_PRELOAD": self.shim, "FAULT_KIND": kind, "FAULT_AT": at, "FAULT_ERROR": number, "FAULT_STAYS": int(stays),
+                 "FAULT_COUNT": self.count, "PATH": "/nowhere"}  # no gnuplot: it would start under the filter
+        return subprocess.run([program.PROGRAM, *call, "-j", "1", "-q"], cwd=folder, timeout=120, stdin=subprocess.DEVNULL,
+                              capture_output=True, env=os.environ | {key: str(value) for key, value in fault.items()}, check=False)
+
+    def before(self, name):
+        """A folder with the inputs, and with the results of another seed."""
+        folder = self.folder / "before"
+        folder.mkdir()
+        rows = [f"{a},{0.3 + 0.9 * (1 - a / 90)}" for a in range(0, 90, 10)]
+        for file, text in (SCENES | {"s.toml": STUDY, "paint.csv": "\n".join(rows) + "\n"}).items():
+            (folder / file).write_text(text, encoding="utf-8")
+        for call in COMMANDS[name][0]:
+            done = self.run_faulty(folder, call, "fsync")
+            self.assertEqual(done.returncode, 0, f"{call}: {done.stderr}")
+        if name == "report":
+            (folder / "d/report.html").write_text("older", encoding="utf-8")
+        return folder
+
+    def copy(self, folder):
+        there = self.folder / "now"
+        shutil.rmtree(there, ignore_errors=True)
+        shutil.copytree(folder, there)
+        return there
+
+    def judge(self, what, old, new, folder, run, call):
+        """Gives whether the run failed; what is wrong goes to `found`."""
+        now = files_of(folder)
+        torn = [path for path, data in now.items() if data not in (old.get(path), new["files"].get(path))]
+        lost = [path for path in old if path not in now and path in new["files"]]
+        said = run.stderr.decode("utf-8", "replace").strip()
+        if torn or lost:
+            self.found.append(f"{what}: torn or left: {torn}, lost: {lost}, exit {run.returncode}: {said}")
+        if run.returncode == 0:
+            if now != new["files"] or run.stdout != new["stdout"]:
+                self.found.append(f"{what}: exit 0, other results: {[p for p in new['files'] if now.get(p) != new['files'][p]]}")
+            return False
+        if run.returncode < 0 and what.split(", ")[1].startswith("memory"):
+            self.ended += 1  # within a library that has no way to say so: HDF5, oneTBB
+        elif run.returncode not in (1, 2) or "earthshine: " not in said:
+            self.found.append(f"{what}: exit {run.returncode}: {said!r}")
+        again = self.run_faulty(folder, call, "fsync")
+        there = results_of(files_of(folder))
+        other = [path for path in there.keys() | new["results"].keys() if there.get(path) != new["results"].get(path)]
+        if again.returncode != 0 or other:
+            self.found.append(f"{what}: afterwards exit {again.returncode}, other: {other}: {again.stderr!r}")
+        return True
+
+    def sweep(self, name):
+        call = COMMANDS[name][1]
+        before = self.before(name)
+        old = files_of(before)
+        whole, counts = WANTED in ("all", name), {}
+        for kind in {kind for kind, _, _ in FAULTS.values()}:
+            folder = self.copy(before)
+            run = self.run_faulty(folder, call, kind)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            counts[kind] = int(self.count.read_text())
+            files = files_of(folder)
+            new = {"files": files, "results": results_of(files), "stdout": run.stdout}
+        self.assertNotEqual(new["files"] if call[0] != "fit-phong" else None, old, "the run writes nothing")
+        row = []
+        for title, (kind, number, stays) in FAULTS.items():
+            most = counts[kind]
+            picks = range(1, most + 1) if whole else sorted({1 + most * (2 * k + 1) // (2 * PICKED) for k in range(PICKED)} if most else ())
+            failed = 0
+            for at in picks:
+                folder = self.copy(before)
+                run = self.run_faulty(folder, call, kind, at, number, stays)
+                failed += self.judge(f"{name}, {title} {at} of {most}", old, new, folder, run, call)
+            row.append(f"{len(picks)}, {failed}" + (f", {self.ended}" if self.ended else ""))
+            self.ended = 0
+        if whole:
+            print(f"| `{name}` | {' | '.join(row)} |", flush=True)
+        if self.found:
+            self.fail("\n".join(self.found))
+
+
+def case_of(name):
+    return lambda self: self.sweep(name)
+
+
+for command in COMMANDS:
+    if WANTED in ("", "all", command):
+        setattr(Faults, "test_" + command.replace(" ", "_").replace("-", ""), case_of(command))
+
+if __name__ == "__main__":
+    if sys.platform != "linux" or platform.machine() != "x86_64" or not shutil.which("cc") or \
+            any(name in pathlib.Path(program.PROGRAM).read_bytes() for name in (b"__asan_init", b"__tsan_init")):
+        print("skipped: system calls cannot be made to fail here")
+        sys.exit(77)
+    unittest.main()
