@@ -34,19 +34,32 @@ TEST(ThrownLight, GlassKeepsColoursApart) {
   EXPECT_NEAR(lx.b / lx.g, 4.0 / 9.0, 1e-9);
 }
 
-// Of a blue lamp blue glass and a blue mirror hide nothing, whatever their luminance says: the flux
-// that they pass on is what the samples found, and the scale that makes them agree is 1.
+// Of a blue lamp blue glass and a blue mirror hide nothing, whatever their luminance says. A square
+// of half edge a is seen from the height h over its centre under 4 atan(a^2 / (h sqrt(2 a^2 +
+// h^2))): from the lamp at 2 m under a sixth of the sphere, from its image at 4 m under 0.0641.
 TEST(ThrownLight, FluxIsFollowedInItsColour) {
+  const auto share = [](double a, double h) {
+    return std::atan(a * a / (h * std::sqrt(2.0 * a * a + h * h))) / base::pi;
+  };
   const Rgb blue(0.0, 0.0, 1.0);
   for (const bool of_glass : {true, false}) {
-    Floor scene;
+    tests::SceneBuilder builder;
+    builder.plate(builder.material(tests::grey(rho)), 4.0, 0.0, true);
     scenes::Material material = tests::grey(0.0);
     (of_glass ? material.transmit : material.mirror) = blue;
     material.two_sided = of_glass;
-    scene.plate(scene.material(material), 8.0, of_glass ? 1.0 : 3.0, of_glass);
-    scene.scene.lamps.push_back(point_lamp({0, 0, 2}, 100.0));
-    scene.scene.lamps[0].intensity_cd *= blue;
-    EXPECT_NEAR(find(scene.scene).scale, 1.0, 1e-3) << of_glass;
+    builder.plate(builder.material(material), 8.0, of_glass ? 1.0 : 3.0, of_glass);
+    builder.scene.lamps.push_back(point_lamp({0, 0, 2}, 100.0));
+    builder.scene.lamps[0].intensity_cd *= blue;
+    const tests::Prepared prepared(builder.scene);
+    radiosity::SolveOptions options;
+    options.patch_edge_m = 0.5;
+    const radiosity::Solution solution = prepared.solve(options);
+    const radiosity::SourceFlux& flux = solution.report.sources.at(0);
+    const double exact = share(2.0, 2.0) + (of_glass ? 0.0 : share(2.0, 4.0));
+    EXPECT_NEAR(flux.escaped_share, 1.0 - exact, 4.0 * flux.share_std_error) << of_glass;
+    EXPECT_NEAR(flux.landed_lm.b / (400.0 * base::pi), exact, 4.0 * flux.share_std_error)
+        << of_glass;
   }
 }
 
