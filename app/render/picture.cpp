@@ -160,6 +160,11 @@ raytrace::RenderOptions picture_options(const RenderCall& call, const Common& co
   if (steers(call, loaded.scene)) options.error = *loaded.scene.quality.error;
   options.fills_time = !steers(call, loaded.scene);
   if (call.crop) options.crop = *call.crop;
+  if (call.only_pixel && (call.crop->x >= options.columns || call.crop->y >= options.rows)) {
+    throw base::Error(base::Blame::Input, call.pixel_option(),
+                      fmt::format("{},{} lies outside the picture", call.crop->x, call.crop->y),
+                      fmt::format("0,0 to {},{}", options.columns - 1, options.rows - 1));
+  }
   options.indirect = call.indirect;
   options.distributed_lights = static_cast<int>(call.distributed_lights);
   options.distributed_over = call.distributed_over;

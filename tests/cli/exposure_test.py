@@ -83,6 +83,7 @@ class Probe(tiny_bay.Case):
 
     def test_what_is_refused(self):
         self.assertIn("is not X,Y", self.refused("render", "box.toml", "--probe", "1"))
+        self.says(self.refused("render", "box.toml", "--probe", "9999,0"), "--probe: 9999,0 lies outside", "0,0 to ")
         self.assertIn("--probe: belongs to one camera",
                       self.refused("render", "bay.toml", "--probe", "1,1", "--camera", "all"))
         self.assertIn("reads the radiosity solution",
