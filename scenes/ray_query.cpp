@@ -5,6 +5,7 @@
 #include <array>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "base/free_memory.h"
 #include "scenes/ray_structure.h"
@@ -74,9 +75,19 @@ constexpr auto lane_masks() {
 }
 alignas(32) constexpr std::array<std::array<int, 8>, 9> valid_lanes = lane_masks();
 
+std::pair<Vec3, Vec3> box_of(const Scene& scene) {
+  Vec3 low = scene.vertices.front(), high = low;
+  for (const Vec3& p : scene.vertices) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  return {low, high};
+}
+
 }  // namespace
 
-RayQuery::RayQuery(const Scene& source) : embree_(std::make_unique<Embree>()), ways_(source) {
+RayQuery::RayQuery(const Scene& source)
+    : embree_(std::make_unique<Embree>()), ways_(source), coincident_(source) {
   embree_->device = rtcNewDevice(nullptr);
   if (embree_->device == nullptr) Embree::fail("Embree could not start");
   embree_->scene = embree_->new_scene();
@@ -100,15 +111,11 @@ RayQuery::RayQuery(const Scene& source) : embree_(std::make_unique<Embree>()), w
   }
   base::check_room(built * bytes_per_triangle, source.path.string());
   if (!source.triangles.empty()) {
-    Vec3 low = source.vertices.front(), high = low;
-    for (const Vec3& p : source.vertices) {
-      low = glm::min(low, p);
-      high = glm::max(high, p);
-    }
+    const auto [low, high] = box_of(source);
     // The centre is rounded to what single precision holds, so that subtracting it is exact for
     // near points.
     centre_ = Vec3(glm::vec3(0.5 * (low + high)));
-    embree_->offset_m = 4e-6 * std::max(glm::length(high - low), 1e-6);
+    embree_->offset_m = scenes::surface_offset_m(source);
     embree_->masks = OpacityMasks(source);
     embree_->add_triangles(embree_->scene, source, 0, own_triangles, 0, own_vertices, centre_);
     embree_->add_instances(source, centre_);
@@ -124,6 +131,12 @@ RayQuery::RayQuery(RayQuery&&) noexcept = default;
 RayQuery& RayQuery::operator=(RayQuery&&) noexcept = default;
 
 double RayQuery::surface_offset_m() const { return embree_->offset_m; }
+
+double surface_offset_m(const Scene& scene) {
+  if (scene.vertices.empty()) return 0.0;
+  const auto [low, high] = box_of(scene);
+  return 4e-6 * std::max(glm::length(high - low), 1e-6);
+}
 
 void RayQuery::closest(const RayPacket& rays, std::size_t count, HitPacket& hits) const {
   RTCRayHit8 query;
@@ -142,6 +155,16 @@ void RayQuery::closest(const RayPacket& rays, std::size_t count, HitPacket& hits
         embree_->is_front(instance, {query.hit.Ng_x[k], query.hit.Ng_y[k], query.hit.Ng_z[k]},
                           {query.ray.dir_x[k], query.ray.dir_y[k], query.ray.dir_z[k]});
     hits.front[k] = front ? 1U : 0U;
+    if (coincident_.empty() || !hit) continue;
+    const Vec3 way(rays.direction_x[k], rays.direction_y[k], rays.direction_z[k]);
+    const Vec3 at = centre_ + Vec3(rays.origin_x[k], rays.origin_y[k], rays.origin_z[k]) +
+                    double(hits.t[k]) * way;
+    if (const auto first = coincident_.first_met(hits.triangle[k], at, way)) {
+      hits.triangle[k] = first->triangle;
+      hits.u[k] = static_cast<float>(first->u);
+      hits.v[k] = static_cast<float>(first->v);
+      hits.front[k] = first->front ? 1U : 0U;
+    }
   }
 }
 
@@ -163,8 +186,11 @@ Hit RayQuery::closest(const Vec3& origin, const Vec3& direction) const {
   const unsigned instance = query.hit.instID[0];
   const bool front =
       embree_->is_front(instance, {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z}, d);
-  return {embree_->triangle(instance, query.hit.primID), query.hit.u, query.hit.v, query.ray.tfar,
-          front};
+  const Hit found{embree_->triangle(instance, query.hit.primID), query.hit.u, query.hit.v,
+                  query.ray.tfar, front};
+  if (coincident_.empty()) return found;
+  const auto first = coincident_.first_met(found.triangle, origin + found.t * direction, direction);
+  return first ? Hit{first->triangle, first->u, first->v, found.t, first->front} : found;
 }
 
 std::uint32_t RayQuery::occluded(const RayPacket& rays, std::size_t count) const {

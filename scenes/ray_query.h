@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 
+#include "scenes/coincident_faces.h"
 #include "scenes/light_ways.h"
 #include "scenes/scene.h"
 
@@ -59,7 +60,8 @@ class RayQuery {
     rays.t_max[lane] = static_cast<float>(t_max_m);
   }
 
-  // Nearest hit of the first `count` rays (at most 8). Safe on many threads.
+  // Nearest hit of the first `count` rays (at most 8); of faces that lie on each other the one that
+  // is before the others. Safe on many threads.
   void closest(const RayPacket& rays, std::size_t count, HitPacket& hits) const;
   [[nodiscard]] Hit closest(const Vec3& origin, const Vec3& direction) const;
 
@@ -72,6 +74,7 @@ class RayQuery {
   void light_shares(const RayPacket& rays, const std::uint32_t* mirrors, std::size_t count,
                     Rgb* shares) const;
   [[nodiscard]] const LightWays& ways() const { return ways_; }
+  [[nodiscard]] const CoincidentFaces& coincident() const { return coincident_; }
 
   // How far to lift a ray's origin off its surface along the normal, m: a few units of single
   // precision at the scene's extent, so that no ray hits the surface it leaves and none leaks
@@ -85,8 +88,12 @@ class RayQuery {
   struct Embree;
   std::unique_ptr<Embree> embree_;
   LightWays ways_;
+  CoincidentFaces coincident_;
   Vec3 centre_{0.0};
 };
+
+// surface_offset_m of a query of the scene.
+[[nodiscard]] double surface_offset_m(const Scene& scene);
 
 // Point of a hit, found from the triangle's corners: more exact than origin + t direction.
 [[nodiscard]] Vec3 hit_position(const Scene& scene, const Hit& hit);

@@ -71,6 +71,15 @@ struct Triangle {
       polygon;  // running number over the scene; the triangles of one file polygon share it
 };
 
+// Two triangles of which parts lie on each other, nearer than rays tell apart, and which of them is
+// over which there (scenes/health/coincident.h). Each hides the other's front, or back, from light
+// on the side that the other is on.
+struct FacePair {
+  std::uint32_t a, b;
+  bool b_before_a;  // b is on the side of a's front
+  bool a_before_b;
+};
+
 // Which way the faces of a mesh are turned (scenes/health).
 enum class Orient { Mended, Outward, AsIs, TwoSided };
 
@@ -241,6 +250,7 @@ struct Scene {
   std::vector<Triangle> triangles;
   std::vector<Material> materials;
   std::vector<Object> objects;
+  std::vector<FacePair> coincident;  // ascending, a < b
   std::vector<Lamp> lamps;
   std::vector<Area> areas;
   std::optional<Sun> sun;

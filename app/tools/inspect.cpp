@@ -27,6 +27,12 @@ struct InspectCall {
 Json objects_of(const scenes::Scene& scene) {
   Json objects = Json::array();
   const std::vector<scenes::SurfaceHealth> health = scenes::surface_health(scene);
+  std::vector<std::set<std::uint32_t>> on_others(scene.objects.size());  // triangles
+  for (const scenes::FacePair& pair : scene.coincident) {
+    for (const std::uint32_t t : {pair.a, pair.b}) {
+      on_others[scene.triangles[t].object].insert(t);
+    }
+  }
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const scenes::Object& object = scene.objects[o];
     std::set<std::uint32_t> worn;
@@ -49,7 +55,8 @@ Json objects_of(const scenes::Scene& scene) {
                          {"inward_parts", health[o].inward_parts},
                          {"open_edges", health[o].open_edges},
                          {"non_manifold_edges", health[o].non_manifold_edges},
-                         {"mixed_edges", health[o].mixed_edges}}},
+                         {"mixed_edges", health[o].mixed_edges},
+                         {"triangles_on_others", on_others[o].size()}}},
                        {"unused", object.unused}});
     if (object.instance) {
       objects.back()["instance_of"] = scene.objects[object.instance->object].name;

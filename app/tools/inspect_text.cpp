@@ -38,16 +38,16 @@ std::string objects_table(const Json& report) {
 }
 
 std::string surfaces_table(const Json& report) {
-  std::string text = fmt::format("\n{:<24} {:>7} {:>7} {:>7} {:>10} {:>12} {:>11}  {}\n", "surface",
-                                 "parts", "closed", "inward", "open edges", "non-manifold",
-                                 "wound apart", "not used of the file");
+  std::string text = fmt::format(
+      "\n{:<24} {:>7} {:>7} {:>7} {:>10} {:>12} {:>11} {:>9}  {}\n", "surface", "parts", "closed",
+      "inward", "open edges", "non-manifold", "wound apart", "on others", "not used of the file");
   for (const Json& o : report["objects"]) {
     const Json& s = o["surface"];
-    text += fmt::format("{:<24} {:>7} {:>7} {:>7} {:>10} {:>12} {:>11}  {}\n",
-                        o["name"].get<std::string>(), s["parts"].get<int>(),
-                        s["closed_parts"].get<int>(), s["inward_parts"].get<int>(),
-                        s["open_edges"].get<int>(), s["non_manifold_edges"].get<int>(),
-                        s["mixed_edges"].get<int>(), o["unused"].get<std::string>());
+    text += fmt::format(
+        "{:<24} {:>7} {:>7} {:>7} {:>10} {:>12} {:>11} {:>9}  {}\n", o["name"].get<std::string>(),
+        s["parts"].get<int>(), s["closed_parts"].get<int>(), s["inward_parts"].get<int>(),
+        s["open_edges"].get<int>(), s["non_manifold_edges"].get<int>(), s["mixed_edges"].get<int>(),
+        s["triangles_on_others"].get<int>(), o["unused"].get<std::string>());
   }
   return text;
 }

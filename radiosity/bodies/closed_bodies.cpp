@@ -16,8 +16,10 @@ namespace {
 constexpr double least_volume_share = 1e-9;  // of its box: below it a surface holds nothing
 constexpr double most_cells = 512.0;         // per way of the grid
 constexpr std::uint32_t none = 0xFFFFFFFFU;
-constexpr std::uint32_t first_hole = 0x80000000U;  // from here on: masked triangles
-constexpr std::uint32_t outside = none;            // stands for a body: all that is in no room
+constexpr std::uint32_t first_hole = 0x80000000U;   // from here on: masked triangles
+constexpr std::uint32_t first_front = 0xA0000000U;  // } triangles that others lie on
+constexpr std::uint32_t first_back = 0xC0000000U;   // }
+constexpr std::uint32_t outside = none;             // stands for a body: all that is in no room
 
 // Whether the half-line from p along +x crosses the edge, +1 upward, -1 downward. The same edge the
 // other way round gives the opposite number to the last bit.
@@ -87,6 +89,15 @@ int ClosedSurface::winding(const Vec3& point) const {
   return winding;
 }
 
+bool is_covered_by_faces(const scenes::CoincidentFaces& coincident, const Patches& patches,
+                         std::uint32_t patch) {
+  const Facet& facet = patches.facets[patches.facet[patch]];
+  if (facet.is_cluster()) return false;  // they leave such triangles out
+  const bool front = patches.is_back[patch] == 0;
+  return coincident.is_covered(facet.triangle, front) ||
+         (facet.parallelogram && coincident.is_covered(facet.triangle + 1, front));
+}
+
 void ClosedBodies::find_holes(const scenes::Scene& scene) {
   masks_ = scenes::OpacityMasks(scene);
   if (masks_.empty()) return;
@@ -98,7 +109,8 @@ void ClosedBodies::find_holes(const scenes::Scene& scene) {
   }
 }
 
-ClosedBodies::ClosedBodies(const scenes::Scene& scene, const Vec3& centre) : centre_(centre) {
+ClosedBodies::ClosedBodies(const scenes::Scene& scene, const Vec3& centre)
+    : centre_(centre), coincident_(scene) {
   find_holes(scene);
   const ClosedParts parts = find_closed_parts(scene);
   std::vector<char> walls(parts.of.size(), 0);
@@ -186,11 +198,15 @@ std::vector<std::uint32_t> ClosedBodies::near(const Patches& patches, std::uint3
     if (bodies_[b].surface.may_wind(low - margin_m, high + margin_m)) found.push_back(b);
   }
   if (dark_outside_) found.push_back(outside);
-  if (masks_.empty()) return found;
   const Facet& facet = patches.facets[patches.facet[patch]];
-  for (std::uint32_t k = 0; k < (facet.parallelogram ? 2U : 1U); ++k) {
-    const std::uint32_t number = masks_.number(facet.triangle + k);
-    if (number != scenes::unmasked) found.push_back(first_hole + number);
+  if (facet.is_cluster() || (masks_.empty() && coincident_.empty())) return found;
+  const bool front = patches.is_back[patch] == 0;
+  for (std::uint32_t t = facet.triangle; t < facet.triangle + (facet.parallelogram ? 2U : 1U);
+       ++t) {
+    if (!masks_.empty() && masks_.number(t) != scenes::unmasked) {
+      found.push_back(first_hole + masks_.number(t));
+    }
+    if (coincident_.is_covered(t, front)) found.push_back((front ? first_front : first_back) + t);
   }
   return found;
 }
@@ -207,6 +223,8 @@ bool ClosedBodies::in_hole(const Vec3& point, std::uint32_t number) const {
 bool ClosedBodies::cover(const Vec3& point, std::span<const std::uint32_t> bodies) const {
   return std::any_of(bodies.begin(), bodies.end(), [&](std::uint32_t b) {
     if (b == outside) return !in_room(point);
+    if (b >= first_back) return coincident_.covers(b - first_back, false, point + centre_);
+    if (b >= first_front) return coincident_.covers(b - first_front, true, point + centre_);
     if (b >= first_hole) return in_hole(point, b - first_hole);
     const Body& body = bodies_[b];
     return body.surface.winding(point) > 0 &&

@@ -11,8 +11,8 @@
 // floor, or is sunk in it, has nothing to receive beyond the floor and nobody to send it to.
 // A hole that rests on another surface all around is stopped up by it (hole_capping.h).
 // Sheets, glass, other open meshes and meshes with some faces turned over cover nothing: where
-// their inside is cannot be told. The holes of an opacity mask are counted with what is covered:
-// nothing is there either.
+// their inside is cannot be told. Faces that lie on others (scenes/health/coincident.h) are counted
+// with what covers, and the holes of an opacity mask with what is covered: nothing is there either.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "radiosity/patches/patches.h"
+#include "scenes/coincident_faces.h"
 #include "scenes/mask.h"
 #include "scenes/scene.h"
 
@@ -68,13 +69,17 @@ class ClosedSurface {
   std::vector<std::uint32_t> first_, of_cell_;
 };
 
+// Whether other faces lie on the patch, or part of it.
+[[nodiscard]] bool is_covered_by_faces(const scenes::CoincidentFaces& coincident,
+                                       const Patches& patches, std::uint32_t patch);
+
 class ClosedBodies {
  public:
   // Points, here and below, are relative to `centre`. A body in which a lamp stands is none.
   ClosedBodies(const scenes::Scene& scene, const Vec3& centre);
 
-  // What may cover points within margin_m of a patch: bodies, the dark outside, and the holes of
-  // the patch's own opacity mask, where it is not.
+  // What may cover points within margin_m of a patch: bodies, the dark outside, what lies on the
+  // patch's own triangles, and the holes of their opacity mask, where they are not.
   [[nodiscard]] std::vector<std::uint32_t> near(const Patches& patches, std::uint32_t patch,
                                                 double margin_m) const;
   [[nodiscard]] bool cover(const Vec3& point, std::span<const std::uint32_t> bodies) const;
@@ -102,6 +107,7 @@ class ClosedBodies {
     Vec3 a, b, c;
   };
   std::vector<Corners> masked_;  // per masked triangle
+  scenes::CoincidentFaces coincident_;
 };
 
 }  // namespace earthshine::radiosity

@@ -168,15 +168,18 @@ void close_row(FormFactors& factors, std::size_t i, const Open& open, double cre
     factors.sky_illuminance[i] = open.radiance * (base::pi * factors.sky[i] / open.sky);
 }
 
-// Covered points lie behind black backs, or look past everything where no sky shines: only such
-// patches are asked about. None: nothing is covered.
+// Covered points lie behind black backs, look past everything where no sky shines, or have another
+// face on them: only such patches are asked about. None: nothing is covered.
 std::vector<PatchCover> find_cover(const scenes::Scene& scene, const scenes::RayQuery& query,
                                    const Patches& patches, const std::vector<Open>& open,
                                    std::uint64_t seed, OpenParts& parts) {
   const bool dark_sky = !scene.sun && !scene.earth;
   std::vector<std::uint32_t> maybe;
   for (std::uint32_t i = 0; i < open.size(); ++i) {
-    if (open[i].black > 0 || (open[i].sky > 0 && dark_sky)) maybe.push_back(i);
+    if (open[i].black > 0 || (open[i].sky > 0 && dark_sky) ||
+        is_covered_by_faces(query.coincident(), patches, i)) {
+      maybe.push_back(i);
+    }
   }
   if (maybe.empty()) return {};
   const auto bodies = std::make_shared<const ClosedBodies>(scene, query.centre());

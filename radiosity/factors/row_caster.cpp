@@ -56,9 +56,9 @@ void RowCaster::cast(std::uint32_t patch, HitCounter& counter, Band& band) const
   std::vector<std::uint32_t> near;
   const std::size_t first_part = band.sky_illuminance.size();
   band.sky_illuminance.resize(first_part + sky_parts_, Rgb(0.0));
-  const bool has_holes = scene_.materials[patches_.material(patch)].has_holes();
-  if (has_holes && leave_out_covered_) near = bodies_near(patch);
-  if (!trace(patch, sender, leave_out_covered_ && !has_holes, near, row, counter, band)) {
+  const bool looks_first = leave_out_covered_ && may_be_covered(patch);
+  if (looks_first) near = bodies_near(patch);
+  if (!trace(patch, sender, leave_out_covered_ && !looks_first, near, row, counter, band)) {
     counter.clear();
     band.backs_met.clear();
     row = {};
@@ -108,6 +108,12 @@ bool RowCaster::trace(std::uint32_t patch, PatchRays::Sender sender, bool look_o
     if (!near.empty()) return false;
   }
   return true;
+}
+
+// Whatever its rays meet: it has holes, or others lie on it.
+bool RowCaster::may_be_covered(std::uint32_t patch) const {
+  if (scene_.materials[patches_.material(patch)].has_holes()) return true;
+  return is_covered_by_faces(query_.coincident(), patches_, patch);
 }
 
 std::shared_ptr<const ClosedBodies> RowCaster::bodies() const {

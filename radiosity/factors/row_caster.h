@@ -54,6 +54,7 @@ class RowCaster {
  private:
   bool trace(std::uint32_t patch, PatchRays::Sender sender, bool look_out,
              std::vector<std::uint32_t>& near, Row& row, HitCounter& counter, Band& band) const;
+  [[nodiscard]] bool may_be_covered(std::uint32_t patch) const;
   [[nodiscard]] std::vector<std::uint32_t> bodies_near(std::uint32_t patch) const;
   void count_hits(const scenes::RayPacket& packet, const scenes::HitPacket& hits,
                   std::span<const std::uint32_t> near, Row& row, HitCounter& counter,

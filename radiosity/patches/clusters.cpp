@@ -57,8 +57,12 @@ class Regions {
       fits.push_back(!m.passes_light_on() && !m.lets_light_through() ? 1 : 0);
     }
     const double most_m2 = 2.0 * edge_m * edge_m;  // half of a square of that edge
+    const scenes::CoincidentFaces coincident(scene);
+    const auto is_covered = [&](std::uint32_t t) {
+      return coincident.is_covered(t, true) || coincident.is_covered(t, false);
+    };
     for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
-      if (fits[scene.triangles[t].material] == 0) continue;
+      if (fits[scene.triangles[t].material] == 0 || is_covered(t)) continue;
       const auto [a, b, c] = corners(t);
       const Vec3 ab = b - a, bc = c - b, ca = a - c;
       if (std::max({glm::dot(ab, ab), glm::dot(bc, bc), glm::dot(ca, ca)}) > most_m2) continue;

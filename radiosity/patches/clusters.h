@@ -21,9 +21,9 @@ struct Clusters {
 // Triangles of one object and material that hang together by edges at which the surface turns by
 // less than 22.5 degrees, and none of whose edges is longer than the diagonal of a square of
 // edge_m, are parted until the middles of each cluster's triangles are within edge_m and their
-// normals within 11 degrees along every axis. Mirrors, glass and what has an opacity mask are left
-// out; one triangle, or the two of a quadrilateral, are no cluster. None for edge_m = 0. Where
-// clusters are only counted their triangles need no order.
+// normals within 11 degrees along every axis. Mirrors, glass, what has an opacity mask and what
+// another face lies on are left out; one triangle, or the two of a quadrilateral, are no cluster.
+// None for edge_m = 0. Where clusters are only counted their triangles need no order.
 enum class Members : std::uint8_t { Ordered, Unordered };
 [[nodiscard]] Clusters find_clusters(const scenes::Scene& scene, double edge_m, Members members);
 

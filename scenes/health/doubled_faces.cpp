@@ -221,7 +221,7 @@ void mend_doubled_faces(Scene& scene, Sheets& sheets) {
       const bool sheet =
           same && !turned_alike && keeps.object == goes.object && !sheets.is_glass(keeps.material);
       if (!sheet && !(same && turned_alike && !touch)) {
-        ++count.left;
+        if (sheets.is_glass(keeps.material) || sheets.is_glass(goes.material)) ++count.left;
         continue;
       }
       ++(turned_alike ? count.twice : count.back_to_back);
@@ -248,10 +248,9 @@ void mend_doubled_faces(Scene& scene, Sheets& sheets) {
     }
     if (count.left > 0) {
       scene.warnings.push_back(fmt::format(
-          "{}: {} exactly on another that is not its like (another material, object or body, or "
-          "glass), and which is seen is undecided; remove one of each, move it by some 0.1 mm, or "
-          "say "
-          "orient = \"as-is\" where that is meant",
+          "{}: {} exactly on another, one of the two is glass, and which is met first is "
+          "undecided; remove one of each, move it by some 0.1 mm, or say orient = \"as-is\" where "
+          "that is meant",
           place, count.left == 1 ? "a face lies" : fmt::format("{} faces lie", count.left)));
     }
   }

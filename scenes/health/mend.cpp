@@ -9,14 +9,15 @@
 namespace earthshine::scenes {
 namespace {
 
-void orient_all(Scene& scene, bool bodies_alone) {
+Orienter orient_all(Scene& scene, bool bodies_alone) {
   Orienter orienter(scene);
   for (std::size_t o = 0; o < scene.objects.size(); ++o) orienter.orient(o, bodies_alone);
+  return orienter;
 }
 
 }  // namespace
 
-void mend_surfaces(Scene& scene) {
+FaceParts mend_surfaces(Scene& scene) {
   Sheets sheets(scene);
   for (const Object& object : scene.objects) {
     if (object.orient != Orient::TwoSided) continue;
@@ -30,7 +31,7 @@ void mend_surfaces(Scene& scene) {
     orient_all(scene, true);
     mend_doubled_faces(scene, sheets);
   }
-  orient_all(scene, false);
+  return orient_all(scene, false).parts();
 }
 
 std::vector<SurfaceHealth> surface_health(const Scene& scene) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "scenes/health/coincident.h"
 #include "scenes/scene.h"
 
 namespace earthshine::scenes {
@@ -14,8 +15,7 @@ namespace earthshine::scenes {
 //   Faces that stand twice, alike in material and winding: one is kept.
 //   Faces of one object that stand back to back, alike in material but for glass: one is kept, as a
 //     sheet whose material is two-sided.
-//   Other faces exactly on each other: named, and left. Where two bodies touch, each hides the
-//     other's face: that is no fault.
+//   Other faces exactly on each other are left (coincident.h); where one is glass they are named.
 //   Closed bodies that are turned inside out, or whose faces are wound both ways: turned outward.
 //     Not those that have a camera, a lamp or a surface in them, a window or a shining face (rooms;
 //     around a camera faces wound both ways are turned inward, else to the side of most of the
@@ -23,8 +23,8 @@ namespace earthshine::scenes {
 //   Open surfaces whose faces are wound both ways, and surfaces without two sides: named, and left,
 //     unless all of them is two-sided; Object::orient decides.
 // Throws base::Error (Input) for an object all of whose faces stand, turned alike, in objects
-// before it.
-void mend_surfaces(Scene& scene);
+// before it. Gives the parts of what there is then.
+FaceParts mend_surfaces(Scene& scene);
 
 // What is left, for each object of the scene; of an instance that of its original.
 struct SurfaceHealth {

@@ -48,6 +48,25 @@ Orienter::Parts& Orienter::parts_of(std::size_t object) {
   return parts;
 }
 
+FaceParts Orienter::parts() {
+  FaceParts found;
+  found.of.resize(scene_.triangles.size());
+  for (std::size_t o = 0; o < scene_.objects.size(); ++o) {
+    for (const SurfacePart& part : parts_of(o).all) {
+      const bool one_way = part.mixed_edges == 0 &&
+                           std::all_of(part.turned.begin(), part.turned.end(),
+                                       [&](char turned) { return turned == part.turned.front(); });
+      const bool outward = (part.volume_m3 > 0.0) == (part.turned.front() == 0);
+      const auto number = static_cast<std::uint32_t>(found.kind.size());
+      for (const std::uint32_t t : part.triangles) found.of[t] = number;
+      found.kind.push_back(!one_way || !part.is_body() ? FaceParts::Kind::Open
+                           : outward                   ? FaceParts::Kind::Body
+                                                       : FaceParts::Kind::Room);
+    }
+  }
+  return found;
+}
+
 void Orienter::orient(std::size_t number, bool bodies_alone) {
   const Object& object = scene_.objects[number];
   if (object.orient == Orient::AsIs || object.orient == Orient::TwoSided) return;

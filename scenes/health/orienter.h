@@ -7,6 +7,7 @@
 #include <map>
 #include <vector>
 
+#include "scenes/health/coincident.h"
 #include "scenes/health/topology.h"
 #include "scenes/scene.h"
 
@@ -19,6 +20,9 @@ class Orienter {
 
   // bodies_alone: closed parts only, and nothing is said of others.
   void orient(std::size_t object, bool bodies_alone);
+
+  // Of all objects, as they are turned now.
+  [[nodiscard]] FaceParts parts();
 
  private:
   struct Parts {

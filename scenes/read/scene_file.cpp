@@ -5,6 +5,7 @@
 
 #include "base/free_memory.h"
 #include "base/input/input_file.h"
+#include "scenes/health/coincident.h"
 #include "scenes/health/lift_lamps.h"
 #include "scenes/health/mend.h"
 #include "scenes/read/override.h"
@@ -155,11 +156,13 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   });
   constexpr std::size_t mending_bytes = 56;  // per triangle, measured on spheres
   base::check_room(scene.triangles.size() * mending_bytes, path.string());
-  mend_surfaces(scene);
+  FaceParts parts = mend_surfaces(scene);
   instances.finish(scene, unit_m, shelf.own_material_count());
   check_size(scene);
   settle_textures(scene);
   lift_lamps(scene);
+  add_instances(parts, scene);
+  find_coincident_faces(scene, parts);
   return scene;
 }
 

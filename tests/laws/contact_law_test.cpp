@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/scenes/scene_text.h"
 #include "tests/support/boxes.h"
 
 namespace earthshine {
@@ -85,6 +86,45 @@ TEST(Contact, AnOpenFloorUnderSunAndLampConservesEnergy) {
     EXPECT_TRUE(s.report.balance.balanced);
     for (const auto& line : s.report.groups) EXPECT_LE(line.imbalance, 1e-11) << line.name;
   }
+}
+
+Solution solved(const std::string& toml, double edge_m) {
+  const scenes::Scene scene = test::SceneFolder().read("format = 1\n" + toml);
+  return tests::Prepared(scene).solve(coarse(edge_m));
+}
+
+std::string quad(const char* name, const char* corners, const char* material) {
+  return std::string("[[object]]\nname = \"") + name +
+         "\"\nshape = \"quad\"\ncorners = " + corners + "\nmaterial = \"" + material + "\"\n";
+}
+constexpr const char* plate =
+    "[[material]]\nname = \"wall\"\ndiffuse = 0.9\n[[material]]\nname = \"card\"\ndiffuse = 0.3\n"
+    "two_sided = true\n[[object]]\nname = \"plate\"\nshape = \"quad\"\n"
+    "corners = [[-2, -2, 0], [2, -2, 0], [2, 2, 0], [-2, 2, 0]]\nmaterial = \"wall\"\n";
+
+// Papers that lie flat on a plate and on each other, along the edges of its patches, take from it
+// what falls on them. Of the Sun above, whose light falls within 0.27 degrees of straight down,
+// 16 m2 get E to 1 - cos 0.27 deg = 1.1e-5; counted twice it was 24.
+TEST(Contact, PapersOnAPlateTakeNoMoreLightThanThePlate) {
+  const std::string flat =
+      quad("paper", "[[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]", "wall") +
+      quad("card", "[[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]]", "card") +
+      "[sun]\ndirection = [0, 0, 1]\nilluminance = 100\n";
+  const Solution s = solved(plate + flat, 1.0);
+  ASSERT_EQ(s.report.groups.size(), 1U);
+  EXPECT_NEAR(s.report.groups[0].landed_lm.g, 1600.0, 1.1e-5 * 1600.0);
+  EXPECT_LE(s.report.groups[0].imbalance, 1e-11);
+}
+
+// A box stands on an open plate; a lamp under both shines at the plate's black back alone.
+TEST(Contact, NoLightComesToTheBottomOfABoxOnAPlate) {
+  const std::string body =
+      "[[object]]\nname = \"box\"\nshape = \"box\"\nmin = [-1, -1, 0]\nmax = [1, 1, 1]\n"
+      "material = \"wall\"\n[[light]]\nname = \"lamp\"\ntype = \"point\"\n"
+      "position = [0.1, 0, -1]\nflux = 100\n";
+  const Solution s = solved(plate + body, 0.5);
+  ASSERT_EQ(s.report.objects.size(), 2U);
+  for (const auto& object : s.report.objects) EXPECT_EQ(object.illuminance_lx.g, 0.0);
 }
 
 }  // namespace

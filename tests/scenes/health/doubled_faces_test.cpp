@@ -51,7 +51,8 @@ TEST(DoubledFaces, FacesOfOtherMaterialsOnEachOtherAreNamedAndLeft) {
   const std::string quad = std::string(corners) + face(cube[0]);
   const Scene scene = read(quad, scene_of(red), quad);
   EXPECT_EQ(scene.triangles.size(), 4U);
-  EXPECT_TRUE(holds(warnings(scene), {"\"body\"", "\"paint\"", "a face lies exactly on another"}))
+  EXPECT_TRUE(
+      holds(warnings(scene), {"\"body\"", "\"paint\"", "1 m2", "those of \"paint\" are seen"}))
       << warnings(scene);
 }
 
@@ -82,14 +83,15 @@ TEST(DoubledFaces, ABodyWithBothWindingsIsOfSheets) {
   EXPECT_TRUE(holds(warnings(scene), {"6 faces stood back to back"})) << warnings(scene);
 }
 
-// Two sides of a panel may be two objects; what is seen of it is undecided, and said.
+// Two sides of a panel may be two objects; each is seen from its front, and that is said.
 TEST(DoubledFaces, BackToBackObjectsStayTwo) {
   const std::string quad = std::string(corners) + face(cube[0]);
   const std::string back = std::string(corners) + face(cube[0], true);
-  const std::string two = "[[object]]\nname = \"back\"\nmesh = \"b.obj\"\nmaterial = \"white\"\n";
+  const std::string two = "[[object]]\nname = \"back\"\nmesh = \"b.obj\"\nmaterial = \"red\"\n";
   const Scene scene = read(quad, scene_of(two), back);
   EXPECT_EQ(scene.triangles.size(), 4U);
-  EXPECT_TRUE(holds(warnings(scene), {"\"body\"", "\"back\"", "undecided"})) << warnings(scene);
+  EXPECT_TRUE(holds(warnings(scene), {"\"body\"", "\"back\"", "1 m2", "back to back"}))
+      << warnings(scene);
   const std::string meant = two + "orient = \"as-is\"\n";
   EXPECT_EQ(warnings(read(quad, scene_of("orient = \"as-is\"\n" + meant), back)), "");
 }

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/health/coincident.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "scenes/health/box_join.h"
+#include "scenes/ray_query.h"
+#include "scenes/text/message_text.h"
+
+namespace earthshine::scenes {
+namespace {
+
+constexpr double parallel_sine = 1e-3;  // a first look; heights decide
+constexpr double tie_share = 0.1;       // of the offset: nearer ones have no order of their own
+
+struct Corners {
+  Vec3 a, b, c;
+  [[nodiscard]] Vec3 normal() const { return glm::cross(b - a, c - a); }
+};
+
+struct Overlap {
+  double area_m2, height_m;  // of the second over the first, along the first's normal
+};
+
+// A convex polygon in the plane of the first triangle, x and y along two of its axes, z the height
+// of the second triangle's plane there.
+using Polygon = std::vector<Vec3>;
+
+Polygon clipped(const Polygon& polygon, const Vec3& from, const Vec3& to) {
+  const auto inside = [&](const Vec3& p) {
+    return (to.x - from.x) * (p.y - from.y) - (to.y - from.y) * (p.x - from.x);
+  };
+  Polygon kept;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec3 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
+    const double at_p = inside(p), at_q = inside(q);
+    if (at_p >= 0.0) kept.push_back(p);
+    if ((at_p >= 0.0) != (at_q >= 0.0)) kept.push_back(p + at_p / (at_p - at_q) * (q - p));
+  }
+  return kept;
+}
+
+std::optional<Overlap> overlap_of(const Corners& first, const Corners& second, double offset_m) {
+  const Vec3 n = first.normal(), m = second.normal();
+  const Vec3 across = glm::cross(n, m);
+  if (glm::dot(across, across) > parallel_sine * parallel_sine * glm::dot(n, n) * glm::dot(m, m)) {
+    return std::nullopt;
+  }
+  const base::Frame3 frame = base::frame_around(glm::normalize(n));
+  const auto local = [&](const Vec3& p) {
+    const Vec3 d = p - first.a;
+    return Vec3(glm::dot(d, frame.tangent), glm::dot(d, frame.bitangent),
+                glm::dot(d, frame.normal));
+  };
+  Polygon polygon{local(second.a), local(second.b), local(second.c)};
+  const std::array<Vec3, 3> edges{Vec3(0.0), local(first.b), local(first.c)};
+  for (std::size_t k = 0; k < 3 && !polygon.empty(); ++k) {
+    polygon = clipped(polygon, edges[k], edges[(k + 1) % 3]);
+  }
+  double twice_area = 0.0, perimeter = 0.0, height = 0.0;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec3 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
+    if (std::abs(p.z) > offset_m) return std::nullopt;
+    twice_area += p.x * q.y - p.y * q.x;
+    perimeter += std::hypot(q.x - p.x, q.y - p.y);
+    height += p.z / static_cast<double>(polygon.size());
+  }
+  const double area = 0.5 * std::abs(twice_area);
+  if (area <= offset_m * perimeter) return std::nullopt;
+  return Overlap{area, height};
+}
+
+class Coincidence {
+ public:
+  Coincidence(Scene& scene, const FaceParts& parts)
+      : scene_(scene), parts_(parts), offset_m_(surface_offset_m(scene)) {}
+
+  void find() {
+    std::vector<LabelledBox> boxes;
+    boxes.reserve(scene_.triangles.size());
+    for (std::uint32_t t = 0; t < scene_.triangles.size(); ++t) {
+      const Material& material = scene_.materials[scene_.triangles[t].material];
+      if (material.lets_light_through()) continue;
+      const auto [low, high] = box_of(t);
+      boxes.push_back({low, high, parts_.of[t], t});
+    }
+    join_boxes(std::move(boxes),
+               [&](std::uint32_t a, std::uint32_t b) { look_at(std::min(a, b), std::max(a, b)); });
+    std::sort(scene_.coincident.begin(), scene_.coincident.end(),
+              [](const FacePair& p, const FacePair& q) {
+                return std::tie(p.a, p.b) < std::tie(q.a, q.b);
+              });
+    say();
+  }
+
+ private:
+  // The higher one lies on the other.
+  struct Rank {
+    bool shines, open;
+    std::uint32_t triangle;
+    auto operator<=>(const Rank&) const = default;
+  };
+  // What was a guess, m2.
+  struct Decided {
+    double over_m2 = 0.0, sides_m2 = 0.0;  // one over the other, back to back
+  };
+
+  [[nodiscard]] Corners corners(std::uint32_t t) const {
+    const auto& v = scene_.triangles[t].vertex;
+    return {scene_.vertices[v[0]], scene_.vertices[v[1]], scene_.vertices[v[2]]};
+  }
+  // A little larger than it is: neither a gap of the offset nor rounding parts two that touch.
+  [[nodiscard]] std::pair<glm::vec3, glm::vec3> box_of(std::uint32_t t) const {
+    const Corners p = corners(t);
+    const Vec3 low = glm::min(p.a, glm::min(p.b, p.c)) - offset_m_,
+               high = glm::max(p.a, glm::max(p.b, p.c)) + offset_m_;
+    return {glm::vec3(low), glm::vec3(high)};
+  }
+  [[nodiscard]] const Material& material(std::uint32_t t) const {
+    return scene_.materials[scene_.triangles[t].material];
+  }
+  [[nodiscard]] std::uint32_t object(std::uint32_t t) const { return scene_.triangles[t].object; }
+  [[nodiscard]] FaceParts::Kind kind(std::uint32_t t) const { return parts_.kind[parts_.of[t]]; }
+  [[nodiscard]] Rank rank(std::uint32_t t) const {
+    return {material(t).emits(), material(t).two_sided || kind(t) == FaceParts::Kind::Open, t};
+  }
+
+  void look_at(std::uint32_t a, std::uint32_t b) {
+    const Corners first = corners(a), second = corners(b);
+    const std::optional<Overlap> overlap = overlap_of(first, second, offset_m_);
+    if (!overlap) return;
+    const bool same_way = glm::dot(first.normal(), second.normal()) > 0.0;
+    const bool tie = std::abs(overlap->height_m) < tie_share * offset_m_;
+    const bool b_before = tie ? is_before(a, b, same_way) : overlap->height_m > 0.0;
+    const bool a_before = same_way != b_before;
+    scene_.coincident.push_back({a, b, b_before, a_before});
+    const bool sheet = material(a).two_sided || material(b).two_sided;
+    if (!tie || (a_before && b_before && !sheet) ||
+        scene_.triangles[a].material == scene_.triangles[b].material) {
+      return;
+    }
+    const Rank of_a = rank(a), of_b = rank(b);
+    if (of_a.shines != of_b.shines || !of_a.open || !of_b.open) return;
+    const bool b_over = of_b > of_a;
+    Decided& decided =
+        decided_[b_over ? std::pair(object(a), object(b)) : std::pair(object(b), object(a))];
+    (same_way || sheet ? decided.over_m2 : decided.sides_m2) += overlap->area_m2;
+  }
+
+  // Whether b is before a's front, where heights do not tell.
+  [[nodiscard]] bool is_before(std::uint32_t a, std::uint32_t b, bool same_way) {
+    const bool sheet_a = material(a).two_sided, sheet_b = material(b).two_sided;
+    if (!same_way && !sheet_a && !sheet_b) return look_at_each_other(a, b);
+    // The higher one lies on the front of the other; or, if that has no black back, with its own
+    // back on it.
+    if (rank(b) > rank(a)) return !sheet_a || sheet_b || same_way;
+    const bool a_before_b = !sheet_b || sheet_a || same_way;
+    return same_way ? !a_before_b : a_before_b;
+  }
+
+  [[nodiscard]] bool look_at_each_other(std::uint32_t a, std::uint32_t b) {
+    using Kind = FaceParts::Kind;
+    if (kind(b) == Kind::Body) std::swap(a, b);
+    if (kind(a) != Kind::Body) return false;
+    if (kind(b) != Kind::Room) return true;
+    // The walls of a house are a body and a room in it; a box that stands in a room looks at it.
+    const auto &house = part_box(parts_.of[a]), &room = part_box(parts_.of[b]);
+    return glm::any(glm::lessThan(room.first, house.first)) ||
+           glm::any(glm::greaterThan(room.second, house.second));
+  }
+
+  const std::pair<glm::vec3, glm::vec3>& part_box(std::uint32_t part) {
+    if (part_boxes_.empty()) {
+      const glm::vec3 far(std::numeric_limits<float>::infinity());
+      part_boxes_.assign(parts_.kind.size(), {far, -far});
+      for (std::uint32_t t = 0; t < scene_.triangles.size(); ++t) {
+        const auto [low, high] = box_of(t);
+        auto& box = part_boxes_[parts_.of[t]];
+        box = {glm::min(box.first, low), glm::max(box.second, high)};
+      }
+    }
+    return part_boxes_[part];
+  }
+
+  void say() {
+    for (const auto& [objects, decided] : decided_) {
+      if (scene_.objects[objects.first].orient == Orient::AsIs ||
+          scene_.objects[objects.second].orient == Orient::AsIs) {
+        continue;
+      }
+      const std::string under = in_quotes(scene_.objects[objects.first].name),
+                        over = in_quotes(scene_.objects[objects.second].name);
+      if (decided.over_m2 > 0.0) {
+        scene_.warnings.push_back(fmt::format(
+            "objects {} and {}: {:.3g} m2 of their faces lie in one plane on each other; those of "
+            "{} are seen. Where that is wrong, move one by some 0.1 mm",
+            under, over, decided.over_m2, over));
+      }
+      if (decided.sides_m2 > 0.0) {
+        scene_.warnings.push_back(
+            fmt::format("objects {} and {}: {:.3g} m2 of their faces lie back to back; each is "
+                        "seen from its front",
+                        under, over, decided.sides_m2));
+      }
+    }
+  }
+
+  Scene& scene_;
+  const FaceParts& parts_;
+  double offset_m_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Decided> decided_;  // objects: under, over
+  std::vector<std::pair<glm::vec3, glm::vec3>> part_boxes_;
+};
+
+}  // namespace
+
+void add_instances(FaceParts& parts, const Scene& scene) {
+  for (const Object& object : scene.objects) {
+    if (!object.instance) continue;
+    const Object& original = scene.objects[object.instance->object];
+    const std::uint32_t from = parts.of[original.first_triangle];
+    const auto first = static_cast<std::uint32_t>(parts.kind.size());
+    for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+      const std::uint32_t part = parts.of[original.first_triangle + t] - from;
+      if (first + part == parts.kind.size()) parts.kind.push_back(parts.kind[from + part]);
+      parts.of.push_back(first + part);
+    }
+  }
+}
+
+void find_coincident_faces(Scene& scene, const FaceParts& parts) {
+  if (scene.triangles.empty()) return;
+  Coincidence(scene, parts).find();
+}
+
+}  // namespace earthshine::scenes

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// Faces in one plane: which are found, and which one is met by rays.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "base/numbers/random.h"
+#include "scenes/health/box_join.h"
+#include "scenes/ray_query.h"
+#include "tests/scenes/cube_scenes.h"
+
+namespace earthshine::scenes {
+namespace {
+
+using test::holds;
+using test::warnings;
+
+constexpr const char* head =
+    "format = 1\n[[material]]\nname = \"white\"\ndiffuse = 0.5\n[[material]]\nname = \"paper\"\n"
+    "diffuse = 0.5\ntwo_sided = true\n[[material]]\nname = \"grey\"\ndiffuse = "
+    "0.3\n[[material]]\nname = \"lamp\"\nemit = 10\n";
+
+// A square about (x, 0) with the edge 2 h in the plane z, that looks up or down.
+std::string square(const char* name, double x, double h, double z, bool up,
+                   const char* material = "white") {
+  const double y = up ? h : -h;
+  return fmt::format(
+      "[[object]]\nname = \"{}\"\nshape = \"quad\"\ncorners = [[{}, {}, {}], [{}, {}, {}], [{}, "
+      "{}, {}], [{}, {}, {}]]\nmaterial = \"{}\"\n",
+      name, x - h, -y, z, x + h, -y, z, x + h, y, z, x - h, y, z, material);
+}
+
+std::string box(const char* name, const Vec3& low, const Vec3& high) {
+  return fmt::format(
+      "[[object]]\nname = \"{}\"\nshape = \"box\"\nmin = [{}, {}, {}]\nmax = [{}, {}, {}]\n"
+      "material = \"white\"\n",
+      name, low.x, low.y, low.z, high.x, high.y, high.z);
+}
+
+Scene read(const std::string& objects) { return test::SceneFolder().read(head + objects); }
+
+// The name of what a ray meets that comes down, or up, through (x, y, 0); "back of ..." if it meets
+// a black back, "" if nothing.
+std::string met(const Scene& scene, double x, double y, bool down) {
+  const RayQuery query(scene);
+  const Hit hit = query.closest({x, y, down ? 5.0 : -5.0}, {0, 0, down ? -1.0 : 1.0});
+  if (hit.missed()) return "";
+  const Triangle& triangle = scene.triangles[hit.triangle];
+  const Vec3 at = hit_position(scene, hit);
+  EXPECT_NEAR(at.x, x, 1e-6);
+  EXPECT_NEAR(at.y, y, 1e-6);
+  const bool black = !hit.front && !scene.materials[triangle.material].two_sided;
+  return (black ? "back of " : "") + scene.objects[triangle.object].name;
+}
+
+TEST(CoincidentFaces, TheLaterOfTwoOpenOnesIsOver) {
+  const Scene scene =
+      read(square("plate", 0, 2, 0, true) + square("decal", 1, 0.5, 0, true, "paper"));
+  // The decal's two triangles on the plate's two: its diagonal runs beside the plate's.
+  EXPECT_EQ(scene.coincident.size(), 2U);
+  EXPECT_TRUE(holds(warnings(scene), {"\"plate\" and \"decal\": 1 m2", "those of \"decal\""}))
+      << warnings(scene);
+  base::Rng random(base::Key(1, base::Stream::Test, 0));
+  for (int k = 0; k < 200; ++k) {
+    const double x = 4.0 * random.next() - 2.0, y = 4.0 * random.next() - 2.0;
+    const bool on = std::abs(x - 1.0) < 0.5 && std::abs(y) < 0.5;
+    EXPECT_EQ(met(scene, x, y, true), on ? "decal" : "plate");
+    EXPECT_EQ(met(scene, x, y, false), "back of plate");
+  }
+}
+
+TEST(CoincidentFaces, WhatIsNearerBySomeOffsetIsOverWhateverItsPlace) {
+  // Of the extent of 5.7 m rays are lifted 23 um.
+  for (const double lift : {4e-6, 1e-5}) {
+    const Scene scene = read(square("decal", 1, 0.5, lift, true) + square("plate", 0, 2, 0, true));
+    EXPECT_EQ(scene.coincident.size(), 2U);
+    EXPECT_EQ(warnings(scene), "");
+    EXPECT_EQ(met(scene, 1.0, 0.1, true), "decal");
+  }
+  EXPECT_TRUE(read(square("decal", 1, 0.5, 1e-4, true) + square("plate", 0, 2, 0, true))
+                  .coincident.empty());
+}
+
+TEST(CoincidentFaces, WhatShinesIsOverWhatDoesNot) {
+  const Scene scene =
+      read(square("lamp", 1, 0.5, 0, true, "lamp") + square("plate", 0, 2, 0, true));
+  EXPECT_EQ(met(scene, 1.0, 0.1, true), "lamp");
+  EXPECT_EQ(warnings(scene), "");
+}
+
+TEST(CoincidentFaces, ASheetIsOverABody) {
+  for (const bool up : {true, false}) {
+    const Scene scene = read(square("sheet", 0, 0.4, 1, up, "paper") +
+                             box("box", Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 1)));
+    EXPECT_EQ(met(scene, 0.1, 0.2, true), "sheet");
+    EXPECT_EQ(met(scene, 0.45, 0.2, true), "box");
+    EXPECT_EQ(warnings(scene), "");
+  }
+}
+
+TEST(CoincidentFaces, OpenOnesBackToBackAreTheSidesOfASheet) {
+  const Scene scene =
+      read(square("front", 0, 1, 0, true) + square("rear", 0.5, 1, 0, false, "grey"));
+  EXPECT_EQ(met(scene, 0.2, 0.1, true), "front");
+  EXPECT_EQ(met(scene, 0.2, 0.1, false), "rear");
+  EXPECT_EQ(met(scene, -0.7, 0.1, false), "back of front");
+  EXPECT_TRUE(holds(warnings(scene), {"3 m2", "back to back"})) << warnings(scene);
+}
+
+// Whether the fronts of a box's faces are covered at its bottom, x = 0.2, and those of the other
+// object there.
+std::pair<bool, bool> covered(const Scene& scene) {
+  const CoincidentFaces faces(scene);
+  std::pair<bool, bool> found;
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    const bool is_box = scene.objects[scene.triangles[t].object].name == "box";
+    (is_box ? found.first : found.second) |= faces.covers(t, true, {0.2, 0.1, 0.0});
+  }
+  return found;
+}
+
+TEST(CoincidentFaces, ABodyAndWhatItStandsOnHideEachOther) {
+  const std::string body = box("box", Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 1));
+  const Scene on_plate = read(square("plate", 0, 2, 0, true) + body);
+  EXPECT_EQ(covered(on_plate), std::pair(true, true));
+  EXPECT_EQ(met(on_plate, 0.2, 0.1, false), "back of plate");
+  EXPECT_EQ(warnings(on_plate), "");
+  const std::string walls = "inward = true\n";
+  const Scene in_room = read(box("room", Vec3(-2, -2, 0), Vec3(2, 2, 3)) + walls + body);
+  EXPECT_EQ(covered(in_room), std::pair(true, true));
+  EXPECT_EQ(warnings(in_room), "");
+}
+
+TEST(CoincidentFaces, TheWallsOfAHouseAreSeenFromBothSides) {
+  const std::string body = box("box", Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 1));
+  const Scene house =
+      read(body + box("room", Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 1)) + "inward = true\n");
+  EXPECT_EQ(covered(house), std::pair(false, false));
+  EXPECT_EQ(met(house, 0.2, 0.1, true), "box");
+}
+
+// 300 random boxes of 40 labels: the pairs that a comparison of all with all finds, once each.
+TEST(BoxJoin, FindsEachPairThatMeetsOnce) {
+  base::Rng random(base::Key(3, base::Stream::Test, 0));
+  const auto number = [&](double most) { return static_cast<float>(most * random.next()); };
+  std::vector<LabelledBox> boxes;
+  for (std::uint32_t k = 0; k < 300; ++k) {
+    const glm::vec3 low(number(1.0), number(1.0), k % 3 == 0 ? 0.5F : number(1.0));
+    const float size = k % 50 == 0 ? 1.0F : 0.1F;
+    boxes.push_back(
+        {low, low + size * glm::vec3(number(1.0), number(1.0), number(1.0)), k % 40, k});
+  }
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> expected, found;
+  for (std::uint32_t a = 0; a < boxes.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
+      if (boxes[a].label != boxes[b].label &&
+          glm::all(glm::lessThanEqual(boxes[a].low, boxes[b].high)) &&
+          glm::all(glm::lessThanEqual(boxes[b].low, boxes[a].high))) {
+        expected.emplace_back(a, b);
+      }
+    }
+  }
+  join_boxes(boxes, [&](std::uint32_t a, std::uint32_t b) {
+    found.emplace_back(std::min(a, b), std::max(a, b));
+  });
+  std::sort(found.begin(), found.end());
+  EXPECT_GT(expected.size(), 200U);
+  EXPECT_EQ(found, expected);
+}
+
+}  // namespace
+}  // namespace earthshine::scenes
