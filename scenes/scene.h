@@ -93,6 +93,16 @@ struct Instance {
   std::uint32_t first_vertex = 0;
 };
 
+// How an object's faces hang together, by edges (scenes/health).
+struct SurfaceHealth {
+  std::size_t parts = 0;
+  std::size_t closed_parts = 0;  // of them without open and non-manifold edges
+  std::size_t inward_parts = 0;  // of these those that show their backs to the outside
+  std::size_t open_edges = 0;
+  std::size_t non_manifold_edges = 0;
+  std::size_t mixed_edges = 0;  // between faces that are wound against each other
+};
+
 struct Object {
   std::string name;
   bool target = false;  // visibility studies measure it
@@ -107,6 +117,7 @@ struct Object {
   std::uint32_t degenerate_count = 0;  // polygons without area, left out
   std::string source;                  // "meshes/bay.obj#Liner" or "sphere"
   std::string unused;                  // what its file holds and nothing reads: "24 vn, 96 vt"
+  SurfaceHealth surface;               // as it was mended
   std::optional<Instance> instance;
 };
 

@@ -10,7 +10,6 @@
 #include "app/options.h"
 #include "app/tools/inspect_text.h"
 #include "app/tools/orbit_facts.h"
-#include "scenes/health/mend.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/reflect/energy.h"
 #include "scenes/surface_texture.h"
@@ -26,7 +25,6 @@ struct InspectCall {
 
 Json objects_of(const scenes::Scene& scene) {
   Json objects = Json::array();
-  const std::vector<scenes::SurfaceHealth> health = scenes::surface_health(scene);
   std::vector<std::set<std::uint32_t>> on_others(scene.objects.size());  // triangles
   for (const scenes::FacePair& pair : scene.coincident) {
     for (const std::uint32_t t : {pair.a, pair.b}) {
@@ -50,12 +48,12 @@ Json objects_of(const scenes::Scene& scene) {
                        {"materials", materials},
                        {"target", object.target},
                        {"surface",
-                        {{"parts", health[o].parts},
-                         {"closed_parts", health[o].closed_parts},
-                         {"inward_parts", health[o].inward_parts},
-                         {"open_edges", health[o].open_edges},
-                         {"non_manifold_edges", health[o].non_manifold_edges},
-                         {"mixed_edges", health[o].mixed_edges},
+                        {{"parts", object.surface.parts},
+                         {"closed_parts", object.surface.closed_parts},
+                         {"inward_parts", object.surface.inward_parts},
+                         {"open_edges", object.surface.open_edges},
+                         {"non_manifold_edges", object.surface.non_manifold_edges},
+                         {"mixed_edges", object.surface.mixed_edges},
                          {"triangles_on_others", on_others[o].size()}}},
                        {"unused", object.unused}});
     if (object.instance) {

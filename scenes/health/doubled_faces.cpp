@@ -70,44 +70,6 @@ std::vector<Face> faces_of(const Scene& scene) {
   return faces;
 }
 
-// Which bodies faces belong to. Only asked about faces that lie on others, so found object by
-// object.
-class Bodies {
- public:
-  explicit Bodies(const Scene& scene) : scene_(scene), ids_(welded(scene.vertices)) {}
-
-  // Whether two triangles are of two bodies: where those touch, each hides the other's face.
-  [[nodiscard]] bool apart(std::uint32_t triangle, std::uint32_t other) {
-    const std::uint32_t one = body_of(triangle), two = body_of(other);
-    const bool same = scene_.triangles[triangle].object == scene_.triangles[other].object;
-    return one != none && two != none && !(same && one == two);
-  }
-
- private:
-  static constexpr std::uint32_t none = ~0U;
-  // The body's number in its object; none: the triangle is of no body.
-  [[nodiscard]] std::uint32_t body_of(std::uint32_t triangle) {
-    const std::uint32_t number = scene_.triangles[triangle].object;
-    const Object& object = scene_.objects[number];
-    const auto [entry, fresh] = bodies_.try_emplace(number);
-    if (fresh) {
-      entry->second.assign(object.triangle_count, none);
-      std::uint32_t body = 0;
-      for (const SurfacePart& part : surface_parts(scene_, object, ids_)) {
-        for (const std::uint32_t t : part.triangles) {
-          if (part.is_body()) entry->second[t - object.first_triangle] = body;
-        }
-        ++body;
-      }
-    }
-    return entry->second[triangle - object.first_triangle];
-  }
-
-  const Scene& scene_;
-  std::vector<std::uint32_t> ids_;
-  std::map<std::uint32_t, std::vector<std::uint32_t>> bodies_;  // by object, per triangle of it
-};
-
 // What was found between two objects (or within one), in faces.
 struct Found {
   std::size_t twice = 0, back_to_back = 0, left = 0;
@@ -196,12 +158,17 @@ bool has_doubled_faces(const Scene& scene) {
   return !doubled_groups(scene, faces_of(scene)).empty();
 }
 
-void mend_doubled_faces(Scene& scene, Sheets& sheets) {
+bool mend_doubled_faces(Scene& scene, Sheets& sheets, const FaceParts& parts) {
   const std::vector<Face> faces = faces_of(scene);
   std::map<std::pair<std::uint32_t, std::uint32_t>, Found> found;
   std::vector<std::size_t> doubled(scene.objects.size(), 0);
   std::vector<char> gone(scene.triangles.size(), 0);
-  Bodies bodies(scene);
+  // Of two bodies: where those touch, each hides the other's face.
+  const auto apart = [&](std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t one = parts.of[a], two = parts.of[b];
+    return one != two && parts.kind[one] != FaceParts::Kind::Open &&
+           parts.kind[two] != FaceParts::Kind::Open;
+  };
   for (const std::vector<std::uint32_t>& group : doubled_groups(scene, faces)) {
     // Each later face is held against the first one at its very place.
     for (std::size_t other = 1; other < group.size(); ++other) {
@@ -213,7 +180,7 @@ void mend_doubled_faces(Scene& scene, Sheets& sheets) {
       const Face& kept = faces[*at];
       const Triangle &keeps = scene.triangles[kept.first], &goes = scene.triangles[face.first];
       const bool turned_alike = glm::dot(kept.area, face.area) > 0.0;
-      const bool touch = bodies.apart(kept.first, face.first);
+      const bool touch = apart(kept.first, face.first);
       if (!turned_alike && touch) continue;
       Found& count = found[{keeps.object, goes.object}];
       const bool same = sheets.alike(keeps.material, goes.material);
@@ -232,7 +199,7 @@ void mend_doubled_faces(Scene& scene, Sheets& sheets) {
         scene.triangles[kept.first + t].material = both;
     }
   }
-  if (found.empty()) return;
+  if (found.empty()) return false;
   refuse_doubles(scene, doubled);
   for (const auto& [objects, count] : found) {
     const std::string place = where(scene, objects.first, objects.second);
@@ -254,7 +221,9 @@ void mend_doubled_faces(Scene& scene, Sheets& sheets) {
           place, count.left == 1 ? "a face lies" : fmt::format("{} faces lie", count.left)));
     }
   }
-  drop(scene, gone);
+  const bool any = std::find(gone.begin(), gone.end(), 1) != gone.end();
+  if (any) drop(scene, gone);
+  return any;
 }
 
 }  // namespace earthshine::scenes

@@ -2,9 +2,6 @@
 // Faults of meshes as they come: what can be mended without a guess is mended, and said.
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
 #include "scenes/health/coincident.h"
 #include "scenes/scene.h"
 
@@ -23,18 +20,7 @@ namespace earthshine::scenes {
 //   Open surfaces whose faces are wound both ways, and surfaces without two sides: named, and left,
 //     unless all of them is two-sided; Object::orient decides.
 // Throws base::Error (Input) for an object all of whose faces stand, turned alike, in objects
-// before it. Gives the parts of what there is then.
+// before it. Fills Object::surface and gives the parts of what there is then.
 FaceParts mend_surfaces(Scene& scene);
-
-// What is left, for each object of the scene; of an instance that of its original.
-struct SurfaceHealth {
-  std::size_t parts = 0;         // that hang together by edges
-  std::size_t closed_parts = 0;  // of them without open and non-manifold edges
-  std::size_t inward_parts = 0;  // of these those that show their backs to the outside
-  std::size_t open_edges = 0;
-  std::size_t non_manifold_edges = 0;
-  std::size_t mixed_edges = 0;  // between faces that are wound against each other
-};
-[[nodiscard]] std::vector<SurfaceHealth> surface_health(const Scene& scene);
 
 }  // namespace earthshine::scenes

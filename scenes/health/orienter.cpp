@@ -52,19 +52,28 @@ FaceParts Orienter::parts() {
   FaceParts found;
   found.of.resize(scene_.triangles.size());
   for (std::size_t o = 0; o < scene_.objects.size(); ++o) {
+    SurfaceHealth& health = scene_.objects[o].surface;
+    health = {};
     for (const SurfacePart& part : parts_of(o).all) {
-      const bool one_way = part.mixed_edges == 0 &&
-                           std::all_of(part.turned.begin(), part.turned.end(),
-                                       [&](char turned) { return turned == part.turned.front(); });
-      const bool outward = (part.volume_m3 > 0.0) == (part.turned.front() == 0);
+      ++health.parts;
+      health.open_edges += part.open_edges;
+      health.non_manifold_edges += part.crowded_edges;
+      health.mixed_edges += part.mixed_edges;
+      if (part.closed()) ++health.closed_parts;
+      const bool inward = part.is_body() && part.volume_m3 < 0.0;
+      if (inward) ++health.inward_parts;
       const auto number = static_cast<std::uint32_t>(found.kind.size());
       for (const std::uint32_t t : part.triangles) found.of[t] = number;
-      found.kind.push_back(!one_way || !part.is_body() ? FaceParts::Kind::Open
-                           : outward                   ? FaceParts::Kind::Body
-                                                       : FaceParts::Kind::Room);
+      found.kind.push_back(!part.is_body() || part.mixed_edges > 0 ? FaceParts::Kind::Open
+                           : inward                                ? FaceParts::Kind::Room
+                                                                   : FaceParts::Kind::Body);
     }
   }
   return found;
+}
+
+void Orienter::orient_all(bool bodies_alone) {
+  for (std::size_t o = 0; o < scene_.objects.size(); ++o) orient(o, bodies_alone);
 }
 
 void Orienter::orient(std::size_t number, bool bodies_alone) {

@@ -19,9 +19,9 @@ class Orienter {
   explicit Orienter(Scene& scene);
 
   // bodies_alone: closed parts only, and nothing is said of others.
-  void orient(std::size_t object, bool bodies_alone);
+  void orient_all(bool bodies_alone);
 
-  // Of all objects, as they are turned now.
+  // Of all objects, as they are turned now; each object's `surface` is filled by the way.
   [[nodiscard]] FaceParts parts();
 
  private:
@@ -36,6 +36,7 @@ class Orienter {
   };
   enum class Inside { Nothing, Things, Camera };
 
+  void orient(std::size_t object, bool bodies_alone);
   [[nodiscard]] Parts& parts_of(std::size_t object);
   void turn(SurfacePart& part, bool all, Counts& counts);
   void keep_parallelograms(const SurfacePart& part, bool all);

@@ -114,7 +114,7 @@ TEST(DoubledFaces, ASheetOfTwoColoursKeepsItsSides) {
     const Scene scene = read(sheet, scene_of(std::string("rotate = ") + turn + "\n"));
     EXPECT_EQ(scene.triangles.size(), 4U);
     EXPECT_EQ(warnings(scene), "") << turn;
-    EXPECT_EQ(surface_health(scene).front().inward_parts, 0U);
+    EXPECT_EQ(scene.objects.front().surface.inward_parts, 0U);
   }
 }
 

@@ -28,7 +28,7 @@ TEST(Mend, ASoundCubeIsLeftAlone) {
   EXPECT_EQ(warnings(scene), "");
   EXPECT_EQ(scene.triangles.size(), 12U);
   EXPECT_NEAR(volume(scene), 1.0, 1e-15);
-  const SurfaceHealth health = surface_health(scene).front();
+  const SurfaceHealth health = scene.objects.front().surface;
   EXPECT_EQ(health.parts, 1U);
   EXPECT_EQ(health.closed_parts, 1U);
   EXPECT_EQ(
@@ -54,7 +54,7 @@ TEST(Mend, FacesWoundAgainstTheirNeighboursAreTurned) {
     const Scene scene = read(cube_obj(turned));
     EXPECT_NEAR(volume(scene), 1.0, 1e-15);
     EXPECT_TRUE(holds(warnings(scene), {"wound against their neighbours"})) << warnings(scene);
-    EXPECT_EQ(surface_health(scene).front().mixed_edges, 0U);
+    EXPECT_EQ(scene.objects.front().surface.mixed_edges, 0U);
   }
 }
 
@@ -70,7 +70,7 @@ TEST(Mend, ARoomStaysARoom) {
   const Scene scene = read(cube_obj(all), scene_of(ball));
   EXPECT_LT(volume(scene), -0.99);
   EXPECT_EQ(warnings(scene), "");
-  EXPECT_EQ(surface_health(scene).front().inward_parts, 1U);
+  EXPECT_EQ(scene.objects.front().surface.inward_parts, 1U);
 }
 
 TEST(Mend, ACavityStaysACavity) {
@@ -105,9 +105,9 @@ TEST(Mend, OrientDecidesWhereTheFileDoesNot) {
   EXPECT_TRUE(
       holds(warnings(open), {"wound against each other", "orient = \"outward\"", "two-sided"}))
       << warnings(open);
-  EXPECT_GT(surface_health(open).front().mixed_edges, 0U);
+  EXPECT_GT(open.objects.front().surface.mixed_edges, 0U);
   const Scene told = read(cube_obj(one, 5), scene_of("orient = \"outward\"\n"));
-  EXPECT_EQ(surface_health(told).front().mixed_edges, 0U);
+  EXPECT_EQ(told.objects.front().surface.mixed_edges, 0U);
   // Five outward faces about the middle have 5 of the cube's 6 pyramids; the sixth is the
   // opening's, x = 1, whose a (b x c) / 6 about the corner at 0 is a third: 1 - 1/3.
   EXPECT_NEAR(volume(told), 1.0 - 1.0 / 3.0, 1e-15);

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "base/numbers/random.h"
-#include "scenes/health/mend.h"
 #include "scenes/ray_query.h"
 #include "tests/scenes/scene_text.h"
 
@@ -52,13 +51,12 @@ TEST(Instance, IsItsOriginalWrittenOutWithItsOwnPose) {
       EXPECT_LT(glm::length(made.vertices[a.vertex[k]] - written.vertices[b.vertex[k]]), 1e-14);
     }
   }
-  const std::vector<SurfaceHealth> health = surface_health(made);
   for (std::size_t o = 0; o < made.objects.size(); ++o) {
     EXPECT_EQ(made.objects[o].instance.has_value(), o > 0);
     EXPECT_EQ(made.objects[o].triangle_count, written.objects[o].triangle_count);
     EXPECT_EQ(made.objects[o].polygon_count, written.objects[o].polygon_count);
     EXPECT_NEAR(made.objects[o].area_m2 / written.objects[o].area_m2, 1.0, 1e-12);
-    EXPECT_EQ(health[o].closed_parts, 1U);
+    EXPECT_EQ(made.objects[o].surface.closed_parts, 1U);
   }
   EXPECT_EQ(made.warnings, written.warnings);
 }

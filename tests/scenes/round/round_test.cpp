@@ -46,7 +46,7 @@ Scene scene_of(const Mesh& mesh, const std::string& keys, bool with_normals = fa
 }
 
 void expect_closed(const Scene& scene) {
-  const SurfaceHealth health = surface_health(scene).at(0);
+  const SurfaceHealth health = scene.objects.front().surface;
   EXPECT_EQ(health.open_edges, 0U);
   EXPECT_EQ(health.non_manifold_edges, 0U);
   EXPECT_EQ(health.closed_parts, 1U);
