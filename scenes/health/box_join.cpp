@@ -2,8 +2,8 @@
 #include "scenes/health/box_join.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -11,55 +11,87 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr std::size_t few = 16;
-constexpr int most_halvings = 60;
+
+float longest_of(const glm::vec3& size) { return std::max({size.x, size.y, size.z}); }
 
 class Join {
  public:
   explicit Join(const std::function<void(std::uint32_t, std::uint32_t)>& take) : take_(take) {}
 
-  // Boxes that reach into low <= x < high.
-  void within(std::vector<LabelledBox> boxes, glm::vec3 low, glm::vec3 high, int halvings) const {
-    const bool alone = std::all_of(boxes.begin(), boxes.end(), [&](const LabelledBox& box) {
-      return box.label == boxes.front().label;
+  // Boxes that reach into low <= x < high, which is parted in the middle along its long sides.
+  // Those that fill all of it are held against the others here, and do not go further.
+  void within(std::vector<LabelledBox> boxes, const glm::vec3& low, const glm::vec3& high) const {
+    const auto rest = std::partition(boxes.begin(), boxes.end(), [&](const LabelledBox& box) {
+      return glm::all(glm::lessThanEqual(box.low, low)) &&
+             glm::all(glm::greaterThanEqual(box.high, high));
     });
-    if (alone) return;
-    const glm::vec3 size = high - low;
-    const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
-    const float middle = 0.5F * (low[axis] + high[axis]);
-    const bool halves =
-        boxes.size() > few && halvings < most_halvings && middle > low[axis] && middle < high[axis];
-    std::vector<LabelledBox> upper;
-    std::size_t lower = boxes.size();
-    if (halves) {
-      std::copy_if(boxes.begin(), boxes.end(), std::back_inserter(upper),
-                   [&](const LabelledBox& box) { return box.high[axis] >= middle; });
-      lower = static_cast<std::size_t>(
-          std::count_if(boxes.begin(), boxes.end(),
-                        [&](const LabelledBox& box) { return box.low[axis] < middle; }));
+    for (auto box = boxes.begin(); box != rest; ++box)
+      compare(*box, box + 1, boxes.end(), low, high);
+    boxes.erase(boxes.begin(), rest);
+    const glm::vec3 size = high - low, middle = 0.5F * (low + high);
+    const float longest = longest_of(size);
+    float sum = 0.0F;
+    for (const LabelledBox& box : boxes) sum += longest_of(box.high - box.low);
+    // Parts smaller than the boxes hold them again and again.
+    if (boxes.size() <= few || longest * static_cast<float>(boxes.size()) < 2.0F * sum) {
+      for (auto box = boxes.begin(); box != boxes.end(); ++box) {
+        compare(*box, box + 1, boxes.end(), low, high);
+      }
+      return;
     }
-    if (!halves || (upper.size() == boxes.size() && lower == boxes.size())) {
-      return compare(boxes, low, high);
+    // Of each box the octants that it reaches into, a bit each.
+    constexpr std::array<std::uint8_t, 3> lower{0x55, 0x33, 0x0F};
+    std::vector<std::uint8_t> reaches(boxes.size(), 0xFF);
+    struct Octant {
+      std::size_t count = 0;
+      std::uint32_t label = 0;
+      bool mixed = false;
+    };
+    std::array<Octant, 8> octants;
+    for (std::size_t k = 0; k < boxes.size(); ++k) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto i = static_cast<int>(axis);
+        const bool parts = size[i] > 0.5F * longest;
+        std::uint8_t sides = 0;
+        if (!parts || boxes[k].low[i] < middle[i]) sides |= lower[axis];
+        if (parts && boxes[k].high[i] >= middle[i])
+          sides |= static_cast<std::uint8_t>(~lower[axis]);
+        reaches[k] &= sides;
+      }
+      for (std::size_t o = 0; o < 8; ++o) {
+        if (((reaches[k] >> o) & 1U) == 0) continue;
+        Octant& octant = octants[o];
+        octant.mixed = octant.mixed || (octant.count > 0 && boxes[k].label != octant.label);
+        octant.label = boxes[k].label;
+        ++octant.count;
+      }
     }
-    std::erase_if(boxes, [&](const LabelledBox& box) { return box.low[axis] >= middle; });
-    glm::vec3 end = high, start = low;
-    end[axis] = start[axis] = middle;
-    within(std::move(boxes), low, end, halvings + 1);
-    within(std::move(upper), start, high, halvings + 1);
+    for (std::size_t o = 0; o < 8; ++o) {
+      if (!octants[o].mixed) continue;
+      std::vector<LabelledBox> inside;
+      inside.reserve(octants[o].count);
+      for (std::size_t k = 0; k < boxes.size(); ++k) {
+        if (((reaches[k] >> o) & 1U) != 0) inside.push_back(boxes[k]);
+      }
+      glm::vec3 from = low, to = high;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (size[axis] > 0.5F * longest) (((o >> axis) & 1U) != 0 ? from : to)[axis] = middle[axis];
+      }
+      within(std::move(inside), from, to);
+    }
   }
 
  private:
   // A pair is of the space where both begin: of no other.
-  void compare(const std::vector<LabelledBox>& boxes, const glm::vec3& low,
+  using Boxes = std::vector<LabelledBox>::const_iterator;
+  void compare(const LabelledBox& a, Boxes first, Boxes end, const glm::vec3& low,
                const glm::vec3& high) const {
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      for (std::size_t j = i + 1; j < boxes.size(); ++j) {
-        const LabelledBox &a = boxes[i], &b = boxes[j];
-        if (a.label == b.label) continue;
-        const glm::vec3 begin = glm::max(a.low, b.low);
-        if (glm::any(glm::greaterThan(begin, glm::min(a.high, b.high)))) continue;
-        if (glm::any(glm::lessThan(begin, low)) || glm::any(glm::greaterThanEqual(begin, high))) {
-          continue;
-        }
+    for (; first != end; ++first) {
+      const LabelledBox& b = *first;
+      if (a.label == b.label) continue;
+      const glm::vec3 begin = glm::max(a.low, b.low);
+      if (glm::all(glm::lessThanEqual(begin, glm::min(a.high, b.high))) &&
+          glm::all(glm::greaterThanEqual(begin, low)) && glm::all(glm::lessThan(begin, high))) {
         take_(a.item, b.item);
       }
     }
@@ -81,7 +113,7 @@ void join_boxes(std::vector<LabelledBox> boxes,
   for (int axis = 0; axis < 3; ++axis) {
     high[axis] = std::nextafter(high[axis], std::numeric_limits<float>::infinity());
   }
-  Join(take).within(std::move(boxes), low, high, 0);
+  Join(take).within(std::move(boxes), low, high);
 }
 
 }  // namespace earthshine::scenes

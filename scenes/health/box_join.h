@@ -14,7 +14,7 @@ struct LabelledBox {
   std::uint32_t label, item;
 };
 
-// Calls take(item, item) once for each two boxes of different labels that meet. Space is halved
+// Calls take(item, item) once for each two boxes of different labels that meet. Space is parted
 // until few boxes are left or all of them have one label: where a mesh is alone it costs nothing
 // more.
 void join_boxes(std::vector<LabelledBox> boxes,

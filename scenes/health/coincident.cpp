@@ -85,6 +85,7 @@ class Coincidence {
       : scene_(scene), parts_(parts), offset_m_(surface_offset_m(scene)) {}
 
   void find() {
+    if (parts_.kind.size() < 2) return;
     std::vector<LabelledBox> boxes;
     boxes.reserve(scene_.triangles.size());
     for (std::uint32_t t = 0; t < scene_.triangles.size(); ++t) {
