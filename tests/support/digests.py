@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Digests of what a program makes of every shipped scene, to show that a change of the code changed no result.
+"""Digests of what a program makes of every shipped scene, to show that a change of the code, or another number of threads,
+changed no result.
 
-usage: digests.py PROGRAM [OTHER]
+usage: digests.py [--scene NAME] [--threads N[,M ...]] PROGRAM [OTHER]
 
-Renders, solves, degrades and studies each scene small. Prints one line per result, "name digest"; with OTHER only
-those that differ, and exits with 1 if any does. Times, sizes of memory, paths and versions are left out.
+Renders, relights, solves, degrades and studies each scene small. Prints one line per result, "name digest"; with OTHER
+or several numbers of threads only those that differ, and exits with 1 if any does. Times, sizes of memory, paths and
+versions are left out.
 """
+import argparse
 import csv
 import hashlib
 import json
@@ -49,61 +52,88 @@ def of_file(path):
 
 
 def run(program, *arguments):
-    done = subprocess.run([program, *map(str, arguments), "--quiet", "--seed", "5"], cwd=TOP,
+    done = subprocess.run([*program, *map(str, arguments), "--quiet", "--seed", "5"], cwd=TOP,
                           capture_output=True, text=True, check=False)
     if done.returncode:
         sys.exit(f"{' '.join(map(str, arguments))}: exit {done.returncode}\n{done.stderr}")
     return done.stdout
 
 
-def results(program):
-    scenes = sorted((TOP / "scenes" / "library").rglob("*.toml"))
+def of_scene(program, scene, out):
+    name = f"{scene.parent.name}/{scene.stem}"
+    picture = out / "picture.exr"
+    report = lambda *call: digest(plain(json.loads(run(program, *call, "--json"))))  # noqa: E731
+    for how in ("radiosity", "distributed", "paths"):
+        more = ["--set", "quality.gather_rays=8"] if how != "radiosity" else ["--per-light"]
+        yield f"{name} render {how} report", report("render", scene, *SMALL, "--indirect", how, "-o", picture, "--png",
+                                                    out / "picture.png", *more)
+        for file in (picture, out / "picture.png"):
+            yield f"{name} render {how} {file.suffix}", of_file(file)
+        if how == "radiosity":
+            groups = json.loads(run(program, "relight", picture, "-o", out / "relit.exr", "--json"))["groups"]
+            run(program, "relight", picture, "-o", out / "relit.exr", "--set", groups[0]["name"] + "=0.5")
+            yield f"{name} relight", of_file(out / "relit.exr")
+    for monitor in ("cctv.exr", "cctv.png"):
+        run(program, "degrade", picture, "-o", out / monitor, "--preset", PRESET)
+        yield f"{name} degrade {monitor}", of_file(out / monitor)
+    yield f"{name} solve", report("solve", scene, "--error", "0.3", "-o", out / "kept.h5", "--glb", out / "kept.glb")
+    yield f"{name} solve glb", of_file(out / "kept.glb")
+    yield f"{name} form-factors", report("form-factors", scene, "--error", "0.05")
+    yield f"{name} plan", report("plan", scene, *SMALL)
+    yield f"{name} inspect", report("inspect", scene)
+
+
+def of_studies(program, out):
+    bay = TOP / "scenes" / "library" / "sts46" / "night-lamps.toml"
+    box = TOP / "scenes" / "library" / "closed-box" / "scene.toml"
+    for study in (["visibility", bay, *SMALL], ["orbit", bay, *SMALL, "--positions", "3"],
+                  ["compare", box, "--lights", "4", "--size", "16x12"]):
+        folder = out / study[0]
+        run(program, "study", *study, "-o", folder)
+        for file in sorted(folder.rglob("*")):
+            if file.suffix in (".csv", ".png") or file.name == "study.json":
+                yield f"study {study[0]} {file.relative_to(folder)}", of_file(file)
+        # Their names hold the build that made them.
+        for number, found in enumerate(sorted(of_file(file) for file in folder.rglob("points/*.exr"))):
+            yield f"study {study[0]} points {number}", found
+        page = folder / "report.html"
+        if page.exists():
+            made = page.read_bytes()
+            run(program, "report", folder)
+            yield f"study {study[0]} drawn anew", str(made == page.read_bytes())
+
+
+def results(program, only):
     with tempfile.TemporaryDirectory() as temporary:
         out = pathlib.Path(temporary)
-        for scene in scenes:
-            name = f"{scene.parent.name}/{scene.stem}"
-            picture = out / "picture.exr"
-            for how in ("radiosity", "distributed", "paths"):
-                more = ["--set", "quality.gather_rays=8"] if how != "radiosity" else ["--per-light"]
-                text = run(program, "render", scene, *SMALL, "--indirect", how, "-o", picture, "--png",
-                           out / "picture.png", "--json", *more)
-                yield f"{name} render {how} report", digest(plain(json.loads(text)))
-                for file in (picture, out / "picture.png"):
-                    yield f"{name} render {how} {file.suffix}", of_file(file)
-            for monitor in ("cctv.exr", "cctv.png"):
-                run(program, "degrade", picture, "-o", out / monitor, "--preset", PRESET)
-                yield f"{name} degrade {monitor}", of_file(out / monitor)
-            text = run(program, "solve", scene, "--error", "0.3", "--json")
-            yield f"{name} solve", digest(plain(json.loads(text)))
-            yield f"{name} plan", digest(plain(json.loads(run(program, "plan", scene, *SMALL, "--json"))))
-            text = run(program, "inspect", scene, "--json")
-            yield f"{name} inspect", digest(plain(json.loads(text)))
-        bay = TOP / "scenes" / "library" / "sts46" / "night-lamps.toml"
-        for study in (["visibility", bay, *SMALL], ["orbit", bay, *SMALL, "--positions", "3"]):
-            folder = out / study[0]
-            run(program, "study", *study, "-o", folder)
-            for file in sorted(folder.rglob("*")):
-                if file.suffix in (".csv", ".png") or file.name == "study.json":
-                    yield f"study {study[0]} {file.relative_to(folder)}", of_file(file)
-            # Their names hold the build that made them.
-            for number, found in enumerate(sorted(of_file(file) for file in folder.rglob("points/*.exr"))):
-                yield f"study {study[0]} points {number}", found
+        for scene in sorted((TOP / "scenes" / "library").rglob("*.toml")):
+            if only is None or only in str(scene):
+                yield from of_scene(program, scene, out)
+        if only is None or only == "studies":
+            yield from of_studies(program, out)
 
 
 def main():
-    if len(sys.argv) not in (2, 3):
-        sys.exit(__doc__)
-    first = dict(results(sys.argv[1]))
-    if len(sys.argv) == 2:
+    parser = argparse.ArgumentParser(usage=__doc__.split("\n\n")[1].removeprefix("usage: "))
+    parser.add_argument("--scene")
+    parser.add_argument("--threads", default="0")
+    parser.add_argument("programs", nargs="+")
+    call = parser.parse_args()
+    runs = [[program, "-j", threads] for threads in call.threads.split(",") for program in call.programs]
+    first = dict(results(runs[0], call.scene))
+    if len(runs) == 1:
         for name, value in first.items():
             print(name, value)
         return 0
-    second = dict(results(sys.argv[2]))
-    different = [name for name in sorted(first.keys() | second.keys()) if first.get(name) != second.get(name)]
-    for name in different:
-        print(f"{name}: {first.get(name)} {second.get(name)}")
-    print(f"{len(first)} results, {len(different)} differ", file=sys.stderr)
-    return 1 if different else 0
+    wrong = 0
+    for other in runs[1:]:
+        second = dict(results(other, call.scene))
+        different = [name for name in sorted(first.keys() | second.keys()) if first.get(name) != second.get(name)]
+        for name in different:
+            print(f"{name}: {first.get(name)} {second.get(name)}")
+        print(f"{' '.join(other)}: {len(first)} results, {len(different)} differ", file=sys.stderr)
+        wrong += len(different)
+    return 1 if wrong else 0
 
 
 if __name__ == "__main__":
