@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <numeric>
+#include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/numbers/random.h"
@@ -70,6 +73,39 @@ TEST(Shares, MoreRanksThanItemsLeaveSomeWithout) {
     const Shares::Range& range = all[static_cast<std::size_t>(shares.holder(item))];
     EXPECT_TRUE(range.begin <= item && item < range.end) << item;
   }
+}
+
+// The second of two; the first has said what is given.
+class Second : public Silent {
+ public:
+  explicit Second(std::string said) : Silent(1, 2), said_(std::move(said)) {}
+  void broadcast(std::string& bytes, int from) override {
+    if (from == 0) bytes = said_;
+  }
+
+ private:
+  std::string said_;
+};
+
+TEST(Shares, SumsThatAreRoundedAreTakenItemByItem) {
+  // The first rank's item is 1e16, whose neighbours in doubles are 2 apart: 1e16 + 1 + 1 = 1e16 in
+  // the order of the items, 1e16 + 2 if the second rank's were added up alone.
+  const auto total = [](bool exact) {
+    std::vector<double> first = {1e16};
+    Parcel parcel;
+    parcel.pass(first);
+    Second second(parcel.take_bytes());
+    const RanksInForce in_force(&second);
+    const Shares shares(std::vector<double>{2.0, 1.0, 1.0});
+    std::vector<double> sums = {0.0};
+    shares.add_up(sums, exact, [](std::vector<double>& all) {
+      all[0] += 1.0;
+      all[0] += 1.0;
+    });
+    return sums[0];
+  };
+  EXPECT_EQ(total(false), 1e16);
+  EXPECT_EQ(total(true), 1e16 + 2.0);
 }
 
 TEST(Shares, OfOneProcessAreUndivided) {
