@@ -84,6 +84,7 @@ class Parcel {
     values.resize(size);
     pass_bytes(values.data(), size * sizeof(Value));
   }
+  void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
   [[nodiscard]] std::string take_bytes() { return std::move(bytes_); }
   [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
 

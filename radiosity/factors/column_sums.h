@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,6 +63,7 @@ class ColumnSums {
     }
     if (!goes_on_ || band + 1 < last_) return;
     base::Parcel begun;
+    begun.reserve(count_ * sizeof(double));
     begun.pass_range(sums, count_);
     base::ranks()->send(begun.take_bytes(), f_.shares.holder(own_.end));
   }
@@ -81,32 +84,45 @@ class ColumnSums {
   // order as the ranks are.
   [[nodiscard]] std::vector<double> total_of_ranks() {
     base::Ranks& all = *base::ranks();
+    const auto ranks = static_cast<std::size_t>(all.count()),
+               rank = static_cast<std::size_t>(all.number());
     std::vector<std::size_t> start;
-    for (int r = 0; r <= all.count(); ++r) {
-      start.push_back(static_cast<std::size_t>(r) * count_ / static_cast<std::size_t>(all.count()));
-    }
-    std::vector<std::string> to;
-    for (std::size_t r = 0; r + 1 < start.size(); ++r) {
-      base::Parcel ended;
-      for (std::size_t band = first_; band + (goes_on_ ? 1 : 0) < last_; ++band) {
-        ended.pass_range(sums_of(band) + start[r], start[r + 1] - start[r]);
+    for (std::size_t r = 0; r <= ranks; ++r) start.push_back(r * count_ / ranks);
+    const std::size_t ended = last_ - first_ - (goes_on_ ? 1 : 0);
+    std::vector<std::string> to(ranks);
+    for (std::size_t r = 0; r < ranks; ++r) {
+      if (r == rank) continue;
+      const std::size_t columns = start[r + 1] - start[r];
+      base::Parcel sent;
+      sent.reserve(ended * columns * sizeof(double));
+      for (std::size_t band = first_; band < first_ + ended; ++band) {
+        sent.pass_range(sums_of(band) + start[r], columns);
       }
-      to.push_back(ended.take_bytes());
+      to[r] = sent.take_bytes();
     }
-    partial_ = {};
-    const auto rank = static_cast<std::size_t>(all.number());
-    const std::size_t mine = start[rank + 1] - start[rank];
-    std::vector<double> total(count_), band(mine);
-    for (std::string& bytes : base::swap(all, std::move(to))) {
-      base::Parcel ended(std::move(bytes));
-      while (!ended.at_end()) {
-        ended.pass_range(band.data(), mine);
-        for (std::size_t k = 0; k < mine; ++k) total[start[rank] + k] += band[k];
+    std::vector<std::string> got = base::swap(all, std::move(to));
+    std::vector<double> total(count_);
+    const std::span<double> mine(total.data() + start[rank], start[rank + 1] - start[rank]);
+    for (std::size_t r = 0; r < ranks; ++r) {
+      base::Parcel theirs(std::move(got[r]));
+      while (!theirs.at_end()) add_band(mine, theirs);
+      for (std::size_t band = first_; r == rank && band < first_ + ended; ++band) {
+        const double* const sums = sums_of(band) + start[rank];
+        for (std::size_t k = 0; k < mine.size(); ++k) mine[k] += sums[k];
       }
     }
     for (std::size_t j = start[rank]; j < start[rank + 1]; ++j) total[j] *= f_.column_scale[j];
     all.gather(total.data(), sizeof(double), start);
     return total;
+  }
+
+  static void add_band(std::span<double> total, base::Parcel& sums) {
+    std::array<double, 1024> some;  // stays in the cache
+    for (std::size_t k = 0; k < total.size(); k += some.size()) {
+      const std::size_t count = std::min(some.size(), total.size() - k);
+      sums.pass_range(some.data(), count);
+      for (std::size_t n = 0; n < count; ++n) total[k + n] += some[n];
+    }
   }
 
   const FormFactors& f_;
