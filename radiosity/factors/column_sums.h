@@ -73,7 +73,7 @@ class ColumnSums {
     base::parallel_chunks(count_, 4096, [&](std::size_t begin, std::size_t end) {
       for (std::size_t j = begin; j < end; ++j) {
         double sum = 0.0;
-        for (std::size_t band = 0; band < bands; ++band) sum += partial_[band * count_ + j];
+        for (std::size_t k = j; k < partial_.size(); k += count_) sum += partial_[k];
         total[j] = f_.column_scale[j] * sum;
       }
     });
