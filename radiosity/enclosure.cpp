@@ -20,12 +20,19 @@ std::vector<std::uint32_t> connected_parts(const FormFactors& f) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
+  const auto join = [&](std::uint32_t i, std::uint32_t j) {
+    const std::uint32_t a = root(i), b = root(j);
+    parent[std::max(a, b)] = std::min(a, b);
+  };
   for (std::uint32_t i = 0; i < f.count(); ++i) {
-    for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
-      const std::uint32_t a = root(i), b = root(f.column[e]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
+    for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) join(i, f.column[e]);
   }
+  f.shares.hear([&](base::Parcel& parcel) { parcel.pass(parent); },
+                [&](base::Parcel& parcel) {
+                  std::vector<std::uint32_t> theirs;
+                  parcel.pass(theirs);
+                  for (std::uint32_t i = 0; i < f.count(); ++i) join(i, theirs[i]);
+                });
   for (std::uint32_t i = 0; i < f.count(); ++i) parent[i] = root(i);
   return parent;
 }

@@ -52,12 +52,17 @@ bool any_sends(const scenes::Scene& scene, const Patches& patches,
 std::vector<double> back_shares(const scenes::Scene& scene, const Patches& patches,
                                 const FormFactors& factors) {
   std::vector<double> met = factors.back_hits;
-  for (std::size_t i = 0; i < factors.count(); ++i) {
-    if (!is_exposed(factors.black[i])) continue;
-    for (std::uint64_t e = factors.row_start[i]; e < factors.row_start[i + 1]; ++e) {
-      met[patches.object(factors.column[e])] += double(factors.hits[e]);
+  const bool whole_hits = std::all_of(factors.kept.begin(), factors.kept.end(),
+                                      [](double share) { return share == 1.0; });
+  factors.shares.add_up(met, whole_hits, [&](std::vector<double>& sums) {
+    const auto [begin, end] = factors.shares.own(factors.count());
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!is_exposed(factors.black[i])) continue;
+      for (std::uint64_t e = factors.row_start[i]; e < factors.row_start[i + 1]; ++e) {
+        sums[patches.object(factors.column[e])] += double(factors.hits[e]);
+      }
     }
-  }
+  });
   std::vector<double> share(scene.objects.size(), 0.0);
   for (std::size_t o = 0; o < share.size(); ++o) {
     // A few stray rays, as past a needle's edge, say nothing.
@@ -144,7 +149,7 @@ Solution solve_keeping(const scenes::Scene& scene, const scenes::LightGroups& gr
   const std::vector<double> open_m2 = open_areas(factors.open, patches.area_m2);
   report.form_factor_rays = factors.ray_count;
   report.rays_per_patch = factors.rays_per_patch;
-  report.nonzeros = factors.hits.size();
+  report.nonzeros = factors.shares.sum(factors.hits.size());
   const std::vector<double> object_backs = back_shares(scene, patches, factors);
   report.back_share = back_share(factors);
   watch.lap("form factors");

@@ -56,8 +56,10 @@ Json images_of(const scenes::Scene& scene, const RenderCall& call, const scenes:
 }
 
 // Of the solution alone, and of each camera's picture of its own size, the solution included.
-void add_memory(Json& report, const LoadedScene& loaded, const RenderCall& call,
-                const Common& common, const scenes::Asked& asked, const scenes::RayQuery& query) {
+// Returns the most of them where so many ranks divide the matrix.
+double add_memory(Json& report, const LoadedScene& loaded, const RenderCall& call,
+                  const Common& common, const scenes::Asked& asked, const scenes::RayQuery& query,
+                  int ranks) {
   const radiosity::SolveOptions solver = solve_options(loaded.scene, common);
   studies::MemoryCase sizes =
       studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
@@ -66,13 +68,20 @@ void add_memory(Json& report, const LoadedScene& loaded, const RenderCall& call,
     sizes.columns = 0;
   }
   studies::expect_rows(sizes, loaded.scene, query, solver);
+  const auto of_ranks = [ranks](studies::MemoryCase one) {
+    one.ranks = ranks;
+    return studies::memory_needed(one).total();
+  };
   report["memory"] = memory_json(studies::memory_needed(sizes));
+  double most = of_ranks(sizes);
   for (std::size_t k = 0; k < asked.cameras.size(); ++k) {
     studies::MemoryCase with_picture = sizes;
     studies::add_picture(with_picture, loaded.groups, loaded.effects,
                          picture_options(call, common, loaded, *asked.cameras[k]));
     report["images"][k]["memory"] = memory_json(studies::memory_needed(with_picture));
+    most = std::max(most, of_ranks(with_picture));
   }
+  return most;
 }
 
 // Of the solution or the largest picture.
@@ -84,8 +93,8 @@ double most_mib(const Json& report) {
   return most;
 }
 
-// What `ranks` processes of earthshine-mpi take, each of which holds all of the matrix.
-void add_ranks(Json& report, const studies::Bill& bill, int ranks) {
+// What `ranks` processes of earthshine-mpi take, each of them so many bytes.
+void add_ranks(Json& report, const studies::Bill& bill, int ranks, double bytes_each) {
   double pixels = 0.0;
   for (const Json& image : report["images"]) {
     pixels += image["resolution"][0].get<double>() * image["resolution"][1].get<double>();
@@ -94,18 +103,18 @@ void add_ranks(Json& report, const studies::Bill& bill, int ranks) {
       studies::ranks_cost(bill, report["right_hand_sides"].get<std::size_t>(), pixels);
   report["ranks"] = {{"count", ranks},
                      {"threads_each", base::available_threads()},
-                     {"memory_mib_each", most_mib(report)},
-                     {"memory_mib_all", most_mib(report) * ranks},
+                     {"memory_mib_each", bytes_each / mib},
+                     {"memory_mib_all", bytes_each / mib * ranks},
                      {"seconds", studies::seconds_on_ranks(cost, ranks, network_bytes_per_s)},
                      {"shared_seconds", cost.shared_s},
                      {"unshared_seconds", cost.alone_s},
-                     {"exchanged_bytes", ranks > 1 ? cost.bytes : 0.0},
+                     {"exchanged_bytes", studies::bytes_of_a_rank(cost, ranks)},
                      {"network_bytes_per_second", network_bytes_per_s}};
 }
 
 void add_seconds(Json& report, const LoadedScene& loaded, const RenderCall& call,
                  const Common& common, const scenes::Asked& asked, const scenes::RayQuery& query,
-                 int ranks) {
+                 int ranks, double bytes_each) {
   const Expectation expected = expect(loaded, call, common, asked, query);
   add_expectation(report["effects"], expected);
   const studies::Bill& bill = expected.pilot.bill;
@@ -121,7 +130,7 @@ void add_seconds(Json& report, const LoadedScene& loaded, const RenderCall& call
                         {"cpu_seconds", studies::total_seconds(bill) * base::available_threads()},
                         {"pilot_seconds", expected.pilot.seconds},
                         {"pilot_cpu_seconds", expected.pilot.cpu_seconds}};
-  if (ranks > 0) add_ranks(report, bill, ranks);
+  if (ranks > 0) add_ranks(report, bill, ranks, bytes_each);
 }
 
 Json report_of(const RenderCall& call, const Common& common, int ranks) {
@@ -152,8 +161,9 @@ Json report_of(const RenderCall& call, const Common& common, int ranks) {
   report["images"] = images_of(loaded.scene, call, asked,
                                solves ? static_cast<std::uint64_t>(knobs.gather_rays) : 0);
   const scenes::RayQuery query(loaded.scene);
-  add_memory(report, loaded, call, common, asked, query);
-  add_seconds(report, loaded, call, common, asked, query, ranks);
+  const double bytes_each =
+      add_memory(report, loaded, call, common, asked, query, std::max(1, ranks));
+  add_seconds(report, loaded, call, common, asked, query, ranks, bytes_each);
   return report;
 }
 
@@ -170,9 +180,7 @@ std::string too_much_text(const Json& report) {
 std::string ranks_text(const Json& ranks) {
   return fmt::format(
       "on {} rank(s), each with {} such core(s) of its own: at best {}, of them {} that no number "
-      "of "
-      "ranks shortens; {:.0f} MiB in each rank, which holds all of the matrix, {:.0f} MiB "
-      "together\n",
+      "of ranks shortens; {:.0f} MiB in each rank, {:.0f} MiB together\n",
       ranks["count"].get<int>(), ranks["threads_each"].get<int>(),
       duration(ranks["seconds"].get<double>()), duration(ranks["unshared_seconds"].get<double>()),
       ranks["memory_mib_each"].get<double>(), ranks["memory_mib_all"].get<double>());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <list>
 #include <mutex>
 #include <string>
 
@@ -31,6 +32,10 @@ class OpenMpi : public Ranks {
     MPI_Win_lock_all(MPI_MODE_NOCHECK, window_);
   }
   ~OpenMpi() override {
+    for (Sent& sent : sent_) {
+      MPI_Waitall(static_cast<int>(sent.requests.size()), sent.requests.data(),
+                  MPI_STATUSES_IGNORE);
+    }
     MPI_Win_unlock_all(window_);
     MPI_Win_free(&window_);
     MPI_Finalize();
@@ -43,10 +48,51 @@ class OpenMpi : public Ranks {
     std::uint64_t size = bytes.size();
     MPI_Bcast(&size, 1, MPI_UINT64_T, from, MPI_COMM_WORLD);
     bytes.resize(size);
-    for (std::uint64_t at = 0; at < size; at += most_at_once) {
-      const auto count = static_cast<int>(std::min<std::uint64_t>(most_at_once, size - at));
-      MPI_Bcast(&bytes[at], count, MPI_BYTE, from, MPI_COMM_WORLD);
+    in_pieces(bytes, [&](char* first, int count) {
+      MPI_Bcast(first, count, MPI_BYTE, from, MPI_COMM_WORLD);
+    });
+  }
+
+  void send(std::string bytes, int to) override {
+    const std::lock_guard alone(speaking_);
+    sent_.remove_if([](Sent& sent) {
+      int arrived = 0;
+      MPI_Testall(static_cast<int>(sent.requests.size()), sent.requests.data(), &arrived,
+                  MPI_STATUSES_IGNORE);
+      return arrived != 0;
+    });
+    Sent& sent = sent_.emplace_back();
+    sent.size = bytes.size();
+    sent.bytes = std::move(bytes);
+    MPI_Isend(&sent.size, 1, MPI_UINT64_T, to, 0, MPI_COMM_WORLD, &sent.requests.emplace_back());
+    in_pieces(sent.bytes, [&](char* first, int count) {
+      MPI_Isend(first, count, MPI_BYTE, to, 0, MPI_COMM_WORLD, &sent.requests.emplace_back());
+    });
+  }
+
+  [[nodiscard]] std::string receive(int from) override {
+    const std::lock_guard alone(speaking_);
+    std::uint64_t size = 0;
+    MPI_Recv(&size, 1, MPI_UINT64_T, from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    std::string bytes(size, '\0');
+    in_pieces(bytes, [&](char* first, int count) {
+      MPI_Recv(first, count, MPI_BYTE, from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    });
+    return bytes;
+  }
+
+  void gather(void* items, std::size_t bytes_each, const std::vector<std::size_t>& start) override {
+    MPI_Datatype item = MPI_DATATYPE_NULL;
+    MPI_Type_contiguous(static_cast<int>(bytes_each), MPI_BYTE, &item);
+    MPI_Type_commit(&item);
+    std::vector<int> counts, begins;
+    for (std::size_t rank = 0; rank + 1 < start.size(); ++rank) {
+      counts.push_back(static_cast<int>(start[rank + 1] - start[rank]));
+      begins.push_back(static_cast<int>(start[rank]));
     }
+    MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, items, counts.data(), begins.data(), item,
+                   MPI_COMM_WORLD);
+    MPI_Type_free(&item);
   }
 
   [[nodiscard]] std::size_t take() override { return add_to_counter(1, MPI_SUM); }
@@ -64,6 +110,20 @@ class OpenMpi : public Ranks {
   }
 
  private:
+  // On its way, and needed until it has arrived.
+  struct Sent {
+    std::uint64_t size = 0;
+    std::string bytes;
+    std::vector<MPI_Request> requests;
+  };
+
+  template <class Pass>
+  static void in_pieces(std::string& bytes, Pass pass) {
+    for (std::uint64_t at = 0; at < bytes.size(); at += most_at_once) {
+      pass(&bytes[at], static_cast<int>(std::min<std::uint64_t>(most_at_once, bytes.size() - at)));
+    }
+  }
+
   // What it held before. One thread at a time speaks.
   std::uint64_t add_to_counter(std::uint64_t number, MPI_Op how) {
     const std::lock_guard alone(speaking_);
@@ -77,6 +137,7 @@ class OpenMpi : public Ranks {
   MPI_Win window_ = MPI_WIN_NULL;  // two counters, at the first rank
   MPI_Aint counter_ = 0;           // which of them counts now
   std::mutex speaking_;
+  std::list<Sent> sent_;
 };
 
 }  // namespace

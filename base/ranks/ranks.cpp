@@ -21,24 +21,21 @@ void work_alone(std::size_t count, const Work& work) {
   });
 }
 
-// Each rank in turn tells all others the items that it has worked out: none of them needs room for
-// more than one rank's beside what it will keep.
+// Every rank hears what the others have worked out.
 void exchange(Ranks& all, std::vector<std::size_t>& mine, const Transfer& transfer) {
-  for (int rank = 0; rank < all.count(); ++rank) {
-    const bool speaks = rank == all.number();
+  const auto say = [&] {
     Parcel sent;
-    if (speaks) {
-      sent.pass(mine);
-      for (const std::size_t k : mine) transfer(k, sent);
-    }
-    std::string bytes = sent.take_bytes();
-    all.broadcast(bytes, rank);
-    if (speaks) continue;
+    sent.pass(mine);
+    for (const std::size_t k : mine) transfer(k, sent);
+    return sent.take_bytes();
+  };
+  hear_all(all, say, [&](int rank, std::string bytes) {
+    if (rank == all.number()) return;
     Parcel got(std::move(bytes));
     std::vector<std::size_t> theirs;
     got.pass(theirs);
     for (const std::size_t k : theirs) transfer(k, got);
-  }
+  });
 }
 
 }  // namespace
@@ -49,11 +46,36 @@ RanksInForce::RanksInForce(Ranks* ranks) : before_(std::exchange(in_force, ranks
 
 RanksInForce::~RanksInForce() { in_force = before_; }
 
-void meet(Ranks& ranks) {
+void hear_all(Ranks& ranks, const std::function<std::string()>& say,
+              const std::function<void(int, std::string)>& hear) {
   for (int rank = 0; rank < ranks.count(); ++rank) {
-    std::string nothing;
-    ranks.broadcast(nothing, rank);
+    std::string bytes;
+    if (rank == ranks.number()) bytes = say();
+    ranks.broadcast(bytes, rank);
+    hear(rank, std::move(bytes));
   }
+}
+
+std::vector<std::string> swap(Ranks& ranks, std::vector<std::string> to) {
+  std::vector<std::string> got(to.size());
+  for (int step = 0; step < ranks.count(); ++step) {  // not all to the same rank at once
+    const int other = (ranks.number() + step) % ranks.count();
+    std::string& bytes = to[static_cast<std::size_t>(other)];
+    if (step == 0) {
+      got[static_cast<std::size_t>(other)] = std::move(bytes);
+    } else {
+      ranks.send(std::move(bytes), other);
+    }
+  }
+  for (int rank = 0; rank < ranks.count(); ++rank) {
+    if (rank != ranks.number()) got[static_cast<std::size_t>(rank)] = ranks.receive(rank);
+  }
+  return got;
+}
+
+void meet(Ranks& ranks) {
+  hear_all(
+      ranks, [] { return std::string(); }, [](int, const std::string&) {});
 }
 
 void share_loop(std::size_t count, const Work& work, const Transfer& transfer) {
@@ -93,10 +115,10 @@ void share_chunks(std::size_t count, std::size_t chunk,
 
 bool holds_on_all_ranks(bool here) {
   bool everywhere = here;
-  for (int rank = 0; ranks() != nullptr && rank < ranks()->count(); ++rank) {
-    std::string there = here ? "1" : "0";
-    ranks()->broadcast(there, rank);
-    everywhere = everywhere && there == "1";
+  if (ranks() != nullptr) {
+    hear_all(
+        *ranks(), [&] { return std::string(here ? "1" : "0"); },
+        [&](int, const std::string& there) { everywhere = everywhere && there == "1"; });
   }
   return everywhere;
 }

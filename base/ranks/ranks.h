@@ -26,6 +26,13 @@ class Ranks {
   [[nodiscard]] virtual int count() const = 0;
   // The bytes of rank `from`, on every rank.
   virtual void broadcast(std::string& bytes, int from) = 0;
+  // To one rank, without waiting for it; any thread may send. What one rank sends to another comes
+  // there in that order.
+  virtual void send(std::string bytes, int to) = 0;
+  [[nodiscard]] virtual std::string receive(int from) = 0;
+  // Of items of `bytes_each`, rank r has [start[r], start[r + 1]): afterwards every rank has all.
+  virtual void gather(void* items, std::size_t bytes_each,
+                      const std::vector<std::size_t>& start) = 0;
   // Of a loop's items, by number from 0, one that no rank has taken yet; from any thread. After the
   // last of them numbers go on.
   [[nodiscard]] virtual std::size_t take() = 0;
@@ -77,7 +84,9 @@ class Parcel {
     values.resize(size);
     pass_bytes(values.data(), size * sizeof(Value));
   }
+  void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
   [[nodiscard]] std::string take_bytes() { return std::move(bytes_); }
+  [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
 
  private:
   void pass_bytes(void* value, std::size_t size) {
@@ -95,6 +104,14 @@ class Parcel {
   std::size_t at_ = 0;
   bool fills_ = true;
 };
+
+// Each rank in turn says something, and all of them, itself too, hear it: none needs room for more
+// than one rank's.
+void hear_all(Ranks& ranks, const std::function<std::string()>& say,
+              const std::function<void(int rank, std::string bytes)>& hear);
+
+// to[r] goes to rank r; returned is what each rank gave for this one.
+[[nodiscard]] std::vector<std::string> swap(Ranks& ranks, std::vector<std::string> to);
 
 // Returns once every rank has called it.
 void meet(Ranks& ranks);

@@ -105,8 +105,9 @@ class Scaling {
   }
 
   void close_rows() {
-    base::parallel_chunks(f_.count(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
+    const base::Shares::Range own = f_.shares.own(f_.count());
+    base::parallel_chunks(own.end - own.begin, 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = own.begin + begin; i < own.begin + end; ++i) {
         double landed = 0.0;
         for (std::uint64_t e = f_.row_start[i]; e < f_.row_start[i + 1]; ++e) {
           const std::uint32_t j = f_.column[e];
@@ -114,9 +115,10 @@ class Scaling {
         }
         const double sum = landed * raw_row_scale_[i] + seen_[i];
         row_[i] = sum > 0.0 ? 1.0 / sum : 1.0;
-        f_.row_scale[i] = raw_row_scale_[i] * row_[i];
       }
     });
+    f_.shares.tell(row_.data());
+    for (std::size_t i = 0; i < row_.size(); ++i) f_.row_scale[i] = raw_row_scale_[i] * row_[i];
     update_sums();
   }
 

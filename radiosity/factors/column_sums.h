@@ -2,40 +2,141 @@
 // Sums down the columns of the form factors.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/ranks/ranks.h"
 #include "radiosity/factors/form_factors.h"
 
 namespace earthshine::radiosity {
 
 // Per column j: sum_i weight(i) F_ij. Rows are split in a fixed number of bands with sums of their
-// own, added in order: the same bits on any number of threads.
+// own, added in order: the same bits on any number of threads and ranks. Where a band's rows are
+// with several ranks, each goes on from the sums of the one before.
 template <class Weight>
-[[nodiscard]] std::vector<double> weighted_column_sums(const FormFactors& f, Weight weight) {
-  constexpr std::size_t bands = 16;
-  const std::size_t count = f.count();
-  std::vector<double> partial(bands * count, 0.0);
-  base::parallel_chunks(bands, 1, [&](std::size_t band, std::size_t) {
-    double* sums = &partial[band * count];
-    for (std::size_t i = band * count / bands; i < (band + 1) * count / bands; ++i) {
-      const double w = weight(i) * f.row_scale[i];
+class ColumnSums {
+ public:
+  ColumnSums(const FormFactors& f, Weight weight)
+      : f_(f), weight_(weight), count_(f.count()), own_(f.shares.own(count_)) {
+    while (first_ < last_ && begin(first_ + 1) <= own_.begin) ++first_;
+    while (first_ < last_ && (begin(last_ - 1) >= own_.end || own_.begin == own_.end)) --last_;
+    if (first_ == last_) return;
+    is_begun_ = begin(first_) < own_.begin;
+    goes_on_ = begin(last_) > own_.end;
+  }
+
+  [[nodiscard]] std::vector<double> find() {
+    partial_.assign((last_ - first_) * count_, 0.0);
+    // The last band first: another rank may wait for it.
+    base::parallel_chunks(last_ - first_, 1, [&](std::size_t k, std::size_t) {
+      if (const std::size_t band = last_ - 1 - k; band > first_ || !is_begun_) add_rows(band);
+    });
+    if (is_begun_) {
+      base::Parcel begun(base::ranks()->receive(f_.shares.holder(own_.begin - 1)));
+      begun.pass_range(sums_of(first_), count_);
+      add_rows(first_);
+    }
+    return f_.shares.divided() ? total_of_ranks() : total_here();
+  }
+
+ private:
+  static constexpr std::size_t bands = 16;
+
+  [[nodiscard]] std::size_t begin(std::size_t band) const { return band * count_ / bands; }
+  [[nodiscard]] double* sums_of(std::size_t band) { return &partial_[(band - first_) * count_]; }
+
+  void add_rows(std::size_t band) {
+    double* const sums = sums_of(band);
+    const std::size_t end = std::min(begin(band + 1), own_.end);
+    for (std::size_t i = std::max(begin(band), own_.begin); i < end; ++i) {
+      const double w = weight_(i) * f_.row_scale[i];
       if (w == 0.0) continue;
-      for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
-        sums[f.column[e]] += w * double(f.hits[e]);
+      for (std::uint64_t e = f_.row_start[i]; e < f_.row_start[i + 1]; ++e) {
+        sums[f_.column[e]] += w * double(f_.hits[e]);
       }
     }
-  });
-  std::vector<double> total(count);
-  base::parallel_chunks(count, 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t j = begin; j < end; ++j) {
-      double sum = 0.0;
-      for (std::size_t band = 0; band < bands; ++band) sum += partial[band * count + j];
-      total[j] = f.column_scale[j] * sum;
+    if (!goes_on_ || band + 1 < last_) return;
+    base::Parcel begun;
+    begun.reserve(count_ * sizeof(double));
+    begun.pass_range(sums, count_);
+    base::ranks()->send(begun.take_bytes(), f_.shares.holder(own_.end));
+  }
+
+  [[nodiscard]] std::vector<double> total_here() {
+    std::vector<double> total(count_);
+    base::parallel_chunks(count_, 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t j = begin; j < end; ++j) {
+        double sum = 0.0;
+        for (std::size_t k = j; k < partial_.size(); k += count_) sum += partial_[k];
+        total[j] = f_.column_scale[j] * sum;
+      }
+    });
+    return total;
+  }
+
+  // Each rank adds up some of the columns: of the bands that ended with every rank, which are in
+  // order as the ranks are.
+  [[nodiscard]] std::vector<double> total_of_ranks() {
+    base::Ranks& all = *base::ranks();
+    const auto ranks = static_cast<std::size_t>(all.count()),
+               rank = static_cast<std::size_t>(all.number());
+    std::vector<std::size_t> start;
+    for (std::size_t r = 0; r <= ranks; ++r) start.push_back(r * count_ / ranks);
+    const std::size_t ended = last_ - first_ - (goes_on_ ? 1 : 0);
+    std::vector<std::string> to(ranks);
+    for (std::size_t r = 0; r < ranks; ++r) {
+      if (r == rank) continue;
+      const std::size_t columns = start[r + 1] - start[r];
+      base::Parcel sent;
+      sent.reserve(ended * columns * sizeof(double));
+      for (std::size_t band = first_; band < first_ + ended; ++band) {
+        sent.pass_range(sums_of(band) + start[r], columns);
+      }
+      to[r] = sent.take_bytes();
     }
-  });
-  return total;
+    std::vector<std::string> got = base::swap(all, std::move(to));
+    std::vector<double> total(count_);
+    const std::span<double> mine(total.data() + start[rank], start[rank + 1] - start[rank]);
+    for (std::size_t r = 0; r < ranks; ++r) {
+      base::Parcel theirs(std::move(got[r]));
+      while (!theirs.at_end()) add_band(mine, theirs);
+      for (std::size_t band = first_; r == rank && band < first_ + ended; ++band) {
+        const double* const sums = sums_of(band) + start[rank];
+        for (std::size_t k = 0; k < mine.size(); ++k) mine[k] += sums[k];
+      }
+    }
+    for (std::size_t j = start[rank]; j < start[rank + 1]; ++j) total[j] *= f_.column_scale[j];
+    all.gather(total.data(), sizeof(double), start);
+    return total;
+  }
+
+  static void add_band(std::span<double> total, base::Parcel& sums) {
+    std::array<double, 1024> some;  // stays in the cache
+    for (std::size_t k = 0; k < total.size(); k += some.size()) {
+      const std::size_t count = std::min(some.size(), total.size() - k);
+      sums.pass_range(some.data(), count);
+      for (std::size_t n = 0; n < count; ++n) total[k + n] += some[n];
+    }
+  }
+
+  const FormFactors& f_;
+  Weight weight_;
+  std::size_t count_;
+  base::Shares::Range own_;
+  std::size_t first_ = 0, last_ = bands;     // bands with rows here: [first_, last_)
+  bool is_begun_ = false, goes_on_ = false;  // the first one by, the last one with another rank
+  std::vector<double> partial_;              // of each
+};
+
+template <class Weight>
+[[nodiscard]] std::vector<double> weighted_column_sums(const FormFactors& f, Weight weight) {
+  return ColumnSums<Weight>(f, weight).find();
 }
 
 }  // namespace earthshine::radiosity

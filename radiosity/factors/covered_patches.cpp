@@ -12,7 +12,8 @@ std::vector<double> open_areas(const OpenParts& open, std::span<const double> ar
 }
 
 void lose_hits_on_covered(FormFactors& factors) {
-  for (std::size_t i = 0; i < factors.count(); ++i) {
+  const auto [begin, end] = factors.shares.own(factors.count());
+  for (std::size_t i = begin; i < end; ++i) {
     for (std::uint64_t e = factors.row_start[i]; e < factors.row_start[i + 1]; ++e) {
       const std::uint32_t j = factors.column[e];
       if (factors.open.share[j] > 0.0) continue;
@@ -21,6 +22,8 @@ void lose_hits_on_covered(FormFactors& factors) {
       factors.hits[e] = 0.0F;
     }
   }
+  factors.shares.tell(factors.black.data());
+  factors.shares.tell(factors.lost.data());
 }
 
 CoveredPatches::CoveredPatches(const Patches& patches, const OpenParts& open) {

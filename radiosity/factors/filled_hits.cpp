@@ -3,60 +3,131 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "base/ranks/ranks.h"
 #include "radiosity/factors/column_sums.h"
 
 namespace earthshine::radiosity {
 namespace {
 
-// Per row: columns, ascending, and hits to add there.
-using NewHits = std::vector<std::vector<std::pair<std::uint32_t, float>>>;
+struct NewHit {
+  std::uint32_t row, column;
+  float hits;
+};
 
-void add_hits(FormFactors& f, const NewHits& fresh) {
-  const std::size_t count = f.count();
-  FormFactors old;
-  old.row_start.swap(f.row_start);
-  old.column.swap(f.column);
-  old.hits.swap(f.hits);
-  f.row_start.assign(count + 1, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    std::uint64_t e = old.row_start[i];
-    auto extra = fresh[i].begin();
-    while (e < old.row_start[i + 1] || extra != fresh[i].end()) {
-      const bool has_old = e < old.row_start[i + 1], has_extra = extra != fresh[i].end();
-      const bool take_old = has_old && (!has_extra || old.column[e] <= extra->first);
-      const bool take_extra = has_extra && (!has_old || extra->first <= old.column[e]);
-      f.column.push_back(take_old ? old.column[e] : extra->first);
-      f.hits.push_back((take_old ? old.hits[e] : 0.0F) + (take_extra ? extra->second : 0.0F));
-      if (take_old) ++e;
-      if (take_extra) ++extra;
-    }
-    f.row_start[i + 1] = f.column.size();
+// Hits to add, each with the rank that has its row.
+class NewHits {
+ public:
+  // of_gaps: only where no hit is yet.
+  NewHits(FormFactors& f, bool of_gaps)
+      : f_(f),
+        of_gaps_(of_gaps),
+        own_(f.shares.own(f.count())),
+        rows_(own_.end - own_.begin),
+        away_(f.shares.divided() ? static_cast<std::size_t>(base::ranks()->count()) : 0) {}
+
+  void add(const NewHit& hit) {
+    if (hit.row >= own_.begin && hit.row < own_.end) return take(hit);
+    away_[static_cast<std::size_t>(f_.shares.holder(hit.row))].push_back(hit);
   }
-}
 
-bool met(const FormFactors& f, std::uint32_t from, std::uint32_t to) {
-  const auto begin = f.column.begin() + static_cast<std::ptrdiff_t>(f.row_start[from]);
-  const auto end = f.column.begin() + static_cast<std::ptrdiff_t>(f.row_start[from + 1]);
-  const auto at = std::lower_bound(begin, end, to);
-  return at != end && *at == to && f.hits[static_cast<std::size_t>(at - f.column.begin())] > 0.0F;
-}
+  // Sends those of other ranks' rows there; all ranks at once.
+  void deliver() {
+    if (!f_.shares.divided()) return;
+    std::vector<std::string> to;
+    for (std::vector<NewHit>& hits : away_) {
+      base::Parcel sent;
+      sent.pass(hits);
+      hits = {};
+      to.push_back(sent.take_bytes());
+    }
+    for (std::string& bytes : base::swap(*base::ranks(), std::move(to))) {
+      base::Parcel got(std::move(bytes));
+      std::vector<NewHit> hits;
+      got.pass(hits);
+      for (const NewHit& hit : hits) take(hit);
+    }
+  }
+
+  // On the diagonal, whether there is a hit or not; after all others.
+  void add_own(std::uint32_t i, float hits) {
+    Row& row = sorted_row(i);
+    const std::pair<std::uint32_t, float> own(i, hits);
+    row.insert(std::lower_bound(row.begin(), row.end(), own), own);
+  }
+
+  // Puts them into the matrix.
+  void join() {
+    FormFactors old;
+    old.row_start.assign(f_.count() + 1, 0);
+    old.row_start.swap(f_.row_start);
+    old.column.swap(f_.column);
+    old.hits.swap(f_.hits);
+    for (std::size_t i = own_.begin; i < own_.end; ++i) {
+      const Row& fresh = sorted_row(i);
+      std::uint64_t e = old.row_start[i];
+      auto extra = fresh.begin();
+      while (e < old.row_start[i + 1] || extra != fresh.end()) {
+        const bool has_old = e < old.row_start[i + 1], has_extra = extra != fresh.end();
+        const bool take_old = has_old && (!has_extra || old.column[e] <= extra->first);
+        const bool take_extra = has_extra && (!has_old || extra->first <= old.column[e]);
+        f_.column.push_back(take_old ? old.column[e] : extra->first);
+        f_.hits.push_back((take_old ? old.hits[e] : 0.0F) + (take_extra ? extra->second : 0.0F));
+        if (take_old) ++e;
+        if (take_extra) ++extra;
+      }
+      f_.row_start[i + 1] = f_.column.size();
+    }
+    std::fill(f_.row_start.begin() + static_cast<std::ptrdiff_t>(own_.end), f_.row_start.end(),
+              f_.column.size());
+  }
+
+ private:
+  using Row = std::vector<std::pair<std::uint32_t, float>>;  // columns and hits to add there
+
+  void take(const NewHit& hit) {
+    if (of_gaps_ && met(hit.row, hit.column)) return;
+    rows_[hit.row - own_.begin].emplace_back(hit.column, hit.hits);
+  }
+
+  // Hits of one process come in order.
+  Row& sorted_row(std::size_t i) {
+    Row& row = rows_[i - own_.begin];
+    if (f_.shares.divided()) std::sort(row.begin(), row.end());
+    return row;
+  }
+
+  [[nodiscard]] bool met(std::uint32_t from, std::uint32_t to) const {
+    const auto begin = f_.column.begin() + static_cast<std::ptrdiff_t>(f_.row_start[from]);
+    const auto end = f_.column.begin() + static_cast<std::ptrdiff_t>(f_.row_start[from + 1]);
+    const auto at = std::lower_bound(begin, end, to);
+    return at != end && *at == to &&
+           f_.hits[static_cast<std::size_t>(at - f_.column.begin())] > 0.0F;
+  }
+
+  FormFactors& f_;
+  bool of_gaps_;
+  base::Shares::Range own_;
+  std::vector<Row> rows_;                  // of this rank
+  std::vector<std::vector<NewHit>> away_;  // per rank
+};
 
 }  // namespace
 
 std::size_t borrow_starved_columns(FormFactors& f, std::span<const double> area_m2) {
   constexpr double starved = 0.01;  // share of what a column should hold by its own row
-  const std::size_t count = f.count();
   const std::vector<double> sums =
       weighted_column_sums(f, [&](std::size_t i) { return area_m2[i] * f.kept[i]; });
   const auto reached = [&](std::size_t j) {
     return sums[j] >= starved * area_m2[j] * (1.0 - f.sky[j] - f.black[j]);
   };
-  NewHits borrowed(count);
+  NewHits borrowed(f, false);
   std::size_t patches = 0;
-  for (std::size_t j = 0; j < count; ++j) {
+  const auto [begin, end] = f.shares.own(f.count());
+  for (std::size_t j = begin; j < end; ++j) {
     if (reached(j) || f.row_start[j] == f.row_start[j + 1]) continue;
     ++patches;
     for (std::uint64_t e = f.row_start[j]; e < f.row_start[j + 1]; ++e) {
@@ -64,10 +135,13 @@ std::size_t borrow_starved_columns(FormFactors& f, std::span<const double> area_
       if (area_m2[i] <= 0.0) continue;
       const double hits =
           double(f.hits[e]) * (area_m2[j] * f.row_scale[j]) / (area_m2[i] * f.row_scale[i]);
-      borrowed[i].emplace_back(static_cast<std::uint32_t>(j), static_cast<float>(hits));
+      borrowed.add({i, static_cast<std::uint32_t>(j), static_cast<float>(hits)});
     }
   }
-  if (patches > 0) add_hits(f, borrowed);
+  patches = f.shares.sum(patches);
+  if (patches == 0) return 0;
+  borrowed.deliver();
+  borrowed.join();
   return patches;
 }
 
@@ -77,25 +151,31 @@ bool keeps_its_own(const FormFactors& f, std::span<const double> area_m2, std::s
 }
 
 std::size_t fill_both_ways(FormFactors& f, std::span<const double> area_m2) {
-  const auto count = static_cast<std::uint32_t>(f.count());
-  NewHits fresh(count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
-      const std::uint32_t j = f.column[e];
-      const double there = f.row_scale[i] * double(f.hits[e]) * area_m2[i];
-      const double back = f.row_scale[j] * area_m2[j];
-      if (there <= 0.0 || back <= 0.0 || met(f, j, i)) continue;
-      fresh[j].emplace_back(i, static_cast<float>(reciprocal_share * there / back));
+  // All entries pass between ranks, so many times fewer at once.
+  constexpr std::uint32_t rounds = 16;
+  const auto own = f.shares.own(f.count());
+  const auto begin = static_cast<std::uint32_t>(own.begin),
+             end = static_cast<std::uint32_t>(own.end);
+  NewHits fresh(f, true);
+  for (std::uint32_t round = 0, i = begin; round < rounds; ++round) {
+    for (; i < begin + (end - begin) * std::uint64_t{round + 1} / rounds; ++i) {
+      for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
+        const std::uint32_t j = f.column[e];
+        const double there = f.row_scale[i] * double(f.hits[e]) * area_m2[i];
+        const double back = f.row_scale[j] * area_m2[j];
+        if (there <= 0.0 || back <= 0.0) continue;
+        fresh.add({j, i, static_cast<float>(reciprocal_share * there / back)});
+      }
     }
+    fresh.deliver();
   }
-  for (std::uint32_t i = 0; i < count; ++i) {
+  for (std::uint32_t i = begin; i < end; ++i) {
     if (!keeps_its_own(f, area_m2, i)) continue;
-    const std::pair<std::uint32_t, float> own(i, static_cast<float>(own_share / f.row_scale[i]));
-    fresh[i].insert(std::lower_bound(fresh[i].begin(), fresh[i].end(), own), own);
+    fresh.add_own(i, static_cast<float>(own_share / f.row_scale[i]));
   }
   const std::size_t before = f.hits.size();
-  add_hits(f, fresh);
-  return f.hits.size() - before;
+  fresh.join();
+  return f.shares.sum(f.hits.size() - before);
 }
 
 }  // namespace earthshine::radiosity

@@ -41,15 +41,13 @@ std::vector<std::size_t> cut_in_bands(const Patches& patches, std::span<const st
   return start;
 }
 
-// Joins the bands and leaves them empty.
-void assemble(std::vector<Band>& bands, FormFactors& factors) {
-  std::size_t i = 0;
-  factors.row_start[0] = 0;
+// What the bands found beside entries, and where the entries of each row will be.
+void join_rows(const std::vector<Band>& bands, FormFactors& factors) {
+  std::vector<double> cost;
   for (const Band& band : bands) {
     for (const Row& row : band.rows) {
-      factors.row_start[i + 1] = factors.row_start[i] + row.entries;
+      cost.push_back(1.0 + row.entries);
       factors.ray_count += row.rays;
-      ++i;
     }
     factors.sky_illuminance.insert(factors.sky_illuminance.end(), band.sky_illuminance.begin(),
                                    band.sky_illuminance.end());
@@ -57,8 +55,23 @@ void assemble(std::vector<Band>& bands, FormFactors& factors) {
       factors.back_hits[o] += band.back_hits[o];
     }
   }
+  if (bands.size() > 1) factors.shares = base::Shares(cost);  // one alone was cast by every rank
+  const auto [begin, end] = factors.shares.own(cost.size());
+  factors.row_start.assign(cost.size() + 1, 0);
+  std::size_t i = 0;
+  for (const Band& band : bands) {
+    for (const Row& row : band.rows) {
+      const bool is_here = i >= begin && i < end;
+      factors.row_start[i + 1] = factors.row_start[i] + (is_here ? row.entries : 0);
+      ++i;
+    }
+  }
   factors.column.resize(factors.row_start[i]);
   factors.hits.resize(factors.row_start[i]);
+}
+
+// Joins the bands' entries and leaves them empty.
+void join_entries(std::vector<Band>& bands, FormFactors& factors) {
   std::ptrdiff_t at = 0;
   for (Band& band : bands) {
     std::copy(band.column.begin(), band.column.end(), factors.column.begin() + at);
@@ -66,25 +79,58 @@ void assemble(std::vector<Band>& bands, FormFactors& factors) {
     at += static_cast<std::ptrdiff_t>(band.column.size());
     band.column = {};
     band.hits = {};
-    band.sky_illuminance = {};
+  }
+}
+
+// The same where each rank has the bands that it has cast: brings every row to the rank that will
+// have it.
+void deal_entries(std::vector<Band>& bands, FormFactors& factors) {
+  constexpr std::size_t rounds = 16;  // so much less is on its way at once
+  base::Ranks& all = *base::ranks();
+  std::size_t first = 0;  // row of the band
+  for (std::size_t round = 0, k = 0; round < rounds; ++round) {
+    std::vector<base::Parcel> sent(static_cast<std::size_t>(all.count()));
+    for (; k < bands.size() * (round + 1) / rounds; first += bands[k++].rows.size()) {
+      Band& band = bands[k];
+      std::size_t e = 0;
+      for (std::size_t r = 0; r < band.rows.size() && e < band.column.size(); ++r) {
+        std::size_t row = first + r;
+        base::Parcel& parcel = sent[static_cast<std::size_t>(factors.shares.holder(row))];
+        parcel.pass(row);
+        parcel.pass_range(&band.column[e], band.rows[r].entries);
+        parcel.pass_range(&band.hits[e], band.rows[r].entries);
+        e += band.rows[r].entries;
+      }
+      band.column = {};
+      band.hits = {};
+    }
+    std::vector<std::string> to;
+    for (base::Parcel& parcel : sent) to.push_back(parcel.take_bytes());
+    for (std::string& bytes : base::swap(all, std::move(to))) {
+      base::Parcel got(std::move(bytes));
+      while (!got.at_end()) {
+        std::size_t row = 0;
+        got.pass(row);
+        const std::uint64_t e = factors.row_start[row];
+        const std::size_t entries = factors.row_start[row + 1] - e;
+        got.pass_range(factors.column.data() + e, entries);
+        got.pass_range(factors.hits.data() + e, entries);
+      }
+    }
   }
 }
 
 // The shares of sky and black backs, and the row scale that makes the row close to the last digit.
-void close_row(FormFactors& factors, std::size_t i, double sky_rays, double black_rays) {
-  double landed = 0.0;  // rays that end on patches, mirrors' shares left out
-  for (std::uint64_t e = factors.row_start[i]; e < factors.row_start[i + 1]; ++e) {
-    landed += double(factors.hits[e]) * factors.kept[factors.column[e]];
-  }
+void close_row(FormFactors& factors, std::size_t i, const Row& row) {
   // Equal to the number of rays but for the rounding of mirrors' weights.
-  const double all = landed + sky_rays + black_rays;
+  const double all = row.landed + row.sky + row.black;
   if (all <= 0.0) {  // wholly covered
     factors.black[i] = factors.lost[i] = 1.0;
     return;
   }
   factors.row_scale[i] = 1.0 / all;
-  factors.sky[i] = factors.escape[i] = sky_rays / all;
-  factors.black[i] = factors.lost[i] = black_rays / all;
+  factors.sky[i] = factors.escape[i] = row.sky / all;
+  factors.black[i] = factors.lost[i] = row.black / all;
 }
 
 }  // namespace
@@ -119,7 +165,6 @@ FormFactors cast_rows(const scenes::Scene& scene, const scenes::RayQuery& query,
   factors.row_scale.assign(count, 0.0);
   factors.column_scale.assign(patches.count(), 1.0);
 
-  factors.row_start.assign(count + 1, 0);
   factors.back_hits.assign(scene.objects.size(), 0.0);
 
   std::vector<std::uint32_t> runs;
@@ -133,24 +178,28 @@ FormFactors cast_rows(const scenes::Scene& scene, const scenes::RayQuery& query,
     if (counter.patches() < patches.count()) counter = HitCounter(patches.count());
     bands[band].back_hits.assign(scene.objects.size(), 0.0);
     for (std::size_t i = band_start[band]; i < band_start[band + 1]; ++i) {
-      caster.cast(rows[i], counter, bands[band]);
+      Band& found = bands[band];
+      caster.cast(rows[i], counter, found);
+      for (std::size_t e = found.column.size() - found.rows.back().entries; e < found.column.size();
+           ++e) {
+        found.rows.back().landed += double(found.hits[e]) * factors.kept[found.column[e]];
+      }
     }
   };
   base::share_loop(bands.size(), cast, [&](std::size_t band, base::Parcel& parcel) {
     Band& found = bands[band];
     parcel.pass(found.rows);
     parcel.pass(found.back_hits);
-    parcel.pass(found.column);
-    parcel.pass(found.hits);
     parcel.pass(found.sky_illuminance);
   });
-  assemble(bands, factors);
+  join_rows(bands, factors);
+  factors.shares.divided() ? deal_entries(bands, factors) : join_entries(bands, factors);
   std::size_t i = 0;
   bool any_covered = false;
   for (const Band& band : bands) {
     for (const Row& row : band.rows) {
       any_covered = any_covered || row.open < row.sent;
-      close_row(factors, i++, row.sky, row.black);
+      close_row(factors, i++, row);
     }
   }
   if (!any_covered) return factors;

@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "base/ranks/shares.h"
 #include "radiosity/patches/open_parts.h"
 #include "radiosity/patches/patches.h"
 #include "scenes/ray_query.h"
@@ -37,7 +38,9 @@ struct FormFactorOptions {
 struct FormFactors {
   int rays_per_patch = 0;                // at least
   std::uint64_t ray_count = 0;           // all rays, continuations included
-  std::vector<std::uint64_t> row_start;  // count + 1
+  base::Shares shares;                   // which rank has the entries of which rows; all else is
+                                         // with every rank
+  std::vector<std::uint64_t> row_start;  // count + 1; rows of other ranks are empty
   std::vector<std::uint32_t> column;     // ascending within a row
   std::vector<float> hits;               // integers unless a mirror or glass is met
   std::vector<double> row_scale, column_scale;

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "base/ranks/ranks.h"
 #include "radiosity/factors/form_factors.h"
 
 namespace earthshine::radiosity {
@@ -78,21 +77,16 @@ constexpr MultiplyRows multiply_blocks[most_blocks] = {
 
 void multiply(const FormFactors& factors, std::span<const double> x, std::span<double> y,
               std::size_t columns) {
+  const base::Shares::Range own = factors.shares.own(factors.count());
   for (std::size_t first = 0; first < columns; first += most_blocks * lanes) {
     const std::size_t blocks = std::min((columns - first + lanes - 1) / lanes, most_blocks);
     const std::vector<Lanes> z = packed(factors, x, columns, first, blocks);
-    const std::size_t used = std::min(columns - first, blocks * lanes);
-    base::share_chunks(
-        factors.count(), 256,
-        [&](std::size_t begin, std::size_t end) {
-          multiply_blocks[blocks - 1](factors, z.data(), begin, end, columns, first, y);
-        },
-        [&](std::size_t begin, std::size_t end, base::Parcel& parcel) {
-          for (std::size_t i = begin; i < end; ++i) {
-            parcel.pass_range(&y[i * columns + first], used);
-          }
-        });
+    base::parallel_chunks(own.end - own.begin, 256, [&](std::size_t begin, std::size_t end) {
+      multiply_blocks[blocks - 1](factors, z.data(), own.begin + begin, own.begin + end, columns,
+                                  first, y);
+    });
   }
+  factors.shares.tell(y.data(), columns);
 }
 
 }  // namespace earthshine::radiosity

@@ -20,6 +20,7 @@ namespace earthshine::radiosity {
 struct Row {
   std::uint32_t entries = 0;
   double black = 0.0, sky = 0.0;  // in rays
+  double landed = 0.0;            // in rays, on patches, where they end
   std::uint64_t rays = 0;
   std::uint32_t sent = 0;  // rays that left the patch
   std::uint32_t open =

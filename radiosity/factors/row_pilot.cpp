@@ -33,7 +33,8 @@ Pilot cast_pilot(const scenes::Scene& scene, const scenes::RayQuery& query, doub
   FormFactorOptions options;
   options.rays_per_patch = rays_per_patch;
   const FormFactors factors = cast_rows(scene, query, patches, rows, options);
-  return {double(patches.count()), double(factors.hits.size()) / double(count),
+  const std::size_t entries = factors.shares.sum(factors.hits.size());
+  return {double(patches.count()), double(entries) / double(count),
           std::any_of(factors.black.begin(), factors.black.end(),
                       [](double share) { return share > 0.0; })};
 }

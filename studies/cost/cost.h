@@ -58,14 +58,16 @@ struct EffectCost {
 [[nodiscard]] double total_seconds(const Bill& bill);
 
 // What ranks divide of the bill, and what every one of them does (docs/scaling.md). Of a picture's
-// seconds those that each rank spends are not told apart and count as shared. bytes: what the
-// loops exchange of form factors, columns of the linear solve and pixels.
+// seconds those that each rank spends are not told apart and count as shared. bytes_to_all: values
+// per patch or pixel that every rank gets; bytes_dealt: what goes to one rank each, entries of form
+// factors and bands of columns' sums.
 struct RanksCost {
-  double shared_s = 0.0, alone_s = 0.0, bytes = 0.0;
+  double shared_s = 0.0, alone_s = 0.0, bytes_to_all = 0.0, bytes_dealt = 0.0;
 };
 // columns: of the linear solve; pixels: of all pictures.
 [[nodiscard]] RanksCost ranks_cost(const Bill& bill, std::size_t columns, double pixels);
 // Every rank with its own threads, and a network of `bytes_per_s`; without its latency.
+[[nodiscard]] double bytes_of_a_rank(const RanksCost& cost, int ranks);  // that come to it
 [[nodiscard]] double seconds_on_ranks(const RanksCost& cost, int ranks, double bytes_per_s);
 
 }  // namespace earthshine::studies

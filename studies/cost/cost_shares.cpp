@@ -67,19 +67,32 @@ RanksCost ranks_cost(const Bill& bill, std::size_t columns, double pixels) {
   RanksCost cost;
   for (const auto& [name, seconds] : bill.solve.seconds) {
     // Cutting into patches is each rank's own; the looks of refinement are shared.
-    const bool alone = name == "balance" || name == "ledger" ||
-                       (name == "patches" && bill.solve.refinement_rays == 0);
+    const bool alone = name == "ledger" || (name == "patches" && bill.solve.refinement_rays == 0);
     (alone ? cost.alone_s : cost.shared_s) += seconds;
   }
   for (const raytrace::RenderReport& report : bill.pictures) cost.shared_s += report.seconds;
-  const double exchanged = static_cast<double>(bill.solve.patches) * static_cast<double>(columns);
-  cost.bytes = 8.0 * static_cast<double>(bill.solve.nonzeros) +
-               8.0 * exchanged * bill.solve.iterations + 24.0 * pixels;
+  // Of a patch: what a row found; in each sweep of the balance its row and column, and its sums in
+  // 16 bands; in each iteration two products.
+  const auto patches = static_cast<double>(bill.solve.patches);
+  const double sweeps = bill.solve.balance.sweeps;
+  cost.bytes_to_all =
+      patches * (64.0 + 16.0 * sweeps +
+                 16.0 * static_cast<double>(columns) * double(bill.solve.iterations)) +
+      24.0 * pixels;
+  // The entries come once from whoever cast them; where hits are filled in, once more, with their
+  // rows.
+  const double filling = bill.solve.balance.filled > 0 ? 12.0 : 0.0;
+  cost.bytes_dealt =
+      (8.0 + filling) * static_cast<double>(bill.solve.nonzeros) + patches * 128.0 * sweeps;
   return cost;
 }
 
+double bytes_of_a_rank(const RanksCost& cost, int ranks) {
+  return ranks > 1 ? cost.bytes_to_all + cost.bytes_dealt / ranks : 0.0;
+}
+
 double seconds_on_ranks(const RanksCost& cost, int ranks, double bytes_per_s) {
-  return cost.alone_s + cost.shared_s / ranks + (ranks > 1 ? cost.bytes / bytes_per_s : 0.0);
+  return cost.alone_s + cost.shared_s / ranks + bytes_of_a_rank(cost, ranks) / bytes_per_s;
 }
 
 }  // namespace earthshine::studies

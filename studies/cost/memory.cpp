@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/ranks/ranks.h"
 #include "radiosity/factors/row_pilot.h"
 #include "radiosity/refine.h"
 #include "raytrace/frame/cryptomatte.h"
@@ -70,7 +71,7 @@ MemoryNeed memory_needed(const MemoryCase& m) {
   // One after the other: the matrix is cast and balanced, the system solved, the picture drawn.
   MemoryNeed casting = standing, solving = standing;
   if (m.solves) {
-    const double entries = patches * m.row_entries * entry_bytes;
+    const double entries = patches * m.row_entries * entry_bytes / m.ranks;
     const double rows = patches * (row_bytes + counter_bytes * m.threads);
     const double copies = entry_copies + (m.copies_matrix ? 1.0 : 0.0);
     casting.parts.push_back({"form factors", entries * copies + rows + patches * balance_bytes});
@@ -113,6 +114,7 @@ MemoryCase memory_case(const scenes::Scene& scene, const scenes::LightGroups& gr
   m.triangles = scene.triangles.size();
   m.texture_bytes = scenes::texture_bytes(scene);
   m.threads = base::available_threads();
+  if (base::ranks() != nullptr) m.ranks = base::ranks()->count();
   if (!radiosity::is_lit(effects) || scene.triangles.empty()) return m;
   set_patches(m,
               options.refine.on ? radiosity::most_refined_patches(scene, options)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory that a run will take, by part, before its work starts.
+// Memory that a run will take, by part, before its work starts; with ranks, each of them.
 //
 // Counted are the arrays whose size grows with the scene, the patches or the picture, with what the
 // stages hold beside them while they work. Constants are bytes, named after what they pay for;
@@ -39,6 +39,7 @@ struct MemoryCase {
   std::size_t columns = 0;     // 3 * light groups
   bool solves = false;         // the matrix is cast; false with columns: the solution is read
   int threads = 1;
+  int ranks = 1;               // that divide the entries of the matrix among them
   std::size_t pixels = 0;      // 0: no picture
   std::size_t channels = 0;    // of the picture, 4 bytes each
   std::size_t layers = 0;      // that read the solution: 1, or the light groups

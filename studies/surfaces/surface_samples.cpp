@@ -232,14 +232,18 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
     }
     parcel.pass(rays_of[begin / chunk]);
   };
-  for (std::size_t first = 0; first < which.size(); first += told_after) {
-    const std::size_t count = std::min(told_after, which.size() - first);
-    base::share_chunks(
-        count, chunk,
-        [&](std::size_t begin, std::size_t end) { look_at(first + begin, first + end); },
-        [&](std::size_t begin, std::size_t end, base::Parcel& parcel) {
-          transfer(first + begin, first + end, parcel);
-        });
+  // Ranks wait for each other at the end of a batch: they have few.
+  const std::size_t batch = base::ranks() == nullptr
+                                ? told_after
+                                : std::max(told_after, which.size() / (8 * chunk) * chunk);
+  for (std::size_t first = 0; first < which.size(); first += batch) {
+    const std::size_t count = std::min(batch, which.size() - first);
+    const auto begin_of = [&](std::size_t k) { return first + std::min(count, k * chunk); };
+    base::share_loop((count + chunk - 1) / chunk,
+                     [&](std::size_t k) { look_at(begin_of(k), begin_of(k + 1)); },
+                     [&](std::size_t k, base::Parcel& parcel) {
+                       transfer(begin_of(k), begin_of(k + 1), parcel);
+                     });
     if (progress) progress(first + count, which.size());
   }
   for (const std::uint64_t rays : rays_of) found.rays += rays;

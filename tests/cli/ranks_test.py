@@ -21,8 +21,31 @@ MPI = pathlib.Path(program.PROGRAM).with_name("earthshine-mpi")
 ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                             "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_plm": "isolated",
                             "OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_btl_base_warn_component_unused": "0"}
+# White walls (all that a closed part keeps must be looked for), a mirror (hits that are no whole numbers), a box that covers part
+# of the floor, and so few rays that hits are borrowed and filled in.
+HARD = CLOSED_BOX.replace("diffuse = 0.5", "diffuse = 1.0").replace("form_factor_rays = 64", "form_factor_rays = 8") + """
+[[material]]
+name = "half a mirror"
+diffuse = 0.3
+mirror = 0.45
+
+[[object]]
+name = "ball"
+shape = "sphere"
+center = [1.5, 1.4, 0.7]
+radius = 0.3
+segments = 12
+material = "half a mirror"
+
+[[object]]
+name = "box"
+shape = "box"
+min = [0.3, 0.3, 0]
+max = [0.8, 0.8, 0.5]
+material = "half a mirror"
+"""
 # Open with shadows and two light groups; closed, lit by its walls.
-SCENES = {"ball.toml": BALL, "box.toml": CLOSED_BOX}
+SCENES = {"ball.toml": BALL, "box.toml": CLOSED_BOX, "hard.toml": HARD}
 RENDERS = {
     "shared": ("--set", "quality.gather=shared", "--aov", "variance,object"),
     "alone": ("--set", "quality.gather=per-sample", "--per-light"),
@@ -65,6 +88,41 @@ class Ranks(Case):
         fine = ("--set", "quality.patch_edge=0.1")
         for scene, more in (("ball.toml", fine), ("box.toml", fine), ("ball.toml", ("--error", "0.05"))):
             self.same(("solve", scene, "-o", "s.h5", *more), ("s.h5",), (1, 2, 3, 5, 8))
+
+    def test_rows_that_need_each_other(self):
+        """More ranks than the 16 bands in which columns are summed too: some then have a part of a band alone."""
+        call = ("solve", "hard.toml", "-o", "s.h5", "--set", "quality.patch_edge=0.1")
+        report = json.loads(self.done(*call, "--json", "-q"))
+        balance = report["balance"]
+        self.assertTrue(balance["balanced"] and balance["borrowed"] > 0 and balance["filled"] > 0, balance)
+        self.assertGreater(report["back_share"], 0)
+        self.same(call, ("s.h5",), (2, 8, 28))
+        self.write("hard.toml", HARD.replace("0.3\nmirror = 0.45", "0.55\nmirror = 0.45"))
+        alone = self.refused(*call)
+        self.assertIn("a closed part of the scene reflects everything", alone)
+        self.assertEqual(self.ranks(3, *call, code=2).stderr.splitlines()[0], alone.splitlines()[0])
+
+    def test_memory_is_divided(self):
+        """While rows are joined the E entries of the matrix, 8 bytes each, are there twice: 16 E (1 - 1 / R) bytes are what R
+        ranks spare each of them, and `plan` says so. A tenth of it is left to what ranks have on their way."""
+        call = ("solve", "box.toml", "-o", "s.h5", "--set", "quality.patch_edge=0.04", "--set", "quality.form_factor_rays=1024")
+        reports, peaks = {}, {}
+        for count in (1, 2, 8):
+            with subprocess.Popen(["mpirun", "-n", str(count), MPI, *call, "-q", "--json", "-j", "1"], cwd=self.folder,
+                                  env=ENVIRONMENT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE) as run:
+                reports[count] = json.loads(run.stdout.read())
+                _, status, usage = os.wait4(run.pid, 0)
+                run.returncode = os.waitstatus_to_exitcode(status)
+            self.assertEqual(run.returncode, 0)
+            peaks[count] = usage.ru_maxrss / 1024  # of the largest process
+        entries = reports[1]["nonzeros"] * 8 / 2**20
+        self.assertGreater(2 * entries, 0.6 * peaks[1])
+        for count in (2, 8):
+            self.assertEqual(reports[count]["nonzeros"], reports[1]["nonzeros"])
+            self.assertGreater(peaks[1] - peaks[count], 0.9 * 2 * entries * (1 - 1 / count))
+            stated = [json.loads(self.done("plan", *call[1:2], *call[4:], "--ranks", n, "--json"))["ranks"]["memory_mib_each"]
+                      for n in (1, count)]
+            self.assertAlmostEqual((stated[0] - stated[1]) / (2 * entries * (1 - 1 / count)), 1, delta=0.1)
 
     def test_refined_patches(self):
         self.same(("solve", "bay.toml", "-o", "s.h5", "--set", "quality.refine=true", "--set", "quality.max_patches=2000"),

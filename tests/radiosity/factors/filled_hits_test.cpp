@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "radiosity/factors/column_sums.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::radiosity {
@@ -37,6 +38,21 @@ double entry(const FormFactors& f, std::uint32_t i, std::uint32_t j) {
     if (f.column[e] == j) return f.row_scale[i] * double(f.hits[e]) * f.column_scale[j];
   }
   return 0.0;
+}
+
+TEST(ColumnSums, AreThoseOfAllRowsHoweverFewThereAre) {
+  // Rows are summed in 16 bands. Sums of counts over 64 are exact in any order.
+  for (const std::uint32_t count : {1U, 2U, 5U, 15U, 16U, 17U, 100U}) {
+    std::vector<std::vector<std::pair<std::uint32_t, float>>> rows(count);
+    std::vector<double> expected(count, 0.0);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      for (std::uint32_t j = i % 3; j < count; j += 1 + i % 2) {
+        rows[i].emplace_back(j, static_cast<float>(1 + (7 * i + 3 * j) % 5));
+        expected[j] += double(rows[i].back().second) / 64.0;
+      }
+    }
+    EXPECT_EQ(weighted_column_sums(of_hits(rows), [](std::size_t) { return 1.0; }), expected);
+  }
 }
 
 TEST(FilledHits, LightThatFindsNoWayBackGetsOne) {

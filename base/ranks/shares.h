@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Items that stay with the ranks, a range of them with each: rows of a matrix too large for one.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/ranks/ranks.h"
+
+namespace earthshine::base {
+
+class Shares {
+ public:
+  struct Range {
+    std::size_t begin = 0, end = 0;
+  };
+
+  Shares() = default;  // undivided: every rank has all of them
+  // Ranges of about as much cost each, in order. Undivided where this process is alone.
+  explicit Shares(std::span<const double> cost);
+
+  [[nodiscard]] bool divided() const { return !start_.empty(); }
+  // Of `count` items those that this rank has.
+  [[nodiscard]] Range own(std::size_t count) const;
+  // The rank that has the item, of divided ones.
+  [[nodiscard]] int holder(std::size_t item) const;
+
+  // Per item `each` values side by side, of which every rank knows those of its own: all know all.
+  template <class Value>
+  void tell(Value* values, std::size_t each = 1) const {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    if (divided()) ranks()->gather(values, each * sizeof(Value), start_);
+  }
+  // What each rank has found among its own, rank after rank: a rank speaks when it has heard those
+  // before it, and hears itself too. Nothing where undivided.
+  using Pass = std::function<void(Parcel& parcel)>;
+  void hear(const Pass& say, const Pass& listen) const;
+  // Of what each has found among its own.
+  [[nodiscard]] std::size_t sum(std::size_t of_own) const;
+  // add() adds what it finds among its own items to the sums, in their order; afterwards all of it
+  // is in them. exact: no addition is rounded, so that the ranks need not wait for each other.
+  void add_up(std::vector<double>& sums, bool exact,
+              const std::function<void(std::vector<double>& sums)>& add) const;
+
+ private:
+  std::vector<std::size_t> start_;  // rank r has [start_[r], start_[r + 1])
+};
+
+}  // namespace earthshine::base

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/ranks/shares.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/numbers/random.h"
+
+namespace earthshine::base {
+namespace {
+
+// One of some ranks that never speak.
+class Silent : public Ranks {
+ public:
+  Silent(int number, int count) : number_(number), count_(count) {}
+  [[nodiscard]] int number() const override { return number_; }
+  [[nodiscard]] int count() const override { return count_; }
+  void broadcast(std::string&, int) override { FAIL(); }
+  void send(std::string, int) override { FAIL(); }
+  [[nodiscard]] std::string receive(int) override { throw std::logic_error("asked"); }
+  void gather(void*, std::size_t, const std::vector<std::size_t>&) override { FAIL(); }
+  [[nodiscard]] std::size_t take() override { throw std::logic_error("asked"); }
+  void end_of_taking() override { FAIL(); }
+  [[noreturn]] void end_all(int) override { throw std::logic_error("ended"); }
+
+ private:
+  int number_, count_;
+};
+
+std::vector<Shares::Range> ranges(const std::vector<double>& cost, int ranks) {
+  std::vector<Shares::Range> all;
+  for (int rank = 0; rank < ranks; ++rank) {
+    Silent silent(rank, ranks);
+    const RanksInForce in_force(&silent);
+    all.push_back(Shares(cost).own(cost.size()));
+  }
+  return all;
+}
+
+TEST(Shares, RanksHaveAsMuchCostEachToWithinTheDearestItem) {
+  // Each end is off its place, k / R of the cost, by half of an item at most: a range by one.
+  Rng rng(Key(20, Stream::Test, 0));
+  std::vector<double> cost(1000);
+  for (double& c : cost) c = 1.0 + 99.0 * rng.next() * rng.next();
+  const double all = std::accumulate(cost.begin(), cost.end(), 0.0);
+  const double dearest = *std::max_element(cost.begin(), cost.end());
+  for (const int count : {1, 2, 3, 5, 8, 64}) {
+    std::size_t end = 0;
+    for (const Shares::Range& range : ranges(cost, count)) {
+      EXPECT_EQ(range.begin, end);  // one after the other, none left out
+      end = range.end;
+      const double held = std::accumulate(cost.begin() + static_cast<std::ptrdiff_t>(range.begin),
+                                          cost.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
+      EXPECT_NEAR(held, all / count, dearest * (1.0 + 1e-12));
+    }
+    EXPECT_EQ(end, cost.size());
+  }
+}
+
+TEST(Shares, MoreRanksThanItemsLeaveSomeWithout) {
+  const std::vector<double> cost = {1.0, 5.0, 1.0};
+  const std::vector<Shares::Range> all = ranges(cost, 7);
+  Silent silent(0, 7);
+  const RanksInForce in_force(&silent);
+  const Shares shares(cost);
+  for (std::size_t item = 0; item < cost.size(); ++item) {
+    const Shares::Range& range = all[static_cast<std::size_t>(shares.holder(item))];
+    EXPECT_TRUE(range.begin <= item && item < range.end) << item;
+  }
+}
+
+// The second of two; the first has said what is given.
+class Second : public Silent {
+ public:
+  explicit Second(std::string said) : Silent(1, 2), said_(std::move(said)) {}
+  void broadcast(std::string& bytes, int from) override {
+    if (from == 0) bytes = said_;
+  }
+
+ private:
+  std::string said_;
+};
+
+TEST(Shares, SumsThatAreRoundedAreTakenItemByItem) {
+  // The first rank's item is 1e16, whose neighbours in doubles are 2 apart: 1e16 + 1 + 1 = 1e16 in
+  // the order of the items, 1e16 + 2 if the second rank's were added up alone.
+  const auto total = [](bool exact) {
+    std::vector<double> first = {1e16};
+    Parcel parcel;
+    parcel.pass(first);
+    Second second(parcel.take_bytes());
+    const RanksInForce in_force(&second);
+    const Shares shares(std::vector<double>{2.0, 1.0, 1.0});
+    std::vector<double> sums = {0.0};
+    shares.add_up(sums, exact, [](std::vector<double>& all) {
+      all[0] += 1.0;
+      all[0] += 1.0;
+    });
+    return sums[0];
+  };
+  EXPECT_EQ(total(false), 1e16);
+  EXPECT_EQ(total(true), 1e16 + 2.0);
+}
+
+TEST(Shares, OfOneProcessAreUndivided) {
+  const std::vector<double> cost = {1.0, 2.0};
+  const Shares shares(cost);
+  EXPECT_FALSE(shares.divided());
+  EXPECT_EQ(shares.own(2).begin, 0U);
+  EXPECT_EQ(shares.own(2).end, 2U);
+  EXPECT_EQ(shares.sum(5), 5U);
+}
+
+}  // namespace
+}  // namespace earthshine::base

@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The table of docs/scaling.md: seconds of `solve` on R ranks of one thread, from what one rank was measured to need.
+
+usage: ranks_model.py [BYTES-PER-SECOND [SECONDS-PER-MESSAGE]]
+"""
+import dataclasses
+import math
+import sys
+
+BANDS = 16  # of rows, in which columns are summed (radiosity/factors/column_sums.h)
+RANKS = (1, 2, 4, 8, 16, 64, 256, 1024, 4096)
+
+
+# One thread's seconds, of a profile of `solve` with 493083 patches (docs/scaling.md): of an entry in a pass of columns' sums; of a
+# patch in a sweep and of a patch and column in a product, in vectors that every rank has; of a patch in files and tables.
+SUM_S, SWEEP_S, PRODUCT_S, PATCH_S = 1.54e-9, 22e-9, 13e-9, 5.9e-6
+
+
+@dataclasses.dataclass
+class Case:
+    name: str
+    patches: int
+    entries: int
+    sweeps: int       # of the balance
+    filled: bool      # hits: the entries are exchanged once more
+    seconds: float    # of one rank
+    columns: int = 6  # of the linear solve: 3 a light group
+    products: int = 54
+
+    @property
+    def sums(self):
+        """Of columns: rows of a band one after another."""
+        return SUM_S * self.entries * self.sweeps
+
+    @property
+    def alone(self):
+        return self.patches * (SWEEP_S * self.sweeps + PRODUCT_S * self.columns * self.products + PATCH_S)
+
+
+def exchange(case, ranks, bytes_per_s, message_s):
+    """Seconds: bytes that come to a rank, and messages one after another. A gather goes round a ring, a swap to each."""
+    if ranks == 1:
+        return 0.0
+    others = ranks - 1
+    entries = (8 + (12 if case.filled else 0)) * case.entries / ranks
+    to_all = case.patches * (64 + 24 * case.sweeps + 8 * case.columns * case.products + 160 + 8 * case.columns)
+    sums = case.patches * 8 * case.sweeps * max(1.0, BANDS / ranks, ranks / BANDS)  # in turn within a band
+    messages = (16 * 2 * others  # rows to their ranks
+                + case.sweeps * (3 + 2) * others + case.sweeps * max(0, ranks / BANDS - 1)
+                + case.products * others
+                + 10 * ranks * math.log2(ranks))  # loops after which each rank speaks in turn
+    return (entries + to_all + sums) / bytes_per_s + messages * message_s
+
+
+def seconds(case, ranks, bytes_per_s, message_s):
+    shared = case.seconds - case.sums - case.alone
+    return (shared / ranks + case.sums / min(ranks, BANDS) + case.alone
+            + exchange(case, ranks, bytes_per_s, message_s))
+
+
+CASES = (
+    Case("201942 patches, 1024 rays each", 201942, 44966388, 89, False, 66.5),
+    Case("493083 patches, 1024 rays each", 493083, 125384913, 92, False, 195.0),
+    Case("992560 patches, 256 rays each", 992560, 77648879, 111, False, 176.6),
+)
+
+
+def main():
+    network = [float(word) for word in sys.argv[1:]] + [12.5e9, 2e-6][len(sys.argv) - 1:]
+    print("| ranks |" + "".join(f" {case.name} | of it exchange | efficiency |" for case in CASES))
+    print("| --- |" + " --- | --- | --- |" * len(CASES))
+    for ranks in RANKS:
+        row = f"| {ranks} |"
+        for case in CASES:
+            taken = seconds(case, ranks, *network)
+            row += (f" {taken:.3g} s | {exchange(case, ranks, *network):.2g} s "
+                    f"| {seconds(case, 1, *network) / taken / ranks:.2g} |")
+        print(row)
+
+
+if __name__ == "__main__":
+    main()
