@@ -12,6 +12,7 @@ namespace {
 
 // Of its mean ray's length: how far off a point may stand for another.
 constexpr float most_found_share = 0.1F;
+constexpr float half_diagonal = 0.7072F;  // of a pixel
 
 // How much further apart neighbours are along the surface than across the view.
 float stretch(const GatherPoint& point) {
@@ -112,11 +113,14 @@ double GatherField::error_of(Gathered kind, std::size_t point) const {
 
 std::size_t GatherField::find(int x, int y, const glm::vec3& position,
                               const glm::vec3& normal) const {
-  // Further off, irradiance may be another: a gap in a wall, the foot of a box.
+  // Further off, irradiance may be another: a gap in a wall, the foot of a box. Within the pixel
+  // the point stands for the mean all the same: what varies there is told by its neighbours, while
+  // a few rays of each sample's own would be grain.
   const auto if_near = [&](std::size_t index) {
     const GatherPoint& point = points_[index];
+    const float pixel = point.spacing_m * stretch(point);
     const float most =
-        std::min(3.0F * point.spacing_m * stretch(point), most_found_share * point.reach_m);
+        std::max(half_diagonal * pixel, std::min(3.0F * pixel, most_found_share * point.reach_m));
     return glm::length(position - point.position) <= most ? index : no_point;
   };
   if (!window_.contains(x, y)) return no_point;

@@ -138,6 +138,7 @@ class Passes {
       report_.gather_seconds += seconds_since(start);
     }
     first_round(static_cast<std::uint32_t>(options_.shared.least_samples));
+    if (!ends()) shade(wanted_for_the_eye(*sums_));
     double before = 0.0, promised = 0.0, kept = 1.0;  // of what the last plan promised
     for (int round = 1; round < most_error_rounds && !ends(); ++round) {
       const SampleCosts each = sample_costs(field());
