@@ -43,13 +43,18 @@ GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
   find_strays(surface, camera);
   inverse_length_.assign(points_.size(), 0.0);
   const std::size_t count = points_.size();
-  estimate_[number(Gathered::Solution)] = Estimate(count, layers_, image_layers_);
-  if (setting.gathers_residual) {
-    estimate_[number(Gathered::Residual)] = Estimate(count, image_layers_, image_layers_);
-  }
+  const auto begin = [&](Gathered kind, std::size_t layers) {
+    Estimate& estimate = estimate_[number(kind)];
+    estimate.layers = layers;
+    estimate.image_layers = image_layers_;
+    estimate.luminance.assign(count, {0.0F, 0.0F});
+    estimate.samples.assign(count, 0.0F);
+  };
+  begin(Gathered::Solution, layers_);
+  if (setting.gathers_residual) begin(Gathered::Residual, image_layers_);
   any_lobe_ = std::any_of(points_.begin(), points_.end(),
                           [](const GatherPoint& point) { return point.lobe > 0.0F; });
-  if (any_lobe_) estimate_[number(Gathered::Lobe)] = Estimate(count, image_layers_, image_layers_);
+  if (any_lobe_) begin(Gathered::Lobe, image_layers_);
 }
 
 std::uint32_t GatherField::fewest_samples(Gathered kind) {
@@ -68,6 +73,8 @@ bool GatherField::gathers(Gathered kind) const { return !estimate_[number(kind)]
 void GatherField::cast(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
                        const std::function<bool()>& stop) {
   if (!gathers(kind)) return;
+  Estimate& estimate = estimate_[number(kind)];
+  estimate.sum.resize(points_.size() * estimate.layers, glm::vec3(0.0F));
   if (kind == Gathered::Solution) {
     cast_solution(more, round, stop);
   } else {
@@ -75,25 +82,28 @@ void GatherField::cast(Gathered kind, const std::vector<std::uint32_t>& more, st
   }
 }
 
-void GatherField::share() {
+void GatherField::share(Gathered kind, bool last) {
+  if (!gathers(kind)) return;
   if (!of_surface_) of_surface_.emplace(window_, points_, setting_.shares);
-  diffuse_.assign(points_.size() * layers_, glm::vec3(0.0F));
-  for (const Gathered kind : {Gathered::Solution, Gathered::Residual}) {
-    if (!gathers(kind)) continue;
-    Shared& shared = shared_[number(kind)];
-    shared = raytrace::share(*of_surface_, estimate_[number(kind)]);
-    add_strays(strays_, estimate_[number(kind)], shared);
-    for (std::size_t p = 0; p < points_.size(); ++p) {
-      for (std::size_t layer = 0; layer < shared.layers; ++layer) {
-        diffuse_[p * layers_ + layer] += shared.radiance[p * shared.layers + layer];
-      }
+  const bool lobe = kind == Gathered::Lobe;
+  if (lobe && !of_material_) of_material_ = of_surface_->of_like_material(points_);
+  Estimate& estimate = estimate_[number(kind)];
+  Shared& shared = shared_[number(kind)];
+  shared = raytrace::share(lobe ? *of_material_ : *of_surface_, estimate);
+  add_strays(strays_, estimate, shared);
+  if (last) std::vector<glm::vec3>().swap(estimate.sum);
+  if (lobe) return;
+  std::vector<glm::vec3> radiance;
+  radiance.swap(shared.radiance);
+  if (kind == Gathered::Solution) {
+    diffuse_ = std::move(radiance);
+    return;
+  }
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    for (std::size_t layer = 0; layer < image_layers_; ++layer) {
+      diffuse_[p * layers_ + layer] += radiance[p * image_layers_ + layer];
     }
   }
-  if (!any_lobe_) return;
-  if (!of_material_) of_material_ = of_surface_->of_like_material(points_);
-  shared_[number(Gathered::Lobe)] =
-      raytrace::share(*of_material_, estimate_[number(Gathered::Lobe)]);
-  add_strays(strays_, estimate_[number(Gathered::Lobe)], shared_[number(Gathered::Lobe)]);
 }
 
 std::span<const glm::vec3> GatherField::lobe(std::size_t point) const {

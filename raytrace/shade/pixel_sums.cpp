@@ -54,7 +54,7 @@ PixelSums::PixelSums(const Window& of, std::size_t layers, bool splits_parts)
     : window(of),
       image_layers(layers),
       entries(layers + (splits_parts ? part_count : 0)),
-      radiance(of.pixel_count() * entries, glm::dvec3(0.0)),
+      radiance(of.pixel_count() * entries, glm::vec3(0.0F)),
       terms(of.pixel_count()),
       samples(of.pixel_count(), 0U),
       luminance(of.pixel_count(), 0.0),
@@ -65,7 +65,10 @@ PixelSums::PixelSums(const Window& of, std::size_t layers, bool splits_parts)
 
 void PixelSums::add(std::size_t pixel, const PixelShader& shader, std::uint32_t first,
                     std::uint32_t count) {
-  for (std::size_t k = 0; k < entries; ++k) radiance[pixel * entries + k] += shader.sums()[k];
+  for (std::size_t k = 0; k < entries; ++k) {
+    glm::vec3& sum = radiance[pixel * entries + k];
+    sum = glm::vec3(Rgb(sum) + shader.sums()[k]);
+  }
   for (std::size_t k = 0; k < count; ++k) {
     const double y = shader.sample_luminance()[k];
     luminance[pixel] += y;

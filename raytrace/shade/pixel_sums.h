@@ -15,7 +15,7 @@ struct PixelSums {
   Window window;
   std::size_t image_layers = 0, entries = 0;  // with parts behind the layers
   // pixel * entries, summed over samples, without what they read from gather points
-  std::vector<glm::dvec3> radiance;
+  std::vector<glm::vec3> radiance;
   std::vector<std::vector<FieldTerm>> terms;  // that
   std::vector<std::uint32_t> samples;
   // Sums over samples, of the luminance and its square, gather points included and sources that the
