@@ -22,7 +22,7 @@ void pixel_radiance(const Sampled& sampled, std::size_t pixel, std::vector<Rgb>&
   const PixelSums& sums = sampled.sums;
   const double n = sums.samples[pixel];
   for (std::size_t k = 0; k < sums.entries; ++k) {
-    out[k] = sums.radiance[pixel * sums.entries + k] / n;
+    out[k] = Rgb(sums.radiance[pixel * sums.entries + k]) / n;
   }
   const std::size_t layers = sums.image_layers;
   const bool by_part = sums.entries > layers;
@@ -115,15 +115,20 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
   const CameraModel& model = setup.camera();
   const Window window = window_of(options);
   frame.window = window;
-  frame.image = base::make_rgb_image(window.columns, window.rows);
-  const Layout layout = add_layers(
-      frame.image, options.per_light ? groups.names : std::vector<std::string>{}, options.aovs);
-  shared.splits_parts = layout.splits_parts();
+  const auto with_layers = [&](base::Image& image) {
+    return add_layers(image, options.per_light ? groups.names : std::vector<std::string>{},
+                      options.aovs);
+  };
+  base::Image planned = base::make_rgb_image(0, 0);
+  shared.splits_parts = with_layers(planned).splits_parts();
 
   const Sampled sampled =
       sample_picture(shared, setup.world(), model, options, progress, frame.report);
   const PixelSums& sums = sampled.sums;
   frame.error = state_error(sums, sampled.field ? &*sampled.field : nullptr, window);
+  // Not before: with many layers it is as large as what is sampled.
+  frame.image = base::make_rgb_image(window.columns, window.rows);
+  const Layout layout = with_layers(frame.image);
   fill_layers(sampled, frame.error, layout, window, frame.image);
   frame.report.rays.layers += fill_first_hit(scene, query, model, window, frame.image);
   frame.report.rays.layers += fill_cryptomatte(

@@ -19,12 +19,13 @@ namespace {
 // Conditions that are kept together: a run that is killed loses no more of them.
 constexpr std::size_t batch_size = 16;
 
-struct Place {
-  std::size_t place, setting;
-};
-Place place_of(const StudyPart& part, std::size_t condition) {
+studies::ConditionAt place_of(const StudyPart& part, std::size_t condition) {
   const std::size_t places = part.basis->places().size();
   return {condition % places, condition / places};
+}
+
+std::string condition_id(const StudyPart& part, std::size_t condition) {
+  return fmt::format("{}-c{}", part.id, condition);
 }
 
 std::string phase_of(double sun_share) {
@@ -51,7 +52,7 @@ Json conditions_json(const StudyPart& part) {
     for (const auto& [name, factor] : lamps.factors) factors[name] = rgb_or_number(factor);
     const std::string where =
         along ? fmt::format("orbit {:g} deg, ", part.positions_deg[place]) : "";
-    conditions.push_back({{"id", fmt::format("{}-c{}", part.id, k)},
+    conditions.push_back({{"id", condition_id(part, k)},
                           {"scene", part.id},
                           {"name", where + "lamps " + lamps.name},
                           {"lamps", lamps.name},
@@ -157,13 +158,17 @@ std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studie
     if (!said.empty()) note("note: " + said);
     found = false;
     if (Interrupt::asked()) break;
-    base::parallel_chunks(last - first, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = first + begin; k < first + end; ++k) {
-        const auto [place, setting] = place_of(part_, k);
-        all[k] = outcome_json(view, studies::judge_condition(*part_.basis, *part_.query, view,
-                                                             place, setting, cctv, options()));
+    std::vector<studies::ConditionAt> conditions;
+    for (std::size_t k = first; k < last; ++k) conditions.push_back(place_of(part_, k));
+    const std::vector<studies::Outcome> outcomes =
+        studies::judge_conditions(*part_.basis, *part_.query, view, conditions, cctv, options());
+    for (std::size_t k = first; k < last; ++k) {
+      all[k] = outcome_json(view, outcomes[k - first]);
+      for (std::size_t t = 0; t < all[k].size(); ++t) {
+        const auto& of = outcomes[k - first].targets[t].why_of;
+        all[k][t]["why_of"] = of ? Json(condition_id(part_, first + *of)) : Json();
       }
-    });
+    }
     store_.keep_facts(
         key, {{"conditions", std::vector<Json>(all.begin() + static_cast<std::ptrdiff_t>(first),
                                                all.begin() + static_cast<std::ptrdiff_t>(last))}});

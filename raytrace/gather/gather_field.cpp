@@ -12,6 +12,7 @@ namespace {
 
 // Of its mean ray's length: how far off a point may stand for another.
 constexpr float most_found_share = 0.1F;
+constexpr float half_diagonal = 0.7072F;  // of a pixel
 
 // How much further apart neighbours are along the surface than across the view.
 float stretch(const GatherPoint& point) {
@@ -42,13 +43,18 @@ GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
   find_strays(surface, camera);
   inverse_length_.assign(points_.size(), 0.0);
   const std::size_t count = points_.size();
-  estimate_[number(Gathered::Solution)] = Estimate(count, layers_, image_layers_);
-  if (setting.gathers_residual) {
-    estimate_[number(Gathered::Residual)] = Estimate(count, image_layers_, image_layers_);
-  }
+  const auto begin = [&](Gathered kind, std::size_t layers) {
+    Estimate& estimate = estimate_[number(kind)];
+    estimate.layers = layers;
+    estimate.image_layers = image_layers_;
+    estimate.luminance.assign(count, {0.0F, 0.0F});
+    estimate.samples.assign(count, 0.0F);
+  };
+  begin(Gathered::Solution, layers_);
+  if (setting.gathers_residual) begin(Gathered::Residual, image_layers_);
   any_lobe_ = std::any_of(points_.begin(), points_.end(),
                           [](const GatherPoint& point) { return point.lobe > 0.0F; });
-  if (any_lobe_) estimate_[number(Gathered::Lobe)] = Estimate(count, image_layers_, image_layers_);
+  if (any_lobe_) begin(Gathered::Lobe, image_layers_);
 }
 
 std::uint32_t GatherField::fewest_samples(Gathered kind) {
@@ -67,6 +73,8 @@ bool GatherField::gathers(Gathered kind) const { return !estimate_[number(kind)]
 void GatherField::cast(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
                        const std::function<bool()>& stop) {
   if (!gathers(kind)) return;
+  Estimate& estimate = estimate_[number(kind)];
+  estimate.sum.resize(points_.size() * estimate.layers, glm::vec3(0.0F));
   if (kind == Gathered::Solution) {
     cast_solution(more, round, stop);
   } else {
@@ -74,25 +82,28 @@ void GatherField::cast(Gathered kind, const std::vector<std::uint32_t>& more, st
   }
 }
 
-void GatherField::share() {
+void GatherField::share(Gathered kind, bool last) {
+  if (!gathers(kind)) return;
   if (!of_surface_) of_surface_.emplace(window_, points_, setting_.shares);
-  diffuse_.assign(points_.size() * layers_, glm::vec3(0.0F));
-  for (const Gathered kind : {Gathered::Solution, Gathered::Residual}) {
-    if (!gathers(kind)) continue;
-    Shared& shared = shared_[number(kind)];
-    shared = raytrace::share(*of_surface_, estimate_[number(kind)]);
-    add_strays(strays_, estimate_[number(kind)], shared);
-    for (std::size_t p = 0; p < points_.size(); ++p) {
-      for (std::size_t layer = 0; layer < shared.layers; ++layer) {
-        diffuse_[p * layers_ + layer] += shared.radiance[p * shared.layers + layer];
-      }
+  const bool lobe = kind == Gathered::Lobe;
+  if (lobe && !of_material_) of_material_ = of_surface_->of_like_material(points_);
+  Estimate& estimate = estimate_[number(kind)];
+  Shared& shared = shared_[number(kind)];
+  shared = raytrace::share(lobe ? *of_material_ : *of_surface_, estimate);
+  add_strays(strays_, estimate, shared);
+  if (last) std::vector<glm::vec3>().swap(estimate.sum);
+  if (lobe) return;
+  std::vector<glm::vec3> radiance;
+  radiance.swap(shared.radiance);
+  if (kind == Gathered::Solution) {
+    diffuse_ = std::move(radiance);
+    return;
+  }
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    for (std::size_t layer = 0; layer < image_layers_; ++layer) {
+      diffuse_[p * layers_ + layer] += radiance[p * image_layers_ + layer];
     }
   }
-  if (!any_lobe_) return;
-  if (!of_material_) of_material_ = of_surface_->of_like_material(points_);
-  shared_[number(Gathered::Lobe)] =
-      raytrace::share(*of_material_, estimate_[number(Gathered::Lobe)]);
-  add_strays(strays_, estimate_[number(Gathered::Lobe)], shared_[number(Gathered::Lobe)]);
 }
 
 std::span<const glm::vec3> GatherField::lobe(std::size_t point) const {
@@ -112,11 +123,14 @@ double GatherField::error_of(Gathered kind, std::size_t point) const {
 
 std::size_t GatherField::find(int x, int y, const glm::vec3& position,
                               const glm::vec3& normal) const {
-  // Further off, irradiance may be another: a gap in a wall, the foot of a box.
+  // Further off, irradiance may be another: a gap in a wall, the foot of a box. Within the pixel
+  // the point stands for the mean all the same: what varies there is told by its neighbours, while
+  // a few rays of each sample's own would be grain.
   const auto if_near = [&](std::size_t index) {
     const GatherPoint& point = points_[index];
+    const float pixel = point.spacing_m * stretch(point);
     const float most =
-        std::min(3.0F * point.spacing_m * stretch(point), most_found_share * point.reach_m);
+        std::max(half_diagonal * pixel, std::min(3.0F * pixel, most_found_share * point.reach_m));
     return glm::length(position - point.position) <= most ? index : no_point;
   };
   if (!window_.contains(x, y)) return no_point;

@@ -69,8 +69,9 @@ class GatherField {
   // The least that can be asked for at once: two halves of the fewest.
   [[nodiscard]] static std::uint32_t fewest_samples(Gathered kind);
   [[nodiscard]] bool gathers(Gathered kind) const;
-  // Shares what was cast; find() and the values follow it.
-  void share();
+  // Shares what was cast of a kind; find() and the values follow it. The residual comes after the
+  // solution. last: nothing more of that kind will be cast, and its samples are let go.
+  void share(Gathered kind, bool last);
 
   // A point whose values may stand for the surface point that pixel (x, y) meets: one of the
   // pixel's own, on the same surface and near for its surroundings; no_point if there is none.

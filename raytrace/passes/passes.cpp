@@ -18,6 +18,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int most_rounds = 6;  // of camera samples, each at most four times the one before
 constexpr int most_error_rounds = 24;
+constexpr std::array<Gathered, gathered_kinds> every_kind = {Gathered::Solution, Gathered::Residual,
+                                                             Gathered::Lobe};
 constexpr double most_step = 2.0;  // less squared error a round
 // What planning by few samples promises is off by that much.
 constexpr double least_kept = 0.7, most_kept = 2.0;
@@ -104,20 +106,24 @@ class Passes {
         pilot.deviation > 0.0 ? wanted_error * wanted_error / pilot.deviation : 1.0;
     // Rounds look at neighbours: a crop gets the same pixels as the whole picture only if what
     // surrounds it is worked out too.
-    sums_.emplace(widened(window_, most_rounds, camera_), shared_.layers, shared_.splits_parts);
+    const Window around = widened(window_, most_rounds, camera_);
     const double samples = std::max(double(how.least_samples),
                                     per_deviation > 0.0 ? pilot.deviation / per_deviation : 0.0);
     const double gathers = shared_.gathers ? options_.gather_rays : 0;
-    expected_ = static_cast<double>(sums_->samples.size()) * samples + pixels() * 2.0 * gathers;
+    expected_ = static_cast<double>(around.pixel_count()) * samples + pixels() * 2.0 * gathers;
     if (shared_.gathers) {
       const auto start = Clock::now();
       begin_field();
       const auto rays = static_cast<std::uint32_t>(options_.gather_rays);
-      cast_evenly(
-          {std::max(rays, GatherField::fewest_samples(Gathered::Solution)), rays / 2, rays / 2});
-      share();
+      const std::uint32_t fewest = GatherField::fewest_samples(Gathered::Solution);
+      for (const Gathered kind : every_kind) {
+        cast_evenly(kind, kind == Gathered::Solution ? std::max(rays, fewest) : rays / 2);
+        field_->share(kind, true);
+      }
+      count_gather_rays();
       report_.gather_seconds += seconds_since(start);
     }
+    sums_.emplace(around, shared_.layers, shared_.splits_parts);
     first_round(static_cast<std::uint32_t>(how.least_samples));
     for (int round = 1; round < most_rounds && !ends() && per_deviation > 0.0; ++round) {
       shade(wanted_samples(*sums_, per_deviation, pilot.bright(), how.least_samples,
@@ -133,11 +139,14 @@ class Passes {
       const auto start = Clock::now();
       begin_field();
       const bool early = options_.time_limit_s > 0.0;  // a first look at all of the picture
-      cast_evenly({GatherField::fewest_samples(Gathered::Solution), early ? 2U : 4U, 2U});
+      cast_evenly(Gathered::Solution, GatherField::fewest_samples(Gathered::Solution));
+      cast_evenly(Gathered::Residual, early ? 2U : 4U);
+      cast_evenly(Gathered::Lobe, 2U);
       share();
       report_.gather_seconds += seconds_since(start);
     }
     first_round(static_cast<std::uint32_t>(options_.shared.least_samples));
+    if (!ends()) shade(wanted_for_the_eye(*sums_));
     double before = 0.0, promised = 0.0, kept = 1.0;  // of what the last plan promised
     for (int round = 1; round < most_error_rounds && !ends(); ++round) {
       const SampleCosts each = sample_costs(field());
@@ -193,14 +202,11 @@ class Passes {
     shared_.field = &*field_;
   }
 
-  void cast_evenly(const std::array<std::uint32_t, gathered_kinds>& each) {
-    const std::size_t count = field_->points().size();
-    for (std::size_t k = 0; k < gathered_kinds; ++k) {
-      const auto kind = static_cast<Gathered>(k);
-      field_->cast(kind, std::vector<std::uint32_t>(count, each[k]), 0, [this] { return stops(); });
-      tell(pixels() * each[k]);
-      if (stops()) cast_fewest(kind);
-    }
+  void cast_evenly(Gathered kind, std::uint32_t each) {
+    const std::vector<std::uint32_t> more(field_->points().size(), each);
+    field_->cast(kind, more, 0, [this] { return stops(); });
+    tell(pixels() * each);
+    if (stops()) cast_fewest(kind);
   }
 
   // Where a stop left nothing: a quick look.
@@ -214,7 +220,11 @@ class Passes {
   }
 
   void share() {
-    field_->share();
+    for (const Gathered kind : every_kind) field_->share(kind, false);
+    count_gather_rays();
+  }
+
+  void count_gather_rays() {
     double rays = 0.0, points = 0.0;
     for (std::size_t p = 0; p < field_->points().size(); ++p) {
       const float samples = field_->samples(Gathered::Solution, p);

@@ -53,7 +53,7 @@ StatedError state_error(const PixelSums& sums, const GatherField* field, const W
       const double n = sums.samples[from];
       if (n == 0.0) continue;
       Rgb own(0.0);
-      for (std::size_t k = 0; k < layers; ++k) own += sums.radiance[from * sums.entries + k];
+      for (std::size_t k = 0; k < layers; ++k) own += Rgb(sums.radiance[from * sums.entries + k]);
       double luminance = base::luminance(own) - sums.source[from].luminance;
       std::array<float, error_parts>& squared = stated.squared[to];
       if (field != nullptr) {

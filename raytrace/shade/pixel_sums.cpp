@@ -13,6 +13,9 @@ namespace {
 
 constexpr int tile_edge_px = 16;
 constexpr std::size_t few_pixels = 64;
+// What the eye overlooks in a pixel of four samples, and how dim a surface it still looks at, over
+// the picture's mean.
+constexpr double most_scatter = 1.0 / 3.0, dimmest_share = 0.05;
 
 void shade_pixel(const ShadingScene& shared, const CameraModel& camera, int x, int y,
                  std::uint32_t first, std::uint32_t end, PixelShader& shader) {
@@ -51,7 +54,7 @@ PixelSums::PixelSums(const Window& of, std::size_t layers, bool splits_parts)
     : window(of),
       image_layers(layers),
       entries(layers + (splits_parts ? part_count : 0)),
-      radiance(of.pixel_count() * entries, glm::dvec3(0.0)),
+      radiance(of.pixel_count() * entries, glm::vec3(0.0F)),
       terms(of.pixel_count()),
       samples(of.pixel_count(), 0U),
       luminance(of.pixel_count(), 0.0),
@@ -62,7 +65,10 @@ PixelSums::PixelSums(const Window& of, std::size_t layers, bool splits_parts)
 
 void PixelSums::add(std::size_t pixel, const PixelShader& shader, std::uint32_t first,
                     std::uint32_t count) {
-  for (std::size_t k = 0; k < entries; ++k) radiance[pixel * entries + k] += shader.sums()[k];
+  for (std::size_t k = 0; k < entries; ++k) {
+    glm::vec3& sum = radiance[pixel * entries + k];
+    sum = glm::vec3(Rgb(sum) + shader.sums()[k]);
+  }
   for (std::size_t k = 0; k < count; ++k) {
     const double y = shader.sample_luminance()[k];
     luminance[pixel] += y;
@@ -174,30 +180,63 @@ void PixelSums::pass(std::size_t pixel, base::Parcel& parcel) {
   parcel.pass(rays[pixel]);
 }
 
+namespace {
+
+// The greatest of a pixel's eight neighbours in the window.
+std::vector<double> greatest_around(const Window& window, const std::vector<double>& values) {
+  std::vector<double> greatest(values.size(), 0.0);
+  for (int y = window.y; y < window.y + window.rows; ++y) {
+    for (int x = window.x; x < window.x + window.columns; ++x) {
+      double& of_pixel = greatest[window.index(x, y)];
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          if ((dx == 0 && dy == 0) || !window.contains(x + dx, y + dy)) continue;
+          of_pixel = std::max(of_pixel, values[window.index(x + dx, y + dy)]);
+        }
+      }
+    }
+  }
+  return greatest;
+}
+
+}  // namespace
+
 std::vector<std::uint32_t> wanted_samples(const PixelSums& sums, double per_deviation,
                                           double bright, int least, int most) {
-  const Window& window = sums.window;
   std::vector<double> deviation(sums.samples.size());
   for (std::size_t p = 0; p < deviation.size(); ++p) {
     deviation[p] = sums.deviation(p, bright);
   }
+  const std::vector<double> noisiest = greatest_around(sums.window, deviation);
   std::vector<std::uint32_t> wanted(sums.samples.size());
-  for (int y = 0; y < window.rows; ++y) {
-    for (int x = 0; x < window.columns; ++x) {
-      double noisiest = 0.0;
-      for (int dy = -1; dy <= 1; ++dy) {
-        for (int dx = -1; dx <= 1; ++dx) {
-          const int qx = window.x + x + dx, qy = window.y + y + dy;
-          if ((dx == 0 && dy == 0) || !window.contains(qx, qy)) continue;
-          noisiest = std::max(noisiest, deviation[window.index(qx, qy)]);
-        }
-      }
-      const std::size_t p = window.index(window.x + x, window.y + y);
-      const double ideal = std::clamp(noisiest / per_deviation, double(least), double(most));
-      const auto rounded = std::bit_ceil(static_cast<std::uint32_t>(ideal));
-      const std::uint32_t limit = std::max(static_cast<std::uint32_t>(least), 4 * sums.samples[p]);
-      wanted[p] = std::min({rounded, limit, static_cast<std::uint32_t>(most)});
-    }
+  for (std::size_t p = 0; p < wanted.size(); ++p) {
+    const double ideal = std::clamp(noisiest[p] / per_deviation, double(least), double(most));
+    const auto rounded = std::bit_ceil(static_cast<std::uint32_t>(ideal));
+    const std::uint32_t limit = std::max(static_cast<std::uint32_t>(least), 4 * sums.samples[p]);
+    wanted[p] = std::min({rounded, limit, static_cast<std::uint32_t>(most)});
+  }
+  return wanted;
+}
+
+std::vector<std::uint32_t> wanted_for_the_eye(const PixelSums& sums) {
+  double mean = 0.0, counted = 0.0;
+  for (std::size_t p = 0; p < sums.samples.size(); ++p) {
+    if (!sums.counts(p)) continue;
+    mean += sums.luminance[p] / sums.samples[p];
+    counted += 1.0;
+  }
+  if (mean <= 0.0) return sums.samples;
+  const double dimmest = dimmest_share * mean / counted;
+  std::vector<double> scatter(sums.samples.size(), 0.0);
+  for (std::size_t p = 0; p < scatter.size(); ++p) {
+    const double n = sums.samples[p];
+    if (n < 2.0) continue;
+    scatter[p] = std::sqrt(sums.sample_variance(p) * n) / std::max(sums.luminance[p] / n, dimmest);
+  }
+  const std::vector<double> around = greatest_around(sums.window, scatter);
+  std::vector<std::uint32_t> wanted = sums.samples;
+  for (std::size_t p = 0; p < wanted.size(); ++p) {
+    if (around[p] > most_scatter) wanted[p] *= 4;
   }
   return wanted;
 }

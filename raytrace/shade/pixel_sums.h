@@ -15,7 +15,7 @@ struct PixelSums {
   Window window;
   std::size_t image_layers = 0, entries = 0;  // with parts behind the layers
   // pixel * entries, summed over samples, without what they read from gather points
-  std::vector<glm::dvec3> radiance;
+  std::vector<glm::vec3> radiance;
   std::vector<std::vector<FieldTerm>> terms;  // that
   std::vector<std::uint32_t> samples;
   // Sums over samples, of the luminance and its square, gather points included and sources that the
@@ -55,5 +55,10 @@ void shade_samples(const ShadingScene& shared, const CameraModel& camera,
 // would stop where they happen to agree, and its mean would be biased. bright: as in deviation().
 [[nodiscard]] std::vector<std::uint32_t> wanted_samples(const PixelSums& sums, double per_deviation,
                                                         double bright, int least, int most);
+
+// Four times as many as there are where samples of a neighbour scatter by more than a third of its
+// luminance, or of a twentieth of the picture's mean: the eye sees stairs and grain on dim surfaces
+// too, which the picture's error has little of. Neighbours, as above.
+[[nodiscard]] std::vector<std::uint32_t> wanted_for_the_eye(const PixelSums& sums);
 
 }  // namespace earthshine::raytrace

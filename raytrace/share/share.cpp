@@ -13,6 +13,7 @@ namespace {
 // counts when details are kept.
 constexpr float doubt = 1.5F;
 constexpr std::size_t noise_fields = 4;
+constexpr std::size_t layers_at_once = 4;
 
 }  // namespace
 
@@ -160,13 +161,24 @@ class Sharer {
     }
   }
 
+  // A few layers at a time: planes of all of them would take more memory than all else.
   void take_layers() {
-    Planes values(3 * estimate_.layers, std::vector<float>(points_, 0.0F)), detail, kept = values;
+    shared_.radiance.reserve(estimate_.samples.size() * estimate_.layers);  // strays follow
+    shared_.radiance.resize(points_ * estimate_.layers);
+    for (std::size_t first = 0; first < estimate_.layers; first += layers_at_once) {
+      take_layers(first, std::min(layers_at_once, estimate_.layers - first));
+    }
+  }
+
+  void take_layers(std::size_t first, std::size_t count) {
+    Planes values(3 * count, std::vector<float>(points_, 0.0F)), detail, kept = values;
+    const auto at = [&](std::size_t p, std::size_t k) {
+      return p * estimate_.layers + first + k / 3;
+    };
     for (std::size_t k = 0; k < values.size(); ++k) {
       for (std::size_t p = 0; p < points_; ++p) {
         if (estimate_.samples[p] <= 0.0F) continue;
-        values[k][p] = estimate_.sum[p * estimate_.layers + k / 3][static_cast<int>(k % 3)] /
-                       estimate_.samples[p];
+        values[k][p] = estimate_.sum[at(p, k)][static_cast<int>(k % 3)] / estimate_.samples[p];
       }
     }
     for (std::size_t level = 0; level < share_levels; ++level) {
@@ -175,11 +187,9 @@ class Sharer {
         for (std::size_t p = 0; p < points_; ++p) kept[k][p] += keep_[p][level] * detail[k][p];
       }
     }
-    shared_.radiance.resize(points_ * estimate_.layers);
-    for (std::size_t k = 0; k < shared_.radiance.size(); ++k) {
-      const std::size_t p = k / estimate_.layers, plane = 3 * (k % estimate_.layers);
-      for (std::size_t c = 0; c < 3; ++c) {
-        shared_.radiance[k][static_cast<int>(c)] = values[plane + c][p] + kept[plane + c][p];
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      for (std::size_t p = 0; p < points_; ++p) {
+        shared_.radiance[at(p, k)][static_cast<int>(k % 3)] = values[k][p] + kept[k][p];
       }
     }
   }

@@ -42,8 +42,9 @@ double record_bytes(const MemoryCase& m) {
   const auto layers = static_cast<double>(m.layers);
   const double entries = layers + (m.splits_parts ? 3.0 : 0.0);
   const PixelRecordBytes& b = pixel_record_bytes;
+  const double per_layer = b.gather_per_layer + (m.in_rounds ? b.cast_per_layer : 0.0);
   return b.sums + b.sums_per_entry * entries +
-         (m.shares_gather ? b.gather_point + b.gather_per_layer * layers : 0.0);
+         (m.shares_gather ? b.gather_point + per_layer * layers : 0.0);
 }
 
 }  // namespace
@@ -149,6 +150,7 @@ void add_picture(MemoryCase& m, const scenes::LightGroups& groups, const scenes:
   };
   m.splits_parts = std::any_of(options.aovs.begin(), options.aovs.end(), is_part);
   m.shares_gather = options.shared.on;
+  m.in_rounds = options.error > 0.0 || (options.time_limit_s > 0.0 && options.fills_time);
   if (options.indirect != raytrace::Indirect::Radiosity || !effects.solution) {
     m.solves = false;
     m.columns = 0;

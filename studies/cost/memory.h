@@ -21,10 +21,11 @@ namespace earthshine::studies {
 // (raytrace/shade/pixel_sums.h, gather_field.h).
 struct PixelRecordBytes {
   double sums = 64.0;            // samples, moments of the luminance, wanted samples
-  double sums_per_entry = 24.0;  // radiance of an image layer or part
+  double sums_per_entry = 12.0;  // radiance of an image layer or part
   double gather_point = 700.0;   // with SharedGather and a stray now and then: place, halves, what
                                  // is told of its details, fields of noise meanwhile
-  double gather_per_layer = 150.0;  // of three kinds, as cast and shared; details meanwhile
+  double gather_per_layer = 30.0;  // of diffuse light and of lobes, as shared
+  double cast_per_layer = 55.0;    // of three kinds, as cast, where they are cast round by round
 };
 inline constexpr PixelRecordBytes pixel_record_bytes;
 
@@ -45,6 +46,7 @@ struct MemoryCase {
   std::size_t layers = 0;      // that read the solution: 1, or the light groups
   bool splits_parts = false;   // layers direct, indirect, specular
   bool shares_gather = false;  // RenderOptions::shared
+  bool in_rounds = false;      // RenderOptions::error or the whole of a time limit
   bool specular = false;       // a second table of the solution for highlights, mirrors, glass
 };
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studies/orbit/condition.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 
+#include "base/parallel.h"
 #include "radiosity/direct/explicit_emitters.h"
 #include "studies/orbit/target_sources.h"
 
@@ -61,17 +64,18 @@ BasisView make_basis_view(const LightBasis& basis, const scenes::RayQuery& query
   return view;
 }
 
-Outcome judge_condition(const LightBasis& basis, const scenes::RayQuery& query,
-                        const BasisView& view, std::size_t place, std::size_t setting,
-                        const std::optional<degrade::Setup>& cctv,
-                        const ConditionOptions& options) {
+namespace {
+
+// All but the reasons.
+Outcome look(const LightBasis& basis, const scenes::RayQuery& query, const BasisView& view,
+             const ConditionAt& at, const std::optional<degrade::Setup>& cctv,
+             const ConditionOptions& options) {
   Outcome outcome;
-  const GroupWeights weights = basis.weights(place, setting, options.lamps);
+  const GroupWeights weights = basis.weights(at.place, at.setting, options.lamps);
   outcome.radiance = weighted_sum(view.layers, basis.groups().names, weights);
   outcome.sight = measure_sight(view.plan, outcome.radiance, cctv, options.why.sight);
-  const SkyPlace& sky = basis.places()[place];
+  const SkyPlace& sky = basis.places()[at.place];
   outcome.sun_share = sun_share_of(sky);
-  std::map<std::string, base::Image> lit_by;  // the picture with a source on that is off
   for (std::size_t t = 0; t < view.targets.size(); ++t) {
     const BasisView::Target& target = view.targets[t];
     TargetOutcome found;
@@ -82,27 +86,127 @@ Outcome judge_condition(const LightBasis& basis, const scenes::RayQuery& query,
     found.basis_error = basis_error(weights, target.by_group);
     found.light_from = shares_of(basis, target, found.sources, weights,
                                  outcome.sight.targets[t].luminance.value_or(0.0));
-    if (wants_reasons(outcome.sight.targets[t], options)) {
-      for (SourceOnTarget& source : found.sources) {
-        if (source.off != switched_off && !source.off.starts_with(dimmed_to)) continue;
-        auto picture = lit_by.find(source.group);
-        if (picture == lit_by.end()) {
-          picture = lit_by
-                        .emplace(source.group,
-                                 weighted_sum(view.layers, basis.groups().names,
-                                              basis.weights_with(place, setting, source.group)))
-                        .first;
-        }
-        source.when_on = &picture->second;
-      }
-      found.why = why_not({basis.scene(), *view.camera, view.plan, outcome.radiance, cctv,
-                           outcome.sight, sky.sun, sky.earth},
-                          t, found.sources, options.why);
-      for (SourceOnTarget& source : found.sources) source.when_on = nullptr;
-    }
     outcome.targets.push_back(std::move(found));
   }
   return outcome;
+}
+
+// Fills in the reasons of those targets.
+void explain(const LightBasis& basis, const BasisView& view, const ConditionAt& at,
+             const std::optional<degrade::Setup>& cctv, const ConditionOptions& options,
+             const std::vector<std::size_t>& targets, Outcome& outcome) {
+  const SkyPlace& sky = basis.places()[at.place];
+  std::map<std::string, base::Image> lit_by;  // the picture with a source on that is off
+  for (const std::size_t t : targets) {
+    std::vector<SourceOnTarget>& sources = outcome.targets[t].sources;
+    for (SourceOnTarget& source : sources) {
+      if (source.off != switched_off && !source.off.starts_with(dimmed_to)) continue;
+      auto picture = lit_by.find(source.group);
+      if (picture == lit_by.end()) {
+        picture = lit_by
+                      .emplace(source.group,
+                               weighted_sum(view.layers, basis.groups().names,
+                                            basis.weights_with(at.place, at.setting, source.group)))
+                      .first;
+      }
+      source.when_on = &picture->second;
+    }
+    outcome.targets[t].why = why_not({basis.scene(), *view.camera, view.plan, outcome.radiance,
+                                      cctv, outcome.sight, sky.sun, sky.earth},
+                                     t, sources, options.why);
+    for (SourceOnTarget& source : sources) source.when_on = nullptr;
+  }
+}
+
+bool near(const std::optional<double>& a, const std::optional<double>& b, double share) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  return std::abs(*a - *b) <= share * std::max(std::abs(*a), std::abs(*b));
+}
+
+bool same_iris(const std::optional<degrade::Exposure>& a,
+               const std::optional<degrade::Exposure>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  const auto stops = [](const degrade::Exposure& e) {
+    return std::log2(e.gain / (e.f_number * e.f_number));
+  };
+  return std::abs(stops(*a) - stops(*b)) <= 0.25;
+}
+
+bool like(const Outcome& a, const Outcome& b, std::size_t target) {
+  constexpr double of_luminance = 0.1, of_probability = 0.05, of_lit = 0.05;
+  const Sight &one = a.sight.targets[target], &other = b.sight.targets[target];
+  if (one.verdict != other.verdict || !same_iris(a.sight.exposure, b.sight.exposure)) return false;
+  if (one.probability.has_value() != other.probability.has_value()) return false;
+  for (const auto task : {&Probability::detect, &Probability::recognise, &Probability::identify}) {
+    if (!one.probability) break;
+    if (std::abs(*one.probability.*task - *other.probability.*task) > of_probability) return false;
+  }
+  const TargetOutcome &first = a.targets[target], &second = b.targets[target];
+  const double lit = first.lit_fraction.value_or(0.0) - second.lit_fraction.value_or(0.0);
+  return near(one.luminance, other.luminance, of_luminance) &&
+         near(one.surround, other.surround, of_luminance) && std::abs(lit) <= of_lit &&
+         std::equal(first.sources.begin(), first.sources.end(), second.sources.begin(),
+                    second.sources.end(),
+                    [](const SourceOnTarget& source, const SourceOnTarget& same) {
+                      return source.group == same.group && source.off == same.off;
+                    });
+}
+
+std::vector<std::size_t> targets_to_explain(const Outcome& outcome,
+                                            const ConditionOptions& options) {
+  std::vector<std::size_t> targets;
+  for (std::size_t t = 0; t < outcome.targets.size(); ++t) {
+    if (wants_reasons(outcome.sight.targets[t], options)) targets.push_back(t);
+  }
+  return targets;
+}
+
+}  // namespace
+
+Outcome judge_condition(const LightBasis& basis, const scenes::RayQuery& query,
+                        const BasisView& view, const ConditionAt& at,
+                        const std::optional<degrade::Setup>& cctv,
+                        const ConditionOptions& options) {
+  Outcome outcome = look(basis, query, view, at, cctv, options);
+  explain(basis, view, at, cctv, options, targets_to_explain(outcome, options), outcome);
+  return outcome;
+}
+
+std::vector<Outcome> judge_conditions(const LightBasis& basis, const scenes::RayQuery& query,
+                                      const BasisView& view,
+                                      const std::vector<ConditionAt>& conditions,
+                                      const std::optional<degrade::Setup>& cctv,
+                                      const ConditionOptions& options) {
+  std::vector<Outcome> outcomes(conditions.size());
+  const auto for_each = [&](const auto& visit) {
+    base::parallel_chunks(conditions.size(), 1, [&](std::size_t k, std::size_t) { visit(k); });
+  };
+  for_each(
+      [&](std::size_t k) { outcomes[k] = look(basis, query, view, conditions[k], cctv, options); });
+  std::vector<std::vector<std::size_t>> to_explain(conditions.size());
+  std::vector<std::optional<std::size_t>> run(view.targets.size());  // where it began
+  for (std::size_t k = 0; k < conditions.size(); ++k) {
+    if (k > 0 && conditions[k].setting != conditions[k - 1].setting) run.assign(run.size(), {});
+    for (const std::size_t t : targets_to_explain(outcomes[k], options)) {
+      if (run[t] && like(outcomes[*run[t]], outcomes[k], t)) {
+        outcomes[k].targets[t].why_of = run[t];
+      } else {
+        to_explain[k].push_back(t);
+        run[t] = k;
+      }
+    }
+  }
+  for_each([&](std::size_t k) {
+    explain(basis, view, conditions[k], cctv, options, to_explain[k], outcomes[k]);
+    outcomes[k].radiance = {};
+  });
+  for (Outcome& outcome : outcomes) {
+    for (std::size_t t = 0; t < outcome.targets.size(); ++t) {
+      TargetOutcome& target = outcome.targets[t];
+      if (target.why_of) target.why = outcomes[*target.why_of].targets[t].why;
+    }
+  }
+  return outcomes;
 }
 
 }  // namespace earthshine::studies

@@ -46,6 +46,7 @@ struct TargetOutcome {
   std::vector<LightShare> light_from;   // by source and by last bounce, of its luminance
   std::optional<double> lit_fraction;   // by any source that is on; none out of view
   WhyNot why;                           // empty unless asked for
+  std::optional<std::size_t> why_of;    // of judge_conditions: whose reasons these are; none: own
   std::optional<BasisError> basis_error;
 };
 
@@ -63,9 +64,24 @@ struct ConditionOptions {
   WhyNotOptions why;
 };
 
+struct ConditionAt {
+  std::size_t place = 0, setting = 0;
+};
 [[nodiscard]] Outcome judge_condition(const LightBasis& basis, const scenes::RayQuery& query,
-                                      const BasisView& view, std::size_t place, std::size_t setting,
+                                      const BasisView& view, const ConditionAt& at,
                                       const std::optional<degrade::Setup>& cctv,
                                       const ConditionOptions& options);
+
+// Of conditions in their order. Reasons, which cost most, are worked out once per run of like ones:
+// of one setting, verdict and iris (a quarter of a stop), the same sources off for the same causes,
+// probabilities within 0.05, luminance of target and surround within a tenth, share in direct light
+// within 0.05 of those at the run's beginning. Its other conditions say whose theirs are. Outcomes
+// come without `radiance`.
+[[nodiscard]] std::vector<Outcome> judge_conditions(const LightBasis& basis,
+                                                    const scenes::RayQuery& query,
+                                                    const BasisView& view,
+                                                    const std::vector<ConditionAt>& conditions,
+                                                    const std::optional<degrade::Setup>& cctv,
+                                                    const ConditionOptions& options);
 
 }  // namespace earthshine::studies

@@ -20,7 +20,7 @@ PixelSums quiet(std::uint32_t samples) {
   for (std::size_t p = 0; p < sums.samples.size(); ++p) {
     sums.samples[p] = samples;
     sums.rays[p] = static_cast<float>(samples);
-    sums.radiance[p] = glm::dvec3(samples);
+    sums.radiance[p] = glm::vec3(float(samples));
     sums.luminance[p] = sums.luminance2[p] = samples;
     sums.source[p].reflecting = samples;
   }
@@ -87,7 +87,7 @@ TEST(SamplePlan, SamplesThatScatterLessTogetherNeedFewer) {
     }
     sums.samples[p] = 1024;
     sums.rays[p] = 1024.0F;
-    sums.radiance[p] = glm::dvec3(1024.0);
+    sums.radiance[p] = glm::vec3(1024.0F);
     sums.luminance[p] = 1024.0;
     sums.source[p].reflecting = 1024.0;
     disturb(sums, p, 16384.0, 0.01);

@@ -7,7 +7,6 @@
 
 #include "base/parallel.h"
 #include "raytrace/render.h"
-#include "raytrace/shade/pixel_sums.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::raytrace {
@@ -251,26 +250,6 @@ TEST(SharedGather, AStoppedPictureKeepsWhatIsFinished) {
     if (part.report.finished_share > 0.0 && part.report.finished_share < 1.0) ++cut_short;
   }
   EXPECT_GT(cut_short, 0);
-}
-
-TEST(SharedGather, SamplesGoWhereNeighboursScatter) {
-  // A pixel's own scatter does not count, that of its neighbours does; four times at most a round.
-  PixelSums sums(Window{0, 0, 7, 7}, 1, false);
-  for (std::size_t p = 0; p < sums.samples.size(); ++p) {
-    sums.samples[p] = 4;
-    sums.luminance[p] = 4.0;
-    sums.luminance2[p] = 4.0;
-  }
-  const std::size_t middle = sums.window.index(3, 3);
-  sums.luminance2[middle] = 4.0 + 3.0 * 9.0;  // variance 9 of a sample, deviation 3
-  const auto wanted = wanted_samples(sums, 0.3, 8.0, 4, 256);
-  EXPECT_EQ(wanted[middle], 4U);
-  EXPECT_EQ(wanted[sums.window.index(2, 3)], 16U);  // 3 / 0.3 = 10, rounded up to a power of two
-  EXPECT_EQ(wanted[sums.window.index(1, 3)], 4U);
-  EXPECT_EQ(wanted_samples(sums, 0.03, 8.0, 4, 256)[sums.window.index(4, 4)],
-            16U);  // 100, but 4 x 4
-  // From half of the luminance of 1 on, proportion counts: deviation 3 * 0.5.
-  EXPECT_EQ(wanted_samples(sums, 0.3, 0.5, 4, 256)[sums.window.index(2, 3)], 8U);
 }
 
 TEST(SharedGather, ATimeLimitIsKeptAndStillGivesEveryPixelASample) {

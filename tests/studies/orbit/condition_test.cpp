@@ -33,7 +33,7 @@ struct Judge {
     ConditionOptions options;
     using Explain = ConditionOptions::Explain;
     options.explain = explain ? Explain::NotIdentified : Explain::None;
-    return judge_condition(basis, query, view, place, setting, cctv, options);
+    return judge_condition(basis, query, view, {place, setting}, cctv, options);
   }
 };
 
@@ -197,6 +197,31 @@ TEST(Condition, OutOfViewNothingIsSaid) {
   for (const SourceOnTarget& source : outcome.targets[1].sources) {
     EXPECT_EQ(source.lit, 0.0);
     EXPECT_EQ(source.luminance, 0.0);
+  }
+}
+
+// Midnight with the lamps off is alike to the last bit in two places, and so it is with lamps too
+// weak to show anything; but the target is then brighter than before, and has reasons of its own.
+// At noon it is identified.
+TEST(Condition, ReasonsAreWorkedOutOncePerRunOfLikeConditions) {
+  const Judge judge(plate_and_lamp().scene,
+                    tests::orbit_places({180, 181, 0}, EarthModel::Lambert, "bay-to-space"));
+  ConditionOptions options;
+  options.lamps = 1e-11;
+  const std::vector<ConditionAt> conditions = {{0, 1}, {1, 1}, {2, 1}, {0, 0}, {1, 0}};
+  const std::optional<degrade::Setup> eye;
+  const auto found =
+      judge_conditions(judge.basis, judge.query, judge.view, conditions, eye, options);
+  ASSERT_EQ(found.size(), conditions.size());
+  const std::vector<std::optional<std::size_t>> of = {{}, 0, {}, {}, 3};
+  for (std::size_t k = 0; k < conditions.size(); ++k) {
+    const TargetOutcome& target = found[k].targets[0];
+    const Outcome alone =
+        judge_condition(judge.basis, judge.query, judge.view, conditions[k], eye, options);
+    EXPECT_EQ(target.why_of, of[k]) << k;
+    EXPECT_EQ(target.why.text, alone.targets[0].why.text) << k;
+    EXPECT_EQ(found[k].sight.targets[0].luminance, alone.sight.targets[0].luminance) << k;
+    EXPECT_EQ(target.why.text.empty(), k == 2) << k;
   }
 }
 

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// How many camera samples a pixel gets, and what they read.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "raytrace/render.h"
+#include "raytrace/shade/pixel_sums.h"
+#include "tests/support/scene_builder.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+TEST(PixelSamples, SamplesGoWhereNeighboursScatter) {
+  // A pixel's own scatter does not count, that of its neighbours does; four times at most a round.
+  PixelSums sums(Window{0, 0, 7, 7}, 1, false);
+  for (std::size_t p = 0; p < sums.samples.size(); ++p) {
+    sums.samples[p] = 4;
+    sums.luminance[p] = 4.0;
+    sums.luminance2[p] = 4.0;
+  }
+  const std::size_t middle = sums.window.index(3, 3);
+  sums.luminance2[middle] = 4.0 + 3.0 * 9.0;  // variance 9 of a sample, deviation 3
+  const auto wanted = wanted_samples(sums, 0.3, 8.0, 4, 256);
+  EXPECT_EQ(wanted[middle], 4U);
+  EXPECT_EQ(wanted[sums.window.index(2, 3)], 16U);  // 3 / 0.3 = 10, rounded up to a power of two
+  EXPECT_EQ(wanted[sums.window.index(1, 3)], 4U);
+  EXPECT_EQ(wanted_samples(sums, 0.03, 8.0, 4, 256)[sums.window.index(4, 4)],
+            16U);  // 100, but 4 x 4
+  // From half of the luminance of 1 on, proportion counts: deviation 3 * 0.5.
+  EXPECT_EQ(wanted_samples(sums, 0.3, 0.5, 4, 256)[sums.window.index(2, 3)], 8U);
+}
+
+TEST(PixelSamples, TheEyeGetsMoreSamplesWhereDimNeighboursScatter) {
+  // Mean luminance 1 - 0.9 / 49; samples of the pixel at (3, 3) have the deviation 0.06 about 0.1:
+  // more than a third. About 1 they are less, and about 0.01 less than a third of a twentieth.
+  const auto of_neighbour = [](double luminance, double deviation) {
+    PixelSums sums(Window{0, 0, 7, 7}, 1, false);
+    for (std::size_t p = 0; p < sums.samples.size(); ++p) {
+      sums.samples[p] = 4;
+      sums.luminance[p] = sums.luminance2[p] = sums.source[p].reflecting = 4.0;
+    }
+    const std::size_t middle = sums.window.index(3, 3);
+    sums.luminance[middle] = 4.0 * luminance;
+    sums.luminance2[middle] = 4.0 * luminance * luminance + 3.0 * deviation * deviation;
+    const auto wanted = wanted_for_the_eye(sums);
+    EXPECT_EQ(wanted[middle], 4U);
+    EXPECT_EQ(wanted[sums.window.index(1, 3)], 4U);
+    return wanted[sums.window.index(2, 4)];
+  };
+  EXPECT_EQ(of_neighbour(0.1, 0.06), 16U);
+  EXPECT_EQ(of_neighbour(1.0, 0.06), 4U);
+  EXPECT_EQ(of_neighbour(0.01, 0.01), 4U);
+}
+
+TEST(PixelSamples, LightInANarrowGapIsGatheredOncePerPixel) {
+  // The floor of a gap 2 cm wide in pixels of 4 mm: the walls are so near that a tenth of a gather
+  // ray's mean length is less than the way from a pixel's centre to its corner.
+  tests::SceneBuilder builder;
+  const std::uint32_t wall = builder.material(tests::grey(0.5, 100.0));
+  builder.quad(wall, {-0.01, -1, 0}, {0.01, -1, 0}, {0.01, 1, 0}, {-0.01, 1, 0});
+  builder.quad(wall, {-0.01, -1, 0}, {-0.01, 1, 0}, {-0.01, 1, 0.5}, {-0.01, -1, 0.5});
+  builder.quad(wall, {0.01, -1, 0}, {0.01, -1, 0.5}, {0.01, 1, 0.5}, {0.01, 1, 0});
+  const tests::Prepared prepared(builder.scene);
+  const radiosity::Solution solution = prepared.solve({});
+  scenes::Camera camera;
+  camera.position = Vec3(0, 0, 0.5);
+  camera.look_at = Vec3(0.0);
+  camera.up = Vec3(0, 1, 0);
+  camera.fov_deg = 2.0 * std::atan(0.008 / 0.5) * 180.0 / base::pi;
+  RenderOptions options;
+  options.columns = options.rows = 4;
+  options.gather_rays = 32;
+  options.shared.on = true;
+  options.shared.noise = 1e6;  // no further samples
+  const auto gather_rays = [&](int samples) {
+    options.shared.least_samples = samples;
+    return render(builder.scene, prepared.groups, prepared.effects, prepared.query, solution,
+                  camera, options)
+        .report.rays.gather;
+  };
+  EXPECT_GT(gather_rays(4), 0U);
+  EXPECT_EQ(gather_rays(64), gather_rays(4));
+}
+
+}  // namespace
+}  // namespace earthshine::raytrace
