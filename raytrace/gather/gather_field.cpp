@@ -123,14 +123,14 @@ double GatherField::error_of(Gathered kind, std::size_t point) const {
 
 std::size_t GatherField::find(int x, int y, const glm::vec3& position,
                               const glm::vec3& normal) const {
-  // Further off, irradiance may be another: a gap in a wall, the foot of a box. Within the pixel
-  // the point stands for the mean all the same: what varies there is told by its neighbours, while
-  // a few rays of each sample's own would be grain.
+  // Further off, irradiance may be another: a gap in a wall, the foot of a box. A few rays of each
+  // sample's own are exact there, and grain: where that is not wanted, the point stands for the
+  // mean over its pixel.
   const auto if_near = [&](std::size_t index) {
     const GatherPoint& point = points_[index];
     const float pixel = point.spacing_m * stretch(point);
-    const float most =
-        std::max(half_diagonal * pixel, std::min(3.0F * pixel, most_found_share * point.reach_m));
+    const float least = setting_.whole_pixels ? half_diagonal * pixel : 0.0F;
+    const float most = std::max(least, std::min(3.0F * pixel, most_found_share * point.reach_m));
     return glm::length(position - point.position) <= most ? index : no_point;
   };
   if (!window_.contains(x, y)) return no_point;

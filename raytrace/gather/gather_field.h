@@ -54,7 +54,8 @@ class GatherField {
     std::size_t image_layers = 1;
     bool keeps_sky_apart = false;  // one more layer: what came straight from the sky
     bool gathers_residual = true;
-    bool shares = true;  // between neighbours
+    bool shares = true;         // between neighbours
+    bool whole_pixels = false;  // a pixel's point serves all samples of its surface in the pixel
     std::uint64_t seed = 1;
   };
   // Finds the points: one for each pixel of the window, row by row, then the strays. `world` and
