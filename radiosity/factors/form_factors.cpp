@@ -42,22 +42,24 @@ std::vector<std::size_t> cut_in_bands(const Patches& patches, std::span<const st
 }
 
 // What the bands found beside entries, and where the entries of each row will be.
-void join_rows(const std::vector<Band>& bands, FormFactors& factors) {
+void join_rows(std::vector<Band>& bands, FormFactors& factors) {
+  // One band alone was cast by every rank.
+  const bool divided = bands.size() > 1 && base::ranks() != nullptr;
   std::vector<double> cost;
-  for (const Band& band : bands) {
+  for (Band& band : bands) {
     for (const Row& row : band.rows) {
-      cost.push_back(1.0 + row.entries);
+      if (divided) cost.push_back(1.0 + row.entries);
       factors.ray_count += row.rays;
     }
     factors.sky_illuminance.insert(factors.sky_illuminance.end(), band.sky_illuminance.begin(),
                                    band.sky_illuminance.end());
+    band.sky_illuminance = {};
     for (std::size_t o = 0; o < band.back_hits.size(); ++o) {
       factors.back_hits[o] += band.back_hits[o];
     }
   }
-  if (bands.size() > 1) factors.shares = base::Shares(cost);  // one alone was cast by every rank
-  const auto [begin, end] = factors.shares.own(cost.size());
-  factors.row_start.assign(cost.size() + 1, 0);
+  if (divided) factors.shares = base::Shares(cost);
+  const auto [begin, end] = factors.shares.own(factors.count());
   std::size_t i = 0;
   for (const Band& band : bands) {
     for (const Row& row : band.rows) {
@@ -165,6 +167,7 @@ FormFactors cast_rows(const scenes::Scene& scene, const scenes::RayQuery& query,
   factors.row_scale.assign(count, 0.0);
   factors.column_scale.assign(patches.count(), 1.0);
 
+  factors.row_start.assign(count + 1, 0);
   factors.back_hits.assign(scene.objects.size(), 0.0);
 
   std::vector<std::uint32_t> runs;
