@@ -9,6 +9,7 @@
 #include "app/cctv/cctv_plan.h"
 #include "app/console.h"
 #include "app/memory.h"
+#include "app/render/light.h"
 #include "base/parallel.h"
 
 namespace earthshine::app {
@@ -63,7 +64,7 @@ Json effect_rows(const LoadedScene& loaded, const RenderCall& call, const scenes
 
 Expectation expect(const LoadedScene& loaded, const RenderCall& call, const Common& common,
                    const scenes::Asked& asked, const scenes::RayQuery& query) {
-  const radiosity::SolveOptions solver = solve_options(loaded.scene, common);
+  const radiosity::SolveOptions solver = solver_of(call, loaded.scene, common);
   std::vector<raytrace::RenderOptions> options;
   for (const scenes::Camera* camera : asked.cameras) {
     options.push_back(picture_options(call, common, loaded, *camera));

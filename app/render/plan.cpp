@@ -13,6 +13,7 @@
 #include "app/memory.h"
 #include "app/options.h"
 #include "app/render/effect_table.h"
+#include "app/render/light.h"
 #include "base/free_memory.h"
 #include "base/parallel.h"
 #include "radiosity/refine.h"
@@ -60,7 +61,7 @@ Json images_of(const scenes::Scene& scene, const RenderCall& call, const scenes:
 double add_memory(Json& report, const LoadedScene& loaded, const RenderCall& call,
                   const Common& common, const scenes::Asked& asked, const scenes::RayQuery& query,
                   int ranks) {
-  const radiosity::SolveOptions solver = solve_options(loaded.scene, common);
+  const radiosity::SolveOptions solver = solver_of(call, loaded.scene, common);
   studies::MemoryCase sizes =
       studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
   if (!loaded.effects.solution) {
@@ -138,22 +139,22 @@ Json report_of(const RenderCall& call, const Common& common, int ranks) {
   const scenes::Asked asked = asked_of(call, planned_cameras(call, loaded.scene));
   const std::vector<scenes::Culling> culled = decide_effects(loaded, call, asked);
   const scenes::QualityKnobs knobs = scenes::resolve_quality(loaded.scene);
-  const auto rays_per_patch = std::bit_ceil(static_cast<std::uint64_t>(knobs.form_factor_rays));
-  const bool refines = knobs.refine && radiosity::is_lit(loaded.effects);
-  const std::size_t patches =
-      refines ? radiosity::most_refined_patches(loaded.scene, solve_options(loaded.scene, {}))
-              : radiosity::count_patches(loaded.scene, knobs.patch_edge_m);
+  const radiosity::SolveOptions solver = solver_of(call, loaded.scene, common);
+  const auto rays_per_patch = std::bit_ceil(static_cast<std::uint64_t>(solver.form_factor_rays));
+  const bool refines = solver.refine.on && radiosity::is_lit(loaded.effects);
+  const std::size_t patches = refines ? radiosity::most_refined_patches(loaded.scene, solver)
+                                      : radiosity::count_patches(loaded.scene, solver.patch_edge_m);
   const bool solves = loaded.effects.solution;
   Json report;
   report["scene"] = loaded.scene.path.string();
   report["name"] = loaded.scene.name;
   report["effects"] = effect_rows(loaded, call, asked, culled);
   report["light_groups"] = loaded.groups.names;
-  report["quality"] = {{"patch_edge_m", knobs.patch_edge_m},
-                       {"refine", knobs.refine},
+  report["quality"] = {{"patch_edge_m", solver.patch_edge_m},
+                       {"refine", solver.refine.on},
                        {"form_factor_rays", rays_per_patch},
                        {"gather_rays", knobs.gather_rays},
-                       {"solver_tolerance", knobs.solver_tolerance}};
+                       {"solver_tolerance", solver.tolerance}};
   report["patches"] = patches;
   report["patches_at_most"] = refines;
   report["rays"] = solves ? patches * rays_per_patch : 0;
@@ -215,7 +216,6 @@ std::string text_of(const Json& report) {
     text += fmt::format(", of them {} for the solution of {} patches",
                         duration(report["expected"]["solve_seconds"].get<double>()),
                         report["expected"]["patches"].get<std::size_t>());
-    text += "; second looks, by which the error is stated, come on top";
   }
   text += "\n";
   for (const Json& image : report["images"]) {

@@ -13,7 +13,9 @@
 namespace earthshine::studies {
 namespace {
 
-// Pictures are drawn with the fewer pixels; with more if those took hardly any time.
+// Pictures of a wanted error are begun, as large as they are, and left after so much.
+constexpr double begun_cpu_s = 1.0;
+// Others are drawn with the fewer pixels; with more if those took hardly any time.
 constexpr double least_pixels = 1024.0, most_pixels = 4096.0, enough_cpu_s = 0.05;
 constexpr int pilot_rays = 64;  // per patch
 constexpr double few_patches = 4096.0;
@@ -80,7 +82,6 @@ class PictureDrawer {
     const double coarser = 1.0 / std::sqrt(scale);
     options.shared.noise *= coarser;
     options.crop = {};
-    options.time_limit_s = 0.0;
     if (options.indirect == raytrace::Indirect::Paths) {
       return raytrace::trace_paths(call_.scene, call_.groups, call_.effects, call_.query, camera,
                                    {options.columns,
@@ -91,6 +92,11 @@ class PictureDrawer {
                                     options.seed,
                                     {}});
     }
+    return begin(camera, options);
+  }
+
+  raytrace::Frame begin(const scenes::Camera& camera, raytrace::RenderOptions options) const {
+    options.time_limit_s = 0.0;
     return raytrace::render(call_.scene, call_.groups, call_.effects, call_.query, coarse_, camera,
                             options);
   }
@@ -100,15 +106,34 @@ class PictureDrawer {
   const radiosity::Solution& coarse_;
 };
 
+// In seconds of a machine that does nothing else.
+raytrace::Frame timed(const Stopwatch& watch, raytrace::Frame frame) {
+  const double alone = watch.seconds_alone() / std::max(1e-9, watch.seconds());
+  frame.report.seconds *= alone;
+  frame.report.gather_seconds *= alone;
+  return frame;
+}
+
+// The squared error of samples falls as one over their number.
+raytrace::RenderReport expect_steered(const PictureDrawer& drawer, const scenes::Camera& camera,
+                                      raytrace::RenderOptions options, base::Image& image) {
+  const Stopwatch watch;
+  options.stop = [&watch] { return watch.cpu_seconds() > begun_cpu_s; };
+  raytrace::Frame frame = timed(watch, drawer.begin(camera, options));
+  const double ratio = frame.report.relative_noise / options.error;
+  image = std::move(frame.image);
+  return scaled(frame.report, {1.0, std::max(1.0, ratio * ratio), 0.0});
+}
+
 raytrace::RenderReport expect_picture(const PictureDrawer& drawer, const scenes::Camera& camera,
                                       const raytrace::RenderOptions& options, base::Image& image) {
+  if (options.error > 0.0 && options.indirect == raytrace::Indirect::Radiosity) {
+    return expect_steered(drawer, camera, options, image);
+  }
   raytrace::Frame frame;
   for (const double pixels : {least_pixels, most_pixels}) {
     const Stopwatch watch;
-    frame = drawer.draw(camera, options, pixels);
-    const double alone = watch.seconds_alone() / std::max(1e-9, watch.seconds());
-    frame.report.seconds *= alone;
-    frame.report.gather_seconds *= alone;
+    frame = timed(watch, drawer.draw(camera, options, pixels));
     if (watch.cpu_seconds() > enough_cpu_s) break;
   }
   const double pixels = options.crop.columns > 0 ? static_cast<double>(options.crop.pixel_count())
