@@ -104,7 +104,7 @@ class Ranks(Case):
 
     def test_memory_is_divided(self):
         """While rows are joined the E entries of the matrix, 8 bytes each, are there twice: 16 E (1 - 1 / R) bytes are what R
-        ranks spare each of them, and `plan` says so. A tenth of it is left to what ranks have on their way."""
+        ranks spare each of them, and `plan` says so. Of a rank's share, 8 E / R, all may be on its way to a slower one."""
         call = ("solve", "box.toml", "-o", "s.h5", "--set", "quality.patch_edge=0.04", "--set", "quality.form_factor_rays=1024")
         reports, peaks = {}, {}
         for count in (1, 2, 8):
@@ -119,7 +119,7 @@ class Ranks(Case):
         self.assertGreater(2 * entries, 0.6 * peaks[1])
         for count in (2, 8):
             self.assertEqual(reports[count]["nonzeros"], reports[1]["nonzeros"])
-            self.assertGreater(peaks[1] - peaks[count], 0.9 * 2 * entries * (1 - 1 / count))
+            self.assertGreater(peaks[1] - peaks[count], 2 * entries * (1 - 1 / count) - entries / count)
             stated = [json.loads(self.done("plan", *call[1:2], *call[4:], "--ranks", n, "--json"))["ranks"]["memory_mib_each"]
                       for n in (1, count)]
             self.assertAlmostEqual((stated[0] - stated[1]) / (2 * entries * (1 - 1 / count)), 1, delta=0.1)
