@@ -2,10 +2,16 @@
 #include "scenes/coincident_faces.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "scenes/triangle_point.h"
 
 namespace earthshine::scenes {
+namespace {
+
+bool holds(double u, double v) { return u >= 0.0 && v >= 0.0 && u + v <= 1.0; }
+
+}  // namespace
 
 CoincidentFaces::CoincidentFaces(const Scene& scene) {
   if (scene.coincident.empty()) return;
@@ -49,38 +55,51 @@ CoincidentFaces::CoincidentFaces(const Scene& scene) {
 std::optional<CoincidentFaces::Met> CoincidentFaces::first_met(std::uint32_t triangle,
                                                                const Vec3& at,
                                                                const Vec3& direction) const {
-  std::uint32_t now = number_[triangle];
-  if (now == none) return std::nullopt;
-  std::optional<Met> met;
-  // Each step goes to a face nearer to where the light comes from; more than all of them it cannot.
-  for (std::size_t steps = 0; steps < faces_.size(); ++steps) {
-    const bool front = glm::dot(direction, faces_[now].normal) < 0.0;
-    const auto next =
-        std::find_if(others_.begin() + faces_[now].first, others_.begin() + faces_[now].end,
-                     [&](const Other& other) {
-                       if (other.hides_both || other.before != front) return false;
-                       const Face& face = faces_[other.face];
-                       const auto [u, v] = barycentric(at, face.corner, face.edge1, face.edge2);
-                       if (u < 0.0 || v < 0.0 || u + v > 1.0) return false;
-                       met = Met{face.triangle, u, v, glm::dot(direction, face.normal) < 0.0};
-                       return true;
-                     });
-    if (next == others_.begin() + faces_[now].end) break;
-    now = next->face;
+  if (number_[triangle] == none) return std::nullopt;
+  // Each step goes to a face nearer to where the light comes from.
+  std::vector<Met> way{{triangle, 0.0, 0.0, false}};
+  for (;;) {
+    const Face& now = faces_[number_[way.back().triangle]];
+    const bool front = glm::dot(direction, now.normal) < 0.0;
+    Met met{};
+    const auto next = std::find_if(
+        others_.begin() + now.first, others_.begin() + now.end, [&](const Other& other) {
+          if (other.hides_both || other.before != front) return false;
+          const Face& face = faces_[other.face];
+          const auto [u, v] = barycentric(at, face.corner, face.edge1, face.edge2);
+          if (!holds(u, v)) return false;
+          met = {face.triangle, u, v, glm::dot(direction, face.normal) < 0.0};
+          return true;
+        });
+    if (next == others_.begin() + now.end) break;
+    const auto seen = std::find_if(
+        way.begin(), way.end(), [&](const Met& before) { return before.triangle == met.triangle; });
+    if (seen != way.end()) {
+      // A ring, as two sides of a sheet have with another sheet: one of it is met, or no light
+      // would be. The last of the scene, whoever asks.
+      *seen = met;
+      way.back() = *std::max_element(
+          seen, way.end(), [](const Met& a, const Met& b) { return a.triangle < b.triangle; });
+      break;
+    }
+    way.push_back(met);
   }
-  return met;
+  return way.back().triangle == triangle ? std::nullopt : std::optional(way.back());
 }
 
 bool CoincidentFaces::covers(std::uint32_t triangle, bool front, const Vec3& at) const {
   if (!is_covered(triangle, front)) return false;
   const Face& face = faces_[number_[triangle]];
-  return std::any_of(others_.begin() + face.first, others_.begin() + face.end,
-                     [&](const Other& other) {
-                       if (other.before != front) return false;
-                       const Face& on = faces_[other.face];
-                       const auto [u, v] = barycentric(at, on.corner, on.edge1, on.edge2);
-                       return u >= 0.0 && v >= 0.0 && u + v <= 1.0;
-                     });
+  const auto [u, v] = barycentric(at, face.corner, face.edge1, face.edge2);
+  if (!holds(u, v)) return false;  // beside it, as on the other half of a parallelogram
+  const bool between = std::any_of(
+      others_.begin() + face.first, others_.begin() + face.end, [&](const Other& other) {
+        if (!other.hides_both || other.before != front) return false;
+        const Face& on = faces_[other.face];
+        const auto [s, t] = barycentric(at, on.corner, on.edge1, on.edge2);
+        return holds(s, t);
+      });
+  return between || first_met(triangle, at, front ? -face.normal : face.normal).has_value();
 }
 
 }  // namespace earthshine::scenes

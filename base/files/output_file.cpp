@@ -116,6 +116,9 @@ fs::path follow_links(const fs::path& path) {
   return followed.empty() ? path : followed;
 }
 
+// Of several ranks the first alone gives files their names, and writes to devices.
+bool another_writes() { return ranks() != nullptr && ranks()->number() > 0; }
+
 }  // namespace
 
 OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
@@ -144,7 +147,7 @@ OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
       throw Error(Blame::Input, name, "is a pipe or a device", "a file on disk is wanted here",
                   "Name a file to write");
     }
-    temporary_ = target_;
+    temporary_ = another_writes() ? fs::path("/dev/null") : target_;
     return;
   }
   clear_once(folder);
@@ -170,7 +173,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::commit() {
-  if (ranks() != nullptr && ranks()->number() > 0) return;
+  if (another_writes()) return;
   if (file_ >= 0) {
     struct stat old {};
     if (::stat(target_.c_str(), &old) == 0) static_cast<void>(::fchmod(file_, old.st_mode & 07777));

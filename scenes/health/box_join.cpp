@@ -11,6 +11,7 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr std::size_t few = 16;
+constexpr int deepest = 22;  // single precision has no smaller parts
 
 float longest_of(const glm::vec3& size) { return std::max({size.x, size.y, size.z}); }
 
@@ -20,7 +21,8 @@ class Join {
 
   // Boxes that reach into low <= x < high, which is parted in the middle along its long sides.
   // Those that fill all of it are held against the others here, and do not go further.
-  void within(std::vector<LabelledBox> boxes, const glm::vec3& low, const glm::vec3& high) const {
+  void within(std::vector<LabelledBox> boxes, const glm::vec3& low, const glm::vec3& high,
+              int depth) const {
     const auto rest = std::partition(boxes.begin(), boxes.end(), [&](const LabelledBox& box) {
       return glm::all(glm::lessThanEqual(box.low, low)) &&
              glm::all(glm::greaterThanEqual(box.high, high));
@@ -33,7 +35,8 @@ class Join {
     float sum = 0.0F;
     for (const LabelledBox& box : boxes) sum += longest_of(box.high - box.low);
     // Parts smaller than the boxes hold them again and again.
-    if (boxes.size() <= few || longest * static_cast<float>(boxes.size()) < 2.0F * sum) {
+    if (boxes.size() <= few || depth == deepest ||
+        longest * static_cast<float>(boxes.size()) < 2.0F * sum) {
       for (auto box = boxes.begin(); box != boxes.end(); ++box) {
         compare(*box, box + 1, boxes.end(), low, high);
       }
@@ -77,7 +80,7 @@ class Join {
       for (int axis = 0; axis < 3; ++axis) {
         if (size[axis] > 0.5F * longest) (((o >> axis) & 1U) != 0 ? from : to)[axis] = middle[axis];
       }
-      within(std::move(inside), from, to);
+      within(std::move(inside), from, to, depth + 1);
     }
   }
 
@@ -113,7 +116,7 @@ void join_boxes(std::vector<LabelledBox> boxes,
   for (int axis = 0; axis < 3; ++axis) {
     high[axis] = std::nextafter(high[axis], std::numeric_limits<float>::infinity());
   }
-  Join(take).within(std::move(boxes), low, high);
+  Join(take).within(std::move(boxes), low, high, 0);
 }
 
 }  // namespace earthshine::scenes

@@ -12,6 +12,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/free_memory.h"
 #include "scenes/health/box_join.h"
 #include "scenes/ray_query.h"
 #include "scenes/text/message_text.h"
@@ -20,7 +21,8 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr double parallel_sine = 1e-3;  // a first look; heights decide
-constexpr double tie_share = 0.1;       // of the offset: nearer ones have no order of their own
+constexpr double tie_share = 0.02;  // of the offset: as much as single precision of a file leaves
+constexpr std::size_t asked_every = 1U << 20;  // pairs, for whose room is asked
 
 struct Corners {
   Vec3 a, b, c;
@@ -82,10 +84,14 @@ std::optional<Overlap> overlap_of(const Corners& first, const Corners& second, d
 class Coincidence {
  public:
   Coincidence(Scene& scene, const FaceParts& parts)
-      : scene_(scene), parts_(parts), offset_m_(surface_offset_m(scene)) {}
+      : scene_(scene),
+        parts_(parts),
+        offset_m_(surface_offset_m(scene)),
+        centre_(scene.vertices.front()) {}
 
   void find() {
     if (parts_.kind.size() < 2) return;
+    base::check_room(scene_.triangles.size() * 2 * sizeof(LabelledBox), scene_.path.string());
     std::vector<LabelledBox> boxes;
     boxes.reserve(scene_.triangles.size());
     for (std::uint32_t t = 0; t < scene_.triangles.size(); ++t) {
@@ -106,7 +112,8 @@ class Coincidence {
  private:
   // The higher one lies on the other.
   struct Rank {
-    bool shines, open;
+    bool shines;
+    int open;  // 2; 1 for a room's wall, 0 for a body's
     std::uint32_t triangle;
     auto operator<=>(const Rank&) const = default;
   };
@@ -122,8 +129,8 @@ class Coincidence {
   // A little larger than it is: neither a gap of the offset nor rounding parts two that touch.
   [[nodiscard]] std::pair<glm::vec3, glm::vec3> box_of(std::uint32_t t) const {
     const Corners p = corners(t);
-    const Vec3 low = glm::min(p.a, glm::min(p.b, p.c)) - offset_m_,
-               high = glm::max(p.a, glm::max(p.b, p.c)) + offset_m_;
+    const Vec3 low = glm::min(p.a, glm::min(p.b, p.c)) - offset_m_ - centre_,
+               high = glm::max(p.a, glm::max(p.b, p.c)) + offset_m_ - centre_;
     return {glm::vec3(low), glm::vec3(high)};
   }
   [[nodiscard]] const Material& material(std::uint32_t t) const {
@@ -132,7 +139,8 @@ class Coincidence {
   [[nodiscard]] std::uint32_t object(std::uint32_t t) const { return scene_.triangles[t].object; }
   [[nodiscard]] FaceParts::Kind kind(std::uint32_t t) const { return parts_.kind[parts_.of[t]]; }
   [[nodiscard]] Rank rank(std::uint32_t t) const {
-    return {material(t).emits(), material(t).two_sided || kind(t) == FaceParts::Kind::Open, t};
+    const bool open = material(t).two_sided || kind(t) == FaceParts::Kind::Open;
+    return {material(t).emits(), open ? 2 : kind(t) == FaceParts::Kind::Room ? 1 : 0, t};
   }
 
   void look_at(std::uint32_t a, std::uint32_t b) {
@@ -140,17 +148,24 @@ class Coincidence {
     const std::optional<Overlap> overlap = overlap_of(first, second, offset_m_);
     if (!overlap) return;
     const bool same_way = glm::dot(first.normal(), second.normal()) > 0.0;
-    const bool tie = std::abs(overlap->height_m) < tie_share * offset_m_;
+    // Walls of a house are seen from both sides, whichever of them rounding has put in front.
+    const bool wall = !same_way && !material(a).two_sided && !material(b).two_sided &&
+                      (kind(a) == FaceParts::Kind::Body || kind(b) == FaceParts::Kind::Body) &&
+                      !look_at_each_other(a, b);
+    const bool tie = wall || std::abs(overlap->height_m) < tie_share * offset_m_;
     const bool b_before = tie ? is_before(a, b, same_way) : overlap->height_m > 0.0;
     const bool a_before = same_way != b_before;
     scene_.coincident.push_back({a, b, b_before, a_before});
+    if (scene_.coincident.size() % asked_every == 0) {
+      base::check_room(scene_.coincident.size() * 2 * sizeof(FacePair), scene_.path.string());
+    }
     const bool sheet = material(a).two_sided || material(b).two_sided;
     if (!tie || (a_before && b_before && !sheet) ||
         scene_.triangles[a].material == scene_.triangles[b].material) {
       return;
     }
     const Rank of_a = rank(a), of_b = rank(b);
-    if (of_a.shines != of_b.shines || !of_a.open || !of_b.open) return;
+    if (of_a.shines != of_b.shines || of_a.open < 2 || of_b.open < 2) return;
     const bool b_over = of_b > of_a;
     Decided& decided =
         decided_[b_over ? std::pair(object(a), object(b)) : std::pair(object(b), object(a))];
@@ -172,11 +187,13 @@ class Coincidence {
     using Kind = FaceParts::Kind;
     if (kind(b) == Kind::Body) std::swap(a, b);
     if (kind(a) != Kind::Body) return false;
-    if (kind(b) != Kind::Room) return true;
-    // The walls of a house are a body and a room in it; a box that stands in a room looks at it.
-    const auto &house = part_box(parts_.of[a]), &room = part_box(parts_.of[b]);
-    return glm::any(glm::lessThan(room.first, house.first)) ||
-           glm::any(glm::greaterThan(room.second, house.second));
+    if (kind(b) == Kind::Body) return true;
+    // The walls of a house are a body and what is in it; what a body stands on, or in, reaches
+    // beyond it.
+    const auto &house = part_box(parts_.of[a]), &other = part_box(parts_.of[b]);
+    const glm::vec3 reach(static_cast<float>(4.0 * offset_m_));
+    return glm::any(glm::lessThan(other.first, house.first - reach)) ||
+           glm::any(glm::greaterThan(other.second, house.second + reach));
   }
 
   const std::pair<glm::vec3, glm::vec3>& part_box(std::uint32_t part) {
@@ -218,6 +235,7 @@ class Coincidence {
   Scene& scene_;
   const FaceParts& parts_;
   double offset_m_;
+  Vec3 centre_;  // of what is held in single precision
   std::map<std::pair<std::uint32_t, std::uint32_t>, Decided> decided_;  // objects: under, over
   std::vector<std::pair<glm::vec3, glm::vec3>> part_boxes_;
 };

@@ -21,11 +21,13 @@ void add_instances(FaceParts& parts, const Scene& scene);
 
 // Fills scene.coincident: opaque triangles of two parts that overlap by more than rays are lifted
 // off surfaces (RayQuery::surface_offset_m) and are nearer to each other than that. Where one is
-// before the other by a tenth of it or more, so it is seen. Otherwise
-//   a body's face and another that look at each other hide each other, but those of a room in it;
+// before the other by a fiftieth of it or more, so it is seen. Otherwise
+//   a body's face and another that look at each other hide each other, unless the other's part is
+//   within the body's box: the walls of a house;
 //   other one-sided faces that look opposite ways are the two sides of a sheet: each is seen;
 //   of those that look the same way, and of two-sided ones, what shines is before what does not,
-//   what is open before closed bodies and rooms, and the later one of the scene before the earlier.
+//   what is open before rooms' walls, and these before bodies, and the later one of the scene
+//   before the earlier.
 // What only the order of the scene decided, of open faces of two materials, is named in
 // scene.warnings, as are two sides of a sheet; but not of objects with Orient::AsIs. Of bodies that
 // stick in each other nothing is said: most of their faces in one plane are in one of them.

@@ -79,6 +79,13 @@ class Ranks(Case):
                     self.assertEqual((self.folder / name).read_bytes(), whole[name], name)
                 self.assertEqual([p.name for p in self.folder.iterdir() if p.name.startswith(".")], [])
 
+    def test_one_rank_writes_to_a_device(self):
+        """Three wrote a picture each, one after another."""
+        call = ("render", "box.toml", "--no-error", "-q", "-o", "a.exr", "--png", "/dev/stdout")
+        run = subprocess.run(["mpirun", "-n", "3", MPI, *call], cwd=self.folder, env=ENVIRONMENT, stdin=subprocess.DEVNULL,
+                             capture_output=True, timeout=300, check=True)
+        self.assertEqual(run.stdout, self.run_program(*call, text=False).stdout)
+
     def without_program(self, study):
         """earthshine-mpi is another program than earthshine, and study.json says so."""
         return {key: value for key, value in self.without_times(study).items() if key not in ("build", "provenance")}

@@ -212,7 +212,7 @@ def ranks(work):
         call(BUILD / "earthshine", *words, "-q", "-o", name, cwd=work)
         whole = (work / name).read_bytes()
         (work / name).unlink()
-        call("srun", "-Q", "--mpi=pmix", "-n", "4", BUILD / "earthshine-mpi", *words, "-q", "-j", "1", "-o", name, cwd=work)
+        call("srun", "-Q", "--mpi=pmix", "--kill-on-bad-exit=1", "-n", "4", BUILD / "earthshine-mpi", *words, "-q", "-j", "1", "-o", name, cwd=work)
         if (work / name).read_bytes() != whole:
             stop_here(f"{name} of four ranks is not what one process wrote")
         print(f"srun, 4 ranks, {words[0]}: {name} has the bytes of one process")

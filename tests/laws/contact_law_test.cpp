@@ -116,6 +116,25 @@ TEST(Contact, PapersOnAPlateTakeNoMoreLightThanThePlate) {
   EXPECT_LE(s.report.groups[0].imbalance, 1e-11);
 }
 
+// Two sides of a panel and a sheet in the plane of both, lamps above and below at 1 m: each lights
+// 4 m2 from within, Omega / 4 pi of it, Omega = 4 atan(1 / sqrt(3)) = 2 pi / 3 for a square of 2 m.
+TEST(Contact, APanelOfThreeFacesTakesTheLightOfBothSides) {
+  std::string three =
+      "[[material]]\nname = \"wall\"\ndiffuse = 0.5\n[[material]]\nname = \"card\"\n"
+      "diffuse = 0.3\ntwo_sided = true\n" +
+      quad("up", "[[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]", "wall") +
+      quad("down", "[[-1, 1, 0], [1, 1, 0], [1, -1, 0], [-1, -1, 0]]", "wall") +
+      quad("card", "[[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]", "card");
+  for (const char* z : {"1", "-1"}) {
+    three += std::string("[[light]]\nname = \"") + z + "\"\ntype = \"point\"\nposition = [0, 0, " +
+             z + "]\nflux = 6\n";
+  }
+  const Solution s = solved(three, 0.1);
+  ASSERT_EQ(s.report.groups.size(), 2U);
+  // 400 patches a side, 16 points or more each: direct light is right to some thousandths.
+  for (const auto& line : s.report.groups) EXPECT_NEAR(line.landed_lm.g, 1.0, 0.01) << line.name;
+}
+
 // A box stands on an open plate; a lamp under both shines at the plate's black back alone.
 TEST(Contact, NoLightComesToTheBottomOfABoxOnAPlate) {
   const std::string body =

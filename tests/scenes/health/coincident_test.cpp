@@ -10,6 +10,7 @@
 #include "base/numbers/random.h"
 #include "scenes/health/box_join.h"
 #include "scenes/ray_query.h"
+#include "scenes/triangle_point.h"
 #include "tests/scenes/cube_scenes.h"
 
 namespace earthshine::scenes {
@@ -54,6 +55,14 @@ std::string met(const Scene& scene, double x, double y, bool down) {
   EXPECT_NEAR(at.y, y, 1e-6);
   const bool black = !hit.front && !scene.materials[triangle.material].two_sided;
   return (black ? "back of " : "") + scene.objects[triangle.object].name;
+}
+
+// Of (0.2, 0.1, 0) on a triangle.
+Barycentric barycentric(const Scene& scene, std::uint32_t t) {
+  const auto& v = scene.triangles[t].vertex;
+  const Vec3 a = scene.vertices[v[0]];
+  return scenes::barycentric({0.2, 0.1, 0.0}, a, scene.vertices[v[1]] - a,
+                             scene.vertices[v[2]] - a);
 }
 
 TEST(CoincidentFaces, TheLaterOfTwoOpenOnesIsOver) {
@@ -140,6 +149,58 @@ TEST(CoincidentFaces, TheWallsOfAHouseAreSeenFromBothSides) {
       read(body + box("room", Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 1)) + "inward = true\n");
   EXPECT_EQ(covered(house), std::pair(false, false));
   EXPECT_EQ(met(house, 0.2, 0.1, true), "box");
+}
+
+// Written by another program: the room is a millionth larger. Or it is six squares, no closed room.
+TEST(CoincidentFaces, WhatIsInAHouseIsSeenHoweverItsWallsWereMade) {
+  const std::string body = box("box", Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 1));
+  const double h = 0.5 * (1.0 + 1e-6);
+  const Scene rounded =
+      read(body + box("room", Vec3(-h, -h, -1e-6), Vec3(h, h, 1 + 1e-6)) + "inward = true\n");
+  EXPECT_FALSE(rounded.coincident.empty());
+  EXPECT_EQ(covered(rounded), std::pair(false, false));
+  EXPECT_EQ(covered(read(body + square("floor", 0, 0.5, 0, true))), std::pair(false, false));
+}
+
+// What stands beside a room, wall on wall, does not show in it, listed before it or after.
+TEST(CoincidentFaces, ARoomsWallIsOverTheBodyBehindIt) {
+  const std::string room = box("room", Vec3(-1, -1, 0), Vec3(1, 1, 1)) + "inward = true\n";
+  const std::string under = box("under", Vec3(-1, -1, -1), Vec3(1, 1, 0));
+  for (const std::string& both : {room + under, under + room}) {
+    const Scene scene = read(both);
+    const RayQuery query(scene);
+    const Hit hit = query.closest({0.2, 0.1, 0.5}, {0, 0, -1});
+    EXPECT_EQ(scene.objects[scene.triangles[hit.triangle].object].name, "room");
+  }
+}
+
+// The two sides of a sheet and a third over both: one of them takes the light of each side.
+TEST(CoincidentFaces, SomethingIsAlwaysSeen) {
+  const Scene scene = read(square("up", 0, 1, 0, true) + square("down", 0, 1, 0, false) +
+                           square("sheet", 0, 1, 0, true, "paper"));
+  EXPECT_EQ(met(scene, 0.2, 0.1, true), "sheet");
+  EXPECT_EQ(met(scene, 0.2, 0.1, false), "sheet");
+  const CoincidentFaces faces(scene);
+  bool open[2] = {false, false};  // a side that light comes to, by whether it looks up
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    for (const bool front : {true, false}) {
+      const bool sheet = scene.materials[scene.triangles[t].material].two_sided;
+      const auto [u, v] = barycentric(scene, t);
+      if (!(u > 0.0 && v > 0.0 && u + v < 1.0) || (!front && !sheet)) continue;
+      const bool up = (triangle_normal(scene, t).z > 0.0) == front;
+      if (!faces.covers(t, front, {0.2, 0.1, 0.0})) open[up ? 0 : 1] = true;
+    }
+  }
+  EXPECT_TRUE(open[0] && open[1]);
+}
+
+// Where single precision has steps of 3 cm.
+TEST(CoincidentFaces, AreFoundFarFromTheOrigin) {
+  const std::string sphere =
+      "shape = \"sphere\"\nradius = 0.5\nsegments = 100\nmaterial = \"white\"\n";
+  const Scene scene = read("[[object]]\nname = \"a\"\ncenter = [400000, 400000, 0]\n" + sphere +
+                           "[[object]]\nname = \"b\"\ncenter = [400000.3, 400000, 0]\n" + sphere);
+  EXPECT_EQ(scene.objects.size(), 2U);
 }
 
 // 300 random boxes of 40 labels: the pairs that a comparison of all with all finds, once each.
