@@ -28,7 +28,8 @@ enum class Stream : std::uint32_t {
   Path,
   RangeNoise,
   ErrorBudget,
-  Residual
+  Residual,
+  GatherStart
 };
 
 // A 64-bit mix of the key's parts (SplitMix64 finaliser, Steele et al. 2014).

@@ -8,40 +8,23 @@
 #include "raytrace/gather/gather_tiles.h"
 
 namespace earthshine::raytrace {
-namespace {
-
-// Of its mean ray's length: how far off a point may stand for another.
-constexpr float most_found_share = 0.1F;
-constexpr float half_diagonal = 0.7072F;  // of a pixel
-
-// How much further apart neighbours are along the surface than across the view.
-float stretch(const GatherPoint& point) {
-  const float distance = glm::length(point.position);
-  const float cosine =
-      std::abs(glm::dot(point.position, point.normal)) / std::max(distance, 1e-20F);
-  return 1.0F / std::max(cosine, 0.05F);
-}
-
-}  // namespace
-
 GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
                          const GatherSurface& surface, const CameraModel& camera,
                          const Window& window, const Setting& setting)
     : world_(world),
       incoming_(incoming),
+      surface_(surface),
+      camera_(camera),
       window_(window),
-      picture_columns_(camera.columns),
-      picture_pixels_(static_cast<std::uint64_t>(camera.columns) *
-                      static_cast<std::uint64_t>(camera.rows)),
       setting_(setting),
       grid_(window.pixel_count()),
       image_layers_(setting.image_layers),
       layers_(setting.image_layers + (setting.keeps_sky_apart ? 1 : 0)),
       points_(window.pixel_count()),
       origin_(window.pixel_count(), Vec3(0.0)) {
-  find_points(surface, camera);
-  find_strays(surface, camera);
-  inverse_length_.assign(points_.size(), 0.0);
+  find_points();
+  find_strays();
+  lengths_.assign(points_.size(), {});
   const std::size_t count = points_.size();
   const auto begin = [&](Gathered kind, std::size_t layers) {
     Estimate& estimate = estimate_[number(kind)];
@@ -77,6 +60,7 @@ void GatherField::cast(Gathered kind, const std::vector<std::uint32_t>& more, st
   estimate.sum.resize(points_.size() * estimate.layers, glm::vec3(0.0F));
   if (kind == Gathered::Solution) {
     cast_solution(more, round, stop);
+    if (broad_.empty()) spread(more, round, stop);
   } else {
     cast_paths(kind, more, round, stop);
   }
@@ -119,27 +103,6 @@ double GatherField::reflected(Gathered kind, std::size_t point) const {
 double GatherField::error_of(Gathered kind, std::size_t point) const {
   if (!gathers(kind)) return 0.0;
   return std::sqrt(double(shared_[number(kind)].squared_error[point]));
-}
-
-std::size_t GatherField::find(int x, int y, const glm::vec3& position,
-                              const glm::vec3& normal) const {
-  // Further off, irradiance may be another: a gap in a wall, the foot of a box. A few rays of each
-  // sample's own are exact there, and grain: where that is not wanted, the point stands for the
-  // mean over its pixel.
-  const auto if_near = [&](std::size_t index) {
-    const GatherPoint& point = points_[index];
-    const float pixel = point.spacing_m * stretch(point);
-    const float least = setting_.whole_pixels ? half_diagonal * pixel : 0.0F;
-    const float most = std::max(least, std::min(3.0F * pixel, most_found_share * point.reach_m));
-    return glm::length(position - point.position) <= most ? index : no_point;
-  };
-  if (!window_.contains(x, y)) return no_point;
-  const std::size_t own = window_.index(x, y);
-  if (stands_for(points_[own], position, normal)) return if_near(own);
-  for (std::size_t k = first_stray_[own]; k < first_stray_[own + 1]; ++k) {
-    if (stands_for(points_[grid_ + k], position, normal)) return if_near(grid_ + k);
-  }
-  return no_point;
 }
 
 }  // namespace earthshine::raytrace

@@ -3,8 +3,9 @@
 // shared by all of the pixel's camera samples and by neighbouring points (share.h). Three things
 // are estimated at each point, each with as many samples as it needs. Where the pixel shows other
 // surfaces beside the one behind its centre, each of these has a point of its own, a stray
-// (strays.h), which lies on no grid.
-//
+// (strays.h), which lies on no grid. Where what comes in changes within a pixel, as its rays'
+// lengths tell, they start at several places of the point's surface in the pixel, other ones each
+// time: the point stands for their mean.
 //
 //   solution  mean radiance that cosine-distributed rays read from the radiosity solution, the sky
 //             and what mirrors and glass pass on: T L~ over k_d, L~ what the solution says
@@ -20,6 +21,7 @@
 #include <vector>
 
 #include "raytrace/camera/camera.h"
+#include "raytrace/gather/gather_rays.h"
 #include "raytrace/incoming/incoming_light.h"
 #include "raytrace/paths/path_walker.h"
 #include "raytrace/share/share.h"
@@ -54,8 +56,7 @@ class GatherField {
     std::size_t image_layers = 1;
     bool keeps_sky_apart = false;  // one more layer: what came straight from the sky
     bool gathers_residual = true;
-    bool shares = true;         // between neighbours
-    bool whole_pixels = false;  // a pixel's point serves all samples of its surface in the pixel
+    bool shares = true;  // between neighbours
     std::uint64_t seed = 1;
   };
   // Finds the points: one for each pixel of the window, row by row, then the strays. `world` and
@@ -108,11 +109,24 @@ class GatherField {
 
  private:
   static std::size_t number(Gathered kind) { return static_cast<std::size_t>(kind); }
-  void find_points(const GatherSurface& surface, const CameraModel& camera);
-  void find_strays(const GatherSurface& surface, const CameraModel& camera);
+  void find_points();
+  void find_strays();
   // Of what camera rays met: true where light is gathered there.
-  bool place(const GatherSurface& surface, const CameraModel& camera, const scenes::Hit& hit,
-             GatherPoint& point, Vec3& origin) const;
+  bool place(const scenes::Hit& hit, GatherPoint& point, Vec3& origin) const;
+  // What eight rays through these places of a pixel meet.
+  using Places = std::array<double, scenes::RayPacket::width>;
+  [[nodiscard]] std::array<scenes::Hit, scenes::RayPacket::width> look(std::size_t pixel,
+                                                                       const Places& x,
+                                                                       const Places& y) const;
+  // Tells points apart that need several starts, by the length of their rays, and casts anew there.
+  void spread(const std::vector<std::uint32_t>& more, std::uint32_t round,
+              const std::function<bool()>& stop);
+  [[nodiscard]] std::size_t starts_from(std::size_t point) const {
+    return !broad_.empty() && broad_[point] != 0 ? Starts::most : 1;
+  }
+  // Where the rays of a point start, other places for each `turn`.
+  [[nodiscard]] Starts starts_of(Gathered kind, std::size_t point, std::uint32_t turn,
+                                 RayCounts& counts) const;
   // All points of a tile, pixel by pixel.
   [[nodiscard]] std::vector<std::size_t> points_of_tile(std::size_t tile) const;
   // Tells each point's random numbers apart, whatever the crop.
@@ -121,14 +135,15 @@ class GatherField {
                      const std::function<bool()>& stop);
   void cast_paths(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
                   const std::function<bool()>& stop);
-  void lobe_sample(std::size_t p, const std::array<float, 2>& u, PathWalker& walker, base::Rng& rng,
+  void lobe_sample(std::uint32_t material, const Vec3& origin, const Vec3& normal,
+                   const std::array<float, 2>& u, PathWalker& walker, base::Rng& rng,
                    std::vector<Rgb>& sum, RayCounts& counts) const;
 
   const PathWorld& world_;
   const IncomingLight& incoming_;
+  GatherSurface surface_;
+  CameraModel camera_;
   Window window_;
-  int picture_columns_;
-  std::uint64_t picture_pixels_;
   Setting setting_;
   std::size_t grid_;  // points that are pixels' centres
   std::size_t image_layers_, layers_;
@@ -136,7 +151,8 @@ class GatherField {
   std::vector<Stray> strays_;               // those after the grid
   std::vector<std::uint32_t> first_stray_;  // of a pixel, and behind its last
   std::vector<Vec3> origin_;                // lifted off the surface
-  std::vector<double> inverse_length_;      // sum over rays of the solution
+  std::vector<RayLengths> lengths_;         // of the rays that read the solution
+  std::vector<std::uint8_t> broad_;  // per point, 1: several starts; empty before it is known
   std::array<Estimate, gathered_kinds> estimate_;
   std::array<Shared, gathered_kinds> shared_;
   std::vector<glm::vec3> diffuse_;  // point * layers

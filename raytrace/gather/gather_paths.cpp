@@ -34,15 +34,18 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
                       random_number_of(p))
                 .with(2 * std::uint64_t{round} + half);
         const base::SobolOwen4 directions(key);
+        const Starts starts = starts_of(kind, p, 2 * round + half, counts);
         for (std::uint32_t k = 0; k < each; ++k) {
           base::Rng rng(key.with(k));
           const auto u = directions.point2(k);
+          const Vec3 &origin = starts.origin[k % starts.count],
+                     &normal = starts.normal[k % starts.count];
           if (lobe) {
-            lobe_sample(p, u, walker, rng, sum, counts);
+            lobe_sample(point.material, origin, normal, u, walker, rng, sum, counts);
             continue;
           }
-          const auto found = walker.residual_at(incoming_, origin_[p], Vec3(point.normal),
-                                                double(u[0]), double(u[1]), rng);
+          const auto found =
+              walker.residual_at(incoming_, origin, normal, double(u[0]), double(u[1]), rng);
           for (std::size_t layer = 0; layer < image_layers_; ++layer) sum[layer] += found[layer];
         }
         for (std::size_t layer = 0; layer < image_layers_; ++layer) {
@@ -63,25 +66,24 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
 
 // L = integral of L_in (k_s / pi) cos^n alpha cos theta by a ray of density
 // (n + 1) / (2 pi) cos^n alpha about the mirrored view.
-void GatherField::lobe_sample(std::size_t p, const std::array<float, 2>& u, PathWalker& walker,
-                              base::Rng& rng, std::vector<Rgb>& sum, RayCounts& counts) const {
-  const GatherPoint& point = points_[p];
-  const double n = world_.scene.materials[point.material].shininess;
-  const Vec3 normal(point.normal);
+void GatherField::lobe_sample(std::uint32_t material, const Vec3& origin, const Vec3& normal,
+                              const std::array<float, 2>& u, PathWalker& walker, base::Rng& rng,
+                              std::vector<Rgb>& sum, RayCounts& counts) const {
+  const double n = world_.scene.materials[material].shininess;
   const double cos_alpha = std::pow(1.0 - double(u[0]), 1.0 / (n + 1.0));
   const double sine = std::sqrt(std::max(0.0, 1.0 - cos_alpha * cos_alpha));
   const double phi = 2.0 * pi * double(u[1]);
   const base::Frame3 frame =
-      base::frame_around(glm::reflect(glm::normalize(Vec3(point.position)), normal));
+      base::frame_around(glm::reflect(glm::normalize(origin - camera_.position), normal));
   const Vec3 direction = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cos_alpha});
   const double cosine = glm::dot(direction, normal);
   if (cosine <= 0.0) return;
   const Rgb weight(2.0 * cosine / (n + 1.0));
   ++counts.lobe;
-  const scenes::Hit hit = world_.query.closest(origin_[p], direction);
+  const scenes::Hit hit = world_.query.closest(origin, direction);
   incoming_.add(hit, direction, {}, weight, sum, counts);
   if (!setting_.gathers_residual || hit.missed()) return;
-  const auto lacking = walker.residual(incoming_, {origin_[p], direction}, hit, rng);
+  const auto lacking = walker.residual(incoming_, {origin, direction}, hit, rng);
   for (std::size_t layer = 0; layer < image_layers_; ++layer) sum[layer] += weight * lacking[layer];
 }
 

@@ -18,7 +18,9 @@ using scenes::HitPacket;
 using scenes::RayPacket;
 
 constexpr std::size_t width = RayPacket::width;
-// Where eight rays cross a pixel: in columns one after another, in these rows (van der Corput).
+// Where eight rays cross a pixel: in columns one after another, in rows after van der Corput.
+constexpr std::array<double, width> stray_columns = {0.0625, 0.1875, 0.3125, 0.4375,
+                                                     0.5625, 0.6875, 0.8125, 0.9375};
 constexpr std::array<double, width> stray_rows = {0.0625, 0.5625, 0.3125, 0.8125,
                                                   0.1875, 0.6875, 0.4375, 0.9375};
 constexpr float least_cover = 0.2F;  // of a pixel
@@ -51,12 +53,11 @@ bool stands_for(const GatherPoint& point, const glm::vec3& position, const glm::
          (point.lobe <= 0.0F || glm::dot(point.normal, normal) >= lobe_cosine);
 }
 
-bool GatherField::place(const GatherSurface& surface, const CameraModel& camera,
-                        const scenes::Hit& hit, GatherPoint& point, Vec3& origin) const {
+bool GatherField::place(const scenes::Hit& hit, GatherPoint& point, Vec3& origin) const {
   GatherRequest wanted;
-  if (hit.missed() || !surface(hit, wanted)) return false;
-  const double pixel_m = 2.0 * camera.half_height / camera.rows;  // at unit distance
-  point.position = glm::vec3(wanted.position - camera.position);
+  if (hit.missed() || !surface_(hit, wanted)) return false;
+  const double pixel_m = 2.0 * camera_.half_height / camera_.rows;  // at unit distance
+  point.position = glm::vec3(wanted.position - camera_.position);
   point.normal = glm::vec3(wanted.normal);
   point.spacing_m = static_cast<float>(hit.t * pixel_m);
   point.reach_m = std::numeric_limits<float>::max();
@@ -68,7 +69,7 @@ bool GatherField::place(const GatherSurface& surface, const CameraModel& camera,
   return true;
 }
 
-void GatherField::find_points(const GatherSurface& surface, const CameraModel& camera) {
+void GatherField::find_points() {
   base::parallel_chunks(tile_count(window_), 4, [&](std::size_t begin, std::size_t end) {
     RayPacket packet;
     HitPacket hits;
@@ -77,13 +78,13 @@ void GatherField::find_points(const GatherSurface& surface, const CameraModel& c
       for (int y = tile.y; y < tile.y + tile.rows; ++y) {
         const auto count = static_cast<std::size_t>(tile.columns);
         for (std::size_t k = 0; k < count; ++k) {
-          const Ray ray = camera.ray(tile.x + static_cast<double>(k) + 0.5, y + 0.5, 0.0, 0.0);
+          const Ray ray = camera_.ray(tile.x + static_cast<double>(k) + 0.5, y + 0.5, 0.0, 0.0);
           world_.query.set(packet, k, ray.origin, ray.direction);
         }
         world_.query.closest(packet, count, hits);
         for (std::size_t k = 0; k < count; ++k) {
           const std::size_t index = window_.index(tile.x + static_cast<int>(k), y);
-          place(surface, camera, hit_of(hits, k), points_[index], origin_[index]);
+          place(hit_of(hits, k), points_[index], origin_[index]);
         }
       }
     }
@@ -91,8 +92,25 @@ void GatherField::find_points(const GatherSurface& surface, const CameraModel& c
   camera_rays_ = grid_;
 }
 
+std::array<scenes::Hit, width> GatherField::look(std::size_t pixel, const Places& x_of,
+                                                 const Places& y_of) const {
+  const auto columns = static_cast<std::size_t>(window_.columns);
+  const int x = window_.x + static_cast<int>(pixel % columns);
+  const int y = window_.y + static_cast<int>(pixel / columns);
+  RayPacket packet;
+  HitPacket hits;
+  for (std::size_t k = 0; k < width; ++k) {
+    const Ray ray = camera_.ray(x + x_of[k], y + y_of[k], 0.0, 0.0);
+    world_.query.set(packet, k, ray.origin, ray.direction);
+  }
+  world_.query.closest(packet, width, hits);
+  std::array<scenes::Hit, width> met;
+  for (std::size_t k = 0; k < width; ++k) met[k] = hit_of(hits, k);
+  return met;
+}
+
 // Looks at pixels about which not all centres lie on one surface once more, by eight rays.
-void GatherField::find_strays(const GatherSurface& surface, const CameraModel& camera) {
+void GatherField::find_strays() {
   struct Found {
     Stray stray;
     GatherPoint point;
@@ -103,7 +121,7 @@ void GatherField::find_strays(const GatherSurface& surface, const CameraModel& c
   const auto alike = [](const GatherPoint& a, const GatherPoint& b) {
     return a.material == b.material && stands_for(a, b.position, b.normal);
   };
-  const auto look = [&](int x, int y, std::vector<Found>& of_tile) {
+  const auto find = [&](int x, int y, std::vector<Found>& of_tile) {
     const std::size_t own = window_.index(x, y), first = of_tile.size();
     bool even = true;
     each_neighbour(window_, x, y, 1, [&](std::size_t q) {
@@ -112,18 +130,10 @@ void GatherField::find_strays(const GatherSurface& surface, const CameraModel& c
              (!gathers || alike(points_[own], points_[q]));
     });
     if (even) return;
-    RayPacket packet;
-    HitPacket hits;
-    for (std::size_t k = 0; k < width; ++k) {
-      const Ray ray =
-          camera.ray(x + (static_cast<double>(k) + 0.5) / width, y + stray_rows[k], 0.0, 0.0);
-      world_.query.set(packet, k, ray.origin, ray.direction);
-    }
-    world_.query.closest(packet, width, hits);
     rays += width;
-    for (std::size_t k = 0; k < width; ++k) {
+    for (const scenes::Hit& hit : look(own, stray_columns, stray_rows)) {
       Found more;
-      if (!place(surface, camera, hit_of(hits, k), more.point, more.origin)) continue;
+      if (!place(hit, more.point, more.origin)) continue;
       if (points_[own].reach_m > 0.0F && alike(points_[own], more.point)) continue;
       auto same = std::find_if(of_tile.begin() + static_cast<std::ptrdiff_t>(first), of_tile.end(),
                                [&](const Found& one) { return alike(one.point, more.point); });
@@ -150,14 +160,14 @@ void GatherField::find_strays(const GatherSurface& surface, const CameraModel& c
           }
         });
       }
-      stray.region = static_cast<std::uint32_t>(y / region_px * (picture_columns_ / region_px + 1) +
+      stray.region = static_cast<std::uint32_t>(y / region_px * (camera_.columns / region_px + 1) +
                                                 x / region_px);
     }
   };
   base::parallel_chunks(found.size(), 1, [&](std::size_t t, std::size_t) {
     const Window tile = tile_of(window_, t);
     for (int y = tile.y; y < tile.y + tile.rows; ++y) {
-      for (int x = tile.x; x < tile.x + tile.columns; ++x) look(x, y, found[t]);
+      for (int x = tile.x; x < tile.x + tile.columns; ++x) find(x, y, found[t]);
     }
   });
   camera_rays_ += rays;
@@ -199,9 +209,10 @@ std::uint64_t GatherField::random_number_of(std::size_t point) const {
   const std::size_t pixel = pixel_of(point), columns = static_cast<std::size_t>(window_.columns);
   const std::uint64_t x = static_cast<std::uint64_t>(window_.x) + pixel % columns;
   const std::uint64_t y = static_cast<std::uint64_t>(window_.y) + pixel / columns;
-  const std::uint64_t number = y * static_cast<std::uint64_t>(picture_columns_) + x;
-  return point < grid_ ? number
-                       : number + picture_pixels_ * (1 + point - grid_ - first_stray_[pixel]);
+  const std::uint64_t number = y * static_cast<std::uint64_t>(camera_.columns) + x;
+  const std::uint64_t all =
+      static_cast<std::uint64_t>(camera_.columns) * static_cast<std::uint64_t>(camera_.rows);
+  return point < grid_ ? number : number + all * (1 + point - grid_ - first_stray_[pixel]);
 }
 
 }  // namespace earthshine::raytrace

@@ -63,6 +63,7 @@ void GatherRays::make(const TilePoints& points, std::size_t first, std::size_t o
                       std::array<float, width>& cosine) {
   const float* u = &samples.u[j * samples.padded + offset];
   const float* v = &samples.v[j * samples.padded + offset];
+  const TilePoints::Start& from = points.start_of(j);
   for (std::size_t k = 0; k < width; ++k) {
     // Lanes past the last point repeat what stands there; nobody reads their hits.
     const std::size_t p = first + offset + k;
@@ -70,15 +71,12 @@ void GatherRays::make(const TilePoints& points, std::size_t first, std::size_t o
     const base::Turned way = base::turn(v[k]);
     const float x = radius * way.cosine, y = radius * way.sine;
     cosine[k] = z;
-    rays.origin_x[k] = points.origin_x[p];
-    rays.origin_y[k] = points.origin_y[p];
-    rays.origin_z[k] = points.origin_z[p];
-    rays.direction_x[k] =
-        x * points.tangent_x[p] + y * points.bitangent_x[p] + z * points.normal_x[p];
-    rays.direction_y[k] =
-        x * points.tangent_y[p] + y * points.bitangent_y[p] + z * points.normal_y[p];
-    rays.direction_z[k] =
-        x * points.tangent_z[p] + y * points.bitangent_z[p] + z * points.normal_z[p];
+    rays.origin_x[k] = from.origin_x[p];
+    rays.origin_y[k] = from.origin_y[p];
+    rays.origin_z[k] = from.origin_z[p];
+    rays.direction_x[k] = x * from.tangent_x[p] + y * from.bitangent_x[p] + z * from.normal_x[p];
+    rays.direction_y[k] = x * from.tangent_y[p] + y * from.bitangent_y[p] + z * from.normal_y[p];
+    rays.direction_z[k] = x * from.tangent_z[p] + y * from.bitangent_z[p] + z * from.normal_z[p];
     rays.t_max[k] = std::numeric_limits<float>::infinity();
   }
 }

@@ -3,6 +3,7 @@
 // eight at a time from neighbouring points into the same cell of the hemisphere.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -17,34 +18,63 @@ inline constexpr int gather_tile_px = 8;
 inline constexpr std::size_t most_tile_points =
     static_cast<std::size_t>(gather_tile_px) * gather_tile_px;
 
-// The points of one tile, side by side for the vector units.
+// Where a point's rays start: one place behind its pixel's centre, or several of its pixel.
+struct Starts {
+  static constexpr std::size_t most = scenes::RayPacket::width;
+  std::size_t count = 0;
+  std::array<Vec3, most> origin, normal;  // lifted off the surface; unit
+  void add(const Vec3& lifted, const Vec3& up) { origin[count] = lifted, normal[count++] = up; }
+};
+
+// Of rays that end on a surface; what misses all is far, and changes little nearby.
+struct RayLengths {
+  double inverse = 0.0, count = 0.0;  // sum of 1 / m
+  void add(double length_m) { inverse += 1.0 / std::max(length_m, 1e-6), count += 1.0; }
+  void operator+=(const RayLengths& more) { inverse += more.inverse, count += more.count; }
+  [[nodiscard]] double harmonic_mean() const { return count / inverse; }
+};
+
+// The points of one tile, side by side for the vector units; each has as many starts.
 struct TilePoints {
+  struct Start {
+    std::array<Vec3, most_tile_points> origin, normal;
+    alignas(32) float origin_x[most_tile_points], origin_y[most_tile_points],
+        origin_z[most_tile_points];
+    alignas(32) float tangent_x[most_tile_points], tangent_y[most_tile_points],
+        tangent_z[most_tile_points];
+    alignas(32) float bitangent_x[most_tile_points], bitangent_y[most_tile_points],
+        bitangent_z[most_tile_points];
+    alignas(32) float normal_x[most_tile_points], normal_y[most_tile_points],
+        normal_z[most_tile_points];
+  };
   std::array<std::size_t, most_tile_points> index;
   std::array<std::uint64_t, most_tile_points> pixel;
-  std::array<Vec3, most_tile_points> origin, normal;
-  alignas(32) float origin_x[most_tile_points], origin_y[most_tile_points],
-      origin_z[most_tile_points];
-  alignas(32) float tangent_x[most_tile_points], tangent_y[most_tile_points],
-      tangent_z[most_tile_points];
-  alignas(32) float bitangent_x[most_tile_points], bitangent_y[most_tile_points],
-      bitangent_z[most_tile_points];
-  alignas(32) float normal_x[most_tile_points], normal_y[most_tile_points],
-      normal_z[most_tile_points];
+  std::vector<Start> start;
   std::size_t count = 0;
 
-  void add(std::size_t at, std::uint64_t of_pixel, const Vec3& lifted, const Vec3& up,
-           const Vec3& centre) {
+  explicit TilePoints(std::size_t starts) : start(starts) {}
+  // Fewer starts than there is room for come again.
+  void add(std::size_t at, std::uint64_t of_pixel, const Starts& of_point, const Vec3& centre) {
     const std::size_t k = count++;
-    const base::Frame3 frame = base::frame_around(up);
-    const glm::vec3 o(lifted - centre), t(frame.tangent), b(frame.bitangent), n(up);
     index[k] = at;
     pixel[k] = of_pixel;
-    origin[k] = lifted;
-    normal[k] = up;
-    origin_x[k] = o.x, origin_y[k] = o.y, origin_z[k] = o.z;
-    tangent_x[k] = t.x, tangent_y[k] = t.y, tangent_z[k] = t.z;
-    bitangent_x[k] = b.x, bitangent_y[k] = b.y, bitangent_z[k] = b.z;
-    normal_x[k] = n.x, normal_y[k] = n.y, normal_z[k] = n.z;
+    for (std::size_t s = 0; s < start.size(); ++s) {
+      Start& to = start[s];
+      const Vec3 &lifted = of_point.origin[s % of_point.count],
+                 &up = of_point.normal[s % of_point.count];
+      const base::Frame3 frame = base::frame_around(up);
+      const glm::vec3 o(lifted - centre), t(frame.tangent), b(frame.bitangent), n(up);
+      to.origin[k] = lifted;
+      to.normal[k] = up;
+      to.origin_x[k] = o.x, to.origin_y[k] = o.y, to.origin_z[k] = o.z;
+      to.tangent_x[k] = t.x, to.tangent_y[k] = t.y, to.tangent_z[k] = t.z;
+      to.bitangent_x[k] = b.x, to.bitangent_y[k] = b.y, to.bitangent_z[k] = b.z;
+      to.normal_x[k] = n.x, to.normal_y[k] = n.y, to.normal_z[k] = n.z;
+    }
+  }
+  // Of ray j: rays of a row and of a column of the hemisphere's cells start at all places in turn.
+  [[nodiscard]] const Start& start_of(std::size_t j) const {
+    return start[(j + j / Starts::most) % start.size()];
   }
 };
 

@@ -43,7 +43,7 @@ class SolutionRays {
   }
 
   std::vector<Rgb> sums;  // point * layers: mean radiance times the rays
-  std::array<double, most_tile_points> inverse_length{};
+  std::array<RayLengths, most_tile_points> lengths{};
   RayCounts counts;
 
  private:
@@ -62,7 +62,7 @@ class SolutionRays {
       const Vec3 direction(rays.direction_x[k], rays.direction_y[k], rays.direction_z[k]);
       if (aimed > 0.0) share.cosine = double(cosine[k]);
       const scenes::Hit hit{hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0};
-      if (!hit.missed()) inverse_length[p] += 1.0 / std::max(hit.t, 1e-6);
+      if (!hit.missed()) lengths[p].add(hit.t);
       incoming_.add(hit, direction, share, Rgb(1.0), {&sums[p * layers_], layers_}, counts);
     }
   }
@@ -73,11 +73,12 @@ class SolutionRays {
     const auto found = static_cast<double>(rays_.rays());
     for (std::size_t j = 0; j < count; ++j) {
       const double choice = rng.next(), x = rng.next(), y = rng.next();
-      const auto aimed = incoming_.aim(points_.origin[k], points_.normal[k], choice, x, y, found,
+      const TilePoints::Start& from = points_.start_of(j);
+      const auto aimed = incoming_.aim(from.origin[k], from.normal[k], choice, x, y, found,
                                        static_cast<double>(count));
       if (aimed.weight <= 0.0) continue;
-      incoming_.add(query_.closest(points_.origin[k], aimed.direction), aimed.direction,
-                    aimed.share, Rgb(aimed.weight * found), {&sums[k * layers_], layers_}, counts);
+      incoming_.add(query_.closest(from.origin[k], aimed.direction), aimed.direction, aimed.share,
+                    Rgb(aimed.weight * found), {&sums[k * layers_], layers_}, counts);
     }
   }
 
@@ -107,14 +108,19 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
     std::vector<RayCounts> counts(tile_count(window_));
     const auto cast_tile = [&](std::size_t t) {
       if (stop && stop()) return;
-      TilePoints points;
-      const auto cast = [&] {
-        for (std::size_t half = 0; half < 2; ++half) {
+      const auto cast = [&](std::span<const std::size_t> some, std::size_t starts) {
+        for (std::uint32_t half = 0; half < 2; ++half) {
+          TilePoints points(starts);
+          for (const std::size_t p : some) {
+            points.add(p, random_number_of(p),
+                       starts_of(Gathered::Solution, p, 2 * round + half, counts[t]),
+                       world_.query.centre());
+          }
           SolutionRays found(world_.query, incoming_, rays, layers_, points);
           found.run(base::mix64(setting_.seed ^ base::mix64(2 * std::uint64_t{round} + half)));
           for (std::size_t k = 0; k < points.count; ++k) {
             const std::size_t p = points.index[k];
-            inverse_length_[p] += found.inverse_length[k];
+            lengths_[p] += found.lengths[k];
             for (std::size_t layer = 0; layer < layers_; ++layer) {
               estimate.sum[p * layers_ + layer] += glm::vec3(found.sums[k * layers_ + layer]);
             }
@@ -124,28 +130,30 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
           }
           counts[t] += found.counts;
         }
-        points.count = 0;
       };
-      for (const std::size_t p : points_of_tile(t)) {
-        if (rays_for(p) != of_class) continue;
-        points.add(p, random_number_of(p), origin_[p], Vec3(points_[p].normal),
-                   world_.query.centre());
-        if (points.count == most_tile_points) cast();
+      for (const std::size_t starts : {std::size_t{1}, Starts::most}) {
+        std::vector<std::size_t> some;
+        for (const std::size_t p : points_of_tile(t)) {
+          if (rays_for(p) == of_class && starts_from(p) == starts) some.push_back(p);
+        }
+        for (std::size_t first = 0; first < some.size(); first += most_tile_points) {
+          cast(std::span(some).subspan(first, std::min(most_tile_points, some.size() - first)),
+               starts);
+        }
       }
-      if (points.count > 0) cast();
     };
     base::share_loop(counts.size(), cast_tile, [&](std::size_t t, base::Parcel& parcel) {
       parcel.pass(counts[t]);
       for (const std::size_t p : points_of_tile(t)) {
-        parcel.pass(inverse_length_[p]);
+        parcel.pass(lengths_[p]);
         estimate.pass(p, parcel);
       }
     });
     for (const RayCounts& tile : counts) rays_of_[number(Gathered::Solution)] += tile;
   }
   for (std::size_t p = 0; p < points_.size(); ++p) {
-    if (inverse_length_[p] > 0.0) {
-      points_[p].reach_m = static_cast<float>(double(estimate.samples[p]) / inverse_length_[p]);
+    if (lengths_[p].count > 0.0) {
+      points_[p].reach_m = static_cast<float>(lengths_[p].harmonic_mean());
     }
   }
 }

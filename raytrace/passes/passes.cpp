@@ -190,21 +190,15 @@ class Passes {
     return static_cast<double>(camera_.columns) * camera_.rows;
   }
 
-  // Of what changes within pixels no sample tells the error: 1 % of the bay at 256 x 256.
-  [[nodiscard]] bool may_be_coarse() const {
-    const bool by_settings = options_.error <= 0.0 && options_.time_limit_s <= 0.0;
-    const double error = by_settings ? options_.shared.noise / 1.5 : options_.error;
-    return options_.shared.smooth_share > 0.0 && error >= 0.04;
-  }
-
   void begin_field() {
-    const GatherSurface surface = [this](const scenes::Hit& hit, GatherRequest& request) {
-      return gathers_at(shared_.scene, hit, request);
+    const GatherSurface surface = [&scene = shared_.scene](const scenes::Hit& hit,
+                                                           GatherRequest& request) {
+      return gathers_at(scene, hit, request);
     };
     field_.emplace(
         world_, shared_.incoming, surface, camera_, Window{0, 0, camera_.columns, camera_.rows},
         GatherField::Setting{shared_.layers, shared_.splits_parts, shared_.world != nullptr,
-                             options_.shared.smooth_share > 0.0, may_be_coarse(), options_.seed});
+                             options_.shared.smooth_share > 0.0, options_.seed});
     shared_.diffuse = DiffuseSource::Field;
     shared_.field = &*field_;
   }

@@ -17,6 +17,7 @@
 // to nothing with more samples, and with it what sharing blurs.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -30,7 +31,8 @@ namespace earthshine::raytrace {
 
 struct GatherPoint {
   glm::vec3 position{0.0F};  // m, relative to the camera
-  float reach_m = -1.0F;     // harmonic mean length of its rays; negative: nothing gathered here
+  float reach_m =
+      -1.0F;  // harmonic mean length of rays that end on surfaces; negative: none are cast
   glm::vec3 normal{0.0F};    // unit, on the camera's side
   float spacing_m = 0.0F;    // how far apart neighbouring pixels are there, across the view
   float reflectance = 0.0F;  // luminance of the surface's k_d
@@ -58,6 +60,11 @@ struct Estimate {
         sum(points * layers_each, glm::vec3(0.0F)),
         luminance(points, {0.0F, 0.0F}),
         samples(points, 0.0F) {}
+  void clear(std::size_t point) {
+    std::fill_n(sum.begin() + static_cast<std::ptrdiff_t>(point * layers), layers, glm::vec3(0.0F));
+    luminance[point] = {0.0F, 0.0F};
+    samples[point] = 0.0F;
+  }
   // A point's sums.
   void pass(std::size_t point, base::Parcel& parcel) {
     parcel.pass_range(&sum[point * layers], layers);

@@ -60,15 +60,16 @@ std::vector<TilePoints> tiles() {
   std::vector<TilePoints> all;
   for (int y0 = 0; y0 < edge_px; y0 += raytrace::gather_tile_px) {
     for (int x0 = 0; x0 < edge_px; x0 += raytrace::gather_tile_px) {
-      TilePoints& tile = all.emplace_back();
+      TilePoints& tile = all.emplace_back(1);
       for (int y = y0; y < y0 + raytrace::gather_tile_px; ++y) {
         for (int x = x0; x < x0 + raytrace::gather_tile_px; ++x) {
           const raytrace::Ray ray = s.camera.ray(x + 0.5, y + 0.5, 0.0, 0.0);
           const scenes::Hit hit = s.bay.query.closest(ray.origin, ray.direction);
           raytrace::GatherRequest at;
           if (hit.missed() || !surface(hit, at)) continue;
-          tile.add(tile.count, static_cast<std::uint64_t>(y * edge_px + x),
-                   at.position + at.normal * s.bay.query.surface_offset_m(), at.normal,
+          raytrace::Starts starts;
+          starts.add(at.position + at.normal * s.bay.query.surface_offset_m(), at.normal);
+          tile.add(tile.count, static_cast<std::uint64_t>(y * edge_px + x), starts,
                    s.bay.query.centre());
         }
       }

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far about it a gather point stands for its surface, and where its rays start.
+#include <algorithm>
+#include <cmath>
+
+#include "base/numbers/random.h"
+#include "raytrace/gather/gather_field.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+// Of its mean ray's length: how far about a point what comes in is much the same.
+constexpr float alike_share = 0.1F;
+
+// How far the corners of a point's pixel are from it, along the surface.
+float half_pixel(const GatherPoint& point) {
+  constexpr float half_diagonal = 0.7072F;
+  const float distance = glm::length(point.position);
+  const float cosine =
+      std::abs(glm::dot(point.position, point.normal)) / std::max(distance, 1e-20F);
+  return half_diagonal * point.spacing_m / std::max(cosine, 0.05F);
+}
+
+}  // namespace
+
+void GatherField::spread(const std::vector<std::uint32_t>& more, std::uint32_t round,
+                         const std::function<bool()>& stop) {
+  Estimate& estimate = estimate_[number(Gathered::Solution)];
+  broad_.resize(points_.size());
+  std::vector<std::uint32_t> anew(points_.size(), 0U);
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    const GatherPoint& point = points_[p];
+    if (estimate.samples[p] <= 0.0F) continue;
+    // Where no ray met a surface, none has told how near what few would meet is.
+    const bool met = lengths_[p].count > 0.0;
+    if (met && half_pixel(point) <= alike_share * point.reach_m) continue;
+    broad_[p] = 1U;
+    anew[p] = more[p];
+    lengths_[p] = {};
+    estimate.clear(p);
+  }
+  cast_solution(anew, round, stop);
+}
+
+Starts GatherField::starts_of(Gathered kind, std::size_t p, std::uint32_t turn,
+                              RayCounts& counts) const {
+  Starts starts;
+  if (starts_from(p) > 1) {
+    const base::Key key = base::Key(setting_.seed, base::Stream::GatherStart, random_number_of(p))
+                              .with(number(kind))
+                              .with(turn);
+    const base::SobolOwen4 places(key);
+    Places x, y;
+    for (std::uint32_t k = 0; k < Starts::most; ++k) {
+      const auto u = places.point2(k);
+      x[k] = double(u[0]), y[k] = double(u[1]);
+    }
+    counts.camera += Starts::most;
+    for (const scenes::Hit& hit : look(pixel_of(p), x, y)) {
+      GatherPoint found;
+      Vec3 origin;
+      if (!place(hit, found, origin)) continue;
+      if (!stands_for(points_[p], found.position, found.normal)) continue;
+      starts.add(origin, Vec3(found.normal));
+    }
+  }
+  if (starts.count == 0) starts.add(origin_[p], Vec3(points_[p].normal));
+  return starts;
+}
+
+std::size_t GatherField::find(int x, int y, const glm::vec3& position,
+                              const glm::vec3& normal) const {
+  // Further off, as a lens out of focus looks, irradiance may be another.
+  const auto if_near = [&](std::size_t index) {
+    const GatherPoint& point = points_[index];
+    const float half = half_pixel(point);
+    const float most = std::max(half, std::min(6.0F * half, alike_share * point.reach_m));
+    return glm::length(position - point.position) <= most ? index : no_point;
+  };
+  if (!window_.contains(x, y)) return no_point;
+  const std::size_t own = window_.index(x, y);
+  if (stands_for(points_[own], position, normal)) return if_near(own);
+  for (std::size_t k = first_stray_[own]; k < first_stray_[own + 1]; ++k) {
+    if (stands_for(points_[grid_ + k], position, normal)) return if_near(grid_ + k);
+  }
+  return no_point;
+}
+
+}  // namespace earthshine::raytrace

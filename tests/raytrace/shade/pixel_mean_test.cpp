@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// A pixel of the shared gather, however large, against the closed form of its mean.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "raytrace/render.h"
+#include "tests/support/scene_builder.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+TEST(PixelMean, LightThatChangesWithinAPixelIsItsMean) {
+  // One pixel, straight above a dark floor from the foot of a sunlit wall to w = 2 m off it. A long
+  // wall of height h that sends out M gives E(x) = M / 2 (1 - x / sqrt(x^2 + h^2)) at x from it, in
+  // the mean M / 2 (1 - (sqrt(w^2 + h^2) - h) / w): ten times what the pixel's centre gets. A wall
+  // of 100 m lacks less than (w / 50)^2 of that; the wall gets back less than rho / 4 of M.
+  constexpr double w = 2.0, h = 0.1, rho = 0.01, exitance = 500.0;
+  tests::SceneBuilder builder;
+  builder.plate(builder.material(tests::grey(rho)), 200.0, 0.0, true);
+  builder.quad(builder.material(tests::grey(0.5)), Vec3(0, -50, 0), Vec3(0, 50, 0), Vec3(0, 50, h),
+               Vec3(0, -50, h));
+  scenes::Sun sun;
+  sun.direction = Vec3(1, 0, 0);  // along the floor
+  sun.illuminance_lx = Rgb(2.0 * exitance);
+  sun.angular_radius_deg = 1e-5;
+  builder.scene.sun = sun;
+  const tests::Prepared prepared(builder.scene);
+  scenes::Camera camera;
+  camera.position = Vec3(0.5 * w, 0, 10);
+  camera.look_at = Vec3(0.5 * w, 0, 0);
+  camera.up = Vec3(0, 1, 0);
+  camera.fov_deg = 2.0 * std::atan(0.5 * w / 10.0) * 180.0 / base::pi;
+  RenderOptions options;
+  options.columns = options.rows = 1;
+  options.gather_rays = 256;
+  options.shared.on = true;
+  radiosity::SolveOptions solve;
+  solve.patch_edge_m = 5.0;
+  const radiosity::Solution solution = prepared.solve(solve);
+  constexpr int pictures = 256;
+  double sum = 0.0, squares = 0.0;
+  for (options.seed = 1; options.seed <= pictures; ++options.seed) {
+    const Frame frame = render(builder.scene, prepared.groups, prepared.effects, prepared.query,
+                               solution, camera, options);
+    const double found = double(frame.image.find("G")->values[0]);
+    sum += found, squares += found * found;
+  }
+  const double found = sum / pictures;
+  const double standard_error = std::sqrt((squares / pictures - found * found) / (pictures - 1));
+  const double right = rho / base::pi * exitance / 2.0 * (1.0 - (std::sqrt(w * w + h * h) - h) / w);
+  EXPECT_LT(standard_error, 0.05 * right);
+  EXPECT_NEAR(found, right, 4.0 * standard_error + (std::pow(w / 50.0, 2) + rho / 4.0) * right);
+}
+
+}  // namespace
+}  // namespace earthshine::raytrace
