@@ -5,19 +5,12 @@
 
 #include "app/parts/part.h"
 #include "app/parts/result_cache.h"
+#include "app/study/results.h"
 #include "app/views/scene.h"
 #include "radiosity/store/solution_file.h"
 #include "studies/study.h"
 
 namespace earthshine::app {
-
-// What was done or found, for the report.
-struct StudyCost {
-  std::string stage;
-  double seconds = 0.0;  // of the run that did it
-  std::uint64_t rays = 0;
-  bool found = false;  // in the folder, from an earlier run
-};
 
 class StudyFrames {
  public:
