@@ -21,10 +21,11 @@ class StudyFrames {
   // The picture of a camera, with the layer "object"; nothing if it was interrupted.
   struct Frame {
     base::Image image;
-    double relative_noise = 0.0;
     double seconds = 0.0;
-    std::size_t patches = 0;               // of the solution it was drawn from
-    std::vector<std::string> limits = {};  // that the solution reached
+    double relative_noise = 0.0;
+    std::uint64_t rays = 0;
+    std::vector<std::string> limits = {};  // that the solution it was drawn from reached
+    std::size_t patches = 0;               // of that solution
   };
   [[nodiscard]] std::optional<Frame> frame(const StudyCamera& camera,
                                            std::vector<StudyCost>& costs);
@@ -48,6 +49,7 @@ class StudyFrames {
   void forget_solution() { solution_.reset(); }
 
  private:
+  [[nodiscard]] StudyCost cost_of(const StudyCamera& camera, const Frame& frame, bool found) const;
   [[nodiscard]] raytrace::RenderOptions options(const StudyCamera& camera) const;
 
   [[nodiscard]] radiosity::Solution solve(StageTimes& times) const;
