@@ -58,7 +58,6 @@ Result run_chain(std::initializer_list<const base::Image*> seen, const Setup& se
 
   const std::span<const Stage> table = stages();
   const bool interlaced = has_fields(setup, report);
-  double white = 1.0;
   bool exposed = false;
   for (const Stage& stage : table) {
     if (stage.part == Part::Sensor && !exposed) {
@@ -78,15 +77,13 @@ Result run_chain(std::initializer_list<const base::Image*> seen, const Setup& se
       }
     }
     report.stages.emplace_back(stage.name);
-    if (options.watch) options.watch(stage.name, fields.front());
-    if (stage.name == "screen") white = setup.monitor.white_luminance;
-    if (stage.name == "room-light") white += room_luminance(setup.monitor);
+    if (options.watch) options.watch(stage, fields.front());
   }
   Picture& shown = fields.front();
   result.columns = shown.columns;
   result.rows = shown.rows;
   result.channels = static_cast<int>(shown.planes.size());
-  result.pixels = screen_bytes(shown, white);
+  result.pixels = screen_bytes(shown, report.white);
   result.viewed = to_image(std::move(shown));
   return result;
 }
@@ -156,7 +153,7 @@ Result degrade_fields(const base::Image& first, const base::Image& second, const
     throw base::Error(base::Blame::Input, "fields", found, allowed);
   };
   if (!camera.interlace) refuse("the camera is not interlaced", "it must have interlace = true");
-  if (std::find(options.off.begin(), options.off.end(), "interlace") != options.off.end()) {
+  if (!has_fields({camera, monitor, options}, {})) {
     refuse("stage \"interlace\" is left out", "two fields need it");
   }
   if (first.width != second.width || first.height != second.height) {

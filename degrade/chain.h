@@ -4,6 +4,7 @@
 // not called, and what the others do does not depend on it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -22,6 +23,8 @@
 
 namespace earthshine::degrade {
 
+struct Stage;
+
 struct Options {
   std::uint64_t seed = 1;
   std::uint64_t frame = 0;
@@ -30,7 +33,7 @@ struct Options {
       off;               // stages left out by name, e.g. both noises for the noise-free twin
   double fov_deg = 0.0;  // vertical, of the picture; 0: not known
   // Called with the picture after each stage that ran; of an interlaced camera the first field's.
-  std::function<void(std::string_view stage, const Picture&)> watch = {};
+  std::function<void(const Stage& stage, const Picture&)> watch = {};
 };
 
 struct Report {
@@ -38,6 +41,7 @@ struct Report {
   NoiseLaw noise;
   Grid sensor;                          // columns and rows used
   Levels levels;                        // of the amplified signal, before white is clipped
+  double white = 1.0;                   // what the screen shows of signal 1, under the room's light
   double excess_share = 0.0;            // of the signal: what lay above saturation
   double lost_share = 0.0;              // of the signal: what saturation and bloom threw away
   std::size_t negative_pixels = 0;      // of the input, taken as black
@@ -77,14 +81,31 @@ struct StageContext {
   std::uint64_t field = 0, fields = 1;
 };
 
-// Lens: the same for both fields. Sensor: each field of a frame for itself. Monitor: the frame.
 struct Moments;  // degrade/carry.h
 
+// Lens: the same for both fields. Sensor: each field of a frame for itself. Monitor: the frame.
 enum class Part { Lens, Sensor, Monitor };
+
+// What a stage does to a flat or linear signal: what a measurement has to leave out. Bits.
+enum class Kind : unsigned {
+  Plain = 0,
+  Noise = 1,    // adds it
+  Uneven = 2,   // makes a flat field uneven
+  Spatial = 4,  // spreads light over resels
+  Limit = 8,    // ends a linear signal: saturation, black, white
+  Coding = 16,  // gamma and steps
+  Meter = 32    // counts saturated and black resels of the amplified signal
+};
+[[nodiscard]] constexpr Kind operator|(Kind a, Kind b) {
+  return static_cast<Kind>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
 
 struct Stage {
   std::string_view name;
   Part part;
+  Kind kind;
+  // That decide whether it runs; those of the monitor as "monitor.NAME". None: it always does.
+  std::array<std::string_view, 3> settings;
   std::string_view in, out;  // units
   std::string_view law;
   // Report: what earlier stages found, nullptr while there is no picture yet.
@@ -95,6 +116,10 @@ struct Stage {
   Moments (*carry)(Moments, const StageContext&) = nullptr;
   // Where the two fields become a frame, in place of apply.
   Picture (*merge)(Picture first, const Picture& second) = nullptr;
+
+  [[nodiscard]] constexpr bool is(Kind of) const {
+    return (static_cast<unsigned>(kind) & static_cast<unsigned>(of)) != 0;
+  }
 };
 
 // All stages in order.

@@ -109,74 +109,88 @@ bool gain_runs(const Setup& setup, const Report* found) {
 
 bool always(const Setup&, const Report*) { return true; }
 
+template <class... Names>
+constexpr std::array<std::string_view, 3> decided_by(Names... names) {
+  return {names...};
+}
+
 constexpr Stage table[] = {
-    {"sensor-grid", Part::Lens, "cd/m^2", "cd/m^2", "area average onto 300 rows", always,
+    {"sensor-grid", Part::Lens, Kind::Plain, decided_by(), "cd/m^2", "cd/m^2",
+     "area average onto 300 rows", always,
      [](Picture&& p, const StageContext& at) {
        const Grid grid = picture_grid(p.columns, p.rows, at.setup.monitor);
        at.report.sensor = grid;
        return apply(p, area_average(p.columns, grid.columns), area_average(p.rows, grid.rows));
      }},
-    {"iris", Part::Lens, "cd/m^2", "cd/m^2", "finds N and the gain; the picture passes", always,
-     iris},
-    {"lens", Part::Lens, "cd/m^2", "lx", "E = pi tau L / (4 N^2 (1 + m)^2)", always,
+    {"iris", Part::Lens, Kind::Plain, decided_by(), "cd/m^2", "cd/m^2",
+     "finds N and the gain; the picture passes", always, iris},
+    {"lens", Part::Lens, Kind::Plain, decided_by(), "cd/m^2", "lx",
+     "E = pi tau L / (4 N^2 (1 + m)^2)", always,
      [](Picture&& p, const StageContext& at) {
        return through_lens(std::move(p), at.setup.camera, at.report.exposure.f_number);
      }},
-    {"fall-off", Part::Lens, "lx", "lx", "E = E cos(theta)^fall_off",
+    {"fall-off", Part::Lens, Kind::Uneven, decided_by("fall_off"), "lx", "lx",
+     "E = E cos(theta)^fall_off",
      [](const Setup& s, const Report*) { return s.camera.fall_off > 0.0; }, fall_off},
-    {"glare", Part::Lens, "lx", "lx", "E = (1 - g) E + g mean(E)",
+    {"glare", Part::Lens, Kind::Spatial, decided_by("glare"), "lx", "lx",
+     "E = (1 - g) E + g mean(E)",
      [](const Setup& s, const Report*) { return s.camera.glare > 0.0; },
      [](Picture&& p, const StageContext& at) {
        return add_glare(std::move(p), at.setup.camera.glare);
      }},
-    {"lens-spread", Part::Lens, "lx", "lx", "discrete Gaussian, in light",
+    {"lens-spread", Part::Lens, Kind::Spatial, decided_by("lens_blur"), "lx", "lx",
+     "discrete Gaussian, in light",
      [](const Setup& s, const Report*) { return s.camera.lens_blur > 0.0; },
      [](Picture&& p, const StageContext& at) {
        return blur(p, at.setup.camera.lens_blur, at.setup.camera.lens_blur);
      }},
-    {"conversion", Part::Lens, "lx", "signal", "S = E / E_white", always,
+    {"conversion", Part::Lens, Kind::Plain, decided_by(), "lx", "signal", "S = E / E_white", always,
      [](Picture&& p, const StageContext& at) {
        return to_signal(std::move(p), at.setup.camera.white_lux);
      }},
-    {"shading", Part::Lens, "signal", "signal", "S = S (1 - d r^2), r = 1 in the corners",
+    {"shading", Part::Lens, Kind::Uneven, decided_by("shading_percent"), "signal", "signal",
+     "S = S (1 - d r^2), r = 1 in the corners",
      [](const Setup& s, const Report*) { return s.camera.shading_percent > 0.0; },
      [](Picture&& p, const StageContext& at) {
        return shade(std::move(p), at.setup.camera.shading_percent / 100.0);
      }},
-    {"signal-noise", Part::Sensor, "signal", "signal", "variance b S + c S^2, and dark counts",
+    {"signal-noise", Part::Sensor, Kind::Noise, decided_by("noise"), "signal", "signal",
+     "variance b S + c S^2, and dark counts",
      [](const Setup& s, const Report*) { return noise_law(s.camera).with_light(); }, signal_noise,
      carry_signal_noise},
-    {"lag", Part::Sensor, "signal", "signal", "y = (1 - lag) S + lag y of the field before",
+    {"lag", Part::Sensor, Kind::Plain, decided_by("lag"), "signal", "signal",
+     "y = (1 - lag) S + lag y of the field before",
      [](const Setup& s, const Report*) { return s.camera.lag > 0.0; }, lag, carry_lag},
-    {"blur", Part::Sensor, "signal", "signal",
+    {"blur", Part::Sensor, Kind::Spatial, decided_by("blur_h", "blur_v"), "signal", "signal",
      "discrete Gaussian, sigma_h along and sigma_v across lines",
      [](const Setup& s, const Report*) { return s.camera.blur_h > 0.0 || s.camera.blur_v > 0.0; },
      [](Picture&& p, const StageContext& at) {
        return blur(p, at.setup.camera.blur_h, at.setup.camera.blur_v);
      },
      carry_blur},
-    {"smear", Part::Sensor, "signal", "signal", "S = S + 10 smear mean(column)",
+    {"smear", Part::Sensor, Kind::Uneven, decided_by("smear_db"), "signal", "signal",
+     "S = S + 10 smear mean(column)",
      [](const Setup& s, const Report*) { return s.camera.smear_db > 0.0; },
      [](Picture&& p, const StageContext& at) {
        return smear_columns(std::move(p), from_db(at.setup.camera.smear_db));
      }},
-    {"bloom", Part::Sensor, "signal", "signal",
-     "S = min(S, S_most) + bloom * Gaussian of what lay above",
+    {"bloom", Part::Sensor, Kind::Spatial | Kind::Limit, decided_by("saturation", "bloom"),
+     "signal", "signal", "S = min(S, S_most) + bloom * Gaussian of what lay above",
      [](const Setup& s, const Report*) {
        return s.camera.saturation > 0.0 && s.camera.bloom > 0.0;
      },
      bloom, carry_bloom},
-    {"saturation", Part::Sensor, "signal", "signal", "S = min(S, S_most)",
-     [](const Setup& s, const Report*) { return s.camera.saturation > 0.0; }, saturate,
-     carry_saturation},
-    {"read-noise", Part::Sensor, "signal", "signal", "variance a",
+    {"saturation", Part::Sensor, Kind::Limit, decided_by("saturation"), "signal", "signal",
+     "S = min(S, S_most)", [](const Setup& s, const Report*) { return s.camera.saturation > 0.0; },
+     saturate, carry_saturation},
+    {"read-noise", Part::Sensor, Kind::Noise, decided_by("noise"), "signal", "signal", "variance a",
      [](const Setup& s, const Report*) { return noise_law(s.camera).with_amplifier(); },
      [](Picture&& p, const StageContext& at) {
        return add_read_noise(std::move(p), at.report.noise, noise_key(at));
      },
      carry_read_noise},
-    {"bandwidth", Part::Sensor, "signal", "signal",
-     "along the line: low pass of -3 dB at B, then aperture correction",
+    {"bandwidth", Part::Sensor, Kind::Spatial, decided_by("bandwidth_mhz", "aperture_correction"),
+     "signal", "signal", "along the line: low pass of -3 dB at B, then aperture correction",
      [](const Setup& s, const Report*) {
        return s.camera.bandwidth_mhz > 0.0 || s.camera.aperture_correction > 0.0;
      },
@@ -188,45 +202,49 @@ constexpr Stage table[] = {
                     gaussian_blur(p.rows, 0.0));
      },
      carry_bandwidth},
-    {"black-clamp", Part::Sensor, "signal", "signal", "S = max(S, 0)",
-     [](const Setup& s, const Report*) { return s.camera.black_clamp; },
+    {"black-clamp", Part::Sensor, Kind::Limit, decided_by("black_clamp"), "signal", "signal",
+     "S = max(S, 0)", [](const Setup& s, const Report*) { return s.camera.black_clamp; },
      [](Picture&& p, const StageContext&) { return limit_below_zero(std::move(p)); },
      carry_black_clamp},
-    {"gain", Part::Sensor, "signal", "signal", "S = G S", gain_runs,
+    {"gain", Part::Sensor, Kind::Plain, decided_by("iris", "gain_db", "gain_max_db"), "signal",
+     "signal", "S = G S", gain_runs,
      [](Picture&& p, const StageContext& at) {
        return amplify(std::move(p), at.report.exposure.gain);
      },
      carry_gain},
-    {"levels", Part::Sensor, "signal", "signal",
+    {"levels", Part::Sensor, Kind::Meter, decided_by(), "signal", "signal",
      "counts white and black resels; the picture passes", always, levels},
-    {"white-clip", Part::Sensor, "signal", "signal", "S = min(S, S_clip)",
-     [](const Setup& s, const Report*) { return s.camera.white_clip > 0.0; },
+    {"white-clip", Part::Sensor, Kind::Limit, decided_by("white_clip"), "signal", "signal",
+     "S = min(S, S_clip)", [](const Setup& s, const Report*) { return s.camera.white_clip > 0.0; },
      [](Picture&& p, const StageContext& at) {
        return limit_above(std::move(p), at.setup.camera.white_clip);
      },
      carry_white_clip},
-    {"camera-gamma", Part::Sensor, "signal", "line signal", "v = S^(1/gamma)",
-     [](const Setup& s, const Report*) { return s.camera.gamma != 1.0; },
+    {"camera-gamma", Part::Sensor, Kind::Coding, decided_by("gamma"), "signal", "line signal",
+     "v = S^(1/gamma)", [](const Setup& s, const Report*) { return s.camera.gamma != 1.0; },
      [](Picture&& p, const StageContext& at) {
        return encode_gamma(std::move(p), at.setup.camera.gamma);
      },
      carry_camera_gamma},
-    {"quantisation", Part::Sensor, "line signal", "line signal", "nearest of 2^bits levels",
-     [](const Setup& s, const Report*) { return s.camera.bits > 0; },
+    {"quantisation", Part::Sensor, Kind::Coding, decided_by("bits"), "line signal", "line signal",
+     "nearest of 2^bits levels", [](const Setup& s, const Report*) { return s.camera.bits > 0; },
      [](Picture&& p, const StageContext& at) {
        return quantise(std::move(p), at.setup.camera.bits);
      },
      carry_quantisation},
-    {"interlace", Part::Sensor, "line signal", "line signal",
+    {"interlace", Part::Sensor, Kind::Plain, decided_by("interlace"), "line signal", "line signal",
      "even lines from the first field, odd ones from the second",
      [](const Setup& s, const Report*) { return s.camera.interlace; }, nullptr, carry_interlace,
      weave},
-    {"screen", Part::Monitor, "line signal", "cd/m^2", "I = I_b + (I_w - I_b) v^gamma", always,
+    {"screen", Part::Monitor, Kind::Plain, decided_by(), "line signal", "cd/m^2",
+     "I = I_b + (I_w - I_b) v^gamma", always,
      [](Picture&& p, const StageContext& at) {
+       at.report.white = at.setup.monitor.white_luminance;
        return drive_screen(std::move(p), at.setup.monitor);
      },
      carry_screen},
-    {"spread", Part::Monitor, "cd/m^2", "cd/m^2", "point spread, on the finer grid of pixels",
+    {"spread", Part::Monitor, Kind::Plain, decided_by("monitor.spread", "monitor.pixels_per_resel"),
+     "cd/m^2", "cd/m^2", "point spread, on the finer grid of pixels",
      [](const Setup& s, const Report*) {
        return s.monitor.spread != Spread::None || s.monitor.pixels_per_resel > 1;
      },
@@ -234,9 +252,12 @@ constexpr Stage table[] = {
        return spread_on_screen(p, at.setup.monitor, at.report.clipped_negative_light);
      },
      carry_spread},
-    {"room-light", Part::Monitor, "cd/m^2", "cd/m^2", "I = I + reflectance E_room / pi",
+    {"room-light", Part::Monitor, Kind::Plain,
+     decided_by("monitor.room_illuminance", "monitor.reflectance"), "cd/m^2", "cd/m^2",
+     "I = I + reflectance E_room / pi",
      [](const Setup& s, const Report*) { return room_luminance(s.monitor) > 0.0; },
      [](Picture&& p, const StageContext& at) {
+       at.report.white += room_luminance(at.setup.monitor);
        return add_light(std::move(p), room_luminance(at.setup.monitor));
      },
      carry_room_light},

@@ -25,13 +25,12 @@ StillRun run_still(const base::Image& radiance, const CctvCamera& camera, const 
   StillRun run;
   std::size_t negative = 0;
   run.exposed = sensor_input(radiance, camera.colour, negative);  // if no stage of the lens runs
-  for (const char* noise : {"signal-noise", "read-noise"}) options.off.emplace_back(noise);
-  options.watch = [&](std::string_view name, const Picture& picture) {
-    for (const Stage& stage : stages()) {
-      if (stage.name != name) continue;
-      if (stage.part == Part::Lens) run.exposed = picture;
-    }
-    if (name == "levels") run.amplified = picture;
+  for (const Stage& stage : stages()) {
+    if (stage.is(Kind::Noise)) options.off.emplace_back(stage.name);
+  }
+  options.watch = [&](const Stage& stage, const Picture& picture) {
+    if (stage.part == Part::Lens) run.exposed = picture;
+    if (stage.is(Kind::Meter)) run.amplified = picture;
   };
   run.result = degrade(radiance, camera, monitor, options, before);
   return run;

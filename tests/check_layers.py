@@ -33,7 +33,7 @@ MOST_FILES = 20  # in a room
 # Library -> (what its includes look like, the files that may use it).
 OWNERS = {
     "Embree": (r"embree[34]?/", ["scenes/ray_query.cpp", "scenes/ray_structure.*"]),
-    "Eigen": (r"Eigen/", ["radiosity/*", "degrade/*"]),
+    "Eigen": (r"Eigen/", ["radiosity/*", "degrade/*", "studies/*"]),
     "OpenEXR": (r"(OpenEXR/|Imath/|Imf|Imath|Iex|half\.h)", ["base/files/exr_*"]),
     "oneTBB": (r"(tbb|oneapi)/", ["base/parallel.cpp"]),
     "Open MPI": (r"mpi\.h", ["base/ranks/open_mpi.cpp"]),

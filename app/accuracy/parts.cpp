@@ -8,6 +8,7 @@
 
 #include "app/console.h"
 #include "app/memory.h"
+#include "app/study/json_fields.h"
 #include "base/error.h"
 
 namespace earthshine::app {
@@ -17,23 +18,6 @@ double cpu_seconds() {
   timespec now{};
   ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-Json facts_of(const studies::StepCost& cost) {
-  return {{"wall_seconds", cost.wall_seconds},
-          {"cpu_seconds", cost.cpu_seconds},
-          {"solve_wall_seconds", cost.solve_wall_seconds},
-          {"solve_cpu_seconds", cost.solve_cpu_seconds},
-          {"patches", cost.patches},
-          {"solve_rays", cost.solve_rays},
-          {"picture_rays", cost.picture_rays},
-          {"form_factor_rays", cost.form_factor_rays},
-          {"gather_rays", cost.gather_rays},
-          {"camera_samples", cost.camera_samples},
-          {"memory_bytes", cost.memory_bytes},
-          {"estimate", cost.stated.estimate},
-          {"bound_95", cost.stated.bound_95},
-          {"estimate_cpu_seconds", cost.statement_cpu_seconds}};
 }
 
 }  // namespace
@@ -83,23 +67,27 @@ Json AccuracyParts::cache_key_of(const studies::AccuracyStep& step, std::uint64_
   return cache_key;
 }
 
+// As it is kept beside a step's picture.
+template <class Fields>
+void describe(Fields& fields, Either<studies::StepCost> auto& cost) {
+  fields("wall_seconds", cost.wall_seconds);
+  fields("cpu_seconds", cost.cpu_seconds);
+  fields("solve_wall_seconds", cost.solve_wall_seconds);
+  fields("solve_cpu_seconds", cost.solve_cpu_seconds);
+  fields("patches", cost.patches);
+  fields("solve_rays", cost.solve_rays);
+  fields("picture_rays", cost.picture_rays);
+  fields("form_factor_rays", cost.form_factor_rays);
+  fields("gather_rays", cost.gather_rays);
+  fields("camera_samples", cost.camera_samples);
+  fields("memory_bytes", cost.memory_bytes);
+  fields("estimate", cost.stated.estimate);
+  fields("bound_95", cost.stated.bound_95);
+  fields("estimate_cpu_seconds", cost.statement_cpu_seconds);
+}
+
 studies::StepCost AccuracyParts::cost_of(const Json& facts) {
-  studies::StepCost cost;
-  facts.at("wall_seconds").get_to(cost.wall_seconds);
-  facts.at("cpu_seconds").get_to(cost.cpu_seconds);
-  facts.at("solve_wall_seconds").get_to(cost.solve_wall_seconds);
-  facts.at("solve_cpu_seconds").get_to(cost.solve_cpu_seconds);
-  facts.at("patches").get_to(cost.patches);
-  facts.at("solve_rays").get_to(cost.solve_rays);
-  facts.at("picture_rays").get_to(cost.picture_rays);
-  facts.at("form_factor_rays").get_to(cost.form_factor_rays);
-  facts.at("gather_rays").get_to(cost.gather_rays);
-  facts.at("camera_samples").get_to(cost.camera_samples);
-  facts.at("memory_bytes").get_to(cost.memory_bytes);
-  facts.at("estimate").get_to(cost.stated.estimate);
-  facts.at("bound_95").get_to(cost.stated.bound_95);
-  facts.at("estimate_cpu_seconds").get_to(cost.statement_cpu_seconds);
-  return cost;
+  return read_kept<studies::StepCost>(facts);
 }
 
 bool AccuracyParts::has(const studies::Batch& batch) const {
@@ -174,7 +162,7 @@ CachedResult AccuracyParts::point(const studies::AccuracyStep& step, std::uint64
   if (!result) end_early();
   base::Image image{view.columns, view.rows, {}};
   image.channels.push_back({"Y", std::move(result->luminance)});
-  CachedResult part{facts_of(result->cost), std::move(image)};
+  CachedResult part{kept_json(result->cost), std::move(image)};
   task_.store.keep(cache_key, part);
   ++finished_;
   return part;

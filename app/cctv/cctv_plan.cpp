@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
 
 #include "app/cctv/cctv.h"
@@ -11,43 +10,6 @@
 
 namespace earthshine::app {
 namespace {
-
-// The settings that decide whether a stage runs, a line per stage; without any each picture goes
-// through it.
-struct Deciding {
-  std::string_view stage;
-  std::vector<std::string_view> settings;
-};
-const std::vector<Deciding>& deciding() {
-  static const std::vector<Deciding> table = {
-      {"sensor-grid", {}},
-      {"iris", {}},
-      {"lens", {}},
-      {"fall-off", {"fall_off"}},
-      {"glare", {"glare"}},
-      {"lens-spread", {"lens_blur"}},
-      {"conversion", {}},
-      {"shading", {"shading_percent"}},
-      {"signal-noise", {"noise"}},
-      {"lag", {"lag"}},
-      {"blur", {"blur_h", "blur_v"}},
-      {"smear", {"smear_db"}},
-      {"bloom", {"saturation", "bloom"}},
-      {"saturation", {"saturation"}},
-      {"read-noise", {"noise"}},
-      {"bandwidth", {"bandwidth_mhz", "aperture_correction"}},
-      {"black-clamp", {"black_clamp"}},
-      {"gain", {"iris", "gain_db", "gain_max_db"}},
-      {"levels", {}},
-      {"white-clip", {"white_clip"}},
-      {"camera-gamma", {"gamma"}},
-      {"quantisation", {"bits"}},
-      {"interlace", {"interlace"}},
-      {"screen", {}},
-      {"spread", {"monitor.spread", "monitor.pixels_per_resel"}},
-      {"room-light", {"monitor.room_illuminance", "monitor.reflectance"}}};
-  return table;
-}
 
 template <class Value>
 std::string text_of(const Value& value) {
@@ -80,16 +42,9 @@ Json plan_cctv(const scenes::Scene& scene, const scenes::Camera& camera, bool as
   const degrade::Monitor monitor = degrade::resolve_monitor(scene, model);
   const auto values = settings_of(settings, monitor);
   for (const degrade::StagePlan& planned : degrade::plan(settings, monitor)) {
-    const std::string_view name = planned.stage->name;
-    const auto row = std::find_if(deciding().begin(), deciding().end(),
-                                  [&](const Deciding& line) { return line.stage == name; });
-    // A new stage must say what turns it on.
-    if (row == deciding().end()) {
-      throw base::Error(base::Blame::Work, "plan",
-                        fmt::format("no settings are known that decide about stage \"{}\"", name));
-    }
     std::vector<std::string> why;
-    for (const std::string_view setting : row->settings) {
+    for (const std::string_view setting : planned.stage->settings) {
+      if (setting.empty()) break;
       why.push_back(fmt::format("{} is {}", setting, values.at(std::string(setting))));
     }
     rows.push_back({{"stage", planned.stage->name},

@@ -15,11 +15,11 @@ StagePictures::StagePictures(std::string folder, const Files& inputs, degrade::O
   if (folder_.empty()) return;
   prepare_folder(folder_, {}, {});
   refuse_inputs_in(folder_, inputs);
-  options_.watch = [this, count = 0](std::string_view stage,
+  options_.watch = [this, count = 0](const degrade::Stage& stage,
                                      const degrade::Picture& picture) mutable {
-    base::write_exr(fmt::format("{}/{:02}-{}.exr", folder_, ++count, stage),
+    base::write_exr(fmt::format("{}/{:02}-{}.exr", folder_, ++count, stage.name),
                     degrade::to_image(picture),
-                    {{{"earthshine:cctv.stage", std::string(stage)}}, {}});
+                    {{{"earthshine:cctv.stage", std::string(stage.name)}}, {}});
   };
 }
 

@@ -36,18 +36,28 @@ std::string lead(const StudyResults& study, const ResultEntry& result) {
          escaped(study.targets[result.target]);
 }
 
+std::vector<GroupShare> shares_of(const std::vector<studies::LightShare>& light_from) {
+  std::vector<GroupShare> shares;
+  for (const studies::LightShare& light : light_from) {
+    shares.push_back({(light.reflected ? "by way of " : "") + light.from, light.share});
+  }
+  return shares;
+}
+
 std::string sight_row(const StudyResults& study, std::size_t index, const Columns& columns) {
   const ResultEntry& result = study.results[index];
-  std::string html = fmt::format("<tr id=r{}>{}<td class=v{}>{}", index, lead(study, result),
-                                 static_cast<int>(result.verdict), words_of(result.verdict).text);
+  std::string html =
+      fmt::format("<tr id=r{}>{}<td class=v{}>{}", index, lead(study, result),
+                  static_cast<int>(result.sight.verdict), words_of(result.sight.verdict).text);
   for (const std::size_t k : columns.sight) {
-    html += "<td>" + figure(result.sight[k], sight_columns[k].form);
-    if (std::string_view(sight_columns[k].key) == "pixels" && result.cut_by_frame) html += "+";
+    html += "<td>" + figure(sight_columns[k].of(result), sight_columns[k].form);
+    if (sight_columns[k].of == sight_of<&studies::Sight::pixels> && result.sight.cut_by_frame)
+      html += "+";
   }
   if (columns.groups) {
     html += "<td class=t>" + shares_text(result.lit_by, Form::Percent) + "<td class=t>" +
             shares_text(result.light_by, Form::Plain) + "<td class=t>" +
-            shares_text(result.light_from, Form::Percent);
+            shares_text(shares_of(result.light_from), Form::Percent);
   }
   html += "<td class=t>" + (result.why.empty() ? dash : escaped(result.why));
   return html + "\n";
@@ -57,14 +67,14 @@ std::string signal_row(const StudyResults& study, std::size_t index, const Colum
   const ResultEntry& result = study.results[index];
   std::string html = "<tr>" + lead(study, result);
   for (const std::size_t k : columns.signal) {
-    html += "<td>" + figure(result.signal[k], signal_columns[k].form);
+    html += "<td>" + figure(signal_columns[k].of(result), signal_columns[k].form);
   }
   return html + "\n";
 }
 
 bool has_signal(const ResultEntry& result) {
-  return std::any_of(result.signal.begin(), result.signal.end(),
-                     [](const Number& value) { return value.has_value(); });
+  return std::any_of(signal_columns.begin(), signal_columns.end(),
+                     [&](const FigureColumn& column) { return column.of(result).has_value(); });
 }
 
 // Paper has these tables of studies that it can hold in a few pages; else their files have them.

@@ -23,9 +23,15 @@ struct Entry {
 
 std::string key_of(const ResultEntry& result) {
   std::string key =
-      fmt::format("{} {} {}", result.camera, result.target, static_cast<int>(result.verdict));
-  for (const Reason& reason : result.reasons) key += "\n" + reason.cause + "\t" + reason.by;
+      fmt::format("{} {} {}", result.camera, result.target, static_cast<int>(result.sight.verdict));
+  for (const studies::Reason& reason : result.reasons) {
+    key += fmt::format("\n{}\t{}", word_of(reason.cause), reason.by);
+  }
   return key;
+}
+
+double detected(const ResultEntry& result) {
+  return chance_of<&studies::Probability::detect>(result).value_or(1.0);
 }
 
 std::vector<Entry> entries_of(const StudyResults& study, const Block& block) {
@@ -52,16 +58,14 @@ std::vector<Entry> entries_of(const StudyResults& study, const Block& block) {
     }
     found->places.push_back(place);
     found->results.push_back(k);
-    if (result.sight[0].value_or(1.0) < study.results[found->worst].sight[0].value_or(1.0)) {
-      found->worst = k;
-    }
+    if (detected(result) < detected(study.results[found->worst])) found->worst = k;
   }
   return entries;
 }
 
 // "0.2" or "0.2 to 0.7" over the conditions of an entry.
 std::string range_text(const StudyResults& study, const Entry& entry, std::size_t reason,
-                       Number Reason::*member, Form form) {
+                       Number studies::Reason::*member, Form form) {
   Number low, high;
   for (const std::size_t k : entry.results) {
     const Number value = study.results[k].reasons[reason].*member;
@@ -74,17 +78,17 @@ std::string range_text(const StudyResults& study, const Entry& entry, std::size_
 }
 
 std::string causes_html(const StudyResults& study, const Entry& entry) {
-  const std::vector<Reason>& reasons = study.results[entry.worst].reasons;
+  const std::vector<studies::Reason>& reasons = study.results[entry.worst].reasons;
   if (reasons.empty()) return dash;
   std::string html = "<ul>";
   for (std::size_t k = 0; k < reasons.size(); ++k) {
-    const Reason& reason = reasons[k];
-    html += "<li><strong>" + escaped(reason.cause) + "</strong>";
+    const studies::Reason& reason = reasons[k];
+    html += "<li><strong>" + escaped(word_of(reason.cause)) + "</strong>";
     if (!reason.by.empty()) html += " by " + escaped(reason.by);
-    const std::string share = range_text(study, entry, k, &Reason::share, Form::Percent);
+    const std::string share = range_text(study, entry, k, &studies::Reason::share, Form::Percent);
     if (share != dash) html += ", " + share + " %";
     const std::string without =
-        range_text(study, entry, k, &Reason::probability_without, Form::Chance);
+        range_text(study, entry, k, &studies::Reason::probability_without, Form::Chance);
     if (without != dash) html += ", P without it " + without;
     if (!reason.text.empty() && reason.text != study.results[entry.worst].why) {
       html += ": " + escaped(reason.text);
@@ -102,7 +106,7 @@ std::string row(const StudyResults& study, const Block& block, const Entry& entr
   return fmt::format(
       "<tr><th scope=row>{}<td>{}<td class=v{}>{}<td class=t>{}<td class=t>{}<td class=t>{}\n",
       escaped(study.cameras[worst.camera].name), escaped(study.targets[worst.target]),
-      static_cast<int>(worst.verdict), words_of(worst.verdict).text,
+      static_cast<int>(worst.sight.verdict), words_of(worst.sight.verdict).text,
       places_text(study, block, entry.places), why, causes_html(study, entry));
 }
 

@@ -22,7 +22,7 @@ std::string text_or_dash(const std::string& text) { return text.empty() ? dash :
 
 std::string size_text(const CameraEntry& camera) {
   if (!camera.columns || !camera.rows) return dash;
-  return figure(camera.columns, Form::Count) + " × " + figure(camera.rows, Form::Count);
+  return fmt::format("{} × {}", *camera.columns, *camera.rows);
 }
 
 std::string cameras_table(const StudyResults& study) {
@@ -42,6 +42,17 @@ std::string cameras_table(const StudyResults& study) {
       rows);
 }
 
+std::string factors_text(const std::vector<Factor>& factors) {
+  std::string text;
+  for (const auto& [group, factor] : factors) {
+    if (!text.empty()) text += ", ";
+    text += escaped(group) + " " + figure(factor.r);
+    if (factor.r == factor.g && factor.g == factor.b) continue;
+    text += " " + figure(factor.g) + " " + figure(factor.b);
+  }
+  return text.empty() ? dash : text;
+}
+
 std::string conditions_table(const StudyResults& study) {
   std::string rows;
   for (const ConditionEntry& condition : study.conditions) {
@@ -51,7 +62,7 @@ std::string conditions_table(const StudyResults& study) {
         escaped(condition.id), text_or_dash(condition.name), text_or_dash(condition.lamps),
         figure(condition.position_deg), figure(condition.time_s, Form::Count),
         condition.phase.empty() ? dash : condition.phase,
-        figure(condition.sun_share, Form::Percent), shares_text(condition.factors, Form::Plain),
+        figure(condition.sun_share, Form::Percent), factors_text(condition.factors),
         figure(condition.earth_error, Form::Percent));
   }
   if (rows.empty()) return "";
@@ -151,9 +162,9 @@ std::string setup_html(const StudyResults& study) {
 
 std::string provenance_html(const StudyResults& study) {
   std::string costs;
-  for (const CostEntry& cost : study.costs) {
+  for (const StudyCost& cost : study.costs) {
     costs += fmt::format("<tr><th scope=row>{}<td>{}<td>{}\n", escaped(cost.stage),
-                         figure(cost.seconds), figure(cost.rays, Form::Count));
+                         figure(cost.seconds), cost.rays ? fmt::format("{}", *cost.rays) : dash);
   }
   return key_values("Provenance", "Of", study.provenance) +
          (costs.empty() ? "" : table("Cost", {"Stage", "Seconds", "Rays"}, costs));

@@ -64,7 +64,7 @@ ThumbnailOf thumbnails_of(const StudyResults& study) {
 
 // shown: which small picture goes with it, "" for none.
 std::string cell(const StudyResults& study, std::size_t result, const std::string& shown) {
-  const Verdict verdict = study.results[result].verdict;
+  const studies::Verdict verdict = study.results[result].sight.verdict;
   const VerdictWords& words = words_of(verdict);
   return fmt::format("<td class=v{} data-r={}{}>{}<i>{}</i>", static_cast<int>(verdict), result,
                      shown, words.mark, words.rest);
@@ -84,7 +84,7 @@ std::string row(const StudyResults& study, const Block& block, std::size_t camer
       cells += "<td class=vx>·<i> no result</i>";
     } else {
       cells += cell(study, found->second, shown);
-      if (is_seen(study.results[found->second].verdict)) ++seen;
+      if (is_seen(study.results[found->second].sight.verdict)) ++seen;
     }
   }
   return fmt::format("<tr><th scope=row>{}<th scope=row>{}<td class=n>{}/{}{}\n",
@@ -133,7 +133,7 @@ std::string matrix_html(const StudyResults& study) {
       "it is at least detected.</p>\n";
   bool none_in_view = true;
   for (const ResultEntry& result : study.results) {
-    none_in_view = none_in_view && result.verdict >= Verdict::OutOfView;
+    none_in_view = none_in_view && result.sight.verdict >= studies::Verdict::OutOfView;
   }
   if (none_in_view) html += "<p><strong>No camera has a target in view.</strong></p>\n";
   html += legend();

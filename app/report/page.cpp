@@ -31,7 +31,7 @@ std::string head(const StudyResults& study, bool plain) {
 std::string in_short(const StudyResults& study) {
   std::array<std::size_t, verdict_words.size()> counts{};
   for (const ResultEntry& result : study.results)
-    ++counts[static_cast<std::size_t>(result.verdict)];
+    ++counts[static_cast<std::size_t>(result.sight.verdict)];
   std::string text = counted(study.cameras.size(), "camera", "cameras") + ", " +
                      counted(study.targets.size(), "target", "targets") + ", " +
                      counted(study.conditions.size(), "condition", "conditions") + ": " +
@@ -109,9 +109,8 @@ std::string scripts(const StudyResults& study) {
 
 }  // namespace
 
-void write_report(const std::filesystem::path& folder, const Json& results,
+void write_report(const std::filesystem::path& folder, const StudyResults& study,
                   const ReportOptions& options) {
-  const StudyResults study = read_results((folder / study_file).string(), results);
   const bool plain = options.plain || report_script().empty();
   std::string page =
       head(study, plain) + header(study, plain) + body(sections_of(study, folder, plain));

@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "app/command.h"
+#include "app/study/results.h"
 
 namespace earthshine::app {
 
@@ -17,12 +17,11 @@ struct ReportOptions {
   bool quiet = false;  // no note on standard error where the program was built without it
 };
 
-// Writes folder/report.html, aside and renamed, from `results`, the content of study.json; pictures
+// Writes folder/report.html, aside and renamed, from the study's results; its pictures
 // are read from `folder` and put into the page. The whole content is HTML; the script, where the
 // program was built with it, adds plots, sliders, sorting and filters.
-// Throws base::Error (Input) where `results` is not what study.json should be or a picture is
-// missing, (Work) where the file cannot be written.
-void write_report(const std::filesystem::path& folder, const Json& results,
+// Throws base::Error (Input) where a picture is missing, (Work) where the file cannot be written.
+void write_report(const std::filesystem::path& folder, const StudyResults& study,
                   const ReportOptions& options = {});
 
 }  // namespace earthshine::app

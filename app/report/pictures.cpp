@@ -68,9 +68,9 @@ std::string thumbnails_html(const StudyResults& study, Album& album) {
     const ThumbnailEntry& small = study.thumbnails[k];
     const ConditionEntry& condition = study.conditions[small.condition];
     const std::string title = "Camera " + study.cameras[small.camera].name + ", " + condition.name;
-    html += fmt::format("<figure id=\"p{}\">", k) + album.image({small.file, ""}, title);
+    html += fmt::format("<figure id=\"p{}\">", k) + album.image({small.file, {}}, title);
     if (!small.monitor.empty()) {
-      html += album.image({small.monitor, ""}, title + ", on the monitor");
+      html += album.image({small.monitor, {}}, title + ", on the monitor");
     }
     html += "<figcaption>" + escaped(title) + "</figcaption></figure>\n";
   }

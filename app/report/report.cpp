@@ -6,6 +6,7 @@
 #include "app/options.h"
 #include "app/output.h"
 #include "app/report/page.h"
+#include "app/study/results_json.h"
 #include "base/error.h"
 #include "base/input/input_file.h"
 
@@ -23,7 +24,7 @@ struct ReportCall {
   bool plain = false;
 };
 
-Json read_study(const fs::path& folder) {
+StudyResults read_study(const fs::path& folder) {
   const std::string name = (folder / study_file).string();
   std::error_code ignored;
   if (!fs::is_regular_file(name, ignored)) {
@@ -32,7 +33,8 @@ Json read_study(const fs::path& folder) {
   }
   check_outputs({(folder / report_file).string()}, {name});
   try {
-    return Json::parse(base::read_input_file(name, largest_study_bytes, {name}));
+    return read_results(name,
+                        Json::parse(base::read_input_file(name, largest_study_bytes, {name})));
   } catch (const Json::parse_error& error) {
     throw Error(Blame::Input, name,
                 "is not JSON: at byte " + std::to_string(error.byte) + " it goes wrong", {},

@@ -18,9 +18,10 @@ struct Tally {
 };
 
 std::string hindrance_of(const ResultEntry& result) {
-  if (result.reasons.empty()) return words_of(result.verdict).text;
-  const Reason& first = result.reasons.front();
-  return first.by.empty() ? first.cause : first.cause + " by " + first.by;
+  if (result.reasons.empty()) return words_of(result.sight.verdict).text;
+  const studies::Reason& first = result.reasons.front();
+  const std::string cause(word_of(first.cause));
+  return first.by.empty() ? cause : cause + " by " + first.by;
 }
 
 // The camera that sees it most often comes first.
@@ -35,7 +36,7 @@ std::vector<Tally> tallies_of(const StudyResults& study, const std::vector<std::
       tally = std::prev(tallies.end());
     }
     ++tally->all;
-    if (is_seen(result.verdict)) {
+    if (is_seen(result.sight.verdict)) {
       ++tally->seen;
     } else {
       ++tally->hindrances[hindrance_of(result)];

@@ -104,7 +104,7 @@ std::string timelines_html(const StudyResults& study) {
     const Timeline& line = study.timelines[k];
     std::string title = fmt::format("Camera {}, {}", escaped(line.camera), escaped(line.target));
     if (!line.lamps.empty()) title += ", lamps: " + escaped(line.lamps);
-    if (study.scenes.size() > 1) title += " (" + escaped(line.scene) + ")";
+    if (study.scenes.size() > 1) title += " (" + escaped(study.scenes[line.scene].name) + ")";
     html += fmt::format(
         "<figure class=\"timeline\" data-line=\"{}\" data-camera=\"{}\" data-target=\"{}\" "
         "data-lamps=\"{}\">\n<figcaption>{}</figcaption>\n<p>{}</p>\n</figure>\n",

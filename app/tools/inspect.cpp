@@ -10,6 +10,7 @@
 #include "app/options.h"
 #include "app/tools/inspect_text.h"
 #include "app/tools/orbit_facts.h"
+#include "scenes/light/lamp_kind.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/reflect/energy.h"
 #include "scenes/surface_texture.h"
@@ -107,28 +108,12 @@ Json materials_of(const scenes::Scene& scene) {
   return materials;
 }
 
-std::string kind_of(const scenes::Lamp& lamp) {
-  switch (lamp.kind) {
-    case scenes::LampKind::Point:
-      return "point";
-    case scenes::LampKind::Spot:
-      return "spot";
-    case scenes::LampKind::Rectangle:
-      return "rectangle";
-    case scenes::LampKind::Disk:
-      return "disk";
-    case scenes::LampKind::Measured:
-      return "ies";
-  }
-  return "";
-}
-
 Json lights_of(const scenes::Scene& scene) {
   Json lamps = Json::array();
   for (const scenes::Lamp& lamp : scene.lamps) {
     lamps.push_back({{"name", lamp.name},
                      {"group", lamp.group},
-                     {"type", kind_of(lamp)},
+                     {"type", std::string(scenes::row_of(lamp.kind).type)},
                      {"source", lamp.source.empty() ? Json() : Json(lamp.source)},
                      {"position_m", to_json(lamp.position)},
                      {"flux_lm", to_json(scenes::lamp_flux_lm(lamp))}});

@@ -7,6 +7,7 @@
 #include "app/interrupt.h"
 #include "app/memory.h"
 #include "app/parts/shared_solution.h"
+#include "app/study/json_fields.h"
 #include "app/study/study.h"
 #include "app/views/kept_layers.h"
 #include "base/error.h"
@@ -15,6 +16,17 @@
 #include "scenes/sky/sky_parts.h"
 
 namespace earthshine::app {
+
+// As it is kept beside the picture.
+template <class Fields>
+void describe(Fields& fields, Either<StudyFrames::Frame> auto& frame) {
+  fields("seconds", frame.seconds);
+  fields("relative_noise", frame.relative_noise);
+  fields("rays", frame.rays);
+  fields("limits", frame.limits);
+  fields("patches", frame.patches);
+}
+
 namespace {
 
 // Suns that the patches are cut for; the shadows of those between fall between theirs.
@@ -134,13 +146,14 @@ std::optional<StudyFrames::Frame> StudyFrames::known(const StudyCamera& camera,
   std::string said;
   const std::optional<Json> facts = store_.find_facts(cache_key(camera), said);
   if (!facts) return std::nullopt;
-  costs.push_back({fmt::format("picture {} {}", part_.id, camera.camera->name),
-                   (*facts)["seconds"].get<double>(), (*facts)["rays"].get<std::uint64_t>(), true});
-  return Frame{{},
-               (*facts)["relative_noise"].get<double>(),
-               (*facts)["seconds"].get<double>(),
-               (*facts)["patches"].get<std::size_t>(),
-               (*facts)["limits"].get<std::vector<std::string>>()};
+  Frame frame = read_kept<Frame>(*facts);
+  costs.push_back(cost_of(camera, frame, true));
+  return frame;
+}
+
+StudyCost StudyFrames::cost_of(const StudyCamera& camera, const Frame& frame, bool found) const {
+  return {fmt::format("picture {} {}", part_.id, camera.camera->name), frame.seconds, frame.rays,
+          found};
 }
 
 bool StudyFrames::has(const StudyCamera& camera) const {
@@ -152,14 +165,11 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
                                                      std::vector<StudyCost>& costs) {
   const Json key = cache_key(camera);
   std::string said;
-  const std::string stage = fmt::format("picture {} {}", part_.id, camera.camera->name);
   if (std::optional<CachedResult> stored = store_.find(key, said)) {
-    const Json facts = stored->facts;
-    const double seconds = facts["seconds"].get<double>();
-    costs.push_back({stage, seconds, facts["rays"].get<std::uint64_t>(), true});
-    return Frame{unpacked_layers(std::move(*stored)), facts["relative_noise"].get<double>(),
-                 seconds, facts["patches"].get<std::size_t>(),
-                 facts["limits"].get<std::vector<std::string>>()};
+    Frame frame = read_kept<Frame>(stored->facts);
+    frame.image = unpacked_layers(std::move(*stored));
+    costs.push_back(cost_of(camera, frame, true));
+    return frame;
   }
   if (how_.task == PartCall::Task::Merge) {
     throw base::Error(base::Blame::Work, folder_.string(),
@@ -175,20 +185,20 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
       basis.scene, basis.groups, basis.effects, *part_.query, light, *camera.camera, how,
       progress_of_stages(common_)(fmt::format("camera {} of {}", camera.camera->name, part_.path)));
   if (drawn.report.stopped) return std::nullopt;
-  const Json facts = {{"seconds", drawn.report.seconds},
-                      {"relative_noise", drawn.report.relative_noise},
-                      {"rays", drawn.report.rays.total()},
-                      {"limits", limits_of_balance(light)},
-                      {"patches", light.report.patches}};
+  Frame frame{{},
+              drawn.report.seconds,
+              drawn.report.relative_noise,
+              drawn.report.rays.total(),
+              limits_of_balance(light),
+              light.report.patches};
   // Of the few layers without an orbit no digit is spared.
   const int digits =
       part_.basis->in_parts() ? round_layers(drawn.image, drawn.report.relative_noise) : 0;
-  CachedResult kept = packed_layers(std::move(drawn.image), digits, facts);
+  CachedResult kept = packed_layers(std::move(drawn.image), digits, kept_json(frame));
   store_.keep(key, kept);
-  drawn.image = unpacked_layers(std::move(kept));
-  costs.push_back({stage, drawn.report.seconds, drawn.report.rays.total(), false});
-  return Frame{std::move(drawn.image), drawn.report.relative_noise, drawn.report.seconds,
-               light.report.patches, limits_of_balance(light)};
+  frame.image = unpacked_layers(std::move(kept));
+  costs.push_back(cost_of(camera, frame, false));
+  return frame;
 }
 
 }  // namespace earthshine::app

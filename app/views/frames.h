@@ -5,19 +5,12 @@
 
 #include "app/parts/part.h"
 #include "app/parts/result_cache.h"
+#include "app/study/results.h"
 #include "app/views/scene.h"
 #include "radiosity/store/solution_file.h"
 #include "studies/study.h"
 
 namespace earthshine::app {
-
-// What was done or found, for the report.
-struct StudyCost {
-  std::string stage;
-  double seconds = 0.0;  // of the run that did it
-  std::uint64_t rays = 0;
-  bool found = false;  // in the folder, from an earlier run
-};
 
 class StudyFrames {
  public:
@@ -28,10 +21,11 @@ class StudyFrames {
   // The picture of a camera, with the layer "object"; nothing if it was interrupted.
   struct Frame {
     base::Image image;
-    double relative_noise = 0.0;
     double seconds = 0.0;
-    std::size_t patches = 0;               // of the solution it was drawn from
-    std::vector<std::string> limits = {};  // that the solution reached
+    double relative_noise = 0.0;
+    std::uint64_t rays = 0;
+    std::vector<std::string> limits = {};  // that the solution it was drawn from reached
+    std::size_t patches = 0;               // of that solution
   };
   [[nodiscard]] std::optional<Frame> frame(const StudyCamera& camera,
                                            std::vector<StudyCost>& costs);
@@ -55,6 +49,7 @@ class StudyFrames {
   void forget_solution() { solution_.reset(); }
 
  private:
+  [[nodiscard]] StudyCost cost_of(const StudyCamera& camera, const Frame& frame, bool found) const;
   [[nodiscard]] raytrace::RenderOptions options(const StudyCamera& camera) const;
 
   [[nodiscard]] radiosity::Solution solve(StageTimes& times) const;

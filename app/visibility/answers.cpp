@@ -170,44 +170,8 @@ void add_configurations(const StudyPart& part, const studies::StudyFile& study,
   }
 }
 
-Json configurations_json(const std::vector<std::vector<ViewingConfiguration>>& ways) {
-  Json all = Json::array();
-  for (const std::vector<ViewingConfiguration>& of_wanted : ways) {
-    Json& list = all.emplace_back(Json::array());
-    for (const ViewingConfiguration& way : of_wanted) {
-      list.push_back({{"scene", way.scene},
-                      {"camera", way.camera},
-                      {"iris", way.iris},
-                      {"lamps", way.lamps},
-                      {"detect", way.detect},
-                      {"positions_deg", way.positions_deg},
-                      {"least_factor", to_json(way.least_factor)},
-                      {"darkest_deg", to_json(way.darkest_deg)},
-                      {"tried_factors", way.tried_factors}});
-    }
-  }
-  return all;
-}
-
-std::vector<std::vector<ViewingConfiguration>> configurations_of(const Json& kept) {
-  const auto number = [](const Json& value) {
-    return value.is_null() ? std::nullopt : std::optional(value.get<double>());
-  };
-  std::vector<std::vector<ViewingConfiguration>> all;
-  for (const Json& list : kept) {
-    std::vector<ViewingConfiguration>& ways = all.emplace_back();
-    for (const Json& way : list) {
-      ways.push_back({way["scene"], way["camera"], way["iris"], way["lamps"],
-                      way["detect"].get<std::vector<double>>(),
-                      way["positions_deg"].get<std::vector<double>>(), number(way["least_factor"]),
-                      number(way["darkest_deg"]), way["tried_factors"].get<bool>()});
-    }
-  }
-  return all;
-}
-
-Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& study,
-                 const std::vector<ViewingConfiguration>& ways) {
+AnswerEntry answer_of(const studies::WantedTarget& wanted, const studies::StudyFile& study,
+                      const std::vector<ViewingConfiguration>& ways) {
   Rated best;
   for (const ViewingConfiguration& way : ways) {
     Rated rated = rate(way, wanted.probability, study.timeline);
@@ -215,29 +179,23 @@ Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& 
       best = std::move(rated);
     }
   }
-  Json answer = {{"wanted", wanted.text},
-                 {"target", wanted.target},
-                 {"least", wanted.probability},
-                 {"found", false},
-                 {"text", ""},
-                 {"camera", Json()},
-                 {"iris", Json()},
-                 {"lamps", Json()},
-                 {"least_factor", Json()},
-                 {"arcs_deg", Json::array()}};
+  AnswerEntry answer;
+  answer.wanted = wanted.text;
+  answer.target = wanted.target;
+  answer.least = wanted.probability;
   if (best.way == nullptr) {
-    answer["text"] = fmt::format("Nothing was looked at for {}.", wanted.target);
+    answer.text = fmt::format("Nothing was looked at for {}.", wanted.target);
     return answer;
   }
   const ViewingConfiguration& way = *best.way;
-  answer["camera"] = way.camera;
-  answer["iris"] = way.iris.empty() ? Json() : Json(way.iris);
-  answer["lamps"] = way.lamps;
-  if (!way.scene.empty()) answer["scene"] = way.scene;
-  answer["best_probability"] = best.best;
-  answer["least_factor"] = to_json(way.least_factor);
-  for (const auto& [from, to] : best.arcs) answer["arcs_deg"].push_back({from, to});
-  answer["found"] = best.best >= wanted.probability;
+  answer.camera = way.camera;
+  answer.iris = way.iris;
+  answer.lamps = way.lamps;
+  answer.scene = way.scene;
+  answer.best_probability = best.best;
+  answer.least_factor = way.least_factor;
+  answer.arcs_deg = best.arcs;
+  answer.found = best.best >= wanted.probability;
   std::string text;
   if (best.best < wanted.probability) {
     text = fmt::format(
@@ -254,7 +212,7 @@ Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& 
         way_text(way), arcs_text(best.arcs),
         study.timeline ? fmt::format(" ({:.0f} % of the orbit)", 100.0 * best.reach) : "");
   }
-  answer["text"] = text + lamp_text(ways, wanted.probability);
+  answer.text = text + lamp_text(ways, wanted.probability);
   return answer;
 }
 

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "app/study/results_fields.h"
 #include "app/views/scene.h"
 #include "studies/orbit/condition.h"
 #include "studies/orbit/study_file.h"
@@ -22,17 +23,27 @@ struct ViewingConfiguration {
   bool tried_factors = false;  // false: the setting has no lamps on
 };
 
+template <class Fields>
+void describe(Fields& fields, Either<ViewingConfiguration> auto& way) {
+  fields("scene", way.scene);
+  fields("camera", way.camera);
+  fields("iris", way.iris);
+  fields("lamps", way.lamps);
+  fields("detect", way.detect);
+  fields("positions_deg", way.positions_deg);
+  fields("least_factor", way.least_factor);
+  fields("darkest_deg", way.darkest_deg);
+  fields("tried_factors", way.tried_factors);
+}
+
 // Adds the viewing configurations of one camera to those of each wanted target.
 void add_configurations(const StudyPart& part, const studies::StudyFile& study,
                         const StudyCamera& camera, const studies::BasisView& view,
                         std::vector<std::vector<ViewingConfiguration>>& ways);
 
-// To keep them, and back.
-[[nodiscard]] Json configurations_json(const std::vector<std::vector<ViewingConfiguration>>& ways);
-[[nodiscard]] std::vector<std::vector<ViewingConfiguration>> configurations_of(const Json& kept);
-
-// An entry of study.json's "answers".
-[[nodiscard]] Json answer_json(const studies::WantedTarget& wanted, const studies::StudyFile& study,
-                               const std::vector<ViewingConfiguration>& ways);
+// What a wanted target is answered.
+[[nodiscard]] AnswerEntry answer_of(const studies::WantedTarget& wanted,
+                                    const studies::StudyFile& study,
+                                    const std::vector<ViewingConfiguration>& ways);
 
 }  // namespace earthshine::app

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/visibility/camera_work.h"
 
+#include "app/study/json_fields.h"
+
 namespace earthshine::app {
 
 CameraWork::CameraWork(const PictureTask& pictures, StudyFrames& frames,
@@ -29,10 +31,10 @@ bool CameraWork::is_done(Share batches) const {
 std::optional<CameraWork::Configurations> CameraWork::known_configurations() const {
   std::string said;
   const auto kept = pictures_.store.find_facts(answers_key_, said);
-  return kept ? std::optional(configurations_of((*kept)["ways"])) : std::nullopt;
+  return kept ? std::optional(read_kept<Configurations>((*kept)["ways"])) : std::nullopt;
 }
 
-std::optional<std::vector<Json>> CameraWork::known_conditions() const {
+std::optional<Judged> CameraWork::known_conditions() const {
   return conditions_.find(pictures_.camera, pictures_.frame_cache_key);
 }
 
@@ -47,18 +49,18 @@ studies::BasisView CameraWork::view_of(StudyFrames::Frame& frame,
                                   &frames_.solution(costs));
 }
 
-std::vector<Json> CameraWork::judge(const studies::BasisView& view, Share batches,
-                                    std::vector<StudyCost>& costs) const {
+Judged CameraWork::judge(const studies::BasisView& view, Share batches,
+                         std::vector<StudyCost>& costs) const {
   return conditions_.judge(pictures_.camera, view, pictures_.frame_cache_key, batches, costs);
 }
 
 CameraWork::Configurations CameraWork::conclude(const studies::BasisView& view,
-                                                Json& figures) const {
+                                                std::vector<FigureEntry>& figures) const {
   draw_pictures(pictures_, &view, figures);
   if (auto kept = known_configurations()) return std::move(*kept);
   Configurations found(pictures_.study.wanted.size());
   add_configurations(pictures_.part, pictures_.study, pictures_.camera, view, found);
-  pictures_.store.keep_facts(answers_key_, {{"ways", configurations_json(found)}});
+  pictures_.store.keep_facts(answers_key_, {{"ways", kept_json(found)}});
   return found;
 }
 

@@ -28,16 +28,17 @@ class CameraWork {
   // study's pictures of it, the viewing configurations), were done before.
   [[nodiscard]] bool is_done(Share batches) const;
   [[nodiscard]] std::optional<Configurations> known_configurations() const;
-  [[nodiscard]] std::optional<std::vector<Json>> known_conditions() const;
+  [[nodiscard]] std::optional<Judged> known_conditions() const;
   [[nodiscard]] std::optional<StudyFrames::Frame> known_frame(std::vector<StudyCost>& costs) const;
 
   // Takes the frame's image.
   [[nodiscard]] studies::BasisView view_of(StudyFrames::Frame& frame,
                                            std::vector<StudyCost>& costs) const;
-  [[nodiscard]] std::vector<Json> judge(const studies::BasisView& view, Share batches,
-                                        std::vector<StudyCost>& costs) const;
+  [[nodiscard]] Judged judge(const studies::BasisView& view, Share batches,
+                             std::vector<StudyCost>& costs) const;
   // The camera's pictures, and what its wishes are answered by.
-  [[nodiscard]] Configurations conclude(const studies::BasisView& view, Json& figures) const;
+  [[nodiscard]] Configurations conclude(const studies::BasisView& view,
+                                        std::vector<FigureEntry>& figures) const;
 
  private:
   const PictureTask& pictures_;

@@ -8,8 +8,8 @@
 
 #include "app/console.h"
 #include "app/interrupt.h"
+#include "app/study/json_fields.h"
 #include "app/study/study.h"
-#include "app/views/sight_json.h"
 #include "base/parallel.h"
 #include "studies/orbit/target_sources.h"
 
@@ -33,36 +33,45 @@ std::string phase_of(double sun_share) {
   return sun_share < 1.0 ? "penumbra" : "day";
 }
 
-Json rgb_or_number(const Rgb& factor) {
-  if (factor.r == factor.g && factor.g == factor.b) return factor.r;
-  return to_json(factor);
+TargetFindings findings_of(const studies::Sight& sight, const studies::TargetOutcome& outcome) {
+  TargetFindings found;
+  found.sight = sight;
+  found.lit_fraction = outcome.lit_fraction;
+  for (const studies::SourceOnTarget& source : outcome.sources) {
+    found.lit_by.push_back({source.group, source.lit});
+    found.light_by.push_back({source.group, source.luminance});
+  }
+  found.light_from = outcome.light_from;
+  if (outcome.basis_error) {
+    found.luminance_error = outcome.basis_error->rms;
+    found.luminance_bound = outcome.basis_error->bound;
+  }
+  found.why = outcome.why.text;
+  found.reasons = outcome.why.reasons;
+  return found;
 }
+
+using Batch = std::vector<std::vector<TargetFindings>>;
 
 }  // namespace
 
-Json conditions_json(const StudyPart& part) {
-  Json conditions = Json::array();
+std::vector<ConditionEntry> conditions_of(const StudyPart& part, std::size_t scene) {
+  std::vector<ConditionEntry> conditions;
   for (std::size_t k = 0; k < part.conditions(); ++k) {
     const auto [place, setting] = place_of(part, k);
     const studies::LampSetting& lamps = part.basis->settings()[setting];
     const studies::SkyPlace& sky = part.basis->places()[place];
     const bool along = !part.positions_deg.empty();
     const double share = studies::sun_share_of(sky);
-    Json factors = Json::object();
-    for (const auto& [name, factor] : lamps.factors) factors[name] = rgb_or_number(factor);
+    std::vector<Factor> factors;
+    for (const auto& [name, factor] : lamps.factors) factors.push_back({name, factor});
     const std::string where =
         along ? fmt::format("orbit {:g} deg, ", part.positions_deg[place]) : "";
-    conditions.push_back({{"id", condition_id(part, k)},
-                          {"scene", part.id},
-                          {"name", where + "lamps " + lamps.name},
-                          {"lamps", lamps.name},
-                          {"position_deg", along ? Json(part.positions_deg[place]) : Json()},
-                          {"time_s", along ? Json(part.times_s[place]) : Json()},
-                          {"sun_share", sky.sun ? Json(share) : Json()},
-                          {"phase", sky.sun ? Json(phase_of(share)) : Json()},
-                          {"factors", factors},
-                          {"others", lamps.others_off ? "off" : "as-they-are"},
-                          {"earth_error", Json()}});
+    conditions.push_back({condition_id(part, k), scene, where + "lamps " + lamps.name, lamps.name,
+                          along ? Number(part.positions_deg[place]) : Number(),
+                          along ? Number(part.times_s[place]) : Number(),
+                          sky.sun ? Number(share) : Number(), sky.sun ? phase_of(share) : "",
+                          std::move(factors), lamps.others_off ? "off" : "as-they-are", Number()});
   }
   return conditions;
 }
@@ -108,15 +117,15 @@ Json StudyConditions::cache_key(const StudyCamera& camera, const Json& frame_cac
   return cache_key;
 }
 
-std::optional<std::vector<Json>> StudyConditions::find(const StudyCamera& camera,
-                                                       const Json& frame_cache_key) const {
-  std::vector<Json> all;
+std::optional<Judged> StudyConditions::find(const StudyCamera& camera,
+                                            const Json& frame_cache_key) const {
+  Judged all;
   for (std::size_t batch = 0; batch < batches(); ++batch) {
     const auto [first, last] = conditions_of(batch);
     std::string said;
     const auto stored = store_.find_facts(cache_key(camera, frame_cache_key, first, last), said);
     if (!stored) return std::nullopt;
-    for (const Json& one : (*stored)["conditions"]) all.push_back(one);
+    for (auto& one : read_kept<Batch>((*stored)["conditions"])) all.emplace_back(std::move(one));
   }
   return all;
 }
@@ -135,15 +144,15 @@ bool StudyConditions::has(const StudyCamera& camera, const Json& frame_cache_key
   return store_.has(cache_key(camera, frame_cache_key, first, last));
 }
 
-std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studies::BasisView& view,
-                                         const Json& frame_cache_key, Share batches,
-                                         std::vector<StudyCost>& costs) {
+Judged StudyConditions::judge(const StudyCamera& camera, const studies::BasisView& view,
+                              const Json& frame_cache_key, Share batches,
+                              std::vector<StudyCost>& costs) {
   const auto start = std::chrono::steady_clock::now();
   const raytrace::Progress progress =
       progress_of_stages(common_)(fmt::format("conditions of camera {}", camera.camera->name));
   std::optional<degrade::Setup> cctv;
   if (camera.cctv) cctv = camera.cctv->chain;
-  std::vector<Json> all(part_.conditions());
+  Judged all(part_.conditions());
   bool found = true;
   for (std::size_t batch = batches.first; batch < batches.last; ++batch) {
     const std::size_t first = conditions_of(batch).first, last = conditions_of(batch).last;
@@ -151,8 +160,8 @@ std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studie
     const Json key = cache_key(camera, frame_cache_key, first, last);
     std::string said;
     if (const std::optional<Json> stored = store_.find_facts(key, said)) {
-      std::copy((*stored)["conditions"].begin(), (*stored)["conditions"].end(),
-                all.begin() + static_cast<std::ptrdiff_t>(first));
+      Batch kept = read_kept<Batch>((*stored)["conditions"]);
+      std::move(kept.begin(), kept.end(), all.begin() + static_cast<std::ptrdiff_t>(first));
       continue;
     }
     if (!said.empty()) note("note: " + said);
@@ -162,16 +171,19 @@ std::vector<Json> StudyConditions::judge(const StudyCamera& camera, const studie
     for (std::size_t k = first; k < last; ++k) conditions.push_back(place_of(part_, k));
     const std::vector<studies::Outcome> outcomes =
         studies::judge_conditions(*part_.basis, *part_.query, view, conditions, cctv, options());
+    Batch batch_found(last - first);
     for (std::size_t k = first; k < last; ++k) {
-      all[k] = outcome_json(view, outcomes[k - first]);
-      for (std::size_t t = 0; t < all[k].size(); ++t) {
-        const auto& of = outcomes[k - first].targets[t].why_of;
-        all[k][t]["why_of"] = of ? Json(condition_id(part_, first + *of)) : Json();
+      const studies::Outcome& outcome = outcomes[k - first];
+      for (std::size_t t = 0; t < outcome.targets.size(); ++t) {
+        TargetFindings target = findings_of(outcome.sight.targets[t], outcome.targets[t]);
+        if (const auto& of = outcome.targets[t].why_of) {
+          target.why_of = condition_id(part_, first + *of);
+        }
+        batch_found[k - first].push_back(std::move(target));
       }
+      all[k] = batch_found[k - first];
     }
-    store_.keep_facts(
-        key, {{"conditions", std::vector<Json>(all.begin() + static_cast<std::ptrdiff_t>(first),
-                                               all.begin() + static_cast<std::ptrdiff_t>(last))}});
+    store_.keep_facts(key, {{"conditions", kept_json(batch_found)}});
   }
   const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;
   costs.push_back(

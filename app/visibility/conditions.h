@@ -2,6 +2,7 @@
 // All conditions of one camera of a visibility study, in parallel, kept as they are finished.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "app/views/frames.h"
@@ -9,9 +10,13 @@
 
 namespace earthshine::app {
 
-// The entries of study.json's "conditions", in the order of StudyPart: all places of the first lamp
-// setting, then those of the second.
-[[nodiscard]] Json conditions_json(const StudyPart& part);
+// In the order of StudyPart: all places of the first lamp setting, then those of the second. Each
+// with that number of its scene.
+[[nodiscard]] std::vector<ConditionEntry> conditions_of(const StudyPart& part, std::size_t scene);
+
+// What was found of the scene's targets in each condition, in their order; none where a condition
+// was not reached.
+using Judged = std::vector<std::optional<std::vector<TargetFindings>>>;
 
 class StudyConditions {
  public:
@@ -21,19 +26,18 @@ class StudyConditions {
   // Conditions are worked out and kept in batches.
   [[nodiscard]] std::size_t batches() const;
 
-  // One entry per condition: a list with one entry per target. Null for those that were not reached
-  // before an interruption or are not in `batches`. frame_cache_key: of the picture that the view
-  // was made of.
-  [[nodiscard]] std::vector<Json> judge(const StudyCamera& camera, const studies::BasisView& view,
-                                        const Json& frame_cache_key, Share batches,
-                                        std::vector<StudyCost>& costs);
+  // None for conditions that were not reached before an interruption or are not in `batches`.
+  // frame_cache_key: of the picture that the view was made of.
+  [[nodiscard]] Judged judge(const StudyCamera& camera, const studies::BasisView& view,
+                             const Json& frame_cache_key, Share batches,
+                             std::vector<StudyCost>& costs);
   // Whether a batch was done before.
   [[nodiscard]] bool has(const StudyCamera& camera, const Json& frame_cache_key,
                          std::size_t batch) const;
 
   // The same if all of it was done before, without the picture.
-  [[nodiscard]] std::optional<std::vector<Json>> find(const StudyCamera& camera,
-                                                      const Json& frame_cache_key) const;
+  [[nodiscard]] std::optional<Judged> find(const StudyCamera& camera,
+                                           const Json& frame_cache_key) const;
   // Everything that the camera's conditions from `first` to before `last` depend on.
   [[nodiscard]] Json cache_key(const StudyCamera& camera, const Json& frame_cache_key,
                                std::size_t first, std::size_t last) const;

@@ -9,8 +9,9 @@
 
 #include "app/console.h"
 #include "app/options.h"
+#include "app/study/results_json.h"
+#include "app/study/results_tables.h"
 #include "app/study/study.h"
-#include "app/visibility/results.h"
 #include "app/visibility/run.h"
 #include "base/error.h"
 
@@ -55,11 +56,14 @@ std::vector<double> positions_of(const std::string& text) {
   return positions;
 }
 
-// A part has nothing to tell.
-void tell(const std::optional<Json>& found, bool json, bool dry_run) {
-  if (!found) return;
-  if (json) return print(dump(*found));
-  print(dry_run ? plan_text(*found) : study_text(*found));
+void run_task(StudyTask task, const Common& common, bool json, bool dry_run) {
+  if (dry_run) {
+    const Json plan = plan_study(std::move(task), common);
+    return print(json ? dump(plan) : plan_text(plan));
+  }
+  const auto found = run_study(std::move(task), common);
+  if (!found) return;  // a part has nothing to tell
+  print(json ? dump(to_json(*found)) : study_text(*found));
 }
 
 void run_orbit(const OrbitCall& call, const Common& common) {
@@ -67,16 +71,16 @@ void run_orbit(const OrbitCall& call, const Common& common) {
   study.positions_deg = call.at.empty() ? studies::even_positions(static_cast<int>(call.positions))
                                         : positions_of(call.at);
   study.timeline = call.at.empty() && call.positions > 1;
-  StudyTask task{std::move(study), call.study.folder, "study orbit", call.dry_run, call.tone};
+  StudyTask task{std::move(study), call.study.folder, "study orbit", call.tone};
   task.part = call.study.part;
-  tell(run_study(std::move(task), common), call.study.json, call.dry_run);
+  run_task(std::move(task), common, call.study.json, call.dry_run);
 }
 
 void run_file(const FileCall& call, const Common& common) {
   StudyTask task{studies::read_study_file(call.file), call.folder, "study run " + call.file,
-                 call.dry_run, call.tone};
+                 call.tone};
   task.part = call.part;
-  tell(run_study(std::move(task), common), call.json, call.dry_run);
+  run_task(std::move(task), common, call.json, call.dry_run);
 }
 
 }  // namespace

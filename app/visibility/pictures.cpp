@@ -207,15 +207,13 @@ bool pictures_are_there(const PictureTask& task) {
                      [&](const PictureWish* wish) { return is_there(task, *wish); });
 }
 
-void draw_pictures(const PictureTask& task, const studies::BasisView* view, Json& figures) {
+void draw_pictures(const PictureTask& task, const studies::BasisView* view,
+                   std::vector<FigureEntry>& figures) {
   for (const PictureWish* wish : own_wishes(task)) {
     if (view != nullptr && !is_there(task, *wish)) draw(task, *wish, *view);
     const std::string stem = file_of(task.study, *wish);
-    figures.push_back({{"name", wish->name},
-                       {"file", stem + ".png"},
-                       {"exr", stem + ".exr"},
-                       {"caption", wish->title},
-                       {"clean", !by_cctv(wish->shows)}});
+    figures.push_back(
+        {{stem + ".png", wish->title}, wish->name, stem + ".exr", !by_cctv(wish->shows), {}});
   }
 }
 
@@ -234,31 +232,30 @@ std::optional<double> expose_alike(const NamedPictures& pictures, const ToneChoi
   return white;
 }
 
-void expose_figures(const std::filesystem::path& folder, const ToneChoice& tone, Json& figures) {
+void expose_figures(const std::filesystem::path& folder, const ToneChoice& tone,
+                    std::vector<FigureEntry>& figures) {
   NamedPictures pictures;
-  std::vector<Json*> clean;
-  for (Json& figure : figures) {
-    if (!figure["clean"].get<bool>()) continue;
-    pictures.emplace_back(folder / figure["file"].get<std::string>(),
-                          base::read_exr(folder / figure["exr"].get<std::string>()).image);
-    clean.push_back(&figure);
+  for (const FigureEntry& figure : figures) {
+    if (!figure.clean) continue;
+    pictures.emplace_back(folder / figure.file, base::read_exr(folder / figure.exr).image);
   }
   const std::optional<double> white = expose_alike(pictures, tone);
-  for (Json* figure : clean) (*figure)["white_cd_m2"] = to_json(white);
+  for (FigureEntry& figure : figures) {
+    if (figure.clean) figure.white_cd_m2 = white;
+  }
 }
 
-Json pairs_json(const studies::StudyFile& study, const Json& figures) {
-  Json pairs = Json::array();
-  const auto figure = [&](const std::string& name) -> Json {
-    for (const Json& one : figures) {
-      if (one["name"] == name) return {{"file", one["file"]}, {"caption", one["caption"]}};
-    }
-    return {};
+std::vector<PairEntry> pairs_of(const studies::StudyFile& study,
+                                const std::vector<FigureEntry>& figures) {
+  std::vector<PairEntry> pairs;
+  const auto figure = [&](const std::string& name) {
+    return std::find_if(figures.begin(), figures.end(),
+                        [&](const FigureEntry& one) { return one.name == name; });
   };
   for (const studies::PairWish& pair : study.pairs) {
-    const Json left = figure(pair.left), right = figure(pair.right);
-    if (left.is_null() || right.is_null()) continue;
-    pairs.push_back({{"title", pair.title}, {"left", left}, {"right", right}});
+    const auto left = figure(pair.left), right = figure(pair.right);
+    if (left == figures.end() || right == figures.end()) continue;
+    pairs.push_back({pair.title, *left, *right});
   }
   return pairs;
 }

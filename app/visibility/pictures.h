@@ -9,6 +9,7 @@
 
 #include "app/options.h"
 #include "app/parts/result_cache.h"
+#include "app/study/results.h"
 #include "app/views/scene.h"
 #include "studies/orbit/condition.h"
 #include "studies/orbit/study_file.h"
@@ -32,19 +33,21 @@ struct PictureTask {
 };
 // Whether all of them are there from an earlier run.
 [[nodiscard]] bool pictures_are_there(const PictureTask& task);
-// Draws those that are not there into folder/pictures, adds figures of study.json to `figures`.
+// Draws those that are not there into folder/pictures, adds them to `figures`.
 // view: null where all are there.
-void draw_pictures(const PictureTask& task, const studies::BasisView* view, Json& figures);
+void draw_pictures(const PictureTask& task, const studies::BasisView* view,
+                   std::vector<FigureEntry>& figures);
 
 // Pictures, and the PNG files that show them.
 using NamedPictures = std::vector<std::pair<std::filesystem::path, base::Image>>;
 // Writes the PNGs: of one white for all, or each by its own curve. Returns that white.
 std::optional<double> expose_alike(const NamedPictures& pictures, const ToneChoice& tone);
-// The same for the clean pictures among figures of study.json that are there, of their EXR files;
-// fills "white_cd_m2".
-void expose_figures(const std::filesystem::path& folder, const ToneChoice& tone, Json& figures);
+// The same for the clean pictures among a study's figures, of their EXR files; fills white_cd_m2.
+void expose_figures(const std::filesystem::path& folder, const ToneChoice& tone,
+                    std::vector<FigureEntry>& figures);
 
-// "pairs" of study.json, of the figures that were drawn.
-[[nodiscard]] Json pairs_json(const studies::StudyFile& study, const Json& figures);
+// Of the figures that were drawn.
+[[nodiscard]] std::vector<PairEntry> pairs_of(const studies::StudyFile& study,
+                                              const std::vector<FigureEntry>& figures);
 
 }  // namespace earthshine::app

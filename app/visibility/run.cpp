@@ -9,6 +9,8 @@
 #include "app/interrupt.h"
 #include "app/output.h"
 #include "app/report/page.h"
+#include "app/study/results_json.h"
+#include "app/study/results_tables.h"
 #include "app/study/study.h"
 #include "app/visibility/answers.h"
 #include "app/visibility/conditions.h"
@@ -66,57 +68,60 @@ class Runner {
  public:
   Runner(const StudyTask& task, const Common& common, const Parts& parts,
          const ViewListener& listen)
-      : task_(task), common_(common), listen_(listen), findings_(task.study) {
-    findings_.command = task.command;
-    findings_.seed = common.seed;
-    findings_.parts = pointers(parts);
-  }
+      : task_(task),
+        common_(common),
+        listen_(listen),
+        parts_(pointers(parts)),
+        limits_(parts.size()),
+        results_(begin_results(task.study, parts_, task.command, common.seed)) {}
 
-  void run() {
+  [[nodiscard]] StudyResults run() {
     const Interrupt interrupt;
     ways_.resize(task_.study.wanted.size());
-    for (const StudyPart* part : findings_.parts) {
+    for (const StudyPart* part : parts_) {
       StudyFrames frames(*part, fs::path(task_.folder) / points_folder, common_, task_.part);
       StudyConditions conditions(*part, task_.study, frames.store(), common_);
       for (const StudyCamera& camera : part->cameras) {
-        if (!look_through(*part, camera, frames, conditions)) findings_.complete = false;
+        if (!look_through(*part, camera, frames, conditions)) results_.complete = false;
       }
     }
     // Of a study that was stopped there is nothing to conclude.
-    for (std::size_t k = 0; findings_.complete && k < ways_.size(); ++k) {
-      findings_.answers.push_back(answer_json(task_.study.wanted[k], task_.study, ways_[k]));
+    for (std::size_t k = 0; results_.complete && k < ways_.size(); ++k) {
+      results_.answers.push_back(answer_of(task_.study.wanted[k], task_.study, ways_[k]));
     }
-    expose_figures(task_.folder, task_.tone, findings_.figures);
-    findings_.pairs = pairs_json(task_.study, findings_.figures);
+    expose_figures(task_.folder, task_.tone, results_.figures);
+    results_.pairs = pairs_of(task_.study, results_.figures);
+    results_.notes = notes_of(results_, parts_, limits_);
+    return std::move(results_);
   }
-
-  [[nodiscard]] const StudyFindings& findings() const { return findings_; }
 
  private:
   // Whether all was done.
   bool look_through(const StudyPart& part, const StudyCamera& camera, StudyFrames& frames,
                     StudyConditions& conditions) {
-    CameraResults found{&part, &camera, 0.0, 0.0, std::vector<Json>(part.conditions())};
+    CameraFindings found{part, camera, 0.0, 0.0, Judged(part.conditions())};
     const Json frame_cache_key = frames.cache_key(camera);
-    const PictureTask pictures{task_.study,  findings_.parts, part,           camera,
+    const PictureTask pictures{task_.study,  parts_,          part,           camera,
                                task_.folder, frame_cache_key, frames.store(), common_};
     const CameraWork work(pictures, frames, conditions);
     if (!take_finished(work, found)) {
       std::optional<StudyFrames::Frame> frame;
-      if (!Interrupt::asked()) frame = frames.frame(camera, findings_.costs);
+      if (!Interrupt::asked()) frame = frames.frame(camera, results_.costs);
       if (frame) look(work, *frame, found);
     }
-    findings_.cameras.push_back(std::move(found));
-    const auto& done = findings_.cameras.back().conditions;
+    add_camera(results_, found);
+    const Judged& done = found.conditions;
     return !Interrupt::asked() &&
-           std::none_of(done.begin(), done.end(), [](const Json& one) { return one.is_null(); });
+           std::all_of(done.begin(), done.end(), [](const auto& one) { return one.has_value(); });
   }
 
-  void take(const StudyPart& part, const StudyFrames::Frame& frame, CameraResults& found) {
+  void take(const StudyFrames::Frame& frame, CameraFindings& found) {
     found.relative_noise = frame.relative_noise;
     found.render_seconds = frame.seconds;
-    findings_.patches[part.id] = frame.patches;
-    findings_.limits[part.id] = frame.limits;
+    const auto part = std::find(parts_.begin(), parts_.end(), &found.part);
+    const auto scene = static_cast<std::size_t>(part - parts_.begin());
+    results_.scenes[scene].patches = frame.patches;
+    limits_[scene] = frame.limits;
   }
 
   void add_all(const std::vector<std::vector<ViewingConfiguration>>& more) {
@@ -126,53 +131,63 @@ class Runner {
   }
 
   // Where an earlier run has done all of it, so that not even the picture must be read.
-  bool take_finished(const CameraWork& work, CameraResults& found) {
+  bool take_finished(const CameraWork& work, CameraFindings& found) {
     if (listen_ || !pictures_are_there(work.pictures())) return false;
     const auto ways = work.known_configurations();
-    const auto judged = work.known_conditions();
+    auto judged = work.known_conditions();
     if (!ways || !judged || !thumbnails_are_there(work, *judged)) return false;
-    const auto frame = work.known_frame(findings_.costs);
+    const auto frame = work.known_frame(results_.costs);
     if (!frame) return false;
-    const PictureTask& pictures = work.pictures();
-    take(pictures.part, *frame, found);
-    found.conditions = *judged;
-    findings_.costs.push_back(
-        {fmt::format("conditions {} {}", pictures.part.id, found.camera->camera->name), 0.0, 0,
-         true});
+    take(*frame, found);
+    found.conditions = std::move(*judged);
+    results_.costs.push_back(
+        {fmt::format("conditions {} {}", found.part.id, found.camera.camera->name), 0.0, 0, true});
     add_all(*ways);
-    draw_pictures(pictures, nullptr, findings_.figures);
-    draw_thumbnails(work, nullptr, *judged, findings_.thumbnails);
+    draw_pictures(work.pictures(), nullptr, results_.figures);
+    found.thumbnails = draw_thumbnails(work, nullptr, found.conditions);
     return true;
   }
 
-  void look(const CameraWork& work, StudyFrames::Frame& frame, CameraResults& found) {
-    const PictureTask& pictures = work.pictures();
-    take(pictures.part, frame, found);
-    const studies::BasisView view = work.view_of(frame, findings_.costs);
-    found.conditions = work.judge(view, work.all_batches(), findings_.costs);
-    if (listen_) listen_(pictures.part, pictures.camera, view, frame);
+  void look(const CameraWork& work, StudyFrames::Frame& frame, CameraFindings& found) {
+    take(frame, found);
+    const studies::BasisView view = work.view_of(frame, results_.costs);
+    found.conditions = work.judge(view, work.all_batches(), results_.costs);
+    if (listen_) listen_(found.part, found.camera, view, frame);
     if (Interrupt::asked()) return;
-    add_all(work.conclude(view, findings_.figures));
-    draw_thumbnails(work, &view, found.conditions, findings_.thumbnails);
+    add_all(work.conclude(view, results_.figures));
+    found.thumbnails = draw_thumbnails(work, &view, found.conditions);
   }
 
   const StudyTask& task_;
   const Common& common_;
   const ViewListener& listen_;
-  StudyFindings findings_;
+  const std::vector<const StudyPart*> parts_;
+  std::vector<std::vector<std::string>> limits_;  // of each scene's solution
+  StudyResults results_;
   std::vector<std::vector<ViewingConfiguration>> ways_;
 };
 
-}  // namespace
-
-std::optional<Json> run_study(StudyTask task, const Common& common, const ViewListener& listen) {
-  const Parts parts = prepare_parts(task.study, common);
+// The scenes of the task, and its name and pictures where it says nothing of them.
+Parts prepare(StudyTask& task, const Common& common) {
+  Parts parts = prepare_parts(task.study, common);
   check_models(task.study, pointers(parts));
   const std::string& scene = parts.front()->loaded.scene.name;
   if (task.study.path.empty() && !scene.empty()) task.study.name = scene;
   fill_pictures(task.study, *parts.front());
   check_pictures(task.study, pointers(parts));
-  if (task.dry_run) return plan_json(task.study, pointers(parts), task.folder, common);
+  return parts;
+}
+
+}  // namespace
+
+Json plan_study(StudyTask task, const Common& common) {
+  const Parts parts = prepare(task, common);
+  return plan_json(task.study, pointers(parts), task.folder, common);
+}
+
+std::optional<StudyResults> run_study(StudyTask task, const Common& common,
+                                      const ViewListener& listen) {
+  const Parts parts = prepare(task, common);
   std::vector<std::string> files = {study_file, results_table, report_file};
   files.insert(files.end(), task.more_files.begin(), task.more_files.end());
   Files inputs = {task.study.path};
@@ -193,20 +208,18 @@ std::optional<Json> run_study(StudyTask task, const Common& common, const ViewLi
   if (task.part.in_parts() && !StudyShares(task, common, pointers(parts)).run()) {
     return std::nullopt;
   }
-  Runner runner(task, common, parts, listen);
-  runner.run();
-  if (!runner.findings().complete && has_finished_results(task.folder)) {
+  StudyResults study = Runner(task, common, parts, listen).run();
+  if (!study.complete && has_finished_results(task.folder)) {
     throw base::Error(base::Blame::Work, "study", "interrupted", {},
                       "The results of the run before stand in " + task.folder +
                           "; run the same command again to go on");
   }
-  const Json study = study_json(runner.findings());
-  base::write_text(fs::path(task.folder) / study_file, dump(study));
-  base::write_text(fs::path(task.folder) / results_table, study_csv(study));
+  base::write_text(fs::path(task.folder) / study_file, dump(to_json(study)));
+  base::write_text(fs::path(task.folder) / results_table, results_csv(study));
   ReportOptions how;
   how.quiet = common.quiet;
   write_report(task.folder, study, how);
-  if (!runner.findings().complete) {
+  if (!study.complete) {
     throw base::Error(
         base::Blame::Work, "study", "interrupted", {},
         "Run the same command again: it goes on with what is finished in " + task.folder);

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "app/options.h"
+#include "app/study/results.h"
 #include "app/views/frames.h"
 #include "studies/orbit/condition.h"
 #include "studies/orbit/study_file.h"
@@ -17,27 +18,27 @@ inline constexpr const char* results_table = "results.csv";
 inline constexpr const char* study_tone_help =
     "; default auto, one white for all pictures of the study together";
 
-// Told each camera's view and its rows of study.json, one list of targets per condition.
+// Told each camera's view and picture.
 using ViewListener = std::function<void(const StudyPart&, const StudyCamera&,
                                         const studies::BasisView&, const StudyFrames::Frame&)>;
 
 struct StudyTask {
   studies::StudyFile study;
   std::string folder;
-  std::string command;  // what was called, for the report
-  bool dry_run = false;
+  std::string command;                       // what was called, for the report
   ToneChoice tone = {usual_percent, {}};     // of the clean pictures, together
   std::vector<std::string> more_files = {};  // that the listener writes in the folder
   PartCall part = {};
 };
 
-// The content of study.json; of a dry run what would be done and its price; of a part, which writes
-// nothing but points/, nothing. Throws base::Error for bad input before any work is done, and
-// (Work) after everything was written if it was interrupted, or where a merge finds work missing.
-[[nodiscard]] std::optional<Json> run_study(StudyTask task, const Common& common,
-                                            const ViewListener& listen = {});
+// What study.json has; of a part, which writes nothing but points/, nothing. Throws base::Error for
+// bad input before any work is done, and (Work) after everything was written if it was interrupted,
+// or where a merge finds work missing.
+[[nodiscard]] std::optional<StudyResults> run_study(StudyTask task, const Common& common,
+                                                    const ViewListener& listen = {});
 
-// For people, of what a dry run gives.
+// What would be done and its price; throws as run_study. For people: plan_text.
+[[nodiscard]] Json plan_study(StudyTask task, const Common& common);
 [[nodiscard]] std::string plan_text(const Json& plan);
 
 }  // namespace earthshine::app

@@ -78,7 +78,7 @@ void StudyShares::do_share() {
     if (!frame) return;  // interrupted
     const studies::BasisView view = work.view_of(*frame, costs_);
     (void)work.judge(view, batches, costs_);
-    Json figures = Json::array();
+    std::vector<FigureEntry> figures;
     if (batches.first == 0 && !Interrupt::asked()) (void)work.conclude(view, figures);
   });
   end_part_if_interrupted();

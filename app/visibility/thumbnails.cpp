@@ -25,11 +25,11 @@ std::size_t nearest_place(const std::vector<double>& positions_deg, double wante
       std::min_element(positions_deg.begin(), positions_deg.end(), nearer) - positions_deg.begin());
 }
 
-bool same_verdicts(const Json& one, const Json& other) {
-  for (std::size_t target = 0; target < one.size(); ++target) {
-    if (one[target]["verdict"] != other[target]["verdict"]) return false;
-  }
-  return true;
+bool same_verdicts(const std::vector<TargetFindings>& one,
+                   const std::vector<TargetFindings>& other) {
+  return std::equal(one.begin(), one.end(), other.begin(), [](const auto& a, const auto& b) {
+    return a.sight.verdict == b.sight.verdict;
+  });
 }
 
 // Means over squares of `step` pixels, `channels` values side by side.
@@ -117,8 +117,7 @@ void draw_small(const PictureTask& task, const studies::BasisView& view, std::si
 
 }  // namespace
 
-std::vector<std::size_t> pictured_conditions(const StudyPart& part,
-                                             const std::vector<Json>& judged) {
+std::vector<std::size_t> pictured_conditions(const StudyPart& part, const Judged& judged) {
   std::vector<std::size_t> pictured;
   const std::size_t places = part.basis->places().size();
   const bool along = part.positions_deg.size() > 1;
@@ -126,16 +125,16 @@ std::vector<std::size_t> pictured_conditions(const StudyPart& part,
   const std::size_t midnight = along ? nearest_place(part.positions_deg, 180.0) : 0;
   for (std::size_t k = 0; k < judged.size(); ++k) {
     const std::size_t place = k % places;
-    if (judged[k].is_null()) continue;
-    if (!along || place == 0 || place == noon || place == midnight || judged[k - 1].is_null() ||
-        !same_verdicts(judged[k], judged[k - 1])) {
+    if (!judged[k]) continue;
+    if (!along || place == 0 || place == noon || place == midnight || !judged[k - 1] ||
+        !same_verdicts(*judged[k], *judged[k - 1])) {
       pictured.push_back(k);
     }
   }
   return pictured;
 }
 
-bool thumbnails_are_there(const CameraWork& work, const std::vector<Json>& judged) {
+bool thumbnails_are_there(const CameraWork& work, const Judged& judged) {
   const std::vector<std::size_t> conditions = pictured_conditions(work.pictures().part, judged);
   std::string said;
   const auto facts = ResultCache(work.pictures().folder / points_folder)
@@ -143,8 +142,8 @@ bool thumbnails_are_there(const CameraWork& work, const std::vector<Json>& judge
   return facts && (*facts)["bytes"] == bytes_of_all(work.pictures(), conditions);
 }
 
-void draw_thumbnails(const CameraWork& work, const studies::BasisView* view,
-                     const std::vector<Json>& judged, Json& thumbnails) {
+std::vector<ThumbnailEntry> draw_thumbnails(const CameraWork& work, const studies::BasisView* view,
+                                            const Judged& judged) {
   const PictureTask& task = work.pictures();
   const std::vector<std::size_t> conditions = pictured_conditions(task.part, judged);
   if (view != nullptr && !thumbnails_are_there(work, judged)) {
@@ -154,13 +153,12 @@ void draw_thumbnails(const CameraWork& work, const studies::BasisView* view,
     ResultCache(task.folder / points_folder)
         .keep_facts(key_of(work, conditions), {{"bytes", bytes_of_all(task, conditions)}});
   }
+  std::vector<ThumbnailEntry> thumbnails;
   for (const std::size_t k : conditions) {
     const std::vector<std::string> files = files_of(task, k);
-    thumbnails.push_back({{"condition", fmt::format("{}-c{}", task.part.id, k)},
-                          {"camera", task.camera.camera->name},
-                          {"file", files.front()},
-                          {"monitor_file", task.camera.cctv ? Json(files.back()) : Json()}});
+    thumbnails.push_back({k, 0, files.front(), task.camera.cctv ? files.back() : std::string()});
   }
+  return thumbnails;
 }
 
 }  // namespace earthshine::app

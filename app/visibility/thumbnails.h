@@ -12,16 +12,17 @@ namespace earthshine::app {
 
 // Of one camera: under each lamp setting the places nearest to noon and to midnight, the first one,
 // and each at which the verdict on a target is another than at the place before; of a study without
-// an orbit all conditions. `judged`: a list of targets for each condition.
+// an orbit all conditions.
 [[nodiscard]] std::vector<std::size_t> pictured_conditions(const StudyPart& part,
-                                                           const std::vector<Json>& judged);
+                                                           const Judged& judged);
 
 // Whether all of them are there from an earlier run.
-[[nodiscard]] bool thumbnails_are_there(const CameraWork& work, const std::vector<Json>& judged);
+[[nodiscard]] bool thumbnails_are_there(const CameraWork& work, const Judged& judged);
 
 // Draws those that are not there into pictures/, at most 160 pixels wide, each by its own exposure;
-// adds entries of study.json to `thumbnails`. view: null where all are there.
-void draw_thumbnails(const CameraWork& work, const studies::BasisView* view,
-                     const std::vector<Json>& judged, Json& thumbnails);
+// conditions are numbered as `judged`. view: null where all are there.
+[[nodiscard]] std::vector<ThumbnailEntry> draw_thumbnails(const CameraWork& work,
+                                                          const studies::BasisView* view,
+                                                          const Judged& judged);
 
 }  // namespace earthshine::app

@@ -13,8 +13,10 @@
 #include "app/console.h"
 #include "app/options.h"
 #include "app/output.h"
+#include "app/study/figures.h"
+#include "app/study/json_fields.h"
+#include "app/study/results_tables.h"
 #include "app/study/study.h"
-#include "app/views/sight_json.h"
 #include "app/visibility/pictures.h"
 #include "app/visibility/run.h"
 #include "base/files/output_file.h"
@@ -50,14 +52,22 @@ std::vector<std::string> file_names(const scenes::Scene& scene, const Cameras& c
   return names;
 }
 
-Json target_row(const scenes::Camera& camera, const studies::TargetMetrics& target) {
+// What the tables have said from the beginning of one camera's target.
+struct TableRow {
+  std::string camera;
+  studies::TargetMetrics target;
+};
+
+Json row_json(const TableRow& row, const ResultEntry& result) {
+  const studies::TargetMetrics& target = row.target;
   const auto light = [&](auto member) -> Json {
     return target.light ? Json((*target.light).*member) : Json();
   };
   const auto optional_light = [&](auto member) -> Json {
     return target.light ? to_json((*target.light).*member) : Json();
   };
-  return {{"camera", camera.name},
+  const auto chance = [&](Figure of) { return to_json(of(result)); };
+  return {{"camera", row.camera},
           {"target", target.view.name},
           {"pixels", target.view.pixels},
           {"pixels_alone", target.view.pixels_alone},
@@ -67,25 +77,33 @@ Json target_row(const scenes::Camera& camera, const studies::TargetMetrics& targ
           {"surround_cd_m2", optional_light(&studies::TargetLight::surround)},
           {"contrast", optional_light(&studies::TargetLight::contrast)},
           {"saturated_share", to_json(target.saturated_share)},
-          {"crushed_share", to_json(target.crushed_share)}};
+          {"crushed_share", to_json(target.crushed_share)},
+          {"verdict", std::string(word_of(result.sight.verdict))},
+          {"detect", chance(chance_of<&studies::Probability::detect>)},
+          {"recognise", chance(chance_of<&studies::Probability::recognise>)},
+          {"identify", chance(chance_of<&studies::Probability::identify>)},
+          {"lit_fraction", to_json(result.lit_fraction)},
+          {"why", result.why}};
 }
 
-std::string cell(const Json& value, double factor, const char* unit) {
-  return value.is_null() ? "-" : fmt::format("{:.3g}{}", factor * value.get<double>(), unit);
+std::string cell(const Number& value, double factor, const char* unit) {
+  return value ? fmt::format("{:.3g}{}", factor * *value, unit) : "-";
 }
 
-std::string table_of(const Json& rows) {
+std::string table_of(const std::vector<TableRow>& rows) {
   std::string text =
       fmt::format("{:<12} {:<24} {:>7} {:>8} {:>9} {:>9} {:>9} {:>9} {:>8}\n", "camera", "target",
                   "pixels", "visible", "cd/m2", "surround", "contrast", "saturated", "crushed");
-  for (const Json& row : rows) {
+  for (const auto& [camera, target] : rows) {
+    const auto& light = target.light;
     text += fmt::format(
-        "{:<12} {:<24} {:>7} {:>8} {:>9} {:>9} {:>9} {:>9} {:>8}\n",
-        row["camera"].get<std::string>(), row["target"].get<std::string>(),
-        fmt::format("{}{}", row["pixels"].get<std::size_t>(), row["cut_by_frame"] ? "+" : ""),
-        cell(row["visible_fraction"], 100.0, " %"), cell(row["luminance_cd_m2"], 1.0, ""),
-        cell(row["surround_cd_m2"], 1.0, ""), cell(row["contrast"], 1.0, ""),
-        cell(row["saturated_share"], 100.0, " %"), cell(row["crushed_share"], 100.0, " %"));
+        "{:<12} {:<24} {:>7} {:>8} {:>9} {:>9} {:>9} {:>9} {:>8}\n", camera, target.view.name,
+        fmt::format("{}{}", target.view.pixels, target.view.cut_by_frame ? "+" : ""),
+        cell(target.visible_fraction, 100.0, " %"),
+        cell(light ? Number(light->luminance) : Number(), 1.0, ""),
+        cell(light ? light->surround : Number(), 1.0, ""),
+        cell(light ? light->contrast : Number(), 1.0, ""),
+        cell(target.saturated_share, 100.0, " %"), cell(target.crushed_share, 100.0, " %"));
   }
   if (rows.empty()) return "The scene marks no object as a target.\n";
   return text +
@@ -131,56 +149,59 @@ class Tables {
                       {"cctv", cctv}});
     for (const studies::TargetMetrics& target :
          studies::target_metrics(scene, camera, image, clipped)) {
-      rows_.push_back(target_row(camera, target));
+      rows_.push_back({camera.name, target});
     }
   }
 
-  // study: the content of study.json.
-  [[nodiscard]] Json write(const Json& study) {
+  [[nodiscard]] const std::vector<TableRow>& rows() const { return rows_; }
+
+  [[nodiscard]] Json write(const StudyResults& study) {
     expose_alike(pictures_, tone_);
-    double solve_seconds = 0.0;
-    for (const Json& cost : study["costs"]) {
-      if (cost["stage"] == "solve s0") solve_seconds = cost["seconds"];
+    Number solve_seconds = 0.0;
+    for (const StudyCost& cost : study.costs) {
+      if (cost.stage == "solve s0") solve_seconds = cost.seconds;
     }
-    std::size_t k = 0;
-    for (const Json& result : study["results"]) {
-      Json& row = rows_[k++];
-      row["verdict"] = result["verdict"];
-      for (const char* task : {"detect", "recognise", "identify"}) {
-        row[task] = result["probability"][task];
-      }
-      row["lit_fraction"] = result["lit_fraction"];
-      row["why"] = result["why"];
-    }
+    Json rows = Json::array(), answers = Json::array();
+    for (const TableRow& row : rows_) rows.push_back(row_json(row, result_of(study, row)));
+    for (const AnswerEntry& answer : study.answers) answers.push_back(kept_json(answer));
     const Json json = {{"study", "visibility"},
                        {"version", EARTHSHINE_VERSION},
                        {"scene", call_.scene.path},
                        {"set", call_.scene.overrides},
                        {"seed", common_.seed},
-                       {"patches", study["scenes"][0]["patches"]},
-                       {"solve_seconds", solve_seconds},
+                       {"patches", to_json(study.scenes[0].patches)},
+                       {"solve_seconds", to_json(solve_seconds)},
                        {"cameras", views_},
-                       {"targets", rows_},
-                       {"answers", study["answers"]}};
-    base::write_text(std::filesystem::path(call_.folder) / results_csv, csv_of(rows_));
+                       {"targets", rows},
+                       {"answers", answers}};
+    base::write_text(std::filesystem::path(call_.folder) / results_csv, csv_of(rows));
     base::write_text(std::filesystem::path(call_.folder) / visibility_file, dump(json));
     return json;
   }
 
  private:
+  // Of the study's one condition.
+  static const ResultEntry& result_of(const StudyResults& study, const TableRow& row) {
+    return *std::find_if(study.results.begin(), study.results.end(), [&](const ResultEntry& r) {
+      return study.cameras[r.camera].name == row.camera &&
+             study.targets[r.target] == row.target.view.name;
+    });
+  }
+
   const StudyCall& call_;
   const ToneChoice& tone_;
   const Common& common_;
   NamedPictures pictures_;
-  Json views_ = Json::array(), rows_ = Json::array();
+  Json views_ = Json::array();
+  std::vector<TableRow> rows_;
 };
 
 void run(const VisibilityCall& call, const Common& common) {
   StudyTask task{study_of(call.study, call.wanted, call.iris), call.study.folder,
-                 "study visibility", call.dry_run, call.tone};
+                 "study visibility", call.tone};
   task.part = call.study.part;
   if (call.dry_run) {
-    const Json plan = *run_study(std::move(task), common);
+    const Json plan = plan_study(std::move(task), common);
     return print(call.study.json ? dump(plan) : plan_text(plan));
   }
   const LoadedScene loaded = load(call.study.scene, true);
@@ -196,24 +217,23 @@ void run(const VisibilityCall& call, const Common& common) {
   }
   task.more_files = file_names(loaded.scene, cameras);
   Tables tables(call.study, call.tone, common);
-  const std::optional<Json> study = run_study(
+  const std::optional<StudyResults> study = run_study(
       std::move(task), common,
       [&](const StudyPart& part, const StudyCamera& camera, const studies::BasisView& view,
           const StudyFrames::Frame& frame) { tables.add(part, camera, view, frame); });
   if (!study) return;  // a part
   const Json json = tables.write(*study);
   if (call.study.json) return print(dump(json));
-  std::string text = table_of(json["targets"]);
-  for (const Json& row : json["targets"]) {
-    if (row["why"].get<std::string>().empty()) continue;
-    text += fmt::format("{}, {}: {}\n", row["camera"].get<std::string>(),
-                        row["target"].get<std::string>(), row["why"].get<std::string>());
+  std::string text = table_of(tables.rows());
+  for (const ResultEntry& result : study->results) {
+    if (result.why.empty()) continue;
+    text += fmt::format("{}, {}: {}\n", study->cameras[result.camera].name,
+                        study->targets[result.target], result.why);
   }
-  for (const Json& answer : json["answers"]) {
-    text += fmt::format("{}: {}\n", answer["wanted"].get<std::string>(),
-                        answer["text"].get<std::string>());
+  for (const AnswerEntry& answer : study->answers) {
+    text += fmt::format("{}: {}\n", answer.wanted, answer.text);
   }
-  for (const std::string& note : black_back_notes((*study)["results"])) text += note + "\n";
+  for (const std::string& note : black_back_notes(*study)) text += note + "\n";
   print(text);
 }
 

@@ -13,15 +13,23 @@ namespace {
 // A tube's frame shares its lag with the one before, so that frames are taken apart.
 constexpr std::uint64_t frames_apart = 2;
 
+Names names_of(bool (*belongs)(const Stage&)) {
+  Names names;
+  for (const Stage& stage : stages()) {
+    if (belongs(stage)) names.emplace_back(stage.name);
+  }
+  return names;
+}
+
 }  // namespace
 
 namespace stage {
-const Names noise = {"signal-noise", "read-noise"};
-const Names uneven = {"fall-off", "shading", "smear"};
-const Names spatial = {"glare", "lens-spread", "blur", "bandwidth", "bloom"};
-const Names limits = {"saturation", "bloom", "black-clamp", "white-clip"};
-const Names coding = {"camera-gamma", "quantisation"};
-const Names screen = {"screen", "spread", "room-light"};
+const Names noise = names_of([](const Stage& stage) { return stage.is(Kind::Noise); });
+const Names uneven = names_of([](const Stage& stage) { return stage.is(Kind::Uneven); });
+const Names spatial = names_of([](const Stage& stage) { return stage.is(Kind::Spatial); });
+const Names limits = names_of([](const Stage& stage) { return stage.is(Kind::Limit); });
+const Names coding = names_of([](const Stage& stage) { return stage.is(Kind::Coding); });
+const Names screen = names_of([](const Stage& stage) { return stage.part == Part::Monitor; });
 }  // namespace stage
 
 Names operator+(Names a, const Names& b) {

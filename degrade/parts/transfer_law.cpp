@@ -30,16 +30,24 @@ double bandwidth(double mhz, const Monitor& monitor, double f) {
   return gaussian(std::sqrt(variance), f);
 }
 
+// Of each stage that blurs or sharpens, in order.
+struct TransferRow {
+  bool picture, light_noise, amplifier_noise;  // what passes it
+  double (*transfer)(const CctvCamera&, const Monitor&, Axis, double frequency);
+};
 constexpr TransferRow table[] = {
-    {"lens-spread", true, false, false,
+    // lens-spread
+    {true, false, false,
      [](const CctvCamera& camera, const Monitor&, Axis, double f) {
        return gaussian(camera.lens_blur, f);
      }},
-    {"blur", true, true, false,
+    // blur
+    {true, true, false,
      [](const CctvCamera& camera, const Monitor&, Axis axis, double f) {
        return gaussian(axis == Axis::Along ? camera.blur_h : camera.blur_v, f);
      }},
-    {"bandwidth", true, true, true,
+    // bandwidth
+    {true, true, true,
      [](const CctvCamera& camera, const Monitor& monitor, Axis axis, double f) {
        if (axis == Axis::Across) return 1.0;
        return bandwidth(camera.bandwidth_mhz, monitor, f) *
@@ -72,8 +80,6 @@ double covariance_of(const std::vector<double>& h, int shift) {
 }
 
 }  // namespace
-
-std::span<const TransferRow> transfer_rows() { return table; }
 
 double transfer(const CctvCamera& camera, const Monitor& monitor, Travels what, Axis axis,
                 double frequency) {

@@ -19,16 +19,8 @@ enum class Axis { Along, Across };  // along a line; from line to line
 // What passes a stage: the picture, the noise that comes with the light, the amplifier's noise.
 enum class Travels { Picture, LightNoise, AmplifierNoise };
 
-struct TransferRow {
-  std::string_view stage;
-  bool picture, light_noise, amplifier_noise;  // what passes it
-  double (*transfer)(const CctvCamera&, const Monitor&, Axis, double frequency);
-};
-
-// All stages that blur or sharpen, in order.
-[[nodiscard]] std::span<const TransferRow> transfer_rows();
-
-// Product of the rows that `what` passes. The area average onto the grid is not among them.
+// Product over the stages that blur or sharpen and that `what` passes. The area average onto the
+// grid is not among them.
 [[nodiscard]] double transfer(const CctvCamera& camera, const Monitor& monitor, Travels what,
                               Axis axis, double frequency);
 

@@ -12,8 +12,6 @@ using base::Error;
 using scenes::Setting;
 using scenes::SettingTable;
 
-std::string in_quotes(std::string_view word) { return "\"" + std::string(word) + "\""; }
-
 std::string number(double value) {
   std::ostringstream text;
   text.imbue(std::locale::classic());

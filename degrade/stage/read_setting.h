@@ -11,10 +11,12 @@
 #include "base/error.h"
 #include "degrade/stage/fields.h"
 #include "scenes/scene.h"
+#include "scenes/text/message_text.h"
 
 namespace earthshine::degrade {
 
-[[nodiscard]] std::string in_quotes(std::string_view word);
+using scenes::did_you_mean, scenes::in_quotes;
+
 // As people write it: no trailing zeros, a point whatever the locale.
 [[nodiscard]] std::string number(double value);
 
@@ -35,12 +37,6 @@ std::string listed(const Words& words) {
     if (--left > 0) text += left == 1 ? " or " : ", ";
   }
   return text;
-}
-
-template <class Words>
-std::string did_you_mean(std::string_view word, const Words& words) {
-  const std::string nearest = base::nearest_word(word, words);
-  return nearest.empty() ? std::string() : "Did you mean " + in_quotes(nearest) + "?";
 }
 
 template <class T>

@@ -6,6 +6,7 @@
 
 #include "radiosity/bodies/closed_bodies.h"
 #include "radiosity/bodies/closed_parts.h"
+#include "scenes/light/lamp_kind.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -104,10 +105,8 @@ class Walls {
 
 // Of the ball around the lamp.
 double radius_of(const scenes::Lamp& lamp) {
-  if (lamp.kind == scenes::LampKind::Disk) return lamp.radius_m;
-  if (lamp.kind != scenes::LampKind::Rectangle) return 0.0;
-  return 0.5 *
-         std::max(glm::length(lamp.edge_u + lamp.edge_v), glm::length(lamp.edge_u - lamp.edge_v));
+  const auto radius = scenes::row_of(lamp.kind).radius;
+  return radius == nullptr ? 0.0 : radius(lamp);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "radiosity/direct/explicit_emitters.h"
 #include "radiosity/direct/light_cluster.h"
 #include "scenes/light/emitters.h"
+#include "scenes/light/lamp_kind.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_parts.h"
 
@@ -61,11 +62,10 @@ LightSource earth_source(const scenes::Scene& scene, std::size_t group, int poin
 
 LightSource lamp_source(const scenes::Lamp& lamp, std::uint64_t key, std::size_t group,
                         int points) {
-  const bool wide = lamp.kind == scenes::LampKind::Rectangle || lamp.kind == scenes::LampKind::Disk;
   Source source;
   source.key = key;
   source.group = group;
-  source.points = points * (wide ? 4 : 1);
+  source.points = points * (scenes::is_wide(lamp.kind) ? 4 : 1);
   source.sample = [&lamp](const Vec3& point, double u, double v) {
     return scenes::sample_lamp(lamp, point, u, v);
   };

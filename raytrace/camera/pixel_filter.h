@@ -30,10 +30,6 @@ class PixelFilter {
   // stratified. Pixels from the pixel's centre, x to the right and y down. The box of width 1 gives
   // (u - 0.5, v - 0.5) exactly.
   [[nodiscard]] std::array<double, 2> offset(double u, double v) const { return {at(u), at(v)}; }
-  // How many pixels beside its own a pixel's samples may fall into.
-  [[nodiscard]] int reach_px() const {
-    return std::max(0, static_cast<int>(std::ceil(0.5 * (width_px_ - 1.0))));
-  }
 
  private:
   [[nodiscard]] double at(double u) const;

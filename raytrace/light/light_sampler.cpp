@@ -8,6 +8,7 @@
 
 #include "base/numbers/even_points.h"
 #include "radiosity/direct/explicit_emitters.h"
+#include "scenes/light/lamp_kind.h"
 #include "scenes/light/thrown_light.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_parts.h"
@@ -21,10 +22,6 @@ constexpr std::size_t few_lamps = 32;
 constexpr double smallest_share = 1.0 / 16.0;
 
 double fraction(double x) { return x - std::floor(x); }
-
-bool is_wide(const scenes::Lamp& lamp) {
-  return lamp.kind == scenes::LampKind::Rectangle || lamp.kind == scenes::LampKind::Disk;
-}
 
 }  // namespace
 
@@ -55,7 +52,7 @@ LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups
   }
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
     if (groups.lamp[k] == scenes::no_group) continue;
-    const bool wide = is_wide(scene.lamps[k]);
+    const bool wide = scenes::is_wide(scene.lamps[k].kind);
     add({Kind::Lamp, groups.lamp[k], k}, wide ? copies : 1);
     if (wide) surfaces_.lights.push_back(k);
   }
@@ -177,7 +174,7 @@ void LightSampler::find_one_rays() {
   one_rays_.resize(count());
   for (std::size_t k = 0; k < count(); ++k) {
     const scenes::FlatMirror* mirror = mirror_of(k);
-    if (of(k).kind != Kind::Lamp || is_wide(scene_.lamps[of(k).index])) continue;
+    if (of(k).kind != Kind::Lamp || scenes::is_wide(scene_.lamps[of(k).index].kind)) continue;
     const scenes::Lamp& lamp = scene_.lamps[of(k).index];
     OneRay& ray = one_rays_[k];
     ray.is_all = true;

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "scenes/light/lamp_kind.h"
 #include "scenes/ray_query.h"
 
 namespace earthshine::scenes {
@@ -51,8 +52,8 @@ class CullingPass {
 
   [[nodiscard]] bool lights_nothing(const Lamp& lamp,
                                     const std::vector<const Camera*>& cameras) const {
-    const bool wide = lamp.kind == LampKind::Rectangle || lamp.kind == LampKind::Disk;
-    if (wide && std::any_of(cameras.begin(), cameras.end(), [&](const Camera* camera) {
+    if (is_wide(lamp.kind) &&
+        std::any_of(cameras.begin(), cameras.end(), [&](const Camera* camera) {
           return glm::dot(lamp.axis, camera->position - lamp.position) >
                  -0.5 * camera->aperture_m - slack();
         })) {
@@ -101,8 +102,8 @@ class CullingPass {
       reach = lamp.radius_m;
     }
     if (!face.both_sides && along(face, lamp.position) + reach <= -slack()) return false;
-    const bool half_space = lamp.kind == LampKind::Rectangle || lamp.kind == LampKind::Disk ||
-                            (lamp.kind == LampKind::Spot && lamp.field_deg <= 180.0);
+    const bool half_space =
+        is_wide(lamp.kind) || (lamp.kind == LampKind::Spot && lamp.field_deg <= 180.0);
     const bool in_front = std::any_of(face.corner.begin(), face.corner.end(), [&](const Vec3& p) {
       return glm::dot(lamp.axis, p - lamp.position) > -slack();
     });

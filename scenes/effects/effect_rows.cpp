@@ -10,10 +10,6 @@
 namespace earthshine::scenes {
 namespace {
 
-// As scene files have it.
-constexpr std::array<std::string_view, lamp_kinds> type_of_kind = {"point", "spot", "rectangle",
-                                                                   "disk", "ies"};
-
 std::string pick(bool runs, const char* yes, const char* no) { return runs ? yes : no; }
 
 class Rows {
@@ -133,7 +129,7 @@ class Rows {
       ++all;
       if (groups_.lamp[k] != no_group) ++lit;
     }
-    const std::string_view type = type_of_kind[kind];
+    const std::string_view type = lamp_rows[kind].type;
     row(std::string(effect_of(kind_of(static_cast<LampKind>(kind)))), e_.lamp_kind[kind],
         all == 0 ? fmt::format("the scene has no [[light]] with type = \"{}\"", type)
                  : fmt::format("{} of {} with type = \"{}\" are lit", lit, all, type));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scenes/effects/light_groups.h"
+#include "scenes/light/lamp_kind.h"
 #include "scenes/scene.h"
 
 namespace earthshine::scenes {
@@ -41,7 +42,7 @@ enum class LightKind {
   MeasuredLamp,
   Emitter
 };
-inline constexpr std::size_t light_kinds = 8, lamp_kinds = 5;
+inline constexpr std::size_t light_kinds = 8, lamp_kinds = lamp_rows.size();
 [[nodiscard]] constexpr LightKind kind_of(LampKind kind) {
   return static_cast<LightKind>(static_cast<int>(LightKind::PointLamp) + static_cast<int>(kind));
 }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "scenes/light/lamp_kind.h"
 #include "scenes/ray_query.h"
 #include "scenes/text/message_text.h"
 #include "scenes/triangle_point.h"
@@ -18,10 +19,6 @@ namespace {
 // scene means.
 constexpr double least_lamp_share = 1.6e-5, rounding_share = 1e-12;
 constexpr int most_lifts = 8;
-
-bool has_size(const Lamp& lamp) {
-  return lamp.kind == LampKind::Rectangle || lamp.kind == LampKind::Disk;
-}
 
 struct Nearest {
   double distance_m = std::numeric_limits<double>::infinity();
@@ -100,7 +97,7 @@ void lift_lamps(Scene& scene) {
     const Nearest first = nearest_surface(scene, lamp.position, reach);
     if (first.distance_m >= reach) continue;
     const bool on_it = first.distance_m < rounding_share * extent;
-    if (has_size(lamp) && !shines_at(scene, lamp, first, on_it)) continue;
+    if (is_wide(lamp.kind) && !shines_at(scene, lamp, first, on_it)) continue;
     const std::string name = in_quotes(lamp.name),
                       object =
                           in_quotes(scene.objects[scene.triangles[first.triangle].object].name);

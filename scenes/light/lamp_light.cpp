@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scenes/light/emitters.h"
+#include "scenes/light/lamp_kind.h"
 #include "scenes/light/photometry.h"
 
 namespace earthshine::scenes {
@@ -20,10 +21,7 @@ Vec3 disk_point(const Lamp& lamp, double u, double v) {
   return lamp.position + r * (std::cos(phi) * frame.tangent + std::sin(phi) * frame.bitangent);
 }
 
-double surface_area(const Lamp& lamp) {
-  if (lamp.kind == LampKind::Rectangle) return glm::length(glm::cross(lamp.edge_u, lamp.edge_v));
-  return pi * lamp.radius_m * lamp.radius_m;
-}
+double surface_area(const Lamp& lamp) { return row_of(lamp.kind).area(lamp); }
 
 FlatEmitter rectangle(const Lamp& lamp) {
   return {lamp.position - 0.5 * (lamp.edge_u + lamp.edge_v),
@@ -95,7 +93,7 @@ Rgb lamp_flux_lm(const Lamp& lamp) {
 }
 
 EmittedRay emit_from_lamp(const Lamp& lamp, double u, double v, double x, double y) {
-  if (lamp.kind == LampKind::Rectangle || lamp.kind == LampKind::Disk) {
+  if (is_wide(lamp.kind)) {
     const Vec3 origin =
         lamp.kind == LampKind::Disk ? disk_point(lamp, u, v) : point_on(rectangle(lamp), u, v);
     return {origin, cosine_direction(base::frame_around(lamp.axis), x, y), 1.0};
@@ -119,7 +117,7 @@ EmittedRay emit_from_lamp(const Lamp& lamp, double u, double v, double x, double
 }
 
 std::optional<LampHit> hit_lamp(const Lamp& lamp, const Vec3& origin, const Vec3& direction) {
-  if (lamp.kind != LampKind::Rectangle && lamp.kind != LampKind::Disk) return std::nullopt;
+  if (!is_wide(lamp.kind)) return std::nullopt;
   const double cosine = -glm::dot(direction, lamp.axis);
   if (cosine <= 0.0) return std::nullopt;
   const double t = glm::dot(origin - lamp.position, lamp.axis) / cosine;

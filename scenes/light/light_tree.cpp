@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "scenes/light/lamp_kind.h"
 #include "scenes/light/photometry.h"
 
 namespace earthshine::scenes {
@@ -99,11 +100,9 @@ LightBounds bounds_of(const Lamp& lamp) {
     case LampKind::Rectangle:
     case LampKind::Disk: {
       const bool round = lamp.kind == LampKind::Disk;
-      const double area = round ? pi * lamp.radius_m * lamp.radius_m
-                                : glm::length(glm::cross(lamp.edge_u, lamp.edge_v));
       half = round ? lamp.radius_m * glm::sqrt(glm::max(Vec3(0.0), 1.0 - lamp.axis * lamp.axis))
                    : 0.5 * (glm::abs(lamp.edge_u) + glm::abs(lamp.edge_v));
-      bounds.intensity_cd = base::max_component(lamp.exitance) * area / pi;
+      bounds.intensity_cd = base::max_component(lamp.exitance) * row_of(lamp.kind).area(lamp) / pi;
       bounds.reach_rad = pi / 2;
       bounds.falls_by_cosine = true;
       break;

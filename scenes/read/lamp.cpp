@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
+#include "scenes/light/lamp_kind.h"
 #include "scenes/read/scene_parts.h"
 
 namespace earthshine::scenes {
 namespace {
 
-constexpr std::string_view all_keys[] = {"name",      "group",  "type",     "position",  "aim",
-                                         "intensity", "flux",   "beam_deg", "field_deg", "center",
-                                         "edge_u",    "edge_v", "normal",   "radius",    "exitance",
-                                         "file",      "up",     "color",    "tilt_deg"};
-constexpr std::string_view types[] = {"point", "spot", "rectangle", "disk", "ies"};
 constexpr std::string_view point_keys[] = {"name",     "group",     "type",
                                            "position", "intensity", "flux"};
 constexpr std::string_view spot_keys[] = {"name",      "group", "type",     "position", "aim",
@@ -49,17 +47,13 @@ void read_aim(Lamp& lamp, const TableReader& table, double unit_m) {
   lamp.axis = (aim - lamp.position) / distance;
 }
 
-void read_point(Lamp& lamp, const TableReader& table, double unit_m) {
-  table.allow_only(point_keys, "a light of type \"point\"");
-  lamp.kind = LampKind::Point;
+void read_point(Lamp& lamp, const TableReader& table, double unit_m, LuminaireShelf&) {
   lamp.position =
       table.required(table.position("position", unit_m), "position", "position = [x, y, z]");
   lamp.intensity_cd = read_strength(table, "intensity", 4.0 * base::pi);
 }
 
-void read_spot(Lamp& lamp, const TableReader& table, double unit_m) {
-  table.allow_only(spot_keys, "a light of type \"spot\"");
-  lamp.kind = LampKind::Spot;
+void read_spot(Lamp& lamp, const TableReader& table, double unit_m, LuminaireShelf&) {
   read_aim(lamp, table, unit_m);
   lamp.field_deg = table.required(table.number("field_deg", {0.0, 180.0, true}), "field_deg",
                                   "field_deg = ..., the full angle beyond which there is no light");
@@ -93,10 +87,8 @@ Area read_sides(const TableReader& table, double unit_m) {
   return sides;
 }
 
-void read_rectangle(Lamp& lamp, const TableReader& table, double unit_m) {
-  table.allow_only(rectangle_keys, "a light of type \"rectangle\"");
+void read_rectangle(Lamp& lamp, const TableReader& table, double unit_m, LuminaireShelf&) {
   const Area sides = read_sides(table, unit_m);
-  lamp.kind = LampKind::Rectangle;
   lamp.position = sides.center;
   lamp.edge_u = sides.edge_u;
   lamp.edge_v = sides.edge_v;
@@ -105,9 +97,7 @@ void read_rectangle(Lamp& lamp, const TableReader& table, double unit_m) {
       read_strength(table, "exitance", glm::length(glm::cross(sides.edge_u, sides.edge_v)));
 }
 
-void read_disk(Lamp& lamp, const TableReader& table, double unit_m) {
-  table.allow_only(disk_keys, "a light of type \"disk\"");
-  lamp.kind = LampKind::Disk;
+void read_disk(Lamp& lamp, const TableReader& table, double unit_m, LuminaireShelf&) {
   lamp.position = table.required(table.position("center", unit_m), "center", "center = [x, y, z]");
   lamp.axis = table.required(table.direction("normal"), "normal", "normal = [x, y, z]");
   lamp.radius_m =
@@ -134,8 +124,6 @@ Vec3 read_c0(const Lamp& lamp, const TableReader& table) {
 }
 
 void read_measured(Lamp& lamp, const TableReader& table, double unit_m, LuminaireShelf& shelf) {
-  table.allow_only(ies_keys, "a light of type \"ies\"");
-  lamp.kind = LampKind::Measured;
   read_aim(lamp, table, unit_m);
   lamp.source = table.required(table.text("file"), "file", "file = \"LUMINAIRE.ies\"");
   const Luminaire& luminaire = shelf.take(lamp.source, table.where("file"));
@@ -164,6 +152,28 @@ void read_measured(Lamp& lamp, const TableReader& table, double unit_m, Luminair
   lamp.intensity_cd *= *color / base::luminance(*color);
 }
 
+struct LampReader {
+  KeyList keys;
+  void (*read)(Lamp&, const TableReader&, double unit_m, LuminaireShelf&);
+};
+// In LampKind's order.
+constexpr std::array<LampReader, lamp_rows.size()> readers = {{{point_keys, read_point},
+                                                               {spot_keys, read_spot},
+                                                               {rectangle_keys, read_rectangle},
+                                                               {disk_keys, read_disk},
+                                                               {ies_keys, read_measured}}};
+
+// Those of all types.
+std::vector<std::string_view> all_keys() {
+  std::vector<std::string_view> keys;
+  for (const LampReader& reader : readers) {
+    for (const std::string_view key : reader.keys) {
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+    }
+  }
+  return keys;
+}
+
 }  // namespace
 
 Area read_area(const TomlNode& node, double unit_m) {
@@ -184,18 +194,22 @@ const Luminaire& LuminaireShelf::take(const std::filesystem::path& named,
 }
 
 Lamp read_lamp(const TomlNode& node, double unit_m, LuminaireShelf& shelf) {
-  TableReader table(node, "[[light]]", all_keys);
+  static const std::vector<std::string_view> keys = all_keys();
+  TableReader table(node, "[[light]]", keys);
   Lamp lamp;
   lamp.name = table.read_name();
   lamp.group = table.name("group").value_or(lamp.name);
+  std::array<std::string_view, lamp_rows.size()> types;
+  std::transform(lamp_rows.begin(), lamp_rows.end(), types.begin(),
+                 [](const LampRow& row) { return row.type; });
   const std::string type =
       table.required(table.choice("type", types), "type",
                      "type = \"point\", \"spot\", \"rectangle\", \"disk\" or \"ies\"");
-  if (type == "point") read_point(lamp, table, unit_m);
-  if (type == "spot") read_spot(lamp, table, unit_m);
-  if (type == "rectangle") read_rectangle(lamp, table, unit_m);
-  if (type == "disk") read_disk(lamp, table, unit_m);
-  if (type == "ies") read_measured(lamp, table, unit_m, shelf);
+  const auto kind = std::find(types.begin(), types.end(), type) - types.begin();
+  lamp.kind = static_cast<LampKind>(kind);
+  const LampReader& reader = readers[static_cast<std::size_t>(kind)];
+  table.allow_only(reader.keys, fmt::format("a light of type \"{}\"", type));
+  reader.read(lamp, table, unit_m, shelf);
   for (const Rgb& strength : {lamp.intensity_cd, lamp.exitance}) {
     if (!std::isfinite(base::max_component(strength))) {
       table.fail("flux", "gives no finite strength",

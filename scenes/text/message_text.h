@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace earthshine::scenes {
 
@@ -21,5 +23,11 @@ namespace earthshine::scenes {
 // "Did you mean "x"?", or "" when nothing is near.
 [[nodiscard]] std::string did_you_mean(std::string_view word,
                                        std::span<const std::string> candidates);
+// Of any range of strings.
+template <class Words>
+[[nodiscard]] std::string did_you_mean(std::string_view word, const Words& candidates) {
+  const std::vector<std::string> words(std::begin(candidates), std::end(candidates));
+  return did_you_mean(word, std::span<const std::string>(words));
+}
 
 }  // namespace earthshine::scenes

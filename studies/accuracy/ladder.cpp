@@ -137,10 +137,12 @@ std::vector<AccuracyStep> accuracy_ladder(const scenes::Scene& scene,
   Ladder ladder(scene);
   add_radiosity(ladder, effects, options);
   ladder.add("direct", series::error, Indirect::None, 1.0, 1.0);
-  const auto has = [&](scenes::LampKind kind) {
-    return effects.lamp_kind[static_cast<std::size_t>(kind)];
-  };
-  if (effects.earth || has(scenes::LampKind::Rectangle) || has(scenes::LampKind::Disk)) {
+  bool wide = effects.earth;
+  for (std::size_t kind = 0; kind < scenes::lamp_kinds; ++kind) {
+    wide =
+        wide || (effects.lamp_kind[kind] && scenes::is_wide(static_cast<scenes::LampKind>(kind)));
+  }
+  if (wide) {
     for (const int n : options.lights) {
       ladder.add("distributed", series::lights, Indirect::Distributed, n, n + 10.0).lights = n;
     }

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -17,25 +17,24 @@ namespace {
 struct LogPoint {
   double t = 0.0, y = 0.0;
 };
-using Parameters = std::array<double, 3>;
-using Matrix = std::array<std::array<double, 3>, 3>;
+using Parameters = Eigen::Vector3d;
 
 // y and its derivatives by the parameters. `used` = 2 leaves the floor out.
-double model(const Parameters& at, std::size_t used, double t, Parameters& slope) {
+double model(const Parameters& at, Eigen::Index used, double t, Parameters& slope) {
   const double fall = at[0] - at[1] * t;
   if (used == 2) {
-    slope = {1.0, -t, 0.0};
+    slope << 1.0, -t, 0.0;
     return fall;
   }
   // ln sqrt(e^2u + e^2v) without overflow; s is the falling part's share of the square.
   const double high = std::max(fall, at[2]), low = std::min(fall, at[2]);
   const double y = high + 0.5 * std::log1p(std::exp(2.0 * (low - high)));
   const double s = 1.0 / (1.0 + std::exp(2.0 * (at[2] - fall)));
-  slope = {s, -s * t, 1.0 - s};
+  slope << s, -s * t, 1.0 - s;
   return y;
 }
 
-double squares(const std::vector<LogPoint>& points, const Parameters& at, std::size_t used) {
+double squares(const std::vector<LogPoint>& points, const Parameters& at, Eigen::Index used) {
   double sum = 0.0;
   Parameters slope;
   for (const LogPoint& point : points) {
@@ -44,57 +43,38 @@ double squares(const std::vector<LogPoint>& points, const Parameters& at, std::s
   return sum;
 }
 
-// Solves m step = r in place by elimination with pivots; false where m is singular.
-bool solve(Matrix m, Parameters r, std::size_t used, Parameters& step) {
-  for (std::size_t k = 0; k < used; ++k) {
-    std::size_t pivot = k;
-    for (std::size_t i = k + 1; i < used; ++i) {
-      if (std::abs(m[i][k]) > std::abs(m[pivot][k])) pivot = i;
-    }
-    if (!(std::abs(m[pivot][k]) > 1e-14)) return false;
-    std::swap(m[k], m[pivot]);
-    std::swap(r[k], r[pivot]);
-    for (std::size_t i = k + 1; i < used; ++i) {
-      const double share = m[i][k] / m[k][k];
-      for (std::size_t j = k; j < used; ++j) m[i][j] -= share * m[k][j];
-      r[i] -= share * r[k];
-    }
-  }
-  step = {};
-  for (std::size_t k = used; k-- > 0;) {
-    double sum = r[k];
-    for (std::size_t j = k + 1; j < used; ++j) sum -= m[k][j] * step[j];
-    step[k] = sum / m[k][k];
-  }
-  return true;
+// m^-1 r of the parameters in use; none where m is singular.
+std::optional<Parameters> solve(const Eigen::Matrix3d& m, const Parameters& r, Eigen::Index used) {
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(m.topLeftCorner(used, used));
+  if (!lu.isInvertible()) return std::nullopt;
+  Parameters step = Parameters::Zero();
+  step.head(used) = lu.solve(r.head(used));
+  return step;
 }
 
 struct Fit {
-  Parameters at{};
+  Parameters at = Parameters::Zero();
   double squares = 0.0;
-  Matrix normal{};
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
 };
 
-Fit descend(const std::vector<LogPoint>& points, const Parameters& start, std::size_t used) {
+Fit descend(const std::vector<LogPoint>& points, const Parameters& start, Eigen::Index used) {
   constexpr int rounds = 500;
-  Fit fit{start, squares(points, start, used), {}};
+  Fit fit{start, squares(points, start, used)};
   double damping = 1e-3;
   for (int round = 0; round < rounds && damping < 1e12; ++round) {
-    fit.normal = {};
-    Parameters right{}, slope{};
+    fit.normal.setZero();
+    Parameters right = Parameters::Zero(), slope;
     for (const LogPoint& point : points) {
       const double off = point.y - model(fit.at, used, point.t, slope);
-      for (std::size_t i = 0; i < used; ++i) {
-        right[i] += slope[i] * off;
-        for (std::size_t j = 0; j < used; ++j) fit.normal[i][j] += slope[i] * slope[j];
-      }
+      right += slope * off;
+      fit.normal += slope * slope.transpose();
     }
-    Matrix damped = fit.normal;
-    for (std::size_t i = 0; i < used; ++i) damped[i][i] *= 1.0 + damping;
-    Parameters step{};
-    if (!solve(damped, right, used, step)) break;
-    Parameters next = fit.at;
-    for (std::size_t i = 0; i < used; ++i) next[i] += step[i];
+    Eigen::Matrix3d damped = fit.normal;
+    damped.diagonal() *= 1.0 + damping;
+    const auto step = solve(damped, right, used);
+    if (!step) break;
+    const Parameters next = fit.at + *step;
     const double sum = squares(points, next, used);
     if (!(sum <= fit.squares)) {
       damping *= 4.0;
@@ -110,7 +90,9 @@ Fit descend(const std::vector<LogPoint>& points, const Parameters& start, std::s
 }
 
 // Without a floor the model is a straight line, which one step from anywhere reaches.
-Fit fit_line(const std::vector<LogPoint>& points) { return descend(points, {0.0, 0.5, 0.0}, 2); }
+Fit fit_line(const std::vector<LogPoint>& points) {
+  return descend(points, Parameters(0.0, 0.5, 0.0), 2);
+}
 
 // The floor's place is not convex: several starts below the least error.
 Fit fit_floor(const std::vector<LogPoint>& points, const Fit& line) {
@@ -157,7 +139,7 @@ std::optional<PowerLaw> fit_power_law(const std::vector<ErrorAt>& points) {
   for (std::size_t k = 1; k < log.size(); ++k) places += log[k].t > log[k - 1].t ? 1 : 0;
   if (places < 2) return std::nullopt;
 
-  std::size_t used = 2;
+  Eigen::Index used = 2;
   Fit fit = fit_line(log);
   const auto n = static_cast<double>(log.size());
   // Points that fit a line to a millionth have no floor to speak of.
@@ -173,10 +155,10 @@ std::optional<PowerLaw> fit_power_law(const std::vector<ErrorAt>& points) {
   law.factor = std::exp(fit.at[0]);
   law.exponent = fit.at[1];
   law.floor = used == 3 ? std::exp(fit.at[2]) : 0.0;
-  Parameters variance{};
   const double left = n - static_cast<double>(used);
-  if (left > 0.0 && solve(fit.normal, {0.0, 1.0, 0.0}, used, variance)) {
-    law.exponent_error = std::sqrt(std::max(0.0, variance[1] * fit.squares / left));
+  const auto variance = solve(fit.normal, Parameters::UnitY(), used);
+  if (left > 0.0 && variance) {
+    law.exponent_error = std::sqrt(std::max(0.0, (*variance)[1] * fit.squares / left));
   }
   return law;
 }

@@ -8,6 +8,7 @@
 #include <ctime>
 
 #include "raytrace/light/distributed_area.h"
+#include "scenes/light/lamp_kind.h"
 #include "studies/compare/yardstick.h"
 
 namespace earthshine::studies {
@@ -30,10 +31,7 @@ bool has_wide_sources(const StudyScene& study) {
   const scenes::Scene& scene = study.scene;
   return study.effects.earth ||
          std::any_of(scene.lamps.begin(), scene.lamps.end(),
-                     [](const scenes::Lamp& lamp) {
-                       return lamp.kind == scenes::LampKind::Rectangle ||
-                              lamp.kind == scenes::LampKind::Disk;
-                     }) ||
+                     [](const scenes::Lamp& lamp) { return scenes::is_wide(lamp.kind); }) ||
          std::any_of(scene.materials.begin(), scene.materials.end(),
                      [](const scenes::Material& material) { return material.emits(); });
 }

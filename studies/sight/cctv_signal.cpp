@@ -155,10 +155,11 @@ CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup
   line.has_fields = degrade::has_fields(setup, report);
   const degrade::StageContext at{setup, report, memory, 0, line.has_fields ? 2U : 1U};
 
-  const auto is_on = [&](std::string_view name) {
+  // A stage is known by its law.
+  const auto is_on = [&](auto* carry) {
     const auto stages = degrade::stages();
     const auto found = std::find_if(stages.begin(), stages.end(),
-                                    [&](const degrade::Stage& s) { return s.name == name; });
+                                    [&](const degrade::Stage& s) { return s.carry == carry; });
     return degrade::runs(*found, setup, &report);
   };
   // A picture of one resel, on which the maps point by point leave what they are.
@@ -168,15 +169,18 @@ CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup
   for (const degrade::Stage& stage : degrade::stages()) {
     const bool sensor = stage.part == degrade::Part::Sensor;
     if (sensor && exposed.planes.empty()) exposed = picture;
-    at_maps = at_maps || stage.name == "black-clamp";
-    if (stage.name == "levels") {
+    at_maps = at_maps || stage.carry == degrade::carry_black_clamp;
+    if (stage.is(degrade::Kind::Meter)) {
       line.level = luminance_plane(transform(picture, maps.pending));
     }
-    if (stage.name == "screen") line.line = maps.pending;
-    if (stage.name == "bloom") full = picture;  // and saturation after it
+    if (stage.carry == degrade::carry_screen) line.line = maps.pending;
+    if (stage.carry == degrade::carry_bloom) full = picture;  // and saturation after it
     if (!degrade::runs(stage, setup, &report)) continue;
-    if (stage.name == "spread" || stage.name == "room-light" || stage.merge != nullptr) continue;
-    if (stage.name == "signal-noise" || stage.name == "lag" || stage.name == "read-noise") continue;
+    if (stage.merge != nullptr || stage.is(degrade::Kind::Noise)) continue;
+    if (stage.carry == degrade::carry_lag || stage.carry == degrade::carry_spread ||
+        stage.carry == degrade::carry_room_light) {
+      continue;
+    }
     if (at_maps) {
       if (stage.carry != nullptr) maps = stage.carry(std::move(maps), at);
     } else {
@@ -186,7 +190,8 @@ CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup
   line.screen = maps.pending;
   line.columns = picture.columns;
   line.rows = picture.rows;
-  const bool blurs = is_on("blur"), limits = is_on("bandwidth"), spreads = is_on("spread");
+  const bool blurs = is_on(degrade::carry_blur), limits = is_on(degrade::carry_bandwidth),
+             spreads = is_on(degrade::carry_spread);
   line.blur_along =
       without_far_taps(degrade::gaussian_blur(line.columns, blurs ? camera.blur_h : 0.0));
   line.blur_across =
@@ -197,13 +202,14 @@ CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup
                           : nothing(line.columns);
   line.spread_along = spreads ? mean_spread(setup.monitor, line.columns) : nothing(line.columns);
   line.spread_across = spreads ? mean_spread(setup.monitor, line.rows) : nothing(line.rows);
-  if (is_on("room-light")) line.room_luminance = degrade::room_luminance(setup.monitor);
+  if (is_on(degrade::carry_room_light))
+    line.room_luminance = degrade::room_luminance(setup.monitor);
 
-  const double lag = is_on("lag") ? degrade::lag_of(at) : 0.0;
-  line.lag_per_field = is_on("lag") ? camera.lag : 0.0;
+  const double lag = is_on(degrade::carry_lag) ? degrade::lag_of(at) : 0.0;
+  line.lag_per_field = is_on(degrade::carry_lag) ? camera.lag : 0.0;
   const AxisMap along = squared(chained(line.blur_along, line.bandwidth)),
                 across = squared(line.blur_across), read = squared(line.bandwidth);
-  if (is_on("read-noise")) {
+  if (is_on(degrade::carry_read_noise)) {
     line.amplifier = report.noise.a;
     line.amplifier_pattern = report.noise.black_pattern;
   }
@@ -223,8 +229,8 @@ CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup
     SignalPlane plane;
     plane.signal = std::move(picture.planes[p]);
     carry_light_noise(line, plane, exposed.planes[p], along, across, (1.0 - lag) / (1.0 + lag),
-                      is_on("signal-noise"));
-    if (is_on("saturation")) {
+                      is_on(degrade::carry_signal_noise));
+    if (is_on(degrade::carry_saturation)) {
       saturate_noise(plane, full.planes[p], camera.saturation,
                      sum_of_squares(line.blur_along) * sum_of_squares(line.blur_across));
     }

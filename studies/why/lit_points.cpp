@@ -155,13 +155,4 @@ double share_of(const std::vector<std::uint8_t>& mask) {
          static_cast<double>(mask.size());
 }
 
-double lit_share(std::span<const Reach* const> sources) {
-  if (sources.empty()) return 0.0;
-  std::vector<std::uint8_t> any(sources.front()->lit.size(), 0);
-  for (const Reach* source : sources) {
-    for (std::size_t i = 0; i < any.size(); ++i) any[i] |= source->lit[i];
-  }
-  return share_of(any);
-}
-
 }  // namespace earthshine::studies

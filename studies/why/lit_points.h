@@ -75,7 +75,5 @@ struct Reach {
 
 // Share of the points set in the mask; 0 for none.
 [[nodiscard]] double share_of(const std::vector<std::uint8_t>& mask);
-// Share of the points that any of the sources reaches; the masks are of equal size.
-[[nodiscard]] double lit_share(std::span<const Reach* const> sources);
 
 }  // namespace earthshine::studies

@@ -82,8 +82,8 @@ void one_stage(benchmark::State& state, const degrade::Stage& stage) {
   Picture before{image.width, image.height, {base::luminance_of(image)}};
   degrade::Options watched = options();
   bool reached = false;
-  watched.watch = [&](std::string_view name, const Picture& picture) {
-    reached = reached || name == stage.name;
+  watched.watch = [&](const degrade::Stage& ran, const Picture& picture) {
+    reached = reached || &ran == &stage;
     if (!reached) before = picture;
   };
   const degrade::Setup setup{everything(), monitor_of(lines), options()};

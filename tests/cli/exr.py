@@ -2,7 +2,6 @@
 """Reads what the program writes: scan-line OpenEXR, FLOAT channels, ZIP. Independent of the library."""
 import array
 import struct
-import sys
 import zlib
 
 LINES_PER_BLOCK = 16  # ZIP_COMPRESSION
@@ -33,7 +32,7 @@ def read(path):
         data = file.read()
     magic, version = struct.unpack_from("<ii", data)
     assert magic == 20000630 and version & 0xFF == 2, "not OpenEXR"
-    header, names, at = {}, [], 8
+    header, names, letters, at = {}, [], [], 8
     while data[at]:
         name, at = _text(data, at)
         kind, at = _text(data, at)
@@ -50,8 +49,10 @@ def read(path):
             place = 0
             while value[place]:
                 channel, place = _text(value, place)
-                assert struct.unpack_from("<i", value, place)[0] == 2, "not FLOAT"
+                kind, = struct.unpack_from("<i", value, place)
+                assert kind in (1, 2), "neither HALF nor FLOAT"
                 names.append(channel)
+                letters.append("e" if kind == 1 else "f")
                 place += 16
         header[name] = value
     assert header["compression"] == b"\x03", "not ZIP"
@@ -63,14 +64,11 @@ def read(path):
     for offset in offsets:
         y, size = struct.unpack_from("<ii", data, offset)
         lines = min(LINES_PER_BLOCK, y1 + 1 - y)
-        raw = _unpack(data[offset + 8:offset + 8 + size], lines * len(names) * width * 4)
-        for line in range(lines):
+        row = struct.Struct("<" + "".join(f"{width}{letter}" for letter in letters))
+        raw = _unpack(data[offset + 8:offset + 8 + size], lines * row.size)
+        for values in row.iter_unpack(raw):
             for k, name in enumerate(names):
-                start = (line * len(names) + k) * width * 4
-                row = array.array("f", raw[start:start + width * 4])
-                if sys.byteorder == "big":
-                    row.byteswap()
-                channels[name].extend(row)
+                channels[name].extend(values[k * width:(k + 1) * width])
     return header, width, height, channels
 
 

@@ -143,6 +143,17 @@ class Run(Case):
         self.assertGreater(light["right"], 0)
         self.says(self.done("study", "run", "s.toml", "-o", "o", "--dry-run"), "picture found")
 
+    def test_a_coloured_factor_is_in_the_results_and_the_report(self):
+        """Light that passes three filters: a factor for each colour, which study.json has and the page shows."""
+        self.write("c.toml", STUDY.replace("set = { right = 0.5 }", "set = { right = [1, 0.5, 0.2] }"))
+        self.done("study", "run", "c.toml", "-o", "o")
+        coloured = [list(c["factors"].values()) for c in self.study("o")["conditions"] if c["factors"]]
+        self.assertEqual(coloured, [[[1, 0.5, 0.2]]] * 2)
+        page = (self.folder / "o" / "report.html").read_text(encoding="utf-8")
+        self.assertIn("right 1 0.5 0.2", page)
+        self.done("report", "o")
+        self.assertEqual((self.folder / "o" / "report.html").read_text(encoding="utf-8"), page)
+
     def test_two_scenes_with_cameras_of_the_same_names(self):
         self.write("dim.toml", BAY.replace("intensity = 500", "intensity = 5"))
         self.write("two.toml", STUDY.replace('scene = "bay.toml"', 'scenes = ["bay.toml", "dim.toml"]'))

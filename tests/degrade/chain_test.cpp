@@ -40,6 +40,27 @@ TEST(Chain, StageNamesAreUniqueAndUnitsFitTogether) {
   EXPECT_EQ(unit, "cd/m^2");
 }
 
+// `plan` says by them why a stage runs: each is a field of the camera or of the monitor. A stage
+// that has none depends on none, so it runs for any settings.
+TEST(Chain, ARowNamesTheSettingsThatDecide) {
+  std::set<std::string, std::less<>> fields;
+  degrade::Setup bare{linear_camera(), {}, {}};
+  visit_camera_fields(bare.camera, [&](const char* name, auto&&...) { fields.insert(name); });
+  visit_monitor_fields(bare.monitor, [&](const char* name, auto&&...) {
+    fields.insert(std::string("monitor.") + name);
+  });
+  bare.camera.black_clamp = false;
+  bare.monitor.spread = Spread::None;
+  bare.monitor.pixels_per_resel = 1;
+  bare.monitor.room_illuminance = 0.0;
+  for (const Stage& stage : stages()) {
+    for (const std::string_view setting : stage.settings) {
+      EXPECT_TRUE(setting.empty() || fields.contains(setting)) << stage.name << ": " << setting;
+    }
+    EXPECT_EQ(stage.settings.front().empty(), stage.runs(bare, nullptr)) << stage.name;
+  }
+}
+
 TEST(Chain, OnlyWhatTheSettingsAskForRuns) {
   Monitor bare;
   bare.spread = Spread::None;

@@ -26,7 +26,7 @@ import exr  # noqa: E402
 PRESET = "sit-monochrome"
 SMALL = ["--size", "40x30", "--error", "0.2"]
 # Keys whose values are those of a run, not of its result.
-OF_THE_RUN = re.compile(r"build|seconds|_s$|time|memory|mib|bytes|version|date|command|written|file|path|folder|free")
+OF_THE_RUN = re.compile(r"build|scene_digest|seconds|_s$|time|memory|mib|bytes|version|date|command|written|file|path|folder|free")
 
 
 def plain(value):

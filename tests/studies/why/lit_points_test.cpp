@@ -96,22 +96,6 @@ TEST(LitPoints, BlackBackKnowsWhatItsFrontWouldGive) {
   EXPECT_NEAR(sun.on_back, full, 1e-9 * full);
 }
 
-TEST(LitPoints, ShareOfSeveralSourcesIsThatOfAny) {
-  Lit lit;
-  lit.shade(true);
-  const scenes::RayQuery query = lit.look();
-  const auto from = [&](const Vec3& direction) {
-    return reach_of_direction(lit.builder.scene, query, lit.points, glm::normalize(direction), 1.0);
-  };
-  // 9 m above; a Sun that stands 60 degrees to the right passes under the shade.
-  const Reach above = from({0, 0, 1}), right = from({1, 0, 0.2});
-  EXPECT_EQ(share_of(right.lit), 1.0);
-  const std::array<const Reach*, 2> both = {&above, &right}, same = {&above, &above};
-  EXPECT_EQ(lit_share(both), 1.0);
-  EXPECT_NEAR(lit_share(same), 0.5, 1e-9);
-  EXPECT_EQ(lit_share({}), 0.0);
-}
-
 TEST(LitPoints, PointLampGivesItsInverseSquareOrItsShadow) {
   Lit lit;
   const scenes::RayQuery query = lit.look();

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// JSON of what has a list of its fields (describe, in results_fields.h), and back.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <span>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+#include "app/study/json_part.h"
+#include "app/study/results_fields.h"
+
+namespace earthshine::app {
+
+template <class Value>
+inline constexpr bool is_list = false;
+template <class Value>
+inline constexpr bool is_list<std::vector<Value>> = true;
+template <class Value>
+inline constexpr bool is_optional = false;
+template <class Value>
+inline constexpr bool is_optional<std::optional<Value>> = true;
+
+class JsonWriter {
+ public:
+  // study: that entries are named by; must outlive this.
+  explicit JsonWriter(const StudyResults& study) : study_(study) {}
+
+  template <class Value>
+  [[nodiscard]] Json json_of(const Value& value) const {
+    if constexpr (is_optional<Value>) {
+      return value ? json_of(*value) : Json();
+    } else if constexpr (is_list<Value>) {
+      Json list = Json::array();
+      for (const auto& one : value) list.push_back(json_of(one));
+      return list;
+    } else if constexpr (std::is_same_v<Value, Rgb>) {
+      return value.r == value.g && value.g == value.b ? Json(value.r) : to_json(value);
+    } else if constexpr (std::is_same_v<Value, studies::Arc>) {
+      return Json::array({value.first, value.second});
+    } else if constexpr (std::is_constructible_v<Json, Value>) {
+      return value;
+    } else {
+      JsonWriter inner(study_);
+      describe(inner, value);
+      return inner.json_;
+    }
+  }
+
+  template <class Value>
+  void operator()(const char* key, const Value& value) {
+    json_[key] = json_of(value);
+  }
+  void or_null(const char* key, const std::string& text) {
+    json_[key] = text.empty() ? Json() : Json(text);
+  }
+  template <class Value>
+  void if_any(const char* key, const std::optional<Value>& value) {
+    if (value) json_[key] = json_of(*value);
+  }
+  void if_any(const char* key, const std::string& text) {
+    if (!text.empty()) json_[key] = text;
+  }
+  template <class Struct>
+  void or_nulls(const char* key, const std::optional<Struct>& value) {
+    Json& json = json_[key] = json_of(value.value_or(Struct{}));
+    if (value) return;
+    for (Json& member : json) member = nullptr;
+  }
+  template <class Enum>
+  void word(const char* key, Enum value, Enum) {
+    json_[key] = std::string(word_of(value));
+  }
+  void one_of(const char* key, const std::string& text, std::initializer_list<const char*>) {
+    or_null(key, text);
+  }
+  template <class Value>
+  void list(const char* key, const std::vector<Value>& values) {
+    json_[key] = json_of(values);
+  }
+  void entry(Named, const char* key, const std::string& name, std::size_t = 0) {
+    json_[key] = name;
+  }
+  void names(Named, const char* key, const std::vector<std::string>& names) { json_[key] = names; }
+  void at(Named what, const char* key, std::size_t number, std::size_t = 0) {
+    json_[key] = name_of(study_, what, number);
+  }
+  void camera(const char* key, std::size_t number, std::size_t) { at(Named::Camera, key, number); }
+  void shares(const char* key, const std::vector<GroupShare>& shares, const char* word) {
+    Json& list = json_[key] = Json::array();
+    for (const GroupShare& share : shares) {
+      list.push_back({{"group", share.group}, {word, json_of(share.value)}});
+    }
+  }
+  void factors(const char* key, const std::vector<Factor>& factors) {
+    Json& object = json_[key] = Json::object();
+    for (const Factor& one : factors) object[one.group] = json_of(one.factor);
+  }
+
+ private:
+  const StudyResults& study_;
+  Json json_ = Json::object();
+};
+
+// The entries of a study that were read so far, by name; cameras by that of their scene too.
+class EntryNames {
+ public:
+  // study: that is being read; must outlive this.
+  explicit EntryNames(const StudyResults& study) : study_(study) {}
+  void add(const JsonPart& part, Named what, const char* key, const std::string& name,
+           std::size_t scene);
+  [[nodiscard]] std::size_t find(const JsonPart& part, Named what, const char* key,
+                                 std::size_t scene) const;
+  [[nodiscard]] std::size_t scene_of(std::size_t condition) const {
+    return study_.conditions[condition].scene;
+  }
+
+ private:
+  const StudyResults& study_;
+  std::map<std::tuple<Named, std::size_t, std::string>, std::size_t> places_;
+  std::map<Named, std::size_t> counts_;
+};
+
+// What is missing or null stays as it is by default.
+class JsonReader {
+ public:
+  // All must outlive this.
+  JsonReader(const JsonPart& part, EntryNames& names) : part_(part), names_(names) {}
+
+  template <class Value>
+  void operator()(const char* key, Value& value) {
+    if constexpr (std::is_same_v<Value, bool>) {
+      value = part_.flag(key, value);
+    } else if constexpr (std::is_same_v<Value, std::string>) {
+      value = part_.text(key);
+    } else if constexpr (std::is_same_v<Value, double>) {
+      value = part_.number(key).value_or(value);
+    } else if constexpr (std::is_integral_v<Value>) {
+      value = part_.count<Value>(key).value_or(value);
+    } else if constexpr (std::is_same_v<Value, Json>) {
+      value = part_.object(key).json();
+    } else if constexpr (is_optional<Value>) {
+      value.reset();
+      if (part_.has(key)) (*this)(key, value.emplace());
+      // A number that is not finite does not exist.
+      if constexpr (std::is_same_v<Value, Number>) value = part_.number(key);
+    } else if constexpr (std::is_same_v<Value, std::vector<std::string>>) {
+      value = part_.texts(key);
+    } else if constexpr (std::is_same_v<Value, std::vector<Number>>) {
+      value = part_.numbers(key);
+    } else if constexpr (std::is_same_v<Value, std::vector<double>>) {
+      for (const Number& one : part_.numbers(key)) value.push_back(one.value_or(NAN));
+    } else if constexpr (std::is_same_v<Value, std::vector<studies::Arc>>) {
+      for (const JsonPart& arc : part_.list(key)) value.push_back(arc.as_pair());
+    } else if constexpr (is_list<Value>) {
+      for (const JsonPart& one : part_.list(key)) read(one, value.emplace_back());
+    } else {
+      read(part_.object(key), value);
+    }
+  }
+  void or_null(const char* key, std::string& text) { text = part_.text(key); }
+  template <class Value>
+  void if_any(const char* key, Value& value) {
+    (*this)(key, value);
+  }
+  template <class Value>
+  void if_any(const char* key, std::optional<std::optional<Value>>& value) {
+    if (part_.json().contains(key)) (*this)(key, value.emplace());
+  }
+  template <class Struct>
+  void or_nulls(const char* key, std::optional<Struct>& value) {
+    const JsonPart object = part_.object(key);
+    const Json& json = object.json();
+    if (std::all_of(json.begin(), json.end(), [](const Json& one) { return one.is_null(); }))
+      return;
+    read(object, value.emplace());
+  }
+  template <class Enum>
+  void word(const char* key, Enum& value, Enum last) {
+    const std::string text = part_.needed_text(key);
+    std::string known;
+    for (int k = 0; k <= static_cast<int>(last); ++k) {
+      value = static_cast<Enum>(k);
+      if (text == word_of(value)) return;
+      known += (known.empty() ? "" : ", ") + std::string(word_of(value));
+    }
+    part_.refuse(key, "\"" + text + "\"", "it is one of " + known);
+  }
+  void one_of(const char* key, std::string& text, std::initializer_list<const char*> words);
+  template <class Value>
+  void list(const char* key, std::vector<Value>& values) {
+    for (const JsonPart& one : part_.needed_list(key)) read(one, values.emplace_back());
+  }
+  void entry(Named what, const char* key, std::string& name, std::size_t scene = 0) {
+    name = part_.needed_text(key);
+    names_.add(part_, what, key, name, scene);
+  }
+  void names(Named what, const char* key, std::vector<std::string>& names) {
+    for (const JsonPart& one : part_.needed_list(key)) {
+      names.push_back(one.as_text());
+      names_.add(one, what, "", names.back(), 0);
+    }
+  }
+  void at(Named what, const char* key, std::size_t& number, std::size_t scene = 0) {
+    number = names_.find(part_, what, key, scene);
+  }
+  void camera(const char* key, std::size_t& number, std::size_t condition) {
+    at(Named::Camera, key, number, names_.scene_of(condition));
+  }
+  void shares(const char* key, std::vector<GroupShare>& shares, const char* word) {
+    for (const JsonPart& one : part_.list(key)) {
+      shares.push_back({one.text("group"), one.number(word)});
+    }
+  }
+  void factors(const char* key, std::vector<Factor>& factors);
+
+  // A part itself.
+  template <class Value>
+  void read(const JsonPart& part, Value& value) const {
+    if constexpr (is_list<Value>) {
+      for (const JsonPart& one : part.entries()) read(one, value.emplace_back());
+    } else {
+      JsonReader inner(part, names_);
+      describe(inner, value);
+    }
+  }
+
+ private:
+  const JsonPart& part_;
+  EntryNames& names_;
+};
+
+// Of what names no entries of a study: kept results.
+template <class Value>
+[[nodiscard]] Json kept_json(const Value& value) {
+  const StudyResults none;
+  return JsonWriter(none).json_of(value);
+}
+template <class Value>
+[[nodiscard]] Value read_kept(const Json& json) {
+  const StudyResults none;
+  EntryNames names(none);
+  const JsonPart part("kept results", json);
+  Value value;
+  JsonReader(part, names).read(part, value);
+  return value;
+}
+
+}  // namespace earthshine::app

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a visibility study found, as values. study.json is written and read by the list of their
+// fields (results_fields.h); report, tables and texts are drawn from them. Luminances in cd/m^2,
+// angles in degrees, times in s, shares and probabilities from 0 to 1; what does not exist is
+// empty.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/json.h"
+#include "studies/orbit/condition.h"
+#include "studies/orbit/wanted_visibility.h"
+
+namespace earthshine::app {
+
+using Number = std::optional<double>;  // nullopt: does not exist
+
+// Entries that others name; they stand in lists of StudyResults, and a place in one is its number.
+enum class Named { Scene, Camera, Target, Condition };
+
+struct SceneEntry {
+  std::string id, name, path;
+  std::optional<std::size_t> patches;
+};
+struct CameraEntry {
+  std::size_t scene = 0;
+  std::string name;
+  std::optional<int> columns, rows;
+  Number fov_deg;
+  std::string cctv, iris;  // "" without
+  Number relative_noise;
+  std::string error_text;
+  Number render_seconds;
+};
+struct Factor {
+  std::string group;
+  Rgb factor;
+};
+struct ConditionEntry {
+  std::string id;
+  std::size_t scene = 0;
+  std::string name, lamps;
+  Number position_deg, time_s, sun_share;
+  std::string phase;  // "day", "penumbra" or "eclipse"; "" where the scene has no Sun
+  std::vector<Factor> factors;
+  std::string others;
+  Number earth_error;
+};
+
+// A light group's share or luminance, or what it stands for.
+struct GroupShare {
+  std::string group;
+  Number value;
+};
+// What one camera makes of one target in one condition.
+struct TargetFindings {
+  studies::Sight sight;
+  Number lit_fraction;
+  std::vector<GroupShare> lit_by, light_by;
+  std::vector<studies::LightShare> light_from;
+  Number luminance_error, luminance_bound;
+  std::string why;
+  std::vector<studies::Reason> reasons;
+  std::string why_of;  // the condition whose reasons these are; "": this one
+};
+struct ResultEntry : TargetFindings {
+  std::size_t condition = 0, camera = 0, target = 0;
+};
+
+struct Timeline {
+  std::size_t scene = 0;
+  std::string camera, target, lamps;
+  std::vector<Number> position_deg = {}, time_s = {}, sun_share = {};
+  std::vector<Number> detect = {}, recognise = {}, identify = {}, luminance = {}, weber = {};
+};
+struct AnswerEntry {
+  std::string wanted, target;
+  Number least;
+  bool found = false;
+  std::string text, camera, iris, lamps;
+  Number least_factor;
+  std::vector<studies::Arc> arcs_deg;
+  std::string scene;  // "" in a study of one
+  Number best_probability;
+};
+struct PictureEntry {
+  std::string file, caption;
+};
+struct PairEntry {
+  std::string title;
+  PictureEntry left, right;
+};
+struct FigureEntry : PictureEntry {
+  std::string name, exr;
+  bool clean = false;
+  std::optional<Number> white_cd_m2;  // of clean ones; none where each has its own
+};
+// Of a condition as a camera shows it; monitor: "" without a CCTV.
+struct ThumbnailEntry {
+  std::size_t condition = 0, camera = 0;
+  std::string file, monitor;
+};
+// What was done or found in the folder, from an earlier run; seconds: of the run that did it.
+struct StudyCost {
+  std::string stage;
+  Number seconds;
+  std::optional<std::uint64_t> rays;
+  bool found = false;
+};
+
+struct StudyResults {
+  std::string name, version;
+  bool complete = true;
+  std::vector<SceneEntry> scenes;
+  std::vector<CameraEntry> cameras;
+  std::vector<std::string> targets;
+  std::vector<ConditionEntry> conditions;
+  std::vector<ResultEntry> results;
+  std::vector<Timeline> timelines;
+  std::vector<AnswerEntry> answers;
+  std::vector<PairEntry> pairs;
+  std::vector<FigureEntry> figures;
+  std::vector<ThumbnailEntry> thumbnails;
+  Json settings = Json::object(), provenance = Json::object();
+  std::vector<StudyCost> costs;
+  std::vector<std::string> notes;
+};
+
+// The name that others call an entry by.
+[[nodiscard]] const std::string& name_of(const StudyResults& study, Named what, std::size_t number);
+
+}  // namespace earthshine::app

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/study/results_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/study/figures.h"
+
+namespace earthshine::app {
+namespace {
+
+using studies::MonitorSight, studies::Probability, studies::Sight, studies::SignalSight;
+
+template <Figure Of>
+Json cell_of(const TargetFindings& found) {
+  return to_json(Of(found));
+}
+
+struct CsvColumn {
+  const char* name;
+  Json (*of)(const TargetFindings&);
+};
+// Behind those of the condition, the camera and the target.
+constexpr CsvColumn csv_columns[] = {
+    {"verdict",
+     [](const TargetFindings& f) { return Json(std::string(word_of(f.sight.verdict))); }},
+    {"detect", cell_of<chance_of<&Probability::detect>>},
+    {"recognise", cell_of<chance_of<&Probability::recognise>>},
+    {"identify", cell_of<chance_of<&Probability::identify>>},
+    {"pixels", [](const TargetFindings& f) { return Json(f.sight.pixels); }},
+    {"visible_fraction", cell_of<sight_of<&Sight::visible_fraction>>},
+    {"cut_by_frame", [](const TargetFindings& f) { return Json(f.sight.cut_by_frame); }},
+    {"lit_fraction", cell_of<figure_of<&TargetFindings::lit_fraction>>},
+    {"angle_deg", cell_of<sight_of<&Sight::angle_deg>>},
+    {"tv_lines", cell_of<sight_of<&Sight::tv_lines>>},
+    {"luminance", cell_of<sight_of<&Sight::luminance>>},
+    {"surround", cell_of<sight_of<&Sight::surround>>},
+    {"weber", cell_of<sight_of<&Sight::weber>>},
+    {"johnson_cycles", cell_of<sight_of<&Sight::johnson_cycles>>},
+    {"saturated", cell_of<sight_of<&Sight::saturated>>},
+    {"crushed", cell_of<sight_of<&Sight::crushed>>},
+    {"luminance_error", cell_of<figure_of<&TargetFindings::luminance_error>>},
+    {"black_back", cell_of<sight_of<&Sight::black_back>>},
+    {"signal_mean", cell_of<signal_of<&SignalSight::mean>>},
+    {"signal_weber", cell_of<signal_of<&SignalSight::weber>>},
+    {"signal_snr", cell_of<signal_of<&SignalSight::snr>>},
+    {"signal_cnr", cell_of<signal_of<&SignalSight::cnr>>},
+    {"signal_rose", cell_of<signal_of<&SignalSight::rose>>},
+    {"signal_snr_d", cell_of<signal_of<&SignalSight::snr_d>>},
+    {"signal_dprime", cell_of<signal_of<&SignalSight::dprime>>},
+    {"monitor_luminance", cell_of<monitor_of<&MonitorSight::luminance>>},
+    {"monitor_weber", cell_of<monitor_of<&MonitorSight::weber>>},
+    {"eye_detect", cell_of<eye_chance_of<&Probability::detect>>},
+    {"why", [](const TargetFindings& f) { return Json(f.why); }},
+};
+
+// A line of the text.
+struct Line {
+  std::string camera, target, lamps, why;
+  std::vector<std::pair<studies::Verdict, int>> verdicts;  // how often, in the results' order
+  double best = -1.0, worst = 2.0;
+  int count = 0;
+};
+
+std::vector<Line> lines_of(const StudyResults& study) {
+  std::vector<Line> lines;
+  for (const ResultEntry& result : study.results) {
+    const ConditionEntry& condition = study.conditions[result.condition];
+    const std::string& name = study.cameras[result.camera].name;
+    const std::string camera =
+        study.scenes.size() > 1 ? study.scenes[condition.scene].id + " " + name : name;
+    const std::string& target = study.targets[result.target];
+    auto line = std::find_if(lines.begin(), lines.end(), [&](const Line& l) {
+      return l.camera == camera && l.target == target && l.lamps == condition.lamps;
+    });
+    if (line == lines.end()) {
+      line = lines.insert(lines.end(), {camera, target, condition.lamps, {}, {}});
+    }
+    ++line->count;
+    const studies::Verdict verdict = result.sight.verdict;
+    auto counted = std::find_if(line->verdicts.begin(), line->verdicts.end(),
+                                [&](const auto& v) { return v.first == verdict; });
+    if (counted == line->verdicts.end()) {
+      line->verdicts.emplace_back(verdict, 1);
+    } else {
+      ++counted->second;
+    }
+    const double p = result.sight.probability ? result.sight.probability->detect : 0.0;
+    line->best = std::max(line->best, p);
+    if (p >= line->worst) continue;
+    line->worst = p;
+    line->why = result.why;
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::string results_csv(const StudyResults& study) {
+  Json rows = Json::array();
+  for (const ResultEntry& result : study.results) {
+    const ConditionEntry& condition = study.conditions[result.condition];
+    Json row = {{"scene", study.scenes[condition.scene].id},
+                {"position_deg", to_json(condition.position_deg)},
+                {"time_s", to_json(condition.time_s)},
+                {"phase", condition.phase.empty() ? Json() : Json(condition.phase)},
+                {"sun_share", to_json(condition.sun_share)},
+                {"lamps", condition.lamps},
+                {"camera", study.cameras[result.camera].name},
+                {"target", study.targets[result.target]}};
+    for (const CsvColumn& column : csv_columns) row[column.name] = column.of(result);
+    rows.push_back(std::move(row));
+  }
+  return csv_of(rows);
+}
+
+std::string study_text(const StudyResults& study) {
+  std::string text = fmt::format("{:<10} {:<20} {:<16} {:>13}  {}\n", "camera", "target", "lamps",
+                                 "P(detect)", "verdicts; why not better, at worst");
+  const std::vector<Line> lines = lines_of(study);
+  for (const Line& line : lines) {
+    std::string verdicts;
+    for (const auto& [verdict, count] : line.verdicts) {
+      verdicts += fmt::format("{}{}{}", verdicts.empty() ? "" : ", ", word_of(verdict),
+                              line.count > 1 ? fmt::format(" x{}", count) : "");
+    }
+    const std::string range = line.best - line.worst < 0.005
+                                  ? fmt::format("{:.2f}", line.best)
+                                  : fmt::format("{:.2f} to {:.2f}", line.worst, line.best);
+    text += fmt::format("{:<10} {:<20} {:<16} {:>13}  {}{}\n", line.camera, line.target, line.lamps,
+                        range, verdicts, line.why.empty() ? "" : "; " + line.why);
+  }
+  if (lines.empty()) text = "No object is a target: nothing was judged.\n";
+  for (const AnswerEntry& answer : study.answers) {
+    text += fmt::format("{}: {}\n", answer.wanted, answer.text);
+  }
+  for (const std::string& note : black_back_notes(study)) text += note + "\n";
+  return text;
+}
+
+std::vector<std::string> black_back_notes(const StudyResults& study) {
+  struct Seen {
+    std::string camera, target;
+    int count = 0, of = 0;
+    double share = 0.0;
+  };
+  std::vector<Seen> list;
+  for (const ResultEntry& result : study.results) {
+    if (!result.sight.black_back) continue;
+    const std::string& camera = study.cameras[result.camera].name;
+    const std::string& target = study.targets[result.target];
+    auto seen = std::find_if(list.begin(), list.end(), [&](const Seen& s) {
+      return s.camera == camera && s.target == target;
+    });
+    if (seen == list.end()) seen = list.insert(list.end(), {camera, target});
+    const double share = *result.sight.black_back;
+    ++seen->of;
+    seen->count += share >= studies::SightOptions{}.most_black_back ? 1 : 0;
+    seen->share = std::max(seen->share, share);
+  }
+  std::vector<std::string> notes;
+  for (const Seen& seen : list) {
+    if (seen.count == 0) continue;
+    notes.push_back(fmt::format(
+        "Camera {} looks at the black back of {} ({:.0f} % of what it sees, in {} of {} results): "
+        "its surface has one side. How its real back looks is not known, so it counts as doubtful "
+        "at best; turn it round, or give its material two_sided = true.",
+        seen.camera, seen.target, 100.0 * seen.share, seen.count, seen.of));
+  }
+  return notes;
+}
+
+}  // namespace earthshine::app
