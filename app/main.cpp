@@ -88,36 +88,52 @@ int usage_error(const CLI::App& program, const CLI::ParseError& error) {
   return call_is_wrong;
 }
 
-int run(std::vector<std::string> arguments, base::Ranks* ranks);
+// Who does a call. ranks: those that share out its loops; nullptr: this process does all of it.
+// processes: that work on this machine at once and share its memory. whole: the call is the user's,
+// and not a part of it that study_in_ranks() makes.
+struct Workers {
+  base::Ranks* ranks = nullptr;
+  int processes = 1;
+  bool whole = false;
+};
+int run(std::vector<std::string> arguments, const Workers& workers);
 
-// Studies share out what they keep in points/, as with --part, and meet in between: the solution,
-// the shares, the report.
+// Studies share out the loops of their solution, then what they keep in points/, as with --part.
+// The report is the first rank's.
 int study_in_ranks(const std::vector<std::string>& arguments, base::Ranks& ranks) {
-  const auto task = [&](const std::string& part) {
+  const auto task = [&](const std::string& part, const Workers& workers) {
     std::vector<std::string> call = arguments;
     call.insert(call.end(), {"--part", part});
-    return run(std::move(call), nullptr);
+    return run(std::move(call), workers);
   };
   const bool speaks = ranks.number() == 0;
   const bool plans = std::find(arguments.begin(), arguments.end(), "--dry-run") != arguments.end();
-  if (plans) return speaks ? run(arguments, nullptr) : 0;
-  int code = speaks ? task("begin") : 0;
+  if (plans) return speaks ? run(arguments, {}) : 0;
+  int code = task("begin", {&ranks, ranks.count_here()});
   base::meet(ranks);
-  code = std::max(code, task(fmt::format("{}/{}", ranks.number() + 1, ranks.count())));
+  const std::string share = fmt::format("{}/{}", ranks.number() + 1, ranks.count());
+  code = std::max(code, task(share, {nullptr, ranks.count_here()}));
   base::meet(ranks);
-  return speaks ? std::max(code, task("merge")) : code;
+  return speaks ? std::max(code, task("merge", {})) : code;
 }
 
-// Refuses what ranks cannot share out. True for studies, which do it by their points.
+// Refuses what ranks cannot share out. True for studies, which do it by their points, too.
 bool is_study_of_ranks(const CLI::App& program, const std::vector<std::string>& arguments) {
-  for (const std::string& word : arguments) {
-    if (!word.starts_with("--part") && !word.starts_with("--time-limit")) continue;
-    throw base::Error(base::Blame::Input, word, "does not go with ranks of mpirun", {},
+  bool solves = false;  // the solution alone
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    const std::string& word = arguments[k];
+    const bool part = word.starts_with("--part");
+    if (!part && !word.starts_with("--time-limit")) continue;
+    solves = part && (word == "--part=solve" || (k + 1 < arguments.size() && word == "--part" &&
+                                                 arguments[k + 1] == "solve"));
+    if (solves) continue;
+    throw base::Error(base::Blame::Input, word, "does not go with ranks of mpirun",
+                      "but for --part solve, the solution that all parts read",
                       "Leave it out, or mpirun");
   }
   const std::string words = words_to(chosen_parser(program));
   for (const char* known : {"study run ", "study orbit ", "study visibility ", "study accuracy "}) {
-    if (words == known) return true;
+    if (words == known) return !solves;
   }
   if (words == "render " || words == "solve ") return false;
   throw base::Error(base::Blame::Input, words, "is the work of one process",
@@ -125,8 +141,7 @@ bool is_study_of_ranks(const CLI::App& program, const std::vector<std::string>& 
                     "Leave out mpirun");
 }
 
-// ranks: those that share out this call; nullptr: this process does all of it.
-int run(std::vector<std::string> arguments, base::Ranks* ranks) {
+int run(std::vector<std::string> arguments, const Workers& workers) {
   CLI::App program(
       "Earthshine: light in a spacecraft's payload bay. Radiosity, final gather and the CCTV "
       "camera.",
@@ -145,9 +160,8 @@ int run(std::vector<std::string> arguments, base::Ranks* ranks) {
   for (Command& part : add_study(program)) commands.push_back(std::move(part));
   commands.push_back(add_report(program));
   int exit_code = 0;
-  commands.push_back(add_merge(program, [&exit_code](const std::vector<std::string>& call) {
-    exit_code = run(call, nullptr);
-  }));
+  commands.push_back(add_merge(
+      program, [&exit_code](const std::vector<std::string>& call) { exit_code = run(call, {}); }));
   add_common_options(program, common, threads);
   for (const Command& command : commands) add_common_options(*command.parser, common, threads);
   try {
@@ -160,12 +174,14 @@ int run(std::vector<std::string> arguments, base::Ranks* ranks) {
     print(text.str());
     return 0;
   }
-  common.threads = static_cast<int>(threads);
-  const base::ThreadLimit limit(common.threads);
-  const base::MemoryLimit memory(common.max_memory_bytes);
-  if (ranks != nullptr && is_study_of_ranks(program, common.arguments)) {
+  base::Ranks* const ranks = workers.ranks;
+  if (workers.whole && ranks != nullptr && is_study_of_ranks(program, common.arguments)) {
     return study_in_ranks(common.arguments, *ranks);
   }
+  common.threads = static_cast<int>(threads);
+  const base::ThreadLimit limit(common.threads);
+  const base::MemoryLimit memory(common.max_memory_bytes, workers.processes);
+  if (ranks != nullptr) base::meet(*ranks);  // before one takes what another has yet to count
   const base::RanksInForce in_force(ranks);
   for (const Command& command : commands) {
     if (command.parser->parsed() && command.run) command.run(common);
@@ -238,7 +254,8 @@ int main(int argc, char** argv) {
       ranks = base::start_ranks(argc, argv);
       app::take_signals();
       app::be_silent(ranks && ranks->number() > 0);
-      const int exit_code = app::run({argv + std::min(argc, 1), argv + argc}, ranks.get());
+      const int exit_code = app::run({argv + std::min(argc, 1), argv + argc},
+                                     {ranks.get(), ranks ? ranks->count_here() : 1, true});
       return exit_code == 0 && app::lost_a_note() ? app::work_failed : exit_code;
     } catch (const base::Error& error) {
       const bool input = error.blame() == base::Blame::Input;

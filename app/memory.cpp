@@ -17,24 +17,32 @@ std::string size_text(double in_mib) {
   return fmt::format("{:.{}f} GiB", in_mib / 1024.0, in_mib < 10240.0 ? 1 : 0);
 }
 
+// Of one process; of ranks the mean of those on this machine, whose room is divided by their number
+// (base/free_memory.h): the first needs more than the others.
+double bytes_here(studies::MemoryCase sizes) {
+  const double first = studies::memory_needed(sizes).total();
+  if (base::ranks() == nullptr) return first;
+  sizes.first_rank = false;
+  const double others = studies::memory_needed(sizes).total();
+  if (!base::ranks()->first_is_here()) return others;
+  return others + (first - others) / base::ranks()->count_here();
+}
+
 // Refuses what cannot fit. Rows are looked at only if the most that could be does not fit.
 void refuse_too_much(const LoadedScene& loaded, const scenes::RayQuery& query,
                      const radiosity::SolveOptions& solver, studies::MemoryCase sizes) {
   const auto free_bytes = base::free_memory_bytes();
   if (!free_bytes) return;
   const auto free = static_cast<double>(*free_bytes);
-  studies::MemoryNeed need = studies::memory_needed(sizes);
-  if (need.total() > free && sizes.solves) {
+  if (bytes_here(sizes) > free && sizes.solves) {
     const base::RanksInForce alone(nullptr);  // others may have no need to look
     studies::expect_rows(sizes, loaded.scene, query, solver);
-    need = studies::memory_needed(sizes);
   }
-  if (need.total() <= free) return;
-  throw base::Error(base::Blame::Work, loaded.scene.path.string(),
-                    "needs " + memory_text(memory_json(need)),
-                    size_text(free / mib) +
-                        (base::memory_is_limited() ? " are allowed by --max-memory" : " are free"),
-                    studies::memory_remedy(need));
+  if (bytes_here(sizes) <= free) return;
+  const studies::MemoryNeed need = studies::memory_needed(sizes);
+  throw base::Error(
+      base::Blame::Work, loaded.scene.path.string(), "needs " + memory_text(memory_json(need)),
+      size_text(free / mib) + " are " + base::memory_bound(), studies::memory_remedy(need));
 }
 
 }  // namespace
@@ -66,6 +74,7 @@ void check_memory(const LoadedScene& loaded, const scenes::RayQuery& query,
   if (picture != nullptr) {
     studies::add_picture(sizes, loaded.groups, loaded.effects, *picture);
   }
+  sizes.states_error = picture == nullptr;
   if (!solves) sizes.solves = false;
   if (solver.refine.on && solver.refine.error > 0.0) {
     const std::size_t coarse = radiosity::count_patches(loaded.scene, solver.refine.start_edge_m);
@@ -89,8 +98,8 @@ bool patches_fit(const LoadedScene& loaded, const radiosity::SolveOptions& solve
   studies::set_patches(sizes, patches, solver);
   const auto free_bytes = base::free_memory_bytes();
   // Machines differ, and ranks must decide alike.
-  return base::holds_on_all_ranks(!free_bytes || studies::memory_needed(sizes).total() <=
-                                                     static_cast<double>(*free_bytes));
+  return base::holds_on_all_ranks(!free_bytes ||
+                                  bytes_here(sizes) <= static_cast<double>(*free_bytes));
 }
 
 void check_row_memory(const LoadedScene& loaded, const scenes::RayQuery& query, double patch_edge_m,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/free_memory.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -94,7 +95,17 @@ Bytes left_of_address_space(const fs::path& root) {
   return less(limit.rlim_cur, pages * page_bytes);
 }
 
-std::atomic<std::uint64_t> most_bytes{0};  // 0: no cap
+// Of the machine and of the process's control groups.
+Bytes left_of_machine(const fs::path& root) {
+  Bytes least;
+  if (const Bytes kib = number_after(root / "proc/meminfo", "MemAvailable:")) least = *kib * 1024;
+  take_least(least, left_of_groups(root));
+  return least;
+}
+
+// Of this process; 0: no cap.
+std::atomic<std::uint64_t> most_bytes{0}, room_bytes{0};
+std::atomic<int> sharers{1};
 
 // What the process holds in memory now; 0 where Linux does not say.
 std::uint64_t resident_bytes() {
@@ -106,14 +117,24 @@ std::uint64_t resident_bytes() {
 
 }  // namespace
 
-MemoryLimit::MemoryLimit(std::uint64_t bytes) { most_bytes = bytes; }
-MemoryLimit::~MemoryLimit() { most_bytes = 0; }
+MemoryLimit::MemoryLimit(std::uint64_t bytes, int processes) {
+  const auto parts = static_cast<std::uint64_t>(processes);
+  if (processes > 1) room_bytes = left_of_machine("/").value_or(0) / parts;
+  most_bytes = bytes / parts;
+  sharers = processes;
+}
+
+MemoryLimit::~MemoryLimit() {
+  most_bytes = room_bytes = 0;
+  sharers = 1;
+}
 
 void check_room(std::uint64_t bytes, std::string_view what) {
   constexpr std::uint64_t mib = 1 << 20, small = 8 * mib;
   if (bytes < small) return;
   const std::uint64_t cap = most_bytes;
-  const Bytes left = cap == 0 ? free_memory_bytes() : less(cap, resident_bytes());
+  Bytes left = cap == 0 ? free_memory_bytes() : less(cap, resident_bytes());
+  if (const std::uint64_t room = room_bytes) take_least(left, less(room, resident_bytes()));
   if (!left || bytes <= *left) return;
   throw Error(
       Blame::Work, what, "needs " + std::to_string(bytes / mib) + " MiB more",
@@ -121,15 +142,21 @@ void check_room(std::uint64_t bytes, std::string_view what) {
       cap == 0 ? "Make it smaller or free some memory" : "Make it smaller or allow more");
 }
 
-bool memory_is_limited() { return most_bytes != 0; }
+std::string memory_bound() {
+  std::string bound = most_bytes == 0 ? "free" : "allowed by --max-memory";
+  if (sharers > 1) bound += " for each of " + std::to_string(sharers) + " ranks on this machine";
+  return bound;
+}
 
 std::optional<std::uint64_t> free_memory_bytes(const fs::path& root) {
-  Bytes least;
-  if (const Bytes kib = number_after(root / "proc/meminfo", "MemAvailable:")) least = *kib * 1024;
-  take_least(least, left_of_groups(root));
+  Bytes least = left_of_machine(root);
   take_least(least, left_of_address_space(root));
-  if (const std::uint64_t cap = most_bytes) take_least(least, cap);
+  for (const std::uint64_t cap : {most_bytes.load(), room_bytes.load()}) {
+    if (cap > 0) take_least(least, cap);
+  }
   return least;
 }
+
+void give_back_freed_memory() { ::malloc_trim(0); }
 
 }  // namespace earthshine::base

@@ -5,14 +5,18 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace earthshine::base {
 
-// Caps what free_memory_bytes() says for as long as it lives; 0: no cap.
+// Caps what free_memory_bytes() says for as long as it lives; 0: no cap. processes: of one call, on
+// this machine, of which this is one: what is free as it begins is theirs together, as is the cap,
+// and each is told an equal part.
 class MemoryLimit {
  public:
-  explicit MemoryLimit(std::uint64_t bytes);
+  explicit MemoryLimit(std::uint64_t bytes, int processes = 1);
   ~MemoryLimit();
   MemoryLimit(const MemoryLimit&) = delete;
   MemoryLimit& operator=(const MemoryLimit&) = delete;
@@ -23,8 +27,8 @@ class MemoryLimit {
 // whole work takes; a few MiB are not asked about.
 void check_room(std::uint64_t bytes, std::string_view what);
 
-// Whether such a cap is what holds.
-[[nodiscard]] bool memory_is_limited();
+// Whose bytes free_memory_bytes() tells: "free", "allowed by --max-memory", for each of how many.
+[[nodiscard]] std::string memory_bound();
 
 // Bytes. The least of what Linux calls MemAvailable, what is left below the limit of the control
 // group or any above it (versions 1 and 2; file cache that can be dropped counts as free), and what
@@ -32,5 +36,15 @@ void check_room(std::uint64_t bytes, std::string_view what);
 // proc/ and sys/.
 [[nodiscard]] std::optional<std::uint64_t> free_memory_bytes(
     const std::filesystem::path& root = "/");
+
+// Frees what a vector holds; `values = {}` would keep it for further ones.
+template <class Value>
+void release(std::vector<Value>& values) {
+  std::vector<Value>().swap(values);
+}
+
+// What was freed is the system's again. The allocator else keeps it for what it is asked for later,
+// which large arrays do not take.
+void give_back_freed_memory();
 
 }  // namespace earthshine::base

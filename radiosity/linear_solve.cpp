@@ -2,95 +2,85 @@
 #include "radiosity/linear_solve.h"
 
 #include <Eigen/Core>
-#include <Eigen/IterativeLinearSolvers>
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
-namespace earthshine::radiosity {
-class RadiosityOperator;
-}
-
-// Eigen takes an operator without a matrix if it looks like a sparse one (Eigen's "Matrix-free
-// solvers").
-namespace Eigen::internal {
-template <>
-struct traits<earthshine::radiosity::RadiosityOperator>
-    : public traits<Eigen::SparseMatrix<double>> {};
-}  // namespace Eigen::internal
-
-namespace earthshine::radiosity {
-
-class RadiosityOperator : public Eigen::EigenBase<RadiosityOperator> {
- public:
-  using Scalar = double;
-  using RealScalar = double;
-  using StorageIndex = int;
-  enum {
-    ColsAtCompileTime = Eigen::Dynamic,
-    MaxColsAtCompileTime = Eigen::Dynamic,
-    IsRowMajor = 0
-  };
-
-  RadiosityOperator(const FormFactors& factors, std::span<const double> reflectance,
-                    std::size_t columns)
-      : factors_(factors), reflectance_(reflectance), columns_(columns) {}
-
-  [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(reflectance_.size()); }
-  [[nodiscard]] Eigen::Index cols() const { return rows(); }
-
-  template <class Rhs>
-  Eigen::Product<RadiosityOperator, Rhs, Eigen::AliasFreeProduct> operator*(
-      const Eigen::MatrixBase<Rhs>& x) const {
-    return {*this, x.derived()};
-  }
-
-  // (1 - rho F) x
-  [[nodiscard]] Eigen::VectorXd apply(const Eigen::VectorXd& x) const {
-    Eigen::VectorXd y(x.size());
-    const auto size = static_cast<std::size_t>(x.size());
-    multiply(factors_, {x.data(), size}, {y.data(), size}, columns_);
-    for (Eigen::Index k = 0; k < y.size(); ++k) {
-      y[k] = x[k] - reflectance_[static_cast<std::size_t>(k)] * y[k];
-    }
-    return y;
-  }
-
- private:
-  const FormFactors& factors_;
-  std::span<const double> reflectance_;
-  std::size_t columns_;
-};
-
-}  // namespace earthshine::radiosity
-
-namespace Eigen::internal {
-template <class Rhs>
-struct generic_product_impl<earthshine::radiosity::RadiosityOperator, Rhs, SparseShape, DenseShape,
-                            GemvProduct>
-    : generic_product_impl_base<
-          earthshine::radiosity::RadiosityOperator, Rhs,
-          generic_product_impl<earthshine::radiosity::RadiosityOperator, Rhs>> {
-  template <class Dest>
-  static void scaleAndAddTo(Dest& y, const earthshine::radiosity::RadiosityOperator& op,
-                            const Rhs& x, const double& alpha) {
-    y.noalias() += alpha * op.apply(x);
-  }
-};
-}  // namespace Eigen::internal
+#include "base/error.h"
+#include "base/free_memory.h"
 
 namespace earthshine::radiosity {
 namespace {
 
 using Vector = Eigen::VectorXd;
 
-std::vector<double> column_norms(const Vector& values, std::size_t columns) {
-  std::vector<double> norms(columns, 0.0);
-  for (Eigen::Index k = 0; k < values.size(); ++k) {
-    norms[static_cast<std::size_t>(k) % columns] += values[k] * values[k];
+// 1 - rho F. Of ranks that divide F the first asks for products, and the others serve().
+class RadiosityOperator {
+ public:
+  RadiosityOperator(const FormFactors& factors, std::span<const double> reflectance,
+                    std::size_t columns)
+      : factors_(factors), reflectance_(reflectance), columns_(columns) {}
+
+  [[nodiscard]] Vector apply(const Vector& x) const {
+    ask_for_product(true);
+    // Sent, and not changed.
+    broadcast(const_cast<double*>(x.data()), sizeof(double) * size());
+    Vector y(x.size());
+    multiply_own(factors_, {x.data(), size()}, {y.data(), size()}, columns_);
+    factors_.shares.tell_first(y.data(), columns_);
+    for (Eigen::Index k = 0; k < y.size(); ++k) {
+      y[k] = x[k] - reflectance_[static_cast<std::size_t>(k)] * y[k];
+    }
+    return y;
   }
+
+  [[nodiscard]] bool asks() const {
+    return !factors_.shares.divided() || base::ranks()->number() == 0;
+  }
+
+  // Until the first rank is done.
+  void serve() const {
+    const auto [begin, end] = factors_.shares.own(factors_.count());
+    std::vector<double> x(size()), y((end - begin) * columns_);
+    while (ask_for_product(true)) {
+      broadcast(x.data(), sizeof(double) * size());
+      multiply_own(factors_, x, y, columns_);
+      factors_.shares.tell_first(y.data(), columns_);
+    }
+  }
+
+  // The first rank ends the others' service; all get what it has found.
+  void share(LinearSolve& found) const {
+    if (asks()) ask_for_product(false);
+    found.x.resize(size());
+    broadcast(found.x.data(), sizeof(double) * size());
+    for (double* const number : {&found.residual, &found.error}) broadcast(number, sizeof *number);
+    broadcast(&found.iterations, sizeof found.iterations);
+  }
+
+ private:
+  [[nodiscard]] std::size_t size() const { return reflectance_.size(); }
+
+  void broadcast(void* first, std::size_t bytes) const {
+    if (factors_.shares.divided()) base::ranks()->broadcast(first, bytes, 0);
+  }
+
+  // What the first rank says.
+  bool ask_for_product(bool more) const {
+    broadcast(&more, sizeof more);
+    return more;
+  }
+
+  const FormFactors& factors_;
+  std::span<const double> reflectance_;
+  std::size_t columns_;
+};
+
+std::vector<double> column_norms(std::span<const double> values, std::size_t columns) {
+  std::vector<double> norms(columns, 0.0);
+  for (std::size_t k = 0; k < values.size(); ++k) norms[k % columns] += values[k] * values[k];
   for (double& norm : norms) norm = std::sqrt(norm);
   return norms;
 }
@@ -116,42 +106,82 @@ std::vector<double> inverse(std::vector<double> values) {
   return values;
 }
 
+std::span<const double> span_of(const Vector& x) {
+  return {x.data(), static_cast<std::size_t>(x.size())};
+}
+
+// BiCGSTAB (van der Vorst 1992) without a preconditioner, from x on, until the residual is `wanted`
+// of b. Rounds as Eigen's, and has four vectors less. Returns the iterations.
+int iterate(const RadiosityOperator& system, const Vector& b, double wanted, Vector& x) {
+  constexpr int most = 300;
+  constexpr double rounding = std::numeric_limits<double>::epsilon();
+  const double b2 = b.squaredNorm();
+  if (b2 == 0.0) {
+    x.setZero();
+    return 0;
+  }
+  Vector r = b - system.apply(x);
+  Vector start = r;
+  Vector v = Vector::Zero(b.size()), p = v;
+  double start2 = start.squaredNorm(), rho = 1.0, alpha = 1.0, omega = 1.0;
+  bool has_restarted = false;
+  int iterations = 0;
+  for (; r.squaredNorm() > wanted * wanted * b2 && iterations < most; ++iterations) {
+    const double before = rho;
+    rho = start.dot(r);
+    if (std::abs(rho) < rounding * rounding * start2) {  // orthogonal: from here anew
+      r = b - system.apply(x);
+      start = r;
+      rho = start2 = r.squaredNorm();
+      if (!std::exchange(has_restarted, true)) iterations = 0;
+    }
+    p = r + (rho / before) * (alpha / omega) * (p - omega * v);
+    v = system.apply(p);
+    alpha = rho / start.dot(v);
+    r -= alpha * v;
+    const Vector t = system.apply(r);
+    const double t2 = t.squaredNorm();
+    omega = t2 > 0.0 ? t.dot(r) / t2 : 0.0;
+    x += alpha * p + omega * r;
+    r -= omega * t;
+  }
+  return iterations;
+}
+
 class Solver {
  public:
-  Solver(const FormFactors& factors, std::span<const double> reflectance, std::size_t columns)
-      : system_(factors, reflectance, columns), columns_(columns) {
-    krylov_.compute(system_);
-    krylov_.setMaxIterations(300);
-  }
+  Solver(const RadiosityOperator& system, std::size_t columns)
+      : system_(system), columns_(columns) {}
 
-  // The x of (1 - rho F) x = b to a joint relative residual, from x on.
-  void improve(const Vector& b, double wanted, Vector& x, int& iterations) {
-    krylov_.setTolerance(wanted);
-    const Vector found = krylov_.solveWithGuess(b, x);
-    iterations += static_cast<int>(krylov_.iterations());
-    if (found.allFinite() && rest(b, found).squaredNorm() <= rest(b, x).squaredNorm()) {
-      x = found;
-      return;
-    }
+  // The x of (1 - rho F) x = b to a joint relative residual, from b on.
+  [[nodiscard]] Vector solve(const Vector& b, double wanted) {
+    Vector x = b;
+    iterations += iterate(system_, b, wanted, x);
+    if (x.allFinite() && rest(b, x).squaredNorm() <= rest(b, b).squaredNorm()) return x;
     // BiCGSTAB can break down; bouncing the light once more a time never does.
+    x = b;
     for (int bounce = 0; bounce < 1000; ++bounce, ++iterations) {
       const Vector left = rest(b, x);
       if (left.norm() <= wanted * b.norm()) break;
       x += left;
     }
+    return x;
   }
 
-  [[nodiscard]] Vector rest(const Vector& b, const Vector& x) const { return b - system_.apply(x); }
+  [[nodiscard]] Vector rest(const Vector& b, const Vector& x) const {
+    Vector left = system_.apply(x);
+    left = b - left;
+    return left;
+  }
 
   // Adds to x what its residual asks for. Returns by how much it changed x: worst over the columns
   // of max |d| / max |x|.
-  double correct(const Vector& b, Vector& x, int& iterations) {
+  double correct(const Vector& b, Vector& x) {
     Vector left = rest(b, x);
-    const std::vector<double> size = column_norms(left, columns_);
+    const std::vector<double> size = column_norms(span_of(left), columns_);
     if (*std::max_element(size.begin(), size.end()) <= 0.0) return 0.0;
     scale_columns(left, inverse(size));
-    Vector d = left;
-    improve(left, 0.01, d, iterations);
+    Vector d = solve(left, 0.01);
     scale_columns(d, size);
     x += d;
     const std::vector<double> change = column_maxima(d, columns_), all = column_maxima(x, columns_);
@@ -162,42 +192,31 @@ class Solver {
     return worst;
   }
 
+  int iterations = 0;
+
  private:
-  RadiosityOperator system_;
+  const RadiosityOperator& system_;
   std::size_t columns_;
-  Eigen::BiCGSTAB<RadiosityOperator, Eigen::IdentityPreconditioner> krylov_;
 };
 
 constexpr int most_corrections = 8;
 constexpr double still_a_solution = 1e-6;
 
-}  // namespace
-
-LinearSolve solve_linear(const FormFactors& factors, std::span<const double> source,
-                         std::span<const double> reflectance, std::size_t columns, double tolerance,
-                         std::span<const double> guess) {
+// b: scaled as the norms tell.
+LinearSolve solve_scaled(const RadiosityOperator& system, const Vector& b,
+                         const std::vector<double>& norms, double tolerance) {
   LinearSolve result;
-  result.x.assign(source.size(), 0.0);
-  Vector b = Eigen::Map<const Vector>(source.data(), static_cast<Eigen::Index>(source.size()));
-  const std::vector<double> norms = column_norms(b, columns);
-  if (source.empty() || *std::max_element(norms.begin(), norms.end()) <= 0.0) return result;
-  scale_columns(b, inverse(norms));
-
-  Vector x = b;
-  if (guess.size() == source.size()) {
-    x = Eigen::Map<const Vector>(guess.data(), b.size());
-    scale_columns(x, inverse(norms));
-  }
-  Solver solver(factors, reflectance, columns);
-  solver.improve(b, tolerance / std::sqrt(static_cast<double>(columns)), x, result.iterations);
+  Solver solver(system, norms.size());
+  Vector x = solver.solve(b, tolerance / std::sqrt(static_cast<double>(norms.size())));
   result.error = std::numeric_limits<double>::infinity();
   for (int round = 0; round < most_corrections && result.error > tolerance; ++round) {
     const double previous = result.error;
-    result.error = solver.correct(b, x, result.iterations);
+    result.error = solver.correct(b, x);
     if (!(result.error < 0.5 * previous)) break;  // rounding is reached
   }
-  const std::vector<double> left = column_norms(solver.rest(b, x), columns);
+  const std::vector<double> left = column_norms(span_of(solver.rest(b, x)), norms.size());
   result.residual = *std::max_element(left.begin(), left.end());
+  result.iterations = solver.iterations;
   if (!(result.error <= std::max(tolerance, still_a_solution))) {
     std::ostringstream found;
     found << "the solver stopped where the radiosity still changes by " << result.error
@@ -207,7 +226,32 @@ LinearSolve solve_linear(const FormFactors& factors, std::span<const double> sou
                       "Lower reflectances that are nearly 1, or report the scene as a defect");
   }
   scale_columns(x, norms);
-  std::copy(x.begin(), x.end(), result.x.begin());
+  result.x.assign(x.begin(), x.end());
+  return result;
+}
+
+}  // namespace
+
+LinearSolve solve_linear(const FormFactors& factors, std::vector<double> source,
+                         std::span<const double> reflectance, std::size_t columns,
+                         double tolerance) {
+  LinearSolve result;
+  const std::vector<double> norms = column_norms(source, columns);
+  if (source.empty() || *std::max_element(norms.begin(), norms.end()) <= 0.0) {
+    result.x.assign(source.size(), 0.0);
+    return result;
+  }
+  const RadiosityOperator system(factors, reflectance, columns);
+  Vector b;
+  if (system.asks()) b = Eigen::Map<Vector>(source.data(), Eigen::Index(source.size()));
+  base::release(source);
+  if (system.asks()) {
+    scale_columns(b, inverse(norms));
+    result = solve_scaled(system, b, norms, tolerance);
+  } else {
+    system.serve();
+  }
+  system.share(result);
   return result;
 }
 

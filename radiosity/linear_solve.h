@@ -19,15 +19,15 @@ struct LinearSolve {
   double error = 0.0;
 };
 
-// source and reflectance: count x columns, row-major. BiCGSTAB (Eigen) on all columns as one
-// system, each scaled to a source of norm 1; the operator is matrix-free. Then corrections d with
+// source and reflectance: count x columns, row-major. BiCGSTAB on all columns as one system, each
+// scaled to a source of norm 1; the operator is matrix-free. Then corrections d with
 // (1 - rho F) d = residual are solved for and added until `error`, the part of x that a further one
 // would change, is at most `tolerance`: where light is reflected a million times a small residual
-// is no small error. Columns without source stay 0. A guess (count x columns), such as the solution
-// of a similar scene, saves iterations and changes nothing else. Throws base::Error (Work) when
-// `error` stays above max(tolerance, 1e-6).
-[[nodiscard]] LinearSolve solve_linear(const FormFactors& factors, std::span<const double> source,
+// is no small error. Columns without source stay 0. Throws base::Error (Work) when `error` stays
+// above max(tolerance, 1e-6). Of ranks that divide the factors the first alone has the vectors of
+// the iteration, nine of the size of x; the others multiply with their rows for it, and get x.
+[[nodiscard]] LinearSolve solve_linear(const FormFactors& factors, std::vector<double> source,
                                        std::span<const double> reflectance, std::size_t columns,
-                                       double tolerance, std::span<const double> guess = {});
+                                       double tolerance);
 
 }  // namespace earthshine::radiosity

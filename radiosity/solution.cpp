@@ -176,11 +176,11 @@ Solution solve_keeping(const scenes::Scene& scene, const scenes::LightGroups& gr
     source[k] = found.emitted[k] + rho[k] * found.direct[k];
   }
   check_enclosure(scene, patches, factors, source, rho, columns);
-  LinearSolve linear = solve_linear(factors, source, rho, columns, options.tolerance);
+  LinearSolve linear = solve_linear(factors, std::move(source), rho, columns, options.tolerance);
   report.iterations = linear.iterations;
   report.residual = linear.residual;
   report.solver_error = linear.error;
-  found.indirect.resize(source.size());
+  found.indirect.resize(linear.x.size());
   multiply(factors, linear.x, found.indirect, columns);
   found.radiosity = std::move(linear.x);
   watch.lap("linear solve");

@@ -13,6 +13,7 @@
 #include "base/files/output_file.h"
 #include "base/input/input_file.h"
 #include "base/numbers/digest.h"
+#include "base/ranks/ranks.h"
 #include "radiosity/store/solution_key.h"
 
 namespace earthshine::app {
@@ -64,13 +65,14 @@ SharedSolution shared_solution(const fs::path& file, const radiosity::SolutionOr
                                const std::function<radiosity::Solution()>& solve) {
   SharedSolution shared;
   if (part.task == PartCall::Task::Share) wait_for(file, part.wait_s, quiet);
-  shared.found = is_there(file);
+  shared.found = base::holds_on_all_ranks(is_there(file));
   if (!shared.found && part.task == PartCall::Task::Merge) {
     throw base::Error(base::Blame::Work, file.string(), "is not there", {},
                       "Make the same call with --part solve, then merge again");
   }
   if (!shared.found) {
     shared.solution = solve();
+    if (base::another_rank_writes()) return shared;
     shared.found = !base::write_new_text(file, radiosity::solution_bytes(shared.solution, origin));
   }
   if (shared.found) shared.solution = radiosity::read_solution(file, origin);

@@ -23,7 +23,7 @@ struct SharedSolution {
 // keeps it there, unless another process was first: then that one's is read, so that all have the
 // same bits, whatever machine found them. Beside it, FILE.json holds its digest; throws base::Error
 // (Input) where that is another, or the file is damaged or stale, and (Work) where it is missing at
-// a merge, or the wait is interrupted.
+// a merge, or the wait is interrupted. Ranks solve together; the first keeps it.
 [[nodiscard]] SharedSolution shared_solution(const std::filesystem::path& file,
                                              const radiosity::SolutionOrigin& origin,
                                              const PartCall& part, bool quiet,

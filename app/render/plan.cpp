@@ -56,11 +56,21 @@ Json images_of(const scenes::Scene& scene, const RenderCall& call, const scenes:
   return images;
 }
 
-// Of the solution alone, and of each camera's picture of its own size, the solution included.
-// Returns the most of them where so many ranks divide the matrix.
-double add_memory(Json& report, const LoadedScene& loaded, const RenderCall& call,
-                  const Common& common, const scenes::Asked& asked, const scenes::RayQuery& query,
-                  int ranks) {
+// Bytes of ranks: of the first, which has the vectors of the linear solve, and of each other.
+struct RankBytes {
+  double first = 0.0, others = 0.0;
+  void take_most(studies::MemoryCase sizes) {
+    first = std::max(first, studies::memory_needed(sizes).total());
+    sizes.first_rank = false;
+    others = std::max(others, studies::memory_needed(sizes).total());
+  }
+};
+
+// Of the solution alone, with its error stated, and of each camera's picture of its own size, the
+// solution included. Returns the most of them where so many ranks divide the matrix.
+RankBytes add_memory(Json& report, const LoadedScene& loaded, const RenderCall& call,
+                     const Common& common, const scenes::Asked& asked,
+                     const scenes::RayQuery& query, int ranks) {
   const radiosity::SolveOptions solver = solver_of(call, loaded.scene, common);
   studies::MemoryCase sizes =
       studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
@@ -69,18 +79,21 @@ double add_memory(Json& report, const LoadedScene& loaded, const RenderCall& cal
     sizes.columns = 0;
   }
   studies::expect_rows(sizes, loaded.scene, query, solver);
-  const auto of_ranks = [ranks](studies::MemoryCase one) {
-    one.ranks = ranks;
-    return studies::memory_needed(one).total();
+  RankBytes most;
+  const auto add = [&](Json& to, const studies::MemoryCase& one) {
+    to["memory"] = memory_json(studies::memory_needed(one));
+    studies::MemoryCase divided = one;
+    divided.ranks = ranks;
+    most.take_most(divided);
   };
-  report["memory"] = memory_json(studies::memory_needed(sizes));
-  double most = of_ranks(sizes);
+  studies::MemoryCase alone = sizes;
+  alone.states_error = true;
+  add(report, alone);
   for (std::size_t k = 0; k < asked.cameras.size(); ++k) {
     studies::MemoryCase with_picture = sizes;
     studies::add_picture(with_picture, loaded.groups, loaded.effects,
                          picture_options(call, common, loaded, *asked.cameras[k]));
-    report["images"][k]["memory"] = memory_json(studies::memory_needed(with_picture));
-    most = std::max(most, of_ranks(with_picture));
+    add(report["images"][k], with_picture);
   }
   return most;
 }
@@ -94,8 +107,8 @@ double most_mib(const Json& report) {
   return most;
 }
 
-// What `ranks` processes of earthshine-mpi take, each of them so many bytes.
-void add_ranks(Json& report, const studies::Bill& bill, int ranks, double bytes_each) {
+// What `ranks` processes of earthshine-mpi take.
+void add_ranks(Json& report, const studies::Bill& bill, int ranks, const RankBytes& bytes) {
   double pixels = 0.0;
   for (const Json& image : report["images"]) {
     pixels += image["resolution"][0].get<double>() * image["resolution"][1].get<double>();
@@ -104,8 +117,9 @@ void add_ranks(Json& report, const studies::Bill& bill, int ranks, double bytes_
       studies::ranks_cost(bill, report["right_hand_sides"].get<std::size_t>(), pixels);
   report["ranks"] = {{"count", ranks},
                      {"threads_each", base::available_threads()},
-                     {"memory_mib_each", bytes_each / mib},
-                     {"memory_mib_all", bytes_each / mib * ranks},
+                     {"memory_mib_each", bytes.first / mib},
+                     {"memory_mib_others", bytes.others / mib},
+                     {"memory_mib_all", (bytes.first + bytes.others * (ranks - 1)) / mib},
                      {"seconds", studies::seconds_on_ranks(cost, ranks, network_bytes_per_s)},
                      {"shared_seconds", cost.shared_s},
                      {"unshared_seconds", cost.alone_s},
@@ -115,7 +129,7 @@ void add_ranks(Json& report, const studies::Bill& bill, int ranks, double bytes_
 
 void add_seconds(Json& report, const LoadedScene& loaded, const RenderCall& call,
                  const Common& common, const scenes::Asked& asked, const scenes::RayQuery& query,
-                 int ranks, double bytes_each) {
+                 int ranks, const RankBytes& bytes) {
   const Expectation expected = expect(loaded, call, common, asked, query);
   add_expectation(report["effects"], expected);
   const studies::Bill& bill = expected.pilot.bill;
@@ -131,7 +145,7 @@ void add_seconds(Json& report, const LoadedScene& loaded, const RenderCall& call
                         {"cpu_seconds", studies::total_seconds(bill) * base::available_threads()},
                         {"pilot_seconds", expected.pilot.seconds},
                         {"pilot_cpu_seconds", expected.pilot.cpu_seconds}};
-  if (ranks > 0) add_ranks(report, bill, ranks, bytes_each);
+  if (ranks > 0) add_ranks(report, bill, ranks, bytes);
 }
 
 Json report_of(const RenderCall& call, const Common& common, int ranks) {
@@ -162,9 +176,9 @@ Json report_of(const RenderCall& call, const Common& common, int ranks) {
   report["images"] = images_of(loaded.scene, call, asked,
                                solves ? static_cast<std::uint64_t>(knobs.gather_rays) : 0);
   const scenes::RayQuery query(loaded.scene);
-  const double bytes_each =
+  const RankBytes bytes =
       add_memory(report, loaded, call, common, asked, query, std::max(1, ranks));
-  add_seconds(report, loaded, call, common, asked, query, ranks, bytes_each);
+  add_seconds(report, loaded, call, common, asked, query, ranks, bytes);
   return report;
 }
 
@@ -175,16 +189,18 @@ std::string too_much_text(const Json& report) {
   const double free_mib = static_cast<double>(*free_bytes) / 1048576.0;
   if (most_mib(report) <= free_mib) return "";
   return fmt::format("that may not fit: {:.0f} MiB are {}; render looks closer and refuses\n",
-                     free_mib, base::memory_is_limited() ? "allowed by --max-memory" : "free");
+                     free_mib, base::memory_bound());
 }
 
 std::string ranks_text(const Json& ranks) {
   return fmt::format(
       "on {} rank(s), each with {} such core(s) of its own: at best {}, of them {} that no number "
-      "of ranks shortens; {:.0f} MiB in each rank, {:.0f} MiB together\n",
+      "of ranks shortens; {:.0f} MiB in the first rank, {:.0f} MiB in each other, {:.0f} MiB "
+      "together\n",
       ranks["count"].get<int>(), ranks["threads_each"].get<int>(),
       duration(ranks["seconds"].get<double>()), duration(ranks["unshared_seconds"].get<double>()),
-      ranks["memory_mib_each"].get<double>(), ranks["memory_mib_all"].get<double>());
+      ranks["memory_mib_each"].get<double>(), ranks["memory_mib_others"].get<double>(),
+      ranks["memory_mib_all"].get<double>());
 }
 
 std::string text_of(const Json& report) {

@@ -113,6 +113,7 @@ void write_exr(const std::filesystem::path& path, const Image& image, const ExrH
     refuse_writing(path, "the picture has no pixels");
   }
   OutputFile output(path);
+  if (another_rank_writes()) return;
   CheckedStream stream(output.temporary());
   if (stream.problem() != 0) refuse_writing(path, stream.reason());
   try {

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,9 +14,12 @@
 #include <charconv>
 #include <csignal>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -55,6 +59,14 @@ pid_t writer_of(const std::string& name) {
 // ends.
 bool lock(int file) { return ::flock(file, LOCK_EX | LOCK_NB) == 0; }
 
+bool others_see_locks_on(int file) {
+  struct stat status {};
+  std::ifstream mounts("/proc/self/mountinfo");
+  const std::string text{std::istreambuf_iterator<char>(mounts), {}};
+  return ::fstat(file, &status) == 0 &&
+         others_see_locks(text, major(status.st_dev), minor(status.st_dev));
+}
+
 // Removes the file if a run that was killed has left it: its process is gone, and nobody holds it,
 // such as one of another machine or container with that number.
 void remove_if_abandoned(const fs::path& path) {
@@ -62,7 +74,7 @@ void remove_if_abandoned(const fs::path& path) {
   if (process == 0 || ::kill(process, 0) == 0 || errno != ESRCH) return;
   const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   if (file < 0) return;
-  if (lock(file)) ::unlink(path.c_str());
+  if (others_see_locks_on(file) && lock(file)) ::unlink(path.c_str());
   ::close(file);
 }
 
@@ -116,10 +128,9 @@ fs::path follow_links(const fs::path& path) {
   return followed.empty() ? path : followed;
 }
 
-// Of several ranks the first alone gives files their names, and writes to devices.
-bool another_writes() { return ranks() != nullptr && ranks()->number() > 0; }
-
 }  // namespace
+
+bool another_rank_writes() { return ranks() != nullptr && ranks()->number() > 0; }
 
 OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
   const std::string name = target_.string();
@@ -147,9 +158,10 @@ OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
       throw Error(Blame::Input, name, "is a pipe or a device", "a file on disk is wanted here",
                   "Name a file to write");
     }
-    temporary_ = another_writes() ? fs::path("/dev/null") : target_;
-    return;
+    temporary_ = target_;
   }
+  if (another_rank_writes()) temporary_ = "/dev/null";
+  if (!temporary_.empty()) return;
   clear_once(folder);
   do {
     temporary_ = temporary_beside(target_);
@@ -173,7 +185,6 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::commit() {
-  if (another_writes()) return;
   if (file_ >= 0) {
     struct stat old {};
     if (::stat(target_.c_str(), &old) == 0) static_cast<void>(::fchmod(file_, old.st_mode & 07777));
@@ -216,6 +227,21 @@ void OutputFile::refuse(int error_number) const {
               {}, "An older file of that name was kept");
 }
 
+bool others_see_locks(const std::string& mounts, unsigned major, unsigned minor) {
+  const std::string device = std::to_string(major) + ":" + std::to_string(minor);
+  std::istringstream lines(mounts);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string mount, parent, of;
+    if (!(words >> mount >> parent >> of) || of != device) continue;
+    const bool local = line.find("local_lock=") != std::string::npos &&
+                       line.find("local_lock=none") == std::string::npos &&
+                       line.find("local_lock=posix") == std::string::npos;
+    if (local || line.find("localflock") != std::string::npos) return false;
+  }
+  return true;
+}
+
 void remove_unfinished_files() noexcept {
   for (const std::atomic<const char*>& place : unfinished) {
     if (const char* name = place.load()) ::unlink(name);
@@ -253,6 +279,7 @@ void write_aside(const OutputFile& output, const fs::path& path, std::string_vie
 
 void write_text(const fs::path& path, std::string_view text) {
   OutputFile output(path);
+  if (another_rank_writes()) return;
   write_aside(output, path, text);
   output.commit();
 }

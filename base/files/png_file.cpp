@@ -101,6 +101,7 @@ void write_png(const std::filesystem::path& path, int width, int height, int cha
                     " with " + std::to_string(channels) + " channels was to be written",
                 "PNG pictures here have at least one pixel and 1 or 3 channels");
   }
+  if (another_rank_writes()) return;
   const std::size_t stride = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
   if (pixels.size() != stride * static_cast<std::size_t>(height)) {
     throw Error(Blame::Work, path.string(), "the pixel count does not match the picture's size");

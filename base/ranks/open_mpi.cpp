@@ -23,6 +23,11 @@ class OpenMpi : public Ranks {
   OpenMpi() {
     MPI_Comm_rank(MPI_COMM_WORLD, &number_);
     MPI_Comm_size(MPI_COMM_WORLD, &count_);
+    MPI_Comm here = MPI_COMM_NULL;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+    MPI_Comm_size(here, &count_here_);
+    MPI_Allreduce(&number_, &lowest_here_, 1, MPI_INT, MPI_MIN, here);
+    MPI_Comm_free(&here);
     const MPI_Aint bytes = number_ == 0 ? 2 * sizeof(std::uint64_t) : 0;
     std::uint64_t* counters = nullptr;
     MPI_Win_allocate(bytes, sizeof(std::uint64_t), MPI_INFO_NULL, MPI_COMM_WORLD,
@@ -43,13 +48,12 @@ class OpenMpi : public Ranks {
 
   [[nodiscard]] int number() const override { return number_; }
   [[nodiscard]] int count() const override { return count_; }
+  [[nodiscard]] int count_here() const override { return count_here_; }
+  [[nodiscard]] bool first_is_here() const override { return lowest_here_ == 0; }
 
-  void broadcast(std::string& bytes, int from) override {
-    std::uint64_t size = bytes.size();
-    MPI_Bcast(&size, 1, MPI_UINT64_T, from, MPI_COMM_WORLD);
-    bytes.resize(size);
-    in_pieces(bytes, [&](char* first, int count) {
-      MPI_Bcast(first, count, MPI_BYTE, from, MPI_COMM_WORLD);
+  void broadcast(void* first, std::size_t bytes, int from) override {
+    in_pieces(first, bytes, [&](char* piece, int count) {
+      MPI_Bcast(piece, count, MPI_BYTE, from, MPI_COMM_WORLD);
     });
   }
 
@@ -65,7 +69,7 @@ class OpenMpi : public Ranks {
     sent.size = bytes.size();
     sent.bytes = std::move(bytes);
     MPI_Isend(&sent.size, 1, MPI_UINT64_T, to, 0, MPI_COMM_WORLD, &sent.requests.emplace_back());
-    in_pieces(sent.bytes, [&](char* first, int count) {
+    in_pieces(sent.bytes.data(), sent.size, [&](char* first, int count) {
       MPI_Isend(first, count, MPI_BYTE, to, 0, MPI_COMM_WORLD, &sent.requests.emplace_back());
     });
   }
@@ -75,24 +79,24 @@ class OpenMpi : public Ranks {
     std::uint64_t size = 0;
     MPI_Recv(&size, 1, MPI_UINT64_T, from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
     std::string bytes(size, '\0');
-    in_pieces(bytes, [&](char* first, int count) {
+    in_pieces(bytes.data(), size, [&](char* first, int count) {
       MPI_Recv(first, count, MPI_BYTE, from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
     });
     return bytes;
   }
 
   void gather(void* items, std::size_t bytes_each, const std::vector<std::size_t>& start) override {
-    MPI_Datatype item = MPI_DATATYPE_NULL;
-    MPI_Type_contiguous(static_cast<int>(bytes_each), MPI_BYTE, &item);
-    MPI_Type_commit(&item);
-    std::vector<int> counts, begins;
-    for (std::size_t rank = 0; rank + 1 < start.size(); ++rank) {
-      counts.push_back(static_cast<int>(start[rank + 1] - start[rank]));
-      begins.push_back(static_cast<int>(start[rank]));
-    }
-    MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, items, counts.data(), begins.data(), item,
-                   MPI_COMM_WORLD);
-    MPI_Type_free(&item);
+    const Division division(bytes_each, start);
+    MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, items, division.counts.data(),
+                   division.begins.data(), division.item, MPI_COMM_WORLD);
+  }
+
+  void gather_at_first(void* items, std::size_t bytes_each,
+                       const std::vector<std::size_t>& start) override {
+    const Division division(bytes_each, start);
+    MPI_Gatherv(number_ == 0 ? MPI_IN_PLACE : items,
+                division.counts[static_cast<std::size_t>(number_)], division.item, items,
+                division.counts.data(), division.begins.data(), division.item, 0, MPI_COMM_WORLD);
   }
 
   [[nodiscard]] std::size_t take() override { return add_to_counter(1, MPI_SUM); }
@@ -117,10 +121,29 @@ class OpenMpi : public Ranks {
     std::vector<MPI_Request> requests;
   };
 
+  // Of items among the ranks, as MPI takes it.
+  struct Division {
+    Division(std::size_t bytes_each, const std::vector<std::size_t>& start) {
+      MPI_Type_contiguous(static_cast<int>(bytes_each), MPI_BYTE, &item);
+      MPI_Type_commit(&item);
+      for (std::size_t rank = 0; rank + 1 < start.size(); ++rank) {
+        counts.push_back(static_cast<int>(start[rank + 1] - start[rank]));
+        begins.push_back(static_cast<int>(start[rank]));
+      }
+    }
+    ~Division() { MPI_Type_free(&item); }
+    Division(const Division&) = delete;
+    Division& operator=(const Division&) = delete;
+
+    MPI_Datatype item = MPI_DATATYPE_NULL;
+    std::vector<int> counts, begins;
+  };
+
   template <class Pass>
-  static void in_pieces(std::string& bytes, Pass pass) {
-    for (std::uint64_t at = 0; at < bytes.size(); at += most_at_once) {
-      pass(&bytes[at], static_cast<int>(std::min<std::uint64_t>(most_at_once, bytes.size() - at)));
+  static void in_pieces(void* first, std::uint64_t bytes, Pass pass) {
+    for (std::uint64_t at = 0; at < bytes; at += most_at_once) {
+      pass(static_cast<char*>(first) + at,
+           static_cast<int>(std::min<std::uint64_t>(most_at_once, bytes - at)));
     }
   }
 
@@ -133,7 +156,7 @@ class OpenMpi : public Ranks {
     return before;
   }
 
-  int number_ = 0, count_ = 1;
+  int number_ = 0, count_ = 1, count_here_ = 1, lowest_here_ = 0;
   MPI_Win window_ = MPI_WIN_NULL;  // two counters, at the first rank
   MPI_Aint counter_ = 0;           // which of them counts now
   std::mutex speaking_;

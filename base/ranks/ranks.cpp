@@ -51,7 +51,10 @@ void hear_all(Ranks& ranks, const std::function<std::string()>& say,
   for (int rank = 0; rank < ranks.count(); ++rank) {
     std::string bytes;
     if (rank == ranks.number()) bytes = say();
-    ranks.broadcast(bytes, rank);
+    std::uint64_t size = bytes.size();
+    ranks.broadcast(&size, sizeof size, rank);
+    bytes.resize(size);
+    ranks.broadcast(bytes.data(), size, rank);
     hear(rank, std::move(bytes));
   }
 }

@@ -24,8 +24,11 @@ class Ranks {
 
   [[nodiscard]] virtual int number() const = 0;  // of this process, from 0
   [[nodiscard]] virtual int count() const = 0;
-  // The bytes of rank `from`, on every rank.
-  virtual void broadcast(std::string& bytes, int from) = 0;
+  // Of them those on this machine, this one included: they share its memory.
+  [[nodiscard]] virtual int count_here() const = 0;
+  [[nodiscard]] virtual bool first_is_here() const = 0;  // rank 0 is one of them
+  // `bytes` bytes of rank `from`, on every rank.
+  virtual void broadcast(void* first, std::size_t bytes, int from) = 0;
   // To one rank, without waiting for it; any thread may send. What one rank sends to another comes
   // there in that order.
   virtual void send(std::string bytes, int to) = 0;
@@ -33,6 +36,9 @@ class Ranks {
   // Of items of `bytes_each`, rank r has [start[r], start[r + 1]): afterwards every rank has all.
   virtual void gather(void* items, std::size_t bytes_each,
                       const std::vector<std::size_t>& start) = 0;
+  // The same, but the first rank alone has all afterwards; elsewhere `items` are the own.
+  virtual void gather_at_first(void* items, std::size_t bytes_each,
+                               const std::vector<std::size_t>& start) = 0;
   // Of a loop's items, by number from 0, one that no rank has taken yet; from any thread. After the
   // last of them numbers go on.
   [[nodiscard]] virtual std::size_t take() = 0;

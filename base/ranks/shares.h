@@ -34,6 +34,12 @@ class Shares {
     static_assert(std::is_trivially_copyable_v<Value>);
     if (divided()) ranks()->gather(values, each * sizeof(Value), start_);
   }
+  // The same for the first rank alone, which has room for all values; elsewhere they are the own.
+  template <class Value>
+  void tell_first(Value* values, std::size_t each = 1) const {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    if (divided()) ranks()->gather_at_first(values, each * sizeof(Value), start_);
+  }
   // What each rank has found among its own, rank after rank: a rank speaks when it has heard those
   // before it, and hears itself too. Nothing where undivided.
   using Pass = std::function<void(Parcel& parcel)>;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/free_memory.h"
 #include "base/parallel.h"
 #include "radiosity/factors/column_sums.h"
 #include "radiosity/factors/filled_hits.h"
@@ -268,6 +269,7 @@ BalanceReport balance(FormFactors& factors, std::span<const double> area_m2, dou
   report.balanced = report.after <= rounding;
   if (!report.balanced) report.worst = scaling.worst();
   scaling.finish();
+  base::give_back_freed_memory();
   return report;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/free_memory.h"
 #include "base/ranks/ranks.h"
 #include "radiosity/factors/column_sums.h"
 
@@ -41,7 +42,7 @@ class NewHits {
     for (std::vector<NewHit>& hits : away_) {
       base::Parcel sent;
       sent.pass(hits);
-      hits = {};
+      base::release(hits);
       to.push_back(sent.take_bytes());
     }
     for (std::string& bytes : base::swap(*base::ranks(), std::move(to))) {
@@ -66,6 +67,10 @@ class NewHits {
     old.row_start.swap(f_.row_start);
     old.column.swap(f_.column);
     old.hits.swap(f_.hits);
+    std::size_t most = old.hits.size();
+    for (const Row& row : rows_) most += row.size();
+    f_.column.reserve(most);
+    f_.hits.reserve(most);
     for (std::size_t i = own_.begin; i < own_.end; ++i) {
       const Row& fresh = sorted_row(i);
       std::uint64_t e = old.row_start[i];

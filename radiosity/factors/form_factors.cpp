@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/free_memory.h"
 #include "base/ranks/ranks.h"
 #include "radiosity/factors/covered_patches.h"
 #include "radiosity/factors/object_runs.h"
@@ -53,7 +54,7 @@ void join_rows(std::vector<Band>& bands, FormFactors& factors) {
     }
     factors.sky_illuminance.insert(factors.sky_illuminance.end(), band.sky_illuminance.begin(),
                                    band.sky_illuminance.end());
-    band.sky_illuminance = {};
+    base::release(band.sky_illuminance);
     for (std::size_t o = 0; o < band.back_hits.size(); ++o) {
       factors.back_hits[o] += band.back_hits[o];
     }
@@ -68,26 +69,31 @@ void join_rows(std::vector<Band>& bands, FormFactors& factors) {
       ++i;
     }
   }
-  factors.column.resize(factors.row_start[i]);
-  factors.hits.resize(factors.row_start[i]);
+  factors.column.reserve(factors.row_start[i]);  // memory once it is filled
+  factors.hits.reserve(factors.row_start[i]);
 }
+
+// The bands' entries come into the matrix in so many rounds, after each of which what they took is
+// free: so much less is there twice, and on its way between ranks.
+constexpr std::size_t rounds = 16;
 
 // Joins the bands' entries and leaves them empty.
 void join_entries(std::vector<Band>& bands, FormFactors& factors) {
-  std::ptrdiff_t at = 0;
-  for (Band& band : bands) {
-    std::copy(band.column.begin(), band.column.end(), factors.column.begin() + at);
-    std::copy(band.hits.begin(), band.hits.end(), factors.hits.begin() + at);
-    at += static_cast<std::ptrdiff_t>(band.column.size());
-    band.column = {};
-    band.hits = {};
+  for (std::size_t round = 0, k = 0; round < rounds; ++round) {
+    for (; k < bands.size() * (round + 1) / rounds; ++k) {
+      Band& band = bands[k];
+      factors.column.insert(factors.column.end(), band.column.begin(), band.column.end());
+      factors.hits.insert(factors.hits.end(), band.hits.begin(), band.hits.end());
+      base::release(band.column);
+      base::release(band.hits);
+    }
+    base::give_back_freed_memory();
   }
 }
 
 // The same where each rank has the bands that it has cast: brings every row to the rank that will
 // have it.
 void deal_entries(std::vector<Band>& bands, FormFactors& factors) {
-  constexpr std::size_t rounds = 16;  // so much less is on its way at once
   base::Ranks& all = *base::ranks();
   std::size_t first = 0;  // row of the band
   for (std::size_t round = 0, k = 0; round < rounds; ++round) {
@@ -103,9 +109,11 @@ void deal_entries(std::vector<Band>& bands, FormFactors& factors) {
         parcel.pass_range(&band.hits[e], band.rows[r].entries);
         e += band.rows[r].entries;
       }
-      band.column = {};
-      band.hits = {};
+      base::release(band.column);
+      base::release(band.hits);
     }
+    factors.column.resize(factors.row_start[first]);
+    factors.hits.resize(factors.row_start[first]);
     std::vector<std::string> to;
     for (base::Parcel& parcel : sent) to.push_back(parcel.take_bytes());
     for (std::string& bytes : base::swap(all, std::move(to))) {
@@ -119,6 +127,7 @@ void deal_entries(std::vector<Band>& bands, FormFactors& factors) {
         got.pass_range(factors.hits.data() + e, entries);
       }
     }
+    base::give_back_freed_memory();
   }
 }
 
@@ -188,6 +197,8 @@ FormFactors cast_rows(const scenes::Scene& scene, const scenes::RayQuery& query,
         found.rows.back().landed += double(found.hits[e]) * factors.kept[found.column[e]];
       }
     }
+    bands[band].column.shrink_to_fit();
+    bands[band].hits.shrink_to_fit();
   };
   base::share_loop(bands.size(), cast, [&](std::size_t band, base::Parcel& parcel) {
     Band& found = bands[band];

@@ -105,5 +105,8 @@ BalanceReport balance(FormFactors& factors, std::span<const double> area_m2,
 // y = F x for `columns` right-hand sides side by side (row-major, count x columns).
 void multiply(const FormFactors& factors, std::span<const double> x, std::span<double> y,
               std::size_t columns);
+// The same of this rank's own rows alone, without a word to the others; y: of these rows.
+void multiply_own(const FormFactors& factors, std::span<const double> x, std::span<double> y,
+                  std::size_t columns);
 
 }  // namespace earthshine::radiosity

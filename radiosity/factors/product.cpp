@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// y = F x for many right-hand sides: the matrix is read once for up to 32 of them.
+// F x for many right-hand sides: the matrix is read once for up to 32 of them.
 #include <algorithm>
 
 #include "base/parallel.h"
@@ -36,9 +36,10 @@ constexpr std::size_t chains = Blocks == 1   ? 4
                                : Blocks <= 3 ? 2
                                              : 1;
 
+// y: of the row `begin` on.
 template <std::size_t Blocks>
 void multiply_rows(const FormFactors& factors, const Lanes* z, std::size_t begin, std::size_t end,
-                   std::size_t columns, std::size_t first, std::span<double> y) {
+                   std::size_t columns, std::size_t first, double* y) {
   constexpr std::size_t parts = chains<Blocks>;
   const std::uint32_t* column = factors.column.data();
   const float* hits = factors.hits.data();
@@ -62,30 +63,37 @@ void multiply_rows(const FormFactors& factors, const Lanes* z, std::size_t begin
       for (std::size_t b = 0; b < Blocks; ++b) sum[0][b] += sum[p][b];
     }
     for (std::size_t c = 0; c < used; ++c) {
-      y[i * columns + first + c] = factors.row_scale[i] * sum[0][c / lanes][c % lanes];
+      y[(i - begin) * columns + first + c] = factors.row_scale[i] * sum[0][c / lanes][c % lanes];
     }
   }
 }
 
 using MultiplyRows = void (*)(const FormFactors&, const Lanes*, std::size_t, std::size_t,
-                              std::size_t, std::size_t, std::span<double>);
+                              std::size_t, std::size_t, double*);
 constexpr MultiplyRows multiply_blocks[most_blocks] = {
     multiply_rows<1>, multiply_rows<2>, multiply_rows<3>, multiply_rows<4>,
     multiply_rows<5>, multiply_rows<6>, multiply_rows<7>, multiply_rows<8>};
 
 }  // namespace
 
-void multiply(const FormFactors& factors, std::span<const double> x, std::span<double> y,
-              std::size_t columns) {
+void multiply_own(const FormFactors& factors, std::span<const double> x, std::span<double> y,
+                  std::size_t columns) {
   const base::Shares::Range own = factors.shares.own(factors.count());
   for (std::size_t first = 0; first < columns; first += most_blocks * lanes) {
     const std::size_t blocks = std::min((columns - first + lanes - 1) / lanes, most_blocks);
     const std::vector<Lanes> z = packed(factors, x, columns, first, blocks);
     base::parallel_chunks(own.end - own.begin, 256, [&](std::size_t begin, std::size_t end) {
       multiply_blocks[blocks - 1](factors, z.data(), own.begin + begin, own.begin + end, columns,
-                                  first, y);
+                                  first, &y[begin * columns]);
     });
   }
+}
+
+void multiply(const FormFactors& factors, std::span<const double> x, std::span<double> y,
+              std::size_t columns) {
+  const base::Shares::Range own = factors.shares.own(factors.count());
+  multiply_own(factors, x, y.subspan(own.begin * columns, (own.end - own.begin) * columns),
+               columns);
   factors.shares.tell(y.data(), columns);
 }
 

@@ -130,6 +130,7 @@ std::string solution_bytes(const Solution& solution, const SolutionOrigin& origi
 
 void write_solution(const std::filesystem::path& path, const Solution& solution,
                     const SolutionOrigin& origin) {
+  if (base::another_rank_writes()) return;
   base::write_text(path, solution_bytes(solution, origin));
 }
 

@@ -15,7 +15,8 @@
 namespace earthshine::studies {
 namespace {
 
-constexpr double program_bytes = 18e6;  // code and libraries
+constexpr double program_bytes = 18e6;   // code and libraries
+constexpr double open_mpi_bytes = 12e6;  // its libraries and buffers
 
 constexpr double vertex_bytes = 24.0 + 12.0;          // the scene's, the ray structure's copy
 constexpr double triangle_bytes = 24.0 + 12.0 + 4.0;  // the scene's, the copy, of_triangle
@@ -25,15 +26,24 @@ constexpr double hierarchy_bytes = 150.0;             // per triangle
 constexpr double facet_bytes = sizeof(radiosity::Facet), target_bytes = 32.0, member_bytes = 40.0;
 
 constexpr double patch_bytes = 8.0 + 4.0 + sizeof(radiosity::Cell) + 1.0 + 8.0;
-// Of rows and columns: scales and shares; while they are balanced also sums in 16 bands and the
-// vectors of Newton's step.
-constexpr double row_bytes = 150.0, balance_bytes = 270.0;
+// Per patch, of the matrix's rows and columns: where a row starts, scales, shares of sky and black
+// backs, what is kept; what is open, the sky's light. While they are cast also what each row found.
+constexpr double row_bytes = 110.0, cast_bytes = 50.0;
+// While they are balanced: the scales' vectors and those of Newton's step; sums of columns in 16
+// bands, of which each rank has its own, has sent as much and got its columns'.
+constexpr double balance_bytes = 140.0, bands_bytes = 128.0;
 constexpr double counter_bytes = 4.125;  // per patch and thread
 constexpr double entry_bytes = 8.0;      // column and hits
-constexpr double entry_copies = 2.0;  // what bands leave behind, and the matrix they are joined to
-// Doubles per patch and column while the linear system is solved: the right-hand side and what it
-// is made of (7), BiCGSTAB on it (9), one correction (4).
-constexpr double solver_vectors = 20.0;
+// Bands of rows are joined to the matrix sixteenth by sixteenth. Ranks send them to one another,
+// and who was free more often has cast more of them than its part.
+constexpr double joined_copies = 1.0 + 1.0 / 16.0, sent_copies = 1.5;
+// Doubles per patch and column. While the linear system is solved: reflectance, exitance and direct
+// light (3), and on the rank that iterates nine vectors (linear_solve.h), elsewhere the product's
+// two. After it: those three, radiosity, what falls on it, and the four floats that are kept.
+constexpr double light_vectors = 3.0, iteration_vectors = 9.0, filled_vectors = 7.0;
+// While its error is stated: the solution twice, light and what samples find (surface_samples.h);
+// of a patch those of its samples.
+constexpr double error_vectors = 8.0, error_bytes = 300.0;
 constexpr double solution_bytes = 4.0 * sizeof(float);  // per patch and column
 
 constexpr double texel_bytes = 16.0;  // radiance of a patch or knot in a layer
@@ -45,6 +55,13 @@ double record_bytes(const MemoryCase& m) {
   const double per_layer = b.gather_per_layer + (m.in_rounds ? b.cast_per_layer : 0.0);
   return b.sums + b.sums_per_entry * entries +
          (m.shares_gather ? b.gather_point + per_layer * layers : 0.0);
+}
+
+// Of the linear solve, whose product packs its columns in fours.
+double solver_vectors(const MemoryCase& m) {
+  const auto columns = static_cast<double>(std::max<std::size_t>(1, m.columns));
+  const double packed = 4.0 * std::ceil(columns / 4.0) / columns;
+  return light_vectors + packed + (m.first_rank ? iteration_vectors : 1.0 + 1.0 / m.ranks);
 }
 
 }  // namespace
@@ -59,7 +76,7 @@ MemoryNeed memory_needed(const MemoryCase& m) {
   const auto patches = static_cast<double>(m.patches), columns = static_cast<double>(m.columns);
   const auto triangles = static_cast<double>(m.triangles);
   const auto pixels = static_cast<double>(m.pixels), layers = static_cast<double>(m.layers);
-  MemoryNeed standing = {{{"program", program_bytes},
+  MemoryNeed standing = {{{"program", program_bytes + (m.ranks > 1 ? open_mpi_bytes : 0.0)},
                           {"scene", double(m.vertices) * vertex_bytes +
                                         triangles * (triangle_bytes + hierarchy_bytes)}}};
   if (m.texture_bytes > 0) standing.parts.push_back({"textures", double(m.texture_bytes)});
@@ -69,15 +86,25 @@ MemoryNeed memory_needed(const MemoryCase& m) {
                                              std::min(patches, triangles) * facet_bytes +
                                              triangles * (target_bytes + member)});
   }
-  // One after the other: the matrix is cast and balanced, the system solved, the picture drawn.
-  MemoryNeed casting = standing, solving = standing;
+  // One after the other: the matrix is cast and balanced, the system solved, the solution's error
+  // stated, the picture drawn.
+  MemoryNeed casting = standing, balancing = standing, solving = standing, stating = standing;
   if (m.solves) {
     const double entries = patches * m.row_entries * entry_bytes / m.ranks;
     const double rows = patches * (row_bytes + counter_bytes * m.threads);
-    const double copies = entry_copies + (m.copies_matrix ? 1.0 : 0.0);
-    casting.parts.push_back({"form factors", entries * copies + rows + patches * balance_bytes});
-    solving.parts.push_back({"form factors", entries * entry_copies + rows});
-    solving.parts.push_back({"light groups", patches * columns * solver_vectors * sizeof(double)});
+    const double bands = bands_bytes * (m.ranks > 1 ? 3.0 / m.ranks : 1.0);
+    casting.parts.push_back({"form factors", entries * (m.ranks > 1 ? sent_copies : joined_copies) +
+                                                 rows + patches * cast_bytes});
+    balancing.parts.push_back({"form factors", entries * (m.copies_matrix ? 2.0 : 1.0) + rows +
+                                                   patches * (balance_bytes + bands)});
+    const double vectors = solver_vectors(m), doubles = patches * columns * sizeof(double);
+    solving.parts.push_back({"form factors", entries + rows});
+    solving.parts.push_back({"light groups", doubles * std::max(vectors, filled_vectors)});
+    if (m.states_error) {
+      stating.parts.push_back({"form factors", entries + rows});
+      stating.parts.push_back(
+          {"light groups", doubles * (vectors + error_vectors) + patches * error_bytes});
+    }
   }
   MemoryNeed drawing = standing;
   if (m.columns > 0) {
@@ -90,7 +117,7 @@ MemoryNeed memory_needed(const MemoryCase& m) {
     drawing.parts.push_back(
         {"picture", pixels * (double(m.channels) * sizeof(float) + record_bytes(m))});
   }
-  return std::max({casting, solving, drawing},
+  return std::max({casting, balancing, solving, stating, drawing},
                   [](const MemoryNeed& a, const MemoryNeed& b) { return a.total() < b.total(); });
 }
 

@@ -41,6 +41,8 @@ struct MemoryCase {
   bool solves = false;         // the matrix is cast; false with columns: the solution is read
   int threads = 1;
   int ranks = 1;               // that divide the entries of the matrix among them
+  bool first_rank = true;      // which iterates for all (radiosity/linear_solve.h)
+  bool states_error = false;   // of the solution, over all surfaces (studies/surfaces)
   std::size_t pixels = 0;      // 0: no picture
   std::size_t channels = 0;    // of the picture, 4 bytes each
   std::size_t layers = 0;      // that read the solution: 1, or the light groups

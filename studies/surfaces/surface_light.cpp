@@ -105,7 +105,7 @@ std::vector<double> LightOnSurfaces::brought(const std::vector<double>& residual
     }
   }
   const radiosity::LinearSolve error =
-      radiosity::solve_linear(factors_, source, rho, columns, of_the_error);
+      radiosity::solve_linear(factors_, std::move(source), rho, columns, of_the_error);
   std::vector<double> light(error.x.size());
   radiosity::multiply(factors_, error.x, light, columns);
   return light;

@@ -5,6 +5,7 @@
 
 #include <fstream>
 
+#include "base/error.h"
 #include "tests/base/temporary_folder.h"
 
 namespace earthshine::base {
@@ -53,6 +54,25 @@ TEST_F(FreeMemory, TheFirstVersionOfControlGroupsIsReadToo) {
 TEST(FreeMemoryHere, ThisMachineHasSome) {
   ASSERT_TRUE(free_memory_bytes());
   EXPECT_GT(*free_memory_bytes(), 1U << 20U);
+}
+
+TEST(FreeMemoryHere, ProcessesOfOneCallHaveAnEqualPartEach) {
+  constexpr std::uint64_t cap = 1U << 20U;
+  const std::uint64_t whole = *free_memory_bytes();
+  {
+    const MemoryLimit limit(cap, 4);
+    EXPECT_EQ(*free_memory_bytes(), cap / 4);
+    EXPECT_EQ(memory_bound(), "allowed by --max-memory for each of 4 ranks on this machine");
+  }
+  {
+    // What is free of the machine moves meanwhile, though not to five times as much.
+    const MemoryLimit limit(0, 100);
+    EXPECT_LT(*free_memory_bytes(), whole / 20);
+    EXPECT_EQ(memory_bound(), "free for each of 100 ranks on this machine");
+    EXPECT_THROW(check_room(whole / 10, "a picture"), Error);
+  }
+  EXPECT_GT(*free_memory_bytes(), whole / 5);
+  EXPECT_EQ(memory_bound(), "free");
 }
 
 }  // namespace

@@ -5,7 +5,6 @@ import os
 import pathlib
 import random
 import shutil
-import signal
 import struct
 import subprocess
 import time
@@ -25,17 +24,6 @@ WAYS = {
 }
 CALL = ("render", "ball.toml", "--camera", "all", "-o", "v.exr", "--png", "v.png")
 OUTPUTS = ("v-A.exr", "v-above.exr", "v-A.png", "v-above.png")
-
-
-def other_build(folder):
-    """The program with another build id, as any change of its code or constants gives it."""
-    code = pathlib.Path(program.PROGRAM).read_bytes()
-    note = b"\x04\0\0\0\x14\0\0\0\x03\0\0\0GNU\0"  # sizes of name and digest, NT_GNU_BUILD_ID
-    at = code.index(note) + len(note)
-    other = folder / "other"
-    other.write_bytes(code[:at] + bytes([code[at] ^ 1]) + code[at + 1:])
-    other.chmod(0o755)
-    return other
 
 
 class PartCase(Case):
@@ -226,46 +214,6 @@ class Faults(PartCase):
             self.done(*CALL, "--set", "camera.A.fov_deg=30 ", "--part", f"{part}/3", "-q")
         self.assertEqual(self.merged(), self.whole("--set", "camera.A.fov_deg=30 "))
 
-    def test_kills_at_random_moments(self):
-        whole = self.whole()
-        begin = time.monotonic()
-        self.done(*CALL, "--part", "1/3", "-q")
-        took = time.monotonic() - begin
-        chance = random.Random(1)
-        killed = 0
-        for _ in range(50):
-            run = self.started(*CALL, "--part", f"{chance.randint(1, 3)}/3", "-q")
-            time.sleep(took * chance.random())
-            run.send_signal(signal.SIGKILL)
-            run.wait()
-            killed += run.returncode == -signal.SIGKILL
-            if run.returncode == 0:  # a share that is there would be passed over in no time
-                shutil.rmtree(self.folder / "v.exr.parts")
-        self.assertGreater(killed, 10)
-        for part in (1, 2, 3):
-            self.done(*CALL, "--part", f"{part}/3", "-q")
-        self.assertEqual(self.merged(), whole)
-        self.assertEqual([p.name for p in (self.folder / "v.exr.parts").iterdir() if p.name.startswith(".")], [])
-
-    def test_two_schedulers_start_the_same_part(self):
-        whole = self.whole()
-        for part in ("1/2", "2/2"):
-            runs = [self.started(*CALL, "--part", part, "-q") for _ in range(4)]
-            self.assertEqual([run.wait() for run in runs], [0] * 4)
-        self.assertEqual(self.merged(), whole)
-
-    def test_a_part_of_another_build(self):
-        whole = self.whole()
-        other = other_build(self.folder)
-        subprocess.run([other, *CALL, "--part", "1/2", "-q"], cwd=self.folder, check=True)
-        self.says(self.refused(*CALL, "--part", "2/2"), "parts.json", "the program changed")
-        self.says(self.refused("merge", "v.exr.parts"), "the program changed")
-        (self.folder / "v.exr.parts" / "parts.json").unlink()
-        self.done(*CALL, "--part", "2/2", "-q")
-        self.says(self.refused("merge", "v.exr.parts", code=1), "--part 1/2")  # the other's work is none
-        self.done(*CALL, "--part", "1/2", "-q")
-        self.assertEqual(self.merged(), whole)
-
     def test_a_part_of_another_scene_or_setting(self):
         self.done(*CALL, "--part", "1/2", "-q")
         self.says(self.refused(*CALL, "--seed", "2", "--part", "2/2"), "its arguments")
@@ -286,25 +234,6 @@ class Faults(PartCase):
         self.says(self.refused("merge", "v.exr.parts", code=1), "has lost its picture", "--part")
         for part in (1, 2):
             self.done(*CALL, "--part", f"{part}/2", "-q")
-        self.assertEqual(self.merged(), whole)
-
-    def test_clocks_that_differ_by_an_hour(self):
-        for part in (1, 2):
-            self.done(*CALL, "--part", f"{part}/2", "-q")
-            for path in (self.folder / "v.exr.parts").iterdir():
-                os.utime(path, (time.time() + 3600, time.time() + 3600 * (-1) ** part))
-        self.assertEqual(self.merged(), self.whole())
-
-    def test_a_full_disk_in_one_part(self):
-        whole = self.whole()
-        self.done(*CALL, "--part", "1/2", "-q")
-        # No file may grow past 2 kB: what a full disk is to the one who writes (EFBIG for ENOSPC).
-        limited = subprocess.run(["bash", "-c", "trap '' XFSZ; ulimit -f 2; exec \"$@\"", "sh", program.PROGRAM, *CALL,
-                                  "--part", "2/2", "-q"], cwd=self.folder, capture_output=True, text=True, check=False)
-        self.assertEqual(limited.returncode, 1, limited.stderr)
-        self.says(limited.stderr, "cannot be written")
-        self.says(self.refused("merge", "v.exr.parts", code=1), "--part 2/2")
-        self.done(*CALL, "--part", "2/2", "-q")
         self.assertEqual(self.merged(), whole)
 
     def test_a_disk_that_is_full(self):

@@ -96,6 +96,49 @@ class Ranks(Case):
         for scene, more in (("ball.toml", fine), ("box.toml", fine), ("ball.toml", ("--error", "0.05"))):
             self.same(("solve", scene, "-o", "s.h5", *more), ("s.h5",), (1, 2, 3, 5, 8))
 
+    def test_ledger(self):
+        """`solve --json` but for seconds and what of them follows, and for memory."""
+        def without_times(text):
+            def strip(value):
+                if isinstance(value, dict):
+                    return {key: strip(inner) for key, inner in value.items() if "seconds" not in key and "memory" not in key}
+                return [strip(inner) for inner in value] if isinstance(value, list) else value
+            return json.dumps(strip(json.loads(text)))
+        for call in (("solve", "ball.toml", "--json", "-q", "--set", "quality.patch_edge=0.1"),
+                     ("solve", "hard.toml", "--json", "-q", "--set", "quality.patch_edge=0.2")):
+            whole = without_times(self.done(*call))
+            self.assertIn("absorbed", whole)
+            for count in (1, 2, 3, 5, 8):
+                with self.subTest(call[1], ranks=count):
+                    self.assertEqual(without_times(self.ranks(count, *call, "-j", 1 + count % 2).stdout), whole)
+
+    def test_ranks_share_the_memory_of_a_machine(self):
+        """What one rank is allowed alone, two are refused together, before they cast a ray; of more they take what they state."""
+        call = ("solve", "box.toml", "--set", "quality.patch_edge=0.04", "--set", "quality.form_factor_rays=1024", "-q", "-j", 1)
+        plan = {count: json.loads(self.done("plan", "box.toml", *call[2:6], "--ranks", count, "--json"))["ranks"] for count in (1, 2)}
+        enough = 1.02 * plan[1]["memory_mib_all"]
+        self.assertLess(enough, plan[2]["memory_mib_all"])
+        self.ranks(1, *call, "--max-memory", f"{enough:.0f}MiB")
+        said = self.ranks(2, *call, "--max-memory", f"{enough:.0f}MiB", code=1).stderr
+        self.says(said, "allowed by --max-memory for each of 2 ranks on this machine")
+        self.ranks(2, *call, "--max-memory", f"{1.02 * plan[2]['memory_mib_all']:.0f}MiB")
+
+    def test_one_solution_for_parts(self):
+        """Ranks work on the one solution that parts read, by --part solve or ahead of their own shares."""
+        call = ("study", "orbit", "bay.toml", "--positions", "36", "--wanted", "box>=0.5", "-q", "-o")
+        for folder, run in (("w", lambda: self.ranks(1, *call, "w", "--part", "solve")),
+                            ("a", lambda: self.ranks(3, *call, "a", "--part", "solve")), ("b", lambda: self.ranks(3, *call, "b"))):
+            run()
+        solutions = {}
+        for folder in "wab":
+            (file,) = (self.folder / folder / "points").glob("solution-*.h5")
+            solutions[folder] = (file.name, file.read_bytes(), pathlib.Path(f"{file}.json").read_bytes())
+        self.assertEqual([solutions["a"], solutions["b"]], [solutions["w"]] * 2)
+        subprocess.run([MPI, *call, "a", "--part", "1/1"], cwd=self.folder, check=True)
+        subprocess.run([MPI, "merge", "a", "-q"], cwd=self.folder, check=True)
+        self.assertEqual(self.without_times(self.study("a")), self.without_times(self.study("b")))
+        self.assertIn("does not go with ranks", self.ranks(2, *call, "a", "--part", "1/2", code=2).stderr)
+
     def test_rows_that_need_each_other(self):
         """More ranks than the 16 bands in which columns are summed too: some then have a part of a band alone."""
         call = ("solve", "hard.toml", "-o", "s.h5", "--set", "quality.patch_edge=0.1")
@@ -110,8 +153,10 @@ class Ranks(Case):
         self.assertEqual(self.ranks(3, *call, code=2).stderr.splitlines()[0], alone.splitlines()[0])
 
     def test_memory_is_divided(self):
-        """While rows are joined the E entries of the matrix, 8 bytes each, are there twice: 16 E (1 - 1 / R) bytes are what R
-        ranks spare each of them, and `plan` says so. Of a rank's share, 8 E / R, all may be on its way to a slower one."""
+        """Of the E entries of the matrix, 8 bytes each, a rank of R has an R-th; while they are dealt out up to half as much more, of
+        rows that it has cast and others will have, beside a sixteenth of all in one process: 8 E (17/16 - 3/2 / R) bytes are spared
+        it, which `plan` says but for 12 MiB of Open MPI. Which rank casts which rows is chance: on a busy machine one has up to a quarter
+        of all entries more, so that of two nothing is sure to be spared, and of eight the rest."""
         call = ("solve", "box.toml", "-o", "s.h5", "--set", "quality.patch_edge=0.04", "--set", "quality.form_factor_rays=1024")
         reports, peaks = {}, {}
         for count in (1, 2, 8):
@@ -123,13 +168,14 @@ class Ranks(Case):
             self.assertEqual(run.returncode, 0)
             peaks[count] = usage.ru_maxrss / 1024  # of the largest process
         entries = reports[1]["nonzeros"] * 8 / 2**20
-        self.assertGreater(2 * entries, 0.6 * peaks[1])
+        self.assertGreater(entries, 0.5 * peaks[1])
         for count in (2, 8):
             self.assertEqual(reports[count]["nonzeros"], reports[1]["nonzeros"])
-            self.assertGreater(peaks[1] - peaks[count], 2 * entries * (1 - 1 / count) - entries / count)
+            spared = entries * (17 / 16 - 3 / 2 / count)
+            self.assertGreater(peaks[1] - peaks[count], spared - 24 - entries / 4 if count == 8 else -entries / 2)
             stated = [json.loads(self.done("plan", *call[1:2], *call[4:], "--ranks", n, "--json"))["ranks"]["memory_mib_each"]
                       for n in (1, count)]
-            self.assertAlmostEqual((stated[0] - stated[1]) / (2 * entries * (1 - 1 / count)), 1, delta=0.1)
+            self.assertAlmostEqual(stated[0] - stated[1], spared, delta=16)
 
     def test_refined_patches(self):
         self.same(("solve", "bay.toml", "-o", "s.h5", "--set", "quality.refine=true", "--set", "quality.max_patches=2000"),
@@ -237,6 +283,54 @@ class Ranks(Case):
         self.assertNotEqual(run.returncode, 0)
         self.assertIn("signal 9", errors)
         self.assertFalse((self.folder / "v.exr").exists())
+
+    def test_kills_of_solve_and_render(self):
+        """Any rank, killed at EARTHSHINE_KILLS (ten) moments: each file is there whole or not at all, none is left unfinished, and the
+        next run writes what one that nobody disturbed does."""
+        kills = int(os.environ.get("EARTHSHINE_KILLS", "10"))
+        chance = random.Random(21)
+        for call, names in ((("solve", "ball.toml", "-o", "s.h5", "--set", "quality.patch_edge=0.1", "-q"), ("s.h5",)),
+                            (("render", "ball.toml", "--camera", "A", "-o", "v.exr", "--png", "v.png", "-q"), ("v.exr", "v.png"))):
+            begun = time.monotonic()
+            self.ranks(3, *call, "-j", 1)
+            seconds = time.monotonic() - begun
+            whole = {name: (self.folder / name).read_bytes() for name in names}
+            killed = 0
+            for kill in range(kills):
+                for name in names:
+                    (self.folder / name).unlink(missing_ok=True)
+                rank, wait = chance.randrange(3), seconds * (kill + chance.random()) / kills
+                with self.subTest(call[0], rank=rank, seconds=wait):
+                    run, ranks = self.started(3, *call)
+                    time.sleep(wait)
+                    with contextlib.suppress(ProcessLookupError):  # the run was faster than the first
+                        os.kill(int(ranks[rank]), 9)
+                    run.communicate(timeout=60)
+                    killed += run.returncode != 0
+                    for name in names:
+                        if (self.folder / name).exists():
+                            self.assertEqual((self.folder / name).read_bytes(), whole[name])
+            self.ranks(3, *call, "-j", 1)
+            self.assertEqual({name: (self.folder / name).read_bytes() for name in names}, whole)
+            self.assertEqual([path.name for path in self.folder.iterdir() if path.name.startswith(".")], [])
+            self.assertGreater(killed, 0)
+
+    def test_a_full_disk(self):
+        """A file system in memory with room for one page: the first rank alone writes there, says so and ends the others."""
+        mounts = ["unshare", "--user", "--map-root-user", "--mount"]
+        (self.folder / "full").mkdir()
+        if subprocess.run([*mounts, "mount", "-t", "tmpfs", "tmpfs", "full"], cwd=self.folder, capture_output=True,
+                          check=False).returncode != 0:
+            self.skipTest("no file system can be mounted here")
+        script = """mount -t tmpfs -o size=8k tmpfs full && echo older > full/v.exr && "$@"
+code=$?; ls -A full; cat full/v.exr; exit $code"""
+        call = ("render", "ball.toml", "--camera", "A", "-o", "full/v.exr", "-q")
+        run = subprocess.run([*mounts, "bash", "-c", script, "sh", "mpirun", "-n", "3", MPI, *call], cwd=self.folder,
+                             env=ENVIRONMENT, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=300, check=False)
+        self.assertEqual(run.returncode, 1, run.stderr)
+        self.assertEqual(run.stderr.count("earthshine: "), 1, run.stderr)
+        self.says(run.stderr, "v.exr", "No space left on device")
+        self.assertEqual(run.stdout, "v.exr\nolder\n")
 
     def test_the_next_run_ends_what_a_kill_left(self):
         """Any rank, killed at EARTHSHINE_KILLS (ten) moments of a run: the study is there whole or not at all, and the next is the

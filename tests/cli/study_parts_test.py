@@ -22,7 +22,7 @@ TIMES = ("seconds", "render_seconds", "costs", "solve_seconds", "wall_seconds", 
          "solve_cpu_seconds", "estimate_cpu_seconds", "memory_mib", "on_front")
 
 
-class StudyParts(Case):
+class StudyPartsCase(Case):
     def strip(self, value):
         if isinstance(value, dict):
             return {key: self.strip(item) for key, item in value.items() if key not in TIMES}
@@ -58,6 +58,8 @@ class StudyParts(Case):
         return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns)
                 for path in (self.folder / folder / "points").glob("*.h5")}
 
+
+class StudyParts(StudyPartsCase):
     def test_any_order_and_number(self):
         for name, call in SEVERAL.items():
             self.done(*call, "w-" + name)
@@ -126,25 +128,6 @@ class StudyParts(Case):
         self.says(self.refused(*ORBIT, "o", "--part", "2/2"), "the scene, ")
         self.write("bay.toml", bay.replace("fov_deg = 40", "fov_deg = 41"))
         self.says(self.refused("merge", "o"), "the settings changed")
-
-    def test_kills_at_random_moments(self):
-        begin = time.monotonic()
-        self.done(*ORBIT, "w")
-        took = time.monotonic() - begin
-        chance = random.Random(1)
-        killed = 0
-        for _ in range(25):
-            run = self.started(*ORBIT, "o", "--part", f"{chance.randint(1, 4)}/4", "-q")
-            time.sleep(0.4 * took * chance.random())
-            run.send_signal(signal.SIGKILL)
-            run.wait()
-            killed += run.returncode == -signal.SIGKILL
-        self.assertGreater(killed, 2)
-        for part in range(1, 5):
-            self.done(*ORBIT, "o", "--part", f"{part}/4", "-q")
-        self.done("merge", "o", "-q")
-        self.assertEqual(self.results("o"), self.results("w"))
-        self.assertEqual([p.name for p in (self.folder / "o").rglob(".*")], [])
 
     def test_a_torn_part_is_missing(self):
         """Half of what a merge reads or trusts is broken in turn: it lists the part, writes nothing, and the part mends it."""

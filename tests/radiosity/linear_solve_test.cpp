@@ -84,7 +84,7 @@ TEST(LinearSolve, ToleranceBoundsTheErrorAgainstADirectSolve) {
     const Eigen::VectorXd exact = a.partialPivLu().solve(source);
     for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
       const LinearSolve found =
-          solve_linear(room.factors, {source.data(), static_cast<std::size_t>(n)},
+          solve_linear(room.factors, {source.begin(), source.end()},
                        {rho.data(), static_cast<std::size_t>(n)}, 1, tolerance);
       const double error =
           (Eigen::Map<const Eigen::VectorXd>(found.x.data(), n) - exact).cwiseAbs().maxCoeff() /
@@ -93,18 +93,6 @@ TEST(LinearSolve, ToleranceBoundsTheErrorAgainstADirectSolve) {
       EXPECT_LE(found.error, tolerance) << mixed;
     }
   }
-}
-
-TEST(LinearSolve, AGuessNearTheAnswerSavesIterationsAndChangesNothingElse) {
-  const Room room = closed_room(0.125);
-  const std::vector<double> source = noise(3 * room.factors.count(), 2);
-  const std::vector<double> rho(source.size(), 0.95);
-  const LinearSolve cold = solve_linear(room.factors, source, rho, 3, 1e-10);
-  std::vector<double> guess = cold.x;
-  for (double& x : guess) x *= 1.001;
-  const LinearSolve warm = solve_linear(room.factors, source, rho, 3, 1e-10, guess);
-  EXPECT_LT(warm.iterations, cold.iterations);
-  for (std::size_t k = 0; k < guess.size(); ++k) EXPECT_NEAR(warm.x[k] / cold.x[k], 1.0, 1e-9);
 }
 
 TEST(LinearSolve, JointSolveOfManyColumnsLeavesEveryColumnWithinTolerance) {

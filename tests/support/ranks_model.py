@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The table of docs/scaling.md: seconds of `solve` on R ranks of one thread, from what one rank was measured to need.
+"""The table of docs/scaling.md: seconds of `solve` and `render` on R ranks of one thread, from what one rank was measured to need.
 
 usage: ranks_model.py [BYTES-PER-SECOND [SECONDS-PER-MESSAGE]]
 """
@@ -39,7 +39,8 @@ class Case:
 
 
 def exchange(case, ranks, bytes_per_s, message_s):
-    """Seconds: bytes that come to a rank, and messages one after another. A gather goes round a ring, a swap to each."""
+    """Seconds: bytes that come to a rank, and messages one after another. A gather goes round a ring, a swap to each, a broadcast
+    down a tree."""
     if ranks == 1:
         return 0.0
     others = ranks - 1
@@ -48,7 +49,7 @@ def exchange(case, ranks, bytes_per_s, message_s):
     sums = case.patches * 8 * case.sweeps * max(1.0, BANDS / ranks, ranks / BANDS)  # in turn within a band
     messages = (16 * 2 * others  # rows to their ranks
                 + case.sweeps * (3 + 2) * others + case.sweeps * max(0, ranks / BANDS - 1)
-                + case.products * others
+                + case.products * (others + 2 * math.log2(ranks))  # rows to the first, which has sent x and that more is to come
                 + 10 * ranks * math.log2(ranks))  # loops after which each rank speaks in turn
     return (entries + to_all + sums) / bytes_per_s + messages * message_s
 
@@ -59,6 +60,31 @@ def seconds(case, ranks, bytes_per_s, message_s):
             + exchange(case, ranks, bytes_per_s, message_s))
 
 
+# Of a pixel in all loops together: what gather points found of the solution (100 bytes), of paths (70), sums of samples (80).
+PIXEL_BYTES = 250
+LOOPS = 5  # over tiles: of gather points twice, of lobes, of camera samples twice
+
+
+@dataclasses.dataclass
+class Picture:
+    name: str
+    pixels: int
+    tiles: int      # of 8 x 8 pixels, which one rank takes at a time
+    seconds: float  # of one rank
+    alone: float    # 2 t(2) - t(1) of what was measured: reading, sharing between points, files, and what waited
+
+    def on(self, ranks, bytes_per_s, message_s):
+        """Seconds, and of them what is exchanged."""
+        if ranks == 1:
+            return self.seconds, 0.0
+        shared = self.seconds - self.alone
+        # Each takes tiles from the first rank's counter, one after another, until each has heard that there are no more; then each
+        # says in turn how much it has and what. Half a tile is waited for.
+        messages = LOOPS * (self.tiles + ranks + 2 * ranks * math.log2(ranks))
+        exchanged = PIXEL_BYTES * self.pixels / bytes_per_s + messages * message_s
+        return shared / min(ranks, self.tiles) + 0.5 * shared / self.tiles + self.alone + exchanged, exchanged
+
+
 CASES = (
     Case("201942 patches, 1024 rays each", 201942, 44966388, 89, False, 66.5),
     Case("493083 patches, 1024 rays each", 493083, 125384913, 92, False, 195.0),
@@ -66,16 +92,20 @@ CASES = (
 )
 
 
+PICTURE = Picture("render 384 x 384, 128 gather rays", 384 * 384, 48 * 48, 28.9, 2.1)
+
+
 def main():
     network = [float(word) for word in sys.argv[1:]] + [12.5e9, 2e-6][len(sys.argv) - 1:]
-    print("| ranks |" + "".join(f" {case.name} | of it exchange | efficiency |" for case in CASES))
-    print("| --- |" + " --- | --- | --- |" * len(CASES))
+    names = [case.name for case in CASES] + [PICTURE.name]
+    print("| ranks |" + "".join(f" {name} | of it exchange | efficiency |" for name in names))
+    print("| --- |" + " --- | --- | --- |" * len(names))
     for ranks in RANKS:
         row = f"| {ranks} |"
-        for case in CASES:
-            taken = seconds(case, ranks, *network)
-            row += (f" {taken:.3g} s | {exchange(case, ranks, *network):.2g} s "
-                    f"| {seconds(case, 1, *network) / taken / ranks:.2g} |")
+        taken = [(seconds(case, ranks, *network), exchange(case, ranks, *network), seconds(case, 1, *network)) for case in CASES]
+        taken.append((*PICTURE.on(ranks, *network), PICTURE.seconds))
+        for all_of_it, exchanged, of_one in taken:
+            row += f" {all_of_it:.3g} s | {exchanged:.2g} s | {of_one / all_of_it / ranks:.2g} |"
         print(row)
 
 

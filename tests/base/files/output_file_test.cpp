@@ -121,6 +121,22 @@ TEST(OutputFile, WhatAnotherMachineIsWritingIsLeftAlone) {
   ::close(file);
 }
 
+TEST(OutputFile, LocksThatOtherMachinesDoNotSeeAreTold) {
+  const std::string mounts =
+      "22 1 8:1 / / rw,relatime shared:1 - ext4 /dev/sda1 rw\n"
+      "40 22 0:50 / /home rw shared:2 - nfs4 a:/home rw,vers=4.2,hard,local_lock=none,addr=b\n"
+      "41 22 0:51 / /old rw shared:3 - nfs a:/old rw,vers=3,nolock,local_lock=all,addr=b\n"
+      "42 22 0:52 / /flock rw shared:4 - nfs a:/f rw,vers=3,local_lock=flock,addr=b\n"
+      "43 22 0:53 / /posix rw shared:5 - nfs a:/p rw,vers=3,local_lock=posix,addr=b\n"
+      "44 22 9:54 / /scratch rw shared:6 - lustre a@tcp:/s rw,localflock\n";
+  EXPECT_TRUE(others_see_locks(mounts, 8, 1));
+  EXPECT_TRUE(others_see_locks(mounts, 0, 50));
+  EXPECT_FALSE(others_see_locks(mounts, 0, 51));
+  EXPECT_FALSE(others_see_locks(mounts, 0, 52));
+  EXPECT_TRUE(others_see_locks(mounts, 0, 53));  // flock() goes by the server
+  EXPECT_FALSE(others_see_locks(mounts, 9, 54));
+}
+
 TEST(OutputFile, TwoWritersOfOneFileDoNotMeet) {
   const TemporaryFolder folder;
   OutputFile first(folder / "a.txt"), second(folder / "a.txt");

@@ -4,13 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
 #include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/files/output_file.h"
 #include "base/numbers/random.h"
+#include "tests/base/temporary_folder.h"
 
 namespace earthshine::base {
 namespace {
@@ -21,10 +26,13 @@ class Silent : public Ranks {
   Silent(int number, int count) : number_(number), count_(count) {}
   [[nodiscard]] int number() const override { return number_; }
   [[nodiscard]] int count() const override { return count_; }
-  void broadcast(std::string&, int) override { FAIL(); }
+  [[nodiscard]] int count_here() const override { return count_; }
+  [[nodiscard]] bool first_is_here() const override { return true; }
+  void broadcast(void*, std::size_t, int) override { FAIL(); }
   void send(std::string, int) override { FAIL(); }
   [[nodiscard]] std::string receive(int) override { throw std::logic_error("asked"); }
   void gather(void*, std::size_t, const std::vector<std::size_t>&) override { FAIL(); }
+  void gather_at_first(void*, std::size_t, const std::vector<std::size_t>&) override { FAIL(); }
   [[nodiscard]] std::size_t take() override { throw std::logic_error("asked"); }
   void end_of_taking() override { FAIL(); }
   [[noreturn]] void end_all(int) override { throw std::logic_error("ended"); }
@@ -79,12 +87,20 @@ TEST(Shares, MoreRanksThanItemsLeaveSomeWithout) {
 class Second : public Silent {
  public:
   explicit Second(std::string said) : Silent(1, 2), said_(std::move(said)) {}
-  void broadcast(std::string& bytes, int from) override {
-    if (from == 0) bytes = said_;
+  // Of the first what is given, after its size.
+  void broadcast(void* first, std::size_t bytes, int from) override {
+    if (from != 0) return;
+    if (std::exchange(is_size_, !is_size_)) {
+      const std::uint64_t size = said_.size();
+      std::memcpy(first, &size, sizeof size);
+    } else {
+      said_.copy(static_cast<char*>(first), bytes);
+    }
   }
 
  private:
   std::string said_;
+  bool is_size_ = true;
 };
 
 TEST(Shares, SumsThatAreRoundedAreTakenItemByItem) {
@@ -106,6 +122,21 @@ TEST(Shares, SumsThatAreRoundedAreTakenItemByItem) {
   };
   EXPECT_EQ(total(false), 1e16);
   EXPECT_EQ(total(true), 1e16 + 2.0);
+}
+
+TEST(Ranks, TheFirstAloneMakesFiles) {
+  const test::TemporaryFolder folder;
+  for (const int number : {1, 0}) {
+    Silent silent(number, 2);
+    const RanksInForce in_force(&silent);
+    OutputFile file(folder / "a");
+    const bool is_made = !std::filesystem::is_empty(folder.path());
+    EXPECT_EQ(is_made, number == 0);
+    EXPECT_EQ(another_rank_writes(), number == 1);
+    EXPECT_EQ(file.temporary() == "/dev/null", number == 1);
+    file.commit();
+    EXPECT_EQ(std::filesystem::exists(folder / "a"), number == 0);
+  }
 }
 
 TEST(Shares, OfOneProcessAreUndivided) {

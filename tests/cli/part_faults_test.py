@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What befalls parts of pictures, studies and sequences: killed, out of disk, started twice, of another build, with wrong clocks.
+Nothing is lost, nothing wrong is merged: what comes out at last is what one process writes."""
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+import parts_test
+import program
+import study_parts_test
+
+ORBIT = study_parts_test.ORBIT
+SEQUENCE = parts_test.Sequences.CALL
+# The call, the folder of `merge`, and where in it the parts' record lies.
+WORKS = {
+    "render": (parts_test.CALL, "v.exr.parts", "."),
+    "study": ((*ORBIT, "o"), "o", "points"),
+    "degrade": (SEQUENCE, "f#.png.parts", "."),
+}
+
+
+def other_build(folder):
+    """The program with another build id, as any change of its code or constants gives it."""
+    code = pathlib.Path(program.PROGRAM).read_bytes()
+    note = b"\x04\0\0\0\x14\0\0\0\x03\0\0\0GNU\0"  # sizes of name and digest, NT_GNU_BUILD_ID
+    at = code.index(note) + len(note)
+    other = folder / "other"
+    other.write_bytes(code[:at] + bytes([code[at] ^ 1]) + code[at + 1:])
+    other.chmod(0o755)
+    return other
+
+
+class PartFaults(study_parts_test.StudyPartsCase):
+    def setUp(self):
+        super().setUp()
+        slow = '\n[[cctv]]\nname = "slow"\niris_slew = 1.0\nlag = 0.4\n'
+        self.write("ball.toml", parts_test.BALL.replace('name = "above"', 'name = "above"\ncctv = "slow"') + slow)
+        for k in range(5):
+            self.done("render", "ball.toml", "-o", f"{k}.exr", "--camera", "above", "--size", "16x16", "-q", "--set",
+                      f"sun.illuminance={1000 * 4 ** k}")
+
+    def outcome(self, name):
+        """What the work has written; taken away again."""
+        if name == "study":
+            found = self.results("o")
+            shutil.rmtree(self.folder / "o")
+            return found
+        names = parts_test.OUTPUTS if name == "render" else parts_test.Sequences.OUTPUTS
+        found = {file: (self.folder / file).read_bytes() for file in names}
+        shutil.rmtree(self.folder / WORKS[name][1], ignore_errors=True)
+        for file in names:
+            (self.folder / file).unlink()
+        return found
+
+    def works(self):
+        """Each work, with what one process makes of it and the seconds that takes."""
+        for name, (call, folder, record) in WORKS.items():
+            begun = time.monotonic()
+            self.done(*call, "-q")
+            seconds = time.monotonic() - begun
+            yield name, call, folder, record, self.outcome(name), seconds
+
+    def merged(self, name, folder):
+        self.done("merge", folder, "-q")
+        self.assertEqual([str(path) for path in self.folder.rglob(".*")], [])
+        return self.outcome(name)
+
+    def parts(self, call, *numbers, of=2):
+        for number in numbers:
+            self.done(*call, "--part", f"{number}/{of}", "-q")
+
+    def test_kills_at_random_moments(self):
+        chance = random.Random(1)
+        for name, call, folder, _, whole, seconds in self.works():
+            killed = 0
+            for _ in range(50):
+                run = self.started(*call, "--part", f"{chance.randint(1, 3)}/3", "-q")
+                time.sleep(0.5 * seconds * chance.random())
+                run.send_signal(signal.SIGKILL)
+                run.wait()
+                killed += run.returncode == -signal.SIGKILL
+                if run.returncode == 0:  # a share that is there would be passed over in no time
+                    shutil.rmtree(self.folder / folder)
+            self.assertGreater(killed, 10)
+            self.parts(call, 1, 2, 3, of=3)
+            self.assertEqual(self.merged(name, folder), whole)
+
+    def test_two_schedulers_start_the_same_part(self):
+        for name, call, folder, _, whole, _ in self.works():
+            for part in ("1/2", "2/2"):
+                runs = [self.started(*call, "--part", part, "-q") for _ in range(4)]
+                self.assertEqual([run.wait() for run in runs], [0] * 4)
+            self.assertEqual(self.merged(name, folder), whole)
+
+    def test_a_part_of_another_build(self):
+        other = other_build(self.folder)
+        for name, call, folder, record, whole, _ in self.works():
+            subprocess.run([other, *call, "--part", "1/2", "-q"], cwd=self.folder, check=True)
+            self.says(self.refused(*call, "--part", "2/2"), "parts.json", "the program changed")
+            self.says(self.refused("merge", folder), "the program changed")
+            (self.folder / folder / record / "parts.json").unlink()
+            self.parts(call, 2)
+            self.says(self.refused("merge", folder, code=1), "--part 1/2")  # the other's work is none
+            self.parts(call, 1)
+            self.assertEqual(self.merged(name, folder), whole)
+
+    def test_clocks_that_differ_by_an_hour(self):
+        for name, call, folder, _, whole, _ in self.works():
+            for part in (1, 2):
+                self.parts(call, part)
+                for path in [*(self.folder / folder).rglob("*"), *self.folder.glob("[ft][0-9].*")]:
+                    os.utime(path, (time.time() + 3600, time.time() + 3600 * (-1) ** part))
+            self.assertEqual(self.merged(name, folder), whole)
+
+    def test_a_full_disk_in_one_part(self):
+        """No file may grow past its limit of kB: what a full disk is to the one who writes (EFBIG for ENOSPC)."""
+        for name, call, folder, _, whole, _ in self.works():
+            self.parts(call, 1)
+            before = {path: path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}
+            limited = subprocess.run(["bash", "-c", "trap '' XFSZ; ulimit -f 1; exec \"$@\"", "sh", program.PROGRAM, *call,
+                                      "--part", "2/2", "-q"], cwd=self.folder, capture_output=True, text=True, check=False)
+            self.assertEqual(limited.returncode, 1, limited.stderr)
+            self.says(limited.stderr, "cannot be written")
+            self.assertEqual({path: path.read_bytes() for path in before}, before)
+            self.says(self.refused("merge", folder, code=1), "--part 2/2")
+            self.parts(call, 2)
+            self.assertEqual(self.merged(name, folder), whole)
+
+
+if __name__ == "__main__":
+    unittest.main()
