@@ -87,7 +87,7 @@ PLACES = {
     "no lock server": ({"FAULT_KIND": "lock", "FAULT_ERROR": errno.ENOLCK}, True),
     "no flush of folders and files": ({"FAULT_KIND": "fsync", "FAULT_ERROR": errno.EINVAL}, True),
     "no rename onto a file": ({"FAULT_KIND": "over", "FAULT_ERROR": errno.EEXIST}, False),
-    "clock that jumps by an hour": ({"FAULT_KIND": "lock", "FAULT_STAYS": 0, "FAULT_CLOCK": 3600}, True),
+    "clock that jumps by an hour": ({"FAULT_KIND": "lock", "FAULT_AT": 0, "FAULT_CLOCK": 3600}, True),
 }
 UNFINISHED = re.compile(r"(^|/)\.[^/]*\.part$")
 WANTED = os.environ.get("EARTHSHINE_FAULTS", "")
