@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/json.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -12,7 +14,29 @@
 namespace earthshine::app {
 namespace {
 
+using base::Blame;
+using base::Error;
+
 constexpr std::size_t largest_json_bytes = std::size_t{1} << 30;
+
+// Of what is JSON exactly; of what is not, parsing says so where this does not.
+bool is_too_deep(std::string_view text) {
+  int depth = 0;
+  bool within_text = false;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const char c = text[k];
+    if (c == '"') {
+      within_text = !within_text;
+    } else if (within_text) {
+      k += c == '\\' ? 1 : 0;
+    } else if (c == '[' || c == '{') {
+      if (++depth > deepest_json) return true;
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -26,11 +50,27 @@ std::string digest_of(const Json& json) {
   return digest.text();
 }
 
+Json read_json(const std::filesystem::path& path, const std::string& advice) {
+  const std::string name = path.string();
+  const std::string text = base::read_input_file(path, largest_json_bytes, {name});
+  if (is_too_deep(text)) {
+    throw Error(Blame::Input, name, "has lists and objects too deep within one another",
+                fmt::format("at most {} levels", deepest_json), advice);
+  }
+  try {
+    return Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    throw Error(Blame::Input, name,
+                fmt::format("is not JSON: at byte {} it goes wrong", error.byte), {}, advice);
+  } catch (const Json::exception&) {
+    throw Error(Blame::Input, name, "holds a number that is too large", {}, advice);
+  }
+}
+
 Json json_in(const std::filesystem::path& path) {
   try {
-    return Json::parse(base::read_input_file(path, largest_json_bytes, {path.string()}), nullptr,
-                       false);
-  } catch (const base::Error&) {
+    return read_json(path, "");
+  } catch (const Error&) {
     return Json::value_t::discarded;
   }
 }

@@ -20,6 +20,12 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] std::string dump(const Json& json);
 // Of that text.
 [[nodiscard]] std::string digest_of(const Json& json);
+// Lists and objects within one another in a file that is read: what the program writes has a
+// dozen, and each level takes some of the stack.
+inline constexpr int deepest_json = 64;
+// The content of a file of at most 1 GiB. Throws base::Error: (Input) where it is no JSON, with the
+// byte, or is nested deeper; `advice` says what to do.
+[[nodiscard]] Json read_json(const std::filesystem::path& path, const std::string& advice);
 // What the program wrote into a file; discarded (nlohmann) where there is none or it is broken.
 [[nodiscard]] Json json_in(const std::filesystem::path& path);
 

@@ -150,7 +150,8 @@ std::vector<std::string> differences(const PartsRecord& mine, const PartsRecord&
     differ.push_back(fmt::format("the number of parts (there: {})", there.parts));
   }
   for (const auto& [name, digest] : mine.digests.items()) {
-    if (there.digests.value(name, "") != digest) differ.push_back("the " + name);
+    const auto found = there.digests.find(name);
+    if (found == there.digests.end() || *found != digest) differ.push_back("the " + name);
   }
   return differ;
 }

@@ -31,7 +31,7 @@ void agree_on_digest(const fs::path& file, const std::string& digest) {
   const fs::path told = file.string() + ".json";
   if (!is_there(told) && base::write_new_text(told, dump({{"digest", digest}}))) return;
   const Json json = json_in(told);
-  if (json.is_object() && json.value("digest", "") == digest) return;
+  if (json == Json::object({{"digest", digest}})) return;
   throw base::Error(
       base::Blame::Input, file.string(),
       fmt::format("is another solution than the other parts have read (digest {})", digest),

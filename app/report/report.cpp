@@ -8,7 +8,6 @@
 #include "app/report/page.h"
 #include "app/study/results_json.h"
 #include "base/error.h"
-#include "base/input/input_file.h"
 
 namespace earthshine::app {
 namespace {
@@ -16,8 +15,6 @@ namespace {
 using base::Blame;
 using base::Error;
 namespace fs = std::filesystem;
-
-constexpr std::size_t largest_study_bytes = std::size_t{1} << 30;
 
 struct ReportCall {
   std::string folder;
@@ -32,17 +29,7 @@ StudyResults read_study(const fs::path& folder) {
                 "Name the folder given as -o to study visibility");
   }
   check_outputs({(folder / report_file).string()}, {name});
-  try {
-    return read_results(name,
-                        Json::parse(base::read_input_file(name, largest_study_bytes, {name})));
-  } catch (const Json::parse_error& error) {
-    throw Error(Blame::Input, name,
-                "is not JSON: at byte " + std::to_string(error.byte) + " it goes wrong", {},
-                "Run the study again, which writes the file anew");
-  } catch (const Json::exception&) {
-    throw Error(Blame::Input, name, "holds a number that is too large", {},
-                "Run the study again, which writes the file anew");
-  }
+  return read_results(name, read_json(name, "Run the study again, which writes the file anew"));
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ std::vector<const StudyPart*> pointers(const Parts& parts) {
 // Whether the folder holds the results of a run that came to its end.
 bool has_finished_results(const fs::path& folder) {
   const Json study = json_in(folder / study_file);
-  return study.is_object() && study.value("complete", false);
+  return study.is_object() && study.contains("complete") && study["complete"] == true;
 }
 
 // A CCTV camera for a camera that no scene has would go unnoticed.

@@ -26,6 +26,7 @@ constexpr std::uint64_t many_rays = std::uint64_t{1} << 23;
 constexpr double most_times_more = 16.0;                   // the rays cast so far
 constexpr double most_growth = 4.0;                        // of the rays of a pass
 constexpr double cut_share = 0.6;                          // to what is uneven within patches
+constexpr double shadow_share = 0.25, last_share = 0.5;    // of a time limit: no cut, no pass then
 constexpr std::size_t largest_cut = std::size_t{1} << 17;  // patches
 constexpr std::uint32_t fewest_points = 8192;
 
@@ -111,7 +112,8 @@ class SurfaceSearch {
     std::iota(which.begin(), which.end(), 0U);
     CutChoice choice(light_->patches());
     const double enough = cut_share * squared(aim * wanted_.error * mean_);
-    for (int round = 0; round < most_passes && !which.empty(); ++round) {
+    for (int round = 0; round < most_passes && !which.empty() && time_gone() <= shadow_share;
+         ++round) {
       std::vector<Effort> effort;
       for (const std::uint32_t i : which) {
         const double area = light_->patches().area_m2[i];
@@ -140,8 +142,10 @@ class SurfaceSearch {
     for (int pass = 0;; ++pass) {
       std::vector<std::uint32_t> all(light_->patches().count());
       std::iota(all.begin(), all.end(), 0U);
+      const double begun = time_gone();
       const SurfaceSamples samples = sampler_.sample(light_->light(), all, effort, ++pass_, mean_,
                                                      light_->bodies(), stage(under_way()));
+      last_took_ = time_gone() - begun;
       const std::vector<double> variance = ray_variance(light_->patches(), samples, effort);
       const LightNoise noise = noise_of(*light_, variance, samples);
       const ResidualError found =
@@ -153,7 +157,7 @@ class SurfaceSearch {
       if (!may_cut() && !may_cast()) return stop(Limit::Settings);
       if (pass + 1 == most_passes) return stop(Limit::Steps);
       if (is_hopeless(error)) return stop(Limit::Steps);
-      if (wanted_.seconds > 0.0 && seconds() > 0.5 * wanted_.seconds) return stop(Limit::Time);
+      if (time_gone() > last_share) return stop(Limit::Time);
       mean_ = found.mean;
       if (may_cast()) light_->correct(samples, all, effort);
       if (found.doubt > 0.3 * squared(wanted_.error)) points_wanted_ *= 2.0;
@@ -170,10 +174,7 @@ class SurfaceSearch {
           cuts = light_->patches().count() > patches;
         }
       }
-      if (parent.empty()) {
-        parent.resize(patches);
-        std::iota(parent.begin(), parent.end(), 0U);
-      }
+      if (parent.empty()) parent = all;
       if (!cuts && pass > 4 && error > 0.97 * before) {
         return stop(full_ ? Limit::Memory : Limit::Steps);
       }
@@ -189,8 +190,8 @@ class SurfaceSearch {
   }
 
   // Rays in proportion to the root of area times variance, so that the noise that is left in all
-  // is `target`; at most four times as many as in the pass before, and at least so many points that
-  // the error can be stated.
+  // is `target`; at most four times as many as in the pass before, or as many as the time that is
+  // left pays for, and at least so many points that the error can be stated.
   [[nodiscard]] std::vector<Effort> next_effort(const std::vector<double>& variance,
                                                 const std::vector<std::uint32_t>& parent,
                                                 double target) {
@@ -206,7 +207,8 @@ class SurfaceSearch {
       rays[i] = std::max(0.0, rays[i] * roots / std::max(1e-300, target) - light_->gather_rays(i));
       wanted += rays[i];
     }
-    const double most = std::max(most_growth * last_rays_, double(1 << 20));
+    double most = std::max(most_growth * last_rays_, double(1 << 20));
+    if (last_took_ > 0.0) most = std::min(most, last_rays_ * (1.0 - time_gone()) / last_took_);
     const double scale = std::min(1.0, most / std::max(1.0, wanted));
     std::vector<Effort> next;
     for (std::uint32_t i = 0; i < parent.size(); ++i) {
@@ -220,13 +222,12 @@ class SurfaceSearch {
     result_.surface.parts = found.parts;
     result_.surface.known = found.mean > 0.0;
     result_.surface.rays += samples.rays;
-    double rays = 0.0;
-    for (const Effort& e : effort) rays += e.all_rays();
-    last_rays_ = rays;
+    last_rays_ = 0.0;
+    for (const Effort& e : effort) last_rays_ += e.all_rays();
     Step step;
     step.stage = "solve";
     step.patches = light_->patches().count();
-    step.form_factor_rays = static_cast<int>(rays / static_cast<double>(effort.size()));
+    step.form_factor_rays = static_cast<int>(last_rays_ / static_cast<double>(effort.size()));
     step.asked = wanted_.error;
     step.estimate = found.parts.total().estimate;
     result_.steps.push_back(step);
@@ -244,7 +245,10 @@ class SurfaceSearch {
   }
 
   void stop(Limit limit) { result_.limit = limit; }
-  [[nodiscard]] double seconds() const { return wanted_.now ? wanted_.now() : 0.0; }
+  // The share of the time limit; 0 without one.
+  [[nodiscard]] double time_gone() const {
+    return wanted_.seconds > 0.0 && wanted_.now ? wanted_.now() / wanted_.seconds : 0.0;
+  }
   [[nodiscard]] raytrace::Progress stage(const std::string& name) const {
     return progress_ ? progress_(name) : raytrace::Progress();
   }
@@ -265,7 +269,7 @@ class SurfaceSearch {
   double mean_ = 0.0, solver_error_ = 0.0;
   std::uint32_t pass_ = 0;
   std::uint64_t rays_ = 0;
-  double points_wanted_ = fewest_points, last_rays_ = 0.0;
+  double points_wanted_ = fewest_points, last_rays_ = 0.0, last_took_ = 0.0;
   std::size_t first_patches_ = 0;
   bool full_ = false;
 };

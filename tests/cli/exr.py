@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads what the program writes: scan-line OpenEXR, FLOAT channels, ZIP. Independent of the library."""
+"""Reads what the program writes: scan-line OpenEXR, FLOAT and HALF channels, ZIP. Independent of the library."""
 import array
 import struct
 import zlib
@@ -32,7 +32,7 @@ def read(path):
         data = file.read()
     magic, version = struct.unpack_from("<ii", data)
     assert magic == 20000630 and version & 0xFF == 2, "not OpenEXR"
-    header, names, letters, at = {}, [], [], 8
+    header, names, at = {}, {}, 8  # names: how struct unpacks a row of so many numbers
     while data[at]:
         name, at = _text(data, at)
         kind, at = _text(data, at)
@@ -49,10 +49,7 @@ def read(path):
             place = 0
             while value[place]:
                 channel, place = _text(value, place)
-                kind, = struct.unpack_from("<i", value, place)
-                assert kind in (1, 2), "neither HALF nor FLOAT"
-                names.append(channel)
-                letters.append("e" if kind == 1 else "f")
+                names[channel] = {1: "<%de", 2: "<%df"}[struct.unpack_from("<i", value, place)[0]]
                 place += 16
         header[name] = value
     assert header["compression"] == b"\x03", "not ZIP"
@@ -64,11 +61,12 @@ def read(path):
     for offset in offsets:
         y, size = struct.unpack_from("<ii", data, offset)
         lines = min(LINES_PER_BLOCK, y1 + 1 - y)
-        row = struct.Struct("<" + "".join(f"{width}{letter}" for letter in letters))
-        raw = _unpack(data[offset + 8:offset + 8 + size], lines * row.size)
-        for values in row.iter_unpack(raw):
-            for k, name in enumerate(names):
-                channels[name].extend(values[k * width:(k + 1) * width])
+        raw = _unpack(data[offset + 8:offset + 8 + size], lines * sum(struct.calcsize(form % width) for form in names.values()))
+        start = 0
+        for _ in range(lines):
+            for name, form in names.items():
+                channels[name].extend(struct.unpack_from(form % width, raw, start))
+                start += struct.calcsize(form % width)
     return header, width, height, channels
 
 

@@ -3,11 +3,15 @@
 // it: seccomp stops those calls before the kernel sees them, so that those of the C library itself
 // (stdio, malloc) count too, which a replaced write() would not see.
 //
-//   FAULT_KIND    write, rename, open, fsync or memory (mmap and brk)
+//   FAULT_KIND    write, rename, open, fsync or memory (mmap and brk); link; lock; over: a rename
+//                 onto a file that is there; end: any that changes or flushes files
 //   FAULT_AT      the number of the call that fails, from 1; 0 counts only
 //   FAULT_STAYS   1: each later one fails as well (a full disk, no memory left)
-//   FAULT_ERROR   errno of the failure
+//   FAULT_ERROR   errno of the failure; 0: the process is killed before the call
 //   FAULT_COUNT   a file that takes the number of such calls at the end
+//   FAULT_LOG     with `end`, a file that takes a line for each call that was done: w, s or r
+//                 (written, flushed, renamed) and the inode, of a rename that of the file
+//   FAULT_CLOCK   seconds that clocks jump by at each look, forth and back
 //
 // Clocks go by how often they are looked at, so that the files of one thread's runs are the same
 // bytes. Linux on x86-64.
@@ -24,6 +28,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <time.h>
 #include <ucontext.h>
@@ -34,7 +39,8 @@ enum { mark = 0x46544c54 };
 
 static atomic_long count;
 static long fails_at;
-static int stays, error_number;
+static int stays, error_number, only_over, log_file = -1;
+static long jump_s;
 static char count_path[4096];
 
 static long call(long number, long a, long b, long c, long d, long e, long f) {
@@ -49,12 +55,36 @@ static long call(long number, long a, long b, long c, long d, long e, long f) {
   return result;
 }
 
+static int is_rename(long number) { return number == SYS_rename || number == SYS_renameat || number == SYS_renameat2; }
+
+// The new name of a rename or link.
+static long new_inode(long number, const greg_t* r) {
+  struct stat found;
+  const int beside = number != SYS_rename && number != SYS_link;
+  const long result = call(SYS_newfstatat, beside ? r[REG_RDX] : AT_FDCWD, beside ? r[REG_R10] : r[REG_RSI],
+                           (long)&found, 0, 0, mark);
+  return result == 0 ? (long)found.st_ino : 0;
+}
+
+static void note(long number, const greg_t* r) {
+  const int flushes = number == SYS_fsync || number == SYS_fdatasync;
+  const int names = is_rename(number) || number == SYS_link || number == SYS_linkat;
+  struct stat found = {.st_ino = 0};
+  if (!names) call(SYS_fstat, r[REG_RDI], (long)&found, 0, 0, 0, mark);
+  char text[64];
+  const long inode = names ? new_inode(number, r) : (long)found.st_ino;
+  const int size = snprintf(text, sizeof text, "%c %ld\n", names ? 'r' : flushes ? 's' : 'w', inode);
+  call(SYS_write, log_file, (long)text, size, 0, 0, mark);
+}
+
 static void stopped(int signal_number, siginfo_t* info, void* context) {
   (void)signal_number;
   greg_t* const r = ((ucontext_t*)context)->uc_mcontext.gregs;
   const long number = info->si_syscall;
-  const long now = atomic_fetch_add(&count, 1) + 1;
-  if (fails_at > 0 && (stays ? now >= fails_at : now == fails_at)) {
+  const int counts = !only_over || (is_rename(number) && new_inode(number, r) != 0);
+  const long now = counts ? atomic_fetch_add(&count, 1) + 1 : 0;
+  if (fails_at > 0 && now > 0 && (stays ? now >= fails_at : now == fails_at)) {
+    if (error_number == 0) call(SYS_kill, getpid(), SIGKILL, 0, 0, 0, mark);
     // brk gives the old end where it cannot move it.
     r[REG_RAX] = number == SYS_brk ? call(SYS_brk, 0, 0, 0, 0, 0, mark) : -error_number;
     return;
@@ -64,19 +94,25 @@ static void stopped(int signal_number, siginfo_t* info, void* context) {
   r[REG_RAX] = call(number, r[REG_RDI], r[REG_RSI], r[REG_RDX], r[REG_R10],
                     is_mmap ? (long)((unsigned long)mark << 32 | (unsigned)r[REG_R8]) : r[REG_R8],
                     is_mmap ? r[REG_R9] : mark);
+  if (log_file >= 0 && r[REG_RAX] >= 0) note(number, r);
 }
 
-static const int calls_of[][7] = {
+static const int calls_of[][14] = {
     {SYS_write, SYS_pwrite64, SYS_writev, SYS_pwritev, SYS_ftruncate, 0},
     {SYS_rename, SYS_renameat, SYS_renameat2, SYS_link, SYS_linkat, 0},
     {SYS_open, SYS_openat, SYS_creat, SYS_mkdir, SYS_mkdirat, 0},
     {SYS_fsync, SYS_fdatasync, 0},
     {SYS_mmap, SYS_brk, SYS_mremap, 0},
+    {SYS_link, SYS_linkat, 0},
+    {SYS_flock, 0},
+    {SYS_rename, SYS_renameat, SYS_renameat2, 0},
+    {SYS_write, SYS_pwrite64, SYS_writev, SYS_pwritev, SYS_ftruncate, SYS_rename, SYS_renameat, SYS_renameat2, SYS_link,
+     SYS_linkat, SYS_fsync, SYS_fdatasync, 0},
 };
-static const char* const kinds[] = {"write", "rename", "open", "fsync", "memory"};
+static const char* const kinds[] = {"write", "rename", "open", "fsync", "memory", "link", "lock", "over", "end"};
 
 static void filter(const int* calls) {
-  enum { most = 64 };
+  enum { most = 96 };
   struct sock_filter code[most];
   unsigned n = 0;
 #define LOAD(field) \
@@ -114,7 +150,12 @@ __attribute__((constructor)) static void begin(void) {
   fails_at = atol(getenv("FAULT_AT"));
   stays = atoi(getenv("FAULT_STAYS"));
   error_number = atoi(getenv("FAULT_ERROR"));
+  only_over = strcmp(kind, "over") == 0;
   const char* const path = getenv("FAULT_COUNT");
+  const char* const log = getenv("FAULT_LOG");
+  if (log != NULL) log_file = open(log, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
+  const char* const jump = getenv("FAULT_CLOCK");
+  if (jump != NULL) jump_s = atol(jump);
   if (path != NULL) strncpy(count_path, path, sizeof count_path - 1);
   struct sigaction action = {.sa_sigaction = stopped, .sa_flags = SA_SIGINFO | SA_NODEFER | SA_RESTART};
   sigaction(SIGSYS, &action, NULL);
@@ -140,7 +181,8 @@ static long now_us(void) {
 int clock_gettime(clockid_t clock, struct timespec* now) {
   (void)clock;
   const long us = now_us();
-  *now = (struct timespec){.tv_sec = 1000000000 + us / 1000000, .tv_nsec = us % 1000000 * 1000};
+  const long jumped = us % 2 * jump_s;
+  *now = (struct timespec){.tv_sec = 1000000000 + jumped + us / 1000000, .tv_nsec = us % 1000000 * 1000};
   return 0;
 }
 

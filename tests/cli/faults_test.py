@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """System calls that fail, one after the other, in every command that writes: no file is torn, no failure is kept back, a
-run afterwards writes the bytes of one that nothing happened to.
+run afterwards writes the bytes of one that nothing happened to. The same where the process is killed before any one of
+the calls that change files, which are all the moments that files can tell apart; and where the power goes with it: what
+was not flushed is dropped, and names that a folder was given since it was flushed. File systems without links, without
+locks, without renaming onto a file that is there; clocks that jump.
 
 Some calls of each kind are made to fail; all of them, and what was found as a table, with EARTHSHINE_FAULTS=all
-(10 minutes). EARTHSHINE_FAULTS=NAME does so for one command. Exit code 77 where the calls cannot be stopped: elsewhere
+(20 minutes). EARTHSHINE_FAULTS=NAME does so for one command or one column of the table. Exit code 77 where the calls cannot be stopped: elsewhere
 than on Linux on x86-64, or with a sanitizer, which wants to be preloaded itself.
 """
 import errno
@@ -13,6 +16,7 @@ import pathlib
 import platform
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -72,13 +76,41 @@ FAULTS = {
     "flush": ("fsync", errno.EIO, False),
     "memory": ("memory", errno.ENOMEM, True),
     "memory once": ("memory", errno.ENOMEM, False),
+    "kill": ("end", 0, False),
+    "power cut": ("end", 0, False),
 }
+# What a file system lacks, or a clock does; whether the work is done all the same, or may be refused with all files kept.
+PLACES = {
+    "no links": ({"FAULT_KIND": "link", "FAULT_ERROR": errno.EPERM}, True),
+    "no locks": ({"FAULT_KIND": "lock", "FAULT_ERROR": errno.EOPNOTSUPP}, True),
+    "no locks on this mount": ({"FAULT_KIND": "lock", "FAULT_ERROR": errno.ENOSYS}, True),
+    "no lock server": ({"FAULT_KIND": "lock", "FAULT_ERROR": errno.ENOLCK}, True),
+    "no flush of folders and files": ({"FAULT_KIND": "fsync", "FAULT_ERROR": errno.EINVAL}, True),
+    "no rename onto a file": ({"FAULT_KIND": "over", "FAULT_ERROR": errno.EEXIST}, False),
+    "clock that jumps by an hour": ({"FAULT_KIND": "lock", "FAULT_AT": 0, "FAULT_CLOCK": 3600}, True),
+}
+UNFINISHED = re.compile(r"(^|/)\.[^/]*\.part$")
 WANTED = os.environ.get("EARTHSHINE_FAULTS", "")
 PICKED = 1  # calls of each kind of fault in each command, when not all are
 
 
 def files_of(folder):
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def cut_power(folder, old, log):
+    """Drops what did not reach the disk: bytes written since a file was flushed, names given since their folder was."""
+    lines = [line.split() for line in log.read_text().splitlines()]
+    last = {(what, int(inode)): k for k, (what, inode) in enumerate(lines)}
+    for path in [path for path in folder.rglob("*") if path.is_file()]:
+        own, above = path.stat().st_ino, path.parent.stat().st_ino
+        name = str(path.relative_to(folder))
+        if last.get(("r", own), -1) > last.get(("s", above), -1):
+            path.unlink()
+            if name in old:
+                path.write_bytes(old[name])
+        elif last.get(("w", own), -1) > last.get(("s", own), -1):
+            path.write_bytes(b"")
 
 
 def results_of(files):
@@ -103,17 +135,19 @@ class Faults(program.Case):
     def setUp(self):
         super().setUp()
         self.count = pathlib.Path(self.made.name) / "count"
+        self.log = pathlib.Path(self.made.name) / "log"
         self.found, self.ended = [], 0
 
-    def run_faulty(self, folder, call, kind, at=0, number=errno.EIO, stays=False):
+    def run_faulty(self, folder, call, kind, at=0, number=errno.EIO, stays=False, more=None):
         fault = {"LD_PRELOAD": self.shim, "FAULT_KIND": kind, "FAULT_AT": at, "FAULT_ERROR": number, "FAULT_STAYS": int(stays),
                  "FAULT_COUNT": self.count, "PATH": "/nowhere"}  # no gnuplot: it would start under the filter
+        fault |= more or {}
         return subprocess.run([program.PROGRAM, *call, "-j", "1", "-q"], cwd=folder, timeout=120, stdin=subprocess.DEVNULL,
                               capture_output=True, env=os.environ | {key: str(value) for key, value in fault.items()}, check=False)
 
     def before(self, name):
-        """A folder with the inputs, and with the results of another seed."""
-        folder = self.folder / "before"
+        """A folder with the inputs, and with the results of another seed. Parts know where they were begun: made there."""
+        folder = self.folder / "now"
         folder.mkdir()
         rows = [f"{a},{0.3 + 0.9 * (1 - a / 90)}" for a in range(0, 90, 10)]
         for file, text in (SCENES | {"s.toml": STUDY, "paint.csv": "\n".join(rows) + "\n"}).items():
@@ -123,7 +157,7 @@ class Faults(program.Case):
             self.assertEqual(done.returncode, 0, f"{call}: {done.stderr}")
         if name == "report":
             (folder / "d/report.html").write_text("older", encoding="utf-8")
-        return folder
+        return folder.rename(self.folder / "before")
 
     def copy(self, folder):
         there = self.folder / "now"
@@ -133,8 +167,13 @@ class Faults(program.Case):
 
     def judge(self, what, old, new, folder, run, call):
         """Gives whether the run failed; what is wrong goes to `found`."""
+        title = what.split(", ")[1]
+        killed = run.returncode == -signal.SIGKILL and title.startswith(("kill", "power"))
+        if title.startswith("power"):
+            cut_power(folder, old, self.log)
         now = files_of(folder)
-        torn = [path for path, data in now.items() if data not in (old.get(path), new["files"].get(path))]
+        torn = [path for path, data in now.items() if data not in (old.get(path), new["files"].get(path))
+                and not (killed and UNFINISHED.search(path))]
         lost = [path for path in old if path not in now and path in new["files"]]
         said = run.stderr.decode("utf-8", "replace").strip()
         if torn or lost:
@@ -143,9 +182,9 @@ class Faults(program.Case):
             if now != new["files"] or run.stdout != new["stdout"]:
                 self.found.append(f"{what}: exit 0, other results: {[p for p in new['files'] if now.get(p) != new['files'][p]]}")
             return False
-        if run.returncode < 0 and what.split(", ")[1].startswith("memory"):
+        if run.returncode < 0 and title.startswith("memory"):
             self.ended += 1  # within a library that has no way to say so: HDF5, oneTBB
-        elif run.returncode not in (1, 2) or "earthshine: " not in said:
+        elif not killed and (run.returncode not in (1, 2) or "earthshine: " not in said):
             self.found.append(f"{what}: exit {run.returncode}: {said!r}")
         again = self.run_faulty(folder, call, "fsync")
         there = results_of(files_of(folder))
@@ -154,11 +193,24 @@ class Faults(program.Case):
             self.found.append(f"{what}: afterwards exit {again.returncode}, other: {other}: {again.stderr!r}")
         return True
 
+    def places(self, name, before, old, new):
+        for title, (fault, works) in PLACES.items():
+            folder = self.copy(before)
+            run = self.run_faulty(folder, COMMANDS[name][1], "", 1, stays=True, more=fault)
+            now, kept = results_of(files_of(folder)), results_of(old)
+            other = [path for path in now.keys() | new["results"].keys() if now.get(path) != new["results"].get(path)]
+            if "FAULT_CLOCK" in fault:  # these state seconds
+                other = [path for path in other if path not in ("d/compare.json", "d/compare.csv")]
+            done = run.returncode == 0 and not other
+            refused = run.returncode == 1 and b"earthshine: " in run.stderr and all(now[path] == kept[path] for path in kept)
+            if not (done or (refused and not works)):
+                self.found.append(f"{name}, {title}: exit {run.returncode}, other: {other}: {run.stderr!r}")
+
     def sweep(self, name):
         call = COMMANDS[name][1]
         before = self.before(name)
         old = files_of(before)
-        whole, counts = WANTED in ("all", name), {}
+        counts = {}
         for kind in {kind for kind, _, _ in FAULTS.values()}:
             folder = self.copy(before)
             run = self.run_faulty(folder, call, kind)
@@ -169,16 +221,18 @@ class Faults(program.Case):
         self.assertNotEqual(new["files"] if call[0] != "fit-phong" else None, old, "the run writes nothing")
         row = []
         for title, (kind, number, stays) in FAULTS.items():
+            more = {"FAULT_LOG": self.log} if title == "power cut" else {}
             most = counts[kind]
-            picks = range(1, most + 1) if whole else sorted({1 + most * (2 * k + 1) // (2 * PICKED) for k in range(PICKED)} if most else ())
+            picks = range(1, most + 1) if WANTED in ("all", name, title) else sorted({1 + most * (2 * k + 1) // (2 * PICKED) for k in range(PICKED)} if most else ())
             failed = 0
             for at in picks:
                 folder = self.copy(before)
-                run = self.run_faulty(folder, call, kind, at, number, stays)
+                run = self.run_faulty(folder, call, kind, at, number, stays, more)
                 failed += self.judge(f"{name}, {title} {at} of {most}", old, new, folder, run, call)
             row.append(f"{len(picks)}, {failed}" + (f", {self.ended}" if self.ended else ""))
             self.ended = 0
-        if whole:
+        self.places(name, before, old, new)
+        if WANTED:
             print(f"| `{name}` | {' | '.join(row)} |", flush=True)
         if self.found:
             self.fail("\n".join(self.found))
@@ -189,7 +243,7 @@ def case_of(name):
 
 
 for command in COMMANDS:
-    if WANTED in ("", "all", command):
+    if WANTED in ("", "all", command, *FAULTS):
         setattr(Faults, "test_" + command.replace(" ", "_").replace("-", ""), case_of(command))
 
 if __name__ == "__main__":

@@ -7,6 +7,9 @@
 #include <fstream>
 #include <string>
 
+#include "app/json.h"
+#include "app/report/page.h"
+#include "app/study/results_json.h"
 #include "base/error.h"
 #include "base/files/exr_file.h"
 #include "base/files/exr_reader.h"
@@ -62,6 +65,13 @@ void solution(const fs::path& file) {
       radiosity::read_solution(file, {scene, groups, options, EARTHSHINE_PROGRAM_VERSION}));
 }
 
+// The page is made of it, too: what is read wrongly shows there. Pictures are named in it that are
+// not there, and then it is refused.
+void study_results(const fs::path& file) {
+  const auto study = app::read_results(file.filename(), app::read_json(file, ""));
+  app::write_report(file.parent_path(), study, {.plain = true, .quiet = true});
+}
+
 constexpr Reader all_readers[] = {
     {"scene", ".toml", [](const fs::path& f) { degrade::check_settings(scenes::read_scene(f)); }},
     {"study", ".toml", [](const fs::path& f) { static_cast<void>(studies::read_study_file(f)); }},
@@ -85,7 +95,8 @@ constexpr Reader all_readers[] = {
      [](const fs::path& f) { static_cast<void>(scenes::read_reflectance(f)); }},
     {"exr", ".exr", picture},
     {"png", ".png", [](const fs::path& f) { static_cast<void>(base::read_png(f)); }},
-    {"solution", ".h5", solution}};
+    {"solution", ".h5", solution},
+    {"report", ".json", study_results}};
 
 // Gone when the process ends.
 struct Folder {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
 #include <utility>
 
+#include "radiosity/near_lamps.h"
 #include "studies/steer/reach_surfaces.h"
 #include "tests/studies/room.h"
 
@@ -32,6 +35,51 @@ TEST(ReachSolution, OfSurfacesALimitIsNamedWhereTheErrorIsNotReachedAndThereAlon
   }
   EXPECT_GT(reached_it, 2);
   EXPECT_GT(missed_it, 0);
+}
+
+// By a clock that goes on by `pass_s` in each pass over all patches and not otherwise; a limit of 0
+// is past from the start.
+SteeredSolution within(double limit_s, double pass_s) {
+  const tests::Prepared prepared(tests::small_room().scene);
+  double now = limit_s > 0.0 ? 0.0 : 1.0;
+  Wanted wanted;
+  wanted.error = 0.01;
+  wanted.seconds = std::max(limit_s, 1e-9);
+  wanted.now = [&now] { return now; };
+  const auto stage = [&](const std::string& name) -> raytrace::Progress {
+    const bool whole = name.find(" patches") != std::string::npos && !name.starts_with("shadows");
+    return [&now, step = whole ? pass_s : 0.0](std::size_t done, std::size_t total) {
+      if (done == total) now += step;
+    };
+  };
+  return reach_surfaces(
+      {tests::small_room().scene, prepared.groups, prepared.effects, prepared.query}, wanted, 1, {},
+      stage);
+}
+
+// Where no time is left the error of the first solve is stated, and nothing else is begun: one
+// step, on the patches of the first cut.
+TEST(ReachSolution, OfSurfacesPastTheTimeLimitIsTheFirstSolveWithItsError) {
+  const SteeredSolution late = within(0.0, 0.0);
+  EXPECT_EQ(late.limit, Limit::Time);
+  ASSERT_EQ(late.steps.size(), 1U);
+  EXPECT_TRUE(late.surface.known);
+  const scenes::Scene& scene = tests::small_room().scene;
+  const radiosity::SolveOptions first = first_surface_options(scene, 0.01, 1);
+  EXPECT_EQ(late.steps[0].patches,
+            radiosity::subdivide_near_lamps(scene, first.patch_edge_m).count());
+}
+
+// A pass of 0.45 of the limit leaves 0.55: the next one may cast 0.55 / 0.45 = 1.2 times its rays,
+// twice with what numbers of rays are rounded up to, where without a limit it casts 2^20.
+TEST(ReachSolution, OfSurfacesNoPassIsBegunThatTheTimeLeftDoesNotPayFor) {
+  const SteeredSolution found = within(1.0, 0.45);
+  EXPECT_EQ(found.limit, Limit::Time);
+  ASSERT_EQ(found.steps.size(), 2U);
+  const auto rays = [&](std::size_t k) {
+    return static_cast<double>(found.steps[k].patches) * found.steps[k].form_factor_rays;
+  };
+  EXPECT_LE(rays(1), 2.0 * rays(0));
 }
 
 }  // namespace
