@@ -54,7 +54,6 @@ CachedResult kept_frame(const Frame& frame, const raytrace::Window& picture) {
                 {"least_camera_samples", report.least_camera_samples},
                 {"finished_share", report.finished_share}};
   const raytrace::StatedError& stated = frame.error;
-  if (stated.luminance.empty()) return kept;
   kept.image.add(stated_luminance) = stated.luminance;
   std::vector<float>& counts = kept.image.add(stated_counts);
   std::copy(stated.counts.begin(), stated.counts.end(), counts.begin());

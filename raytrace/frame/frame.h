@@ -79,12 +79,28 @@ enum class ErrorPart {
 };
 inline constexpr std::size_t error_parts = 4;
 
+// Luminance of the sources that a pixel's samples saw themselves, and its square; how many samples
+// met a surface that reflects.
+struct SourceSeen {
+  double luminance = 0.0, luminance2 = 0.0, reflecting = 0.0;
+  void add(double seen) { luminance += seen, luminance2 += seen * seen; }
+  // Whether so many samples show a surface that reflects and no edge of a source itself.
+  [[nodiscard]] bool counts(double samples) const {
+    if (reflecting == 0.0 || luminance == 0.0) return reflecting > 0.0;
+    const double spread = luminance2 - luminance * luminance / samples;
+    return reflecting == samples && spread <= 1e-6 * luminance2;
+  }
+};
+
 // Per pixel of a window.
 struct StatedError {
   std::vector<float> luminance;  // without sources that the camera sees itself, cd/m^2
   std::vector<std::array<float, error_parts>> squared;  // of it, by part, (cd/m^2)^2
   // 1: shows a surface that reflects, and no edge of a source
   std::vector<std::uint8_t> counts;
+
+  explicit StatedError(std::size_t pixels = 0)
+      : luminance(pixels, 0.0F), squared(pixels), counts(pixels, 0) {}
 };
 
 // What an error at a pixel counts, over a picture (or a target) of that mean luminance: pixels
@@ -119,8 +135,8 @@ struct ErrorSums {
 //   the unfiltered layers of first_hit.h and the coverages of cryptomatte.h
 struct Frame {
   base::Image image;
-  Window window;      // which part of the picture the image is
-  StatedError error;  // empty for traced paths
+  Window window;  // which part of the picture the image is
+  StatedError error;
   RenderReport report;
 };
 }  // namespace earthshine::raytrace

@@ -41,12 +41,7 @@ Frame join(const std::vector<Frame>& parts, const Window& window) {
   whole.report.seconds = whole.report.gather_seconds = 0.0;
   whole.image = {window.columns, window.rows, {}};
   for (const base::Channel& channel : parts.front().image.channels) whole.image.add(channel.name);
-  const bool stated = !parts.front().error.luminance.empty();
-  if (stated) {
-    whole.error.luminance.assign(pixels, 0.0F);
-    whole.error.squared.assign(pixels, {});
-    whole.error.counts.assign(pixels, 0);
-  }
+  whole.error = StatedError(pixels);
   // Sums of whole numbers, which means of the parts give back exactly.
   double samples = 0.0, finished = 0.0;
   for (const Frame& part : parts) {
@@ -63,24 +58,14 @@ Frame join(const std::vector<Frame>& parts, const Window& window) {
       if (own == nullptr) throw std::invalid_argument("a part lacks a layer");
       place(own->values, part.window, window, channel.values);
     }
-    if (!stated) continue;
     place(part.error.luminance, part.window, window, whole.error.luminance);
     place(part.error.squared, part.window, window, whole.error.squared);
     place(part.error.counts, part.window, window, whole.error.counts);
   }
   whole.report.camera_samples = samples / static_cast<double>(pixels);
   whole.report.finished_share = finished / static_cast<double>(pixels);
-  whole.report.relative_noise =
-      stated ? std::sqrt(add_up(whole.error).squared_error()) : noise_of_paths(whole.image);
+  whole.report.relative_noise = std::sqrt(add_up(whole.error).squared_error());
   return whole;
-}
-
-double noise_of_paths(const base::Image& image) {
-  double error = 0.0, mean = 0.0;
-  for (const float v : image.find("variance")->values) error += double(v);
-  for (const float y : base::luminance_of(image)) mean += double(y);
-  const auto n = static_cast<double>(image.pixel_count());
-  return mean > 0.0 ? std::sqrt(error / n) / (mean / n) : 0.0;
 }
 
 }  // namespace earthshine::raytrace

@@ -14,8 +14,4 @@ namespace earthshine::raytrace {
 // not fill it or the frames have other layers.
 [[nodiscard]] Frame join(const std::vector<Frame>& parts, const Window& window);
 
-// Root mean square standard error over the mean luminance, of traced paths, by the layer
-// `variance`.
-[[nodiscard]] double noise_of_paths(const base::Image& image);
-
 }  // namespace earthshine::raytrace

@@ -8,6 +8,7 @@
 #include "raytrace/gather/gather_tiles.h"
 
 namespace earthshine::raytrace {
+
 GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
                          const GatherSurface& surface, const CameraModel& camera,
                          const Window& window, const Setting& setting)

@@ -65,7 +65,7 @@ void GatherRays::make(const TilePoints& points, std::size_t first, std::size_t o
   const float* v = &samples.v[j * samples.padded + offset];
   const TilePoints::Start& from = points.start_of(j);
   for (std::size_t k = 0; k < width; ++k) {
-    // Lanes past the last point repeat what stands there; nobody reads their hits.
+    // Nobody reads the hits of lanes past the last point.
     const std::size_t p = first + offset + k;
     const float radius = std::sqrt(u[k]), z = std::sqrt(1.0F - u[k]);
     const base::Turned way = base::turn(v[k]);

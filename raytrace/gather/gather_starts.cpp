@@ -70,11 +70,13 @@ Starts GatherField::starts_of(Gathered kind, std::size_t p, std::uint32_t turn,
 
 std::size_t GatherField::find(int x, int y, const glm::vec3& position,
                               const glm::vec3& normal) const {
-  // Further off, as a lens out of focus looks, irradiance may be another.
+  // Further off, as a lens out of focus looks, irradiance may be another. A stray lies anywhere in
+  // its pixel: if it stands for the mean over the pixel, all of the pixel has to read it.
   const auto if_near = [&](std::size_t index) {
     const GatherPoint& point = points_[index];
     const float half = half_pixel(point);
-    const float most = std::max(half, std::min(6.0F * half, alike_share * point.reach_m));
+    const float own = index >= grid_ && starts_from(index) > 1 ? 2.0F * half : half;
+    const float most = std::max(own, std::min(6.0F * half, alike_share * point.reach_m));
     return glm::length(position - point.position) <= most ? index : no_point;
   };
   if (!window_.contains(x, y)) return no_point;

@@ -42,11 +42,8 @@ class FieldOfPixel {
 }  // namespace
 
 StatedError state_error(const PixelSums& sums, const GatherField* field, const Window& window) {
-  StatedError stated;
+  StatedError stated(window.pixel_count());
   const std::size_t layers = field != nullptr ? field->image_layers() : sums.image_layers;
-  stated.luminance.assign(window.pixel_count(), 0.0F);
-  stated.squared.assign(window.pixel_count(), {});
-  stated.counts.assign(window.pixel_count(), 0);
   for (int y = window.y; y < window.y + window.rows; ++y) {
     for (int x = window.x; x < window.x + window.columns; ++x) {
       const std::size_t from = sums.window.index(x, y), to = window.index(x, y);

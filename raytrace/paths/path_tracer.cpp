@@ -9,7 +9,6 @@
 #include <string>
 
 #include "base/ranks/ranks.h"
-#include "raytrace/frame/join.h"
 #include "raytrace/paths/path_walker.h"
 
 namespace earthshine::raytrace {
@@ -52,37 +51,55 @@ base::Image make_image(const Window& window, const std::vector<std::string>& lay
   return image;
 }
 
-// Mean of a pixel's paths per layer, and their luminance's variance as it goes (Welford 1962).
+// Mean and variance as they go (Welford 1962).
+struct Spread {
+  double samples = 0.0, mean = 0.0, squares = 0.0;
+
+  void add(double value) {
+    samples += 1.0;
+    const double off = value - mean;
+    mean += off / samples;
+    squares += off * (value - mean);
+  }
+  [[nodiscard]] double variance_of_mean() const { return squares / (samples - 1.0) / samples; }
+};
+
 struct PathSums {
   std::vector<Rgb> layers;
-  double paths = 0.0, mean_luminance = 0.0, squares = 0.0;
+  Spread luminance, reflected;  // of all that is seen; without sources that the camera sees itself
+  SourceSeen source;
 
-  void add(std::span<const Rgb> radiance) {
+  void add(std::span<const Rgb> radiance, const PathWalker& walker) {
     Rgb all(0.0);
     for (std::size_t k = 0; k < layers.size(); ++k) {
       layers[k] += radiance[k];
       all += radiance[k];
     }
-    paths += 1.0;
-    const double off = base::luminance(all) - mean_luminance;
-    mean_luminance += off / paths;
-    squares += off * (base::luminance(all) - mean_luminance);
+    luminance.add(base::luminance(all));
+    reflected.add(base::luminance(all) - walker.source_luminance());
+    source.add(walker.source_luminance());
+    source.reflecting += walker.met_surface() ? 1.0 : 0.0;
   }
-  [[nodiscard]] double variance_of_mean() const { return squares / (paths - 1.0) / paths; }
 };
 
-void store(const PathSums& sums, std::size_t pixel, base::Image& image) {
+void store(const PathSums& sums, std::size_t pixel, Frame& frame) {
+  base::Image& image = frame.image;
+  const double paths = sums.luminance.samples;
   for (std::size_t c = 0; c < rgb; ++c) {
     float total = 0.0F;
     for (std::size_t layer = 0; layer < sums.layers.size(); ++layer) {
-      const auto value = static_cast<float>(sums.layers[layer][static_cast<int>(c)] / sums.paths);
+      const auto value = static_cast<float>(sums.layers[layer][static_cast<int>(c)] / paths);
       total += value;
       const std::size_t channel = rgb + 1 + rgb * layer + c;
       if (channel < image.channels.size()) image.channels[channel].values[pixel] = value;
     }
     image.channels[c].values[pixel] = total;
   }
-  image.channels[rgb].values[pixel] = static_cast<float>(sums.variance_of_mean());
+  image.channels[rgb].values[pixel] = static_cast<float>(sums.luminance.variance_of_mean());
+  frame.error.luminance[pixel] = static_cast<float>(sums.reflected.mean);
+  frame.error.squared[pixel][static_cast<std::size_t>(ErrorPart::Camera)] =
+      static_cast<float>(sums.reflected.variance_of_mean());
+  frame.error.counts[pixel] = sums.source.counts(paths) ? 1 : 0;
 }
 
 }  // namespace
@@ -103,6 +120,7 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
   const Window window =
       options.window.columns > 0 ? options.window : Window{0, 0, options.columns, options.rows};
   frame.window = window;
+  frame.error = StatedError(window.pixel_count());
   frame.image = make_image(window, options.per_light ? groups.names : std::vector<std::string>{});
   const auto columns = static_cast<std::size_t>(window.columns);
   const auto rows = static_cast<std::size_t>(window.rows);
@@ -118,16 +136,16 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
       const std::size_t in_y = static_cast<std::size_t>(window.y) + y;
       const base::Key key(options.seed, base::Stream::Path,
                           in_y * static_cast<std::size_t>(options.columns) + in_x);
-      PathSums sums{std::vector<Rgb>(world.layers, Rgb(0.0))};
+      PathSums sums{std::vector<Rgb>(world.layers, Rgb(0.0)), {}, {}, {}};
       for (int path = 0; path < options.paths_per_pixel; ++path) {
         base::Rng rng(key.with(static_cast<std::uint64_t>(path)));
         const double at_x = double(in_x) + rng.next();
         const double at_y = double(in_y) + rng.next();
         const double lens_u = rng.next();
         const double lens_v = rng.next();
-        sums.add(walker.walk(model.ray(at_x, at_y, lens_u, lens_v), rng));
+        sums.add(walker.walk(model.ray(at_x, at_y, lens_u, lens_v), rng), walker);
       }
-      store(sums, y * columns + x, frame.image);
+      store(sums, y * columns + x, frame);
     }
     row_rays[y] = walker.rays();
     finished[y] = 1;
@@ -141,6 +159,9 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
     for (base::Channel& channel : frame.image.channels) {
       parcel.pass_range(&channel.values[y * columns], columns);
     }
+    parcel.pass_range(&frame.error.luminance[y * columns], columns);
+    parcel.pass_range(&frame.error.squared[y * columns], columns);
+    parcel.pass_range(&frame.error.counts[y * columns], columns);
   });
   for (const RayCounts& rays : row_rays) frame.report.rays += rays;
   done = static_cast<std::size_t>(std::count(finished.begin(), finished.end(), 1));
@@ -148,7 +169,7 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
   frame.report.stopped = done < rows;
   frame.report.camera_samples = options.paths_per_pixel;
   frame.report.most_camera_samples = options.paths_per_pixel;
-  frame.report.relative_noise = noise_of_paths(frame.image);
+  frame.report.relative_noise = std::sqrt(add_up(frame.error).squared_error());
   frame.report.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return frame;

@@ -34,11 +34,13 @@ void PathWalker::begin(const Ray& start, base::Rng& rng) {
   ray_ = start;
   weight_ = Rgb(1.0);
   share_ = {};
+  at_first_ = met_surface_ = false;
+  source_luminance_ = 0.0;
 }
 
 std::span<const Rgb> PathWalker::walk(const Ray& start, base::Rng& rng) {
   begin(start, rng);
-  sees_sampled_ = from_camera_ = true;
+  sees_sampled_ = from_camera_ = at_first_ = true;
   turn();
   ++rays_.camera;
   for (int bounce = 0; step() && survives(bounce); ++bounce) {
@@ -74,7 +76,9 @@ bool PathWalker::step() {
   }
   const Surface surface = surface_at(hit);
   if (is_black(surface)) return false;
+  if (at_first_) met_surface_ = surface.reflects() || surface.material.passes_light_on();
   shine(surface, hit);
+  at_first_ = false;
   return go_on(surface, nullptr);
 }
 
@@ -84,14 +88,20 @@ void PathWalker::shine(const Surface& surface, const scenes::Hit& hit) {
   const scenes::Material& material = surface.material;
   const std::uint32_t number = world_.scene.triangles[hit.triangle].material;
   if (sees_sampled_ || !world_.sampled_emitter[number]) {
-    add(world_.groups.material[number], scenes::emit_at(world_.scene, material, hit) / pi);
+    see(world_.groups.material[number], scenes::emit_at(world_.scene, material, hit) / pi);
   }
   if (from_camera_) add(world_.groups.ambient, surface.diffuse * world_.scene.ambient_radiance);
-  if (lit(material.diffuse) || lit(material.specular)) light_directly(surface);
+  if (surface.reflects()) light_directly(surface);
 }
 
 void PathWalker::add(std::size_t group, const Rgb& radiance) {
   if (group != no_group) radiance_[world_.layer[group]] += weight_ * radiance;
+}
+
+// Of a source itself.
+void PathWalker::see(std::size_t group, const Rgb& radiance) {
+  add(group, radiance);
+  if (at_first_ && group != no_group) source_luminance_ += base::luminance(weight_ * radiance);
 }
 
 void PathWalker::see_sky() {
@@ -101,16 +111,16 @@ void PathWalker::see_sky() {
   if (on_earth) {
     const bool met = sees_sampled_ || world_.effects.earth_by_gather;
     if (met && world_.groups.earth != no_group) {
-      add(world_.groups.earth + scenes::earth_part(scene, ray_.direction),
+      see(world_.groups.earth + scenes::earth_part(scene, ray_.direction),
           scenes::earth_radiance(scene, ray_.direction));
     }
   } else if (sees_sampled_) {
-    add(world_.groups.sun, scenes::sky_radiance(scene, ray_.direction));
+    see(world_.groups.sun, scenes::sky_radiance(scene, ray_.direction));
   }
   if (!sees_sampled_ || !world_.effects.sun_parts) return;
   const std::size_t part = scenes::sun_part(scene, ray_.direction);
   if (part == scene.sky_parts->suns.size()) return;
-  add(world_.groups.sun_parts + part, scenes::sun_radiance(scene.sky_parts->suns[part]));
+  see(world_.groups.sun_parts + part, scenes::sun_radiance(scene.sky_parts->suns[part]));
 }
 
 bool PathWalker::see_lamp(const scenes::Hit& hit) {
@@ -123,7 +133,7 @@ bool PathWalker::see_lamp(const scenes::Hit& hit) {
     nearest = *lamp;
     group = world_.groups.lamp[k];
   }
-  add(group, nearest.radiance);
+  see(group, nearest.radiance);
   return group != no_group;
 }
 

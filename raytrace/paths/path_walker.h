@@ -34,6 +34,10 @@ class PathWalker {
   // Radiance that one path brings, cd/m^2 per layer; valid until the next call. All its random
   // numbers come from `rng`.
   [[nodiscard]] std::span<const Rgb> walk(const Ray& start, base::Rng& rng);
+  // What the camera itself saw on the last walk: luminance of sources, cd/m^2, and whether there is
+  // a surface that reflects.
+  [[nodiscard]] double source_luminance() const { return source_luminance_; }
+  [[nodiscard]] bool met_surface() const { return met_surface_; }
   // An unbiased estimate of L - L~ along a ray that left a diffuse or glossy surface and met
   // `first`; L~ is what `solution` reads there.
   [[nodiscard]] std::span<const Rgb> residual(const IncomingLight& solution, const Ray& ray,
@@ -55,6 +59,10 @@ class PathWalker {
     bool shines;    // reflects and emits: false inside glass
     Rgb diffuse;    // k_d there
     std::uint32_t triangle;
+    [[nodiscard]] bool reflects() const {
+      return shines && (base::max_component(material.diffuse) > 0.0 ||
+                        base::max_component(material.specular) > 0.0);
+    }
   };
 
   void begin(const Ray& start, base::Rng& rng);
@@ -64,6 +72,7 @@ class PathWalker {
   void shine(const Surface& surface, const scenes::Hit& hit);
   bool survives(int bounce);
   void add(std::size_t group, const Rgb& radiance);
+  void see(std::size_t group, const Rgb& radiance);
   void see_sky();
   bool see_lamp(const scenes::Hit& hit);
   void light_directly(const Surface& surface);
@@ -89,7 +98,10 @@ class PathWalker {
   bool from_camera_ = true;   // by mirrors and glass alone
   bool straight_ = true;      // } since the last turn: only where shadow rays go,
   int mirrors_ = 0;           // } and by so many flat mirrors
-  RayShare share_;            // of the last ray, with those aimed at bright patches
+  bool at_first_ = false;     // on the way from the camera to what it sees itself
+  bool met_surface_ = false;
+  double source_luminance_ = 0.0;
+  RayShare share_;  // of the last ray, with those aimed at bright patches
 };
 
 }  // namespace earthshine::raytrace

@@ -93,12 +93,7 @@ void PixelSums::add(std::size_t pixel, const PixelShader& shader, std::uint32_t 
 }
 
 bool PixelSums::counts(std::size_t pixel) const {
-  const double n = samples[pixel];
-  const SourceSeen& seen = source[pixel];
-  if (n == 0.0 || seen.reflecting == 0.0) return false;
-  if (seen.luminance == 0.0) return true;
-  const double spread = seen.luminance2 - seen.luminance * seen.luminance / n;
-  return seen.reflecting == n && spread <= 1e-6 * seen.luminance2;
+  return samples[pixel] > 0 && source[pixel].counts(samples[pixel]);
 }
 
 double PixelSums::sample_variance(std::size_t pixel) const {

@@ -69,8 +69,7 @@ void PixelShader::add_sample(std::size_t sample, const Ray& ray, const scenes::H
     if (reflects || material.passes_light_on()) source_.reflecting += 1.0;
   }
   shade(ray, hit, Rgb(1.0), 0, Seen::ByCamera);
-  source_.luminance += source_of_sample_;
-  source_.luminance2 += source_of_sample_ * source_of_sample_;
+  source_.add(source_of_sample_);
 }
 
 void PixelShader::end_pixel() {

@@ -61,12 +61,6 @@ struct FieldTerm {
   glm::vec3 diffuse{0.0F}, lobe{0.0F};
 };
 
-// Luminance of the sources that a pixel's samples saw themselves, and its square; how many samples
-// met a surface that reflects.
-struct SourceSeen {
-  double luminance = 0.0, luminance2 = 0.0, reflecting = 0.0;
-};
-
 // Shades the samples of one pixel after another; one object per thread. Samples with even and odd
 // numbers are two halves, independent of each other.
 class PixelShader {

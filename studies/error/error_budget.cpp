@@ -61,25 +61,19 @@ ErrorBudget error_budget(const StudyScene& scene, const WatchedPicture& picture,
   budget.not_captured = not_captured(scene, picture.options);
   const SurfacePixels seen(scene, *picture.camera, picture.options);
   const StatedError& stated = frame.error;
-  if (stated.luminance.empty()) {  // paths: independent samples that state their own spread
-    const double noise = frame.report.relative_noise;
-    budget.total = budget.parts.camera_samples = {noise, noise};
-    budget.pixels = noise > 0.0 ? seen.all().size() : 0;
-  } else {
-    std::vector<std::size_t> all(stated.luminance.size());
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    const ErrorSums whole = raytrace::add_up(stated, all);
-    budget.pixels = whole.luminance > 0.0 ? whole.pixels : 0;
-    budget.total = total_of(stated, all, frame.window.columns);
-    const double bound =
-        budget.total.estimate > 0.0 ? budget.total.bound_95 / budget.total.estimate : 1.0;
-    const auto part = [&](ErrorPart which) {
-      const double off = std::sqrt(whole.squared[static_cast<std::size_t>(which)]);
-      return ErrorEstimate{off, bound * off};
-    };
-    budget.parts = {part(ErrorPart::Gather), part(ErrorPart::Residual), part(ErrorPart::Lobe),
-                    part(ErrorPart::Camera)};
-  }
+  std::vector<std::size_t> all(stated.luminance.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const ErrorSums whole = raytrace::add_up(stated, all);
+  budget.pixels = whole.luminance > 0.0 ? whole.pixels : 0;
+  budget.total = total_of(stated, all, frame.window.columns);
+  const double bound =
+      budget.total.estimate > 0.0 ? budget.total.bound_95 / budget.total.estimate : 1.0;
+  const auto part = [&](ErrorPart which) {
+    const double off = std::sqrt(whole.squared[static_cast<std::size_t>(which)]);
+    return ErrorEstimate{off, bound * off};
+  };
+  budget.parts = {part(ErrorPart::Gather), part(ErrorPart::Residual), part(ErrorPart::Lobe),
+                  part(ErrorPart::Camera)};
   for (std::uint32_t object = 0; object < scene.scene.objects.size(); ++object) {
     if (!scene.scene.objects[object].target) continue;
     TargetError& target = budget.targets.emplace_back();
@@ -88,7 +82,6 @@ ErrorBudget error_budget(const StudyScene& scene, const WatchedPicture& picture,
     for (const std::uint32_t pixel : seen.of_object(object))
       pixels.push_back(seen.in_window(pixel));
     target.pixels = pixels.size();
-    if (stated.luminance.empty()) continue;
     target.luminance = raytrace::add_up(stated, pixels).luminance;
     target.error = total_of(stated, pixels, frame.window.columns);
   }

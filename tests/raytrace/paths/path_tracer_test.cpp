@@ -163,6 +163,40 @@ TEST(PathTracer, VarianceIsThatOfThePixelsMean) {
   EXPECT_NEAR(spread / 255.0 / (e.std_error * e.std_error * 256.0), 1.0, 4.0 * 0.1);
 }
 
+TEST(PathTracer, StatesTheErrorOfLightThatIsNotSeenStraightFromASource) {
+  // A wall and the edge of a lamp in view. Two pictures of independent paths differ by twice the
+  // squared error that each states, over the pixels that count and with their weights. The lamp's
+  // edges, a hundred times as bright as the wall, are in neither.
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  builder.room({m, m, m, m, m, m});
+  scenes::Lamp lamp = panel(0.4, 0.0);
+  lamp.position = Vec3(0.9, 0.3, 0.6);
+  builder.scene.lamps.push_back(lamp);
+  PathOptions options = pixels(24, 16);
+  const Frame one = picture(builder.scene, inside_room(), options);
+  options.seed = 2;
+  const Frame two = picture(builder.scene, inside_room(), options);
+  const std::vector<float>&a = one.error.luminance, &b = two.error.luminance;
+  double mean = 0.0, counting = 0.0;
+  for (std::size_t p = 0; p < a.size(); ++p) {
+    if (one.error.counts[p] == 0 || two.error.counts[p] == 0) continue;
+    mean += 0.5 * (double(a[p]) + double(b[p])), counting += 1.0;
+  }
+  mean /= counting;
+  double squares = 0.0, spread = 0.0;
+  for (std::size_t p = 0; p < a.size(); ++p) {
+    if (one.error.counts[p] == 0 || two.error.counts[p] == 0) continue;
+    const double weight = error_weight(0.5 * (double(a[p]) + double(b[p])), mean);
+    const double square = std::pow(weight * (double(a[p]) - double(b[p])) / mean, 2) / 2.0;
+    squares += square / counting, spread += square * square / counting;
+  }
+  const double doubt = std::sqrt((spread - squares * squares) / counting);
+  EXPECT_NEAR(std::pow(one.report.relative_noise, 2), squares, 4.0 * doubt);
+  EXPECT_LT(counting, 24.0 * 24.0);  // edges of the lamp are in view
+  EXPECT_LT(4.0 * doubt, squares);   // so that the law can fail
+}
+
 TEST(PathTracer, SinglePathOrNoPixelIsRefused) {
   EXPECT_THROW((void)picture(scenes::Scene{}, above(1.0), pixels(1, 1)), base::Error);
   EXPECT_THROW((void)picture(scenes::Scene{}, above(1.0), pixels(0, 4)), base::Error);

@@ -10,16 +10,29 @@
 namespace earthshine::raytrace {
 namespace {
 
-TEST(PixelMean, LightThatChangesWithinAPixelIsItsMean) {
-  // One pixel, straight above a dark floor from the foot of a sunlit wall to w = 2 m off it. A long
-  // wall of height h that sends out M gives E(x) = M / 2 (1 - x / sqrt(x^2 + h^2)) at x from it, in
-  // the mean M / 2 (1 - (sqrt(w^2 + h^2) - h) / w): ten times what the pixel's centre gets. A wall
-  // of 100 m lacks less than (w / 50)^2 of that; the wall gets back less than rho / 4 of M.
-  constexpr double w = 2.0, h = 0.1, rho = 0.01, exitance = 500.0;
+// Shows the same pixel whether something stands before its middle or not: 3 x 3 pixels, of which
+// the one in the middle looks straight down on a dark floor from the foot of a sunlit wall to w = 2
+// m off it. A long wall of height h that sends out M gives E(x) = M / 2 (1 - x / sqrt(x^2 + h^2))
+// at x from it, of which M / 2 (x - sqrt(x^2 + h^2)) is the integral: in the mean over the pixel
+// ten times what its centre gets. A wall of 100 m lacks less than (w / 50)^2 of that; the wall gets
+// back less than rho / 4 of M. A black speck close to the camera covers the middle fifth of the
+// pixel, across and down.
+class PixelMean : public ::testing::TestWithParam<bool> {};
+
+TEST_P(PixelMean, LightThatChangesWithinAPixelIsItsMean) {
+  constexpr double w = 2.0, h = 0.1, rho = 0.01, exitance = 500.0, height = 10.0;
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(rho)), 200.0, 0.0, true);
   builder.quad(builder.material(tests::grey(0.5)), Vec3(0, -50, 0), Vec3(0, 50, 0), Vec3(0, 50, h),
                Vec3(0, -50, h));
+  const bool hidden = GetParam();
+  constexpr double covered = 0.2, near = 0.01;
+  if (hidden) {
+    const double edge = 0.5 * covered * w * near, z = height * (1.0 - near);
+    builder.quad(builder.material(tests::grey(0.0)), Vec3(0.5 * w - edge, -edge, z),
+                 Vec3(0.5 * w + edge, -edge, z), Vec3(0.5 * w + edge, edge, z),
+                 Vec3(0.5 * w - edge, edge, z));
+  }
   scenes::Sun sun;
   sun.direction = Vec3(1, 0, 0);  // along the floor
   sun.illuminance_lx = Rgb(2.0 * exitance);
@@ -27,14 +40,15 @@ TEST(PixelMean, LightThatChangesWithinAPixelIsItsMean) {
   builder.scene.sun = sun;
   const tests::Prepared prepared(builder.scene);
   scenes::Camera camera;
-  camera.position = Vec3(0.5 * w, 0, 10);
+  camera.position = Vec3(0.5 * w, 0, height);
   camera.look_at = Vec3(0.5 * w, 0, 0);
   camera.up = Vec3(0, 1, 0);
-  camera.fov_deg = 2.0 * std::atan(0.5 * w / 10.0) * 180.0 / base::pi;
+  camera.fov_deg = 2.0 * std::atan(1.5 * w / height) * 180.0 / base::pi;
   RenderOptions options;
-  options.columns = options.rows = 1;
+  options.columns = options.rows = 3;
   options.gather_rays = 256;
   options.shared.on = true;
+  options.shared.smooth_share = 0.0;
   radiosity::SolveOptions solve;
   solve.patch_edge_m = 5.0;
   const radiosity::Solution solution = prepared.solve(solve);
@@ -43,15 +57,25 @@ TEST(PixelMean, LightThatChangesWithinAPixelIsItsMean) {
   for (options.seed = 1; options.seed <= pictures; ++options.seed) {
     const Frame frame = render(builder.scene, prepared.groups, prepared.effects, prepared.query,
                                solution, camera, options);
-    const double found = double(frame.image.find("G")->values[0]);
+    const double found = double(frame.image.find("G")->values[4]);
     sum += found, squares += found * found;
   }
   const double found = sum / pictures;
   const double standard_error = std::sqrt((squares / pictures - found * found) / (pictures - 1));
-  const double right = rho / base::pi * exitance / 2.0 * (1.0 - (std::sqrt(w * w + h * h) - h) / w);
+  const auto integral = [&](double from, double to) {
+    const auto upto = [&](double x) { return x - std::sqrt(x * x + h * h); };
+    return exitance / 2.0 * (upto(to) - upto(from));
+  };
+  const double seen =
+      (integral(0.0, w) -
+       (hidden ? covered * integral((1 - covered) * w / 2, (1 + covered) * w / 2) : 0.0)) /
+      w;
+  const double right = rho / base::pi * seen;
   EXPECT_LT(standard_error, 0.05 * right);
   EXPECT_NEAR(found, right, 4.0 * standard_error + (std::pow(w / 50.0, 2) + rho / 4.0) * right);
 }
+
+INSTANTIATE_TEST_SUITE_P(Gather, PixelMean, ::testing::Values(false, true));
 
 }  // namespace
 }  // namespace earthshine::raytrace
