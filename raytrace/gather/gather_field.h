@@ -118,11 +118,11 @@ class GatherField {
   [[nodiscard]] std::array<scenes::Hit, scenes::RayPacket::width> look(std::size_t pixel,
                                                                        const Places& x,
                                                                        const Places& y) const;
-  // Tells points apart that need several starts, by the length of their rays, and casts anew there.
-  void spread(const std::vector<std::uint32_t>& more, std::uint32_t round,
-              const std::function<bool()>& stop);
+  // Tells points apart that need several starts, by the length of all their rays, and casts anew
+  // there as many as they had.
+  void spread(std::uint32_t round, const std::function<bool()>& stop);
   [[nodiscard]] std::size_t starts_from(std::size_t point) const {
-    return !broad_.empty() && broad_[point] != 0 ? Starts::most : 1;
+    return broad_[point] != 0 ? Starts::most : 1;
   }
   // Where the rays of a point start, other places for each `turn`.
   [[nodiscard]] Starts starts_of(Gathered kind, std::size_t point, std::uint32_t turn,
@@ -152,7 +152,7 @@ class GatherField {
   std::vector<std::uint32_t> first_stray_;  // of a pixel, and behind its last
   std::vector<Vec3> origin_;                // lifted off the surface
   std::vector<RayLengths> lengths_;         // of the rays that read the solution
-  std::vector<std::uint8_t> broad_;  // per point, 1: several starts; empty before it is known
+  std::vector<std::uint8_t> broad_;         // per point, 1: several starts
   std::array<Estimate, gathered_kinds> estimate_;
   std::array<Shared, gathered_kinds> shared_;
   std::vector<glm::vec3> diffuse_;  // point * layers

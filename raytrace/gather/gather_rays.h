@@ -28,10 +28,21 @@ struct Starts {
 
 // Of rays that end on a surface; what misses all is far, and changes little nearby.
 struct RayLengths {
-  double inverse = 0.0, count = 0.0;  // sum of 1 / m
-  void add(double length_m) { inverse += 1.0 / std::max(length_m, 1e-6), count += 1.0; }
-  void operator+=(const RayLengths& more) { inverse += more.inverse, count += more.count; }
+  double inverse = 0.0, count = 0.0;        // sum of 1 / m
+  double light_inverse = 0.0, light = 0.0;  // the same, each ray by its luminance, cd/m^2
+  void add(double length_m, double luminance) {
+    const double near = 1.0 / std::max(length_m, 1e-6);
+    inverse += near, count += 1.0, light_inverse += luminance * near, light += luminance;
+  }
+  void operator+=(const RayLengths& more) {
+    inverse += more.inverse, count += more.count;
+    light_inverse += more.light_inverse, light += more.light;
+  }
   [[nodiscard]] double harmonic_mean() const { return count / inverse; }
+  // Of what the light comes from: something small and bright may be near where most is far.
+  [[nodiscard]] double harmonic_mean_of_light() const {
+    return light > 0.0 ? light / light_inverse : harmonic_mean();
+  }
 };
 
 // The points of one tile, side by side for the vector units; each has as many starts.

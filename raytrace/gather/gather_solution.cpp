@@ -62,8 +62,10 @@ class SolutionRays {
       const Vec3 direction(rays.direction_x[k], rays.direction_y[k], rays.direction_z[k]);
       if (aimed > 0.0) share.cosine = double(cosine[k]);
       const scenes::Hit hit{hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0};
-      if (!hit.missed()) lengths[p].add(hit.t);
-      incoming_.add(hit, direction, share, Rgb(1.0), {&sums[p * layers_], layers_}, counts);
+      const std::span<Rgb> sum(&sums[p * layers_], layers_);
+      const double before = luminance_of(sum);
+      incoming_.add(hit, direction, share, Rgb(1.0), sum, counts);
+      if (!hit.missed()) lengths[p].add(hit.t, luminance_of(sum) - before);
     }
   }
 

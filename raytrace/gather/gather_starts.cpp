@@ -23,19 +23,19 @@ float half_pixel(const GatherPoint& point) {
 
 }  // namespace
 
-void GatherField::spread(const std::vector<std::uint32_t>& more, std::uint32_t round,
-                         const std::function<bool()>& stop) {
+void GatherField::spread(std::uint32_t round, const std::function<bool()>& stop) {
   Estimate& estimate = estimate_[number(Gathered::Solution)];
-  broad_.resize(points_.size());
   std::vector<std::uint32_t> anew(points_.size(), 0U);
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const GatherPoint& point = points_[p];
-    if (estimate.samples[p] <= 0.0F) continue;
+    if (broad_[p] != 0 || estimate.samples[p] <= 0.0F) continue;
     // Where no ray met a surface, none has told how near what few would meet is.
     const bool met = lengths_[p].count > 0.0;
-    if (met && half_pixel(point) <= alike_share * point.reach_m) continue;
+    const double reach_m =
+        std::min(lengths_[p].harmonic_mean(), lengths_[p].harmonic_mean_of_light());
+    if (met && half_pixel(point) <= alike_share * float(reach_m)) continue;
     broad_[p] = 1U;
-    anew[p] = more[p];
+    anew[p] = static_cast<std::uint32_t>(estimate.samples[p]);
     lengths_[p] = {};
     estimate.clear(p);
   }
