@@ -176,8 +176,7 @@ raytrace::RenderOptions picture_options(const RenderCall& call, const Common& co
     }
   }
   options.seed = common.seed;
-  // Ranks would not stop at the same place: a signal ends them all.
-  if (base::ranks() == nullptr) options.stop = Interrupt::asked;
+  options.stop = Interrupt::asked;
   return options;
 }
 
