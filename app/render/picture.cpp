@@ -15,7 +15,6 @@
 #include "app/render/probe.h"
 #include "base/files/exr_file.h"
 #include "base/files/png_file.h"
-#include "base/ranks/ranks.h"
 #include "base/tone.h"
 #include "scenes/effects/quality.h"
 
