@@ -5,9 +5,11 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <set>
 
 #include "app/console.h"
 #include "base/error.h"
+#include "base/ranks/ranks.h"
 #include "degrade/range/range_sensor_file.h"
 #include "degrade/settings/camera_file.h"
 #include "scenes/read/scene_file.h"
@@ -17,6 +19,44 @@ namespace earthshine::app {
 using base::Blame;
 using base::Error;
 
+std::vector<std::string> part_free(const std::vector<std::string>& arguments) {
+  const std::set<std::string> flags = {"-q", "--quiet", "--json"};
+  const std::set<std::string> with_value = {"--part", "--wait", "-j", "--threads", "--max-memory"};
+  std::vector<std::string> kept;
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    const std::string& word = arguments[k];
+    if (with_value.contains(word)) {
+      ++k;
+      continue;
+    }
+    const bool joined = with_value.contains(word.substr(0, word.find('='))) ||
+                        (word.starts_with("-j") && !word.starts_with("--"));
+    if (!flags.contains(word) && !joined) kept.push_back(word);
+  }
+  return kept;
+}
+
+void check_ranks_alike(const Json& things) {
+  base::Ranks* const ranks = base::ranks();
+  if (ranks == nullptr) return;
+  Json first;
+  std::string differs;
+  const auto compare = [&](int rank, const std::string& said) {
+    const Json there = Json::parse(said);
+    if (rank == 0) first = there;
+    for (const auto& [name, thing] : first.items()) {
+      if (!differs.empty() || (there.contains(name) && there[name] == thing)) continue;
+      differs = fmt::format("{} is not what rank {} of {} has", name, rank, ranks->count());
+    }
+  };
+  base::hear_all(
+      *ranks, [&] { return dump(things); }, compare);
+  if (differs.empty()) return;
+  throw Error(Blame::Input, "rank 0", differs,
+              "program, call and files must be the same on all machines of one run",
+              "Copy them, or put them where all machines see them");
+}
+
 LoadedScene load(const SceneInput& input, bool quiet) {
   LoadedScene loaded;
   loaded.scene = scenes::read_scene(input.path, input.overrides, input.overrides_at);
@@ -24,6 +64,12 @@ LoadedScene load(const SceneInput& input, bool quiet) {
   degrade::check_range_sensors(loaded.scene);
   loaded.groups = scenes::find_light_groups(loaded.scene);
   loaded.effects = scenes::find_effects(loaded.scene, loaded.groups);
+  if (base::ranks() != nullptr) {
+    Json read = Json::object(
+        {{"the program", digest_of_file("/proc/self/exe")}, {"its setting", input.overrides}});
+    for (const auto& file : loaded.scene.files) read[file.string()] = digest_of_file(file);
+    check_ranks_alike(read);
+  }
   for (const std::string& warning : loaded.scene.warnings) {
     if (!quiet) note("warning: " + warning);
   }

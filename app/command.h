@@ -33,6 +33,14 @@ struct Common {
   std::vector<std::string> arguments;  // the whole call, from the command on
 };
 
+// The arguments of the call without those that say how it is done: --part, --wait, --threads,
+// --max-memory, --quiet and --json.
+[[nodiscard]] std::vector<std::string> part_free(const std::vector<std::string>& arguments);
+
+// Throws base::Error (Input) unless each of these, by name, is the same for all ranks: those that
+// differ would wait for each other for ever, or make one picture of two scenes.
+void check_ranks_alike(const Json& things);
+
 // One file per command defines it: its options, and what it does once they are read.
 struct Command {
   CLI::App* parser = nullptr;

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <csignal>
 
+#include "base/ranks/ranks.h"
+
 namespace earthshine::app {
 namespace {
 
@@ -30,14 +32,16 @@ void (*take_over(int signal))(int) {
 
 }  // namespace
 
-Interrupt::Interrupt() {
+Interrupt::Interrupt() : active_(base::ranks() == nullptr) {
   interrupted = false;
+  if (!active_) return;
   int_before_ = take_over(SIGINT);
   term_before_ = take_over(SIGTERM);
   if (int_before_ != SIG_IGN) at_once = int_before_;
 }
 
 Interrupt::~Interrupt() {
+  if (!active_) return;
   std::signal(SIGINT, int_before_);
   std::signal(SIGTERM, term_before_);
 }

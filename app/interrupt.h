@@ -5,7 +5,8 @@
 
 namespace earthshine::app {
 
-// Takes SIGINT and SIGTERM over for as long as it lives. One at a time.
+// Takes SIGINT and SIGTERM over for as long as it lives. One at a time. Of several ranks it does
+// nothing: they would not stop at the same place, so a signal ends them all.
 class Interrupt {
  public:
   Interrupt();
@@ -18,6 +19,7 @@ class Interrupt {
 
  private:
   using Handler = void (*)(int);
+  bool active_;
   Handler int_before_, term_before_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "base/error.h"
@@ -47,6 +48,13 @@ std::string dump(const Json& json) {
 std::string digest_of(const Json& json) {
   base::Digest digest;
   digest.add(std::string_view(dump(json)));
+  return digest.text();
+}
+
+std::string digest_of_file(const std::filesystem::path& path) {
+  base::Digest digest;
+  digest.add(std::string_view(
+      base::read_input_file(path, std::numeric_limits<std::size_t>::max(), {path.string()})));
   return digest.text();
 }
 

@@ -18,8 +18,9 @@ using Json = nlohmann::ordered_json;
 }
 // Indented text with a final newline. Numbers that are not finite become null.
 [[nodiscard]] std::string dump(const Json& json);
-// Of that text.
+// Of that text; of a file's bytes.
 [[nodiscard]] std::string digest_of(const Json& json);
+[[nodiscard]] std::string digest_of_file(const std::filesystem::path& path);
 // Lists and objects within one another in a file that is read: what the program writes has a
 // dozen, and each level takes some of the stack.
 inline constexpr int deepest_json = 64;

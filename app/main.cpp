@@ -181,8 +181,9 @@ int run(std::vector<std::string> arguments, const Workers& workers) {
   common.threads = static_cast<int>(threads);
   const base::ThreadLimit limit(common.threads);
   const base::MemoryLimit memory(common.max_memory_bytes, workers.processes);
-  if (ranks != nullptr) base::meet(*ranks);  // before one takes what another has yet to count
   const base::RanksInForce in_force(ranks);
+  // Nor does one take memory that another has yet to count.
+  check_ranks_alike(Json::object({{"the call", part_free(common.arguments)}}));
   for (const Command& command : commands) {
     if (command.parser->parsed() && command.run) command.run(common);
   }
@@ -233,7 +234,8 @@ void end_rank(base::Ranks& ranks, int exit_code, const std::string& what) {
   if (ranks.number() > 0) {
     std::this_thread::sleep_for(time_to_speak);
     be_silent(false);
-    note(fmt::format("earthshine: rank {} of {}: {}", ranks.number(), ranks.count(), what));
+    note(fmt::format("earthshine: rank {} of {}: {}", ranks.number(), ranks.count(),
+                     what.empty() ? "the call is wrong" : what));
   }
   ranks.end_all(exit_code);
 }

@@ -5,11 +5,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cstdlib>
 #include <map>
-#include <set>
 
 #include "app/interrupt.h"
 #include "app/options.h"
@@ -182,23 +180,6 @@ Share share_of(const PartCall& part, std::size_t items) {
 std::size_t part_of(std::size_t item, std::size_t items, std::size_t parts) {
   // The first part whose share ends behind the item: items K / N > item.
   return ((item + 1) * parts + items - 1) / items;
-}
-
-std::vector<std::string> part_free(const std::vector<std::string>& arguments) {
-  const std::set<std::string> flags = {"-q", "--quiet", "--json"};
-  const std::set<std::string> with_value = {"--part", "--wait", "-j", "--threads", "--max-memory"};
-  std::vector<std::string> kept;
-  for (std::size_t k = 0; k < arguments.size(); ++k) {
-    const std::string& word = arguments[k];
-    if (with_value.contains(word)) {
-      ++k;
-      continue;
-    }
-    const bool joined = with_value.contains(word.substr(0, word.find('='))) ||
-                        (word.starts_with("-j") && !word.starts_with("--"));
-    if (!flags.contains(word) && !joined) kept.push_back(word);
-  }
-  return kept;
 }
 
 PartsRecord read_parts_record(const fs::path& folder) {

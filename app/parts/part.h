@@ -53,9 +53,6 @@ struct PartsRecord {
   Json digests;                        // flat: name of what it is of -> digest
 };
 
-// The arguments of the call without --part, --wait, --threads, --max-memory, --quiet and --json.
-[[nodiscard]] std::vector<std::string> part_free(const std::vector<std::string>& arguments);
-
 // Makes the folder where it is not there, writes the record or compares it with the one there.
 // Throws base::Error (Input) that names what differs. A merge makes nothing, and takes the number
 // of parts from the record.

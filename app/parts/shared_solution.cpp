@@ -4,15 +4,12 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <limits>
 #include <thread>
 
 #include "app/console.h"
 #include "app/interrupt.h"
 #include "base/error.h"
 #include "base/files/output_file.h"
-#include "base/input/input_file.h"
-#include "base/numbers/digest.h"
 #include "base/ranks/ranks.h"
 #include "radiosity/store/solution_key.h"
 
@@ -52,13 +49,6 @@ void wait_for(const fs::path& file, double wait_s, bool quiet) {
 }
 
 }  // namespace
-
-std::string digest_of_file(const fs::path& path) {
-  base::Digest digest;
-  digest.add(std::string_view(
-      base::read_input_file(path, std::numeric_limits<std::size_t>::max(), {path.string()})));
-  return digest.text();
-}
 
 SharedSolution shared_solution(const fs::path& file, const radiosity::SolutionOrigin& origin,
                                const PartCall& part, bool quiet,

@@ -29,8 +29,6 @@ struct SharedSolution {
                                              const PartCall& part, bool quiet,
                                              const std::function<radiosity::Solution()>& solve);
 
-[[nodiscard]] std::string digest_of_file(const std::filesystem::path& path);
-
 // The file's name in a folder: another scene, solver setting or build of the program has another.
 [[nodiscard]] std::filesystem::path solution_file_in(const std::filesystem::path& folder,
                                                      const Json& scene_cache_key);

@@ -15,7 +15,6 @@
 #include "app/render/probe.h"
 #include "base/files/exr_file.h"
 #include "base/files/png_file.h"
-#include "base/ranks/ranks.h"
 #include "base/tone.h"
 #include "scenes/effects/quality.h"
 
@@ -176,8 +175,7 @@ raytrace::RenderOptions picture_options(const RenderCall& call, const Common& co
     }
   }
   options.seed = common.seed;
-  // Ranks would not stop at the same place: a signal ends them all.
-  if (base::ranks() == nullptr) options.stop = Interrupt::asked;
+  options.stop = Interrupt::asked;
   return options;
 }
 

@@ -133,6 +133,10 @@ fs::path follow_links(const fs::path& path) {
 bool another_rank_writes() { return ranks() != nullptr && ranks()->number() > 0; }
 
 OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
+  if (another_rank_writes()) {  // whose machine need not have the folder
+    temporary_ = "/dev/null";
+    return;
+  }
   const std::string name = target_.string();
   if (!target_.has_filename()) {
     throw Error(Blame::Input, name, "is not the name of a file", {}, "Name a file to write");
@@ -160,7 +164,6 @@ OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
     }
     temporary_ = target_;
   }
-  if (another_rank_writes()) temporary_ = "/dev/null";
   if (!temporary_.empty()) return;
   clear_once(folder);
   do {

@@ -15,6 +15,11 @@
 namespace earthshine::base {
 namespace {
 
+// Which components of Open MPI may take from a counter that is elsewhere. Debian's settings leave
+// out pt2pt, the only one over TCP, and ucx, which wants networks of its own; pt2pt may be, and
+// whoever says something else in the environment or to mpirun has it.
+constexpr const char* components = "OMPI_MCA_osc";
+
 // Counts of MPI are ints.
 constexpr std::uint64_t most_at_once = 1U << 30U;
 
@@ -30,8 +35,12 @@ class OpenMpi : public Ranks {
     MPI_Comm_free(&here);
     const MPI_Aint bytes = number_ == 0 ? 2 * sizeof(std::uint64_t) : 0;
     std::uint64_t* counters = nullptr;
-    MPI_Win_allocate(bytes, sizeof(std::uint64_t), MPI_INFO_NULL, MPI_COMM_WORLD,
-                     static_cast<void*>(&counters), &window_);
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+    int problem = MPI_Win_allocate(bytes, sizeof(std::uint64_t), MPI_INFO_NULL, MPI_COMM_WORLD,
+                                   static_cast<void*>(&counters), &window_);
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_ARE_FATAL);
+    MPI_Allreduce(MPI_IN_PLACE, &problem, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+    if (problem != MPI_SUCCESS) refuse_window();
     if (number_ == 0) std::fill_n(counters, 2, 0);
     MPI_Barrier(MPI_COMM_WORLD);
     MPI_Win_lock_all(MPI_MODE_NOCHECK, window_);
@@ -147,6 +156,15 @@ class OpenMpi : public Ranks {
     }
   }
 
+  // The first speaks for all, and the others wait to be ended with it.
+  [[noreturn]] void refuse_window() const {
+    if (number_ > 0) MPI_Barrier(MPI_COMM_WORLD);
+    const char* const allowed = std::getenv(components);
+    throw Error(Blame::Work, "Open MPI", "has no component osc for these machines",
+                std::string("allowed are ") + (allowed == nullptr ? "its own" : allowed),
+                "Add --mca osc ^ucx to mpirun, or ucx where pml is ucx, too");
+  }
+
   // What it held before. One thread at a time speaks.
   std::uint64_t add_to_counter(std::uint64_t number, MPI_Op how) {
     const std::lock_guard alone(speaking_);
@@ -169,6 +187,7 @@ std::unique_ptr<Ranks> start_ranks(int& argc, char**& argv) {
   const bool by_mpirun = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr;
   std::unique_ptr<OpenMpi> ranks;
   if (by_mpirun || std::getenv("PMIX_RANK") != nullptr) {
+    ::setenv(components, "^ucx", 0);
     int given = 0;
     MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &given);
     if (given < MPI_THREAD_SERIALIZED) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/ranks/ranks.h"
 #include "radiosity/refine.h"
 #include "raytrace/paths/path_tracer.h"
 #include "studies/cost/cost_laws.h"
@@ -150,6 +151,8 @@ raytrace::RenderReport expect_picture(const PictureDrawer& drawer, const scenes:
 
 Pilot expect_costs(const PilotCall& call, const std::vector<const scenes::Camera*>& cameras,
                    const std::vector<raytrace::RenderOptions>& pictures) {
+  // It ends by the clock, which ranks read at different times: each has a pilot of its own.
+  const base::RanksInForce alone(nullptr);
   const Stopwatch watch;
   Pilot pilot;
   radiosity::Solution coarse;

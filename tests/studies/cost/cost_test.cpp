@@ -10,6 +10,8 @@
 #include <map>
 
 #include "studies/cost/cost_laws.h"
+#include "tests/base/silent_ranks.h"
+#include "tests/support/scene_builder.h"
 
 namespace earthshine::studies {
 namespace {
@@ -156,6 +158,25 @@ Bill bill_of_two() {
   bill.pictures[1].rays.add_shadow(LightKind::Earth, 77);
   bill.pictures[1].rays.add_shadow(LightKind::SpotLamp, 11);
   return bill;
+}
+
+// It ends by the clock, and ranks that ended at different times would wait for each other for ever.
+TEST(Pilot, RanksDoItWithoutAWord) {
+  tests::SceneBuilder builder;
+  const std::uint32_t wall = builder.material(tests::grey(0.5, 1.0));
+  builder.room({wall, wall, wall, wall, wall, wall});
+  const tests::Prepared prepared(builder.scene);
+  scenes::Camera camera;
+  camera.position = Vec3(0.2);
+  camera.look_at = Vec3(0.8);
+  raytrace::RenderOptions picture;
+  picture.columns = picture.rows = 64;
+  test::Silent silent(0, 2);
+  const base::RanksInForce in_force(&silent);
+  const Pilot pilot =
+      expect_costs({prepared.scene, prepared.groups, prepared.effects, prepared.query, {}},
+                   {&camera}, {picture});
+  EXPECT_GT(pilot.bill.pictures.at(0).rays.total(), 0U);
 }
 
 // Every counter of solve and pictures is in one row, once: the rows add up to the sum by hand.
