@@ -11,7 +11,7 @@
 #include <map>
 #include <set>
 
-#include "app/interrupt.h"
+#include "app/console.h"
 #include "app/options.h"
 #include "app/output.h"
 #include "app/parts/build_id.h"

@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "app/console.h"
-#include "app/interrupt.h"
 #include "base/error.h"
 #include "base/files/output_file.h"
 #include "base/input/input_file.h"

@@ -2,14 +2,12 @@
 #include "raytrace/paths/path_tracer.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <cmath>
 #include <mutex>
 #include <string>
 
 #include "base/ranks/ranks.h"
-#include "raytrace/frame/join.h"
+#include "raytrace/frame/layers.h"
 #include "raytrace/paths/path_walker.h"
 
 namespace earthshine::raytrace {
