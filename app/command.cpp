@@ -10,7 +10,7 @@
 #include "app/console.h"
 #include "base/error.h"
 #include "base/ranks/ranks.h"
-#include "degrade/range/range_sensor_file.h"
+#include "degrade/range/range_sensor.h"
 #include "degrade/settings/camera_file.h"
 #include "scenes/read/scene_file.h"
 

@@ -7,15 +7,14 @@
 #include <atomic>
 #include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <system_error>
-#include <utility>
 
 #include "base/error.h"
-#include "base/escape.h"
+#include "base/ranks/ranks.h"
 
 namespace earthshine::app {
-
 namespace {
 
 std::atomic<bool> some_note_was_lost{false}, silent_now{false};
@@ -24,6 +23,27 @@ bool write_whole(std::string_view text, std::FILE* stream) {
   errno = 0;
   return std::fwrite(text.data(), 1, text.size(), stream) == text.size() &&
          std::fflush(stream) == 0;
+}
+
+std::atomic<bool> interrupted{false};
+std::atomic<void (*)(int)> at_once{SIG_DFL};
+
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not wait");
+
+void remember(int signal) {
+  interrupted = true;
+  std::signal(signal, at_once);
+}
+
+// Without SA_RESTART, so that what waits for a reader that does not come is woken, too. Whoever
+// started the program may have it ignore a signal, as nohup does.
+void (*take_over(int signal))(int) {
+  struct sigaction ours {};
+  struct sigaction before {};
+  ours.sa_handler = remember;
+  ::sigaction(signal, &ours, &before);
+  if (before.sa_handler == SIG_IGN) std::signal(signal, SIG_IGN);
+  return before.sa_handler;
 }
 
 }  // namespace
@@ -77,5 +97,21 @@ void Progress::operator()(std::size_t done, std::size_t total) {
   if (done > 0) line += ", " + duration(gone * (1.0 - share) / share) + " to go";
   std::fputs(line.c_str(), stderr);
 }
+
+Interrupt::Interrupt() : active_(base::ranks() == nullptr) {
+  interrupted = false;
+  if (!active_) return;
+  int_before_ = take_over(SIGINT);
+  term_before_ = take_over(SIGTERM);
+  if (int_before_ != SIG_IGN) at_once = int_before_;
+}
+
+Interrupt::~Interrupt() {
+  if (!active_) return;
+  std::signal(SIGINT, int_before_);
+  std::signal(SIGTERM, term_before_);
+}
+
+bool Interrupt::asked() { return interrupted; }
 
 }  // namespace earthshine::app

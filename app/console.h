@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program's two voices: results on standard output, everything else on standard error. What
-// names of files and things could do to a terminal is taken out here (base/escape.h), once for all.
+// names of files and things could do to a terminal is taken out here (base/error.h), once for all.
 #pragma once
 
 #include <chrono>
@@ -45,6 +45,25 @@ class Progress {
   std::string label_;
   bool shown_;
   Clock::time_point start_ = Clock::now(), last_{};
+};
+
+// Ctrl-C while a picture is worked out: the first asks for an end with what is finished, the second
+// ends the program at once. Takes SIGINT and SIGTERM over for as long as it lives. One at a time. Of
+// several ranks it does nothing: they would not stop at the same place, so a signal ends them all.
+class Interrupt {
+ public:
+  Interrupt();
+  ~Interrupt();
+  Interrupt(const Interrupt&) = delete;
+  Interrupt& operator=(const Interrupt&) = delete;
+
+  // Safe on many threads.
+  [[nodiscard]] static bool asked();
+
+ private:
+  using Handler = void (*)(int);
+  bool active_;
+  Handler int_before_, term_before_;
 };
 
 }  // namespace earthshine::app

@@ -122,3 +122,15 @@ std::string csv_of(const Json& rows) {
 }
 
 }  // namespace earthshine::app
+
+fmt::format_context::iterator fmt::formatter<earthshine::app::Json>::format(
+    const earthshine::app::Json& value, fmt::format_context& context) const {
+  const std::string form = fmt::format("{{:{}}}", spec);
+  const auto write = [&](const auto& plain) {
+    return fmt::vformat_to(context.out(), form, fmt::make_format_args(plain));
+  };
+  if (value.is_string()) return write(value.get_ref<const std::string&>());
+  const bool as_real = form.find_first_of("efg") != std::string::npos;
+  return as_real || value.is_number_float() ? write(value.get<double>())
+                                            : write(value.get<std::int64_t>());
+}

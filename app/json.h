@@ -2,6 +2,9 @@
 // JSON and CSV as the program writes them.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -45,3 +48,17 @@ template <class Number>
 [[nodiscard]] std::string csv_of(const Json& rows);
 
 }  // namespace earthshine::app
+
+// In a text: a string without quotes, a number by the given format.
+template <>
+struct fmt::formatter<earthshine::app::Json> {
+  constexpr auto parse(fmt::format_parse_context& context) {
+    const auto end = std::find(context.begin(), context.end(), '}');
+    spec = {context.begin(), end};
+    return end;
+  }
+  fmt::format_context::iterator format(const earthshine::app::Json& value,
+                                       fmt::format_context& context) const;
+
+  std::string_view spec;
+};

@@ -3,9 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
-#include <system_error>
 
 namespace earthshine::app {
 namespace {
@@ -54,14 +52,10 @@ std::optional<ToneChoice> tone_of(const std::string& text) {
 
 void add_scene_options(CLI::App& command, SceneInput& input) {
   command.add_option("SCENE", input.path, "Scene file (TOML)")->required()->type_name("");
-  command
-      .add_option("--set", input.overrides,
-                  "Change a key of the scene: quality.gather_rays=64, camera.A.fov_deg=30 "
-                  "(may be repeated)")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->allow_extra_args(false);
+  may_repeat(command.add_option("--set", input.overrides,
+                                "Change a key of the scene: quality.gather_rays=64, "
+                                "camera.A.fov_deg=30 (may be repeated)"))
+      ->type_name("KEY=VALUE");
   command
       .add_option_function<std::string>(
           "--error",
@@ -141,14 +135,12 @@ std::vector<std::string> split_at_commas(const std::string& text) {
 
 std::uint64_t read_whole_number(const std::string& option, const std::string& text,
                                 std::uint64_t least, std::uint64_t most) {
-  std::uint64_t number = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, problem] = std::from_chars(text.data(), end, number);
-  if (problem != std::errc() || stop != end || number < least || number > most) {
+  const auto number = parsed<std::uint64_t>(text);
+  if (!number || *number < least || *number > most) {
     throw CLI::ValidationError(
         option, fmt::format("\"{}\" is not a whole number from {} to {}", text, least, most));
   }
-  return number;
+  return *number;
 }
 
 void add_whole_number(CLI::App& command, const std::string& flags, std::uint64_t& value,
@@ -162,10 +154,8 @@ void add_whole_number(CLI::App& command, const std::string& flags, std::uint64_t
 void add_number(CLI::App& command, const std::string& flags, std::optional<double>& value,
                 double least, double most, const std::string& help) {
   const auto read = [&value, least, most, flags](const std::string& text) {
-    double number = 0.0;
-    const char* const end = text.data() + text.size();
-    const auto [stop, problem] = std::from_chars(text.data(), end, number);
-    if (problem != std::errc() || stop != end || !(number >= least && number <= most)) {
+    const auto number = parsed<double>(text);
+    if (!number || !(*number >= least && *number <= most)) {
       throw CLI::ValidationError(
           flags, fmt::format("\"{}\" is not a number from {} to {}", text, least, most));
     }
@@ -201,16 +191,19 @@ void add_time_limit(CLI::App& command, double& seconds, const std::string& help)
       .add_option_function<std::string>(
           "--time-limit",
           [&seconds](const std::string& text) {
-            const char* end = text.data() + text.size();
-            const auto read = std::from_chars(text.data(), end, seconds);
-            if (read.ec == std::errc() && read.ptr == end && seconds > 0.0 && seconds <= 1e7) {
-              return;
-            }
+            seconds = parsed<double>(text).value_or(0.0);
+            if (seconds > 0.0 && seconds <= 1e7) return;
             throw CLI::ValidationError("--time-limit",
                                        "\"" + text + "\" is not a number of seconds above 0");
           },
           help)
       ->type_name("SECONDS");
+}
+
+CLI::Option* may_repeat(CLI::Option* option) {
+  return option->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
 }
 
 CLI::Validator not_empty() {

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -39,6 +42,15 @@ void add_tone_options(CLI::App& command, ToneChoice& tone, const std::string& mo
 
 // The words between the commas, also empty ones.
 [[nodiscard]] std::vector<std::string> split_at_commas(const std::string& text);
+
+// What all of `text` is as a number; none where it is none.
+template <class Number>
+[[nodiscard]] std::optional<Number> parsed(std::string_view text) {
+  Number number{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, problem] = std::from_chars(text.data(), end, number);
+  return problem == std::errc() && stop == end ? std::optional(number) : std::nullopt;
+}
 
 // A whole number within [least, most], read strictly: no sign for unsigned, no octal, no rounding.
 // Throws CLI::ValidationError with the option's name.
@@ -77,6 +89,9 @@ void add_memory_option(CLI::App& command, std::uint64_t& bytes);
 
 // --time-limit SECONDS above 0.
 void add_time_limit(CLI::App& command, double& seconds, const std::string& help);
+
+// Makes it one that may be repeated, with one value each time.
+CLI::Option* may_repeat(CLI::Option* option);
 
 // Refuses an empty word, such as that of a variable that the shell does not know.
 [[nodiscard]] CLI::Validator not_empty();

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raytrace/camera/header.h"
+#include "raytrace/camera/camera.h"
 #include "raytrace/frame/cryptomatte.h"
 
 namespace earthshine::app {
@@ -106,17 +106,8 @@ void add_names(base::ExrHeader& header, const scenes::Scene& scene,
 }
 
 std::string indirect_name(raytrace::Indirect indirect) {
-  switch (indirect) {
-    case raytrace::Indirect::Radiosity:
-      return "radiosity";
-    case raytrace::Indirect::Distributed:
-      return "distributed";
-    case raytrace::Indirect::None:
-      return "none";
-    case raytrace::Indirect::Paths:
-      return "paths";
-  }
-  return "";
+  constexpr const char* names[] = {"radiosity", "distributed", "none", "paths"};
+  return names[static_cast<std::size_t>(indirect)];
 }
 
 void add_origin(base::ExrHeader& result, const scenes::Scene& scene,

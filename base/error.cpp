@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/error.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
 #include <system_error>
@@ -17,6 +19,29 @@ std::string compose(std::string_view where, std::string_view found, std::string_
   if (!allowed.empty()) text.append("; ").append(allowed);
   if (!remedy.empty()) text.append(". ").append(remedy);
   return text;
+}
+
+// The number of the character of `length` bytes, 2 to 4, that `text` begins with.
+unsigned number_of(std::string_view text, std::size_t length) {
+  unsigned number = static_cast<unsigned char>(text[0]) & (0xFFU >> (length + 1));
+  for (std::size_t k = 1; k < length; ++k) {
+    number = number << 6U | (static_cast<unsigned char>(text[k]) & 0x3FU);
+  }
+  return number;
+}
+
+struct Span {
+  unsigned first, last;
+};
+// Controls (C1), soft hyphen, mark of Arabic direction, marks and overrides of direction,
+// separators of lines, characters without width, tags and other formats.
+constexpr Span hidden[] = {{0x80, 0x9F},     {0xAD, 0xAD},     {0x61C, 0x61C},
+                           {0x180E, 0x180E}, {0x200B, 0x200F}, {0x2028, 0x202E},
+                           {0x2060, 0x206F}, {0xFEFF, 0xFEFF}, {0xFFF9, 0xFFFB}};
+
+bool is_hidden(unsigned number) {
+  return std::any_of(std::begin(hidden), std::end(hidden),
+                     [&](const Span& span) { return number >= span.first && number <= span.last; });
 }
 
 }  // namespace
@@ -53,6 +78,49 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     }
   }
   return row[b.size()];
+}
+
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+  };
+  const auto follows = [&](std::size_t i) { return (byte(i) & 0xC0U) == 0x80U; };
+  const unsigned first = byte(0);
+  if (first < 0x80) return 1;
+  if (first >= 0xC2 && first <= 0xDF) return follows(1) ? 2 : 0;
+  if (first >= 0xE0 && first <= 0xEF) {
+    if (!follows(1) || !follows(2)) return 0;
+    if (first == 0xE0 && byte(1) < 0xA0) return 0;
+    if (first == 0xED && byte(1) >= 0xA0) return 0;
+    return 3;
+  }
+  if (first >= 0xF0 && first <= 0xF4) {
+    if (!follows(1) || !follows(2) || !follows(3)) return 0;
+    if (first == 0xF0 && byte(1) < 0x90) return 0;
+    if (first == 0xF4 && byte(1) >= 0x90) return 0;
+    return 4;
+  }
+  return 0;
+}
+
+std::string escaped(std::string_view text, std::string_view kept) {
+  std::string result;
+  result.reserve(text.size());
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = utf8_length(text.substr(i));
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if (length == 0 || (byte < 0x20 && kept.find(text[i]) == std::string_view::npos)) {
+      result += fmt::format("\\x{:02x}", byte);
+    } else if (byte == 0x7F) {
+      result += "\\u007f";
+    } else if (length > 1 && is_hidden(number_of(text.substr(i), length))) {
+      result += fmt::format("\\u{:04x}", number_of(text.substr(i), length));
+    } else {
+      result += text.substr(i, length);
+    }
+    i += std::max<std::size_t>(length, 1);
+  }
+  return result;
 }
 
 }  // namespace earthshine::base

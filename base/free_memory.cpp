@@ -5,11 +5,9 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <fstream>
 #include <sstream>
-#include <string>
 
 #include "base/error.h"
 

@@ -2,12 +2,11 @@
 #include "degrade/carry.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "base/parallel.h"
 #include "degrade/moments/point_moments.h"
-#include "degrade/parts/line.h"
+#include "degrade/parts/electronics.h"
 #include "degrade/parts/sensor.h"
 
 namespace earthshine::degrade {

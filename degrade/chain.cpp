@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
-#include <string>
 
 #include "base/error.h"
 #include "base/tone.h"

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "degrade/carry.h"
 #include "degrade/chain.h"
-#include "degrade/parts/line.h"
+#include "degrade/parts/electronics.h"
 #include "degrade/parts/optics.h"
 #include "degrade/parts/sensor.h"
 

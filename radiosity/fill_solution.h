@@ -24,7 +24,7 @@ struct PatchLight {
                                             const Patches& patches);
 
 // Of solution.patches and solution.columns. Of the factors only what each patch keeps, loses and
-// lets escape is looked at, and what is open of it. Closes the energy of `light` (ledger.h).
+// lets escape is looked at, and what is open of it. Closes the energy of `light`.
 void fill_solution(const scenes::Scene& scene, const scenes::LightGroups& groups,
                    const scenes::Effects& effects, const FormFactors& factors, bool balanced,
                    PatchLight& light, Solution& solution);
@@ -34,5 +34,40 @@ void fill_solution(const scenes::Scene& scene, const scenes::LightGroups& groups
                                      const scenes::Effects& effects, const scenes::RayQuery& query,
                                      const SolveOptions& options, Patches patches,
                                      const SolveVariant& variant, FormFactors& factors);
+
+// Where the energy went. With F balanced (form_factors.h) every line adds up to rounding and the
+// solver's residual:
+//   given   = emitted + landed + what sources lose at once (direct.h)
+//   emitted = sum A M            patches that shine through F
+//   landed  = sum A d E0         direct light, as computed
+//   absorbed = sum A ((a - rho) F B + (d - rho) E0) + sum A B lost
+//   escaped  = sum A B escape
+// d is 1 less what goes on through glass that does not bend light and off flat mirrors, which lands
+// elsewhere. What other mirrors and glass would throw counts as absorbed there, what comes to a
+// second flat mirror as lost by the source.
+
+struct LedgerInput {
+  const FormFactors& factors;
+  std::span<const double> area_m2;  // what is open of each patch
+  std::size_t columns = 0;
+  std::span<const double> reflectance;  // all below: count x columns
+  std::span<const double> emitted;      // M through F
+  std::span<const double> direct;       // E0
+  std::span<const double> indirect;     // F B
+  std::span<const double> radiosity;    // B
+};
+
+[[nodiscard]] std::vector<GroupLedger> energy_ledger(const LedgerInput& input,
+                                                     const std::vector<std::string>& group_names,
+                                                     std::span<const SourceFlux> sources);
+
+// Scales each column of B and of F B so that its energy adds up to rounding. Summed with the areas
+// as weights, (1 - rho F) B = S says emitted + landed = absorbed + escaped; what the solver left of
+// that sum, a share of about its residual, is made good by B as a whole, and where the form factors
+// are balanced so is what their rounding left, which a million reflections make a million times
+// larger than rounding. What unbalanced form factors leave is not touched. `radiosity` and
+// `indirect` are the vectors that `input` views.
+void close_energy(const LedgerInput& input, bool balanced, std::span<double> radiosity,
+                  std::span<double> indirect);
 
 }  // namespace earthshine::radiosity

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "radiosity/direct/direct.h"
-#include "radiosity/direct/explicit_emitters.h"
+#include "radiosity/direct/sources.h"
 #include "radiosity/factors/form_factors.h"
 #include "radiosity/patches/patches.h"
 #include "scenes/effects/effects.h"

@@ -8,7 +8,7 @@
 #include "base/numbers/random.h"
 #include "base/ranks/ranks.h"
 #include "scenes/sky/sky.h"
-#include "scenes/sky/sky_parts.h"
+#include "scenes/sky/sky_cells.h"
 
 namespace earthshine::radiosity {
 namespace {

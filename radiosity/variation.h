@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "radiosity/direct/sources.h"
-#include "radiosity/patches/patch_albedo.h"
+#include "radiosity/patches/patches.h"
 #include "radiosity/solution.h"
 
 namespace earthshine::radiosity {

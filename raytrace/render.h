@@ -20,7 +20,6 @@
 
 #include "radiosity/solution.h"
 #include "raytrace/frame/frame.h"
-#include "raytrace/frame/options.h"
 #include "scenes/effects/effects.h"
 #include "scenes/effects/light_groups.h"
 #include "scenes/effects/quality.h"

@@ -2,7 +2,6 @@
 #include "scenes/coincident_faces.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "scenes/triangle_point.h"
 

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "scenes/ray_query.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -28,13 +29,10 @@ struct Plane {
 
 class Planes {
  public:
-  explicit Planes(const Scene& scene) : scene_(scene), low_(scene.vertices.front()) {
-    Vec3 high = low_;
-    for (const Vec3& p : scene.vertices) {
-      low_ = glm::min(low_, p);
-      high = glm::max(high, p);
-    }
-    step_m_ = same_distance * std::max(glm::length(high - low_), 1e-6);
+  explicit Planes(const Scene& scene) : scene_(scene) {
+    const Box box = box_around(scene.vertices);
+    low_ = box.low;
+    step_m_ = same_distance * std::max(box.diagonal(), 1e-6);
   }
 
   // side: 1 the front, -1 the back.

@@ -9,6 +9,7 @@
 
 #include "base/free_memory.h"
 #include "scenes/ray_structure.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -75,14 +76,48 @@ constexpr auto lane_masks() {
 }
 alignas(32) constexpr std::array<std::array<int, 8>, 9> valid_lanes = lane_masks();
 
-std::pair<Vec3, Vec3> box_of(const Scene& scene) {
-  Vec3 low = scene.vertices.front(), high = low;
-  for (const Vec3& p : scene.vertices) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
+// RayQuery's shadow rays: through glass that does not bend light, off flat mirrors.
+
+// Goes on along one ray from its first hit, toward the source.
+class Way {
+ public:
+  Way(const RayQuery& query, const Vec3& origin, const Vec3& direction, double reach_m,
+      std::uint32_t mirror)
+      : query_(query), origin_(origin), direction_(direction), left_m_(reach_m), mirror_(mirror) {}
+
+  Rgb follow(Hit hit) {
+    for (int pane = 0; pane < most_panes; ++pane) {
+      if (hit.missed() || hit.t >= left_m_) return mirror_ == no_mirror ? share_ : Rgb(0.0);
+      const LightWays::Face* face = query_.ways().face(hit.triangle);
+      if (face == nullptr) return Rgb(0.0);
+      if (mirror_ != no_mirror && face->mirror[hit.front ? 0 : 1] == mirror_) {
+        share_ *= face->reflected;
+        leave(hit.t, hit.front ? face->normal : -face->normal);
+        direction_ = query_.ways().mirrors()[mirror_].turned(direction_);
+        mirror_ = no_mirror;
+      } else {
+        share_ *= face->through;
+        leave(hit.t, hit.front ? -face->normal : face->normal);
+      }
+      if (base::max_component(share_) <= 0.0) return Rgb(0.0);
+      hit = query_.closest(origin_, direction_);
+    }
+    return Rgb(0.0);
   }
-  return {low, high};
-}
+
+ private:
+  // Off the surface that was met at the distance t, to the side that the normal shows.
+  void leave(double t, const Vec3& normal) {
+    origin_ += t * direction_ + query_.surface_offset_m() * normal;
+    left_m_ -= t;
+  }
+
+  const RayQuery& query_;
+  Vec3 origin_, direction_;
+  double left_m_;
+  std::uint32_t mirror_;
+  Rgb share_{1.0};
+};
 
 }  // namespace
 
@@ -111,10 +146,9 @@ RayQuery::RayQuery(const Scene& source)
   }
   base::check_room(built * bytes_per_triangle, source.path.string());
   if (!source.triangles.empty()) {
-    const auto [low, high] = box_of(source);
     // The centre is rounded to what single precision holds, so that subtracting it is exact for
     // near points.
-    centre_ = Vec3(glm::vec3(0.5 * (low + high)));
+    centre_ = Vec3(glm::vec3(box_around(source.vertices).middle()));
     embree_->offset_m = scenes::surface_offset_m(source);
     embree_->masks = OpacityMasks(source);
     embree_->add_triangles(embree_->scene, source, 0, own_triangles, 0, own_vertices, centre_);
@@ -134,8 +168,7 @@ double RayQuery::surface_offset_m() const { return embree_->offset_m; }
 
 double surface_offset_m(const Scene& scene) {
   if (scene.vertices.empty()) return 0.0;
-  const auto [low, high] = box_of(scene);
-  return 4e-6 * std::max(glm::length(high - low), 1e-6);
+  return 4e-6 * std::max(box_around(scene.vertices).diagonal(), 1e-6);
 }
 
 void RayQuery::closest(const RayPacket& rays, std::size_t count, HitPacket& hits) const {
@@ -205,21 +238,34 @@ std::uint32_t RayQuery::occluded(const RayPacket& rays, std::size_t count) const
 }
 
 Vec3 hit_position(const Scene& scene, const Hit& hit) {
-  const auto& v = scene.triangles[hit.triangle].vertex;
-  return (1.0 - hit.u - hit.v) * scene.vertices[v[0]] + hit.u * scene.vertices[v[1]] +
-         hit.v * scene.vertices[v[2]];
+  const auto [a, b, c] = corners_of(scene, hit.triangle);
+  return (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
 }
 
 Vec3 triangle_normal(const Scene& scene, std::uint32_t triangle) {
-  const auto& v = scene.triangles[triangle].vertex;
-  const Vec3& a = scene.vertices[v[0]];
-  return glm::normalize(glm::cross(scene.vertices[v[1]] - a, scene.vertices[v[2]] - a));
+  return glm::normalize(corners_of(scene, triangle).normal());
 }
 
 double triangle_area(const Scene& scene, std::uint32_t triangle) {
-  const auto& v = scene.triangles[triangle].vertex;
-  const Vec3& a = scene.vertices[v[0]];
-  return 0.5 * glm::length(glm::cross(scene.vertices[v[1]] - a, scene.vertices[v[2]] - a));
+  return 0.5 * glm::length(corners_of(scene, triangle).normal());
+}
+
+void RayQuery::light_shares(const RayPacket& rays, const std::uint32_t* mirrors, std::size_t count,
+                            Rgb* shares) const {
+  if (ways_.empty()) {
+    const std::uint32_t hidden = occluded(rays, count);
+    for (std::size_t k = 0; k < count; ++k) shares[k] = Rgb(((hidden >> k) & 1U) != 0 ? 0.0 : 1.0);
+    return;
+  }
+  HitPacket hits;
+  closest(rays, count, hits);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec3 origin = centre_ + Vec3(rays.origin_x[k], rays.origin_y[k], rays.origin_z[k]);
+    const Vec3 direction(rays.direction_x[k], rays.direction_y[k], rays.direction_z[k]);
+    shares[k] =
+        Way(*this, origin, direction, double(rays.t_max[k]), mirrors[k])
+            .follow({hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0});
+  }
 }
 
 }  // namespace earthshine::scenes

@@ -18,8 +18,8 @@
 #include <string>
 #include <vector>
 
-#include "scenes/mask.h"
 #include "scenes/ray_query.h"
+#include "scenes/surface_texture.h"
 
 namespace earthshine::scenes {
 

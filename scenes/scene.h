@@ -250,7 +250,7 @@ struct Quality {
   std::optional<double> solver_tolerance;
 };
 
-struct SkyParts;  // sky_parts.h
+struct SkyParts;  // sky_cells.h
 
 struct Scene {
   std::filesystem::path path;

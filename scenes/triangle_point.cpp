@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/triangle_point.h"
 
+#include <cmath>
+
 namespace earthshine::scenes {
 
 Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -27,6 +29,18 @@ Barycentric barycentric(const Vec3& p, const Vec3& a, const Vec3& edge1, const V
   const double square = glm::dot(normal, normal);
   return {glm::dot(glm::cross(at, edge2), normal) / square,
           glm::dot(glm::cross(edge1, at), normal) / square};
+}
+
+Box box_around(std::span<const Vec3> points) {
+  Box box;
+  for (const Vec3& point : points) box.add(point);
+  return box;
+}
+
+double Corners::solid_angle() const {
+  const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+  return 2.0 * std::atan2(triple_product(), la * lb * lc + glm::dot(a, b) * lc +
+                                                glm::dot(b, c) * la + glm::dot(c, a) * lb);
 }
 
 }  // namespace earthshine::scenes

@@ -1,10 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points on triangles.
+// Triangles of a scene and points on them.
 #pragma once
 
-#include "base/units.h"
+#include <limits>
+#include <span>
+
+#include "scenes/scene.h"
 
 namespace earthshine::scenes {
+
+// With its edges along the axes; empty before a point is added.
+struct Box {
+  Vec3 low{std::numeric_limits<double>::infinity()}, high{-low};
+  void add(const Vec3& point) {
+    low = glm::min(low, point);
+    high = glm::max(high, point);
+  }
+  [[nodiscard]] Vec3 middle() const { return 0.5 * (low + high); }
+  [[nodiscard]] double diagonal() const { return glm::length(high - low); }
+};
+[[nodiscard]] Box box_around(std::span<const Vec3> points);
+
+struct Corners {
+  Vec3 a, b, c;
+  // As long as twice the area.
+  [[nodiscard]] Vec3 normal() const { return glm::cross(b - a, c - a); }
+  [[nodiscard]] Corners seen_from(const Vec3& point) const {
+    return {a - point, b - point, c - point};
+  }
+  // 6 times the volume between it and the origin, above 0 where the origin is behind its front.
+  [[nodiscard]] double triple_product() const { return glm::dot(a, glm::cross(b, c)); }
+  // As seen from the origin, in sr, with the sign of triple_product() (van Oosterom and Strackee,
+  // "The solid angle of a plane triangle", 1983, equation 8).
+  [[nodiscard]] double solid_angle() const;
+};
+[[nodiscard]] inline Corners corners_of(const Scene& scene, std::uint32_t triangle) {
+  const auto& v = scene.triangles[triangle].vertex;
+  return {scene.vertices[v[0]], scene.vertices[v[1]], scene.vertices[v[2]]};
+}
 
 // The point of the triangle a, b, c that is nearest to p (Ericson, "Real-Time Collision Detection",
 // 2005, 5.1.5).

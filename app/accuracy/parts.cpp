@@ -4,26 +4,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 
 #include "app/console.h"
 #include "app/memory.h"
 #include "app/study/json_fields.h"
 #include "base/error.h"
+#include "base/parallel.h"
+#include "raytrace/camera/camera.h"
 
 namespace earthshine::app {
+
+using studies::Batch;
+using studies::ReferencePair;
+
 namespace {
 
-double cpu_seconds() {
-  timespec now{};
-  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
+constexpr int most_paths = 1 << 14;  // per pixel and side
 
 }  // namespace
 
 AccuracyParts::AccuracyParts(const AccuracyTask& task, const studies::StudyScene& scene)
-    : task_(task), scene_(scene), cpu_start_(cpu_seconds()) {
+    : task_(task), scene_(scene), cpu_start_(base::cpu_seconds()) {
   common_cache_key_ = {{"study", "accuracy"},
                        {"scene", scene_cache_key(task.loaded)},
                        {"camera", camera_cache_key(task.view.camera)},
@@ -137,10 +138,10 @@ CachedResult AccuracyParts::batch(const studies::Batch& batch) {
   if (auto part = stored(cache_key)) return *part;
   see_that_work_is_wanted();
   Progress progress("reference", task_.common.quiet);
-  const double before = cpu_seconds();
+  const double before = base::cpu_seconds();
   auto image = studies::trace_batch(scene_, task_.view, batch, std::ref(progress));
   if (!image) end_early();
-  CachedResult part{{{"cpu_seconds", cpu_seconds() - before}}, std::move(*image)};
+  CachedResult part{{{"cpu_seconds", base::cpu_seconds() - before}}, std::move(*image)};
   task_.store.keep(cache_key, part);
   ++finished_;
   return part;
@@ -207,7 +208,7 @@ double AccuracyParts::seconds() const {
 
 double AccuracyParts::wall_per_cpu() const {
   // Reading what is stored takes little of either.
-  return std::max(1e-3, seconds()) / std::max(1e-3, cpu_seconds() - cpu_start_);
+  return std::max(1e-3, seconds()) / std::max(1e-3, base::cpu_seconds() - cpu_start_);
 }
 
 void AccuracyParts::tell(const std::string& what, double seconds_left,
@@ -217,6 +218,79 @@ void AccuracyParts::tell(const std::string& what, double seconds_left,
   if (!found.empty()) line += ": " + found;
   if (seconds_left > 0.0) line += ", about " + duration(seconds_left) + " to go";
   note(line);
+}
+
+ReferencePair PathReference::pair() const {
+  return {studies::mean_of_batches(batches[0], pictures[0]),
+          studies::mean_of_batches(batches[1], pictures[1])};
+}
+
+AccuracyStages::AccuracyStages(const AccuracyTask& task)
+    : task_(task),
+      scene_{task.loaded.scene, task.loaded.groups, task.loaded.effects, task.query},
+      parts_(task, scene_) {}
+
+void AccuracyStages::trace_round(std::vector<PathReference>& references, int index, int paths) {
+  for (PathReference& reference : references) {
+    for (int side = 0; side < 2; ++side) {
+      const Batch batch{reference.paths, side, index, paths};
+      CachedResult part = parts_.batch(batch);
+      result_.reference_cpu_seconds += part.facts["cpu_seconds"].get<double>();
+      reference.batches[side].push_back(batch);
+      reference.pictures[side].push_back(std::move(part.image));
+    }
+  }
+  result_.reference_paths += paths;
+}
+
+double AccuracyStages::finest() const {
+  return *std::min_element(task_.call.wanted.begin(), task_.call.wanted.end());
+}
+
+std::vector<PathReference> AccuracyStages::new_references() const {
+  std::vector<PathReference> references(1);
+  if (studies::leaves_paths_out(task_.loaded.effects)) {
+    references.push_back({raytrace::PathSet::NoCaustics, {}, {}});
+  }
+  return references;
+}
+
+std::string AccuracyStages::nothing_to_measure() {
+  if (task_.loaded.groups.count() == 0 &&
+      base::max_component(task_.loaded.scene.ambient_radiance) <= 0.0) {
+    return "nothing gives light: the picture is black, and has no error";
+  }
+  const raytrace::CameraModel camera =
+      raytrace::make_camera_model(task_.view.camera, task_.view.columns, task_.view.rows);
+  counted_ = studies::surface_pixels(scene_, camera);
+  result_.pixels = std::size_t(std::count(counted_.begin(), counted_.end(), true));
+  if (result_.pixels > 0) return "";
+  return "no pixel shows a surface that is no source: there is nothing to compare";
+}
+
+bool AccuracyStages::trace_first(std::vector<PathReference>& references) {
+  trace_round(references, 0, first_paths);
+  full_ = references.front().pair();
+  return studies::mean_luminance(full_, counted_) > 0.0;
+}
+
+std::vector<int> AccuracyStages::further_rounds() {
+  result_.wanted_resolution = finest() / task_.call.reference_factor;
+  return studies::further_batches(first_paths, studies::resolution(full_, counted_),
+                                  result_.wanted_resolution, most_paths);
+}
+
+studies::AccuracyStep AccuracyStages::straight_step() const {
+  return studies::straight_step(task_.loaded.scene, finest());
+}
+std::uint64_t AccuracyStages::straight_seed(int side) const {
+  return studies::reference_seed(task_.view.seed, side, most_paths);
+}
+
+std::vector<studies::AccuracyStep> AccuracyStages::make_ladder() const {
+  studies::LadderOptions options = task_.call.ladder;
+  options.finest = finest();
+  return studies::accuracy_ladder(task_.loaded.scene, task_.loaded.effects, options);
 }
 
 }  // namespace earthshine::app

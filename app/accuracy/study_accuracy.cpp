@@ -11,7 +11,6 @@
 #include "app/accuracy/report.h"
 #include "app/accuracy/run.h"
 #include "app/console.h"
-#include "app/interrupt.h"
 #include "app/memory.h"
 #include "app/options.h"
 #include "app/output.h"
@@ -19,7 +18,7 @@
 #include "app/study/plot.h"
 #include "app/study/study.h"
 #include "base/files/output_file.h"
-#include "raytrace/camera/check.h"
+#include "raytrace/camera/camera.h"
 #include "studies/compare/compare.h"
 
 namespace earthshine::app {
@@ -71,11 +70,7 @@ void check_part(const AccuracyCall& call) {
 void run(const AccuracyCall& call, const Common& common) {
   check_part(call);
   const LoadedScene loaded = load(call.scene, common.quiet);
-  const scenes::Camera& camera =
-      choose_camera(loaded.scene, call.cameras.empty() ? "" : call.cameras.front());
-  if (call.cameras.empty() && loaded.scene.cameras.size() > 1 && !common.quiet) {
-    note("note: no --camera, taking the first, \"" + camera.name + "\"");
-  }
+  const scenes::Camera& camera = camera_of(call, loaded.scene, common.quiet);
   prepare_folder(call.folder, file_names(), loaded.scene.files);
   refuse_inputs_in(fs::path(call.folder) / points_folder, loaded.scene.files);
   const fs::path folder = call.folder;
@@ -118,14 +113,12 @@ void run(const AccuracyCall& call, const Common& common) {
 std::vector<double> read_errors(const std::string& text) {
   std::vector<double> errors;
   for (const std::string& word : split_at_commas(text)) {
-    double error = 0.0;
-    const char* const end = word.data() + word.size();
-    const auto [stop, problem] = std::from_chars(word.data(), end, error);
-    if (problem != std::errc() || stop != end || !(error >= 1e-4 && error <= 1.0)) {
+    const auto error = parsed<double>(word);
+    if (!error || !(*error >= 1e-4 && *error <= 1.0)) {
       throw CLI::ValidationError("--wanted",
                                  fmt::format("\"{}\" is not an error from 0.0001 to 1", word));
     }
-    errors.push_back(error);
+    errors.push_back(*error);
   }
   std::sort(errors.rbegin(), errors.rend());
   errors.erase(std::unique(errors.begin(), errors.end()), errors.end());
@@ -151,10 +144,7 @@ Command add_study_accuracy(CLI::App& study) {
   const auto call = std::make_shared<AccuracyCall>();
   add_study_options(*parser, *call);
   add_part_options(*parser, call->part);
-  parser->add_option("--camera", call->cameras, "Camera of the scene (default: its first)")
-      ->type_name("NAME")
-      ->expected(1)
-      ->allow_extra_args(false);
+  add_camera_option(*parser, *call);
   const auto list = [parser](const char* name, const std::string& help, auto read) {
     parser->add_option_function<std::string>(name, read, help)->type_name("LIST");
   };

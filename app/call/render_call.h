@@ -2,22 +2,62 @@
 // What `earthshine render` was asked for, and one camera's picture of it.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "app/call/over.h"
 #include "app/command.h"
 #include "app/options.h"
 #include "app/parts/part.h"
+#include "base/files/png_file.h"
 #include "radiosity/solution.h"
 #include "raytrace/render.h"
 #include "scenes/effects/culling.h"
 #include "scenes/ray_query.h"
+#include "scenes/scene.h"
 #include "studies/error/error_budget.h"
 #include "studies/steer/wanted_error.h"
 
 namespace earthshine::app {
+
+struct RenderCall;
+
+// render --over: the scene laid over a photograph, for studies of where a camera stood and looked.
+enum class OverStyle { Wire, Blend, Both };
+
+struct OverCall {
+  std::string photo;  // empty: no photograph
+  std::optional<OverStyle> style;
+  std::optional<double> alpha;
+
+  [[nodiscard]] bool asked() const { return !photo.empty(); }
+  // The wire alone needs neither the light nor the picture.
+  [[nodiscard]] bool needs_picture() const {
+    return style.value_or(OverStyle::Wire) != OverStyle::Wire;
+  }
+};
+
+// --over, --over-style, --over-alpha.
+void add_over_options(CLI::App& command, OverCall& call);
+
+// Throws base::Error (Input) if the options do not go together: --over without --png to receive the
+// picture, with --size (the photograph has one), with a part of the picture or with several
+// cameras, --over-style without --over.
+void check_over(const RenderCall& call);
+
+// Reads the photograph; a note on stderr where its aspect is not the camera's, unless `quiet`.
+// Throws base::Error (Input).
+[[nodiscard]] base::Picture8 read_photo(const OverCall& call, const scenes::Camera& camera,
+                                        bool quiet);
+
+// The photograph with the scene over it. rendered_rgb: the tone-mapped picture of the photograph's
+// size, which only styles with needs_picture() look at.
+[[nodiscard]] base::Picture8 lay_over(const OverCall& call, base::Picture8 photo,
+                                      const scenes::Scene& scene, const scenes::RayQuery& query,
+                                      const scenes::Camera& camera,
+                                      std::span<const std::uint8_t> rendered_rgb);
 
 struct RenderCall {
   SceneInput scene;

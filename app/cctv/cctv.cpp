@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <map>
+#include <utility>
+
 #include "app/console.h"
 #include "base/error.h"
 #include "base/files/exr_file.h"
@@ -11,6 +14,31 @@
 #include "degrade/stage/read_setting.h"
 
 namespace earthshine::app {
+namespace {
+
+template <class Value>
+std::string text_of(const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    return std::string(degrade::word_of(value));
+  } else {
+    return fmt::format("{}", value);
+  }
+}
+
+std::map<std::string, std::string, std::less<>> settings_of(const degrade::CctvCamera& camera,
+                                                            const degrade::Monitor& monitor) {
+  std::map<std::string, std::string, std::less<>> settings;
+  degrade::visit_camera_fields(camera, [&](const char* name, const auto& value, auto&&...) {
+    settings[name] = text_of(value);
+  });
+  degrade::visit_monitor_fields(monitor, [&](const char* name, const auto& value, auto&&...) {
+    settings[std::string("monitor.") + name] = text_of(value);
+  });
+  return settings;
+}
+
+}  // namespace
+
 Json monitor_json(const degrade::Monitor& monitor) {
   Json settings;
   degrade::visit_monitor_fields(monitor, [&](const char* name, const auto& value, auto&&...) {
@@ -152,6 +180,42 @@ std::string cctv_summary(const CctvSetup& setup, const degrade::Result& result) 
     text += fmt::format("; {} negative pixels taken as black", report.negative_pixels);
   }
   return text;
+}
+
+StagePictures::StagePictures(std::string folder, const Files& inputs, degrade::Options& options)
+    : folder_(std::move(folder)), options_(options) {
+  if (folder_.empty()) return;
+  prepare_folder(folder_, {}, {});
+  refuse_inputs_in(folder_, inputs);
+  options_.watch = [this, count = 0](const degrade::Stage& stage,
+                                     const degrade::Picture& picture) mutable {
+    base::write_exr(fmt::format("{}/{:02}-{}.exr", folder_, ++count, stage.name),
+                    degrade::to_image(picture),
+                    {{{"earthshine:cctv.stage", std::string(stage.name)}}, {}});
+  };
+}
+
+StagePictures::~StagePictures() { options_.watch = {}; }
+
+Json plan_cctv(const scenes::Scene& scene, const scenes::Camera& camera, bool asked) {
+  Json rows = Json::array();
+  if (camera.cctv.empty() && !asked) return rows;
+  const std::string model = camera.cctv.empty() ? std::string(default_preset) : camera.cctv;
+  const degrade::CctvCamera settings = degrade::resolve_camera(scene, model);
+  const degrade::Monitor monitor = degrade::resolve_monitor(scene, model);
+  const auto values = settings_of(settings, monitor);
+  for (const degrade::StagePlan& planned : degrade::plan(settings, monitor)) {
+    std::vector<std::string> why;
+    for (const std::string_view setting : planned.stage->settings) {
+      if (setting.empty()) break;
+      why.push_back(fmt::format("{} is {}", setting, values.at(std::string(setting))));
+    }
+    rows.push_back({{"stage", planned.stage->name},
+                    {"runs", planned.runs},
+                    {"why", why.empty() ? "part of every CCTV picture"
+                                        : fmt::format("{}", fmt::join(why, ", "))}});
+  }
+  return rows;
 }
 
 }  // namespace earthshine::app

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "app/command.h"
+#include "app/output.h"
 #include "base/image.h"
 #include "degrade/chain.h"
 #include "degrade/settings/camera_file.h"
@@ -59,5 +60,28 @@ void write_twin(const std::string& path, const CctvSetup& setup, const degrade::
 [[nodiscard]] Json cctv_json(const CctvSetup& setup, const degrade::Result& result);
 // One line for people: f-number, gain, what clips.
 [[nodiscard]] std::string cctv_summary(const CctvSetup& setup, const degrade::Result& result);
+
+// The picture after each stage of the CCTV chain, as files.
+
+// While it lives, the chain run with `options` writes DIR/NN-stage.exr after each stage, in the
+// stage's unit. An empty folder name: nothing. Throws base::Error (Input) when an input
+// lies in the folder, and (Work) when a file cannot be written.
+class StagePictures {
+ public:
+  StagePictures(std::string folder, const Files& inputs, degrade::Options& options);
+  ~StagePictures();
+  StagePictures(const StagePictures&) = delete;
+  StagePictures& operator=(const StagePictures&) = delete;
+
+ private:
+  std::string folder_;
+  degrade::Options& options_;
+};
+
+// Which stages of a CCTV camera run, and the settings that decided.
+
+// {"stage", "runs", "why"} of every stage in order; empty when no CCTV model is named or asked for.
+// asked: the call wants the picture on the monitor, of the default model if the camera names none.
+[[nodiscard]] Json plan_cctv(const scenes::Scene& scene, const scenes::Camera& camera, bool asked);
 
 }  // namespace earthshine::app

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "app/cctv/camera_argument.h"
+#include "app/cctv/degrade_list.h"
 #include "app/command.h"
 #include "app/console.h"
 #include "app/options.h"

@@ -5,12 +5,9 @@
 #include <memory>
 #include <optional>
 
-#include "app/cctv/camera_argument.h"
 #include "app/cctv/cctv.h"
 #include "app/cctv/degrade_list.h"
 #include "app/cctv/frame_parts.h"
-#include "app/cctv/stage_pictures.h"
-#include "app/cctv/tape.h"
 #include "app/command.h"
 #include "app/console.h"
 #include "app/options.h"
@@ -279,11 +276,9 @@ std::vector<Command> add_degrade(CLI::App& program) {
       ->add_option("--stages", call->stages,
                    "Folder for the picture after each stage (EXR, in the stage's unit)")
       ->type_name("DIR");
-  parser->add_option("--off", call->off, "Leave out a stage (see --list; may be repeated)")
-      ->type_name("STAGE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->allow_extra_args(false);
+  may_repeat(
+      parser->add_option("--off", call->off, "Leave out a stage (see --list; may be repeated)"))
+      ->type_name("STAGE");
   parser->add_flag("--list", call->list, "Show the presets and the stages");
   parser
       ->add_option("--describe", call->describe,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "app/command.h"
 #include "degrade/settings/camera_file.h"
@@ -15,5 +16,17 @@ namespace earthshine::app {
 
 void list_cameras(bool as_json);
 void print_camera(const degrade::ResolvedCamera& camera, bool as_json);
+
+// CAMERA as it is typed on the command line: one that ships, or one of a file.
+
+// NAME of a camera that ships; FILE.toml, a camera file or a scene with one [[cctv]]; or
+// FILE.toml:NAME. `option` is the place that messages name. Throws base::Error (Input): no such
+// name (with the nearest), no or several [[cctv]] without a NAME (with their names), and whatever
+// is wrong in the file.
+[[nodiscard]] degrade::ResolvedCamera camera_of_argument(std::string_view option,
+                                                         const std::string& argument);
+
+// The file within the argument, "" when it is a camera that ships.
+[[nodiscard]] std::string file_of_camera(const std::string& argument);
 
 }  // namespace earthshine::app

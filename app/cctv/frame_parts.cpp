@@ -6,6 +6,7 @@
 #include "app/console.h"
 #include "app/parts/build_id.h"
 #include "app/parts/shared_solution.h"
+#include "base/error.h"
 
 namespace earthshine::app {
 namespace {
@@ -19,6 +20,15 @@ Json digests_of_call(const TapeCall& pictures, const CctvSetup& setup) {
                          {"view", options.view},
                          {"fov_deg", options.fov_deg}};
   return {{"pictures", digest_of(files)}, {"settings", digest_of(settings)}};
+}
+
+// Of the # in the file's name, not in its folder's.
+std::pair<std::size_t, std::size_t> run_of_hashes(const std::string& path) {
+  const std::size_t slash = path.find_last_of('/');
+  const std::size_t begin = path.find('#', slash == std::string::npos ? 0 : slash + 1);
+  if (begin == std::string::npos) return {path.size(), 0};
+  const std::size_t end = path.find_first_not_of('#', begin);
+  return {begin, (end == std::string::npos ? path.size() : end) - begin};
 }
 
 }  // namespace
@@ -85,6 +95,45 @@ Json FrameParts::reports() const {
   }
   if (!missing.empty()) refuse_to_merge(folder_, missing);
   return reports;
+}
+
+std::vector<TapeFrame> lay_out(const TapeCall& call) {
+  using base::Blame;
+  if (call.frames > 0 && call.inputs.size() > 1) {
+    throw base::Error(Blame::Input, "--frames", "stands beside several pictures",
+                      "it says how long one picture is shown",
+                      "Leave it out: each picture is a frame");
+  }
+  const std::size_t per_frame = call.fields ? 2 : 1;
+  if (call.inputs.size() % per_frame != 0) {
+    throw base::Error(Blame::Input, "--fields",
+                      fmt::format("{} pictures are no whole number of frames", call.inputs.size()),
+                      "a frame has two fields", "Give an even number of pictures");
+  }
+  std::vector<TapeFrame> tape;
+  for (std::size_t i = 0; i < call.inputs.size(); i += per_frame) {
+    const auto begin = call.inputs.begin() + static_cast<std::ptrdiff_t>(i);
+    tape.push_back(
+        {call.first + tape.size(), {begin, begin + static_cast<std::ptrdiff_t>(per_frame)}});
+  }
+  while (!tape.empty() && tape.size() < call.frames) {
+    tape.push_back({tape.back().number + 1, tape.back().inputs});
+  }
+  return tape;
+}
+
+std::string numbered(const std::string& path, std::uint64_t number) {
+  const auto [begin, width] = run_of_hashes(path);
+  if (width == 0) return path;
+  return path.substr(0, begin) + fmt::format("{:0{}}", number, width) + path.substr(begin + width);
+}
+
+void check_numbered(const std::string& option, const std::string& path, std::size_t frames) {
+  if (path.empty() || frames < 2 || run_of_hashes(path).second > 0) return;
+  throw base::Error(base::Blame::Input, option,
+                    fmt::format("{} frames would be written into \"{}\"", frames, path),
+                    "the name of a sequence holds # where the frame's number goes",
+                    "Name it for example frame-####.png");
 }
 
 }  // namespace earthshine::app

@@ -7,7 +7,6 @@
 #include "app/provenance.h"
 #include "base/files/exr_file.h"
 #include "degrade/range/range_sensor.h"
-#include "degrade/range/range_sensor_file.h"
 #include "raytrace/frame/first_hit.h"
 
 namespace earthshine::app {

@@ -14,12 +14,12 @@
 #include "base/files/output_file.h"
 #include "base/files/png_file.h"
 #include "base/tone.h"
-#include "raytrace/camera/check.h"
+#include "raytrace/camera/camera.h"
 #include "raytrace/light/distributed_area.h"
 #include "scenes/effects/quality.h"
 #include "studies/compare/compare.h"
-#include "studies/compare/difference_picture.h"
-#include "studies/steer/picture_solver.h"
+#include "studies/compare/yardstick.h"
+#include "studies/steer/wanted_error.h"
 
 namespace earthshine::app {
 namespace {
@@ -45,17 +45,8 @@ std::vector<std::string> file_names(const std::vector<int>& lights, const std::s
 }
 
 std::string word_of(studies::ApproximationVerdict verdict) {
-  switch (verdict) {
-    case studies::ApproximationVerdict::Misled:
-      return "misled";
-    case studies::ApproximationVerdict::NotMisled:
-      return "not-misled";
-    case studies::ApproximationVerdict::Undecided:
-      return "undecided";
-    case studies::ApproximationVerdict::NotInView:
-      break;
-  }
-  return "not-in-view";
+  constexpr const char* words[] = {"not-in-view", "misled", "not-misled", "undecided"};
+  return words[static_cast<std::size_t>(verdict)];
 }
 
 Json json_of(const CompareCall& call, const scenes::Camera& camera,
@@ -118,11 +109,7 @@ void write_pictures(const std::filesystem::path& folder, const studies::Comparis
 
 void run(const CompareCall& call, const Common& common) {
   const LoadedScene loaded = load(call.scene, common.quiet);
-  const std::string wanted = call.cameras.empty() ? "" : call.cameras.front();
-  const scenes::Camera& camera = choose_camera(loaded.scene, wanted);
-  if (call.cameras.empty() && loaded.scene.cameras.size() > 1 && !common.quiet) {
-    note("note: no --camera, taking the first, \"" + camera.name + "\"");
-  }
+  const scenes::Camera& camera = camera_of(call, loaded.scene, common.quiet);
   (void)raytrace::earth_area(loaded.scene, call.area);  // a wrong one is refused before the folder
   prepare_folder(call.folder, file_names(call.lights, call.area), loaded.scene.files);
 
@@ -169,10 +156,7 @@ Command add_study_compare(CLI::App& study) {
       "compare", "Radiosity against distributed lights and direct light, in one view");
   const auto call = std::make_shared<CompareCall>();
   add_study_options(*parser, *call);
-  parser->add_option("--camera", call->cameras, "Camera of the scene (default: its first)")
-      ->type_name("NAME")
-      ->expected(1)
-      ->allow_extra_args(false);
+  add_camera_option(*parser, *call);
   parser
       ->add_option_function<std::string>(
           "--lights",

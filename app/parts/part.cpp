@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "app/interrupt.h"
+#include "app/console.h"
 #include "app/options.h"
 #include "app/output.h"
 #include "app/parts/build_id.h"

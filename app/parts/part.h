@@ -62,7 +62,7 @@ void join_parts(const std::filesystem::path& folder, const Common& common, const
 // Of a folder that join_parts() made, or of the folder of a study. Throws base::Error (Input).
 [[nodiscard]] PartsRecord read_parts_record(const std::filesystem::path& folder);
 
-// Throws base::Error (Work) once a signal has asked for an end (app/interrupt.h).
+// Throws base::Error (Work) once a signal has asked for an end (app/console.h).
 void end_part_if_interrupted();
 
 // What a merge did not find.

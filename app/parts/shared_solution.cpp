@@ -7,7 +7,6 @@
 #include <thread>
 
 #include "app/console.h"
-#include "app/interrupt.h"
 #include "base/error.h"
 #include "base/files/output_file.h"
 #include "base/ranks/ranks.h"

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "app/cctv/cctv.h"
-#include "app/cctv/cctv_plan.h"
 #include "app/console.h"
 #include "app/memory.h"
 #include "app/render/light.h"
@@ -202,12 +201,11 @@ std::string effect_text(const Json& rows) {
       const double value = row.contains(key) ? row[key].get<double>() : 0.0;
       return value > 0.0 ? words(value) : std::string();
     };
-    text += fmt::format("  {:<4} {:<20} {:>8} {:>8} {:>8}  {}\n",
-                        row["runs"].get<bool>() ? "yes" : "no", row["effect"].get<std::string>(),
-                        cell("rays", [](double n) { return short_count(n); }),
-                        cell("seconds", [](double s) { return fmt::format("{:.2g} s", s); }),
-                        cell("memory_mib", [](double m) { return fmt::format("{:.0f} MiB", m); }),
-                        row["why"].get<std::string>());
+    text += fmt::format(
+        "  {:<4} {:<20} {:>8} {:>8} {:>8}  {}\n", row["runs"].get<bool>() ? "yes" : "no",
+        row["effect"], cell("rays", [](double n) { return short_count(n); }),
+        cell("seconds", [](double s) { return fmt::format("{:.2g} s", s); }),
+        cell("memory_mib", [](double m) { return fmt::format("{:.0f} MiB", m); }), row["why"]);
   }
   return text;
 }

@@ -50,7 +50,7 @@ Json json_of(const studies::TargetError& target) {
 Json json_of(const ErrorEstimate& total, bool known, const Parts& parts,
              std::optional<double> wanted, const std::vector<std::string>& not_captured) {
   Json json = json_of(total, known);
-  json["wanted"] = wanted ? Json(*wanted) : Json();
+  json["wanted"] = to_json(wanted);
   json["parts"] = Json::object();
   for (const NamedPart& part : parts) json["parts"][part.name] = json_of(part.part, known);
   json["not_captured"] = not_captured;
@@ -74,21 +74,14 @@ std::string text_of(const ErrorEstimate& total, bool known, const Parts& parts,
 }
 
 const char* words_of(studies::Limit limit) {
-  switch (limit) {
-    case studies::Limit::None:
-      return "";
-    case studies::Limit::Time:
-      return "--time-limit came first";
-    case studies::Limit::Memory:
-      return "memory came first (--max-memory, or what is free)";
-    case studies::Limit::Settings:
-      return "the settings that are given, or the scene's own faces, allow no better";
-    case studies::Limit::Steps:
-      return "no end in sight after several tries";
-    case studies::Limit::Stopped:
-      return "it was stopped";
-  }
-  return "";
+  constexpr const char* words[] = {
+      "",
+      "--time-limit came first",
+      "memory came first (--max-memory, or what is free)",
+      "the settings that are given, or the scene's own faces, allow no better",
+      "no end in sight after several tries",
+      "it was stopped"};
+  return words[static_cast<std::size_t>(limit)];
 }
 
 void add_steps(Json& json, studies::Limit limit, const std::vector<studies::Step>& steps) {

@@ -4,8 +4,12 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 #include "app/call/render_call.h"
+#include "app/command.h"
+#include "radiosity/store/solution_file.h"
+#include "scenes/ray_query.h"
 
 namespace earthshine::app {
 
@@ -38,5 +42,23 @@ struct ExactCall {
 // for each number of patches.
 [[nodiscard]] studies::Wanted wanted_error(const LoadedScene& loaded, const Common& common,
                                            double time_limit_s, const StageTimes& times);
+
+// The solution as the commands have it: solved, or read from a file that --solution names.
+
+void add_solution_option(CLI::App& command, std::string& path);
+
+// Solves, or reads `path` when it is not empty: a file of another scene or other options is refused
+// then. Adds the stages to `times` and notes what the form factors lack.
+[[nodiscard]] radiosity::Solution solve_or_read(const LoadedScene& loaded,
+                                                const scenes::RayQuery& query,
+                                                const radiosity::SolveOptions& options,
+                                                const std::string& path, StageTimes& times);
+
+void write_solution(const std::string& path, const radiosity::Solution& solution,
+                    const LoadedScene& loaded, const radiosity::SolveOptions& options);
+
+// The same for 3D viewers, as GLB.
+void write_mesh(const std::string& path, const radiosity::Solution& solution,
+                const LoadedScene& loaded);
 
 }  // namespace earthshine::app

@@ -7,12 +7,10 @@
 #include "app/call/render_call.h"
 #include "app/cctv/cctv.h"
 #include "app/console.h"
-#include "app/interrupt.h"
 #include "app/provenance.h"
 #include "app/render/draw.h"
 #include "app/render/error_json.h"
 #include "app/render/light.h"
-#include "app/render/probe.h"
 #include "base/files/exr_file.h"
 #include "base/files/png_file.h"
 #include "base/tone.h"
@@ -97,13 +95,11 @@ Json pixel_json(const scenes::Scene& scene, const raytrace::Frame& frame) {
 
 std::string pixel_text(const Json& pixel) {
   std::string text = fmt::format(
-      "pixel {},{}: {:.6g} cd/m2 +- {:.2g}, {:.0f} camera samples, {}\n", pixel["x"].get<int>(),
-      pixel["y"].get<int>(), pixel["luminance_cd_m2"].get<double>(),
-      pixel["standard_error_cd_m2"].get<double>(), pixel["camera_samples"].get<double>(),
+      "pixel {},{}: {:.6g} cd/m2 +- {:.2g}, {:.0f} camera samples, {}\n", pixel["x"], pixel["y"],
+      pixel["luminance_cd_m2"], pixel["standard_error_cd_m2"], pixel["camera_samples"],
       pixel["object"].is_null()
           ? std::string("nothing there")
-          : fmt::format("object \"{}\", material \"{}\"", pixel["object"].get<std::string>(),
-                        pixel["material"].get<std::string>()));
+          : fmt::format("object \"{}\", material \"{}\"", pixel["object"], pixel["material"]));
   for (const auto& [name, value] : pixel["channels"].items()) {
     text += fmt::format("  {:<20} {:.9g}\n", name, value.get<double>());
   }

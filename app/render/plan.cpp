@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "app/call/render_call.h"
-#include "app/cctv/cctv_plan.h"
+#include "app/cctv/cctv.h"
 #include "app/console.h"
 #include "app/memory.h"
 #include "app/options.h"
@@ -197,29 +197,25 @@ std::string ranks_text(const Json& ranks) {
       "on {} rank(s), each with {} such core(s) of its own: at best {}, of them {} that no number "
       "of ranks shortens; {:.0f} MiB in the first rank, {:.0f} MiB in each other, {:.0f} MiB "
       "together\n",
-      ranks["count"].get<int>(), ranks["threads_each"].get<int>(),
-      duration(ranks["seconds"].get<double>()), duration(ranks["unshared_seconds"].get<double>()),
-      ranks["memory_mib_each"].get<double>(), ranks["memory_mib_others"].get<double>(),
-      ranks["memory_mib_all"].get<double>());
+      ranks["count"], ranks["threads_each"], duration(ranks["seconds"].get<double>()),
+      duration(ranks["unshared_seconds"].get<double>()), ranks["memory_mib_each"],
+      ranks["memory_mib_others"], ranks["memory_mib_all"]);
 }
 
 std::string text_of(const Json& report) {
-  std::string text = fmt::format("{} ({})\n\n", report["name"].get<std::string>(),
-                                 report["scene"].get<std::string>());
+  std::string text = fmt::format("{} ({})\n\n", report["name"], report["scene"]);
   text += effect_text(report["effects"]);
   const Json& quality = report["quality"];
   const bool refines = report["patches_at_most"].get<bool>();
   const bool solves = report["rays"].get<double>() > 0.0;
   if (solves) {
-    text += fmt::format(
-        "\n{}{} patches {}; {} form-factor rays ({} per patch)\n", refines ? "at most " : "",
-        report["patches"].get<std::size_t>(),
-        refines ? std::string("where light varies")
-                : fmt::format("with edges up to {:g} m", quality["patch_edge_m"].get<double>()),
-        short_count(report["rays"].get<double>()), quality["form_factor_rays"].get<int>());
-    text += fmt::format("{} right-hand sides, solved to {:g}\n",
-                        report["right_hand_sides"].get<std::size_t>(),
-                        quality["solver_tolerance"].get<double>());
+    text += fmt::format("\n{}{} patches {}; {} form-factor rays ({} per patch)\n",
+                        refines ? "at most " : "", report["patches"],
+                        refines ? std::string("where light varies")
+                                : fmt::format("with edges up to {:g} m", quality["patch_edge_m"]),
+                        short_count(report["rays"].get<double>()), quality["form_factor_rays"]);
+    text += fmt::format("{} right-hand sides, solved to {:g}\n", report["right_hand_sides"],
+                        quality["solver_tolerance"]);
     text += std::string("memory of the solution: ") + (refines ? "at most " : "") +
             memory_text(report["memory"]) + "\n";
   } else {
@@ -231,15 +227,14 @@ std::string text_of(const Json& report) {
   if (solves) {
     text += fmt::format(", of them {} for the solution of {} patches",
                         duration(report["expected"]["solve_seconds"].get<double>()),
-                        report["expected"]["patches"].get<std::size_t>());
+                        report["expected"]["patches"]);
   }
   text += "\n";
   for (const Json& image : report["images"]) {
-    text += fmt::format(
-        "camera {}: {} x {} pixels, {} gather rays, {}, {:.0f} MiB in all\n",
-        image["camera"].get<std::string>(), image["resolution"][0].get<int>(),
-        image["resolution"][1].get<int>(), short_count(image["gather_rays"].get<double>()),
-        duration(image["seconds"].get<double>()), image["memory"]["total_mib"].get<double>());
+    text += fmt::format("camera {}: {} x {} pixels, {} gather rays, {}, {:.0f} MiB in all\n",
+                        image["camera"], image["resolution"][0], image["resolution"][1],
+                        short_count(image["gather_rays"].get<double>()),
+                        duration(image["seconds"].get<double>()), image["memory"]["total_mib"]);
     const auto stages = image["cctv_stages"].get<std::vector<std::string>>();
     if (!stages.empty()) text += fmt::format("  cctv: {}\n", fmt::join(stages, ", "));
   }

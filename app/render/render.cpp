@@ -12,7 +12,6 @@
 #include "app/cctv/cctv.h"
 #include "app/cctv/range.h"
 #include "app/console.h"
-#include "app/interrupt.h"
 #include "app/memory.h"
 #include "app/options.h"
 #include "app/output.h"
@@ -20,12 +19,11 @@
 #include "app/render/effect_table.h"
 #include "app/render/light.h"
 #include "app/render/render_parts.h"
-#include "app/render/solution.h"
 #include "base/error.h"
 #include "base/files/output_file.h"
 #include "base/files/png_file.h"
 #include "base/parallel.h"
-#include "raytrace/camera/check.h"
+#include "raytrace/camera/camera.h"
 
 namespace earthshine::app {
 namespace {

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "app/console.h"
-#include "app/interrupt.h"
 #include "app/parts/frame_file.h"
 #include "app/parts/shared_solution.h"
 #include "app/provenance.h"
@@ -12,7 +11,7 @@
 #include "app/render/light.h"
 #include "base/error.h"
 #include "radiosity/store/solution_key.h"
-#include "raytrace/frame/join.h"
+#include "raytrace/frame/layers.h"
 #include "raytrace/passes/passes.h"
 
 namespace earthshine::app {

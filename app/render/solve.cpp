@@ -16,7 +16,6 @@
 #include "app/output.h"
 #include "app/render/error_json.h"
 #include "app/render/light.h"
-#include "app/render/solution.h"
 #include "base/error.h"
 #include "base/files/output_file.h"
 #include "radiosity/solution.h"
@@ -128,7 +127,7 @@ std::string ledger_text(const Json& groups) {
   std::string head = fmt::format("\n{:<20}", "light group");
   std::vector<std::string> lines;
   for (const Json& group : groups) {
-    lines.push_back(fmt::format("{:<20}", group["name"].get<std::string>()));
+    lines.push_back(fmt::format("{:<20}", group["name"]));
   }
   for (const auto& [key, title] : all) {
     const auto shown = [&, name = key](const Json& group) {
@@ -143,7 +142,7 @@ std::string ledger_text(const Json& groups) {
   }
   std::string text = head + fmt::format(" {:>10}\n", "imbalance");
   for (std::size_t k = 0; k < lines.size(); ++k) {
-    text += lines[k] + fmt::format(" {:>10.2g}\n", groups[k]["imbalance"].get<double>());
+    text += lines[k] + fmt::format(" {:>10.2g}\n", groups[k]["imbalance"]);
   }
   return text;
 }
@@ -152,10 +151,9 @@ std::string solve_text(const Json& json) {
   std::string text = fmt::format(
       "{} patches, {} form-factor rays, {} shadow rays\n{} iterations, solved to {:.2g}; column "
       "defect {:.2g}, balanced to {:.2g} in {} sweeps\n",
-      json["patches"].get<std::size_t>(), short_count(json["rays"].get<double>()),
-      short_count(json["shadow_rays"].get<double>()), json["iterations"].get<int>(),
-      json["solver_error"].get<double>(), json["balance"]["before"].get<double>(),
-      json["balance"]["after"].get<double>(), json["balance"]["sweeps"].get<int>());
+      json["patches"], short_count(json["rays"].get<double>()),
+      short_count(json["shadow_rays"].get<double>()), json["iterations"], json["solver_error"],
+      json["balance"]["before"], json["balance"]["after"], json["balance"]["sweeps"]);
   const Json& rounds = json["refinement"]["rounds"];
   if (!rounds.empty()) {
     text += fmt::format("refined in {} rounds from {} patches, {} rays; estimated error {:.2g}\n",
@@ -168,9 +166,8 @@ std::string solve_text(const Json& json) {
   text += fmt::format("{:<24} {:>12} {:>14} {:>16}\n", "object", "area m2", "illuminance lx",
                       "radiosity lm/m2");
   for (const Json& o : json["objects"]) {
-    text += fmt::format("{:<24} {:>12.6g} {:>14.6g} {:>16.6g}\n", o["name"].get<std::string>(),
-                        o["area_m2"].get<double>(), luminous(o["illuminance_lx"]),
-                        luminous(o["radiosity_lm_m2"]));
+    text += fmt::format("{:<24} {:>12.6g} {:>14.6g} {:>16.6g}\n", o["name"], o["area_m2"],
+                        luminous(o["illuminance_lx"]), luminous(o["radiosity_lm_m2"]));
   }
   text += "\n";
   for (const auto& [stage, seconds] : json["seconds"].items()) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/study/figures.h"
+#include "app/study/results.h"
 
 namespace earthshine::app {
 

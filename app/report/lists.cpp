@@ -2,8 +2,6 @@
 // The report's short sections: what to know, answers, what was looked with, where it comes from.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "app/report/sections.h"
 #include "app/report/text.h"
 

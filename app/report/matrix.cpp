@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <map>
-#include <set>
 
 #include "app/report/sections.h"
 #include "app/report/text.h"

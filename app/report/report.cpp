@@ -6,7 +6,7 @@
 #include "app/options.h"
 #include "app/output.h"
 #include "app/report/page.h"
-#include "app/study/results_json.h"
+#include "app/study/results.h"
 #include "base/error.h"
 
 namespace earthshine::app {

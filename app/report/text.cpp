@@ -3,28 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
+
+#include "app/report/sections.h"
+#include "base/error.h"
 
 namespace earthshine::app {
 namespace {
 
 constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
-
-// Bytes of the UTF-8 character at the start of `text`; 0 where there is none.
-std::size_t character_length(std::string_view text) {
-  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
-  const unsigned first = byte(0);
-  if (first < 0x80) return 1;
-  const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-  if (first < 0xC2 || first > 0xF4 || text.size() < length) return 0;
-  for (std::size_t k = 1; k < length; ++k) {
-    if ((byte(k) & 0xC0U) != 0x80) return 0;
-  }
-  // Longer than needed, a surrogate, or beyond the last character.
-  if ((first == 0xE0 && byte(1) < 0xA0) || (first == 0xED && byte(1) > 0x9F)) return 0;
-  if ((first == 0xF0 && byte(1) < 0x90) || (first == 0xF4 && byte(1) > 0x8F)) return 0;
-  return length;
-}
 
 }  // namespace
 
@@ -34,7 +24,7 @@ std::string escaped(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
     const char c = text[at];
     const auto code = static_cast<unsigned char>(c);
-    const std::size_t length = character_length(text.substr(at));
+    const std::size_t length = base::utf8_length(text.substr(at));
     if (length == 0 || code == 0x7F || (code < 0x20 && c != '\t' && c != '\n')) {
       html += replacement;
     } else if (c == '&') {
@@ -115,6 +105,77 @@ std::string place_of(const ConditionEntry& condition) {
 
 std::string counted(std::size_t count, const std::string& one, const std::string& many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+// The conditions of a study, put into tables.
+std::vector<Block> blocks_of(const StudyResults& study) {
+  std::vector<Block> blocks;
+  for (std::size_t k = 0; k < study.conditions.size(); ++k) {
+    const ConditionEntry& condition = study.conditions[k];
+    const std::string lamps = condition.position_deg ? "\n" + condition.lamps : "";
+    const auto same = [&](const Block& block) {
+      return block.scene == condition.scene && block.lamps == lamps;
+    };
+    const auto found = std::find_if(blocks.begin(), blocks.end(), same);
+    if (found == blocks.end()) {
+      blocks.push_back({condition.scene, lamps, {k}});
+    } else {
+      found->conditions.push_back(k);
+    }
+  }
+  for (Block& block : blocks) {
+    if (block.lamps.empty()) continue;
+    block.lamps.erase(0, 1);  // the mark that it is an orbit's
+    std::stable_sort(block.conditions.begin(), block.conditions.end(),
+                     [&](std::size_t a, std::size_t b) {
+                       return *study.conditions[a].position_deg < *study.conditions[b].position_deg;
+                     });
+  }
+  return blocks;
+}
+
+std::vector<std::size_t> results_of(const StudyResults& study, const Block& block) {
+  std::map<std::size_t, std::size_t> places;
+  for (std::size_t k = 0; k < block.conditions.size(); ++k) places[block.conditions[k]] = k;
+  std::vector<std::size_t> results;
+  for (std::size_t k = 0; k < study.results.size(); ++k) {
+    if (places.count(study.results[k].condition) != 0) results.push_back(k);
+  }
+  std::sort(results.begin(), results.end(), [&](std::size_t a, std::size_t b) {
+    const auto key = [&](std::size_t k) {
+      const ResultEntry& result = study.results[k];
+      return std::tuple(result.camera, result.target, places[result.condition]);
+    };
+    return key(a) < key(b);
+  });
+  return results;
+}
+
+std::string block_title(const StudyResults& study, const Block& block) {
+  const std::string& name = study.scenes[block.scene].name;
+  std::string title = escaped(name.empty() ? study.scenes[block.scene].id : name);
+  if (!block.lamps.empty()) title += ", lamps: " + escaped(block.lamps);
+  return title;
+}
+
+std::string places_text(const StudyResults& study, const Block& block,
+                        const std::vector<std::size_t>& places) {
+  if (places.size() == block.conditions.size() && places.size() > 1) return "everywhere";
+  std::string text;
+  for (std::size_t k = 0; k < places.size();) {
+    std::size_t last = k;
+    const auto condition = [&](std::size_t place) -> const ConditionEntry& {
+      return study.conditions[block.conditions[places[place]]];
+    };
+    if (condition(k).position_deg) {
+      while (last + 1 < places.size() && places[last + 1] == places[last] + 1) ++last;
+    }
+    if (!text.empty()) text += ", ";
+    text += escaped(place_of(condition(k)));
+    if (last > k) text += " to " + escaped(place_of(condition(last)));
+    k = last + 1;
+  }
+  return text;
 }
 
 }  // namespace earthshine::app

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/study/json_part.h"
 
-#include <cmath>
-
 #include "base/error.h"
 
 namespace earthshine::app {

@@ -10,7 +10,6 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
-#include <system_error>
 
 namespace earthshine::app {
 namespace {

@@ -132,4 +132,53 @@ struct StudyResults {
 // The name that others call an entry by.
 [[nodiscard]] const std::string& name_of(const StudyResults& study, Named what, std::size_t number);
 
+// Figures of what was found of a target, by member: columns of tables name them in their rows.
+
+using Figure = Number (*)(const TargetFindings&);
+
+template <auto Member>
+Number figure_of(const TargetFindings& found) {
+  return found.*Member;
+}
+template <auto Member>
+Number sight_of(const TargetFindings& found) {
+  return found.sight.*Member;
+}
+template <auto Part, auto Member>
+Number part_of_sight(const TargetFindings& found) {
+  const auto& part = found.sight.*Part;
+  return part ? Number((*part).*Member) : Number();
+}
+template <auto Member>
+inline constexpr Figure chance_of = part_of_sight<&studies::Sight::probability, Member>;
+template <auto Member>
+inline constexpr Figure signal_of = part_of_sight<&studies::Sight::signal, Member>;
+template <auto Member>
+inline constexpr Figure monitor_of = part_of_sight<&studies::Sight::monitor, Member>;
+template <auto Member>
+inline constexpr Figure eye_of = part_of_sight<&studies::Sight::eye, Member>;
+template <auto Member>
+Number eye_chance_of(const TargetFindings& found) {
+  const auto& eye = found.sight.eye;
+  return eye && eye->probability ? Number((*eye->probability).*Member) : Number();
+}
+
+// study.json, written and read by the lists of fields in results_fields.h.
+
+[[nodiscard]] Json to_json(const StudyResults& results);
+// Throws base::Error (Input) with the place in `file` where something is not as it should be.
+[[nodiscard]] StudyResults read_results(const std::string& file, const Json& json);
+
+// The results of a visibility study as a table and as text.
+
+// A sentence for each camera and target of which a black back is seen: that is not the target as it
+// will look.
+[[nodiscard]] std::vector<std::string> black_back_notes(const StudyResults& results);
+
+// results.csv: a row per condition, camera and target.
+[[nodiscard]] std::string results_csv(const StudyResults& results);
+
+// For people: a line per camera, target and lamp setting, the answers, and black backs.
+[[nodiscard]] std::string study_text(const StudyResults& results);
+
 }  // namespace earthshine::app

@@ -5,10 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
-#include <system_error>
 
 #include "app/console.h"
 #include "app/options.h"
@@ -30,23 +28,32 @@ void add_study_options(CLI::App& command, StudyCall& call) {
 }
 
 void add_cameras_option(CLI::App& command, StudyCall& call) {
-  command.add_option("--camera", call.cameras, "Camera (may be repeated; default: all)")
+  may_repeat(command.add_option("--camera", call.cameras, "Camera (may be repeated; default: all)"))
+      ->type_name("NAME");
+}
+
+void add_camera_option(CLI::App& command, StudyCall& call) {
+  command.add_option("--camera", call.cameras, "Camera of the scene (default: its first)")
       ->type_name("NAME")
       ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->allow_extra_args(false);
+}
+
+const scenes::Camera& camera_of(const StudyCall& call, const scenes::Scene& scene, bool quiet) {
+  const scenes::Camera& camera =
+      choose_camera(scene, call.cameras.empty() ? "" : call.cameras.front());
+  if (call.cameras.empty() && scene.cameras.size() > 1 && !quiet) {
+    note("note: no --camera, taking the first, \"" + camera.name + "\"");
+  }
+  return camera;
 }
 
 void add_wanted_options(CLI::App& command, std::vector<std::string>& wanted,
                         std::vector<std::string>& iris) {
-  command
-      .add_option("--wanted", wanted,
-                  "TARGET>=P: what it takes to detect the target with that probability (may be "
-                  "repeated)")
-      ->type_name("TARGET>=P")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->allow_extra_args(false);
+  may_repeat(command.add_option("--wanted", wanted,
+                                "TARGET>=P: what it takes to detect the target with that "
+                                "probability (may be repeated)"))
+      ->type_name("TARGET>=P");
   command
       .add_option("--iris", iris, "Iris modes that --wanted may choose: fixed,peak,normal,average")
       ->type_name("LIST")

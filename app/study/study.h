@@ -26,6 +26,11 @@ struct StudyCall {
 void add_study_options(CLI::App& command, StudyCall& call);
 // --camera, which may be repeated.
 void add_cameras_option(CLI::App& command, StudyCall& call);
+// --camera of a study of one.
+void add_camera_option(CLI::App& command, StudyCall& call);
+// That one; a note says which where the call does not and there are several, unless `quiet`.
+[[nodiscard]] const scenes::Camera& camera_of(const StudyCall& call, const scenes::Scene& scene,
+                                              bool quiet);
 // --wanted and --iris.
 void add_wanted_options(CLI::App& command, std::vector<std::string>& wanted,
                         std::vector<std::string>& iris);

@@ -23,16 +23,14 @@ const char* name_of(scenes::ReflectanceNoise noise) {
   return noise == scenes::ReflectanceNoise::Constant ? "constant" : "proportional";
 }
 
-Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
-
 Json json_of(const scenes::PhongFit& fit) {
   return {{"diffuse", fit.diffuse},
           {"specular", fit.specular},
           {"shininess", fit.shininess},
           {"std_error",
-           {{"diffuse", json_of(fit.std_error.diffuse)},
-            {"specular", json_of(fit.std_error.specular)},
-            {"shininess", json_of(fit.std_error.shininess)}}},
+           {{"diffuse", to_json(fit.std_error.diffuse)},
+            {"specular", to_json(fit.std_error.specular)},
+            {"shininess", to_json(fit.std_error.shininess)}}},
           {"residual", fit.residual},
           {"points_used", fit.points_used},
           {"reflected_share", scenes::reflected_share(fit)}};
@@ -98,7 +96,7 @@ Command add_fit_phong(CLI::App& program) {
         const scenes::PhongFits fits = scenes::fit_phong(points, call->path, call->noise);
         if (!call->json) return print(text_of(fits, call->noise, points.size()));
         print(dump({{"points", points.size()},
-                    {"noise", {{"model", name_of(call->noise)}, {"level", json_of(fits.noise)}}},
+                    {"noise", {{"model", name_of(call->noise)}, {"level", to_json(fits.noise)}}},
                     {"report", json_of(fits.report)},
                     {"least_squares", json_of(fits.least_squares)},
                     {"notes", fits.notes}}));

@@ -19,9 +19,9 @@
 #include "radiosity/objects/form_factors.h"
 #include "radiosity/patches/patches.h"
 #include "scenes/effects/quality.h"
-#include "scenes/mask.h"
 #include "scenes/ray_query.h"
 #include "scenes/reflect/specular.h"
+#include "scenes/surface_texture.h"
 
 namespace earthshine::app {
 namespace {

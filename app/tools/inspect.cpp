@@ -2,19 +2,18 @@
 // earthshine inspect: what was read.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <set>
 
 #include "app/command.h"
 #include "app/console.h"
 #include "app/options.h"
 #include "app/tools/inspect_text.h"
-#include "app/tools/orbit_facts.h"
-#include "scenes/light/lamp_kind.h"
 #include "scenes/light/lamp_light.h"
+#include "scenes/ray_query.h"
 #include "scenes/reflect/energy.h"
 #include "scenes/surface_texture.h"
 #include "scenes/texture/texture.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::app {
 namespace {
@@ -82,11 +81,8 @@ Json textures_of(const scenes::MaterialMaps& maps) {
 
 Json materials_of(const scenes::Scene& scene) {
   std::vector<double> area_m2(scene.materials.size(), 0.0);
-  for (const scenes::Triangle& triangle : scene.triangles) {
-    const Vec3 a = scene.vertices[triangle.vertex[0]];
-    area_m2[triangle.material] +=
-        0.5 * glm::length(glm::cross(scene.vertices[triangle.vertex[1]] - a,
-                                     scene.vertices[triangle.vertex[2]] - a));
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    area_m2[scene.triangles[t].material] += scenes::triangle_area(scene, t);
   }
   Json materials = Json::array();
   for (std::size_t k = 0; k < scene.materials.size(); ++k) {
@@ -167,12 +163,8 @@ Json cameras_of(const scenes::Scene& scene) {
 
 Json bounding_box_of(const scenes::Scene& scene) {
   if (scene.vertices.empty()) return {};
-  Vec3 least = scene.vertices.front(), most = least;
-  for (const Vec3& vertex : scene.vertices) {
-    least = glm::min(least, vertex);
-    most = glm::max(most, vertex);
-  }
-  return {{"min_m", to_json(least)}, {"max_m", to_json(most)}};
+  const scenes::Box box = scenes::box_around(scene.vertices);
+  return {{"min_m", to_json(box.low)}, {"max_m", to_json(box.high)}};
 }
 
 Json report_of(const LoadedScene& loaded) {

@@ -3,18 +3,16 @@
 
 #include <fmt/format.h>
 
-#include <string>
 #include <vector>
 
-#include "app/tools/orbit_facts.h"
 #include "base/units.h"
+#include "scenes/sky/orbit.h"
 
 namespace earthshine::app {
 namespace {
 
 std::string numbers(const Json& three, const char* format = "{:g} {:g} {:g}") {
-  return fmt::format(fmt::runtime(format), three[0].get<double>(), three[1].get<double>(),
-                     three[2].get<double>());
+  return fmt::format(fmt::runtime(format), three[0], three[1], three[2]);
 }
 
 double luminance_of(const Json& three) {
@@ -29,10 +27,9 @@ std::string objects_table(const Json& report) {
   std::string text = fmt::format("\n{:<24} {:>9} {:>9} {:>12}  {}\n", "object", "polygons",
                                  "triangles", "area m2", "materials; source");
   for (const Json& o : report["objects"]) {
-    text += fmt::format("{:<24} {:>9} {:>9} {:>12.6g}  {}; {}{}\n", o["name"].get<std::string>(),
-                        o["polygons"].get<int>(), o["triangles"].get<int>(),
-                        o["area_m2"].get<double>(), joined(o["materials"]),
-                        o["source"].get<std::string>(), o["target"].get<bool>() ? "; target" : "");
+    text += fmt::format("{:<24} {:>9} {:>9} {:>12.6g}  {}; {}{}\n", o["name"], o["polygons"],
+                        o["triangles"], o["area_m2"], joined(o["materials"]), o["source"],
+                        o["target"].get<bool>() ? "; target" : "");
   }
   return text;
 }
@@ -43,11 +40,10 @@ std::string surfaces_table(const Json& report) {
       "inward", "open edges", "non-manifold", "wound apart", "on others", "not used of the file");
   for (const Json& o : report["objects"]) {
     const Json& s = o["surface"];
-    text += fmt::format(
-        "{:<24} {:>7} {:>7} {:>7} {:>10} {:>12} {:>11} {:>9}  {}\n", o["name"].get<std::string>(),
-        s["parts"].get<int>(), s["closed_parts"].get<int>(), s["inward_parts"].get<int>(),
-        s["open_edges"].get<int>(), s["non_manifold_edges"].get<int>(), s["mixed_edges"].get<int>(),
-        s["triangles_on_others"].get<int>(), o["unused"].get<std::string>());
+    text += fmt::format("{:<24} {:>7} {:>7} {:>7} {:>10} {:>12} {:>11} {:>9}  {}\n", o["name"],
+                        s["parts"], s["closed_parts"], s["inward_parts"], s["open_edges"],
+                        s["non_manifold_edges"], s["mixed_edges"], s["triangles_on_others"],
+                        o["unused"]);
   }
   return text;
 }
@@ -58,8 +54,8 @@ std::string materials_table(const Json& report) {
   for (const Json& m : report["materials"]) {
     std::string also;
     if (!m["light_group"].is_null()) {
-      also += fmt::format("emits {} lm/m2 in group {}; ", numbers(m["emit_lm_m2"]),
-                          m["light_group"].get<std::string>());
+      also +=
+          fmt::format("emits {} lm/m2 in group {}; ", numbers(m["emit_lm_m2"]), m["light_group"]);
     }
     const std::string black = "0 0 0";
     if (numbers(m["mirror"]) != black) also += "mirror " + numbers(m["mirror"]) + "; ";
@@ -67,14 +63,11 @@ std::string materials_table(const Json& report) {
     if (m["two_sided"].get<bool>()) also += "two-sided";
     for (const Json& texture : m.value("textures", Json::array())) {
       also += fmt::format("{}{} by {} ({} x {}, {:.3g} MiB)",
-                          also.empty() || also.ends_with("; ") ? "" : "; ",
-                          texture["use"].get<std::string>(), texture["file"].get<std::string>(),
-                          texture["size"][0].get<int>(), texture["size"][1].get<int>(),
-                          texture["mib"].get<double>());
+                          also.empty() || also.ends_with("; ") ? "" : "; ", texture["use"],
+                          texture["file"], texture["size"][0], texture["size"][1], texture["mib"]);
     }
-    text += fmt::format("{:<24} {:>10.5g} {:<20} {:<20} {:>9g}  {}\n", m["name"].get<std::string>(),
-                        m["area_m2"].get<double>(), numbers(m["diffuse"]), numbers(m["specular"]),
-                        m["shininess"].get<double>(), also);
+    text += fmt::format("{:<24} {:>10.5g} {:<20} {:<20} {:>9g}  {}\n", m["name"], m["area_m2"],
+                        numbers(m["diffuse"]), numbers(m["specular"]), m["shininess"], also);
   }
   return text;
 }
@@ -83,15 +76,14 @@ std::string lights_table(const Json& report) {
   std::string text;
   for (const Json& lamp : report["lamps"]) {
     const Json& source = lamp["source"];
-    text += fmt::format("lamp {}: {}{}, group {}, {} lm ({:.6g} by luminance), at {}\n",
-                        lamp["name"].get<std::string>(), lamp["type"].get<std::string>(),
-                        source.is_null() ? "" : " (" + source.get<std::string>() + ")",
-                        lamp["group"].get<std::string>(), numbers(lamp["flux_lm"]),
-                        luminance_of(lamp["flux_lm"]), numbers(lamp["position_m"]));
+    text += fmt::format(
+        "lamp {}: {}{}, group {}, {} lm ({:.6g} by luminance), at {}\n", lamp["name"], lamp["type"],
+        source.is_null() ? "" : " (" + source.get<std::string>() + ")", lamp["group"],
+        numbers(lamp["flux_lm"]), luminance_of(lamp["flux_lm"]), numbers(lamp["position_m"]));
   }
   for (const Json& area : report["areas"]) {
-    text += fmt::format("area {}: {:.6g} m2, for distributed lights\n",
-                        area["name"].get<std::string>(), area["area_m2"].get<double>());
+    text +=
+        fmt::format("area {}: {:.6g} m2, for distributed lights\n", area["name"], area["area_m2"]);
   }
   for (const char* name : {"sun", "earth"}) {
     const Json& body = report[name];
@@ -102,23 +94,29 @@ std::string lights_table(const Json& report) {
   }
   if (!report["orbit"].is_null()) text += orbit_line(report["orbit"]);
   for (const Json& camera : report["cameras"]) {
-    text += fmt::format("camera {}: at {}, looks at {}, {:g} deg, {} x {}\n",
-                        camera["name"].get<std::string>(), numbers(camera["position_m"]),
-                        numbers(camera["look_at_m"]), camera["fov_deg"].get<double>(),
-                        camera["resolution"][0].get<int>(), camera["resolution"][1].get<int>());
+    text += fmt::format("camera {}: at {}, looks at {}, {:g} deg, {} x {}\n", camera["name"],
+                        numbers(camera["position_m"]), numbers(camera["look_at_m"]),
+                        camera["fov_deg"], camera["resolution"][0], camera["resolution"][1]);
   }
   const std::string groups = joined(report["light_groups"]);
   text += "light groups: " + (groups.empty() ? "none: nothing gives light" : groups) + "\n";
   return text;
 }
 
+Json span_of(const std::optional<scenes::ShadowSpan>& span) {
+  if (!span) return {};
+  return {{"begin_deg", span->begin_deg},
+          {"end_deg", span->end_deg},
+          {"begin_s", span->begin_s},
+          {"end_s", span->end_s}};
+}
+
 }  // namespace
 
 std::string inspect_text(const Json& report) {
-  std::string text = fmt::format("{} ({})\n", report["name"].get<std::string>(),
-                                 report["scene"].get<std::string>());
+  std::string text = fmt::format("{} ({})\n", report["name"], report["scene"]);
   text += fmt::format("{} objects, {} triangles, {:.6g} m2", report["objects"].size(),
-                      report["triangles"].get<std::size_t>(), report["area_m2"].get<double>());
+                      report["triangles"], report["area_m2"]);
   if (!report["bounding_box"].is_null()) {
     text += fmt::format(", from {} to {} m", numbers(report["bounding_box"]["min_m"]),
                         numbers(report["bounding_box"]["max_m"]));
@@ -129,6 +127,34 @@ std::string inspect_text(const Json& report) {
     text += "warning: " + warning.get<std::string>() + "\n";
   }
   return text;
+}
+
+Json orbit_facts(const scenes::Scene& scene) {
+  if (!scene.orbit) return {};
+  const scenes::Orbit& orbit = *scene.orbit;
+  const scenes::OrbitState state = scenes::orbit_state(orbit, orbit.position_deg);
+  const scenes::Eclipse eclipse = scenes::find_eclipse(orbit, scene.sun->angular_radius_deg);
+  return {{"altitude_m", orbit.altitude_m},
+          {"period_s", scenes::orbit_period_s(orbit.altitude_m)},
+          {"beta_deg", orbit.beta_deg},
+          {"position_deg", state.position_deg},
+          {"time_s", state.time_s},
+          {"latitude_deg", state.latitude_deg},
+          {"attitude", orbit.table ? Json() : Json(orbit.attitude)},
+          {"attitude_table", orbit.table ? Json(orbit.table->file) : Json()},
+          {"penumbra", span_of(eclipse.penumbra)},
+          {"umbra", span_of(eclipse.umbra)}};
+}
+
+std::string orbit_line(const Json& facts) {
+  const Json& umbra = facts["umbra"];
+  const std::string shadow = umbra.is_null()
+                                 ? "the Sun is never wholly hidden"
+                                 : fmt::format("the Sun is hidden from {:.5g} to {:.5g} deg",
+                                               umbra["begin_deg"], umbra["end_deg"]);
+  return fmt::format("orbit: {:.6g} km, period {:.6g} s, at {:g} deg; {}\n",
+                     facts["altitude_m"].get<double>() / 1e3, facts["period_s"],
+                     facts["position_deg"], shadow);
 }
 
 }  // namespace earthshine::app

@@ -3,19 +3,49 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "app/console.h"
-#include "app/interrupt.h"
 #include "app/memory.h"
 #include "app/parts/shared_solution.h"
 #include "app/study/json_fields.h"
 #include "app/study/study.h"
-#include "app/views/kept_layers.h"
 #include "base/error.h"
 #include "radiosity/refine.h"
 #include "scenes/effects/quality.h"
-#include "scenes/sky/sky_parts.h"
+#include "scenes/sky/sky_cells.h"
 
 namespace earthshine::app {
+namespace {
+
+constexpr int half_digits = 10;          // of a half's mantissa, after the point
+constexpr int half_top = 15;             // the largest half is below 2^16
+constexpr int half_bottom = -14;         // exponent of the smallest half with all its digits
+constexpr const char* exact = "object";  // numbers, not light
+
+// 2^exponent bounds the channel's values; 0 for a black one.
+int exponent_of(const base::Channel& channel) {
+  float most = 0.0F;
+  for (const float value : channel.values) most = std::max(most, std::abs(value));
+  return most > 0.0F ? std::ilogb(most) + 1 : 0;
+}
+
+void round_values(base::Channel& channel, int digits) {
+  // One more than now: the largest value may be rounded up to the power of two above it.
+  const int lowest = exponent_of(channel) + 1 - half_top + half_bottom;
+  for (float& value : channel.values) {
+    if (value == 0.0F) continue;
+    const int step = std::max(std::ilogb(value), lowest) - digits;
+    value = std::ldexp(std::nearbyint(std::ldexp(value, -step)), step);
+  }
+}
+
+void scale(base::Channel& channel, int exponent) {
+  for (float& value : channel.values) value = std::ldexp(value, exponent);
+}
+
+}  // namespace
 
 // As it is kept beside the picture.
 template <class Fields>
@@ -199,6 +229,43 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
   frame.image = unpacked_layers(std::move(kept));
   costs.push_back(cost_of(camera, frame, false));
   return frame;
+}
+
+int round_layers(base::Image& image, double relative_noise) {
+  constexpr double mean_rounding = 0.42, of_the_noise = 0.125;
+  if (!(relative_noise > 0.0)) return 0;
+  const double digits = std::ceil(std::log2(mean_rounding / (of_the_noise * relative_noise))) - 1.0;
+  if (digits > half_digits) return 0;
+  const int kept = std::max(1, static_cast<int>(digits));
+  for (base::Channel& channel : image.channels) {
+    if (channel.name != exact) round_values(channel, kept);
+  }
+  return kept;
+}
+
+CachedResult packed_layers(base::Image image, int digits, Json facts) {
+  CachedResult kept{std::move(facts), std::move(image)};
+  kept.facts["digits"] = digits;
+  if (digits == 0) return kept;
+  Json& exponents = kept.facts["exponents"] = Json::object();
+  for (base::Channel& channel : kept.image.channels) {
+    if (channel.name == exact) continue;
+    const int exponent = exponent_of(channel) - half_top;
+    exponents[channel.name] = exponent;
+    scale(channel, -exponent);
+    kept.header.half_channels.push_back(channel.name);
+  }
+  return kept;
+}
+
+base::Image unpacked_layers(CachedResult kept) {
+  if (kept.facts.at("digits").get<int>() > 0) {
+    const Json& exponents = kept.facts.at("exponents");
+    for (base::Channel& channel : kept.image.channels) {
+      if (channel.name != exact) scale(channel, exponents.at(channel.name).get<int>());
+    }
+  }
+  return std::move(kept.image);
 }
 
 }  // namespace earthshine::app

@@ -8,7 +8,7 @@
 
 #include "app/console.h"
 #include "base/error.h"
-#include "raytrace/camera/check.h"
+#include "raytrace/camera/camera.h"
 #include "scenes/sky/orbit.h"
 #include "scenes/text/message_text.h"
 

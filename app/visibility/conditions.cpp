@@ -7,7 +7,6 @@
 #include <chrono>
 
 #include "app/console.h"
-#include "app/interrupt.h"
 #include "app/study/json_fields.h"
 #include "app/study/study.h"
 #include "base/parallel.h"

@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <memory>
 
 #include "app/console.h"
 #include "app/options.h"
-#include "app/study/results_json.h"
-#include "app/study/results_tables.h"
+#include "app/study/results.h"
 #include "app/study/study.h"
 #include "app/visibility/run.h"
 #include "base/error.h"
@@ -37,14 +35,13 @@ struct FileCall {
 std::vector<double> positions_of(const std::string& text) {
   std::vector<double> positions;
   for (const std::string& word : split_at_commas(text)) {
-    double value = 0.0;
-    const auto read = std::from_chars(word.data(), word.data() + word.size(), value);
-    const bool whole = read.ec == std::errc() && read.ptr == word.data() + word.size();
-    if (!whole || !(std::abs(value) <= 360.0)) {
+    const auto read = parsed<double>(word);
+    if (!read || !(std::abs(*read) <= 360.0)) {
       throw base::Error(base::Blame::Input, "--at", fmt::format("\"{}\" is no position", word),
                         "allowed are numbers from -360 to 360, with commas between",
                         "Write for instance --at 0,90,180");
     }
+    const double value = *read;
     if (studies::stands_among(positions, value)) {
       throw base::Error(base::Blame::Input, "--at",
                         fmt::format("the place of {:g} stands there twice", value), {},

@@ -125,25 +125,22 @@ std::string plan_text(const Json& plan) {
         "{}: {} places x {} lamp settings = {} conditions; {} light groups ({} Suns, {} cells of "
         "the "
         "Earth), {:.0f} MiB; radiosity {}\n",
-        scene["path"].get<std::string>(), scene["positions"].get<std::size_t>(),
-        plan["lamps"].size(), scene["conditions"].get<std::size_t>(),
-        scene["light_groups"].get<std::size_t>(), scene["suns"].get<std::size_t>(),
-        scene["earth_cells"].get<std::size_t>(), scene["memory_mib"].get<double>(),
+        scene["path"], scene["positions"], plan["lamps"].size(), scene["conditions"],
+        scene["light_groups"], scene["suns"], scene["earth_cells"], scene["memory_mib"],
         duration(scene["solve_seconds"].get<double>()));
     for (const Json& camera : scene["cameras"]) {
       const std::string drawing = camera["found"].get<bool>()
                                       ? "picture found"
                                       : "picture " + duration(camera["seconds"].get<double>());
-      text += fmt::format("  camera {}: {} x {}, {}, conditions {}\n",
-                          camera["camera"].get<std::string>(), camera["columns"].get<int>(),
-                          camera["rows"].get<int>(), drawing,
+      text += fmt::format("  camera {}: {} x {}, {}, conditions {}\n", camera["camera"],
+                          camera["columns"], camera["rows"], drawing,
                           duration(camera["conditions_seconds"].get<double>()));
     }
   }
   return text + fmt::format(
                     "{} pictures for the report\nabout {} on this machine, without the "
                     "reasons of targets that fail\n",
-                    plan["pictures"].get<std::size_t>(), duration(plan["seconds"].get<double>()));
+                    plan["pictures"], duration(plan["seconds"].get<double>()));
 }
 
 void fill_pictures(studies::StudyFile& study, const StudyPart& part) {

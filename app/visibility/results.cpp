@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "app/parts/result_cache.h"
-#include "app/study/results_tables.h"
+#include "app/study/results.h"
 #include "studies/error/error_budget.h"
 
 namespace earthshine::app {

@@ -6,6 +6,8 @@
 #include <ImfHeader.h>
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "base/files/exr_file.h"
 
@@ -26,5 +28,16 @@ void set_exr_attributes(Imf::Header& header, const ExrHeader& attributes);
 [[nodiscard]] Imath::Box2i picture_window(const Imf::Header& header);
 // Fills header.whole where the window lies within the display window and is not all of it.
 void tell_crop(ExrHeader& header, const Imath::Box2i& window, const Imath::Box2i& display);
+
+// Which of a file's channels are its picture.
+
+struct ExrPicture {
+  enum class Kind { None, Rgb, Xyz, Luminance };
+  Kind kind = Kind::None;
+  std::vector<std::string> channels;  // three or one, as the file names them
+  std::vector<std::string> layers;    // kind = None: several that could be meant
+};
+// As exr_reader.h has it.
+[[nodiscard]] ExrPicture find_picture(const std::vector<std::string>& channels);
 
 }  // namespace earthshine::base

@@ -20,7 +20,6 @@
 
 #include "base/error.h"
 #include "base/files/exr_attributes.h"
-#include "base/files/exr_picture.h"
 #include "base/input/exr_guard.h"
 #include "base/input/input_file.h"
 

@@ -2,9 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <functional>
 #include <limits>
-#include <numeric>
 
 #include "base/error.h"
 #include "base/files/hdf5_handle.h"

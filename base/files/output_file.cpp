@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <charconv>
 #include <csignal>
@@ -20,8 +19,6 @@
 #include <mutex>
 #include <set>
 #include <sstream>
-#include <string>
-#include <string_view>
 #include <system_error>
 
 #include "base/error.h"

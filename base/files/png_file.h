@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading and writing PNG files (libpng; png_file.cpp and png_reader.cpp are its only users).
+// Reading and writing PNG files (libpng; png_file.cpp is its only user).
 #pragma once
 
 #include <cstdint>

@@ -8,8 +8,6 @@
 
 #include <cerrno>
 #include <cstdint>
-#include <system_error>
-#include <utility>
 
 #include "base/free_memory.h"
 

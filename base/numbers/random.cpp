@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/numbers/random.h"
 
-#include "base/numbers/sobol_bits.h"
-
 namespace earthshine::base {
 namespace {
 

@@ -82,4 +82,53 @@ class SobolOwen4 {
   std::array<std::uint32_t, 4> scramble_seed_;
 };
 
+// Bits shared by the two forms of the Owen-scrambled Sobol points (Burley 2020, "Practical
+// Hash-based Owen Scrambling", JCGT 9(4); direction numbers of Joe and Kuo 2008).
+
+constexpr std::uint32_t reverse_bits(std::uint32_t x) {
+  x = ((x >> 1) & 0x55555555U) | ((x & 0x55555555U) << 1);
+  x = ((x >> 2) & 0x33333333U) | ((x & 0x33333333U) << 2);
+  x = ((x >> 4) & 0x0f0f0f0fU) | ((x & 0x0f0f0f0fU) << 4);
+  return (x >> 24) | ((x >> 8) & 0xff00U) | ((x << 8) & 0xff0000U) | (x << 24);
+}
+
+// Laine-Karras permutation with Vegdahl's constants: each output bit depends on lower bits only,
+// which on the reversed number is Owen scrambling.
+constexpr std::uint32_t laine_karras(std::uint32_t x, std::uint32_t seed) {
+  x ^= x * 0x3d20adeaU;
+  x += seed;
+  x *= (seed >> 16) | 1U;
+  x ^= x * 0x05526c56U;
+  x ^= x * 0x53a22864U;
+  return x;
+}
+
+// 23 bits and half a step keep the value strictly inside (0, 1) in single precision.
+constexpr float to_open_unit(std::uint32_t bits) {
+  return (static_cast<float>(static_cast<std::int32_t>(bits >> 9)) + 0.5F) * 0x1p-23F;
+}
+
+using SobolMatrix = std::array<std::uint32_t, 32>;
+
+// Direction numbers from a primitive polynomial of degree s with coefficients a and first numbers m
+// (Joe and Kuo 2008, table new-joe-kuo-6, dimensions 1 to 4).
+constexpr SobolMatrix sobol_direction_numbers(std::uint32_t s, std::uint32_t a,
+                                              std::array<std::uint32_t, 3> m) {
+  SobolMatrix v{};
+  if (s == 0) {
+    for (std::uint32_t i = 0; i < 32; ++i) v[i] = 1U << (31 - i);
+    return v;
+  }
+  for (std::uint32_t i = 0; i < s; ++i) v[i] = m[i] << (31 - i);
+  for (std::uint32_t i = s; i < 32; ++i) {
+    v[i] = v[i - s] ^ (v[i - s] >> s);
+    for (std::uint32_t k = 1; k < s; ++k) v[i] ^= ((a >> (s - 1 - k)) & 1U) * v[i - k];
+  }
+  return v;
+}
+
+inline constexpr std::array<SobolMatrix, 4> sobol_matrices = {
+    sobol_direction_numbers(0, 0, {}), sobol_direction_numbers(1, 0, {1, 0, 0}),
+    sobol_direction_numbers(2, 1, {1, 3, 0}), sobol_direction_numbers(3, 1, {1, 3, 1})};
+
 }  // namespace earthshine::base

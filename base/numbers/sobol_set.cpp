@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/numbers/sobol_bits.h"
-
 namespace earthshine::base {
 namespace {
 

@@ -3,7 +3,9 @@
 // at a time: the fast form of SobolOwen4 where all N points are used.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <vector>
 
 #include "base/numbers/random.h"
@@ -40,5 +42,14 @@ class SobolSet4 {
  private:
   std::vector<std::uint32_t> bits_[4];  // the coordinates' bits, lowest first
 };
+
+// The R2 lattice (Roberts 2018): any number of points, even over the unit square, in step with no
+// pattern.
+
+inline constexpr double r2_u = 0.7548776662466927, r2_v = 0.5698402909980532;
+
+[[nodiscard]] inline glm::dvec2 even_point(std::size_t k) {
+  return glm::fract(0.5 + static_cast<double>(k + 1) * glm::dvec2(r2_u, r2_v));
+}
 
 }  // namespace earthshine::base

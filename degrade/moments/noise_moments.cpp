@@ -2,7 +2,6 @@
 #include "degrade/moments/noise_moments.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 

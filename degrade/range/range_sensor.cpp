@@ -2,15 +2,14 @@
 #include "degrade/range/range_sensor.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "base/error.h"
 #include "base/numbers/random.h"
 #include "base/parallel.h"
 #include "degrade/parts/noise.h"
+#include "degrade/stage/read_setting.h"
 
 namespace earthshine::degrade {
 namespace {
@@ -87,30 +86,31 @@ class Sensing {
 };
 
 RangeReport count(const std::vector<Reading>& readings) {
+  // In Reading's order.
+  constexpr std::uint64_t RangeReport::*of[] = {&RangeReport::returned, &RangeReport::empty,
+                                                &RangeReport::grazing,  &RangeReport::dim,
+                                                &RangeReport::lost,     &RangeReport::out_of_range};
   RangeReport report;
-  for (const Reading reading : readings) {
-    switch (reading) {
-      case Reading::Returned:
-        ++report.returned;
-        break;
-      case Reading::Empty:
-        ++report.empty;
-        break;
-      case Reading::Grazing:
-        ++report.grazing;
-        break;
-      case Reading::Dim:
-        ++report.dim;
-        break;
-      case Reading::Lost:
-        ++report.lost;
-        break;
-      case Reading::OutOfRange:
-        ++report.out_of_range;
-        break;
-    }
-  }
+  for (const Reading reading : readings) ++(report.*of[static_cast<std::size_t>(reading)]);
   return report;
+}
+
+using base::Blame;
+using base::Error;
+using scenes::SettingTable;
+
+RangeSensor read_sensor(const SettingTable& table) {
+  RangeSensor sensor;
+  const auto visit = [](RangeSensor& s, auto&& field) { visit_range_fields(s, field); };
+  for (const scenes::Setting& setting : table.settings) {
+    read_setting(setting, sensor, visit, {});
+  }
+  if (sensor.max_range_m > 0.0 && sensor.min_range_m >= sensor.max_range_m) {
+    throw Error(Blame::Input, place_of(table, "min_range_m"),
+                "min_range_m = " + number(sensor.min_range_m) +
+                    " is not below max_range_m = " + number(sensor.max_range_m));
+  }
+  return sensor;
 }
 
 }  // namespace
@@ -135,6 +135,25 @@ RangeView sense_range(const base::Image& layers, const Vec3& position, const Ran
   });
   view.report = count(readings);
   return view;
+}
+
+RangeSensor resolve_range_sensor(const scenes::Scene& scene, const std::string& name) {
+  std::vector<std::string> names;
+  for (const SettingTable& table : scene.range_sensors) {
+    if (table.name == name) return read_sensor(table);
+    names.push_back(table.name);
+  }
+  throw Error(Blame::Input, scene.path.string(), "there is no range sensor " + in_quotes(name),
+              names.empty() ? "the scene has no [[range_sensor]]" : "known are " + listed(names),
+              did_you_mean(name, names));
+}
+
+void check_range_sensors(const scenes::Scene& scene) {
+  for (const SettingTable& table : scene.range_sensors) static_cast<void>(read_sensor(table));
+  for (const scenes::Camera& camera : scene.cameras) {
+    if (camera.range_sensor.empty()) continue;
+    static_cast<void>(resolve_range_sensor(scene, camera.range_sensor));
+  }
 }
 
 }  // namespace earthshine::degrade

@@ -13,10 +13,12 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "base/image.h"
 #include "base/units.h"
 #include "degrade/stage/fields.h"
+#include "scenes/scene.h"
 
 namespace earthshine::degrade {
 
@@ -71,5 +73,14 @@ struct RangeView {
 // of the picture. Throws base::Error (Work) when a layer is missing.
 [[nodiscard]] RangeView sense_range(const base::Image& layers, const Vec3& position,
                                     const RangeSensor& sensor, const RangeKey& key = {});
+
+// [[range_sensor]] tables of a scene to settings. docs/scene-format.md lists the keys.
+
+// The [[range_sensor]] of that name. Throws base::Error (Input) for an unknown name or key (with
+// the nearest), a value of the wrong kind or out of range, and limits that contradict each other.
+[[nodiscard]] RangeSensor resolve_range_sensor(const scenes::Scene& scene, const std::string& name);
+
+// Everything that resolve_range_sensor would refuse, for all tables and all cameras of the scene.
+void check_range_sensors(const scenes::Scene& scene);
 
 }  // namespace earthshine::degrade

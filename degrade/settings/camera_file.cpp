@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "degrade/settings/camera_file.h"
 
-#include <algorithm>
-#include <vector>
-
-#include "degrade/settings/presets.h"
 #include "degrade/stage/read_setting.h"
 
 namespace earthshine::degrade {

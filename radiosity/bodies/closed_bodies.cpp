@@ -7,7 +7,6 @@
 #include <map>
 
 #include "radiosity/bodies/closed_parts.h"
-#include "radiosity/bodies/hole_capping.h"
 #include "scenes/triangle_point.h"
 
 namespace earthshine::radiosity {

@@ -9,7 +9,7 @@
 // takes from a body around it (a house: walls within an outer shell). Where all light there is
 // shines in such rooms, what pokes out of them is covered too: the foot of a box that stands on a
 // floor, or is sunk in it, has nothing to receive beyond the floor and nobody to send it to.
-// A hole that rests on another surface all around is stopped up by it (hole_capping.h).
+// A hole that rests on another surface all around is stopped up by it (closed_parts.h).
 // Sheets, glass, other open meshes and meshes with some faces turned over cover nothing: where
 // their inside is cannot be told. Faces that lie on others (scenes/health/coincident.h) are counted
 // with what covers, and the holes of an opacity mask with what is covered: nothing is there either.
@@ -21,8 +21,8 @@
 
 #include "radiosity/patches/patches.h"
 #include "scenes/coincident_faces.h"
-#include "scenes/mask.h"
 #include "scenes/scene.h"
+#include "scenes/surface_texture.h"
 
 namespace earthshine::radiosity {
 

@@ -2,11 +2,15 @@
 #include "radiosity/bodies/closed_parts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <numeric>
+#include <span>
 #include <tuple>
 
 #include "scenes/health/topology.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -18,6 +22,90 @@ struct EdgeUse {
   int way;
   [[nodiscard]] auto edge() const { return std::tie(low, high); }
   [[nodiscard]] auto key() const { return std::tie(low, high, object, triangle); }
+};
+
+constexpr double touch_share = 1e-6;  // of the scene's diagonal
+constexpr double flat = 1e-6;         // of cosines: the same plane
+
+using Rim = std::span<const ClosedParts::RimEdge>;
+
+class Stopper {
+ public:
+  Stopper(const scenes::Scene& scene, const ClosedParts& parts) : scene_(scene), parts_(parts) {
+    Vec3 low(std::numeric_limits<double>::infinity()), high = -low;
+    for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+      const auto [a, b, c] = corners_of(scene, t);
+      low = glm::min(low, glm::min(a, glm::min(b, c)));
+      high = glm::max(high, glm::max(a, glm::max(b, c)));
+      normals_.push_back(glm::cross(b - a, c - a));
+      const double length = glm::length(normals_.back());
+      if (length > 0.0) normals_.back() /= length;
+    }
+    touch_m_ = touch_share * glm::length(high - low);
+  }
+
+  // Empty where the hole is open.
+  [[nodiscard]] std::vector<Vec3> close(Rim rim) const {
+    const Vec3 hub = at(rim.front().from);
+    std::vector<Vec3> cap;
+    Vec3 outward(0.0);  // twice the cap's area
+    for (const auto& edge : rim) {
+      const Vec3 from = at(edge.from), to = at(edge.to);
+      cap.insert(cap.end(), {hub, to, from});
+      outward += glm::cross(to - hub, from - hub);
+    }
+    const double area = glm::length(outward);
+    if (!(area > touch_m_ * touch_m_)) return {};
+    outward /= area;
+    if (!is_flat(rim, hub, outward)) return {};
+    const std::vector<std::uint32_t> grounds = touching(rim.front().part, hub, outward);
+    if (grounds.empty()) return {};
+    for (const auto& edge : rim) {
+      const Vec3 from = at(edge.from), middle = 0.5 * (from + at(edge.to));
+      if (!rests(grounds, from) || !rests(grounds, middle)) return {};
+    }
+    return cap;
+  }
+
+ private:
+  [[nodiscard]] Vec3 at(std::uint32_t vertex) const { return scene_.vertices[vertex]; }
+
+  [[nodiscard]] bool is_flat(Rim rim, const Vec3& hub, const Vec3& normal) const {
+    return std::all_of(rim.begin(), rim.end(), [&](const auto& edge) {
+      return std::abs(glm::dot(at(edge.from) - hub, normal)) <= touch_m_;
+    });
+  }
+
+  // Of other parts, in the hole's plane and facing it.
+  [[nodiscard]] std::vector<std::uint32_t> touching(std::uint32_t part, const Vec3& hub,
+                                                    const Vec3& outward) const {
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t t = 0; t < normals_.size(); ++t) {
+      if (glm::dot(normals_[t], outward) > flat - 1.0 || parts_.of[t] == part) continue;
+      if (std::abs(glm::dot(corners_of(scene_, t).a - hub, normals_[t])) > touch_m_) continue;
+      const scenes::Material& material = scene_.materials[scene_.triangles[t].material];
+      if (material.two_sided || material.lets_light_through()) continue;
+      found.push_back(t);
+    }
+    return found;
+  }
+
+  [[nodiscard]] bool rests(const std::vector<std::uint32_t>& grounds, const Vec3& p) const {
+    return std::any_of(grounds.begin(), grounds.end(), [&](std::uint32_t t) {
+      const auto [a, b, c] = corners_of(scene_, t);
+      const auto inside_of = [&](const Vec3& from, const Vec3& to) {
+        const Vec3 way = to - from;
+        const double aside = glm::dot(glm::cross(way, p - from), normals_[t]);
+        return aside >= -touch_m_ * glm::length(way);
+      };
+      return inside_of(a, b) && inside_of(b, c) && inside_of(c, a);
+    });
+  }
+
+  const scenes::Scene& scene_;
+  const ClosedParts& parts_;
+  std::vector<Vec3> normals_;
+  double touch_m_ = 0.0;
 };
 
 }  // namespace
@@ -83,6 +171,21 @@ ClosedParts find_closed_parts(const scenes::Scene& scene) {
                    [](const auto& a, const auto& b) { return a.part < b.part; });
   for (std::uint32_t t = 0; t < parts.of.size(); ++t) parts.of[t] = root(t);
   return parts;
+}
+
+std::map<std::uint32_t, std::vector<Vec3>> find_stoppers(const scenes::Scene& scene,
+                                                         const ClosedParts& parts) {
+  std::map<std::uint32_t, std::vector<Vec3>> stoppers;
+  if (parts.rims.empty()) return stoppers;
+  const Stopper stopper(scene, parts);
+  for (auto begin = parts.rims.begin(); begin != parts.rims.end();) {
+    const auto end = std::find_if(begin, parts.rims.end(),
+                                  [&](const auto& edge) { return edge.part != begin->part; });
+    std::vector<Vec3> cap = stopper.close({begin, end});
+    if (!cap.empty()) stoppers.emplace(begin->part, std::move(cap));
+    begin = end;
+  }
+  return stoppers;
 }
 
 }  // namespace earthshine::radiosity

@@ -6,7 +6,8 @@
 
 #include "radiosity/bodies/closed_bodies.h"
 #include "radiosity/bodies/closed_parts.h"
-#include "scenes/light/lamp_kind.h"
+#include "scenes/light/lamp_light.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -59,12 +60,8 @@ struct Wall {
 class Walls {
  public:
   explicit Walls(const scenes::Scene& scene) {
-    Vec3 low(std::numeric_limits<double>::infinity()), high = -low;
-    for (const Vec3& p : scene.vertices) {
-      low = glm::min(low, p);
-      high = glm::max(high, p);
-    }
-    margin_m_ = scene.vertices.empty() ? 0.0 : rounding * glm::length(high - low);
+    margin_m_ =
+        scene.vertices.empty() ? 0.0 : rounding * scenes::box_around(scene.vertices).diagonal();
     const ClosedParts parts = find_closed_parts(scene);
     std::vector<char> holds(parts.closed);
     for (std::uint32_t t = 0; t < parts.of.size(); ++t) {

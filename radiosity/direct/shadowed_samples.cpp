@@ -8,7 +8,6 @@
 #include "base/numbers/random.h"
 #include "base/ranks/ranks.h"
 #include "radiosity/bodies/closed_bodies.h"
-#include "scenes/light/thrown_light.h"
 
 namespace earthshine::radiosity {
 namespace {

@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "radiosity/patches/open_parts.h"
 #include "radiosity/patches/patches.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/ray_query.h"

@@ -8,7 +8,6 @@
 #include "radiosity/exact/occlusion/convex_bodies.h"
 #include "radiosity/exact/occlusion/shadow_clip.h"
 #include "radiosity/exact/polygon/convex_polygon.h"
-#include "radiosity/exact/polygon/quadrature.h"
 #include "radiosity/patches/patches.h"
 
 namespace earthshine::radiosity {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "radiosity/exact/polygon/quadrature.h"
+#include "radiosity/exact/polygon/convex_polygon.h"
 
 namespace earthshine::radiosity {
 namespace {

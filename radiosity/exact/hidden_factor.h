@@ -7,7 +7,7 @@
 // corner of the target: 3 x 3 Gauss points in cells, the cell of the largest estimated error split
 // across its stronger bend until the estimates' sum is below the tolerance. Where kinks run along
 // the receiver's sides, as between right-angled bodies, cells are split at the kinks themselves
-// (shadow_kinks.h) and what is left is smooth.
+// (shadow_clip.h) and what is left is smooth.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "radiosity/exact/occlusion/shadow_clip.h"
-#include "radiosity/exact/occlusion/shadow_kinks.h"
 
 namespace earthshine::radiosity {
 

@@ -2,14 +2,12 @@
 #include "radiosity/exact/pairs.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "base/parallel.h"
 #include "radiosity/exact/facet_sides.h"
 #include "radiosity/exact/hidden_factor.h"
 #include "radiosity/exact/occlusion/convex_bodies.h"
-#include "radiosity/exact/occlusion/shaft.h"
 #include "radiosity/exact/polygon/polygon_factor.h"
 
 namespace earthshine::radiosity {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "radiosity/factors/form_factors.h"
-#include "radiosity/patches/open_parts.h"
 #include "radiosity/patches/patches.h"
 
 namespace earthshine::radiosity {

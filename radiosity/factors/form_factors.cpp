@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <numeric>
 
 #include "base/free_memory.h"
 #include "base/ranks/ranks.h"
 #include "radiosity/factors/covered_patches.h"
-#include "radiosity/factors/object_runs.h"
+#include "radiosity/factors/patch_rays.h"
 #include "radiosity/factors/row_caster.h"
 
 namespace earthshine::radiosity {

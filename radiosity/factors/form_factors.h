@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "base/ranks/shares.h"
-#include "radiosity/patches/open_parts.h"
 #include "radiosity/patches/patches.h"
 #include "scenes/ray_query.h"
 #include "scenes/sky/sky_cells.h"
@@ -30,7 +29,7 @@ struct FormFactorOptions {
   // Points of a patch that lie in a body (closed_bodies.h) send nothing: its row is the mean over
   // the others, FormFactors::open says how many they are. Else they are as good as any.
   bool leave_out_covered = false;
-  // Patches of objects that have few of them send more rays each (object_runs.h).
+  // Patches of objects that have few of them send more rays each (patch_rays.h).
   bool know_objects = false;
   const scenes::SkyCells* sky_cells = nullptr;  // the sky's light is wanted for each of them
 };

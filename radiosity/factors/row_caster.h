@@ -10,7 +10,6 @@
 
 #include "radiosity/bodies/closed_bodies.h"
 #include "radiosity/factors/form_factors.h"
-#include "radiosity/factors/hit_counter.h"
 #include "radiosity/factors/hit_targets.h"
 #include "radiosity/factors/patch_rays.h"
 

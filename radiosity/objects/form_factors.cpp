@@ -2,14 +2,13 @@
 #include "radiosity/objects/form_factors.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "base/numbers/random.h"
 #include "base/parallel.h"
 #include "radiosity/objects/table.h"
-#include "scenes/mask.h"
 #include "scenes/reflect/specular.h"
+#include "scenes/surface_texture.h"
 
 namespace earthshine::radiosity {
 namespace {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -152,5 +153,39 @@ class Patches {
 [[nodiscard]] TrianglePlace triangle_place(const Facet& facet, Parameters where);
 // Of a cell of any facet.
 [[nodiscard]] double area_of(const Patches& patches, const Facet& facet, const Cell& cell);
+
+// What bodies leave open of the patches (closed_bodies.h).
+
+class ClosedBodies;
+
+struct OpenParts {
+  std::vector<double> share;  // per patch: of its points, those that no body covers; empty: all 1
+  std::shared_ptr<const ClosedBodies> bodies;  // null: nothing is covered
+};
+
+// area_m2 times the share.
+[[nodiscard]] std::vector<double> open_areas(const OpenParts& open,
+                                             std::span<const double> area_m2);
+
+// What patches reflect and emit on average over their area, where materials have textures.
+
+// The mean of k_d over what is there of the patch; without a texture the material's.
+[[nodiscard]] Rgb patch_diffuse(const scenes::Scene& scene, const Patches& patches,
+                                std::uint32_t patch);
+// Of the exitance.
+[[nodiscard]] Rgb patch_emit(const scenes::Scene& scene, const Patches& patches,
+                             std::uint32_t patch);
+
+// rho of patches: k_d and the mean of the lobe (scenes::bihemispherical_albedos). The scene must
+// outlive it.
+class PatchAlbedos {
+ public:
+  explicit PatchAlbedos(const scenes::Scene& scene);
+  [[nodiscard]] Rgb of(const Patches& patches, std::uint32_t patch) const;
+
+ private:
+  const scenes::Scene& scene_;
+  std::vector<Rgb> by_material_;
+};
 
 }  // namespace earthshine::radiosity

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/files/hdf5_file.h"
 #include "base/input/input_file.h"

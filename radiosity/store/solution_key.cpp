@@ -3,7 +3,7 @@
 
 #include "base/numbers/digest.h"
 #include "scenes/light/photometry.h"
-#include "scenes/sky/sky_parts.h"
+#include "scenes/sky/sky_cells.h"
 #include "scenes/texture/texture.h"
 
 namespace earthshine::radiosity {

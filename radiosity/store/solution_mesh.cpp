@@ -2,13 +2,12 @@
 #include "radiosity/store/solution_mesh.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <tuple>
 
 #include "radiosity/patches/cluster_members.h"
-#include "radiosity/patches/patch_albedo.h"
+#include "radiosity/patches/patches.h"
 
 namespace earthshine::radiosity {
 namespace {

@@ -2,8 +2,10 @@
 // Pixel to ray: pinhole or thin lens.
 #pragma once
 
+#include <array>
 #include <cstddef>
 
+#include "scenes/ray_query.h"
 #include "scenes/scene.h"
 
 namespace earthshine::raytrace {
@@ -44,5 +46,45 @@ struct CameraModel {
 
 // Square pixels; fov_deg is the vertical field whatever the size of the picture.
 [[nodiscard]] CameraModel make_camera_model(const scenes::Camera& camera, int columns, int rows);
+
+// A camera as the matrices that other programs expect, so that positions can be projected into its
+// picture and pixels cast back into the scene.
+
+// Pixels count from the picture's top left corner: the centre of the first one is (0.5, 0.5).
+struct CameraMatrices {
+  // Computer vision: axes x right, y down, z forward; points are columns; matrices row by row.
+  //   (u w, v w, w) = K (x, y, z)      camera (m) to pixels; K = fx 0 cx  0 fy cy  0 0 1
+  //   (X, Y, Z, 1) = to_world (x, y, z, 1)
+  std::array<double, 9> k{};
+  std::array<double, 16> to_world{};
+  // OpenEXR's standard attributes (ImfStandardAttributes.h): points are rows, matrices row by row.
+  //   worldToCamera  left-handed: x right, y up, z forward
+  //   worldToNDC     (0, 0) and (1, 1) are the upper left and lower right corners of the display
+  //                  window; the third coordinate, 1 - 1/depth, has no meaning in the standard
+  std::array<double, 16> world_to_camera{};
+  std::array<double, 16> world_to_ndc{};
+  double screen_window_width = 1.0;  // of the picture at distance 1
+};
+
+// Of a pinhole; of a lens, its centre.
+[[nodiscard]] CameraMatrices camera_matrices(const CameraModel& camera);
+
+// Is the camera somewhere from which there is something to see?
+
+// How often the surface of an object winds around a point, counting its opaque one-sided triangles:
+// 1 inside a closed body, 0 outside it, -1 inside a closed room (fronts inward), between them for
+// open surfaces. The sum of signed solid angles over 4 pi (van Oosterom and Strackee 1983,
+// equation 8), so that it needs no ray and no tolerance.
+[[nodiscard]] double winding_number(const scenes::Scene& scene, std::uint32_t object,
+                                    const Vec3& point);
+
+// Throws base::Error (Input), at the camera's place in the scene file and naming the object, if the
+// camera stands inside a body whose backs are black:
+//   every ray from it meets the back of an opaque one-sided surface first, or
+//   one closed object winds around it and at least half of its rays meet that object's back first.
+// A closed room (fronts inward, or two-sided walls), a hull with a lining, an open bay and the
+// inside of glass are all places to look from. The rays go to fixed directions over the sphere.
+void check_camera(const scenes::Scene& scene, const scenes::RayQuery& query,
+                  const scenes::Camera& camera);
 
 }  // namespace earthshine::raytrace

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "raytrace/camera/pixel_filter.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace earthshine::raytrace {
 namespace {
 

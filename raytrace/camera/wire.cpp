@@ -2,7 +2,6 @@
 #include "raytrace/camera/wire.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <span>

@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "raytrace/gather/gather_field.h"
 #include "raytrace/gather/gather_tiles.h"
-#include "raytrace/share/same_surface.h"
+#include "raytrace/share/share.h"
 
 namespace earthshine::raytrace {
 namespace {

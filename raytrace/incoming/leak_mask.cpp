@@ -2,11 +2,10 @@
 #include "raytrace/incoming/leak_mask.h"
 
 #include <algorithm>
-#include <array>
 #include <mutex>
 
 #include "base/parallel.h"
-#include "raytrace/incoming/knots.h"
+#include "raytrace/incoming/radiance_table.h"
 
 namespace earthshine::raytrace {
 namespace {

@@ -3,13 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "radiosity/direct/lambert.h"
 #include "radiosity/exact/polygon/convex_polygon.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/sky/sky.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -45,12 +43,7 @@ double share_of_view(const scenes::Area& area, const Vec3& point, const Vec3& no
 
 Vec3 scene_centre(const scenes::Scene& scene) {
   if (scene.vertices.empty()) return Vec3(0.0);
-  Vec3 low = scene.vertices.front(), high = low;
-  for (const Vec3& p : scene.vertices) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
-  }
-  return 0.5 * (low + high);
+  return scenes::box_around(scene.vertices).middle();
 }
 
 Rgb earth_illuminance_lx(const scenes::Scene& scene) {

@@ -6,12 +6,10 @@
 #include <map>
 #include <utility>
 
-#include "base/numbers/even_points.h"
-#include "radiosity/direct/explicit_emitters.h"
-#include "scenes/light/lamp_kind.h"
-#include "scenes/light/thrown_light.h"
+#include "base/numbers/sobol_set.h"
+#include "radiosity/direct/sources.h"
 #include "scenes/sky/sky.h"
-#include "scenes/sky/sky_parts.h"
+#include "scenes/sky/sky_cells.h"
 
 namespace earthshine::raytrace {
 namespace {

@@ -6,9 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <optional>
 
-#include "raytrace/passes/pilot_pass.h"
 #include "raytrace/passes/sample_plan.h"
 
 namespace earthshine::raytrace {

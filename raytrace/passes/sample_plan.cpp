@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <mutex>
 
 #include "base/parallel.h"
 
@@ -41,6 +42,8 @@ struct Scatter {
     return independent > 0.0 ? std::min(1.0, found / independent) : 1.0;
   }
 };
+
+constexpr int planning_grid = 48;  // pixels along the shorter edge that are looked at
 
 }  // namespace
 
@@ -218,6 +221,39 @@ SamplePlan SamplePlanner::plan(double wanted, double most_cost) const {
         static_cast<std::uint32_t>(gain.samples) * (times == 4 ? 4U : 1U);
   }
   return plan;
+}
+
+PilotPass run_pilot_pass(ShadingScene shared, const CameraModel& camera, int samples) {
+  shared.diffuse = DiffuseSource::Solution;
+  shared.splits_parts = false;
+  const int step = std::max(1, std::min(camera.columns, camera.rows) / planning_grid);
+  const int columns = (camera.columns + step - 1) / step, rows = (camera.rows + step - 1) / step;
+  const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  std::vector<PixelSums> looks(count, PixelSums({0, 0, 1, 1}, shared.layers, false));
+  PilotPass pilot;
+  std::mutex mutex;
+  base::parallel_chunks(count, 16, [&](std::size_t begin, std::size_t end) {
+    RayCounts rays;
+    for (std::size_t k = begin; k < end; ++k) {
+      const int column = static_cast<int>(k) % columns, row = static_cast<int>(k) / columns;
+      looks[k].window.x = std::min(camera.columns - 1, column * step + step / 2);
+      looks[k].window.y = std::min(camera.rows - 1, row * step + step / 2);
+      shade_samples(shared, camera, {static_cast<std::uint32_t>(samples)}, looks[k], rays, {}, {});
+    }
+    const std::lock_guard lock(mutex);
+    pilot.rays += rays;
+  });
+  double pixels = 0.0;
+  for (const PixelSums& look : looks) {
+    if (!look.counts(0)) continue;
+    pilot.luminance += look.luminance[0] / samples;
+    pixels += 1.0;
+  }
+  pilot.luminance /= std::max(1.0, pixels);
+  for (const PixelSums& look : looks) {
+    pilot.deviation += look.deviation(0, pilot.bright()) / static_cast<double>(count);
+  }
+  return pilot;
 }
 
 }  // namespace earthshine::raytrace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "raytrace/passes/stated_error.h"
 
-#include <cmath>
 #include <numeric>
 
 namespace earthshine::raytrace {

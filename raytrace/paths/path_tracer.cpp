@@ -2,9 +2,7 @@
 #include "raytrace/paths/path_tracer.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <cmath>
 #include <mutex>
 #include <string>
 

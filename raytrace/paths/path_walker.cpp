@@ -8,7 +8,7 @@
 
 #include "scenes/reflect/specular.h"
 #include "scenes/sky/sky.h"
-#include "scenes/sky/sky_parts.h"
+#include "scenes/sky/sky_cells.h"
 #include "scenes/surface_texture.h"
 
 namespace earthshine::raytrace {

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "raytrace/share/same_surface.h"
 #include "raytrace/share/share.h"
 
 namespace earthshine::raytrace {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "raytrace/share/share.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "base/numbers/random.h"
 
 namespace earthshine::raytrace {

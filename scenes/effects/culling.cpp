@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "scenes/light/lamp_kind.h"
+#include "scenes/light/lamp_light.h"
 #include "scenes/ray_query.h"
 
 namespace earthshine::scenes {

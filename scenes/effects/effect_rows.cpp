@@ -2,8 +2,6 @@
 // The rows of `earthshine plan`: what decided about each effect, in words.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "scenes/effects/effects.h"
 #include "scenes/sky/sky.h"
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "scenes/sky/sky_parts.h"
+#include "scenes/sky/sky_cells.h"
 
 namespace earthshine::scenes {
 namespace {

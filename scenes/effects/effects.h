@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "scenes/effects/light_groups.h"
-#include "scenes/light/lamp_kind.h"
+#include "scenes/light/lamp_light.h"
 #include "scenes/scene.h"
 
 namespace earthshine::scenes {

@@ -18,7 +18,7 @@ inline constexpr std::size_t no_group = static_cast<std::size_t>(-1);
 struct LightGroups {
   std::vector<std::string> names;
   std::size_t sun = no_group;
-  std::size_t earth = no_group;      // the first of earth_parts() (sky_parts.h)
+  std::size_t earth = no_group;      // the first of earth_parts() (sky_cells.h)
   std::size_t sun_parts = no_group;  // the first of SkyParts::suns
   std::size_t ambient = no_group;
   std::vector<std::size_t> lamp;      // per lamp of the scene

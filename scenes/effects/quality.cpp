@@ -5,21 +5,14 @@
 #include <bit>
 #include <cmath>
 
+#include "scenes/triangle_point.h"
+
 namespace earthshine::scenes {
 namespace {
 
 int power_of_two_at_least(double value, int low, int high) {
   const double clamped = std::clamp(std::ceil(value), double(low), double(high));
   return static_cast<int>(std::bit_ceil(static_cast<std::uint32_t>(clamped)));
-}
-
-double diagonal(const Scene& scene) {
-  Vec3 low = scene.vertices.front(), high = low;
-  for (const Vec3& p : scene.vertices) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
-  }
-  return glm::length(high - low);
 }
 
 }  // namespace
@@ -39,7 +32,7 @@ QualityKnobs resolve_quality(const Scene& scene, const Quality& given) {
   knobs.smooth_share = given.smooth_share.value_or(std::clamp(0.25 / std::sqrt(ratio), 0.05, 0.5));
   knobs.picture_noise = given.picture_noise.value_or(std::min(1.0, 1.5 * reference_error / ratio));
   if (!scene.vertices.empty()) {
-    const double diagonal_m = diagonal(scene);
+    const double diagonal_m = box_around(scene.vertices).diagonal();
     knobs.patch_edge_m = diagonal_m / 48.0 / std::clamp(ratio, 0.25, 4.0);
     knobs.start_edge_m = diagonal_m / 8.0;
   }

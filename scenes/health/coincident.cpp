@@ -16,6 +16,7 @@
 #include "scenes/health/box_join.h"
 #include "scenes/ray_query.h"
 #include "scenes/text/message_text.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -23,11 +24,6 @@ namespace {
 constexpr double parallel_sine = 1e-3;  // a first look; heights decide
 constexpr double tie_share = 0.02;  // of the offset: as much as single precision of a file leaves
 constexpr std::size_t asked_every = 1U << 20;  // pairs, for whose room is asked
-
-struct Corners {
-  Vec3 a, b, c;
-  [[nodiscard]] Vec3 normal() const { return glm::cross(b - a, c - a); }
-};
 
 struct Overlap {
   double area_m2, height_m;  // of the second over the first, along the first's normal
@@ -122,13 +118,9 @@ class Coincidence {
     double over_m2 = 0.0, sides_m2 = 0.0;  // one over the other, back to back
   };
 
-  [[nodiscard]] Corners corners(std::uint32_t t) const {
-    const auto& v = scene_.triangles[t].vertex;
-    return {scene_.vertices[v[0]], scene_.vertices[v[1]], scene_.vertices[v[2]]};
-  }
   // A little larger than it is: neither a gap of the offset nor rounding parts two that touch.
   [[nodiscard]] std::pair<glm::vec3, glm::vec3> box_of(std::uint32_t t) const {
-    const Corners p = corners(t);
+    const Corners p = corners_of(scene_, t);
     const Vec3 low = glm::min(p.a, glm::min(p.b, p.c)) - offset_m_ - centre_,
                high = glm::max(p.a, glm::max(p.b, p.c)) + offset_m_ - centre_;
     return {glm::vec3(low), glm::vec3(high)};
@@ -144,7 +136,7 @@ class Coincidence {
   }
 
   void look_at(std::uint32_t a, std::uint32_t b) {
-    const Corners first = corners(a), second = corners(b);
+    const Corners first = corners_of(scene_, a), second = corners_of(scene_, b);
     const std::optional<Overlap> overlap = overlap_of(first, second, offset_m_);
     if (!overlap) return;
     const bool same_way = glm::dot(first.normal(), second.normal()) > 0.0;

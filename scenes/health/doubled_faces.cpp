@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <map>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "base/numbers/random.h"
 #include "scenes/health/topology.h"
 #include "scenes/text/message_text.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -61,9 +61,7 @@ std::vector<Face> faces_of(const Scene& scene) {
     if (seen[digests[number] & (seen.size() - 1)] < 2) return;
     face.area = Vec3(0.0);
     for (std::uint32_t t = face.first; t < face.first + face.count; ++t) {
-      const auto& v = scene.triangles[t].vertex;
-      const Vec3 a = scene.vertices[v[0]];
-      face.area += 0.5 * glm::cross(scene.vertices[v[1]] - a, scene.vertices[v[2]] - a);
+      face.area += 0.5 * corners_of(scene, t).normal();
     }
     faces.push_back(face);
   });
@@ -104,9 +102,7 @@ void drop(Scene& scene, const std::vector<char>& gone) {
     for (std::uint32_t t = first; t < end; ++t) {
       const Triangle& triangle = scene.triangles[t];
       if (gone[t] != 0) {
-        const Vec3 a = scene.vertices[triangle.vertex[0]];
-        object.area_m2 -= 0.5 * glm::length(glm::cross(scene.vertices[triangle.vertex[1]] - a,
-                                                       scene.vertices[triangle.vertex[2]] - a));
+        object.area_m2 -= 0.5 * glm::length(corners_of(scene, t).normal());
         continue;
       }
       if (triangle.polygon != polygon) ++object.polygon_count;

@@ -2,6 +2,7 @@
 // Faults of meshes as they come: what can be mended without a guess is mended, and said.
 #pragma once
 
+#include "base/units.h"
 #include "scenes/health/coincident.h"
 #include "scenes/scene.h"
 
@@ -22,5 +23,14 @@ namespace earthshine::scenes {
 // Throws base::Error (Input) for an object all of whose faces stand, turned alike, in objects
 // before it. Fills Object::surface and gives the parts of what there is then.
 FaceParts mend_surfaces(Scene& scene);
+
+// Lamps that stand on a surface, or nearer to it than rays can tell.
+
+// Moves each lamp that rays in single precision would not find in front of a surface (1.6e-5 of the
+// surfaces' extent) to where they do, with a warning: half of its light lands there all the same. A
+// lamp on a surface is taken to be in front of it, in a corner in front of all that meet there; one
+// between sheets that are nearer still stays, and is named. Of lamps with a size the centre counts,
+// and those that shine away from the surface stay.
+void lift_lamps(Scene& scene);
 
 }  // namespace earthshine::scenes

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "scenes/text/message_text.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -209,17 +210,15 @@ double Orienter::cup_volume(const SurfacePart& part) const {
   const Vec3 middle = 0.5 * (part.low + part.high);
   double volume = 0.0;
   for (std::size_t k = 0; k < part.triangles.size(); ++k) {
-    const auto& v = scene_.triangles[part.triangles[k]].vertex;
-    const Vec3 a = scene_.vertices[v[0]] - middle, b = scene_.vertices[v[1]] - middle,
-               c = scene_.vertices[v[2]] - middle;
-    volume += (part.turned[k] != 0 ? -1.0 : 1.0) * glm::dot(a, glm::cross(b, c)) / 6.0;
+    const Corners at = corners_of(scene_, part.triangles[k]).seen_from(middle);
+    volume += (part.turned[k] != 0 ? -1.0 : 1.0) * at.triple_product() / 6.0;
   }
   return volume;
 }
 
 Vec3 Orienter::middle_of(std::uint32_t triangle) const {
-  const auto& v = scene_.triangles[triangle].vertex;
-  return (scene_.vertices[v[0]] + scene_.vertices[v[1]] + scene_.vertices[v[2]]) / 3.0;
+  const auto [a, b, c] = corners_of(scene_, triangle);
+  return (a + b + c) / 3.0;
 }
 
 bool Orienter::all_two_sided(const SurfacePart& part) const {

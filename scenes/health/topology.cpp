@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <numeric>
 #include <tuple>
 
 #include "base/numbers/random.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -111,12 +111,10 @@ void measure(const Scene& scene, SurfacePart& part) {
   part.low = part.high = scene.vertices[scene.triangles[part.triangles.front()].vertex[0]];
   const Vec3 origin = part.low;
   for (std::size_t k = 0; k < part.triangles.size(); ++k) {
-    const auto& v = scene.triangles[part.triangles[k]].vertex;
-    const Vec3 a = scene.vertices[v[0]] - origin, b = scene.vertices[v[1]] - origin,
-               c = scene.vertices[v[2]] - origin;
-    (part.turned[k] != 0 ? turned : kept) += glm::length(glm::cross(b - a, c - a));
-    part.volume_m3 += (part.turned[k] != 0 ? -1.0 : 1.0) * glm::dot(a, glm::cross(b, c)) / 6.0;
-    for (const std::uint32_t corner : v) {
+    const Corners at = corners_of(scene, part.triangles[k]).seen_from(origin);
+    (part.turned[k] != 0 ? turned : kept) += glm::length(at.normal());
+    part.volume_m3 += (part.turned[k] != 0 ? -1.0 : 1.0) * at.triple_product() / 6.0;
+    for (const std::uint32_t corner : scene.triangles[part.triangles[k]].vertex) {
       part.low = glm::min(part.low, scene.vertices[corner]);
       part.high = glm::max(part.high, scene.vertices[corner]);
     }
@@ -193,14 +191,8 @@ double solid_angle_of(const Scene& scene, const SurfacePart& part, const Vec3& p
   }
   double angle = 0.0;
   for (std::size_t k = 0; k < part.triangles.size(); ++k) {
-    const auto& v = scene.triangles[part.triangles[k]].vertex;
-    const Vec3 a = scene.vertices[v[0]] - point, b = scene.vertices[v[1]] - point,
-               c = scene.vertices[v[2]] - point;
-    const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-    const double over = glm::dot(a, glm::cross(b, c));
-    const double under =
-        la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
-    angle += (part.turned[k] != 0 ? -2.0 : 2.0) * std::atan2(over, under);
+    const double own = corners_of(scene, part.triangles[k]).seen_from(point).solid_angle();
+    angle += part.turned[k] != 0 ? -own : own;
   }
   return std::abs(angle);
 }

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "scenes/light/emitters.h"
-#include "scenes/light/lamp_kind.h"
 #include "scenes/light/photometry.h"
 
 namespace earthshine::scenes {
@@ -154,6 +153,20 @@ Vec3 sample_cone(const Vec3& axis, double half_angle_rad, double u, double v) {
 double cone_solid_angle_sr(double half_angle_rad) {
   const double s = std::sin(half_angle_rad / 2);
   return 4.0 * pi * s * s;
+}
+
+LightSample thrown(const LightSample& sample, const FlatMirror& mirror, std::uint32_t number,
+                   const Vec3& point) {
+  const double height = mirror.height_m(point);
+  const double rise = glm::dot(sample.direction, mirror.normal);
+  if (height <= 0.0 || rise <= 0.0) return {};
+  const double to_mirror = height / rise;
+  if (to_mirror >= sample.distance_m) return {};  // the source is behind it
+  const Vec3 from_centre = mirror.image(point) + to_mirror * sample.direction - mirror.centre;
+  if (glm::dot(from_centre, from_centre) > mirror.radius_m * mirror.radius_m * (1.0 + 1e-9)) {
+    return {};
+  }
+  return {mirror.turned(sample.direction), sample.distance_m, sample.normal_illuminance_lx, number};
 }
 
 }  // namespace earthshine::scenes

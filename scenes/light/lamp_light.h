@@ -2,7 +2,9 @@
 // What a source of finite extent gives a point: one sample of its light, and where its flux goes.
 #pragma once
 
+#include <array>
 #include <optional>
+#include <string_view>
 
 #include "scenes/light_ways.h"
 #include "scenes/scene.h"
@@ -57,5 +59,45 @@ struct LampHit {
 // angle.
 [[nodiscard]] Vec3 sample_cone(const Vec3& axis, double half_angle_rad, double u, double v);
 [[nodiscard]] double cone_solid_angle_sr(double half_angle_rad);
+
+// Light of a source that a flat mirror throws onto a point: that of the source's image.
+
+// sample: of the source itself, as the mirror's image of `point` sees it. What comes out is seen
+// from the point; its light is 0 where the mirror lies elsewhere. The mirror's own share is not in
+// it: RayQuery::light_shares has that of the very place. Flat mirrors keep areas and angles, so
+// that the whole way takes the place of the distance.
+[[nodiscard]] LightSample thrown(const LightSample& sample, const FlatMirror& mirror,
+                                 std::uint32_t number, const Vec3& point);
+
+// What tells the kinds of lamps apart, a row each; their light is in lamp_light.h, their keys in
+// scenes/read/lamp.cpp.
+
+struct LampRow {
+  std::string_view type;  // as scene files have it
+  // Of the surface that shines, by its exitance: m^2, and the radius of the ball around it in m.
+  // Null for what shines from a point, by its intensity.
+  double (*area)(const Lamp&);
+  double (*radius)(const Lamp&);
+};
+// In LampKind's order.
+inline constexpr std::array<LampRow, 5> lamp_rows = {{
+    {"point", nullptr, nullptr},
+    {"spot", nullptr, nullptr},
+    {"rectangle",
+     [](const Lamp& lamp) { return glm::length(glm::cross(lamp.edge_u, lamp.edge_v)); },
+     [](const Lamp& lamp) {
+       return 0.5 * glm::max(glm::length(lamp.edge_u + lamp.edge_v),
+                             glm::length(lamp.edge_u - lamp.edge_v));
+     }},
+    {"disk", [](const Lamp& lamp) { return base::pi * lamp.radius_m * lamp.radius_m; },
+     [](const Lamp& lamp) { return lamp.radius_m; }},
+    {"ies", nullptr, nullptr},
+}};
+
+[[nodiscard]] constexpr const LampRow& row_of(LampKind kind) {
+  return lamp_rows[static_cast<std::size_t>(kind)];
+}
+// A wide lamp has a surface: it can be seen, hidden in part, distributed.
+[[nodiscard]] constexpr bool is_wide(LampKind kind) { return row_of(kind).area != nullptr; }
 
 }  // namespace earthshine::scenes

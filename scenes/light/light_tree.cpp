@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "scenes/light/lamp_kind.h"
+#include "scenes/light/lamp_light.h"
 #include "scenes/light/photometry.h"
 
 namespace earthshine::scenes {

@@ -2,7 +2,6 @@
 #include "scenes/mesh/mtl_maps.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "base/input/input_file.h"
 #include "scenes/mesh.h"

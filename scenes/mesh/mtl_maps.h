@@ -10,7 +10,7 @@
 
 #include "scenes/scene.h"
 #include "scenes/text/text_lines.h"
-#include "scenes/texture/picture_shelf.h"
+#include "scenes/texture/texture.h"
 
 namespace earthshine::scenes {
 

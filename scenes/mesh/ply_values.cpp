@@ -33,23 +33,15 @@ double as_double(const std::array<char, 8>& raw) {
   return static_cast<double>(value);
 }
 
-std::size_t size_of(PlyType type) {
-  switch (type) {
-    case PlyType::Int8:
-    case PlyType::Uint8:
-      return 1;
-    case PlyType::Int16:
-    case PlyType::Uint16:
-      return 2;
-    case PlyType::Int32:
-    case PlyType::Uint32:
-    case PlyType::Float32:
-      return 4;
-    case PlyType::Float64:
-      return 8;
-  }
-  return 8;
-}
+struct Binary {
+  std::size_t size;
+  double (*value)(const std::array<char, 8>& raw);
+};
+// In PlyType's order.
+constexpr Binary binary[] = {{1, as_double<std::int8_t>},  {1, as_double<std::uint8_t>},
+                             {2, as_double<std::int16_t>}, {2, as_double<std::uint16_t>},
+                             {4, as_double<std::int32_t>}, {4, as_double<std::uint32_t>},
+                             {4, as_double<float>},        {8, as_double<double>}};
 
 }  // namespace
 
@@ -69,7 +61,7 @@ std::optional<PlyEncoding> ply_encoding(std::string_view word) {
 
 double PlyValues::next(PlyType type) {
   if (encoding_ == PlyEncoding::Ascii) return next_word();
-  const std::size_t size = size_of(type);
+  const auto [size, value] = binary[static_cast<std::size_t>(type)];
   if (bytes_left() < size) {
     throw base::Error(base::Blame::Input, where(), "the file ends before its last number",
                       "the header announces more", "The file is cut off");
@@ -80,25 +72,7 @@ double PlyValues::next(PlyType type) {
   if (encoding_ == PlyEncoding::BigEndian) {
     std::reverse(raw.begin(), raw.begin() + static_cast<std::ptrdiff_t>(size));
   }
-  switch (type) {
-    case PlyType::Int8:
-      return as_double<std::int8_t>(raw);
-    case PlyType::Uint8:
-      return as_double<std::uint8_t>(raw);
-    case PlyType::Int16:
-      return as_double<std::int16_t>(raw);
-    case PlyType::Uint16:
-      return as_double<std::uint16_t>(raw);
-    case PlyType::Int32:
-      return as_double<std::int32_t>(raw);
-    case PlyType::Uint32:
-      return as_double<std::uint32_t>(raw);
-    case PlyType::Float32:
-      return as_double<float>(raw);
-    case PlyType::Float64:
-      return as_double<double>(raw);
-  }
-  return 0.0;
+  return value(raw);
 }
 
 double PlyValues::next_word() {

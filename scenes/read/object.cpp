@@ -7,7 +7,6 @@
 #include "base/free_memory.h"
 #include "scenes/mesh/mesh_file.h"
 #include "scenes/mesh/shapes.h"
-#include "scenes/read/file_lamps.h"
 #include "scenes/read/material_choice.h"
 #include "scenes/read/scene_parts.h"
 #include "scenes/round/round.h"

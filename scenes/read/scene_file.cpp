@@ -6,12 +6,12 @@
 #include "base/free_memory.h"
 #include "base/input/input_file.h"
 #include "scenes/health/coincident.h"
-#include "scenes/health/lift_lamps.h"
 #include "scenes/health/mend.h"
 #include "scenes/read/override.h"
 #include "scenes/read/scene_parts.h"
 #include "scenes/surface_texture.h"
-#include "scenes/text/toml_guard.h"
+#include "scenes/text/toml_file.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -76,12 +76,7 @@ void read_cctv(Scene& scene, const TableReader& root) {
 void check_size(Scene& scene) {
   constexpr double large_m = 300.0, small_m = 0.01;
   if (scene.vertices.empty()) return;
-  Vec3 low = scene.vertices.front(), high = low;
-  for (const Vec3& vertex : scene.vertices) {
-    low = glm::min(low, vertex);
-    high = glm::max(high, vertex);
-  }
-  const double across = glm::length(high - low);
+  const double across = box_around(scene.vertices).diagonal();
   if (across <= large_m && across >= small_m) return;
   scene.warnings.push_back(fmt::format(
       "the surfaces are {:.3g} m across; are unit, and scale of the objects, right?", across));

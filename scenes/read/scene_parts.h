@@ -88,6 +88,15 @@ class MeshShelf {
 // it is placed.
 Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& shelf);
 
+// Lamps and cameras that stand in a mesh file, as a scene's own: appends those of the part
+// (no_index: all), placed as the object's faces are; strengths do not
+// change with scale. Their names are "OBJECT.NAME" and new to the scene; each lamp is a light group
+// of its own. Throws base::Error (Input) at `where` for coordinates that are too large.
+void add_file_lamps(Scene& scene, const std::string& object, const Mesh& mesh, std::uint32_t part,
+                    const Placement& placement, const base::Location& where);
+void add_file_cameras(Scene& scene, const std::string& object, const Mesh& mesh, std::uint32_t part,
+                      const Placement& placement, const base::Location& where);
+
 // [[object]] tables with instance_of: read when all others are in the scene, and mended.
 class InstanceReader {
  public:

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace earthshine::scenes {
 namespace {
 
@@ -46,6 +49,38 @@ void check_energy(const Material& material, const base::Location& where, const s
                     material.specular[c], material.shininess),
         "Lower one of them, or raise shininess");
   }
+}
+
+// Directions out have the density (n + 1) cos^n / (2 pi) about the mirrored direction, those in
+// cos / pi about the normal, in both as equal shares of probability: the midpoint rule.
+double mean_lobe_reflectance(double n) {
+  constexpr int steps = 48;
+  const auto share = [](int k) { return (k + 0.5) / steps; };
+  double sum = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    const double sin2_in = share(i), sin_in = std::sqrt(sin2_in), cos_in = std::sqrt(1.0 - sin2_in);
+    for (int j = 0; j < steps; ++j) {
+      const double cos_off = std::pow(share(j), 1.0 / (n + 1.0));
+      const double sin_off = std::sqrt(std::max(0.0, 1.0 - cos_off * cos_off));
+      for (int k = 0; k < steps; ++k) {
+        const double turn = std::cos(base::pi * share(k));
+        sum += std::max(0.0, cos_off * cos_in + sin_off * turn * sin_in);
+      }
+    }
+  }
+  return 2.0 / (n + 1.0) * sum / (double(steps) * steps * steps);
+}
+
+std::vector<Rgb> bihemispherical_albedos(const Scene& scene) {
+  std::vector<Rgb> all;
+  for (const Material& material : scene.materials) {
+    Rgb reflectance = material.diffuse;
+    if (base::max_component(material.specular) > 0.0) {
+      reflectance += material.specular * mean_lobe_reflectance(material.shininess);
+    }
+    all.push_back(reflectance);
+  }
+  return all;
 }
 
 }  // namespace earthshine::scenes

@@ -4,14 +4,24 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "scenes/reflect/reflectance_file.h"
-
 namespace earthshine::scenes {
+
+// Measured reflectance: a CSV file to points.
+
+struct ReflectancePoint {
+  double angle_deg = 0.0;    // from the mirror direction, -180 to 180
+  double reflectance = 0.0;  // reflectance factor pi f
+};
+
+// Rows "angle in degrees, reflectance" with an optional heading row; # starts a comment.
+// Throws base::Error (Input) with file, line and column.
+[[nodiscard]] std::vector<ReflectancePoint> read_reflectance(const std::filesystem::path& path);
 
 // How far a measured point lies from the true R, as a standard deviation.
 enum class ReflectanceNoise {

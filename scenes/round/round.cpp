@@ -8,7 +8,6 @@
 
 #include "scenes/health/topology.h"
 #include "scenes/mesh/triangulate.h"
-#include "scenes/round/corner_normals.h"
 #include "scenes/round/edge_curves.h"
 
 namespace earthshine::scenes {

@@ -10,7 +10,7 @@
 namespace earthshine::scenes {
 
 struct Rounding {
-  std::optional<double> crease_deg;  // corners without a normal of the file's: see corner_normals.h
+  std::optional<double> crease_deg;  // corners without a normal of the file's: see edge_curves.h
   double turn_deg = 11.25;           // between neighbouring new faces along an edge
 };
 

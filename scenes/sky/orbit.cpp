@@ -108,12 +108,6 @@ double orbit_period_s(double altitude_m) {
   return 2.0 * base::pi * a * std::sqrt(a / earth_gm_m3_s2);
 }
 
-OrbitDirections orbit_directions(double beta_deg, double position_deg, std::string_view attitude) {
-  const Vec3 sun = sun_at(beta_deg, position_deg);
-  const BodyAxes axes = named_axes(attitude, sun);
-  return {axes.in_scene(sun), axes.in_scene(-zenith)};
-}
-
 OrbitState orbit_state(const Orbit& orbit, double position_deg) {
   OrbitState state;
   state.position_deg = position_deg;

@@ -31,13 +31,6 @@ inline constexpr std::string_view orbit_attitudes[] = {"bay-to-earth", "bay-to-s
 // The attitude that Orbit::inertial_as has at Orbit::inertial_at_deg, kept in inertial space.
 inline constexpr std::string_view inertial_attitude = "inertial";
 
-struct OrbitDirections {
-  Vec3 sun, earth;
-};
-// Throws base::Error (Input) for an attitude that is none of orbit_attitudes.
-[[nodiscard]] OrbitDirections orbit_directions(double beta_deg, double position_deg,
-                                               std::string_view attitude);
-
 struct OrbitState {
   double position_deg = 0.0;  // as asked, not brought to one turn
   double time_s = 0.0;        // since orbit noon, negative before it
@@ -46,8 +39,9 @@ struct OrbitState {
   double latitude_deg = 0.0;  // of the point below the spacecraft: asin(sin i sin u)
 };
 
-// Any position, beyond one turn too. Throws base::Error (Input) where a table of attitudes has no
-// row on both sides (one row holds everywhere).
+// Any position, beyond one turn too. Throws base::Error (Input) for an attitude that is none of
+// orbit_attitudes, and where a table of attitudes has no row on both sides (one row holds
+// everywhere).
 [[nodiscard]] OrbitState orbit_state(const Orbit& orbit, double position_deg);
 
 // Sets the scene's Sun and Earth, and the pole of its albedo by latitude, to that position. Throws

@@ -6,9 +6,11 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "base/units.h"
+#include "scenes/scene.h"
 
 namespace earthshine::scenes {
 
@@ -51,5 +53,22 @@ class SkyCells {
 // About `wanted` cells of the whole sphere, all of nearly the same size: for an Earth that moves
 // through the sky.
 [[nodiscard]] SkyCells cells_of_sphere(std::size_t wanted);
+
+// A sky in parts, each a light group of its own: any sky made of them, such as that of another
+// place in the orbit, is then a weighted sum of what the parts give. No scene file has one; studies
+// put it in the place of the Sun and the Earth.
+
+struct SkyParts {
+  std::vector<Sun> suns;          // whole discs that no Earth hides; groups "sun-0", "sun-1", ...
+  std::optional<SkyCells> cells;  // of Scene::earth, uniform; groups "earth-0", ...
+};
+
+// How many light groups stand for the Earth: one for each cell, else one.
+[[nodiscard]] std::size_t earth_parts(const Scene& scene);
+// Which of them a direction toward the Earth belongs to.
+[[nodiscard]] std::size_t earth_part(const Scene& scene, const Vec3& direction);
+
+// The number of the Sun whose disc a direction meets, among SkyParts::suns; none: their count.
+[[nodiscard]] std::size_t sun_part(const Scene& scene, const Vec3& direction);
 
 }  // namespace earthshine::scenes

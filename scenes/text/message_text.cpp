@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "base/escape.h"
 
 namespace earthshine::scenes {
 

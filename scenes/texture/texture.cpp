@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/texture/texture.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "base/error.h"
 #include "base/numbers/digest.h"
 
 namespace earthshine::scenes {
@@ -130,5 +133,22 @@ glm::dvec4 Texture::at(const glm::dvec2& uv, double level) const {
 }
 
 glm::dvec4 Texture::mean() const { return texel(levels_.back(), 0, 0); }
+
+std::shared_ptr<const Texture> PictureShelf::take(const TextureReading& reading,
+                                                  const std::function<std::string()>& read) {
+  for (const Shelved& known : shelved_) {
+    if (known.reading == reading) return known.texture;
+  }
+  std::shared_ptr<const Texture> made;
+  try {
+    made = std::make_shared<const Texture>(base::read_pixels(read(), reading.name), reading);
+  } catch (const base::Error& error) {
+    if (error.blame() != base::Blame::Input) throw;
+    warnings_.push_back(
+        fmt::format("a texture is left out, the plain colour stays: {}", error.what()));
+  }
+  shelved_.push_back({reading, made});
+  return made;
+}
 
 }  // namespace earthshine::scenes

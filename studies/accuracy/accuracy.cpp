@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studies/accuracy/accuracy.h"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <ctime>
 
+#include "base/parallel.h"
 #include "radiosity/bodies/walls.h"
-#include "raytrace/paths/path_tracer.h"
 #include "scenes/effects/culling.h"
 #include "scenes/effects/quality.h"
 #include "studies/cost/memory.h"
 #include "studies/error/error_budget.h"
-#include "studies/steer/picture_solver.h"
+#include "studies/steer/wanted_error.h"
 
 namespace earthshine::studies {
 namespace {
@@ -24,30 +21,18 @@ class Clock {
   [[nodiscard]] double wall() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
   }
-  [[nodiscard]] double cpu() const { return cpu_now() - cpu_; }
+  [[nodiscard]] double cpu() const { return base::cpu_seconds() - cpu_; }
 
  private:
-  static double cpu_now() {
-    timespec now{};
-    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-  }
   std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
-  double cpu_ = cpu_now();
+  double cpu_ = base::cpu_seconds();
 };
 
 scenes::LightPaths paths_of(Indirect indirect) {
-  switch (indirect) {
-    case Indirect::Paths:
-      return scenes::LightPaths::Traced;
-    case Indirect::None:
-      return scenes::LightPaths::Straight;
-    case Indirect::Distributed:
-      return scenes::LightPaths::Distributed;
-    case Indirect::Radiosity:
-      break;
-  }
-  return scenes::LightPaths::All;
+  using scenes::LightPaths;
+  constexpr LightPaths paths[] = {LightPaths::All, LightPaths::Distributed, LightPaths::Straight,
+                                  LightPaths::Traced};
+  return paths[static_cast<std::size_t>(indirect)];
 }
 
 scenes::QualityKnobs knobs_of(const scenes::Scene& scene, const AccuracyStep& step) {

@@ -5,19 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
+#include "base/parallel.h"
 #include "raytrace/light/distributed_area.h"
-#include "scenes/light/lamp_kind.h"
+#include "scenes/light/lamp_light.h"
 #include "studies/compare/yardstick.h"
 
 namespace earthshine::studies {
 namespace {
 
 using raytrace::Indirect;
-
-// Of all threads of the process: what other programs take meanwhile is not in it.
-double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 bool shines(const scenes::Scene& scene, std::uint32_t object) {
   const scenes::Object& o = scene.objects[object];
@@ -91,12 +88,12 @@ class Comparing {
     result.method = method;
     for (const std::uint64_t k : {1, 2}) {
       const std::string stage = fmt::format("{} {}", reference_name, k);
-      const double begin = cpu_seconds();
+      const double begin = base::cpu_seconds();
       const radiosity::Solution solution =
           solve(reference_solver(options_.solver, k), stage + ", solution");
       comparison_.reference_patches = solution.report.patches;
       for (const auto& [name, seconds] : solution.report.seconds) result.solve_seconds += seconds;
-      const double solved = cpu_seconds();
+      const double solved = base::cpu_seconds();
       result.solve_cpu_seconds += solved - begin;
       raytrace::RenderOptions render = render_options(method);
       if (steered()) {
@@ -108,7 +105,7 @@ class Comparing {
       render.seed = options_.seed + k;
       if (k == 1) render.aovs = {"object"};
       raytrace::Frame frame = draw(solution, render, stage);
-      result.render_cpu_seconds += cpu_seconds() - solved;
+      result.render_cpu_seconds += base::cpu_seconds() - solved;
       result.render_seconds += frame.report.seconds;
       (k == 1 ? yardstick_.first : yardstick_.second) = base::luminance_of(frame.image);
       if (k == 1) {
@@ -152,16 +149,16 @@ class Comparing {
     MethodResult result;
     result.method = method;
     radiosity::Solution solution;
-    const double begin = cpu_seconds();
+    const double begin = base::cpu_seconds();
     if (method.indirect == Indirect::Radiosity) {
       solution = solve(options_.solver, "radiosity solution");
       comparison_.solution = solution.report;
       for (const auto& [stage, seconds] : solution.report.seconds) result.solve_seconds += seconds;
-      result.solve_cpu_seconds = cpu_seconds() - begin;
+      result.solve_cpu_seconds = base::cpu_seconds() - begin;
     }
-    const double solved = cpu_seconds();
+    const double solved = base::cpu_seconds();
     result.frame = draw(solution, render_options(method), method.name);
-    result.render_cpu_seconds = cpu_seconds() - solved;
+    result.render_cpu_seconds = base::cpu_seconds() - solved;
     result.render_seconds = result.frame.report.seconds;
     result.difference = picture_difference(base::luminance_of(result.frame.image), yardstick_.first,
                                            yardstick_.second, comparison_.map);

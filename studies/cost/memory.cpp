@@ -9,7 +9,7 @@
 #include "radiosity/factors/row_pilot.h"
 #include "radiosity/refine.h"
 #include "raytrace/frame/cryptomatte.h"
-#include "raytrace/incoming/knots.h"
+#include "raytrace/incoming/radiance_table.h"
 #include "scenes/surface_texture.h"
 
 namespace earthshine::studies {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "raytrace/frame/options.h"
+#include "raytrace/frame/frame.h"
 #include "studies/study.h"
 
 namespace earthshine::studies {

@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/sky/sky.h"
-#include "scenes/sky/sky_parts.h"
+#include "scenes/sky/sky_cells.h"
 
 namespace earthshine::studies {
 namespace {

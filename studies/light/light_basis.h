@@ -59,7 +59,7 @@ class LightBasis {
   LightBasis(const scenes::Scene& scene, std::vector<SkyPlace> places,
              std::vector<LampSetting> settings, const BasisOptions& options = {});
 
-  // With one place the scene's own sky; else a sky in parts (scenes/sky/sky_parts.h). Sources are
+  // With one place the scene's own sky; else a sky in parts (scenes/sky/sky_cells.h). Sources are
   // scaled so that suns, Earth and lamps weigh alike where a picture's noise is judged.
   [[nodiscard]] const scenes::Scene& scene() const { return scene_; }
   // A lamp that is set by itself has a group of its name; " (lamp)" or " (lamps)" follows where

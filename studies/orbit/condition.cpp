@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <string>
 
 #include "base/parallel.h"
-#include "radiosity/direct/explicit_emitters.h"
+#include "radiosity/direct/sources.h"
 #include "studies/orbit/target_sources.h"
 
 namespace earthshine::studies {
@@ -162,15 +161,6 @@ std::vector<std::size_t> targets_to_explain(const Outcome& outcome,
 }
 
 }  // namespace
-
-Outcome judge_condition(const LightBasis& basis, const scenes::RayQuery& query,
-                        const BasisView& view, const ConditionAt& at,
-                        const std::optional<degrade::Setup>& cctv,
-                        const ConditionOptions& options) {
-  Outcome outcome = look(basis, query, view, at, cctv, options);
-  explain(basis, view, at, cctv, options, targets_to_explain(outcome, options), outcome);
-  return outcome;
-}
 
 std::vector<Outcome> judge_conditions(const LightBasis& basis, const scenes::RayQuery& query,
                                       const BasisView& view,

@@ -51,7 +51,7 @@ struct TargetOutcome {
 };
 
 struct Outcome {
-  base::Image radiance;  // R, G, B
+  base::Image radiance;  // R, G, B; empty once it is judged
   CameraSight sight;
   std::vector<TargetOutcome> targets;  // as sight.targets
   double sun_share = 0.0;              // of the Sun's disc, that the Earth leaves free
@@ -67,11 +67,6 @@ struct ConditionOptions {
 struct ConditionAt {
   std::size_t place = 0, setting = 0;
 };
-[[nodiscard]] Outcome judge_condition(const LightBasis& basis, const scenes::RayQuery& query,
-                                      const BasisView& view, const ConditionAt& at,
-                                      const std::optional<degrade::Setup>& cctv,
-                                      const ConditionOptions& options);
-
 // Of conditions in their order. Reasons, which cost most, are worked out once per run of like ones:
 // of one setting, verdict and iris (a quarter of a stop), the same sources off for the same causes,
 // probabilities within 0.05, luminance of target and surround within a tenth, share in direct light

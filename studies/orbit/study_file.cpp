@@ -9,7 +9,7 @@
 
 #include "base/input/input_file.h"
 #include "scenes/read/scene_parts.h"
-#include "scenes/text/toml_guard.h"
+#include "scenes/text/toml_file.h"
 
 namespace earthshine::studies {
 namespace {

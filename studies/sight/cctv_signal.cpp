@@ -3,13 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <string_view>
 
 #include "base/units.h"
 #include "degrade/carry.h"
 #include "degrade/moments/point_moments.h"
-#include "degrade/parts/line.h"
+#include "degrade/parts/electronics.h"
 
 namespace earthshine::studies {
 namespace {

@@ -14,19 +14,13 @@
 namespace earthshine::studies {
 namespace {
 
-double mean_of(const std::vector<float>& luminance, const std::vector<std::uint32_t>& pixels) {
-  double sum = 0.0;
-  for (const std::uint32_t pixel : pixels) sum += static_cast<double>(luminance[pixel]);
-  return sum / static_cast<double>(pixels.size());
-}
-
 // Root mean square over the target's parts.
 double difference_of(const SightTarget& target, const TargetLight& light,
                      const std::vector<float>& luminance) {
   if (target.parts.empty()) return std::abs(light.luminance - *light.surround);
   double sum = 0.0;
   for (const SightTarget::Part& part : target.parts) {
-    const double d = mean_of(luminance, part.target) - mean_of(luminance, part.surround);
+    const double d = mean_over(luminance, part.target) - mean_over(luminance, part.surround);
     sum += part.share * d * d;
   }
   return std::sqrt(sum);

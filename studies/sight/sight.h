@@ -13,7 +13,6 @@
 #include "base/image.h"
 #include "degrade/chain.h"
 #include "scenes/scene.h"
-#include "studies/sight/eye.h"
 #include "studies/sight/johnson.h"
 #include "studies/targets/target_view.h"
 

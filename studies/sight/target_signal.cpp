@@ -6,9 +6,9 @@
 
 #include "base/units.h"
 #include "degrade/certify/slanted_edge.h"
-#include "degrade/detection.h"
 #include "degrade/moments/point_moments.h"
 #include "degrade/parts/transfer_law.h"
+#include "degrade/twin.h"
 
 namespace earthshine::studies {
 namespace {

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "radiosity/solution.h"
 #include "scenes/effects/quality.h"
+#include "scenes/scene.h"
 #include "studies/surfaces/surface_error.h"
 
 namespace earthshine::studies {
@@ -42,5 +44,14 @@ struct SteeredSolution {
 
 // Called before each solve; gives the listener for what the solve takes, which may be empty.
 using SolveListener = std::function<void(const radiosity::SolveReport&)>;
+
+// The solve for pictures of a wanted error. Pictures measure what a solution lacks and add it, so
+// that the solution decides about their price alone: it need not be exact, only near.
+
+// Even patches and rays that cost about as much as they save the picture; what `quality` names
+// itself stays as it is.
+[[nodiscard]] radiosity::SolveOptions picture_solver(const scenes::Scene& scene,
+                                                     const scenes::Quality& quality,
+                                                     std::uint64_t seed);
 
 }  // namespace earthshine::studies

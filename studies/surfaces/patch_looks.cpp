@@ -3,7 +3,7 @@
 
 #include "scenes/reflect/specular.h"
 #include "scenes/sky/sky.h"
-#include "scenes/sky/sky_parts.h"
+#include "scenes/sky/sky_cells.h"
 
 namespace earthshine::studies {
 namespace {

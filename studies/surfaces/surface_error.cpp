@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "scenes/sky/sky.h"
-#include "scenes/sky/sky_parts.h"
+#include "scenes/sky/sky_cells.h"
 #include "studies/error/error_budget.h"
 #include "studies/surfaces/residual_error.h"
 

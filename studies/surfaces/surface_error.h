@@ -7,10 +7,21 @@
 #include <vector>
 
 #include "radiosity/solution.h"
+#include "studies/error/error_estimate.h"
 #include "studies/study.h"
-#include "studies/surfaces/solution_error.h"
 
 namespace earthshine::studies {
+
+// What a radiosity solution is wrong by, over the surfaces themselves.
+
+// Relative to the mean radiosity of the surfaces.
+struct SolutionError {
+  ErrorEstimate form_factors;  // noise of the form factors' rays
+  ErrorEstimate patches;       // one radiosity for a whole patch
+  ErrorEstimate lamps;   // noise of the shadow rays by which patches see lamps, Sun and emitters
+  ErrorEstimate solver;  // what the iteration left
+  [[nodiscard]] ErrorEstimate total() const { return form_factors + patches + lamps + solver; }
+};
 
 struct SurfaceError {
   // Root mean square of the error of the radiosity (luminance, all light together), interpolated

@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "radiosity/linear_solve.h"
-#include "scenes/reflect/bihemispherical_albedo.h"
-#include "scenes/sky/sky_parts.h"
+#include "scenes/reflect/energy.h"
+#include "scenes/sky/sky_cells.h"
 
 namespace earthshine::studies {
 namespace {

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "radiosity/fill_solution.h"
-#include "radiosity/patches/patch_albedo.h"
+#include "radiosity/patches/patches.h"
 #include "radiosity/patches/split.h"
 #include "studies/surfaces/surface_samples.h"
 

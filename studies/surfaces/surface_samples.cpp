@@ -7,10 +7,10 @@
 #include "base/numbers/random.h"
 #include "base/ranks/ranks.h"
 #include "radiosity/bodies/closed_bodies.h"
-#include "scenes/reflect/bihemispherical_albedo.h"
-#include "scenes/sky/sky_parts.h"
+#include "scenes/reflect/energy.h"
+#include "scenes/sky/sky_cells.h"
 #include "studies/surfaces/patch_looks.h"
-#include "studies/surfaces/residual_sums.h"
+#include "studies/surfaces/residual_error.h"
 
 namespace earthshine::studies {
 namespace {

@@ -3,7 +3,7 @@
 //   r = S + T L~ - L~
 // S: emission and the light of Sun, Earth, lamps and small emitters by shadow rays; T L~: what
 // cosine rays bring that read the solution L~ as pictures do (raytrace/incoming/radiance_table.h),
-// and the sky; all reflected as radiosity has it (scenes/reflect/bihemispherical_albedo.h). Every
+// and the sky; all reflected as radiosity has it (scenes/reflect/energy.h). Every
 // point is looked at twice, by two halves of independent rays: the mean of their product is that of
 // r^2, whatever noise each has. Nothing is sampled where bodies cover a patch.
 #pragma once
@@ -15,7 +15,7 @@
 
 #include "radiosity/direct/sources.h"
 #include "radiosity/factors/form_factors.h"
-#include "radiosity/patches/patch_albedo.h"
+#include "radiosity/patches/patches.h"
 #include "radiosity/solution.h"
 #include "raytrace/incoming/radiance_table.h"
 #include "studies/study.h"

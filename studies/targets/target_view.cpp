@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "raytrace/camera/camera.h"
 #include "scenes/ray_query.h"
+#include "scenes/triangle_point.h"
 
 namespace earthshine::studies {
 namespace {
@@ -140,14 +141,13 @@ std::array<double, 2> motion_of(const scenes::Scene& scene, const raytrace::Came
                                 std::uint32_t object, int columns, int rows) {
   const scenes::Object& record = scene.objects[object];
   if (record.velocity_m_s == Vec3(0.0) || record.triangle_count == 0) return {0.0, 0.0};
-  Vec3 low(std::numeric_limits<double>::infinity()), high = -low;
+  scenes::Box box;
   for (std::uint32_t k = 0; k < record.triangle_count; ++k) {
     for (const std::uint32_t v : scene.triangles[record.first_triangle + k].vertex) {
-      low = glm::min(low, scene.vertices[v]);
-      high = glm::max(high, scene.vertices[v]);
+      box.add(scene.vertices[v]);
     }
   }
-  const Vec3 way = 0.5 * (low + high) - model.position;
+  const Vec3 way = box.middle() - model.position;
   const double depth = glm::dot(way, model.forward);
   if (!(depth > 0.0)) return {0.0, 0.0};
   // d/dt (x / z) = (x' - x z' / z) / z along each axis of the picture.

@@ -14,12 +14,6 @@ double mean(const std::vector<float>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-double mean(const std::vector<float>& values, const std::vector<std::uint32_t>& pixels) {
-  double sum = 0.0;
-  for (const std::uint32_t pixel : pixels) sum += double(values[pixel]);
-  return sum / static_cast<double>(pixels.size());
-}
-
 // The resel in which the centre of the pixel lies.
 std::size_t resel_of(std::size_t pixel, const base::Image& image, const ClippedResels& resels) {
   const auto along = [](std::size_t at, int of, int onto) {
@@ -37,9 +31,9 @@ std::optional<TargetLight> measure_light(const TargetView& view,
                                          const std::vector<float>& luminance) {
   if (!view.in_view()) return std::nullopt;
   TargetLight light;
-  light.luminance = mean(luminance, view.measured);
+  light.luminance = mean_over(luminance, view.measured);
   if (view.surround.empty()) return light;
-  light.surround = mean(luminance, view.surround);
+  light.surround = mean_over(luminance, view.surround);
   if (*light.surround > 0.0) {
     light.contrast = (light.luminance - *light.surround) / *light.surround;
   }
@@ -88,6 +82,12 @@ std::vector<TargetMetrics> target_metrics(const scenes::Scene& scene, const scen
     metrics.push_back(std::move(target));
   }
   return metrics;
+}
+
+double mean_over(const std::vector<float>& values, const std::vector<std::uint32_t>& pixels) {
+  double sum = 0.0;
+  for (const std::uint32_t pixel : pixels) sum += static_cast<double>(values[pixel]);
+  return sum / static_cast<double>(pixels.size());
 }
 
 double mean_luminance(const base::Image& image) { return mean(base::luminance_of(image)); }

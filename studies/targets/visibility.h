@@ -59,6 +59,10 @@ struct TargetMetrics {
                                                         const base::Image& image,
                                                         const std::optional<ClippedResels>& cctv);
 
+// The mean of the values at these pixels, at least one.
+[[nodiscard]] double mean_over(const std::vector<float>& values,
+                               const std::vector<std::uint32_t>& pixels);
+
 // Mean luminance of a picture, cd/m^2.
 [[nodiscard]] double mean_luminance(const base::Image& image);
 

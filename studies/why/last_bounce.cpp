@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <map>
 
-#include "base/numbers/even_points.h"
+#include "base/numbers/sobol_set.h"
 #include "base/units.h"
-#include "radiosity/direct/explicit_emitters.h"
+#include "radiosity/direct/sources.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/sky/sky.h"
 #include "scenes/surface_texture.h"

@@ -2,11 +2,10 @@
 #include "studies/why/lit_points.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 
-#include "base/numbers/even_points.h"
+#include "base/numbers/sobol_set.h"
 #include "base/units.h"
 #include "raytrace/camera/camera.h"
 #include "scenes/sky/sky.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "base/escape.h"
-
 #include <gtest/gtest.h>
+
+#include "base/error.h"
 
 namespace earthshine::base {
 namespace {

@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "degrade/detection.h"
 #include "degrade/moments/noise_moments.h"
 #include "degrade/moments/point_moments.h"
 #include "degrade/parts/monitor.h"
+#include "degrade/twin.h"
 
 namespace earthshine {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "degrade/detection.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include "base/error.h"
 #include "degrade/moments/point_moments.h"
 #include "degrade/parts/noise.h"
+#include "degrade/twin.h"
 #include "tests/degrade/fields.h"
 
 namespace earthshine::degrade {

@@ -9,7 +9,7 @@
 
 #include "app/json.h"
 #include "app/report/page.h"
-#include "app/study/results_json.h"
+#include "app/study/results.h"
 #include "base/error.h"
 #include "base/files/exr_file.h"
 #include "base/files/exr_reader.h"
@@ -22,7 +22,7 @@
 #include "scenes/mesh/mesh_file.h"
 #include "scenes/mesh/obj_file.h"
 #include "scenes/read/scene_file.h"
-#include "scenes/reflect/reflectance_file.h"
+#include "scenes/reflect/phong_fit.h"
 #include "scenes/sky/attitude_file.h"
 #include "studies/orbit/study_file.h"
 

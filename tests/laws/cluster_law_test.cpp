@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "radiosity/patches/clusters.h"
-#include "raytrace/incoming/bright_patches.h"
+#include "raytrace/incoming/incoming_light.h"
 #include "raytrace/paths/path_tracer.h"
 #include "raytrace/render.h"
 #include "tests/support/fine_meshes.h"

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "radiosity/ledger.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "radiosity/fill_solution.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::radiosity {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Illuminance of patches by a sky in parts, against the same sky whole and against quadrature.
-#include "scenes/sky/sky_parts.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "scenes/sky/sky_cells.h"
 #include "tests/support/scene_builder.h"
 #include "tests/support/sky_in_parts.h"
 

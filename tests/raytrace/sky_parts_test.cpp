@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures under a sky in parts: with the same rays the layers of the parts add up to the picture
 // under the whole sky.
-#include "scenes/sky/sky_parts.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "raytrace/render.h"
+#include "scenes/sky/sky_cells.h"
 #include "tests/support/scene_builder.h"
 #include "tests/support/sky_in_parts.h"
 

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "scenes/sky/sky_parts.h"
+#include "scenes/sky/sky_cells.h"
 
 namespace earthshine::tests {
 

@@ -2,10 +2,11 @@
 #include "radiosity/exact/polygon/polygon_factor.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "radiosity/direct/lambert.h"
-#include "radiosity/exact/polygon/edge_integral.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -31,6 +32,116 @@ double point_share(const ConvexPolygon& polygon, const Vec3& point, const Vec3& 
   LambertSum sum(normal);
   for (int k = 0; k < polygon.count; ++k) sum.add(polygon[k] - point, polygon.next(k) - point);
   return sum.share();
+}
+
+// Edges closer to parallel than this are taken as parallel: ln r changes by about as much.
+constexpr double parallel_sine = 1e-9;
+// Lines that meet at less than this lose too many digits in the closed form: 1 / sine^2.
+constexpr double meeting_sine = 0.02;
+// Lines passing each other nearer than this share of the edges' extent count as meeting: what is
+// left out is c^2 times a logarithm.
+constexpr double meeting_share = 1e-8;
+
+// Second antiderivative in u of ln sqrt(u^2 + c^2).
+double second_antiderivative(double u, double c) {
+  const double square = u * u + c * c;
+  if (square == 0.0) return 0.0;
+  const double bend = c > 0.0 ? c * u * std::atan(u / c) : 0.0;
+  return 0.25 * (u * u - c * c) * std::log(square) + bend - 0.75 * u * u;
+}
+
+// Integral of ln sqrt(u^2 + c^2) over u from a to b.
+double log_integral(double a, double b, double c) {
+  const auto from_zero = [c](double u) {
+    const double square = u * u + c * c;
+    if (square == 0.0) return 0.0;
+    return 0.5 * u * std::log(square) - u + (c > 0.0 ? c * std::atan(u / c) : 0.0);
+  };
+  return from_zero(b) - from_zero(a);
+}
+
+double parallel_integral(const Segment& e, const Segment& f, double cosine) {
+  const Vec3 between = f.start - e.start;
+  const double along = glm::dot(between, e.direction);
+  const double c = glm::length(between - along * e.direction);
+  // f covers [f0, f1] of e's own line; u = position on f - position on e.
+  const double f0 = cosine > 0.0 ? along : along - f.length;
+  const double f1 = f0 + f.length;
+  return second_antiderivative(f1, c) - second_antiderivative(f1 - e.length, c) -
+         second_antiderivative(f0, c) + second_antiderivative(f0 - e.length, c);
+}
+
+// Integral over e of ln |p - q| for a point q.
+double inner_integral(const Segment& e, const Vec3& q) {
+  const Vec3 to = q - e.start;
+  const double along = glm::dot(to, e.direction);
+  const double c = glm::length(to - along * e.direction);
+  return log_integral(-along, e.length - along, c);
+}
+
+// s and t count from where the lines meet: r^2 = s^2 + t^2 - 2 s t cosine.
+double meeting_integral(double s0, double s1, double t0, double t1, double cosine, double sine) {
+  // At fixed s the point is s * cosine along f's line and s * sine off it.
+  const auto side = [=](double fixed, double a, double b) {
+    return log_integral(a - fixed * cosine, b - fixed * cosine, std::abs(fixed) * sine);
+  };
+  const double border =
+      s1 * side(s1, t0, t1) - s0 * side(s0, t0, t1) + t1 * side(t1, s0, s1) - t0 * side(t0, s0, s1);
+  return 0.5 * (border - (s1 - s0) * (t1 - t0));
+}
+
+// Where the inner integral, as a function of the place t on f, stops being analytic: beside the
+// ends of e, |q(t) - end| = 0, and beside the closest approach of the two lines, where the distance
+// to e's line is 0. Edges that nearly touch along all of their length have no others.
+struct Singularity {
+  double t, off;  // t + i off and t - i off
+};
+using Singularities = std::array<Singularity, 3>;
+
+Singularities singularities(const Segment& e, const Segment& f, double cosine, const Vec3& cross,
+                            double sine) {
+  const auto beside = [&f](const Vec3& end) {
+    const Vec3 to = end - f.start;
+    const double along = glm::dot(to, f.direction);
+    return Singularity{along, glm::length(to - along * f.direction)};
+  };
+  const Vec3 between = f.start - e.start;
+  const double a = glm::dot(between, e.direction), b = glm::dot(between, f.direction);
+  const double gap = std::abs(glm::dot(between, cross)) / sine;
+  return {beside(e.start), beside(e.start + e.length * e.direction),
+          Singularity{(a * cosine - b) / (sine * sine), gap / sine}};
+}
+
+double skew_piece(const Segment& e, const Segment& f, const Singularities& poles, double t0,
+                  double t1, int depth) {
+  const double half = 0.5 * (t1 - t0), middle = 0.5 * (t0 + t1);
+  // A Gauss rule of n points errs by about growth^(-2n), growth of the largest ellipse about the
+  // piece that the singularities leave free (half the sum of their distances from the foci is its
+  // larger half axis).
+  double axis = std::numeric_limits<double>::infinity();
+  for (const Singularity& pole : poles) {
+    const double x = (pole.t - middle) / half, y = pole.off / half;
+    axis = std::min(axis, 0.5 * (std::hypot(x - 1.0, y) + std::hypot(x + 1.0, y)));
+  }
+  const double growth = axis + std::sqrt(std::max(0.0, axis * axis - 1.0));
+  if (growth < 2.0 && depth > 0) {
+    return skew_piece(e, f, poles, t0, middle, depth - 1) +
+           skew_piece(e, f, poles, middle, t1, depth - 1);
+  }
+  const int points = std::clamp(static_cast<int>(10.0 / std::log(growth)) + 1, 3, 16);
+  const base::GaussRule& rule = base::gauss_rule(points);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < rule.node.size(); ++k) {
+    const double t = t0 + rule.node[k] * (t1 - t0);
+    sum += rule.weight[k] * inner_integral(e, f.start + t * f.direction);
+  }
+  return sum * (t1 - t0);
+}
+
+double skew_integral(const Segment& e, const Segment& f, double cosine, const Vec3& cross,
+                     double sine) {
+  constexpr int deepest = 30;
+  return skew_piece(e, f, singularities(e, f, cosine, cross, sine), 0.0, f.length, deepest);
 }
 
 }  // namespace
@@ -119,6 +230,24 @@ double exchange_m2(const ConvexPolygon& first, const ConvexPolygon& second, doub
     return lambert_exchange_m2(a, b, 6);
   }
   return contour_exchange_m2(a, b);
+}
+
+double log_distance_integral(const Segment& e, const Segment& f) {
+  const double cosine = glm::dot(e.direction, f.direction);
+  const Vec3 cross = glm::cross(e.direction, f.direction);
+  const double sine = glm::length(cross);
+  if (sine < parallel_sine) return parallel_integral(e, f, cosine);
+  const Vec3 between = f.start - e.start;
+  const double extent = glm::length(between) + e.length + f.length;
+  if (sine > meeting_sine && std::abs(glm::dot(between, cross)) < meeting_share * sine * extent) {
+    // Feet of the common perpendicular, from each edge's start.
+    const double a = glm::dot(between, e.direction), b = glm::dot(between, f.direction);
+    const double s = (a - b * cosine) / (sine * sine);
+    const double t = (a * cosine - b) / (sine * sine);
+    return meeting_integral(-s, e.length - s, -t, f.length - t, cosine, sine);
+  }
+  return e.length >= f.length ? skew_integral(e, f, cosine, cross, sine)
+                              : skew_integral(f, e, cosine, -cross, sine);
 }
 
 }  // namespace earthshine::radiosity

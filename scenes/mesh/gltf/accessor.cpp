@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <limits>
 
 #include "base/free_memory.h"
 #include "scenes/mesh/gltf/file.h"
 #include "scenes/mesh/gltf/model.h"
+#include "scenes/text/message_text.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -40,35 +43,35 @@ Elements view_elements(const GltfModel& model, int view_number, std::size_t offs
                        std::size_t count, std::size_t size, bool may_have_stride,
                        const std::filesystem::path& path) {
   const std::size_t v = unsigned_of(path, view_number, "a buffer view number");
-  if (v >= model.views.size()) {
+  if (v >= model.file.bufferViews.size()) {
     gltf_fail(path, fmt::format("buffer view {} does not exist", v),
-              fmt::format("the file has {}", model.views.size()));
+              fmt::format("the file has {}", model.file.bufferViews.size()));
   }
-  const GltfView& view = model.views[v];
+  const tinygltf::BufferView& view = model.file.bufferViews[v];
   const std::size_t b = unsigned_of(path, view.buffer, "a buffer number");
-  if (b >= model.buffers.size()) {
+  if (b >= model.file.buffers.size()) {
     gltf_fail(path, fmt::format("buffer {} does not exist", b),
-              fmt::format("the file has {}", model.buffers.size()));
+              fmt::format("the file has {}", model.file.buffers.size()));
   }
-  const std::vector<unsigned char>& data = model.buffers[b];
-  const std::size_t stride = may_have_stride && view.stride != 0 ? view.stride : size;
-  const Wide view_end = Wide(view.offset) + Wide(view.length);
+  const std::vector<unsigned char>& data = model.file.buffers[b].data;
+  const std::size_t stride = may_have_stride && view.byteStride != 0 ? view.byteStride : size;
+  const Wide view_end = Wide(view.byteOffset) + Wide(view.byteLength);
   const Wide last = Wide(offset) + Wide(stride) * Wide(count == 0 ? 0 : count - 1) + Wide(size);
-  if (stride < size || view_end > data.size() || (count > 0 && last > view.length)) {
+  if (stride < size || view_end > data.size() || (count > 0 && last > view.byteLength)) {
     gltf_fail(path, fmt::format("an accessor of {} elements leaves its buffer", count),
-              fmt::format("buffer view {} holds {} bytes", v, view.length));
+              fmt::format("buffer view {} holds {} bytes", v, view.byteLength));
   }
   if (count == 0) return {};
-  return {data.data() + view.offset + offset, stride};
+  return {data.data() + view.byteOffset + offset, stride};
 }
 
-const GltfAccessor& accessor_at(const GltfModel& model, int number,
-                                const std::filesystem::path& path) {
-  if (number < 0 || static_cast<std::size_t>(number) >= model.accessors.size()) {
+const tinygltf::Accessor& accessor_at(const GltfModel& model, int number,
+                                      const std::filesystem::path& path) {
+  if (number < 0 || static_cast<std::size_t>(number) >= model.file.accessors.size()) {
     gltf_fail(path, fmt::format("accessor {} does not exist", number),
-              fmt::format("the file has {}", model.accessors.size()));
+              fmt::format("the file has {}", model.file.accessors.size()));
   }
-  const GltfAccessor& accessor = model.accessors[static_cast<std::size_t>(number)];
+  const tinygltf::Accessor& accessor = model.file.accessors[static_cast<std::size_t>(number)];
   if (accessor.count > most_elements) {
     gltf_fail(path, fmt::format("an accessor of {} elements", accessor.count),
               fmt::format("at most {} are read", most_elements));
@@ -76,10 +79,10 @@ const GltfAccessor& accessor_at(const GltfModel& model, int number,
   return accessor;
 }
 
-std::size_t index_bytes(GltfNumber number, const std::filesystem::path& path) {
-  if (number == GltfNumber::Uint8) return 1;
-  if (number == GltfNumber::Uint16) return 2;
-  if (number == GltfNumber::Uint32) return 4;
+std::size_t index_bytes(int type, const std::filesystem::path& path) {
+  if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) return 1;
+  if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) return 2;
+  if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) return 4;
   gltf_fail(path, "indices of a type that is none", "indices are unsigned bytes, shorts or ints");
 }
 
@@ -88,11 +91,6 @@ std::uint32_t index_at(const unsigned char* bytes, std::size_t size) {
   std::uint32_t index = 0;
   std::memcpy(&index, bytes, size);
   return index;
-}
-
-std::size_t number_bytes(GltfNumber number) {
-  if (number == GltfNumber::Int8 || number == GltfNumber::Uint8) return 1;
-  return number == GltfNumber::Int16 || number == GltfNumber::Uint16 ? 2 : 4;
 }
 
 template <class Number>
@@ -104,24 +102,36 @@ double whole_at(const unsigned char* bytes, bool normalized) {
   return std::max(-1.0, static_cast<double>(value) / std::numeric_limits<Number>::max());
 }
 
-double number_at(const unsigned char* bytes, GltfNumber number, bool normalized) {
-  if (number == GltfNumber::Int8) return whole_at<std::int8_t>(bytes, normalized);
-  if (number == GltfNumber::Uint8) return whole_at<std::uint8_t>(bytes, normalized);
-  if (number == GltfNumber::Int16) return whole_at<std::int16_t>(bytes, normalized);
-  if (number == GltfNumber::Uint16) return whole_at<std::uint16_t>(bytes, normalized);
+double number_at(const unsigned char* bytes, int type, bool normalized) {
+  if (type == TINYGLTF_COMPONENT_TYPE_BYTE) return whole_at<std::int8_t>(bytes, normalized);
+  if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) {
+    return whole_at<std::uint8_t>(bytes, normalized);
+  }
+  if (type == TINYGLTF_COMPONENT_TYPE_SHORT) return whole_at<std::int16_t>(bytes, normalized);
+  if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) {
+    return whole_at<std::uint16_t>(bytes, normalized);
+  }
   float value = 0.0F;
   std::memcpy(&value, bytes, sizeof value);
   return double(value);
 }
 
+std::size_t number_bytes(const tinygltf::Accessor& accessor) {
+  return static_cast<std::size_t>(
+      tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType)));
+}
+
+int components_of(const tinygltf::Accessor& accessor) {
+  return tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
+}
+
 // The first `components` numbers; the rest are 0.
-Vec3 vector_at(const unsigned char* bytes, const GltfAccessor& accessor, std::string_view attribute,
-               const std::filesystem::path& path) {
+Vec3 vector_at(const unsigned char* bytes, const tinygltf::Accessor& accessor,
+               std::string_view attribute, const std::filesystem::path& path) {
   Vec3 v(0.0);
-  const std::size_t size = number_bytes(accessor.number);
-  for (int c = 0; c < accessor.components; ++c) {
-    v[c] =
-        number_at(bytes + size * static_cast<std::size_t>(c), accessor.number, accessor.normalized);
+  for (int c = 0; c < components_of(accessor); ++c) {
+    v[c] = number_at(bytes + number_bytes(accessor) * static_cast<std::size_t>(c),
+                     accessor.componentType, accessor.normalized);
     if (std::abs(v[c]) <= largest_coordinate) continue;
     gltf_fail(path, fmt::format("the {} of a vertex has {}", attribute, v[c]),
               fmt::format("its numbers are finite and at most {}", largest_coordinate));
@@ -131,18 +141,19 @@ Vec3 vector_at(const unsigned char* bytes, const GltfAccessor& accessor, std::st
 
 // Calls write(index, bytes) for each element that a sparse accessor replaces.
 template <class Write>
-void each_sparse(const GltfModel& model, const GltfAccessor& accessor, std::size_t value_size,
+void each_sparse(const GltfModel& model, const tinygltf::Accessor& accessor, std::size_t value_size,
                  const std::filesystem::path& path, Write write) {
-  if (!accessor.sparse) return;
-  const GltfSparse& sparse = *accessor.sparse;
+  const auto& sparse = accessor.sparse;
+  if (!sparse.isSparse) return;
   const std::size_t count = unsigned_of(path, sparse.count, "a sparse count");
-  const std::size_t size = index_bytes(sparse.index_number, path);
-  const Elements indices = view_elements(model, sparse.index_view,
-                                         unsigned_of(path, sparse.index_offset, "a byte offset"),
-                                         count, size, false, path);
-  const Elements values = view_elements(model, sparse.value_view,
-                                        unsigned_of(path, sparse.value_offset, "a byte offset"),
-                                        count, value_size, false, path);
+  const std::size_t size = index_bytes(sparse.indices.componentType, path);
+  const auto elements = [&](const auto& from, std::size_t bytes) {
+    const auto offset = static_cast<std::int64_t>(from.byteOffset);
+    return view_elements(model, from.bufferView, unsigned_of(path, offset, "a byte offset"), count,
+                         bytes, false, path);
+  };
+  const Elements indices = elements(sparse.indices, size);
+  const Elements values = elements(sparse.values, value_size);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t index = index_at(indices[i], size);
     if (index >= accessor.count) {
@@ -157,20 +168,22 @@ void each_sparse(const GltfModel& model, const GltfAccessor& accessor, std::size
 
 std::vector<Vec3> read_gltf_vectors(const GltfModel& model, int number, int components,
                                     std::string_view attribute, const std::filesystem::path& path) {
-  const GltfAccessor& accessor = accessor_at(model, number, path);
+  const tinygltf::Accessor& accessor = accessor_at(model, number, path);
+  const int type = accessor.componentType;
   const bool is_number =
-      accessor.number != GltfNumber::Uint32 && accessor.number != GltfNumber::Other;
-  if (accessor.components != components || !is_number) {
+      (type >= TINYGLTF_COMPONENT_TYPE_BYTE && type <= TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) ||
+      type == TINYGLTF_COMPONENT_TYPE_FLOAT;
+  if (components_of(accessor) != components || !is_number) {
     gltf_fail(path, fmt::format("{} that is not {} numbers", attribute, components),
               fmt::format("{} is VEC{} of floats, or of quantised bytes or shorts", attribute,
                           components));
   }
-  const std::size_t size = static_cast<std::size_t>(components) * number_bytes(accessor.number);
+  const std::size_t size = static_cast<std::size_t>(components) * number_bytes(accessor);
   std::vector<Vec3> vectors;
   base::check_room(accessor.count * sizeof(Vec3), path.string());
-  if (accessor.view != -1) {
-    const Elements elements =
-        view_elements(model, accessor.view, accessor.offset, accessor.count, size, true, path);
+  if (accessor.bufferView != -1) {
+    const Elements elements = view_elements(model, accessor.bufferView, accessor.byteOffset,
+                                            accessor.count, size, true, path);
     vectors.reserve(accessor.count);
     for (std::size_t i = 0; i < accessor.count; ++i) {
       vectors.push_back(vector_at(elements[i], accessor, attribute, path));
@@ -186,15 +199,15 @@ std::vector<Vec3> read_gltf_vectors(const GltfModel& model, int number, int comp
 
 std::vector<std::uint32_t> read_gltf_indices(const GltfModel& model, int number,
                                              const std::filesystem::path& path) {
-  const GltfAccessor& accessor = accessor_at(model, number, path);
-  if (accessor.components != 1) {
+  const tinygltf::Accessor& accessor = accessor_at(model, number, path);
+  if (components_of(accessor) != 1) {
     gltf_fail(path, "indices that are not single numbers", "an index accessor is SCALAR");
   }
-  const std::size_t size = index_bytes(accessor.number, path);
+  const std::size_t size = index_bytes(accessor.componentType, path);
   std::vector<std::uint32_t> indices;
-  if (accessor.view != -1) {
-    const Elements elements =
-        view_elements(model, accessor.view, accessor.offset, accessor.count, size, true, path);
+  if (accessor.bufferView != -1) {
+    const Elements elements = view_elements(model, accessor.bufferView, accessor.byteOffset,
+                                            accessor.count, size, true, path);
     indices.reserve(accessor.count);
     for (std::size_t i = 0; i < accessor.count; ++i) indices.push_back(index_at(elements[i], size));
   } else {
@@ -204,6 +217,41 @@ std::vector<std::uint32_t> read_gltf_indices(const GltfModel& model, int number,
     indices[i] = index_at(bytes, size);
   });
   return indices;
+}
+
+glm::dmat4 node_matrix(const tinygltf::Node& node, const std::filesystem::path& path) {
+  const auto check = [&](const std::vector<double>& values, std::size_t wanted,
+                         std::string_view what) {
+    const bool finite = std::all_of(values.begin(), values.end(),
+                                    [](double x) { return std::abs(x) <= largest_coordinate; });
+    if ((values.empty() || values.size() == wanted) && finite) return;
+    gltf_fail(path, fmt::format("the {} of node {}", what, in_quotes(node.name)),
+              fmt::format("it has {} finite numbers", wanted));
+  };
+  check(node.matrix, 16, "matrix");
+  check(node.translation, 3, "translation");
+  check(node.rotation, 4, "rotation");
+  check(node.scale, 3, "scale");
+  glm::dmat4 matrix(1.0);
+  if (!node.matrix.empty()) {
+    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
+    return matrix;
+  }
+  if (!node.translation.empty()) {
+    matrix =
+        glm::translate(matrix, Vec3(node.translation[0], node.translation[1], node.translation[2]));
+  }
+  if (!node.rotation.empty()) {
+    const glm::dquat turn(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+    if (!(glm::length(turn) > 1e-9)) {
+      gltf_fail(path, fmt::format("the rotation of node {} has no length", in_quotes(node.name)));
+    }
+    matrix = matrix * glm::mat4_cast(glm::normalize(turn));
+  }
+  if (!node.scale.empty()) {
+    matrix = glm::scale(matrix, Vec3(node.scale[0], node.scale[1], node.scale[2]));
+  }
+  return matrix;
 }
 
 }  // namespace earthshine::scenes

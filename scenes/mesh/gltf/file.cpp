@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <unordered_map>
 #include <unordered_set>
 
 #include "scenes/mesh/gltf/model.h"
+#include "scenes/mesh/gltf/punctual.h"
 #include "scenes/text/message_text.h"
 
 namespace earthshine::scenes {
@@ -21,7 +21,7 @@ class GltfReader {
       : model_(model),
         path_(path),
         reads_normals_(normals == VertexNormals::Read),
-        visited_(model.nodes.size(), 0) {
+        visited_(model.file.nodes.size(), 0) {
     mesh_.path = path;
   }
 
@@ -52,15 +52,15 @@ class GltfReader {
   }
 
   [[nodiscard]] std::vector<int> roots() const {
-    if (!model_.scenes.empty()) {
-      const int chosen = std::max(0, model_.default_scene);
-      if (static_cast<std::size_t>(chosen) >= model_.scenes.size()) {
+    if (!model_.file.scenes.empty()) {
+      const int chosen = std::max(0, model_.file.defaultScene);
+      if (static_cast<std::size_t>(chosen) >= model_.file.scenes.size()) {
         gltf_fail(path_, fmt::format("the default scene {} does not exist", chosen));
       }
-      return model_.scenes[static_cast<std::size_t>(chosen)];
+      return model_.file.scenes[static_cast<std::size_t>(chosen)].nodes;
     }
-    std::vector<char> is_child(model_.nodes.size(), 0);
-    for (const GltfNode& node : model_.nodes) {
+    std::vector<char> is_child(model_.file.nodes.size(), 0);
+    for (const tinygltf::Node& node : model_.file.nodes) {
       for (const int child : node.children) {
         if (child >= 0 && static_cast<std::size_t>(child) < is_child.size()) {
           is_child[static_cast<std::size_t>(child)] = 1;
@@ -75,9 +75,9 @@ class GltfReader {
   }
 
   void visit(int number, const glm::dmat4& parent, std::vector<std::uint32_t> parts, int depth) {
-    if (number < 0 || static_cast<std::size_t>(number) >= model_.nodes.size()) {
+    if (number < 0 || static_cast<std::size_t>(number) >= model_.file.nodes.size()) {
       gltf_fail(path_, fmt::format("node {} does not exist", number),
-                fmt::format("the file has {}", model_.nodes.size()));
+                fmt::format("the file has {}", model_.file.nodes.size()));
     }
     if (depth > max_node_depth) {
       gltf_fail(path_, "the nodes are nested too deeply",
@@ -88,7 +88,7 @@ class GltfReader {
       gltf_fail(path_, fmt::format("node {} is reached twice", number),
                 "nodes form a tree: none is its own ancestor or has two parents");
     }
-    const GltfNode& node = model_.nodes[static_cast<std::size_t>(number)];
+    const tinygltf::Node& node = model_.file.nodes[static_cast<std::size_t>(number)];
     const glm::dmat4 matrix = parent * node_matrix(node, path_);
     if (!node.name.empty()) parts.push_back(number_of(node.name, mesh_.part_names, part_numbers_));
     if (node.mesh >= 0) add_mesh(node.mesh, matrix, parts);
@@ -111,10 +111,11 @@ class GltfReader {
               fmt::format("the file has {}", things.size()));
   }
 
-  void add_lamp(const GltfNode& node, const glm::dmat4& matrix,
+  void add_lamp(const tinygltf::Node& node, const glm::dmat4& matrix,
                 const std::vector<std::uint32_t>& parts) {
-    if (node.lamp < 0) return;
-    const GltfLamp& lamp = at(model_.lamps, node.lamp, "light");
+    const int number = lamp_on(node);
+    if (number < 0) return;
+    const GltfLamp& lamp = at(model_.lamps, number, "light");
     if (!lamp.is_lamp) return;
     MeshLamp made{lamp.lamp, add_parts(parts)};
     if (!node.name.empty()) made.lamp.name = node.name;
@@ -123,7 +124,7 @@ class GltfReader {
     mesh_.lamps.push_back(std::move(made));
   }
 
-  void add_camera(const GltfNode& node, const glm::dmat4& matrix,
+  void add_camera(const tinygltf::Node& node, const glm::dmat4& matrix,
                   const std::vector<std::uint32_t>& parts) {
     if (node.camera < 0) return;
     const GltfCamera& camera = at(model_.cameras, node.camera, "camera");
@@ -145,19 +146,24 @@ class GltfReader {
   }
 
   void add_mesh(int number, const glm::dmat4& matrix, std::vector<std::uint32_t> parts) {
-    if (static_cast<std::size_t>(number) >= model_.meshes.size()) {
+    if (static_cast<std::size_t>(number) >= model_.file.meshes.size()) {
       gltf_fail(path_, fmt::format("mesh {} does not exist", number),
-                fmt::format("the file has {}", model_.meshes.size()));
+                fmt::format("the file has {}", model_.file.meshes.size()));
     }
-    const GltfMesh& mesh = model_.meshes[static_cast<std::size_t>(number)];
+    const tinygltf::Mesh& mesh = model_.file.meshes[static_cast<std::size_t>(number)];
     if (!mesh.name.empty()) parts.push_back(number_of(mesh.name, mesh_.part_names, part_numbers_));
     part_set_ = add_parts(parts);
-    for (const GltfPrimitive& primitive : mesh.primitives) add_primitive(primitive, matrix);
+    for (const tinygltf::Primitive& primitive : mesh.primitives) add_primitive(primitive, matrix);
   }
 
-  void add_primitive(const GltfPrimitive& primitive, const glm::dmat4& matrix) {
+  void add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& matrix) {
     // Points, lines, or nothing to place.
-    if (primitive.mode == GltfMode::Other || primitive.position < 0) return;
+    const int mode = primitive.mode == -1 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
+    const bool has_faces = mode == TINYGLTF_MODE_TRIANGLES ||
+                           mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
+                           mode == TINYGLTF_MODE_TRIANGLE_FAN;
+    const auto position = primitive.attributes.find("POSITION");
+    if (!has_faces || position == primitive.attributes.end() || position->second < 0) return;
     std::uint32_t material = no_index;
     if (primitive.material >= 0) {
       material = static_cast<std::uint32_t>(primitive.material);
@@ -167,7 +173,7 @@ class GltfReader {
       }
     }
     const std::vector<Vec3> positions =
-        read_gltf_vectors(model_, primitive.position, 3, "POSITION", path_);
+        read_gltf_vectors(model_, position->second, 3, "POSITION", path_);
     std::vector<std::uint32_t> indices;
     if (primitive.indices >= 0) {
       indices = read_gltf_indices(model_, primitive.indices, path_);
@@ -192,7 +198,7 @@ class GltfReader {
     const First starts{first, add_coordinates(primitive, material, positions.size()),
                        add_normals(primitive, matrix, positions.size())};
     const bool mirrored = glm::determinant(glm::dmat3(matrix)) < 0.0;
-    add_triangles(primitive.mode, indices, starts, material, mirrored);
+    add_triangles(mode, indices, starts, material, mirrored);
   }
 
   // Where a primitive's begin in the mesh's lists; no_index: it has none.
@@ -201,23 +207,26 @@ class GltfReader {
   };
 
   // Where they are asked for.
-  std::uint32_t add_normals(const GltfPrimitive& primitive, const glm::dmat4& matrix,
+  std::uint32_t add_normals(const tinygltf::Primitive& primitive, const glm::dmat4& matrix,
                             std::size_t count) {
-    if (!reads_normals_ || primitive.normal < 0) return no_index;
-    const auto normals = read_gltf_vectors(model_, primitive.normal, 3, "NORMAL", path_);
+    const auto normal = primitive.attributes.find("NORMAL");
+    const bool has_normals = normal != primitive.attributes.end() && normal->second >= 0;
+    if (!reads_normals_ || !has_normals) return no_index;
+    const auto normals = read_gltf_vectors(model_, normal->second, 3, "NORMAL", path_);
     if (normals.size() < count) gltf_fail(path_, "fewer normals than vertices");
     const auto first = static_cast<std::uint32_t>(mesh_.normals.size());
     const glm::dmat3 turn = glm::transpose(glm::inverse(glm::dmat3(matrix)));
-    for (const Vec3& normal : normals) mesh_.normals.emplace_back(glm::normalize(turn * normal));
+    for (const Vec3& n : normals) mesh_.normals.emplace_back(glm::normalize(turn * n));
     return first;
   }
 
   // Of a primitive with a texture, where they begin in the mesh's; no_index: it has none.
-  std::uint32_t add_coordinates(const GltfPrimitive& primitive, std::uint32_t material,
+  std::uint32_t add_coordinates(const tinygltf::Primitive& primitive, std::uint32_t material,
                                 std::size_t count) {
     if (material == no_index || !model_.materials[material].maps) return no_index;
-    const auto set = primitive.coordinates.find(model_.coordinates[material]);
-    if (set == primitive.coordinates.end()) return no_index;
+    const int number = model_.coordinates[material];
+    const auto set = primitive.attributes.find(fmt::format("TEXCOORD_{}", number));
+    if (number > 9 || set == primitive.attributes.end()) return no_index;
     const std::vector<Vec3> uv = read_gltf_vectors(model_, set->second, 2, "TEXCOORD", path_);
     if (uv.size() < count) {
       gltf_fail(path_, fmt::format("{} texture coordinates", uv.size()),
@@ -228,19 +237,20 @@ class GltfReader {
     return first;
   }
 
-  void add_triangles(GltfMode mode, const std::vector<std::uint32_t>& indices, First first,
+  void add_triangles(int mode, const std::vector<std::uint32_t>& indices, First first,
                      std::uint32_t material, bool mirrored) {
     const auto begin = [&](std::uint32_t start, std::vector<std::uint32_t>& list) {
       if (start != no_index) list.resize(mesh_.indices.size(), no_index);
     };
     begin(first.uv, mesh_.uv_indices);
     begin(first.normal, mesh_.normal_indices);
-    const std::size_t step = mode == GltfMode::Triangles ? 3 : 1;
+    const std::size_t step = mode == TINYGLTF_MODE_TRIANGLES ? 3 : 1;
     for (std::size_t i = 0; i + 3 <= indices.size(); i += step) {
       std::array<std::uint32_t, 3> corners{indices[i], indices[i + 1], indices[i + 2]};
-      if (mode == GltfMode::Fan) corners = {indices[0], indices[i + 1], indices[i + 2]};
+      if (mode == TINYGLTF_MODE_TRIANGLE_FAN)
+        corners = {indices[0], indices[i + 1], indices[i + 2]};
       // Every second triangle of a strip runs the other way round, and so does a mirrored mesh.
-      const bool odd = mode == GltfMode::Strip && i % 2 == 1;
+      const bool odd = mode == TINYGLTF_MODE_TRIANGLE_STRIP && i % 2 == 1;
       if (odd != mirrored) std::swap(corners[1], corners[2]);
       for (std::uint32_t& corner : corners) {
         if (first.uv != no_index) mesh_.uv_indices.push_back(first.uv + corner);

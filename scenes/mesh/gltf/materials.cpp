@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/mesh/gltf/materials.h"
 
-#include "scenes/mesh/gltf/values.h"
-#include "scenes/reflect/microfacet.h"
+#include "scenes/mesh/gltf/textures.h"
+#include "scenes/reflect/specular.h"
 
 namespace earthshine::scenes {
 namespace {

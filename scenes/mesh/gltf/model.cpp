@@ -2,17 +2,16 @@
 #include "scenes/mesh/gltf/model.h"
 
 #include <fmt/format.h>
-#include <tiny_gltf.h>
 
 #include <algorithm>
 #include <cstring>
 
 #include "base/input/input_file.h"
-#include "scenes/mesh/gltf/extras.h"
 #include "scenes/mesh/gltf/file.h"
 #include "scenes/mesh/gltf/materials.h"
 #include "scenes/mesh/gltf/punctual.h"
 #include "scenes/text/confined_path.h"
+#include "scenes/text/message_text.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -143,98 +142,98 @@ std::string one_line(std::string text) {
   return text.empty() ? "tinygltf gives no reason" : text;
 }
 
-GltfNumber number_type(int component_type) {
-  switch (component_type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return GltfNumber::Int8;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return GltfNumber::Uint8;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      return GltfNumber::Int16;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return GltfNumber::Uint16;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-      return GltfNumber::Uint32;
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
-      return GltfNumber::Float32;
-    default:
-      return GltfNumber::Other;
-  }
+constexpr std::string_view of_textures[] = {"KHR_texture_basisu", "EXT_texture_webp",
+                                            "EXT_texture_avif"};
+// Those that the readers here look into.
+constexpr std::string_view known[] = {
+    "KHR_mesh_quantization",      "KHR_lights_punctual",    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_specular", "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_transmission", "KHR_materials_volume",   "KHR_materials_unlit",
+    "KHR_texture_transform"};
+
+template <std::size_t N>
+bool among(const std::string& name, const std::string_view (&names)[N]) {
+  return std::find(std::begin(names), std::end(names), name) != std::end(names);
 }
 
-GltfAccessor convert(const tinygltf::Accessor& source) {
-  GltfAccessor accessor{
-      source.bufferView, source.byteOffset, source.count, number_type(source.componentType), 0,
-      source.normalized, std::nullopt};
-  if (source.type == TINYGLTF_TYPE_SCALAR) accessor.components = 1;
-  if (source.type == TINYGLTF_TYPE_VEC2) accessor.components = 2;
-  if (source.type == TINYGLTF_TYPE_VEC3) accessor.components = 3;
-  if (source.sparse.isSparse) {
-    const auto& indices = source.sparse.indices;
-    const auto& values = source.sparse.values;
-    accessor.sparse = GltfSparse{source.sparse.count,
-                                 number_type(indices.componentType),
-                                 indices.bufferView,
-                                 values.bufferView,
-                                 static_cast<std::int64_t>(indices.byteOffset),
-                                 static_cast<std::int64_t>(values.byteOffset)};
+// glTF-Transform's commands (gltf-transform.dev, in the npm registry).
+std::string remedy_for(const std::string& extension) {
+  constexpr const char* run = "npx @gltf-transform/cli";
+  if (extension == "KHR_draco_mesh_compression" || extension == "EXT_meshopt_compression") {
+    return fmt::format("Decompress it: {} copy IN.glb OUT.glb", run);
   }
-  return accessor;
+  return "Export it without";
 }
 
-GltfMesh convert(const tinygltf::Mesh& source) {
-  GltfMesh mesh{source.name, {}};
-  for (const tinygltf::Primitive& primitive : source.primitives) {
-    GltfPrimitive converted{GltfMode::Other, -1, primitive.indices, primitive.material, -1, {}};
-    if (primitive.mode == -1 || primitive.mode == TINYGLTF_MODE_TRIANGLES) {
-      converted.mode = GltfMode::Triangles;
+bool has_texture(const tinygltf::Model& model, int material) {
+  if (material < 0 || static_cast<std::size_t>(material) >= model.materials.size()) return false;
+  const tinygltf::Material& found = model.materials[static_cast<std::size_t>(material)];
+  return found.pbrMetallicRoughness.baseColorTexture.index >= 0 ||
+         found.emissiveTexture.index >= 0 ||
+         found.extensions.count("KHR_materials_pbrSpecularGlossiness") > 0;
+}
+
+// Vertex attributes but for positions and coordinates of textures, lamps, cameras, skins,
+// animations, extensions that nothing here knows.
+std::map<std::string, std::size_t> unused_of(const tinygltf::Model& model) {
+  std::map<std::string, std::size_t> unused;
+  const auto count = [&](const std::string& what, std::size_t number) {
+    if (number > 0) unused[what] += number;
+  };
+  for (const tinygltf::Mesh& mesh : model.meshes) {
+    for (const tinygltf::Primitive& primitive : mesh.primitives) {
+      const bool textured = has_texture(model, primitive.material);
+      for (const auto& [name, accessor] : primitive.attributes) {
+        if (name != "POSITION" && !(textured && name == "TEXCOORD_0")) count(name, 1);
+      }
     }
-    if (primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP) converted.mode = GltfMode::Strip;
-    if (primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN) converted.mode = GltfMode::Fan;
-    const auto position = primitive.attributes.find("POSITION");
-    if (position != primitive.attributes.end()) converted.position = position->second;
-    const auto normal = primitive.attributes.find("NORMAL");
-    if (normal != primitive.attributes.end()) converted.normal = normal->second;
-    for (const auto& [name, accessor] : primitive.attributes) {
-      constexpr std::string_view coordinates = "TEXCOORD_";
-      if (!name.starts_with(coordinates)) continue;
-      const char set = name.size() == coordinates.size() + 1 ? name.back() : 'x';
-      if (set >= '0' && set <= '9') converted.coordinates[set - '0'] = accessor;
-    }
-    mesh.primitives.push_back(converted);
   }
-  return mesh;
+  for (const tinygltf::Light& light : model.lights) {
+    const bool is_lamp = light.type == "point" || light.type == "spot";
+    count(is_lamp                       ? lamps_of_file
+          : light.type == "directional" ? "directional lights (say [sun])"
+                                        : "lights of an unknown type",
+          1);
+  }
+  count(cameras_of_file, model.cameras.size());
+  count("skins", model.skins.size());
+  count("animations", model.animations.size());
+  for (const std::string& extension : model.extensionsUsed) {
+    if (!among(extension, known)) count(extension, 1);
+  }
+  return unused;
+}
+
+// Throws base::Error (Input) for an extension that the file cannot be read without, with what
+// turns it into a file without. Those that concern textures alone are no hindrance.
+void check_required_extensions(const tinygltf::Model& model, const std::filesystem::path& path) {
+  for (const std::string& extension : model.extensionsRequired) {
+    if (among(extension, of_textures) || among(extension, known)) continue;
+    throw Error(Blame::Input, base::Location{path.string()},
+                fmt::format("needs the glTF extension {}", in_quotes(extension)),
+                "files that need none, or one of docs/models.md, are read", remedy_for(extension));
+  }
 }
 
 GltfModel convert(tinygltf::Model&& source, FileAccess& files) {
   GltfModel model;
-  model.unused = unused_of(source);
+  model.file = std::move(source);
+  model.unused = unused_of(model.file);
   GltfTextures textures(
-      source, files.path,
+      model.file, files.path,
       [&](const std::string& uri) {
         files.found.push_back(files.inside(uri));
         return base::read_input_file(files.found.back(), max_mesh_bytes,
                                      base::Location{files.path.string()});
       },
       model.warnings);
-  for (auto& buffer : source.buffers) model.buffers.push_back(std::move(buffer.data));
-  for (const auto& view : source.bufferViews) {
-    model.views.push_back({view.buffer, view.byteOffset, view.byteLength, view.byteStride});
-  }
-  for (const auto& accessor : source.accessors) model.accessors.push_back(convert(accessor));
-  for (const auto& mesh : source.meshes) model.meshes.push_back(convert(mesh));
-  for (const auto& node : source.nodes) {
-    model.nodes.push_back({node.name, node.mesh, -1, -1, node.children, node.matrix,
-                           node.translation, node.rotation, node.scale});
-  }
-  for (const auto& scene : source.scenes) model.scenes.push_back(scene.nodes);
-  model.default_scene = source.defaultScene;
-  for (const auto& material : source.materials) {
+  for (const auto& material : model.file.materials) {
     GltfMaterial made = phong_material(material, textures, model.unused);
     model.materials.push_back(std::move(made.material));
     model.coordinates.push_back(made.coordinates);
   }
-  read_punctual(source, model);
+  model.file.images.clear();
+  read_punctual(model);
   return model;
 }
 

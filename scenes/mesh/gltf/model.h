@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A glTF file's geometry as plain values, not checked yet: numbers may point anywhere.
-// gltf_model.cpp, which makes it, is the only reader through tinygltf.
+// A glTF file as tinygltf reads it, not checked yet: numbers may point anywhere. Its materials,
+// lamps and cameras as the scene has them.
 #pragma once
+
+#include <tiny_gltf.h>
 
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,50 +16,6 @@
 #include "scenes/mesh.h"
 
 namespace earthshine::scenes {
-
-struct GltfView {
-  int buffer = -1;
-  std::size_t offset = 0, length = 0, stride = 0;  // bytes; stride 0: tightly packed
-};
-
-enum class GltfNumber { Int8, Uint8, Int16, Uint16, Uint32, Float32, Other };
-
-struct GltfSparse {
-  int count = 0;
-  GltfNumber index_number = GltfNumber::Other;
-  int index_view = -1, value_view = -1;
-  std::int64_t index_offset = 0, value_offset = 0;  // bytes
-};
-
-struct GltfAccessor {
-  int view = -1;
-  std::size_t offset = 0, count = 0;
-  GltfNumber number = GltfNumber::Other;
-  int components = 0;
-  bool normalized = false;  // whole numbers stand for shares of their largest
-  std::optional<GltfSparse> sparse;
-};
-
-enum class GltfMode { Triangles, Strip, Fan, Other };
-
-struct GltfPrimitive {
-  GltfMode mode = GltfMode::Other;
-  int position = -1, indices = -1, material = -1;  // -1: none
-  int normal = -1;
-  std::map<int, int> coordinates;  // TEXCOORD_n, by n
-};
-
-struct GltfMesh {
-  std::string name;
-  std::vector<GltfPrimitive> primitives;
-};
-
-struct GltfNode {
-  std::string name;
-  int mesh = -1, lamp = -1, camera = -1;
-  std::vector<int> children;
-  std::vector<double> matrix, translation, rotation, scale;  // empty when not given
-};
 
 // As its table has it: at the origin, toward -z.
 struct GltfLamp {
@@ -72,13 +29,7 @@ struct GltfCamera {
 };
 
 struct GltfModel {
-  std::vector<std::vector<unsigned char>> buffers;
-  std::vector<GltfView> views;
-  std::vector<GltfAccessor> accessors;
-  std::vector<GltfMesh> meshes;
-  std::vector<GltfNode> nodes;
-  std::vector<std::vector<int>> scenes;  // root nodes of each
-  int default_scene = -1;
+  tinygltf::Model file;                      // without its images
   std::vector<Material> materials;           // names may be empty or repeated
   std::vector<std::filesystem::path> files;  // that the file names
   std::vector<int> coordinates;              // of each material: TEXCOORD_n of its textures
@@ -99,7 +50,7 @@ struct GltfModel {
 
 // A node's own transform: its matrix, or translation, rotation and scale in that order. Throws
 // base::Error (Input) for numbers that are too few, too many or not finite.
-[[nodiscard]] glm::dmat4 node_matrix(const GltfNode& node, const std::filesystem::path& path);
+[[nodiscard]] glm::dmat4 node_matrix(const tinygltf::Node& node, const std::filesystem::path& path);
 
 // The accessor's values, checked against buffer view and buffer in wide arithmetic; sparse ones
 // included. Of vectors with two components the third is 0; quantised ones come as the shares or

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "scenes/mesh/gltf/values.h"
+#include "scenes/mesh/gltf/textures.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -53,16 +53,14 @@ GltfCamera camera_of(const tinygltf::Camera& source, GltfModel& model) {
 
 }  // namespace
 
-void read_punctual(const tinygltf::Model& source, GltfModel& model) {
-  for (const tinygltf::Light& light : source.lights) model.lamps.push_back(lamp_of(light, model));
-  for (const tinygltf::Camera& camera : source.cameras) {
-    model.cameras.push_back(camera_of(camera, model));
-  }
-  for (std::size_t n = 0; n < model.nodes.size(); ++n) {
-    model.nodes[n].camera = source.nodes[n].camera;
-    const tinygltf::Value hung = extension_of(source.nodes[n].extensions, "KHR_lights_punctual");
-    model.nodes[n].lamp = static_cast<int>(number_of(hung, "light", -1.0));
-  }
+void read_punctual(GltfModel& model) {
+  for (const auto& light : model.file.lights) model.lamps.push_back(lamp_of(light, model));
+  for (const auto& camera : model.file.cameras) model.cameras.push_back(camera_of(camera, model));
+}
+
+int lamp_on(const tinygltf::Node& node) {
+  const tinygltf::Value hung = extension_of(node.extensions, "KHR_lights_punctual");
+  return static_cast<int>(number_of(hung, "light", -1.0));
 }
 
 }  // namespace earthshine::scenes

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "scenes/mesh/gltf/values.h"
 
 namespace earthshine::scenes {
 namespace {

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/files/exr_picture.h"
+#include "base/files/exr_attributes.h"
 #include "base/numbers/random.h"
 #include "tests/base/temporary_folder.h"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "degrade/parts/line.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "degrade/chain.h"
+#include "degrade/parts/electronics.h"
 #include "degrade/parts/noise.h"
 #include "tests/degrade/fields.h"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "degrade/range/range_sensor_file.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -8,6 +6,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "degrade/range/range_sensor.h"
 #include "degrade/stage/read_setting.h"
 
 namespace earthshine::degrade {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "radiosity/direct/explicit_emitters.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <string>
 
+#include "radiosity/direct/sources.h"
 #include "radiosity/solution.h"
 #include "tests/support/scene_builder.h"
 

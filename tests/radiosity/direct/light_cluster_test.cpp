@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "radiosity/direct/light_cluster.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "radiosity/direct/sources.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::radiosity {

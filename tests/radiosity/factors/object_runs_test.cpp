@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "radiosity/factors/object_runs.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -9,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "radiosity/exact/polygon/polygon_factor.h"
+#include "radiosity/factors/patch_rays.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::radiosity {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "radiosity/factors/hit_counter.h"
 #include "radiosity/factors/hit_targets.h"
 #include "tests/support/scene_builder.h"
 

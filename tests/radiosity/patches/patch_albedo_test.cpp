@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "radiosity/patches/patch_albedo.h"
-
 #include <gtest/gtest.h>
 
+#include "radiosity/patches/patches.h"
 #include "radiosity/store/solution_key.h"
 #include "scenes/surface_texture.h"
 #include "scenes/texture/texture.h"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "raytrace/camera/check.h"
+#include "raytrace/camera/camera.h"
 #include "tests/support/boxes.h"
 
 namespace earthshine::raytrace {

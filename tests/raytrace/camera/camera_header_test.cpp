@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/numbers/random.h"
-#include "raytrace/camera/header.h"
+#include "raytrace/camera/camera.h"
 
 namespace earthshine::raytrace {
 namespace {

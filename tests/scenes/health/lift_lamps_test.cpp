@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/health/lift_lamps.h"
-
 #include <fmt/format.h>
 
+#include "scenes/health/mend.h"
 #include "tests/scenes/scene_text.h"
 
 namespace earthshine::scenes {

@@ -244,7 +244,10 @@ TEST(SceneFile, OrbitGivesSunAndEarthWithTheirDefaults) {
   const Scene scene = folder.read(
       "format = 1\n[orbit]\naltitude_km = 425\nbeta_deg = 20\nposition_deg = 50\n"
       "attitude = \"bay-to-space\"\n[earth]\nalbedo = 0.4\n");
-  const OrbitDirections expected = orbit_directions(20, 50, "bay-to-space");
+  Orbit orbit;
+  orbit.beta_deg = 20.0;
+  orbit.attitude = "bay-to-space";
+  const OrbitState expected = orbit_state(orbit, 50.0);
   EXPECT_EQ(scene.sun->direction, expected.sun);
   EXPECT_EQ(scene.sun->illuminance_lx, Rgb(133100));
   EXPECT_EQ(scene.earth->direction, expected.earth);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/reflect/bihemispherical_albedo.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "base/numbers/random.h"
+#include "scenes/reflect/energy.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::scenes {

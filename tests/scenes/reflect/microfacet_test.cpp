@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/reflect/microfacet.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "base/units.h"
 #include "scenes/reflect/energy.h"
+#include "scenes/reflect/specular.h"
 
 namespace earthshine::scenes {
 namespace {

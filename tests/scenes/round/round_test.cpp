@@ -10,7 +10,7 @@
 #include "scenes/health/mend.h"
 #include "scenes/mesh/shapes.h"
 #include "scenes/ray_query.h"
-#include "scenes/round/corner_normals.h"
+#include "scenes/round/edge_curves.h"
 #include "tests/scenes/scene_text.h"
 
 namespace earthshine::scenes {

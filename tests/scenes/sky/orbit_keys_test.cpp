@@ -43,7 +43,9 @@ TEST(OrbitKeys, InertialAtItsOwnPositionIsTheNamedAttitude) {
   const Scene kept = folder.read(orbit_text +
                                  "position_deg = 25\nattitude = \"inertial\"\n"
                                  "inertial_at_deg = 25\n");
-  const OrbitDirections named = orbit_directions(0.0, 25.0, "bay-to-earth");
+  Orbit of_the_name;
+  of_the_name.attitude = "bay-to-earth";
+  const OrbitState named = orbit_state(of_the_name, 25.0);
   EXPECT_LT(glm::length(kept.sun->direction - named.sun), 1e-15);
   EXPECT_LT(glm::length(kept.earth->direction - named.earth), 1e-15);
 }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/sky/sky_parts.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "scenes/effects/effects.h"
 #include "scenes/effects/light_groups.h"
+#include "scenes/sky/sky_cells.h"
 
 namespace earthshine::scenes {
 namespace {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "studies/accuracy/pareto.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "base/error.h"
+#include "studies/accuracy/findings.h"
 
 namespace earthshine::studies {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "studies/compare/difference_picture.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "studies/compare/yardstick.h"
 
 namespace earthshine::studies {
 namespace {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "studies/error/surface_pixels.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "studies/error/error_budget.h"
 #include "tests/studies/plates.h"
 
 namespace earthshine::studies {

@@ -7,7 +7,7 @@
 #include "base/numbers/random.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/sky/sky.h"
-#include "scenes/sky/sky_parts.h"
+#include "scenes/sky/sky_cells.h"
 #include "studies/light/light_basis.h"
 #include "studies/targets/target_view.h"
 #include "tests/studies/basis_scenes.h"

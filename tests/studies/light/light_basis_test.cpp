@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "scenes/sky/sky.h"
-#include "scenes/sky/sky_parts.h"
+#include "scenes/sky/sky_cells.h"
 #include "tests/studies/basis_scenes.h"
 
 namespace earthshine::studies {

@@ -33,7 +33,7 @@ struct Judge {
     ConditionOptions options;
     using Explain = ConditionOptions::Explain;
     options.explain = explain ? Explain::NotIdentified : Explain::None;
-    return judge_condition(basis, query, view, {place, setting}, cctv, options);
+    return judge_conditions(basis, query, view, {{place, setting}}, cctv, options).front();
   }
 };
 
@@ -180,8 +180,9 @@ TEST(Condition, InTheDarkThereIsNoErrorToState) {
   const auto by_lamp = judge.at(1, 0).targets[0].basis_error;
   ASSERT_TRUE(by_lamp);
   EXPECT_EQ(by_lamp->bound, 0.0);
-  const Outcome night = judge.at(1, 1);
-  for (const float value : night.radiance.find("G")->values) EXPECT_EQ(value, 0.0F);
+  const base::Image night =
+      weighted_sum(judge.view.layers, judge.basis.groups().names, judge.basis.weights(1, 1));
+  for (const float value : night.find("G")->values) EXPECT_EQ(value, 0.0F);
 }
 
 TEST(Condition, OutOfViewNothingIsSaid) {
@@ -217,7 +218,8 @@ TEST(Condition, ReasonsAreWorkedOutOncePerRunOfLikeConditions) {
   for (std::size_t k = 0; k < conditions.size(); ++k) {
     const TargetOutcome& target = found[k].targets[0];
     const Outcome alone =
-        judge_condition(judge.basis, judge.query, judge.view, conditions[k], eye, options);
+        judge_conditions(judge.basis, judge.query, judge.view, {conditions[k]}, eye, options)
+            .front();
     EXPECT_EQ(target.why_of, of[k]) << k;
     EXPECT_EQ(target.why.text, alone.targets[0].why.text) << k;
     EXPECT_EQ(found[k].sight.targets[0].luminance, alone.sight.targets[0].luminance) << k;

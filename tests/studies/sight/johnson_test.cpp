@@ -7,7 +7,6 @@
 #include <set>
 
 #include "base/units.h"
-#include "studies/sight/eye.h"
 
 namespace earthshine::studies {
 namespace {

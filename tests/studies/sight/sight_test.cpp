@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "base/error.h"
-#include "degrade/detection.h"
 #include "degrade/settings/presets.h"
+#include "degrade/twin.h"
 #include "tests/studies/discs.h"
 
 namespace earthshine::studies {

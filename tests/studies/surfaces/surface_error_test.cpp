@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "raytrace/incoming/radiance_table.h"
-#include "studies/error/surface_pixels.h"
+#include "studies/error/error_budget.h"
 #include "tests/studies/plates.h"
 #include "tests/studies/room.h"
 

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "radiosity/direct/lambert.h"
-#include "radiosity/exact/polygon/edge_integral.h"
 
 namespace earthshine::radiosity {
 namespace {

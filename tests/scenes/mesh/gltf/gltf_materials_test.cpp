@@ -7,7 +7,7 @@
 
 #include "base/files/png_file.h"
 #include "scenes/reflect/energy.h"
-#include "scenes/reflect/microfacet.h"
+#include "scenes/reflect/specular.h"
 #include "scenes/texture/texture.h"
 #include "tests/scenes/scene_text.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "raytrace/frame/options.h"
+#include "raytrace/frame/frame.h"
 
 namespace earthshine::raytrace {
 
