@@ -60,7 +60,7 @@ struct Command {
 [[nodiscard]] Command add_report(CLI::App& program);
 // What runs a call as if it had been typed, for `merge`. Its exit code.
 using RunCall = std::function<void(const std::vector<std::string>& arguments)>;
-[[nodiscard]] Command add_merge(CLI::App& program, RunCall run_call);
+[[nodiscard]] Command add_merge(CLI::App& program, const RunCall& run_call);
 // `study` itself, which runs nothing, and one command of it per study.
 [[nodiscard]] std::vector<Command> add_study(CLI::App& program);
 

@@ -79,7 +79,7 @@ std::string short_count(double count) {
   return fmt::format("{:.1f} G", count / 1e9);
 }
 
-Progress::Progress(std::string label, bool quiet)
+Progress::Progress(const std::string& label, bool quiet)
     : label_(base::escaped(label)), shown_(!quiet && !silent_now && ::isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {

@@ -33,7 +33,7 @@ void be_silent(bool silent);
 // second and wiped at the end. Silent unless standard error is a terminal.
 class Progress {
  public:
-  Progress(std::string label, bool quiet);
+  Progress(const std::string& label, bool quiet);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

@@ -16,6 +16,8 @@ struct Turned {
 // quarter, exact to 4e-7.
 [[nodiscard]] inline Turned turn(float turns) {
   const float quarters = 4.0F * turns;
+  // Not below zero; where rounding is off, the other quarter is as near.
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings)
   const auto quarter = static_cast<std::int32_t>(quarters + 0.5F);
   const float x = (quarters - static_cast<float>(quarter)) * static_cast<float>(0.5 * pi);
   const float x2 = x * x;

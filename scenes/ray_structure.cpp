@@ -95,10 +95,10 @@ void RayQuery::Embree::add_instances(const Scene& source, const Vec3& centre) {
     }
     const Vec3 offset = instance.linear * original.centre + instance.offset_m - centre;
     std::array<float, 12> matrix;  // three columns and the offset
+    std::size_t entry = 0;
     for (int column = 0; column < 4; ++column) {
       const Vec3& from = column < 3 ? instance.linear[column] : offset;
-      for (int row = 0; row < 3; ++row)
-        matrix[static_cast<std::size_t>(3 * column + row)] = static_cast<float>(from[row]);
+      for (int row = 0; row < 3; ++row) matrix[entry++] = static_cast<float>(from[row]);
     }
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(geometry, original.scene);

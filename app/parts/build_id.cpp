@@ -45,6 +45,7 @@ int look_at(dl_phdr_info* object, std::size_t, void* found) {
   for (int k = 0; k < object->dlpi_phnum; ++k) {
     const ElfW(Phdr)& segment = object->dlpi_phdr[k];
     if (segment.p_type != PT_NOTE) continue;
+    // The loader states addresses as numbers. NOLINTNEXTLINE(performance-no-int-to-ptr)
     const auto* start = reinterpret_cast<const std::byte*>(object->dlpi_addr + segment.p_vaddr);
     std::string id = id_among({start, segment.p_memsz});
     if (!id.empty()) *static_cast<std::string*>(found) = std::move(id);

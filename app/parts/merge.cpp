@@ -27,7 +27,7 @@ void go_to(const std::filesystem::path& folder) {
 
 }  // namespace
 
-Command add_merge(CLI::App& program, RunCall run_call) {
+Command add_merge(CLI::App& program, const RunCall& run_call) {
   CLI::App* parser = program.add_subcommand(
       "merge", "What the parts of a call (--part) have left, as one process would have written it");
   const auto call = std::make_shared<MergeCall>();

@@ -46,6 +46,7 @@ struct Share {
 
 // DIR/parts.json: the call that all parts share and digests of all that its results depend on.
 // The first process writes it, and those that come later compare.
+// NOLINTNEXTLINE(bugprone-exception-escape): destructor and move of Json throw nothing.
 struct PartsRecord {
   std::size_t parts = 0;               // 0: not known yet, of a solve alone
   std::filesystem::path folder;        // where the call was made

@@ -36,12 +36,10 @@ std::string in_short(const StudyResults& study) {
                      counted(study.targets.size(), "target", "targets") + ", " +
                      counted(study.conditions.size(), "condition", "conditions") + ": " +
                      counted(study.results.size(), "result", "results");
-  std::string parts;
   for (std::size_t k = 0; k < counts.size(); ++k) {
-    if (counts[k] == 0) continue;
-    parts += fmt::format("{}{} {}", parts.empty() ? ", " : ", ", counts[k], verdict_words[k].text);
+    if (counts[k] > 0) text += fmt::format(", {} {}", counts[k], verdict_words[k].text);
   }
-  return text + parts + ".";
+  return text + ".";
 }
 
 std::string header(const StudyResults& study, bool plain) {

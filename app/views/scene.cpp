@@ -27,8 +27,9 @@ void add_cctv(const studies::StudyFile& study, scenes::Scene& scene) {
   }
   if (study.cctv.monitor) scene.monitor = study.cctv.monitor;
   for (const auto& [name, model] : study.camera_models) {
-    const auto camera = std::find_if(scene.cameras.begin(), scene.cameras.end(),
-                                     [&](const scenes::Camera& c) { return c.name == name; });
+    const auto camera =
+        std::find_if(scene.cameras.begin(), scene.cameras.end(),
+                     [&name = name](const scenes::Camera& c) { return c.name == name; });
     if (camera == scene.cameras.end()) continue;  // another scene of the study may have it
     camera->cctv = model == "none" ? "" : model;
   }

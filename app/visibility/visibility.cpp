@@ -163,16 +163,16 @@ class Tables {
     Json rows = Json::array(), answers = Json::array();
     for (const TableRow& row : rows_) rows.push_back(row_json(row, result_of(study, row)));
     for (const AnswerEntry& answer : study.answers) answers.push_back(kept_json(answer));
-    const Json json = {{"study", "visibility"},
-                       {"version", EARTHSHINE_VERSION},
-                       {"scene", call_.scene.path},
-                       {"set", call_.scene.overrides},
-                       {"seed", common_.seed},
-                       {"patches", to_json(study.scenes[0].patches)},
-                       {"solve_seconds", to_json(solve_seconds)},
-                       {"cameras", views_},
-                       {"targets", rows},
-                       {"answers", answers}};
+    Json json = {{"study", "visibility"},
+                 {"version", EARTHSHINE_VERSION},
+                 {"scene", call_.scene.path},
+                 {"set", call_.scene.overrides},
+                 {"seed", common_.seed},
+                 {"patches", to_json(study.scenes[0].patches)},
+                 {"solve_seconds", to_json(solve_seconds)},
+                 {"cameras", views_},
+                 {"targets", rows},
+                 {"answers", answers}};
     base::write_text(std::filesystem::path(call_.folder) / results_csv, csv_of(rows));
     base::write_text(std::filesystem::path(call_.folder) / visibility_file, dump(json));
     return json;

@@ -89,7 +89,7 @@ bool RowCaster::trace(std::uint32_t patch, PatchRays::Sender sender, bool look_o
   // from memory.
   RayPacket packets[2];
   HitPacket hits[2];
-  const std::uint32_t run = rays_.count() / RayPacket::width;
+  const auto run = static_cast<std::uint32_t>(rays_.count() / RayPacket::width);
   const std::uint32_t count = run * (runs_.empty() ? 1 : runs_[patches_.object(patch)]);
   row.sent = count * RayPacket::width;
   row.rays = row.sent;

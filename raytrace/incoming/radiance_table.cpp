@@ -160,7 +160,8 @@ void RadianceTable::fill_knots() {
       const radiosity::Facet& facet = facets[f];
       if (facet.tree == radiosity::no_tree || facet.is_cluster()) continue;
       for (std::uint32_t k = 0; k < facet.leaves * knots_per_cell; ++k) {
-        const std::uint32_t leaf = k / knots_per_cell, knot = k % knots_per_cell;
+        const auto leaf = static_cast<std::uint32_t>(k / knots_per_cell);
+        const auto knot = static_cast<std::uint32_t>(k % knots_per_cell);
         terms.clear();
         add_knot_terms(*patches_, facet, leaf, knot / 3, knot % 3, terms);
         for (const bool front : {false, true}) {

@@ -32,9 +32,9 @@ void Neighbours::sift(std::size_t level, const Keep& keep) {
           for (int dy = -2; dy <= 2; ++dy) {
             for (int dx = -2; dx <= 2; ++dx, bit <<= 1U) {
               if ((mask[p] & bit) == 0 || bit == centre_bit) continue;
-              const int qx = x + dx * step, qy = y + dy * step;
+              const int qx = x + dx * step, qy = y + dy * step, q = qy * columns_ + qx;
               const bool inside = qx >= 0 && qy >= 0 && qx < columns_ && qy < rows_;
-              if (!inside || !keep(p, static_cast<std::size_t>(qy * columns_ + qx))) {
+              if (!inside || !keep(p, static_cast<std::size_t>(q))) {
                 mask[p] &= ~bit;
               }
             }

@@ -64,8 +64,7 @@ class Rows {
     std::string unused;
     for (std::size_t m = 0; m < worn_.size(); ++m) {
       if (base::max_component(value(scene_.materials[m])) <= 0.0) continue;
-      const std::string has =
-          fmt::format("material \"{}\" has {} > 0", scene_.materials[m].name, key);
+      std::string has = fmt::format("material \"{}\" has {} > 0", scene_.materials[m].name, key);
       if (worn_[m]) return has;
       if (unused.empty()) unused = has + ", but nothing wears it";
     }

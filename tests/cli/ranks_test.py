@@ -125,7 +125,7 @@ class Ranks(Case):
 
     def test_one_solution_for_parts(self):
         """Ranks work on the one solution that parts read, by --part solve or ahead of their own shares."""
-        call = ("study", "orbit", "bay.toml", "--positions", "36", "--wanted", "box>=0.5", "-q", "-o")
+        call = ("study", "orbit", "bay.toml", "--positions", "36", "--iris", "normal", "--wanted", "box>=0.5", "-q", "-o")
         for folder, run in (("w", lambda: self.ranks(1, *call, "w", "--part", "solve")),
                             ("a", lambda: self.ranks(3, *call, "a", "--part", "solve")), ("b", lambda: self.ranks(3, *call, "b"))):
             run()
@@ -231,7 +231,7 @@ class Ranks(Case):
                           (2, 3) if name != "shared" else (1, 2, 3, 5, 8))
 
     def test_studies(self):
-        call = ("study", "orbit", "bay.toml", "--positions", "36", "--wanted", "box>=0.5", "-o")
+        call = ("study", "orbit", "bay.toml", "--positions", "36", "--iris", "normal", "--wanted", "box>=0.5", "-o")
         self.done(*call, "w", "-q")
         for count in (2, 3):
             run = self.ranks(count, *call, f"o{count}", "-q", "-j", 1)
@@ -339,9 +339,9 @@ class Ranks(Case):
         self.assertEqual([path.name for path in self.folder.iterdir() if "v.exr" in path.name], [])
 
     def test_kills_of_solve_and_render(self):
-        """Any rank, killed at EARTHSHINE_KILLS (ten) moments: each file is there whole or not at all, none is left unfinished, and the
+        """Any rank, killed at EARTHSHINE_KILLS (four) moments: each file is there whole or not at all, none is left unfinished, and the
         next run writes what one that nobody disturbed does."""
-        kills = int(os.environ.get("EARTHSHINE_KILLS", "10"))
+        kills = int(os.environ.get("EARTHSHINE_KILLS", "4"))
         chance = random.Random(21)
         for call, names in ((("solve", "ball.toml", "-o", "s.h5", "--set", "quality.patch_edge=0.1", "-q"), ("s.h5",)),
                             (("render", "ball.toml", "--camera", "A", "-o", "v.exr", "--png", "v.png", "-q"), ("v.exr", "v.png"))):
@@ -387,15 +387,15 @@ code=$?; ls -A full; cat full/v.exr; exit $code"""
         self.assertEqual(run.stdout, "v.exr\nolder\n")
 
     def test_the_next_run_ends_what_a_kill_left(self):
-        """Any rank, killed at EARTHSHINE_KILLS (ten) moments of a run: the study is there whole or not at all, and the next is the
+        """Any rank, killed at EARTHSHINE_KILLS (four) moments of a run: the study is there whole or not at all, and the next is the
         one that nobody disturbed."""
-        call = ("study", "orbit", "bay.toml", "--positions", "36", "--wanted", "box>=0.5", "-q", "-o")
+        call = ("study", "orbit", "bay.toml", "--positions", "36", "--iris", "normal", "--wanted", "box>=0.5", "-q", "-o")
         begun = time.monotonic()
         self.ranks(3, *call, "w", "-j", 1)
         whole, seconds = self.without_times(self.study("w")), time.monotonic() - begun
         chance = random.Random(20)
         killed = 0
-        kills = int(os.environ.get("EARTHSHINE_KILLS", "10"))
+        kills = int(os.environ.get("EARTHSHINE_KILLS", "4"))
         for kill in range(kills):
             folder, rank, wait = f"o{kill}", chance.randrange(3), seconds * (kill + chance.random()) / kills
             with self.subTest(rank=rank, seconds=wait):
