@@ -339,9 +339,9 @@ class Ranks(Case):
         self.assertEqual([path.name for path in self.folder.iterdir() if "v.exr" in path.name], [])
 
     def test_kills_of_solve_and_render(self):
-        """Any rank, killed at EARTHSHINE_KILLS (ten) moments: each file is there whole or not at all, none is left unfinished, and the
+        """Any rank, killed at EARTHSHINE_KILLS (six) moments: each file is there whole or not at all, none is left unfinished, and the
         next run writes what one that nobody disturbed does."""
-        kills = int(os.environ.get("EARTHSHINE_KILLS", "10"))
+        kills = int(os.environ.get("EARTHSHINE_KILLS", "6"))
         chance = random.Random(21)
         for call, names in ((("solve", "ball.toml", "-o", "s.h5", "--set", "quality.patch_edge=0.1", "-q"), ("s.h5",)),
                             (("render", "ball.toml", "--camera", "A", "-o", "v.exr", "--png", "v.png", "-q"), ("v.exr", "v.png"))):
@@ -387,7 +387,7 @@ code=$?; ls -A full; cat full/v.exr; exit $code"""
         self.assertEqual(run.stdout, "v.exr\nolder\n")
 
     def test_the_next_run_ends_what_a_kill_left(self):
-        """Any rank, killed at EARTHSHINE_KILLS (ten) moments of a run: the study is there whole or not at all, and the next is the
+        """Any rank, killed at EARTHSHINE_KILLS (six) moments of a run: the study is there whole or not at all, and the next is the
         one that nobody disturbed."""
         call = ("study", "orbit", "bay.toml", "--positions", "36", "--wanted", "box>=0.5", "-q", "-o")
         begun = time.monotonic()
@@ -395,7 +395,7 @@ code=$?; ls -A full; cat full/v.exr; exit $code"""
         whole, seconds = self.without_times(self.study("w")), time.monotonic() - begun
         chance = random.Random(20)
         killed = 0
-        kills = int(os.environ.get("EARTHSHINE_KILLS", "10"))
+        kills = int(os.environ.get("EARTHSHINE_KILLS", "6"))
         for kill in range(kills):
             folder, rank, wait = f"o{kill}", chance.randrange(3), seconds * (kill + chance.random()) / kills
             with self.subTest(rank=rank, seconds=wait):
