@@ -3,6 +3,7 @@
 // faces of an edge, so that no gap opens between a side and the cap it meets at a crease.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>

@@ -86,7 +86,7 @@ class Comparing {
   void take_references(const Method& method) {
     MethodResult result;
     result.method = method;
-    for (const std::uint64_t k : {1, 2}) {
+    for (const std::uint64_t k : {1U, 2U}) {
       const std::string stage = fmt::format("{} {}", reference_name, k);
       const double begin = base::cpu_seconds();
       const radiosity::Solution solution =

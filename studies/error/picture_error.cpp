@@ -29,7 +29,7 @@ struct Sums {
     product += weight * d1 * d2;
     variance += weight * d1 * d2 * (v1 + v2) + v1 * v2;
     // The square of the difference is known from the product alone, which may come out negative.
-    least += v1 * v2;
+    least_ += v1 * v2;
     difference += (d1 + d2) / 2.0;
     right += truth;
   }
@@ -40,7 +40,7 @@ struct Sums {
     if (pixels == 0 || !(right > 0.0)) return result;
     const auto n = static_cast<double>(pixels);
     const double mean = right / n, square = product / n;
-    const double spread = 2.0 * std::sqrt(std::max(variance, least)) / n;
+    const double spread = 2.0 * std::sqrt(std::max(variance, least_)) / n;
     result.error = std::sqrt(std::max(0.0, square)) / mean;
     result.low = std::sqrt(std::max(0.0, square - spread)) / mean;
     result.high = std::sqrt(std::max(0.0, square + spread)) / mean;
@@ -49,7 +49,7 @@ struct Sums {
   }
 
  private:
-  double least = 0.0;
+  double least_ = 0.0;
 };
 
 double middle(const ReferencePair& pair, std::size_t p) {
@@ -77,9 +77,8 @@ struct Look {
     const raytrace::Ray ray = camera.ray(column + 0.5, row + 0.5, 0.0, 0.0);
     if (study.query.closest(ray.origin, ray.direction).missed()) return false;
     for (int k = 0; k < places * places; ++k) {
-      const double x = column + (k % places + 0.5) / places;
-      const double y = row + (k / places + 0.5) / places;
-      if (meets_source(x, y)) return false;
+      const int across = k % places, down = k / places;
+      if (meets_source(column + (across + 0.5) / places, row + (down + 0.5) / places)) return false;
     }
     return true;
   }

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include "base/error.h"
 #include "studies/sight/target_signal.h"
@@ -123,7 +122,7 @@ CameraSight measure_sight(const SightPlan& plan, const base::Image& radiance,
       }
     }
     sight.verdict = verdict_of(sight, target.view, options);
-    found.targets.push_back(std::move(sight));
+    found.targets.push_back(sight);
   }
   return found;
 }

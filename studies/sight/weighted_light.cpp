@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 
@@ -16,7 +18,7 @@ Planes layer_of(const base::Image& layers, const std::string& group, bool alone)
   Planes planes{};
   for (std::size_t c = 0; c < 3; ++c) {
     const std::string letter(1, "RGB"[c]);
-    const base::Channel* channel = layers.find("light_" + group + "." + letter);
+    const base::Channel* channel = layers.find(fmt::format("light_{}.{}", group, letter));
     if (channel == nullptr && alone) channel = layers.find(letter);
     if (channel == nullptr) {
       throw base::Error(base::Blame::Input, "study",
