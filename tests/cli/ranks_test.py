@@ -150,7 +150,8 @@ class Ranks(Case):
         self.write("hard.toml", HARD.replace("0.3\nmirror = 0.45", "0.55\nmirror = 0.45"))
         alone = self.refused(*call)
         self.assertIn("a closed part of the scene reflects everything", alone)
-        self.assertEqual(self.ranks(3, *call, code=2).stderr.splitlines()[0], alone.splitlines()[0])
+        said = self.ranks(3, *call, code=2).stderr.splitlines()  # what mpirun itself says may come before it
+        self.assertEqual([line for line in said if line.startswith("earthshine: ")], alone.splitlines()[:1])
 
     def test_memory_is_divided(self):
         """Of the E entries of the matrix, 8 bytes each, a rank of R has an R-th; while they are dealt out up to half as much more, of
