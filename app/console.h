@@ -48,8 +48,9 @@ class Progress {
 };
 
 // Ctrl-C while a picture is worked out: the first asks for an end with what is finished, the second
-// ends the program at once. Takes SIGINT and SIGTERM over for as long as it lives. One at a time. Of
-// several ranks it does nothing: they would not stop at the same place, so a signal ends them all.
+// ends the program at once. Takes SIGINT and SIGTERM over for as long as it lives. One at a time.
+// Of several ranks it does nothing: they would not stop at the same place, so a signal ends them
+// all.
 class Interrupt {
  public:
   Interrupt();

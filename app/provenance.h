@@ -34,9 +34,9 @@ void add_origin(base::ExrHeader& header, const scenes::Scene& scene,
 // Attributes "earthshine:…".
 [[nodiscard]] base::ExrHeader provenance_header(const Provenance& provenance);
 
-// Adds the camera: its keys, intrinsics and pose (camera_header.h) as "earthshine:camera.K" and
-// "earthshine:camera.to_world", and as OpenEXR's worldToCamera, worldToNDC, screenWindowWidth and
-// focus.
+// Adds the camera: its keys, intrinsics and pose (raytrace/camera/camera.h) as
+// "earthshine:camera.K" and "earthshine:camera.to_world", and as OpenEXR's worldToCamera,
+// worldToNDC, screenWindowWidth and focus.
 void add_camera(base::ExrHeader& header, const scenes::Camera& camera, int columns, int rows);
 
 // Adds what the numbers of the layers asked for mean: "earthshine:objects" and

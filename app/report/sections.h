@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sections of the report, each HTML from <section> to </section>, or "" where the study has
-// nothing for it. Their order on the page is report_page.cpp's.
+// nothing for it. Their order on the page is page.cpp's.
 #pragma once
 
 #include <filesystem>

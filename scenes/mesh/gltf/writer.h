@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Coloured triangles as a GLB file for other people's viewers: glTF 2.0 with vertex colours and
-// KHR_materials_unlit, so that the colours show as they are. gltf_writer.cpp is, beside
-// gltf_model.cpp, the only user of tinygltf.
+// KHR_materials_unlit, so that the colours show as they are.
 #pragma once
 
 #include <cstdint>
