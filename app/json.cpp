@@ -20,25 +20,6 @@ using base::Error;
 
 constexpr std::size_t largest_json_bytes = std::size_t{1} << 30;
 
-// Of what is JSON exactly; of what is not, parsing says so where this does not.
-bool is_too_deep(std::string_view text) {
-  int depth = 0;
-  bool within_text = false;
-  for (std::size_t k = 0; k < text.size(); ++k) {
-    const char c = text[k];
-    if (c == '"') {
-      within_text = !within_text;
-    } else if (within_text) {
-      k += c == '\\' ? 1 : 0;
-    } else if (c == '[' || c == '{') {
-      if (++depth > deepest_json) return true;
-    } else if (c == ']' || c == '}') {
-      --depth;
-    }
-  }
-  return false;
-}
-
 }  // namespace
 
 std::string dump(const Json& json) {
@@ -61,12 +42,17 @@ std::string digest_of_file(const std::filesystem::path& path) {
 Json read_json(const std::filesystem::path& path, const std::string& advice) {
   const std::string name = path.string();
   const std::string text = base::read_input_file(path, largest_json_bytes, {name});
-  if (is_too_deep(text)) {
-    throw Error(Blame::Input, name, "has lists and objects too deep within one another",
-                fmt::format("at most {} levels", deepest_json), advice);
-  }
+  const auto check_depth = [&](int around, Json::parse_event_t event, const Json&) {
+    const bool begins =
+        event == Json::parse_event_t::array_start || event == Json::parse_event_t::object_start;
+    if (begins && around >= deepest_json) {
+      throw Error(Blame::Input, name, "has lists and objects too deep within one another",
+                  fmt::format("at most {} levels", deepest_json), advice);
+    }
+    return true;
+  };
   try {
-    return Json::parse(text);
+    return Json::parse(text, check_depth);
   } catch (const Json::parse_error& error) {
     throw Error(Blame::Input, name,
                 fmt::format("is not JSON: at byte {} it goes wrong", error.byte), {}, advice);

@@ -106,8 +106,17 @@ void add_names(base::ExrHeader& header, const scenes::Scene& scene,
 }
 
 std::string indirect_name(raytrace::Indirect indirect) {
-  constexpr const char* names[] = {"radiosity", "distributed", "none", "paths"};
-  return names[static_cast<std::size_t>(indirect)];
+  switch (indirect) {
+    case raytrace::Indirect::Radiosity:
+      return "radiosity";
+    case raytrace::Indirect::Distributed:
+      return "distributed";
+    case raytrace::Indirect::None:
+      return "none";
+    case raytrace::Indirect::Paths:
+      return "paths";
+  }
+  return "";
 }
 
 void add_origin(base::ExrHeader& result, const scenes::Scene& scene,

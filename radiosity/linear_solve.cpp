@@ -2,26 +2,56 @@
 #include "radiosity/linear_solve.h"
 
 #include <Eigen/Core>
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
-#include <utility>
 
 #include "base/error.h"
 #include "base/free_memory.h"
 
 namespace earthshine::radiosity {
-namespace {
+class RadiosityOperator;
+}
+
+// Eigen takes an operator without a matrix if it looks like a sparse one (Eigen's "Matrix-free
+// solvers").
+namespace Eigen::internal {
+template <>
+struct traits<earthshine::radiosity::RadiosityOperator>
+    : public traits<Eigen::SparseMatrix<double>> {};
+}  // namespace Eigen::internal
+
+namespace earthshine::radiosity {
 
 using Vector = Eigen::VectorXd;
 
 // 1 - rho F. Of ranks that divide F the first asks for products, and the others serve().
-class RadiosityOperator {
+class RadiosityOperator : public Eigen::EigenBase<RadiosityOperator> {
  public:
+  using Scalar = double;
+  using RealScalar = double;
+  using StorageIndex = int;
+  enum {
+    ColsAtCompileTime = Eigen::Dynamic,
+    MaxColsAtCompileTime = Eigen::Dynamic,
+    IsRowMajor = 0
+  };
+
   RadiosityOperator(const FormFactors& factors, std::span<const double> reflectance,
                     std::size_t columns)
       : factors_(factors), reflectance_(reflectance), columns_(columns) {}
+
+  [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(size()); }
+  [[nodiscard]] Eigen::Index cols() const { return rows(); }
+
+  template <class Rhs>
+  Eigen::Product<RadiosityOperator, Rhs, Eigen::AliasFreeProduct> operator*(
+      const Eigen::MatrixBase<Rhs>& x) const {
+    return {*this, x.derived()};
+  }
 
   [[nodiscard]] Vector apply(const Vector& x) const {
     ask_for_product(true);
@@ -78,6 +108,26 @@ class RadiosityOperator {
   std::size_t columns_;
 };
 
+}  // namespace earthshine::radiosity
+
+namespace Eigen::internal {
+template <class Rhs>
+struct generic_product_impl<earthshine::radiosity::RadiosityOperator, Rhs, SparseShape, DenseShape,
+                            GemvProduct>
+    : generic_product_impl_base<
+          earthshine::radiosity::RadiosityOperator, Rhs,
+          generic_product_impl<earthshine::radiosity::RadiosityOperator, Rhs>> {
+  template <class Dest>
+  static void scaleAndAddTo(Dest& y, const earthshine::radiosity::RadiosityOperator& op,
+                            const Rhs& x, const double& alpha) {
+    y.noalias() += alpha * op.apply(x);
+  }
+};
+}  // namespace Eigen::internal
+
+namespace earthshine::radiosity {
+namespace {
+
 std::vector<double> column_norms(std::span<const double> values, std::size_t columns) {
   std::vector<double> norms(columns, 0.0);
   for (std::size_t k = 0; k < values.size(); ++k) norms[k % columns] += values[k] * values[k];
@@ -110,53 +160,19 @@ std::span<const double> span_of(const Vector& x) {
   return {x.data(), static_cast<std::size_t>(x.size())};
 }
 
-// BiCGSTAB (van der Vorst 1992) without a preconditioner, from x on, until the residual is `wanted`
-// of b. Rounds as Eigen's, and has four vectors less. Returns the iterations.
-int iterate(const RadiosityOperator& system, const Vector& b, double wanted, Vector& x) {
-  constexpr int most = 300;
-  constexpr double rounding = std::numeric_limits<double>::epsilon();
-  const double b2 = b.squaredNorm();
-  if (b2 == 0.0) {
-    x.setZero();
-    return 0;
-  }
-  Vector r = b - system.apply(x);
-  Vector start = r;
-  Vector v = Vector::Zero(b.size()), p = v;
-  double start2 = start.squaredNorm(), rho = 1.0, alpha = 1.0, omega = 1.0;
-  bool has_restarted = false;
-  int iterations = 0;
-  for (; r.squaredNorm() > wanted * wanted * b2 && iterations < most; ++iterations) {
-    const double before = rho;
-    rho = start.dot(r);
-    if (std::abs(rho) < rounding * rounding * start2) {  // orthogonal: from here anew
-      r = b - system.apply(x);
-      start = r;
-      rho = start2 = r.squaredNorm();
-      if (!std::exchange(has_restarted, true)) iterations = 0;
-    }
-    p = r + (rho / before) * (alpha / omega) * (p - omega * v);
-    v = system.apply(p);
-    alpha = rho / start.dot(v);
-    r -= alpha * v;
-    const Vector t = system.apply(r);
-    const double t2 = t.squaredNorm();
-    omega = t2 > 0.0 ? t.dot(r) / t2 : 0.0;
-    x += alpha * p + omega * r;
-    r -= omega * t;
-  }
-  return iterations;
-}
-
 class Solver {
  public:
   Solver(const RadiosityOperator& system, std::size_t columns)
-      : system_(system), columns_(columns) {}
+      : system_(system), columns_(columns) {
+    krylov_.compute(system);
+    krylov_.setMaxIterations(300);
+  }
 
   // The x of (1 - rho F) x = b to a joint relative residual, from b on.
   [[nodiscard]] Vector solve(const Vector& b, double wanted) {
-    Vector x = b;
-    iterations += iterate(system_, b, wanted, x);
+    krylov_.setTolerance(wanted);
+    Vector x = krylov_.solveWithGuess(b, b);
+    iterations += static_cast<int>(krylov_.iterations());
     if (x.allFinite() && rest(b, x).squaredNorm() <= rest(b, b).squaredNorm()) return x;
     // BiCGSTAB can break down; bouncing the light once more a time never does.
     x = b;
@@ -197,6 +213,7 @@ class Solver {
  private:
   const RadiosityOperator& system_;
   std::size_t columns_;
+  Eigen::BiCGSTAB<RadiosityOperator, Eigen::IdentityPreconditioner> krylov_;
 };
 
 constexpr int most_corrections = 8;

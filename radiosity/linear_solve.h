@@ -25,7 +25,7 @@ struct LinearSolve {
 // would change, is at most `tolerance`: where light is reflected a million times a small residual
 // is no small error. Columns without source stay 0. Throws base::Error (Work) when `error` stays
 // above max(tolerance, 1e-6). Of ranks that divide the factors the first alone has the vectors of
-// the iteration, nine of the size of x; the others multiply with their rows for it, and get x.
+// the iteration, thirteen of the size of x; the others multiply with their rows for it, and get x.
 [[nodiscard]] LinearSolve solve_linear(const FormFactors& factors, std::vector<double> source,
                                        std::span<const double> reflectance, std::size_t columns,
                                        double tolerance);

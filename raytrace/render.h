@@ -20,6 +20,7 @@
 
 #include "radiosity/solution.h"
 #include "raytrace/frame/frame.h"
+#include "raytrace/frame/options.h"
 #include "scenes/effects/effects.h"
 #include "scenes/effects/light_groups.h"
 #include "scenes/effects/quality.h"

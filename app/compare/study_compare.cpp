@@ -45,8 +45,17 @@ std::vector<std::string> file_names(const std::vector<int>& lights, const std::s
 }
 
 std::string word_of(studies::ApproximationVerdict verdict) {
-  constexpr const char* words[] = {"not-in-view", "misled", "not-misled", "undecided"};
-  return words[static_cast<std::size_t>(verdict)];
+  switch (verdict) {
+    case studies::ApproximationVerdict::Misled:
+      return "misled";
+    case studies::ApproximationVerdict::NotMisled:
+      return "not-misled";
+    case studies::ApproximationVerdict::Undecided:
+      return "undecided";
+    case studies::ApproximationVerdict::NotInView:
+      break;
+  }
+  return "not-in-view";
 }
 
 Json json_of(const CompareCall& call, const scenes::Camera& camera,

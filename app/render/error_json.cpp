@@ -74,14 +74,21 @@ std::string text_of(const ErrorEstimate& total, bool known, const Parts& parts,
 }
 
 const char* words_of(studies::Limit limit) {
-  constexpr const char* words[] = {
-      "",
-      "--time-limit came first",
-      "memory came first (--max-memory, or what is free)",
-      "the settings that are given, or the scene's own faces, allow no better",
-      "no end in sight after several tries",
-      "it was stopped"};
-  return words[static_cast<std::size_t>(limit)];
+  switch (limit) {
+    case studies::Limit::None:
+      return "";
+    case studies::Limit::Time:
+      return "--time-limit came first";
+    case studies::Limit::Memory:
+      return "memory came first (--max-memory, or what is free)";
+    case studies::Limit::Settings:
+      return "the settings that are given, or the scene's own faces, allow no better";
+    case studies::Limit::Steps:
+      return "no end in sight after several tries";
+    case studies::Limit::Stopped:
+      return "it was stopped";
+  }
+  return "";
 }
 
 void add_steps(Json& json, studies::Limit limit, const std::vector<studies::Step>& steps) {

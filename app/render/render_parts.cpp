@@ -11,7 +11,7 @@
 #include "app/render/light.h"
 #include "base/error.h"
 #include "radiosity/store/solution_key.h"
-#include "raytrace/frame/layers.h"
+#include "raytrace/frame/join.h"
 #include "raytrace/passes/passes.h"
 
 namespace earthshine::app {

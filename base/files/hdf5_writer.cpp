@@ -105,9 +105,19 @@ std::string hdf5_reason() {
 void hdf5_fail() { throw Error(Blame::Work, "HDF5", hdf5_reason()); }
 
 hid_t hdf5_type(Hdf5Number number) {
-  const hid_t types[] = {H5T_STD_U8LE, H5T_STD_U32LE, H5T_STD_U64LE, H5T_IEEE_F32LE,
-                         H5T_IEEE_F64LE};
-  return types[static_cast<std::size_t>(number)];
+  switch (number) {
+    case Hdf5Number::Uint8:
+      return H5T_STD_U8LE;
+    case Hdf5Number::Uint32:
+      return H5T_STD_U32LE;
+    case Hdf5Number::Uint64:
+      return H5T_STD_U64LE;
+    case Hdf5Number::Float32:
+      return H5T_IEEE_F32LE;
+    case Hdf5Number::Float64:
+      return H5T_IEEE_F64LE;
+  }
+  return H5I_INVALID_HID;
 }
 
 Hdf5Handle hdf5_memory_access() {

@@ -86,12 +86,29 @@ class Sensing {
 };
 
 RangeReport count(const std::vector<Reading>& readings) {
-  // In Reading's order.
-  constexpr std::uint64_t RangeReport::*of[] = {&RangeReport::returned, &RangeReport::empty,
-                                                &RangeReport::grazing,  &RangeReport::dim,
-                                                &RangeReport::lost,     &RangeReport::out_of_range};
   RangeReport report;
-  for (const Reading reading : readings) ++(report.*of[static_cast<std::size_t>(reading)]);
+  for (const Reading reading : readings) {
+    switch (reading) {
+      case Reading::Returned:
+        ++report.returned;
+        break;
+      case Reading::Empty:
+        ++report.empty;
+        break;
+      case Reading::Grazing:
+        ++report.grazing;
+        break;
+      case Reading::Dim:
+        ++report.dim;
+        break;
+      case Reading::Lost:
+        ++report.lost;
+        break;
+      case Reading::OutOfRange:
+        ++report.out_of_range;
+        break;
+    }
+  }
   return report;
 }
 

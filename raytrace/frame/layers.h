@@ -8,6 +8,7 @@
 
 #include "base/image.h"
 #include "raytrace/frame/frame.h"
+#include "raytrace/frame/options.h"
 
 namespace earthshine::raytrace {
 
@@ -26,13 +27,5 @@ struct Layout {
 // base::Error (Input) for a layer that does not exist.
 [[nodiscard]] Layout add_layers(base::Image& image, const std::vector<std::string>& light_groups,
                                 const std::vector<std::string>& aovs);
-
-// A picture from parts of it that were drawn apart.
-
-// The frame of `window` from frames whose windows lie in it, each of its pixels in exactly one:
-// image, stated error and what the report says of the pixels are those of one frame drawn at once.
-// Rays and seconds are all that the parts took. Throws std::invalid_argument where the windows do
-// not fill it or the frames have other layers.
-[[nodiscard]] Frame join(const std::vector<Frame>& parts, const Window& window);
 
 }  // namespace earthshine::raytrace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "raytrace/frame/frame.h"
+#include "raytrace/frame/options.h"
 #include "scenes/light/emitters.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/light/light_tree.h"

@@ -23,6 +23,7 @@
 #include <functional>
 
 #include "raytrace/frame/frame.h"
+#include "raytrace/frame/options.h"
 #include "scenes/effects/effects.h"
 #include "scenes/effects/light_groups.h"
 #include "scenes/ray_query.h"

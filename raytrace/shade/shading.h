@@ -10,6 +10,7 @@
 #include "base/numbers/random.h"
 #include "raytrace/camera/pixel_filter.h"
 #include "raytrace/frame/frame.h"
+#include "raytrace/frame/options.h"
 #include "raytrace/gather/gather_field.h"
 #include "raytrace/light/light_sampler.h"
 

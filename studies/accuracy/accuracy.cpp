@@ -29,10 +29,17 @@ class Clock {
 };
 
 scenes::LightPaths paths_of(Indirect indirect) {
-  using scenes::LightPaths;
-  constexpr LightPaths paths[] = {LightPaths::All, LightPaths::Distributed, LightPaths::Straight,
-                                  LightPaths::Traced};
-  return paths[static_cast<std::size_t>(indirect)];
+  switch (indirect) {
+    case Indirect::Paths:
+      return scenes::LightPaths::Traced;
+    case Indirect::None:
+      return scenes::LightPaths::Straight;
+    case Indirect::Distributed:
+      return scenes::LightPaths::Distributed;
+    case Indirect::Radiosity:
+      break;
+  }
+  return scenes::LightPaths::All;
 }
 
 scenes::QualityKnobs knobs_of(const scenes::Scene& scene, const AccuracyStep& step) {

@@ -38,9 +38,10 @@ constexpr double entry_bytes = 8.0;      // column and hits
 // and who was free more often has cast more of them than its part.
 constexpr double joined_copies = 1.0 + 1.0 / 16.0, sent_copies = 1.5;
 // Doubles per patch and column. While the linear system is solved: reflectance, exitance and direct
-// light (3), and on the rank that iterates nine vectors (linear_solve.h), elsewhere the product's
-// two. After it: those three, radiosity, what falls on it, and the four floats that are kept.
-constexpr double light_vectors = 3.0, iteration_vectors = 9.0, filled_vectors = 7.0;
+// light (3), and on the rank that iterates thirteen vectors (linear_solve.h), elsewhere the
+// product's two. After it: those three, radiosity, what falls on it, and the four floats that are
+// kept.
+constexpr double light_vectors = 3.0, iteration_vectors = 13.0, filled_vectors = 7.0;
 // While its error is stated: the solution twice, light and what samples find (surface_samples.h);
 // of a patch those of its samples.
 constexpr double error_vectors = 8.0, error_bytes = 300.0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "raytrace/frame/frame.h"
+#include "raytrace/frame/options.h"
 #include "studies/study.h"
 
 namespace earthshine::studies {

@@ -17,8 +17,21 @@ constexpr double smallest_edge = 0.25, largest_edge = 2.0;  // over that of the 
 }  // namespace
 
 std::string limit_name(Limit limit) {
-  constexpr const char* names[] = {"none", "time", "memory", "settings", "steps", "stopped"};
-  return names[static_cast<std::size_t>(limit)];
+  switch (limit) {
+    case Limit::None:
+      return "none";
+    case Limit::Time:
+      return "time";
+    case Limit::Memory:
+      return "memory";
+    case Limit::Settings:
+      return "settings";
+    case Limit::Steps:
+      return "steps";
+    case Limit::Stopped:
+      return "stopped";
+  }
+  return "";
 }
 
 radiosity::SolveOptions picture_solver(const scenes::Scene& scene, const scenes::Quality& quality,

@@ -47,12 +47,12 @@ TEST(Memory, RanksDivideTheEntriesAndTheFirstAloneIterates) {
   // Of 4 GB an eighth, and while it is dealt out half of that more.
   EXPECT_NEAR(whole - memory_needed(sizes).total(), 4e9 * (1.0625 - 1.5 / 8.0), 0.3e9);
   // So few entries that the linear solve takes most: with 6 columns packed in eights the first has
-  // 3 + 9 + 8 / 6 doubles a patch and column; the others at most the seven after it.
+  // 3 + 13 + 8 / 6 doubles a patch and column; the others at most the seven after it.
   sizes.row_entries = 10.0;
   sizes.columns = 6;
   const double first = memory_needed(sizes).total();
   sizes.first_rank = false;
-  EXPECT_NEAR(first - memory_needed(sizes).total(), 48e6 * (3.0 + 9.0 + 8.0 / 6.0 - 7.0), 1.0);
+  EXPECT_NEAR(first - memory_needed(sizes).total(), 48e6 * (3.0 + 13.0 + 8.0 / 6.0 - 7.0), 1.0);
 }
 
 TEST(Memory, APictureOfManyLayersOutweighsItsSolution) {

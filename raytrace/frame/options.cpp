@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "raytrace/frame/frame.h"
+#include "raytrace/frame/options.h"
 
 namespace earthshine::raytrace {
 
