@@ -56,6 +56,9 @@ struct Material {
   [[nodiscard]] bool lets_light_through() const {
     return base::max_component(transmit) > 0.0 || has_holes();
   }
+  [[nodiscard]] bool reflects() const {  // by a diffuse or glossy lobe
+    return base::max_component(diffuse) > 0.0 || base::max_component(specular) > 0.0;
+  }
   [[nodiscard]] bool passes_light_on() const {  // mirror or glass: rays go on from it
     return base::max_component(mirror) > 0.0 || base::max_component(transmit) > 0.0;
   }

@@ -29,7 +29,7 @@ enum class Stream : std::uint32_t {
   RangeNoise,
   ErrorBudget,
   Residual,
-  GatherStart
+  GatherOrigin
 };
 
 // A 64-bit mix of the key's parts (SplitMix64 finaliser, Steele et al. 2014).

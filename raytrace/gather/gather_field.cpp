@@ -26,7 +26,7 @@ GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
   find_points();
   find_strays();
   lengths_.assign(points_.size(), {});
-  broad_.assign(points_.size(), 0);
+  over_pixel_.assign(points_.size(), 0);
   const std::size_t count = points_.size();
   const auto begin = [&](Gathered kind, std::size_t layers) {
     Estimate& estimate = estimate_[number(kind)];
@@ -62,7 +62,7 @@ void GatherField::cast(Gathered kind, const std::vector<std::uint32_t>& more, st
   estimate.sum.resize(points_.size() * estimate.layers, glm::vec3(0.0F));
   if (kind == Gathered::Solution) {
     cast_solution(more, round, stop);
-    spread(round, stop);
+    classify_origins(round, stop);
   } else {
     cast_paths(kind, more, round, stop);
   }

@@ -4,8 +4,8 @@
 // are estimated at each point, each with as many samples as it needs. Where the pixel shows other
 // surfaces beside the one behind its centre, each of these has a point of its own, a stray
 // (strays.h), which lies on no grid. Where what comes in changes within a pixel, as its rays'
-// lengths tell, they start at several places of the point's surface in the pixel, other ones each
-// time: the point stands for their mean.
+// lengths tell, they start from several places of the point's surface in the pixel's footprint,
+// other ones each time: the point stands for their mean.
 //
 //   solution  mean radiance that cosine-distributed rays read from the radiosity solution, the sky
 //             and what mirrors and glass pass on: T L~ over k_d, L~ what the solution says
@@ -118,15 +118,15 @@ class GatherField {
   [[nodiscard]] std::array<scenes::Hit, scenes::RayPacket::width> look(std::size_t pixel,
                                                                        const Places& x,
                                                                        const Places& y) const;
-  // Tells points apart that need several starts, by the length of all their rays, and casts anew
-  // there as many as they had.
-  void spread(std::uint32_t round, const std::function<bool()>& stop);
-  [[nodiscard]] std::size_t starts_from(std::size_t point) const {
-    return broad_[point] != 0 ? Starts::most : 1;
+  // Finds the points whose rays must start all over their pixel, by the length of all their rays,
+  // and casts anew there as many as they had.
+  void classify_origins(std::uint32_t round, const std::function<bool()>& stop);
+  [[nodiscard]] std::size_t origins_at(std::size_t point) const {
+    return over_pixel_[point] != 0 ? RayOrigins::most : 1;
   }
   // Where the rays of a point start, other places for each `turn`.
-  [[nodiscard]] Starts starts_of(Gathered kind, std::size_t point, std::uint32_t turn,
-                                 RayCounts& counts) const;
+  [[nodiscard]] RayOrigins draw_origins(Gathered kind, std::size_t point, std::uint32_t turn,
+                                        RayCounts& counts) const;
   // All points of a tile, pixel by pixel.
   [[nodiscard]] std::vector<std::size_t> points_of_tile(std::size_t tile) const;
   // Tells each point's random numbers apart, whatever the crop.
@@ -152,7 +152,7 @@ class GatherField {
   std::vector<std::uint32_t> first_stray_;  // of a pixel, and behind its last
   std::vector<Vec3> origin_;                // lifted off the surface
   std::vector<RayLengths> lengths_;         // of the rays that read the solution
-  std::vector<std::uint8_t> broad_;         // per point, 1: several starts
+  std::vector<std::uint8_t> over_pixel_;    // per point, 1: rays start all over its pixel
   std::array<Estimate, gathered_kinds> estimate_;
   std::array<Shared, gathered_kinds> shared_;
   std::vector<glm::vec3> diffuse_;  // point * layers

@@ -34,12 +34,12 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
                       random_number_of(p))
                 .with(2 * std::uint64_t{round} + half);
         const base::SobolOwen4 directions(key);
-        const Starts starts = starts_of(kind, p, 2 * round + half, counts);
+        const RayOrigins origins = draw_origins(kind, p, 2 * round + half, counts);
         for (std::uint32_t k = 0; k < each; ++k) {
           base::Rng rng(key.with(k));
           const auto u = directions.point2(k);
-          const Vec3 &origin = starts.origin[k % starts.count],
-                     &normal = starts.normal[k % starts.count];
+          const Vec3 &origin = origins.origin[k % origins.count],
+                     &normal = origins.normal[k % origins.count];
           if (lobe) {
             lobe_sample(point.material, origin, normal, u, walker, rng, sum, counts);
             continue;

@@ -63,7 +63,7 @@ void GatherRays::make(const TilePoints& points, std::size_t first, std::size_t o
                       std::array<float, width>& cosine) {
   const float* u = &samples.u[j * samples.padded + offset];
   const float* v = &samples.v[j * samples.padded + offset];
-  const TilePoints::Start& from = points.start_of(j);
+  const TilePoints::OriginSet& from = points.set_of(j);
   for (std::size_t k = 0; k < width; ++k) {
     // Nobody reads the hits of lanes past the last point.
     const std::size_t p = first + offset + k;

@@ -19,7 +19,7 @@ inline constexpr std::size_t most_tile_points =
     static_cast<std::size_t>(gather_tile_px) * gather_tile_px;
 
 // Where a point's rays start: one place behind its pixel's centre, or several of its pixel.
-struct Starts {
+struct RayOrigins {
   static constexpr std::size_t most = scenes::RayPacket::width;
   std::size_t count = 0;
   std::array<Vec3, most> origin, normal;  // lifted off the surface; unit
@@ -45,9 +45,9 @@ struct RayLengths {
   }
 };
 
-// The points of one tile, side by side for the vector units; each has as many starts.
+// The points of one tile, side by side for the vector units; each has as many ray origins.
 struct TilePoints {
-  struct Start {
+  struct OriginSet {
     std::array<Vec3, most_tile_points> origin, normal;
     alignas(32) float origin_x[most_tile_points], origin_y[most_tile_points],
         origin_z[most_tile_points];
@@ -60,17 +60,17 @@ struct TilePoints {
   };
   std::array<std::size_t, most_tile_points> index;
   std::array<std::uint64_t, most_tile_points> pixel;
-  std::vector<Start> start;
+  std::vector<OriginSet> sets;
   std::size_t count = 0;
 
-  explicit TilePoints(std::size_t starts) : start(starts) {}
-  // Fewer starts than there is room for come again.
-  void add(std::size_t at, std::uint64_t of_pixel, const Starts& of_point, const Vec3& centre) {
+  explicit TilePoints(std::size_t origins) : sets(origins) {}
+  // Fewer origins than there are sets come again.
+  void add(std::size_t at, std::uint64_t of_pixel, const RayOrigins& of_point, const Vec3& centre) {
     const std::size_t k = count++;
     index[k] = at;
     pixel[k] = of_pixel;
-    for (std::size_t s = 0; s < start.size(); ++s) {
-      Start& to = start[s];
+    for (std::size_t s = 0; s < sets.size(); ++s) {
+      OriginSet& to = sets[s];
       const Vec3 &lifted = of_point.origin[s % of_point.count],
                  &up = of_point.normal[s % of_point.count];
       const base::Frame3 frame = base::frame_around(up);
@@ -84,8 +84,8 @@ struct TilePoints {
     }
   }
   // Of ray j: rays of a row and of a column of the hemisphere's cells start at all places in turn.
-  [[nodiscard]] const Start& start_of(std::size_t j) const {
-    return start[(j + j / Starts::most) % start.size()];
+  [[nodiscard]] const OriginSet& set_of(std::size_t j) const {
+    return sets[(j + j / RayOrigins::most) % sets.size()];
   }
 };
 

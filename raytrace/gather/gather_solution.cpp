@@ -75,7 +75,7 @@ class SolutionRays {
     const auto found = static_cast<double>(rays_.rays());
     for (std::size_t j = 0; j < count; ++j) {
       const double choice = rng.next(), x = rng.next(), y = rng.next();
-      const TilePoints::Start& from = points_.start_of(j);
+      const TilePoints::OriginSet& from = points_.set_of(j);
       const auto aimed = incoming_.aim(from.origin[k], from.normal[k], choice, x, y, found,
                                        static_cast<double>(count));
       if (aimed.weight <= 0.0) continue;
@@ -110,12 +110,12 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
     std::vector<RayCounts> counts(tile_count(window_));
     const auto cast_tile = [&](std::size_t t) {
       if (stop && stop()) return;
-      const auto cast = [&](std::span<const std::size_t> some, std::size_t starts) {
+      const auto cast = [&](std::span<const std::size_t> some, std::size_t origins) {
         for (std::uint32_t half = 0; half < 2; ++half) {
-          TilePoints points(starts);
+          TilePoints points(origins);
           for (const std::size_t p : some) {
             points.add(p, random_number_of(p),
-                       starts_of(Gathered::Solution, p, 2 * round + half, counts[t]),
+                       draw_origins(Gathered::Solution, p, 2 * round + half, counts[t]),
                        world_.query.centre());
           }
           SolutionRays found(world_.query, incoming_, rays, layers_, points);
@@ -133,14 +133,14 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
           counts[t] += found.counts;
         }
       };
-      for (const std::size_t starts : {std::size_t{1}, Starts::most}) {
+      for (const std::size_t origins : {std::size_t{1}, RayOrigins::most}) {
         std::vector<std::size_t> some;
         for (const std::size_t p : points_of_tile(t)) {
-          if (rays_for(p) == of_class && starts_from(p) == starts) some.push_back(p);
+          if (rays_for(p) == of_class && origins_at(p) == origins) some.push_back(p);
         }
         for (std::size_t first = 0; first < some.size(); first += most_tile_points) {
           cast(std::span(some).subspan(first, std::min(most_tile_points, some.size() - first)),
-               starts);
+               origins);
         }
       }
     };

@@ -59,10 +59,7 @@ class PathWalker {
     bool shines;    // reflects and emits: false inside glass
     Rgb diffuse;    // k_d there
     std::uint32_t triangle;
-    [[nodiscard]] bool reflects() const {
-      return shines && (base::max_component(material.diffuse) > 0.0 ||
-                        base::max_component(material.specular) > 0.0);
-    }
+    [[nodiscard]] bool reflects() const { return shines && material.reflects(); }
   };
 
   void begin(const Ray& start, base::Rng& rng);

@@ -65,8 +65,7 @@ void PixelShader::add_sample(std::size_t sample, const Ray& ray, const scenes::H
   if (!hit.missed()) {
     const auto& material = shared_.scene.materials[shared_.scene.triangles[hit.triangle].material];
     const bool shines = hit.front || material.two_sided;
-    const bool reflects = shines && (lit(material.diffuse) || lit(material.specular));
-    if (reflects || material.passes_light_on()) source_.reflecting += 1.0;
+    if ((shines && material.reflects()) || material.passes_light_on()) source_.reflecting += 1.0;
   }
   shade(ray, hit, Rgb(1.0), 0, Seen::ByCamera);
   source_.add(source_of_sample_);
@@ -164,7 +163,7 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
                depth);
   }
   if (shines) {
-    if (lit(material.diffuse) || lit(material.specular)) direct(surface, weight, depth);
+    if (material.reflects()) direct(surface, weight, depth);
     if (lit(material.diffuse)) {
       if (shared_.groups.ambient != no_group) {
         add(shared_.layer[shared_.groups.ambient], sample_,

@@ -67,9 +67,9 @@ std::vector<TilePoints> tiles() {
           const scenes::Hit hit = s.bay.query.closest(ray.origin, ray.direction);
           raytrace::GatherRequest at;
           if (hit.missed() || !surface(hit, at)) continue;
-          raytrace::Starts starts;
-          starts.add(at.position + at.normal * s.bay.query.surface_offset_m(), at.normal);
-          tile.add(tile.count, static_cast<std::uint64_t>(y * edge_px + x), starts,
+          raytrace::RayOrigins origins;
+          origins.add(at.position + at.normal * s.bay.query.surface_offset_m(), at.normal);
+          tile.add(tile.count, static_cast<std::uint64_t>(y * edge_px + x), origins,
                    s.bay.query.centre());
         }
       }

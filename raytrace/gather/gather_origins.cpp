@@ -12,8 +12,8 @@ namespace {
 // Of its mean ray's length: how far about a point what comes in is much the same.
 constexpr float alike_share = 0.1F;
 
-// How far the corners of a point's pixel are from it, along the surface.
-float half_pixel(const GatherPoint& point) {
+// How far the corners of a pixel's footprint on the surface are from its point.
+float footprint_radius(const GatherPoint& point) {
   constexpr float half_diagonal = 0.7072F;
   const float distance = glm::length(point.position);
   const float cosine =
@@ -23,18 +23,18 @@ float half_pixel(const GatherPoint& point) {
 
 }  // namespace
 
-void GatherField::spread(std::uint32_t round, const std::function<bool()>& stop) {
+void GatherField::classify_origins(std::uint32_t round, const std::function<bool()>& stop) {
   Estimate& estimate = estimate_[number(Gathered::Solution)];
   std::vector<std::uint32_t> anew(points_.size(), 0U);
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const GatherPoint& point = points_[p];
-    if (broad_[p] != 0 || estimate.samples[p] <= 0.0F) continue;
-    // Where no ray met a surface, none has told how near what few would meet is.
+    if (over_pixel_[p] != 0 || estimate.samples[p] <= 0.0F) continue;
+    // No ray has met a surface: what small things others will meet may be near.
     const bool met = lengths_[p].count > 0.0;
     const double reach_m =
         std::min(lengths_[p].harmonic_mean(), lengths_[p].harmonic_mean_of_light());
-    if (met && half_pixel(point) <= alike_share * float(reach_m)) continue;
-    broad_[p] = 1U;
+    if (met && footprint_radius(point) <= alike_share * float(reach_m)) continue;
+    over_pixel_[p] = 1U;
     anew[p] = static_cast<std::uint32_t>(estimate.samples[p]);
     lengths_[p] = {};
     estimate.clear(p);
@@ -42,30 +42,30 @@ void GatherField::spread(std::uint32_t round, const std::function<bool()>& stop)
   cast_solution(anew, round, stop);
 }
 
-Starts GatherField::starts_of(Gathered kind, std::size_t p, std::uint32_t turn,
-                              RayCounts& counts) const {
-  Starts starts;
-  if (starts_from(p) > 1) {
-    const base::Key key = base::Key(setting_.seed, base::Stream::GatherStart, random_number_of(p))
+RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t turn,
+                                     RayCounts& counts) const {
+  RayOrigins origins;
+  if (origins_at(p) > 1) {
+    const base::Key key = base::Key(setting_.seed, base::Stream::GatherOrigin, random_number_of(p))
                               .with(number(kind))
                               .with(turn);
     const base::SobolOwen4 places(key);
     Places x, y;
-    for (std::uint32_t k = 0; k < Starts::most; ++k) {
+    for (std::uint32_t k = 0; k < RayOrigins::most; ++k) {
       const auto u = places.point2(k);
       x[k] = double(u[0]), y[k] = double(u[1]);
     }
-    counts.camera += Starts::most;
+    counts.camera += RayOrigins::most;
     for (const scenes::Hit& hit : look(pixel_of(p), x, y)) {
       GatherPoint found;
       Vec3 origin;
       if (!place(hit, found, origin)) continue;
       if (!stands_for(points_[p], found.position, found.normal)) continue;
-      starts.add(origin, Vec3(found.normal));
+      origins.add(origin, Vec3(found.normal));
     }
   }
-  if (starts.count == 0) starts.add(origin_[p], Vec3(points_[p].normal));
-  return starts;
+  if (origins.count == 0) origins.add(origin_[p], Vec3(points_[p].normal));
+  return origins;
 }
 
 std::size_t GatherField::find(int x, int y, const glm::vec3& position,
@@ -74,9 +74,9 @@ std::size_t GatherField::find(int x, int y, const glm::vec3& position,
   // its pixel: if it stands for the mean over the pixel, all of the pixel has to read it.
   const auto if_near = [&](std::size_t index) {
     const GatherPoint& point = points_[index];
-    const float half = half_pixel(point);
-    const float own = index >= grid_ && starts_from(index) > 1 ? 2.0F * half : half;
-    const float most = std::max(own, std::min(6.0F * half, alike_share * point.reach_m));
+    const float radius = footprint_radius(point);
+    const float own = index >= grid_ && origins_at(index) > 1 ? 2.0F * radius : radius;
+    const float most = std::max(own, std::min(6.0F * radius, alike_share * point.reach_m));
     return glm::length(position - point.position) <= most ? index : no_point;
   };
   if (!window_.contains(x, y)) return no_point;
