@@ -25,8 +25,7 @@ void add_errors(base::ExrHeader& header, const Drawn& drawn);
 [[nodiscard]] std::string error_text(const Drawn& drawn, std::optional<double> wanted);
 [[nodiscard]] std::string error_text(const Solved& light, std::optional<double> wanted);
 
-// Throws StoppedShort where the call wants an error that a limit has kept it from. Settings that
-// are given beside the error win over it, as the scene format has it: that is no limit.
+// Throws StoppedShort where the call wants an error that a limit has kept it from.
 void check_reached(const SceneInput& call, studies::Limit limit, double wanted);
 
 }  // namespace earthshine::app

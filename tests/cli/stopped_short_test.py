@@ -44,10 +44,13 @@ class StoppedShort(program.Case):
         self.done("render", "ball.toml", "-o", "a.exr", "--size", "24x24", "--time-limit", "0.3")  # wants no error
         self.done("render", "ball.toml", "-o", "a.exr", "--size", "24x24", "--set", "quality.error=0.02", "--no-error")
 
-    def test_a_scene_alone_and_settings_that_win_change_nothing(self):
+    def test_a_scene_alone_changes_nothing(self):
         self.done("solve", "fine.toml", *LITTLE)
-        self.done("solve", "ball.toml", "--error", "0.0001", "--set", "quality.patch_edge=1", "--set",
-                  "quality.form_factor_rays=16")
+
+    def test_settings_that_win_over_the_error_are_named(self):
+        knobs = ("--set", "quality.patch_edge=1", "--set", "quality.form_factor_rays=16")
+        self.says(self.short("solve", "ball.toml", "--error", "0.0001", *knobs)[1], "quality.patch_edge", "form_factor_rays")
+        self.done("solve", "fine.toml", *knobs)
 
     def test_help_says_it(self):
         for call in ([], ["render"], ["study", "run"]):

@@ -12,7 +12,7 @@
 namespace earthshine::degrade {
 namespace {
 
-constexpr int columns = 41, rows = 31;
+constexpr int field_columns = 41, field_rows = 31;
 constexpr std::size_t pixels = 41 * 31, centre = 15 * 41 + 20;
 
 // A square of `edge` resels in the middle of the picture.
@@ -20,14 +20,14 @@ Plane square(int edge, float inside, float outside) {
   Plane plane(pixels, outside);
   for (int y = 15 - edge / 2; y <= 15 + edge / 2; ++y) {
     for (int x = 20 - edge / 2; x <= 20 + edge / 2; ++x) {
-      plane[static_cast<std::size_t>(y * columns + x)] = inside;
+      plane[static_cast<std::size_t>(y * field_columns + x)] = inside;
     }
   }
   return plane;
 }
 
 Covariance white_noise(double sigma) {
-  return white(columns, rows, Plane(pixels, static_cast<float>(sigma * sigma)));
+  return white(field_columns, field_rows, Plane(pixels, static_cast<float>(sigma * sigma)));
 }
 
 // V43: k = Delta sqrt(N_eff) / sigma, 1 / N_eff = 1 / 25 + 1 / 96 for 5 x 5 within 11 x 11.
@@ -57,8 +57,8 @@ TEST(Detection, SnrOfTwoPointEightIsSeenHalfTheTime) {
 // white noise of the same variance at each resel the means of boxes are noisier.
 TEST(Detection, GrainLowersItAsItsAutocorrelationSays) {
   for (const double blur : {0.35, 1.0}) {
-    const Covariance grain =
-        filtered(white_noise(0.1), gaussian_blur(columns, blur), gaussian_blur(rows, blur));
+    const Covariance grain = filtered(white_noise(0.1), gaussian_blur(field_columns, blur),
+                                      gaussian_blur(field_rows, blur));
     const double two_t = 2.0 * blur * blur;
     const auto covariance = [&](int m, int n) {
       double sum = 0.0;
@@ -76,8 +76,8 @@ TEST(Detection, GrainLowersItAsItsAutocorrelationSays) {
     const double k = static_cast<double>(detection(mean, grain).snr[centre]);
     EXPECT_NEAR(k, 0.03 / std::sqrt(variance), 2e-4 * k) << blur;
     const Plane alike(pixels, grain.variance()[centre]);
-    EXPECT_LT(k,
-              0.95 * static_cast<double>(detection(mean, white(columns, rows, alike)).snr[centre]));
+    EXPECT_LT(k, 0.95 * static_cast<double>(
+                            detection(mean, white(field_columns, field_rows, alike)).snr[centre]));
   }
 }
 
@@ -85,28 +85,29 @@ TEST(Detection, GrainLowersItAsItsAutocorrelationSays) {
 // four times sqrt(2 / N M) for M places far apart, corners among them.
 TEST(Detection, DrawnGrainHasThePredictedNoise) {
   constexpr int frames = 400;
-  const AxisMap along = gaussian_blur(columns, 0.8), across = gaussian_blur(rows, 0.5);
+  const AxisMap along = gaussian_blur(field_columns, 0.8), across = gaussian_blur(field_rows, 0.5);
   const Detection predicted =
       detection(Plane(pixels, 0.0F), filtered(white_noise(0.1), along, across), {3, 2.8});
   const NoiseLaw law{0.01, 0.0, 0.0, false};
   double sum = 0.0, count = 0.0;
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
     const Plane seen =
-        apply(add_read_noise(test::flat(columns, rows, 0.0F), law, {9, frame, 0}), along, across)
+        apply(add_read_noise(test::flat(field_columns, field_rows, 0.0F), law, {9, frame, 0}),
+              along, across)
             .planes.front();
     for (const int y : {0, 15, 30}) {
       for (const int x : {0, 20, 40}) {
         double inside = 0.0, around = 0.0, n_inside = 0.0, n_around = 0.0;
-        for (int v = std::max(0, y - 3); v <= std::min(rows - 1, y + 3); ++v) {
-          for (int u = std::max(0, x - 3); u <= std::min(columns - 1, x + 3); ++u) {
+        for (int v = std::max(0, y - 3); v <= std::min(field_rows - 1, y + 3); ++v) {
+          for (int u = std::max(0, x - 3); u <= std::min(field_columns - 1, x + 3); ++u) {
             const bool target = std::abs(u - x) <= 1 && std::abs(v - y) <= 1;
             (target ? inside : around) +=
-                static_cast<double>(seen[static_cast<std::size_t>(v * columns + u)]);
+                static_cast<double>(seen[static_cast<std::size_t>(v * field_columns + u)]);
             (target ? n_inside : n_around) += 1.0;
           }
         }
         const double sigma =
-            static_cast<double>(predicted.noise[static_cast<std::size_t>(y * columns + x)]);
+            static_cast<double>(predicted.noise[static_cast<std::size_t>(y * field_columns + x)]);
         const double z = (inside / n_inside - around / n_around) / sigma;
         sum += z * z;
         count += 1.0;

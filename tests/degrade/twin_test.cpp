@@ -12,7 +12,7 @@
 namespace earthshine::degrade {
 namespace {
 
-constexpr int frames = 400;
+constexpr int frame_count = 400;
 
 // 64 x 48 resels: ramps, an edge, a bright bar, deep shadow.
 base::Image scene() {
@@ -56,9 +56,9 @@ struct Sampled {
       squares[i] += static_cast<double>(values[i]) * static_cast<double>(values[i]);
     }
   }
-  [[nodiscard]] double mean(std::size_t i) const { return sum[i] / frames; }
+  [[nodiscard]] double mean(std::size_t i) const { return sum[i] / frame_count; }
   [[nodiscard]] double variance(std::size_t i) const {
-    return (squares[i] - sum[i] * mean(i)) / (frames - 1);
+    return (squares[i] - sum[i] * mean(i)) / (frame_count - 1);
   }
 };
 
@@ -69,7 +69,7 @@ struct Both {
 Both sample(const CctvCamera& camera, const Monitor& monitor) {
   Both both;
   Options options;
-  for (int frame = 0; frame < frames; ++frame) {
+  for (int frame = 0; frame < frame_count; ++frame) {
     options.frame = static_cast<std::uint64_t>(frame);
     const Result result = degrade(scene(), camera, monitor, options);
     both.signal.add(result.signal.channels[0].values);
@@ -78,10 +78,11 @@ Both sample(const CctvCamera& camera, const Monitor& monitor) {
   return both;
 }
 
-// z of a mean is (mean - stated) / sqrt(stated variance / frames); z of a variance is (s^2 / stated
-// - 1) / sqrt((kurtosis - 1) / frames), sqrt(2 / frames) where the noise is Gaussian. Over all
-// pixels the mean of z^2 must be 1. Neighbours correlate, over some `grain` pixels each, so the
-// mean of z^2 over M pixels has the standard error sqrt(2 grain / M).
+// z of a mean is (mean - stated) / sqrt(stated variance / frame_count); z of a variance is (s^2 /
+// stated
+// - 1) / sqrt((kurtosis - 1) / frame_count), sqrt(2 / frame_count) where the noise is Gaussian.
+// Over all pixels the mean of z^2 must be 1. Neighbours correlate, over some `grain` pixels each,
+// so the mean of z^2 over M pixels has the standard error sqrt(2 grain / M).
 struct Pull {
   double mean2 = 0.0, variance2 = 0.0, bias = 0.0, ratio = 0.0;
   std::size_t pixels = 0;
@@ -93,8 +94,8 @@ Pull pull(const Sampled& seen, const Plane& mean, const Plane& variance, Skip sk
   for (std::size_t i = 0; i < mean.size(); ++i) {
     const double v = static_cast<double>(variance[i]);
     if (skip(i) || !(v > 0.0)) continue;
-    const double z = (seen.mean(i) - static_cast<double>(mean[i])) / std::sqrt(v / frames);
-    const double w = (seen.variance(i) / v - 1.0) / std::sqrt(2.0 / frames);
+    const double z = (seen.mean(i) - static_cast<double>(mean[i])) / std::sqrt(v / frame_count);
+    const double w = (seen.variance(i) / v - 1.0) / std::sqrt(2.0 / frame_count);
     p.mean2 += z * z;
     p.bias += z;
     p.variance2 += w * w;
@@ -114,7 +115,7 @@ void expect_honest(const Pull& p, double grain, const std::string& what) {
   EXPECT_GT(p.pixels, 1000U) << what;
   EXPECT_NEAR(p.mean2, 1.0, 4.0 * std::sqrt(2.0 / n)) << what;
   EXPECT_NEAR(p.bias, 0.0, 4.0 / std::sqrt(n)) << what;
-  EXPECT_NEAR(p.ratio, 1.0, 4.0 * std::sqrt(2.0 / frames / n)) << what;
+  EXPECT_NEAR(p.ratio, 1.0, 4.0 * std::sqrt(2.0 / frame_count / n)) << what;
 }
 
 constexpr auto nowhere = [](std::size_t) { return false; };
@@ -192,7 +193,7 @@ TEST(Twin, MomentsBehindClampsGammaAndQuantisationAreThoseOfTheNoisyPictures) {
                          [&](std::size_t i) { return stated.variance.planes[0][i] < 1e-6F; });
   EXPECT_NEAR(line.mean2, 1.0, 4.0 * std::sqrt(2.0 * 4.0 / static_cast<double>(line.pixels)));
   EXPECT_NEAR(line.ratio, 1.0,
-              4.0 * std::sqrt(2.0 / frames * 4.0 / static_cast<double>(line.pixels)));
+              4.0 * std::sqrt(2.0 / frame_count * 4.0 / static_cast<double>(line.pixels)));
 }
 
 TEST(Twin, IsTheChainWithoutNoiseBitForBit) {

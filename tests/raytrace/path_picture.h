@@ -43,11 +43,11 @@ inline PathOptions pixels(int edge, int paths) {
 }
 
 // Mean of green and its standard error, from the picture's own variance (grey scenes: Y = G).
-struct Estimate {
+struct PictureMean {
   double mean = 0.0, std_error = 0.0;
 };
-inline Estimate estimate(const Frame& frame) {
-  Estimate e;
+inline PictureMean estimate(const Frame& frame) {
+  PictureMean e;
   double variance = 0.0;
   for (const float v : frame.image.find("G")->values) e.mean += double(v);
   for (const float v : frame.image.find("variance")->values) variance += double(v);
@@ -59,7 +59,7 @@ inline Estimate estimate(const Frame& frame) {
 
 // Within four standard errors, plus the rounding of float pixels.
 inline void expect_mean(const Frame& frame, double exact) {
-  const Estimate e = estimate(frame);
+  const PictureMean e = estimate(frame);
   EXPECT_NEAR(e.mean, exact, 4.0 * e.std_error + 1e-6 * exact) << "+- " << e.std_error;
 }
 

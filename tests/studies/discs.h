@@ -78,6 +78,12 @@ inline DiscPicture discs_on(double ground, const std::vector<Disc>& discs, int c
   return picture;
 }
 
+// A disc of 60 on a ground of 40 cd/m^2, white at 100: S = 0.6 and 0.4.
+inline constexpr int disc_edge = 120;
+inline DiscPicture bright_disc(double radius = 20.0) {
+  return discs_on(40.0, {{60.0, 60.0, radius, 60.0}}, disc_edge, disc_edge);
+}
+
 // A linear camera without faults and with a fixed iris, white at `white_luminance`, on a linear
 // monitor of one pixel per resel that spreads nothing in a dark room: black 0, white 100 cd/m^2.
 inline degrade::Setup plain_cctv(int columns, int rows, double white_luminance) {

@@ -13,13 +13,12 @@ namespace earthshine::degrade {
 namespace {
 
 using test::flat;
-using test::Moments;
 using test::moments;
 
 constexpr int edge = 500;
 constexpr double count = 250'000.0;
 
-Moments noisy(const NoiseLaw& law, float signal, const NoiseKey& key = {}) {
+test::Moments noisy(const NoiseLaw& law, float signal, const NoiseKey& key = {}) {
   const Picture in = flat(edge, edge, signal);
   return moments(add_read_noise(add_signal_noise(in, law, key), law, key).planes[0]);
 }
@@ -76,12 +75,12 @@ TEST(Noise, ReportModeIsProportionalToTheSignalAndLeavesBlackAlone) {
   camera.snr_db = 20.0;
   const NoiseLaw law = noise_law(camera);
   for (const float s : {0.01F, 0.05F, 0.1F, 0.2F, 0.4F, 0.6F, 0.8F, 1.0F}) {
-    const Moments m = noisy(law, s);
+    const test::Moments m = noisy(law, s);
     const double variance = 0.01 * static_cast<double>(s) * static_cast<double>(s);
     EXPECT_NEAR(m.mean, s, 4.0 * std::sqrt(variance / count)) << s;
     EXPECT_NEAR(m.variance, variance, 4.0 * variance * std::sqrt(2.0 / count)) << s;
   }
-  const Moments black = noisy(law, 0.0F);
+  const test::Moments black = noisy(law, 0.0F);
   EXPECT_EQ(black.mean, 0.0);
   EXPECT_EQ(black.variance, 0.0);
 }
@@ -90,7 +89,7 @@ TEST(Noise, VarianceFollowsTheLawAtEveryLevel) {
   const NoiseLaw law{1e-4, 4e-4, 2.5e-3, false};
   for (const float s : {0.0F, 0.02F, 0.1F, 0.3F, 0.5F, 0.7F, 1.0F, 4.0F}) {
     const double variance = law.variance(static_cast<double>(s));
-    const Moments m = noisy(law, s);
+    const test::Moments m = noisy(law, s);
     // The Poisson part b * Poisson(s / b) has the fourth cumulant b^3 s.
     const double k4 = std::pow(law.b, 3.0) * static_cast<double>(s);
     EXPECT_NEAR(m.mean, s, 4.0 * std::sqrt(variance / count)) << s;
@@ -104,7 +103,7 @@ TEST(Noise, VarianceFollowsTheLawAtEveryLevel) {
 TEST(Noise, ShotNoiseHasVarianceAndThirdMomentEqualToItsMean) {
   for (const double n : {0.1, 1.0, 10.0, 63.0, 64.5, 100.0, 1e5}) {
     // Signals in electrons: b = 1.
-    const Moments m = noisy({0.0, 1.0, 0.0, false}, static_cast<float>(n));
+    const test::Moments m = noisy({0.0, 1.0, 0.0, false}, static_cast<float>(n));
     EXPECT_NEAR(m.mean, n, 4.0 * std::sqrt(n / count)) << n;
     EXPECT_NEAR(m.variance, n, 4.0 * std::sqrt((n + 2.0 * n * n) / count)) << n;
     EXPECT_NEAR(m.third, n, 4.0 * std::sqrt((n + 18.0 * n * n + 6.0 * n * n * n) / count)) << n;
@@ -120,7 +119,7 @@ TEST(Noise, DarkCountsHaveTheVarianceOfTheirMean) {
     camera.electrons_at_white = 1.0;  // signals in electrons
     camera.dark_electrons = 3.0 * t;
     const double n = 3.0 * t;
-    const Moments m = noisy(noise_law(camera), 0.0F);
+    const test::Moments m = noisy(noise_law(camera), 0.0F);
     EXPECT_NEAR(m.mean, 0.0, 4.0 * std::sqrt(n / count)) << t;
     EXPECT_NEAR(m.variance, n, 4.0 * std::sqrt((n + 2.0 * n * n) / count)) << t;
     EXPECT_NEAR(noise_law(camera).at_black(), n, 1e-12) << t;
@@ -134,7 +133,7 @@ TEST(Noise, ExcessNoiseMultipliesTheVarianceOfAllCounts) {
   camera.electrons_at_white = 1000.0;
   camera.dark_electrons = 50.0;
   camera.excess_noise = 1.6;
-  const Moments m = noisy(noise_law(camera), 0.2F);
+  const test::Moments m = noisy(noise_law(camera), 0.2F);
   const double v = 1.6 * (200.0 + 50.0) / 1e6;
   EXPECT_NEAR(m.mean, 0.2, 4.0 * std::sqrt(v / count));
   EXPECT_NEAR(m.variance / v, 1.0, 4.0 * std::sqrt(2.1 / count));
@@ -149,7 +148,7 @@ TEST(Noise, PatternsHaveMeanOneAndTheirSpread) {
   camera.prnu_percent = 2.0;
   camera.dsnu_percent = 0.5;
   const NoiseLaw law = noise_law(camera);
-  const Moments light = noisy(law, 0.5F);
+  const test::Moments light = noisy(law, 0.5F);
   const double v = 0.01 * 0.01 + 0.005 * 0.005;  // 2 % of 0.5, and 0.5 % of white
   EXPECT_NEAR(light.mean, 0.5, 4.0 * std::sqrt(v / count));
   EXPECT_NEAR(light.variance / v, 1.0, 4.0 * std::sqrt(2.0 / count));
@@ -180,7 +179,7 @@ TEST(Noise, PoissonCountsHaveTheirProbabilities) {
 // Skewness and excess kurtosis of a Gaussian are 0 with standard errors sqrt(6 / M) and sqrt(24 /
 // M).
 TEST(Noise, AmplifierNoiseIsGaussian) {
-  const Moments m = noisy({0.04, 0.0, 0.0, false}, 0.5F);
+  const test::Moments m = noisy({0.04, 0.0, 0.0, false}, 0.5F);
   EXPECT_NEAR(m.third / std::pow(m.variance, 1.5), 0.0, 4.0 * std::sqrt(6.0 / count));
   EXPECT_NEAR(m.fourth / (m.variance * m.variance) - 3.0, 0.0, 4.0 * std::sqrt(24.0 / count));
 }

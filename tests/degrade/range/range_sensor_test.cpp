@@ -47,11 +47,11 @@ View sphere(int width, int height, double radius_m, double albedo = 0.5) {
   return view;
 }
 
-struct Moments {
+struct RangeMoments {
   double mean = 0.0, deviation = 0.0, count = 0.0;
 };
-Moments errors(const RangeView& sensed, double exact) {
-  Moments m;
+RangeMoments errors(const RangeView& sensed, double exact) {
+  RangeMoments m;
   double squares = 0.0;
   for (std::size_t i = 0; i < sensed.image.pixel_count(); ++i) {
     if (sensed.image.find("valid")->values[i] == 0.0F) continue;
@@ -81,7 +81,7 @@ TEST(RangeSensor, NoiseHasMeanZeroAndTheStatedDeviation) {
   sensor.noise_m_per_m2 = 0.0003;
   for (const double range : {0.5, 2.0, 16.0}) {
     const RangeView sensed = sense_range(sphere(200, 200, range).image, Vec3(0.0), sensor);
-    const Moments m = errors(sensed, static_cast<double>(static_cast<float>(range)));
+    const RangeMoments m = errors(sensed, static_cast<double>(static_cast<float>(range)));
     const double sigma = 0.002 + 0.0005 * range + 0.0003 * range * range;
     EXPECT_EQ(m.count, 40000.0);
     EXPECT_LT(std::abs(m.mean), 4.0 * sigma / std::sqrt(m.count)) << range;

@@ -13,7 +13,7 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr int rays = 64;
+constexpr int run_rays = 64;
 
 // Side by side in the plane z = 0, squares of these sides.
 scenes::Scene plates(const std::vector<double>& sides) {
@@ -38,7 +38,7 @@ FormFactors cast(const scenes::Scene& scene, const Patches& patches, int each, b
 TEST(ObjectRuns, EveryObjectIsKnownByTheRaysOf64Patches) {
   // Cut at 1 m: 1, 4, 36, 64 and 100 patches. 64 / 36 is rounded up to a power of two.
   const scenes::Scene scene = plates({1, 2, 6, 8, 10});
-  EXPECT_EQ(object_runs(scene, subdivide(scene, 1.0), rays),
+  EXPECT_EQ(object_runs(scene, subdivide(scene, 1.0), run_rays),
             (std::vector<std::uint32_t>{64, 16, 2, 1, 1}));
 }
 
@@ -57,7 +57,7 @@ TEST(ObjectRuns, ManySmallObjectsShareABoundedCost) {
   for (const auto& [objects, wanted] : std::vector<std::pair<std::size_t, std::uint32_t>>{
            {32, 64}, {33, 32}, {2048, 2}, {10000, 1}}) {
     const scenes::Scene scene = plates(std::vector<double>(objects, 1.0));
-    const std::vector<std::uint32_t> runs = object_runs(scene, subdivide(scene, 1.0), rays);
+    const std::vector<std::uint32_t> runs = object_runs(scene, subdivide(scene, 1.0), run_rays);
     for (const std::uint32_t of_object : runs) EXPECT_EQ(of_object, wanted) << objects;
   }
 }
@@ -75,8 +75,8 @@ TEST(ObjectRuns, ARowOfManyRunsIsTheRowOfAsManyRaysAPatch) {
   // Runs go on in the sequence: 64 of them are the first 64 * 64 points of it, to the last hit.
   const scenes::Scene scene = room_with_gauge();
   const Patches patches = subdivide(scene, 0.25);
-  const FormFactors runs = cast(scene, patches, rays, true);
-  const FormFactors alone = cast(scene, patches, 64 * rays, false);
+  const FormFactors runs = cast(scene, patches, run_rays, true);
+  const FormFactors alone = cast(scene, patches, 64 * run_rays, false);
   const std::size_t gauge = patches.count() - 1;
   const auto row = [gauge](const FormFactors& f) {
     return std::vector<float>(f.hits.begin() + std::ptrdiff_t(f.row_start[gauge]),
@@ -85,14 +85,14 @@ TEST(ObjectRuns, ARowOfManyRunsIsTheRowOfAsManyRaysAPatch) {
   EXPECT_EQ(row(runs), row(alone));
   EXPECT_EQ(runs.row_scale[gauge], alone.row_scale[gauge]);
   // Walls of 16 patches send 4 runs.
-  EXPECT_EQ(runs.ray_count, std::uint64_t{rays} * (6 * 16 * 4 + 64));
-  EXPECT_EQ(runs.rays_per_patch, rays);
+  EXPECT_EQ(runs.ray_count, std::uint64_t{run_rays} * (6 * 16 * 4 + 64));
+  EXPECT_EQ(runs.rays_per_patch, run_rays);
 }
 
 TEST(ObjectRuns, RowsOfUnlikeNumbersOfRaysCloseAndBalance) {
   const scenes::Scene scene = room_with_gauge();
   const Patches patches = subdivide(scene, 0.2);
-  FormFactors f = cast(scene, patches, rays, true);
+  FormFactors f = cast(scene, patches, run_rays, true);
   for (std::size_t i = 0; i < f.count(); ++i) {
     const double landed = std::accumulate(f.hits.begin() + std::ptrdiff_t(f.row_start[i]),
                                           f.hits.begin() + std::ptrdiff_t(f.row_start[i + 1]), 0.0);
@@ -107,11 +107,11 @@ TEST(ObjectRuns, SameBytesOnOneAndTwoThreads) {
   FormFactors one, two;
   {
     const base::ThreadLimit limit(1);
-    one = cast(scene, patches, rays, true);
+    one = cast(scene, patches, run_rays, true);
   }
   {
     const base::ThreadLimit limit(2);
-    two = cast(scene, patches, rays, true);
+    two = cast(scene, patches, run_rays, true);
   }
   EXPECT_EQ(one.column, two.column);
   EXPECT_EQ(one.hits, two.hits);

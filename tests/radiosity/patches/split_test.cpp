@@ -21,7 +21,7 @@ void add_triangle(tests::SceneBuilder& builder, std::uint32_t material, const Ve
 }
 
 // A parallelogram, a sheet, a sliver of a triangle (9 m by 3 cm) and a plain triangle.
-scenes::Scene assorted_scene() {
+scenes::Scene mixed_scene() {
   tests::SceneBuilder builder;
   const std::uint32_t plain = builder.material(tests::grey(0.5));
   scenes::Material sheet = tests::grey(0.5);
@@ -35,7 +35,7 @@ scenes::Scene assorted_scene() {
 }
 
 TEST(Split, APointOfAPatchIsFoundInThatPatchOnRandomTrees) {
-  const scenes::Scene scene = assorted_scene();
+  const scenes::Scene scene = mixed_scene();
   base::Rng rng(base::Key(3, base::Stream::Test, 1));
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Patches patches = tests::random_cuts(subdivide(scene, 0.7), 10, 0.3, seed);
@@ -52,7 +52,7 @@ TEST(Split, APointOfAPatchIsFoundInThatPatchOnRandomTrees) {
 }
 
 TEST(Split, AreasOfLeavesAddUpToTheirParentAndToTheFacet) {
-  const scenes::Scene scene = assorted_scene();
+  const scenes::Scene scene = mixed_scene();
   const Patches before = tests::random_cuts(subdivide(scene, 0.7), 4, 0.3, 7);
   std::vector<Cut> wanted(before.count(), Cut::None);
   for (std::size_t i = 0; i < wanted.size(); i += 3) wanted[i] = i % 2 == 0 ? Cut::S : Cut::T;
@@ -71,7 +71,7 @@ TEST(Split, AreasOfLeavesAddUpToTheirParentAndToTheFacet) {
 }
 
 TEST(Split, TheParentOfAPatchHoldsItsPoints) {
-  const Patches before = tests::random_cuts(subdivide(assorted_scene(), 0.7), 3, 0.4, 2);
+  const Patches before = tests::random_cuts(subdivide(mixed_scene(), 0.7), 3, 0.4, 2);
   const Split cut = split(before, std::vector(before.count(), Cut::T));
   for (std::uint32_t i = 0; i < cut.patches.count(); ++i) {
     const Rectangle child = cut.patches.rectangle(i), r = before.rectangle(cut.parent[i]);
@@ -102,7 +102,7 @@ TEST(Split, HalvingEveryCellBothWaysIsTheGridOfHalfTheEdge) {
 }
 
 TEST(Split, BothSidesOfASheetShareTheTree) {
-  Patches patches = subdivide(assorted_scene(), 0.7);
+  Patches patches = subdivide(mixed_scene(), 0.7);
   for (int round = 0; round < 5; ++round) {  // wanted on the back only
     std::vector<Cut> wanted(patches.count(), Cut::None);
     for (std::uint32_t i = 0; i < patches.count(); i += 2) {
@@ -160,7 +160,7 @@ TEST(Split, CellSizesAreThoseOfBothSidesOfASheet) {
 }
 
 TEST(Split, GradedNeighboursAreAtMostTwiceAsLong) {
-  const Patches patches = tests::random_cuts(subdivide(assorted_scene(), 0.7), 10, 0.1, 4, true);
+  const Patches patches = tests::random_cuts(subdivide(mixed_scene(), 0.7), 10, 0.1, 4, true);
   std::size_t hanging = 0;
   base::Rng rng(base::Key(3, base::Stream::Test, 5));
   for (std::uint32_t i = 0; i < patches.count(); ++i) {

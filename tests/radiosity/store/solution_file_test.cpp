@@ -37,14 +37,14 @@ scenes::Scene lit_room() {
   return builder.scene;
 }
 
-SolveOptions coarse() { return {0.25, 64, 1e-8, 1}; }
+SolveOptions coarse_options() { return {0.25, 64, 1e-8, 1}; }
 
 // A scene with what is solved of it, written and read at will.
 struct Stored {
   test::TemporaryFolder folder;
   std::filesystem::path path = folder / "room.h5";
   scenes::Scene scene;
-  SolveOptions options = coarse();
+  SolveOptions options = coarse_options();
   Solution solution;
 
   explicit Stored(scenes::Scene s = lit_room())

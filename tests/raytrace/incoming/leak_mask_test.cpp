@@ -31,7 +31,7 @@ bool beyond(double s, double t) { return t - 0.5 > middle + rise * (s - 0.5); }
 
 using Field = std::function<double(double s, double t)>;
 
-radiosity::Solution filled(const radiosity::Patches& patches, const Field& field) {
+radiosity::Solution solution_of(const radiosity::Patches& patches, const Field& field) {
   radiosity::Solution solution;
   solution.patches = patches;
   solution.columns = 3;
@@ -67,7 +67,7 @@ TEST(LeakMask, NoLightIsReadAcrossAWall) {
   const scenes::RayQuery query(scene);
   for (const radiosity::Patches& patches : even_and_uneven(scene)) {
     const radiosity::Solution solution =
-        filled(patches, [](double s, double t) { return beyond(s, t) ? 1e6 : 1.0; });
+        solution_of(patches, [](double s, double t) { return beyond(s, t) ? 1e6 : 1.0; });
     const LeakMask sight(query, patches);
     const RadianceTable table(solution, solution.radiosity, false, sight);
     base::Rng rng(base::Key(1, base::Stream::Test, 0));
@@ -90,7 +90,7 @@ TEST(LeakMask, ALinearFieldIsReadExactlyAwayFromTheWall) {
   const scenes::RayQuery query(scene);
   const Field linear = [](double s, double t) { return 2.0 + s - 0.7 * t; };
   for (const radiosity::Patches& patches : even_and_uneven(scene)) {
-    const radiosity::Solution solution = filled(patches, linear);
+    const radiosity::Solution solution = solution_of(patches, linear);
     const LeakMask sight(query, patches);
     const RadianceTable table(solution, solution.radiosity, false, sight);
     base::Rng rng(base::Key(1, base::Stream::Test, 1));
@@ -108,7 +108,7 @@ TEST(LeakMask, WeightsAddUpToOneBesideTheWall) {
   const scenes::Scene scene = walled_plate();
   const scenes::RayQuery query(scene);
   for (const radiosity::Patches& patches : even_and_uneven(scene)) {
-    const radiosity::Solution solution = filled(patches, [](double, double) { return 3.0; });
+    const radiosity::Solution solution = solution_of(patches, [](double, double) { return 3.0; });
     const LeakMask sight(query, patches);
     const RadianceTable table(solution, solution.radiosity, false, sight);
     base::Rng rng(base::Key(1, base::Stream::Test, 2));

@@ -77,7 +77,7 @@ inline Found find(const scenes::Scene& scene, double camera_height_m = 0.5) {
       render(scene, prepared.groups, prepared.effects, prepared.query, solution, camera, options)
           .image;
   for (const float g : image.find("G")->values) found.drawn += double(g) * base::pi / rho / 16.0;
-  const Estimate paths = estimate(trace_paths(scene, prepared.groups, prepared.effects,
+  const PictureMean paths = estimate(trace_paths(scene, prepared.groups, prepared.effects,
                                               prepared.query, camera, pixels(4, 256)));
   found.traced = paths.mean * base::pi / rho;
   found.std_error = paths.std_error * base::pi / rho;

@@ -137,7 +137,7 @@ TEST(PathTracer, HighlightFallsWithTheCosinesPower) {
   builder.scene.sun = sun_at(20.0);
   const double c = std::cos(base::radians(20.0));
   const double exact = 133100.0 * c / base::pi * (0.3 + 0.6 * std::pow(c, 12.0));
-  const Estimate e = estimate(picture(builder.scene, above(2.0), pixels(8, 64)));
+  const PictureMean e = estimate(picture(builder.scene, above(2.0), pixels(8, 64)));
   EXPECT_NEAR(e.mean / exact, 1.0, 4.0 * e.std_error / exact + 1e-3);
 }
 

@@ -157,7 +157,7 @@ TEST(PathTracer, VarianceIsThatOfThePixelsMean) {
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
   builder.scene.earth = uniform_earth(40.0);
   const Frame frame = picture(builder.scene, above(2.0), pixels(16, 64));
-  const Estimate e = estimate(frame);
+  const PictureMean e = estimate(frame);
   double spread = 0.0;
   for (const float v : frame.image.find("G")->values) spread += std::pow(double(v) - e.mean, 2);
   EXPECT_NEAR(spread / 255.0 / (e.std_error * e.std_error * 256.0), 1.0, 4.0 * 0.1);

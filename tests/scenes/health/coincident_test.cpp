@@ -41,7 +41,7 @@ std::string box(const char* name, const Vec3& low, const Vec3& high) {
       name, low.x, low.y, low.z, high.x, high.y, high.z);
 }
 
-Scene read(const std::string& objects) { return test::SceneFolder().read(head + objects); }
+Scene read_scene(const std::string& objects) { return test::SceneFolder().read(head + objects); }
 
 // The name of what a ray meets that comes down, or up, through (x, y, 0); "back of ..." if it meets
 // a black back, "" if nothing.
@@ -67,7 +67,7 @@ Barycentric barycentric(const Scene& scene, std::uint32_t t) {
 
 TEST(CoincidentFaces, TheLaterOfTwoOpenOnesIsOver) {
   const Scene scene =
-      read(square("plate", 0, 2, 0, true) + square("decal", 1, 0.5, 0, true, "paper"));
+      read_scene(square("plate", 0, 2, 0, true) + square("decal", 1, 0.5, 0, true, "paper"));
   // The decal's two triangles on the plate's two: its diagonal runs beside the plate's.
   EXPECT_EQ(scene.coincident.size(), 2U);
   EXPECT_TRUE(holds(warnings(scene), {"\"plate\" and \"decal\": 1 m2", "those of \"decal\""}))
@@ -84,26 +84,27 @@ TEST(CoincidentFaces, TheLaterOfTwoOpenOnesIsOver) {
 TEST(CoincidentFaces, WhatIsNearerBySomeOffsetIsOverWhateverItsPlace) {
   // Of the extent of 5.7 m rays are lifted 23 um.
   for (const double lift : {4e-6, 1e-5}) {
-    const Scene scene = read(square("decal", 1, 0.5, lift, true) + square("plate", 0, 2, 0, true));
+    const Scene scene =
+        read_scene(square("decal", 1, 0.5, lift, true) + square("plate", 0, 2, 0, true));
     EXPECT_EQ(scene.coincident.size(), 2U);
     EXPECT_EQ(warnings(scene), "");
     EXPECT_EQ(met(scene, 1.0, 0.1, true), "decal");
   }
-  EXPECT_TRUE(read(square("decal", 1, 0.5, 1e-4, true) + square("plate", 0, 2, 0, true))
+  EXPECT_TRUE(read_scene(square("decal", 1, 0.5, 1e-4, true) + square("plate", 0, 2, 0, true))
                   .coincident.empty());
 }
 
 TEST(CoincidentFaces, WhatShinesIsOverWhatDoesNot) {
   const Scene scene =
-      read(square("lamp", 1, 0.5, 0, true, "lamp") + square("plate", 0, 2, 0, true));
+      read_scene(square("lamp", 1, 0.5, 0, true, "lamp") + square("plate", 0, 2, 0, true));
   EXPECT_EQ(met(scene, 1.0, 0.1, true), "lamp");
   EXPECT_EQ(warnings(scene), "");
 }
 
 TEST(CoincidentFaces, ASheetIsOverABody) {
   for (const bool up : {true, false}) {
-    const Scene scene = read(square("sheet", 0, 0.4, 1, up, "paper") +
-                             box("box", Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 1)));
+    const Scene scene = read_scene(square("sheet", 0, 0.4, 1, up, "paper") +
+                                   box("box", Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 1)));
     EXPECT_EQ(met(scene, 0.1, 0.2, true), "sheet");
     EXPECT_EQ(met(scene, 0.45, 0.2, true), "box");
     EXPECT_EQ(warnings(scene), "");
@@ -112,7 +113,7 @@ TEST(CoincidentFaces, ASheetIsOverABody) {
 
 TEST(CoincidentFaces, OpenOnesBackToBackAreTheSidesOfASheet) {
   const Scene scene =
-      read(square("front", 0, 1, 0, true) + square("rear", 0.5, 1, 0, false, "grey"));
+      read_scene(square("front", 0, 1, 0, true) + square("rear", 0.5, 1, 0, false, "grey"));
   EXPECT_EQ(met(scene, 0.2, 0.1, true), "front");
   EXPECT_EQ(met(scene, 0.2, 0.1, false), "rear");
   EXPECT_EQ(met(scene, -0.7, 0.1, false), "back of front");
@@ -133,12 +134,12 @@ std::pair<bool, bool> covered(const Scene& scene) {
 
 TEST(CoincidentFaces, ABodyAndWhatItStandsOnHideEachOther) {
   const std::string body = box("box", Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 1));
-  const Scene on_plate = read(square("plate", 0, 2, 0, true) + body);
+  const Scene on_plate = read_scene(square("plate", 0, 2, 0, true) + body);
   EXPECT_EQ(covered(on_plate), std::pair(true, true));
   EXPECT_EQ(met(on_plate, 0.2, 0.1, false), "back of plate");
   EXPECT_EQ(warnings(on_plate), "");
   const std::string walls = "inward = true\n";
-  const Scene in_room = read(box("room", Vec3(-2, -2, 0), Vec3(2, 2, 3)) + walls + body);
+  const Scene in_room = read_scene(box("room", Vec3(-2, -2, 0), Vec3(2, 2, 3)) + walls + body);
   EXPECT_EQ(covered(in_room), std::pair(true, true));
   EXPECT_EQ(warnings(in_room), "");
 }
@@ -146,7 +147,7 @@ TEST(CoincidentFaces, ABodyAndWhatItStandsOnHideEachOther) {
 TEST(CoincidentFaces, TheWallsOfAHouseAreSeenFromBothSides) {
   const std::string body = box("box", Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 1));
   const Scene house =
-      read(body + box("room", Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 1)) + "inward = true\n");
+      read_scene(body + box("room", Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 1)) + "inward = true\n");
   EXPECT_EQ(covered(house), std::pair(false, false));
   EXPECT_EQ(met(house, 0.2, 0.1, true), "box");
 }
@@ -156,10 +157,10 @@ TEST(CoincidentFaces, WhatIsInAHouseIsSeenHoweverItsWallsWereMade) {
   const std::string body = box("box", Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 1));
   const double h = 0.5 * (1.0 + 1e-6);
   const Scene rounded =
-      read(body + box("room", Vec3(-h, -h, -1e-6), Vec3(h, h, 1 + 1e-6)) + "inward = true\n");
+      read_scene(body + box("room", Vec3(-h, -h, -1e-6), Vec3(h, h, 1 + 1e-6)) + "inward = true\n");
   EXPECT_FALSE(rounded.coincident.empty());
   EXPECT_EQ(covered(rounded), std::pair(false, false));
-  EXPECT_EQ(covered(read(body + square("floor", 0, 0.5, 0, true))), std::pair(false, false));
+  EXPECT_EQ(covered(read_scene(body + square("floor", 0, 0.5, 0, true))), std::pair(false, false));
 }
 
 // What stands beside a room, wall on wall, does not show in it, listed before it or after.
@@ -167,7 +168,7 @@ TEST(CoincidentFaces, ARoomsWallIsOverTheBodyBehindIt) {
   const std::string room = box("room", Vec3(-1, -1, 0), Vec3(1, 1, 1)) + "inward = true\n";
   const std::string under = box("under", Vec3(-1, -1, -1), Vec3(1, 1, 0));
   for (const std::string& both : {room + under, under + room}) {
-    const Scene scene = read(both);
+    const Scene scene = read_scene(both);
     const RayQuery query(scene);
     const Hit hit = query.closest({0.2, 0.1, 0.5}, {0, 0, -1});
     EXPECT_EQ(scene.objects[scene.triangles[hit.triangle].object].name, "room");
@@ -176,8 +177,8 @@ TEST(CoincidentFaces, ARoomsWallIsOverTheBodyBehindIt) {
 
 // The two sides of a sheet and a third over both: one of them takes the light of each side.
 TEST(CoincidentFaces, SomethingIsAlwaysSeen) {
-  const Scene scene = read(square("up", 0, 1, 0, true) + square("down", 0, 1, 0, false) +
-                           square("sheet", 0, 1, 0, true, "paper"));
+  const Scene scene = read_scene(square("up", 0, 1, 0, true) + square("down", 0, 1, 0, false) +
+                                 square("sheet", 0, 1, 0, true, "paper"));
   EXPECT_EQ(met(scene, 0.2, 0.1, true), "sheet");
   EXPECT_EQ(met(scene, 0.2, 0.1, false), "sheet");
   const CoincidentFaces faces(scene);
@@ -198,8 +199,9 @@ TEST(CoincidentFaces, SomethingIsAlwaysSeen) {
 TEST(CoincidentFaces, AreFoundFarFromTheOrigin) {
   const std::string sphere =
       "shape = \"sphere\"\nradius = 0.5\nsegments = 100\nmaterial = \"white\"\n";
-  const Scene scene = read("[[object]]\nname = \"a\"\ncenter = [400000, 400000, 0]\n" + sphere +
-                           "[[object]]\nname = \"b\"\ncenter = [400000.3, 400000, 0]\n" + sphere);
+  const Scene scene =
+      read_scene("[[object]]\nname = \"a\"\ncenter = [400000, 400000, 0]\n" + sphere +
+                 "[[object]]\nname = \"b\"\ncenter = [400000.3, 400000, 0]\n" + sphere);
   EXPECT_EQ(scene.objects.size(), 2U);
 }
 

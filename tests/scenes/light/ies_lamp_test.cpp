@@ -16,7 +16,7 @@ namespace {
 using tests::IesText;
 using tests::steps;
 
-double cosine(double deg) { return std::cos(base::radians(deg)); }
+double cosine_of(double deg) { return std::cos(base::radians(deg)); }
 
 const std::string luminaire =
     "format = 1\n[[light]]\nname = \"a\"\ntype = \"ies\"\nfile = \"a.ies\"\nposition = [1, 2, 3]\n"
@@ -28,7 +28,7 @@ Lamp read(const std::string& ies, const std::string& keys = {}) {
   return folder.read(luminaire + keys).lamps.at(0);
 }
 
-std::string refusal(const std::string& ies, const std::string& keys = {}) {
+std::string lamp_refusal(const std::string& ies, const std::string& keys = {}) {
   const test::SceneFolder folder;
   folder.put("a.ies", ies);
   return folder.refusal(luminaire + keys);
@@ -89,12 +89,13 @@ TEST(IesLamp, TiltFactorDimsIt) {
 
 TEST(IesLamp, WhatDoesNotFitIsRefused) {
   const std::string good = IesText().text();
-  EXPECT_TRUE(test::holds(refusal(good, "up = [0, 0, 2]\n"), {"scene.toml:8:1", "parallel"}));
-  EXPECT_TRUE(test::holds(refusal(good, "tilt_deg = 3\n"), {"scene.toml:8:1", "TILT=NONE"}));
-  EXPECT_TRUE(test::holds(refusal(good, "flux = 1\ncolor = 1\n"), {"scene.toml:9:1", "\"flux\""}));
-  EXPECT_TRUE(test::holds(refusal(good, "color = 0\n"), {"scene.toml:8:1", "black"}));
-  EXPECT_TRUE(test::holds(refusal(good, "intensity = 3\n"), {"scene.toml:8:1", "\"ies\""}));
-  EXPECT_TRUE(test::holds(refusal("IESNA91\n"), {"a.ies", "TILT="}));
+  EXPECT_TRUE(test::holds(lamp_refusal(good, "up = [0, 0, 2]\n"), {"scene.toml:8:1", "parallel"}));
+  EXPECT_TRUE(test::holds(lamp_refusal(good, "tilt_deg = 3\n"), {"scene.toml:8:1", "TILT=NONE"}));
+  EXPECT_TRUE(
+      test::holds(lamp_refusal(good, "flux = 1\ncolor = 1\n"), {"scene.toml:9:1", "\"flux\""}));
+  EXPECT_TRUE(test::holds(lamp_refusal(good, "color = 0\n"), {"scene.toml:8:1", "black"}));
+  EXPECT_TRUE(test::holds(lamp_refusal(good, "intensity = 3\n"), {"scene.toml:8:1", "\"ies\""}));
+  EXPECT_TRUE(test::holds(lamp_refusal("IESNA91\n"), {"a.ies", "TILT="}));
   const test::SceneFolder empty;
   EXPECT_TRUE(test::holds(empty.refusal(luminaire), {"scene.toml:5:1", "a.ies", "No such file"}));
 }
@@ -105,7 +106,7 @@ TEST(IesLamp, CosineDistributionIsALambertDiskFromAfar) {
   // (pi/180)^2 / 8 = 4e-5 of the peak.
   IesText file;
   file.vertical = steps(0.0, 90.0, 1.0);
-  file.candela = [](double theta, double) { return 50.0 * cosine(theta); };
+  file.candela = [](double theta, double) { return 50.0 * cosine_of(theta); };
   const Lamp measured = read(file.text());
   Lamp disk;
   disk.kind = LampKind::Disk;
@@ -115,7 +116,7 @@ TEST(IesLamp, CosineDistributionIsALambertDiskFromAfar) {
   disk.exitance = Rgb(50.0 / (0.01 * 0.01));
   EXPECT_NEAR(lamp_flux_lm(measured).g / lamp_flux_lm(disk).g, 1.0, 4e-5);
   for (const double theta : {0.0, 20.5, 45.0, 70.3, 89.5}) {
-    const Vec3 way(std::sin(base::radians(theta)), 0.0, -cosine(theta));
+    const Vec3 way(std::sin(base::radians(theta)), 0.0, -cosine_of(theta));
     const Vec3 point = measured.position + 10.0 * way;
     const double a = sample_lamp(measured, point, 0.5, 0.5).normal_illuminance_lx.g;
     const double b = sample_lamp(disk, point, 0.0, 0.5).normal_illuminance_lx.g;  // its centre
@@ -128,7 +129,7 @@ TEST(IesLamp, EmittedRaysFollowTheIntensity) {
   // nothing across. Independent rays of unit length: standard error below 1 / sqrt(N).
   IesText file;
   file.vertical = steps(0.0, 90.0, 1.0);
-  file.candela = [](double theta, double) { return 50.0 * cosine(theta); };
+  file.candela = [](double theta, double) { return 50.0 * cosine_of(theta); };
   const Lamp lamp = read(file.text(), "up = [0, 1, 0]\n");
   base::Rng rng(base::Key(1, base::Stream::Test, 66));
   const int count = 100000;

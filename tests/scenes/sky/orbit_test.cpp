@@ -12,7 +12,7 @@ namespace {
 using test::EquatorialOrbit;
 using test::some_orbits;
 
-constexpr double altitude_m = 425e3;
+constexpr double low_orbit_m = 425e3;
 constexpr double positions_deg[] = {-200.0, -90.0, -17.0, 0.0,   33.0,
                                     90.0,   141.0, 180.0, 265.0, 400.0};
 
@@ -24,7 +24,7 @@ void expect_near(const Vec3& found, const Vec3& wanted, const std::string& what)
 
 OrbitState named_state(double beta_deg, double position_deg, std::string_view attitude) {
   Orbit orbit;
-  orbit.altitude_m = altitude_m;
+  orbit.altitude_m = low_orbit_m;
   orbit.beta_deg = beta_deg;
   orbit.attitude = attitude;
   return orbit_state(orbit, position_deg);
@@ -69,7 +69,7 @@ TEST(Orbit, TailDownHasTheEarthAft) {
 TEST(Orbit, SunEarthAndPoleAreWhereTheEquatorialFrameHasThem) {
   for (const EquatorialOrbit& sky : some_orbits) {
     for (const std::string_view attitude : orbit_attitudes) {
-      const Orbit orbit = sky.as_scene_orbit(altitude_m, attitude);
+      const Orbit orbit = sky.as_scene_orbit(low_orbit_m, attitude);
       for (const double position : positions_deg) {
         const double u = sky.noon_argument_deg() + position;
         const EquatorialOrbit::Pose pose = sky.pose(attitude, u);
@@ -88,7 +88,7 @@ TEST(Orbit, AnInertialAttitudeIsThePoseOfItsMomentKeptInSpace) {
   for (const EquatorialOrbit& sky : some_orbits) {
     for (const std::string_view as : orbit_attitudes) {
       for (const double at : {0.0, -70.0, 200.0}) {
-        Orbit orbit = sky.as_scene_orbit(altitude_m, inertial_attitude);
+        Orbit orbit = sky.as_scene_orbit(low_orbit_m, inertial_attitude);
         orbit.inertial_as = as;
         orbit.inertial_at_deg = at;
         const double noon = sky.noon_argument_deg();
@@ -110,14 +110,14 @@ TEST(Orbit, ThePeriodIsOneSiderealDayAtTheGeostationaryRadius) {
   EXPECT_NEAR(orbit_period_s(42164.17e3 - base::earth_radius_m), 86164.09, 0.1);
   // And time runs with the position, 360 deg in a period.
   Orbit orbit;
-  orbit.altitude_m = altitude_m;
-  EXPECT_NEAR(orbit_state(orbit, -90.0).time_s, -orbit_period_s(altitude_m) / 4.0, 1e-9);
-  EXPECT_NEAR(orbit_period_s(altitude_m), 92.9 * 60.0, 3.0);  // 3.87 deg a minute
+  orbit.altitude_m = low_orbit_m;
+  EXPECT_NEAR(orbit_state(orbit, -90.0).time_s, -orbit_period_s(low_orbit_m) / 4.0, 1e-9);
+  EXPECT_NEAR(orbit_period_s(low_orbit_m), 92.9 * 60.0, 3.0);  // 3.87 deg a minute
 }
 
 TEST(Orbit, LatitudeNeverExceedsTheInclination) {
   Orbit orbit;
-  orbit.altitude_m = altitude_m;
+  orbit.altitude_m = low_orbit_m;
   orbit.inclination_deg = 28.5;
   orbit.noon_argument_deg = 30.0;
   EXPECT_NEAR(orbit_state(orbit, 60.0).latitude_deg, 28.5, 1e-6);
@@ -132,7 +132,7 @@ TEST(Orbit, MovingASceneSetsSunEarthAndPole) {
   scene.sun.emplace();
   scene.earth.emplace().by_latitude.emplace();
   EXPECT_THROW(move_along_orbit(scene, 10.0), base::Error);
-  scene.orbit = test::sts46_like.as_scene_orbit(altitude_m, "tail-down");
+  scene.orbit = test::sts46_like.as_scene_orbit(low_orbit_m, "tail-down");
   move_along_orbit(scene, 123.0);
   const OrbitState state = orbit_state(*scene.orbit, 123.0);
   EXPECT_EQ(scene.sun->direction, state.sun);

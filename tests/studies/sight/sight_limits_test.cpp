@@ -10,23 +10,18 @@
 namespace earthshine::studies {
 namespace {
 
+using tests::bright_disc;
+using tests::disc_edge;
 using tests::discs_on;
 using tests::plain_cctv;
 using tests::sight_of;
 using tests::with_noise;
 
-constexpr int edge = 120;
-
-// A disc of 60 on a ground of 40 cd/m^2, white at 100: S = 0.6 and 0.4.
-tests::DiscPicture bright_disc(double radius = 20.0) {
-  return discs_on(40.0, {{60.0, 60.0, radius, 60.0}}, edge, edge);
-}
-
 // C0 MTF(u) = 3 / SNR: at the limiting frequency what the chain leaves of the difference is three
 // times the noise of a bar half a period wide and as long as the target, that of the target's mean
 // times the square root of the bars, 2 u lines.
 TEST(SightLimits, LimitingFrequencyLeavesThreeTimesTheNoiseOfABar) {
-  degrade::Setup setup = with_noise(plain_cctv(edge, edge, 100.0), 0.25);
+  degrade::Setup setup = with_noise(plain_cctv(disc_edge, disc_edge, 100.0), 0.25);
   setup.camera.lens_blur = 1.0;
   const auto picture = bright_disc();
   const Sight sight = sight_of(picture, setup);
@@ -44,9 +39,9 @@ TEST(SightLimits, LimitingFrequencyLeavesThreeTimesTheNoiseOfABar) {
 // Noise blurred with the picture is as wide as this target: a bar scatters as much as a resel, and
 // no more. C0 / (3 / SNR) is then CNR sqrt(6 frames) / 3.
 TEST(SightLimits, ABarIsNoNoisierThanAResel) {
-  degrade::Setup setup = with_noise(plain_cctv(edge, edge, 100.0), 0.0, 0.03);
+  degrade::Setup setup = with_noise(plain_cctv(disc_edge, disc_edge, 100.0), 0.0, 0.03);
   setup.camera.blur_h = setup.camera.blur_v = 2.0;
-  const auto picture = discs_on(50.0, {{60.0, 60.0, 3.0, 90.0}}, edge, edge);
+  const auto picture = discs_on(50.0, {{60.0, 60.0, 3.0, 90.0}}, disc_edge, disc_edge);
   SightOptions any_contrast;
   any_contrast.eye.threshold_factor = 0.0;
   const Sight sight = sight_of(picture, setup, any_contrast);
@@ -103,7 +98,7 @@ TEST(SightLimits, ModulationIsThatOfAGratingOnTheScreen) {
 }
 
 TEST(SightLimits, ProbabilityIsTheLeastOfSizeNoiseAndTheEye) {
-  const degrade::Setup setup = with_noise(plain_cctv(edge, edge, 100.0), 0.01);
+  const degrade::Setup setup = with_noise(plain_cctv(disc_edge, disc_edge, 100.0), 0.01);
   const auto picture = bright_disc();
   const Sight sight = sight_of(picture, setup);
   EXPECT_GT(sight.probability->identify, 0.9);
@@ -127,14 +122,14 @@ TEST(SightLimits, ProbabilityIsTheLeastOfSizeNoiseAndTheEye) {
 // Left of the middle brighter than the ground by 20, right of it darker by as much: on average
 // nothing, but 20 everywhere.
 TEST(SightLimits, TargetLitFromOneSideStandsOutOnBoth) {
-  auto picture = discs_on(40.0, {{60.0, 60.0, 20.0, 40.0}}, edge, edge);
+  auto picture = discs_on(40.0, {{60.0, 60.0, 20.0, 40.0}}, disc_edge, disc_edge);
   for (const std::uint32_t pixel : picture.plan.targets[0].seen) {
     for (base::Channel& c : picture.image.channels) {
-      c.values[pixel] = pixel % edge < 60 ? 60.0F : 20.0F;
+      c.values[pixel] = pixel % disc_edge < 60 ? 60.0F : 20.0F;
     }
   }
   ASSERT_EQ(picture.plan.targets[0].parts.size(), 8U);
-  const Sight sight = sight_of(picture, plain_cctv(edge, edge, 100.0));
+  const Sight sight = sight_of(picture, plain_cctv(disc_edge, disc_edge, 100.0));
   EXPECT_NEAR(*sight.weber, 0.0, 1e-3);
   EXPECT_NEAR(*sight.signal->difference, 0.2, 0.01);  // sectors may share the middle
   EXPECT_GT(sight.probability->identify, 0.9);
@@ -158,7 +153,7 @@ TEST(SightLimits, PartsAreThoseOfLargeTargets) {
 TEST(SightLimits, JohnsonDecidesWhereContrastIsAmple) {
   // Without noise the resels' Nyquist frequency limits: n = lines / 2.
   for (const double radius : {1.0, 4.0, 8.0}) {
-    const Sight sight = sight_of(bright_disc(radius), plain_cctv(edge, edge, 100.0));
+    const Sight sight = sight_of(bright_disc(radius), plain_cctv(disc_edge, disc_edge, 100.0));
     EXPECT_EQ(*sight.signal->limiting_frequency, 0.5);
     const Probability p = johnson_probability(0.5 * *sight.tv_lines, CyclesNeeded{});
     EXPECT_NEAR(sight.probability->detect, p.detect, 1e-9);

@@ -14,7 +14,7 @@
 namespace earthshine::studies {
 namespace {
 
-constexpr int edge = 96;
+constexpr int side_px = 96;
 
 std::vector<std::uint32_t> all_of(int columns, int rows) {
   std::vector<std::uint32_t> resels(static_cast<std::size_t>(columns) *
@@ -30,13 +30,13 @@ tests::DiscPicture busy_picture() {
                           {70.0, 28.0, 9.0, 8.0},
                           {92.0, 75.0, 15.0, 160.0},
                           {30.0, 72.0, 6.0, 0.0}},
-                         edge, edge);
+                         side_px, side_px);
 }
 
 degrade::Setup small_monitor(const degrade::Preset& preset) {
   degrade::Setup setup{preset.camera, preset.monitor, {}};
-  setup.monitor.rows = edge;
-  setup.monitor.columns = edge;
+  setup.monitor.rows = side_px;
+  setup.monitor.columns = side_px;
   return setup;
 }
 
@@ -59,7 +59,7 @@ TEST(SightNoise, EveryReselIsThatOfTheTwin) {
   for (const degrade::Preset& preset : degrade::presets()) {
     const degrade::Setup setup = small_monitor(preset);
     const CctvSignal line = pass_through(picture.image, setup);
-    const std::vector<std::uint32_t> all = all_of(edge, edge);
+    const std::vector<std::uint32_t> all = all_of(side_px, side_px);
     const ShownMoments moments = moments_at(line, all, all, 1);
     const degrade::Twin twin =
         degrade::twin(picture.image, setup.camera, setup.monitor, setup.options);
@@ -77,16 +77,16 @@ TEST(SightNoise, EveryReselIsThatOfTheTwin) {
     }
     // A disc's light on the screen, spread and all.
     const SightTarget& target = picture.plan.targets[0];
-    const WeightedResels disc = weigh(target.view.measured, edge, edge, edge, edge);
+    const WeightedResels disc = weigh(target.view.measured, side_px, side_px, side_px, side_px);
     const degrade::Plane viewed = luminance_plane(twin.viewed_mean);
     const std::size_t step = static_cast<std::size_t>(setup.monitor.pixels_per_resel);
     double sum = 0.0;
     for (std::size_t k = 0; k < disc.resel.size(); ++k) {
-      const std::size_t x = disc.resel[k] % edge, y = disc.resel[k] / edge;
+      const std::size_t x = disc.resel[k] % side_px, y = disc.resel[k] / side_px;
       for (std::size_t j = 0; j < step * step; ++j) {
-        sum +=
-            disc.weight[k] *
-            static_cast<double>(viewed[(y * step + j / step) * step * edge + x * step + j % step]);
+        sum += disc.weight[k] *
+               static_cast<double>(
+                   viewed[(y * step + j / step) * step * side_px + x * step + j % step]);
       }
     }
     EXPECT_NEAR(screen_mean(line, moments, disc), sum / static_cast<double>(step * step),
@@ -102,23 +102,24 @@ TEST(SightNoise, DifferenceOfMeansScattersAsInTheTwin) {
   for (const degrade::Preset& preset : degrade::presets()) {
     const degrade::Setup setup = small_monitor(preset);
     const CctvSignal line = pass_through(picture.image, setup);
-    const std::vector<std::uint32_t> all = all_of(edge, edge);
+    const std::vector<std::uint32_t> all = all_of(side_px, side_px);
     const ShownMoments moments = moments_at(line, all, all, 1);
     const degrade::Twin twin =
         degrade::twin(picture.image, setup.camera, setup.monitor, setup.options);
     for (const auto& [cx, cy] :
          {std::pair{30, 30}, {44, 30}, {70, 28}, {90, 75}, {30, 72}, {3, 2}}) {
       std::vector<std::uint32_t> inside, around;
-      for (int y = std::max(0, cy - 5); y <= std::min(edge - 1, cy + 5); ++y) {
-        for (int x = std::max(0, cx - 5); x <= std::min(edge - 1, cx + 5); ++x) {
+      for (int y = std::max(0, cy - 5); y <= std::min(side_px - 1, cy + 5); ++y) {
+        for (int x = std::max(0, cx - 5); x <= std::min(side_px - 1, cx + 5); ++x) {
           const bool in = std::abs(x - cx) <= 2 && std::abs(y - cy) <= 2;
-          (in ? inside : around).push_back(static_cast<std::uint32_t>(y * edge + x));
+          (in ? inside : around).push_back(static_cast<std::uint32_t>(y * side_px + x));
         }
       }
-      const MeanNoise noise = mean_noise(line, moments, weigh(inside, edge, edge, edge, edge),
-                                         weigh(around, edge, edge, edge, edge), 1);
+      const MeanNoise noise =
+          mean_noise(line, moments, weigh(inside, side_px, side_px, side_px, side_px),
+                     weigh(around, side_px, side_px, side_px, side_px), 1);
       const double sigma = std::sqrt(noise.variance_a + noise.variance_b - 2.0 * noise.covariance);
-      const double twins = twin.detection.noise[static_cast<std::size_t>(cy * edge + cx)];
+      const double twins = twin.detection.noise[static_cast<std::size_t>(cy * side_px + cx)];
       EXPECT_NEAR(sigma, twins, 0.01 * twins + 1e-9) << preset.name << " " << cx << " " << cy;
     }
   }
@@ -127,8 +128,8 @@ TEST(SightNoise, DifferenceOfMeansScattersAsInTheTwin) {
 // Flat field S = 0.5, linear camera: Var mean = sum over offsets of pairs(d) C(d) / N^2, with C of
 // degrade/parts/transfer_law.h, which shares no code with the chain; 20 resels off the border.
 TEST(SightNoise, FlatFieldsHaveTheNoiseOfTheClosedForms) {
-  const auto picture = tests::discs_on(50.0, {{48.0, 48.0, 12.0, 50.0}}, edge, edge);
-  degrade::Setup setup = tests::plain_cctv(edge, edge, 100.0);
+  const auto picture = tests::discs_on(50.0, {{48.0, 48.0, 12.0, 50.0}}, side_px, side_px);
+  degrade::Setup setup = tests::plain_cctv(side_px, side_px, 100.0);
   degrade::CctvCamera& camera = setup.camera;
   camera.noise = degrade::NoiseMode::Photon;
   camera.electrons_at_white = 400.0;
@@ -145,13 +146,13 @@ TEST(SightNoise, FlatFieldsHaveTheNoiseOfTheClosedForms) {
     const CctvSignal line = pass_through(picture.image, setup);
     const std::vector<std::uint32_t>& seen = picture.plan.targets[0].seen;
     const ShownMoments moments = moments_at(line, seen, seen, 1);
-    const WeightedResels disc = weigh(seen, edge, edge, edge, edge);
+    const WeightedResels disc = weigh(seen, side_px, side_px, side_px, side_px);
     const degrade::LineNoise law = degrade::line_noise(camera, setup.monitor);
     double sum = 0.0;
     for (const std::uint32_t p : seen) {
       for (const std::uint32_t q : seen) {
-        sum += law.total(0.5, static_cast<int>(q % edge) - static_cast<int>(p % edge),
-                         static_cast<int>(q / edge) - static_cast<int>(p / edge));
+        sum += law.total(0.5, static_cast<int>(q % side_px) - static_cast<int>(p % side_px),
+                         static_cast<int>(q / side_px) - static_cast<int>(p / side_px));
       }
     }
     const double count = static_cast<double>(seen.size());
@@ -164,15 +165,15 @@ TEST(SightNoise, FlatFieldsHaveTheNoiseOfTheClosedForms) {
 
 // What target and surround have in common leaves their difference.
 TEST(SightNoise, SharedNoiseLeavesTheDifference) {
-  degrade::Setup setup = tests::with_noise(tests::plain_cctv(edge, edge, 100.0), 0.0, 0.01);
+  degrade::Setup setup = tests::with_noise(tests::plain_cctv(side_px, side_px, 100.0), 0.0, 0.01);
   setup.camera.blur_h = setup.camera.blur_v = 3.0;
-  const auto picture = tests::discs_on(50.0, {{48.0, 48.0, 2.5, 90.0}}, edge, edge);
+  const auto picture = tests::discs_on(50.0, {{48.0, 48.0, 2.5, 90.0}}, side_px, side_px);
   const SightTarget& target = picture.plan.targets[0];
   const CctvSignal line = pass_through(picture.image, setup);
-  const std::vector<std::uint32_t> all = all_of(edge, edge);
-  const MeanNoise noise =
-      mean_noise(line, moments_at(line, all, all, 6), weigh(target.seen, edge, edge, edge, edge),
-                 weigh(target.view.surround, edge, edge, edge, edge), 6);
+  const std::vector<std::uint32_t> all = all_of(side_px, side_px);
+  const MeanNoise noise = mean_noise(
+      line, moments_at(line, all, all, 6), weigh(target.seen, side_px, side_px, side_px, side_px),
+      weigh(target.view.surround, side_px, side_px, side_px, side_px), 6);
   EXPECT_GT(noise.covariance, 0.3 * noise.variance_a);
   const SignalSight signal = *tests::sight_of(picture, setup).signal;
   const double expected = (signal.mean - *signal.surround) /
@@ -198,7 +199,7 @@ TEST(SightNoise, NoisyFramesScatterAsForetold) {
   const auto picture = busy_picture();
   const degrade::Setup setup = small_monitor(*degrade::find_preset("sit-monochrome"));
   const CctvSignal line = pass_through(picture.image, setup);
-  const std::vector<std::uint32_t> all = all_of(edge, edge);
+  const std::vector<std::uint32_t> all = all_of(side_px, side_px);
   const ShownMoments moments = moments_at(line, all, all, 1);
   struct Sample {
     WeightedResels disc, surround;
@@ -206,8 +207,8 @@ TEST(SightNoise, NoisyFramesScatterAsForetold) {
   };
   std::vector<Sample> samples;
   for (const SightTarget& target : picture.plan.targets) {
-    samples.push_back({weigh(target.seen, edge, edge, edge, edge),
-                       weigh(target.view.surround, edge, edge, edge, edge)});
+    samples.push_back({weigh(target.seen, side_px, side_px, side_px, side_px),
+                       weigh(target.view.surround, side_px, side_px, side_px, side_px)});
   }
   const auto mean_over = [](const std::vector<float>& values, const WeightedResels& set) {
     double sum = 0.0;
@@ -226,8 +227,8 @@ TEST(SightNoise, NoisyFramesScatterAsForetold) {
     const std::size_t step = static_cast<std::size_t>(setup.monitor.pixels_per_resel);
     std::vector<float> mean_light(v.size(), 0.0F);
     for (std::size_t i = 0; i < light.size(); ++i) {
-      const std::size_t x = i % (step * edge) / step, y = i / (step * edge) / step;
-      mean_light[y * edge + x] += light[i] / static_cast<float>(step * step);
+      const std::size_t x = i % (step * side_px) / step, y = i / (step * side_px) / step;
+      mean_light[y * side_px + x] += light[i] / static_cast<float>(step * step);
     }
     for (Sample& s : samples) {
       const double value = mean_over(v, s.disc) - mean_over(v, s.surround);

@@ -14,22 +14,17 @@
 namespace earthshine::studies {
 namespace {
 
+using tests::bright_disc;
+using tests::disc_edge;
 using tests::discs_on;
 using tests::plain_cctv;
 using tests::sight_of;
 using tests::with_noise;
 
-constexpr int edge = 120;
-
-// A disc of 60 on a ground of 40 cd/m^2, white at 100: S = 0.6 and 0.4.
-tests::DiscPicture bright_disc(double radius = 20.0) {
-  return discs_on(40.0, {{60.0, 60.0, radius, 60.0}}, edge, edge);
-}
-
 double noise_at(double s, double a, double b, double c) { return a + b * s + c * s * s; }
 
 TEST(Sight, ContrastsOfADiscAreThoseOfItsRadiances) {
-  const Sight sight = sight_of(bright_disc(), plain_cctv(edge, edge, 100.0));
+  const Sight sight = sight_of(bright_disc(), plain_cctv(disc_edge, disc_edge, 100.0));
   EXPECT_NEAR(*sight.luminance, 60.0, 1e-4);
   EXPECT_NEAR(*sight.surround, 40.0, 1e-4);
   EXPECT_NEAR(*sight.weber, 0.5, 1e-5);
@@ -43,7 +38,7 @@ TEST(Sight, ContrastsOfADiscAreThoseOfItsRadiances) {
 }
 
 TEST(Sight, RoomLightAndBlackLevelTakeContrastFromTheMonitor) {
-  degrade::Setup setup = plain_cctv(edge, edge, 100.0);
+  degrade::Setup setup = plain_cctv(disc_edge, disc_edge, 100.0);
   setup.monitor.black_luminance = 2.0;
   setup.monitor.room_illuminance = 100.0 * base::pi;  // at 5 %: 5 cd/m^2
   const Sight sight = sight_of(bright_disc(), setup);
@@ -54,7 +49,7 @@ TEST(Sight, RoomLightAndBlackLevelTakeContrastFromTheMonitor) {
 TEST(Sight, PixelsAndLinesOfADisc) {
   // 240 rows of picture on 120 lines: 40 pixels across are 20 lines.
   const auto picture = discs_on(40.0, {{120.0, 120.0, 20.0, 60.0}}, 240, 240);
-  const Sight sight = sight_of(picture, plain_cctv(edge, edge, 100.0));
+  const Sight sight = sight_of(picture, plain_cctv(disc_edge, disc_edge, 100.0));
   EXPECT_NEAR(static_cast<double>(sight.pixels), base::pi * 400.0, 10.0);
   EXPECT_NEAR(*sight.tv_lines, 20.0, 0.25);
   EXPECT_NEAR(*sight_of(picture, {}).tv_lines, 40.0, 0.5);  // rows of the picture
@@ -64,7 +59,8 @@ TEST(Sight, PixelsAndLinesOfADisc) {
 TEST(Sight, NoiseFiguresOfADiscAreTheirClosedForms) {
   const double a = 4e-4, b = 3e-4, c = 5e-4;
   const auto picture = bright_disc();
-  const Sight sight = sight_of(picture, with_noise(plain_cctv(edge, edge, 100.0), a, b, c));
+  const Sight sight =
+      sight_of(picture, with_noise(plain_cctv(disc_edge, disc_edge, 100.0), a, b, c));
   const double t = noise_at(0.6, a, b, c), s = noise_at(0.4, a, b, c), frames = 6.0;
   const auto n = static_cast<double>(picture.plan.targets[0].seen.size());
   const auto n_b = static_cast<double>(picture.plan.targets[0].view.surround.size());
@@ -80,7 +76,7 @@ TEST(Sight, NoiseFiguresOfADiscAreTheirClosedForms) {
 }
 
 TEST(Sight, LongerLooksAverageGrainButNoFixedPattern) {
-  degrade::Setup grain = with_noise(plain_cctv(edge, edge, 100.0), 1e-3), pattern = grain;
+  degrade::Setup grain = with_noise(plain_cctv(disc_edge, disc_edge, 100.0), 1e-3), pattern = grain;
   pattern.camera.noise = degrade::NoiseMode::Photon;
   pattern.camera.electrons_at_white = 1e9;
   pattern.camera.prnu_percent = 5.0;
@@ -95,13 +91,13 @@ TEST(Sight, LongerLooksAverageGrainButNoFixedPattern) {
 }
 
 TEST(Sight, NothingIsDetectedWithoutContrastInNoiseOrInWhite) {
-  const degrade::Setup quiet = plain_cctv(edge, edge, 100.0);
-  const auto same = discs_on(40.0, {{60.0, 60.0, 20.0, 40.0}}, edge, edge);
+  const degrade::Setup quiet = plain_cctv(disc_edge, disc_edge, 100.0);
+  const auto same = discs_on(40.0, {{60.0, 60.0, 20.0, 40.0}}, disc_edge, disc_edge);
   EXPECT_LT(sight_of(same, quiet).probability->detect, 0.01);
   EXPECT_LT(sight_of(same, {}).probability->detect, 0.01);  // to the eye
   EXPECT_EQ(sight_of(same, quiet).verdict, Verdict::NotSeen);
   EXPECT_LT(sight_of(bright_disc(3.0), with_noise(quiet, 25.0)).probability->detect, 0.05);
-  degrade::Setup blown = plain_cctv(edge, edge, 10.0);
+  degrade::Setup blown = plain_cctv(disc_edge, disc_edge, 10.0);
   blown.camera.white_clip = 1.1;
   const Sight white = sight_of(bright_disc(), blown);
   EXPECT_LT(white.probability->detect, 0.01);
@@ -109,9 +105,11 @@ TEST(Sight, NothingIsDetectedWithoutContrastInNoiseOrInWhite) {
 }
 
 TEST(Sight, SaturatedFromWhiteAndCrushedWithinTheNoiseOfBlack) {
-  const degrade::Setup setup = with_noise(plain_cctv(edge, edge, 100.0), 1e-4);  // black: S <= 0.01
+  const degrade::Setup setup =
+      with_noise(plain_cctv(disc_edge, disc_edge, 100.0), 1e-4);  // black: S <= 0.01
   const auto shares = [&](double luminance) {
-    const Sight s = sight_of(discs_on(40.0, {{60.0, 60.0, 20.0, luminance}}, edge, edge), setup);
+    const Sight s =
+        sight_of(discs_on(40.0, {{60.0, 60.0, 20.0, luminance}}, disc_edge, disc_edge), setup);
     return std::pair{*s.saturated, *s.crushed};
   };
   EXPECT_EQ(shares(99.6), (std::pair{1.0, 0.0}));
@@ -122,26 +120,27 @@ TEST(Sight, SaturatedFromWhiteAndCrushedWithinTheNoiseOfBlack) {
 
 TEST(Sight, EyeAtTheWindowComparesWithItsThreshold) {
   const auto picture =
-      discs_on(100.0, {{60.0, 60.0, 1.5, 100.0 + std::pow(10.0, 0.745)}}, edge, edge);
+      discs_on(100.0, {{60.0, 60.0, 1.5, 100.0 + std::pow(10.0, 0.745)}}, disc_edge, disc_edge);
   const Sight sight = sight_of(picture, {});
   EXPECT_FALSE(sight.signal || sight.monitor || sight.saturated || sight.johnson_cycles);
   EXPECT_NEAR(*sight.eye->threshold, std::pow(10.0, 0.745) / 100.0, 1e-3);
   EXPECT_NEAR(sight.eye->probability->detect, 0.5, 0.01);  // at threshold
   EXPECT_NEAR(sight.eye->cycles, *sight.angle_deg * acuity_cycles_per_deg(100.0), 0.01);
   EXPECT_NEAR(sight.eye->probability->identify, 0.5, 0.01);  // a degree is many cycles
-  const auto brighter =
-      discs_on(100.0, {{60.0, 60.0, 1.5, 100.0 + 2.0 * std::pow(10.0, 0.745)}}, edge, edge);
+  const auto brighter = discs_on(100.0, {{60.0, 60.0, 1.5, 100.0 + 2.0 * std::pow(10.0, 0.745)}},
+                                 disc_edge, disc_edge);
   EXPECT_EQ(sight_of(brighter, {}).verdict, Verdict::Identified);
 }
 
 TEST(Sight, VerdictGoesByVisibleFractionAndProbability) {
-  EXPECT_EQ(sight_of(bright_disc(2.0), plain_cctv(edge, edge, 100.0)).verdict, Verdict::Detected);
-  const auto behind =
-      discs_on(40.0, {{60.0, 60.0, 20.0, 60.0}, {60.0, 60.0, 19.6, 40.0, false}}, edge, edge);
+  EXPECT_EQ(sight_of(bright_disc(2.0), plain_cctv(disc_edge, disc_edge, 100.0)).verdict,
+            Verdict::Detected);
+  const auto behind = discs_on(40.0, {{60.0, 60.0, 20.0, 60.0}, {60.0, 60.0, 19.6, 40.0, false}},
+                               disc_edge, disc_edge);
   EXPECT_LT(*sight_of(behind, {}).visible_fraction, 0.1);
   EXPECT_EQ(sight_of(behind, {}).verdict, Verdict::Hidden);
-  const auto away = discs_on(40.0, {{-60.0, 60.0, 20.0, 60.0}}, edge, edge);
-  const Sight out = sight_of(away, plain_cctv(edge, edge, 100.0));
+  const auto away = discs_on(40.0, {{-60.0, 60.0, 20.0, 60.0}}, disc_edge, disc_edge);
+  const Sight out = sight_of(away, plain_cctv(disc_edge, disc_edge, 100.0));
   EXPECT_EQ(out.verdict, Verdict::OutOfView);
   EXPECT_FALSE(out.probability || out.visible_fraction || out.luminance || out.angle_deg ||
                out.eye || out.signal || out.tv_lines);
@@ -195,27 +194,27 @@ TEST(Sight, WhatDoesNotExistIsEmptyAndAllElseFinite) {
     tests::DiscPicture picture;
   };
   const std::vector<Case> cases = {
-      {"no pixels", discs_on(40.0, {{-60.0, 60.0, 20.0, 60.0}}, edge, edge)},
-      {"one pixel", discs_on(40.0, {{60.5, 60.5, 0.6, 60.0}}, edge, edge)},
-      {"one pixel in the corner", discs_on(40.0, {{0.5, 0.5, 0.6, 60.0}}, edge, edge)},
-      {"black surround", discs_on(0.0, {{60.0, 60.0, 20.0, 60.0}}, edge, edge)},
-      {"fills the picture", discs_on(0.0, {{60.0, 60.0, 500.0, 60.0}}, edge, edge)},
-      {"all black", discs_on(0.0, {{60.0, 60.0, 20.0, 0.0}}, edge, edge)},
-      {"very bright", discs_on(1e9, {{60.0, 60.0, 20.0, 1e9}}, edge, edge)}};
+      {"no pixels", discs_on(40.0, {{-60.0, 60.0, 20.0, 60.0}}, disc_edge, disc_edge)},
+      {"one pixel", discs_on(40.0, {{60.5, 60.5, 0.6, 60.0}}, disc_edge, disc_edge)},
+      {"one pixel in the corner", discs_on(40.0, {{0.5, 0.5, 0.6, 60.0}}, disc_edge, disc_edge)},
+      {"black surround", discs_on(0.0, {{60.0, 60.0, 20.0, 60.0}}, disc_edge, disc_edge)},
+      {"fills the picture", discs_on(0.0, {{60.0, 60.0, 500.0, 60.0}}, disc_edge, disc_edge)},
+      {"all black", discs_on(0.0, {{60.0, 60.0, 20.0, 0.0}}, disc_edge, disc_edge)},
+      {"very bright", discs_on(1e9, {{60.0, 60.0, 20.0, 1e9}}, disc_edge, disc_edge)}};
   for (const auto& [name, picture] : cases) {
     std::vector<std::optional<degrade::Setup>> setups = {std::nullopt,
-                                                         plain_cctv(edge, edge, 100.0)};
+                                                         plain_cctv(disc_edge, disc_edge, 100.0)};
     for (const degrade::Preset& preset : degrade::presets()) {
       setups.push_back(degrade::Setup{preset.camera, preset.monitor, {}});
     }
     for (const auto& setup : setups) expect_finite(sight_of(picture, setup), name);
   }
-  const Sight filled = sight_of(cases[4].picture, plain_cctv(edge, edge, 100.0));
+  const Sight filled = sight_of(cases[4].picture, plain_cctv(disc_edge, disc_edge, 100.0));
   EXPECT_FALSE(filled.probability || filled.surround || filled.weber || filled.signal->surround ||
                filled.signal->cnr || filled.monitor->weber || filled.eye->threshold);
   EXPECT_NEAR(filled.signal->mean, 0.6, 1e-6);
   EXPECT_EQ(filled.verdict, Verdict::Doubtful);
-  const Sight on_black = sight_of(cases[3].picture, plain_cctv(edge, edge, 100.0));
+  const Sight on_black = sight_of(cases[3].picture, plain_cctv(disc_edge, disc_edge, 100.0));
   EXPECT_FALSE(on_black.weber || on_black.signal->weber || on_black.monitor->weber);
   EXPECT_EQ(on_black.verdict, Verdict::Identified);
   EXPECT_EQ(on_black.signal->snr, degrade::most_snr);

@@ -12,7 +12,7 @@
 namespace earthshine::studies {
 namespace {
 
-constexpr std::int32_t target = 7;
+constexpr std::int32_t marked = 7;
 
 // A rectangle of the target on empty sky.
 ObjectMap rectangle(int columns, int rows, int x0, int y0, int width, int height) {
@@ -20,7 +20,7 @@ ObjectMap rectangle(int columns, int rows, int x0, int y0, int width, int height
   for (int y = 0; y < rows; ++y) {
     for (int x = 0; x < columns; ++x) {
       const bool inside = x >= x0 && x < x0 + width && y >= y0 && y < y0 + height;
-      map.object.push_back(inside ? target : no_object);
+      map.object.push_back(inside ? marked : no_object);
     }
   }
   return map;
@@ -38,7 +38,7 @@ TEST(TargetView, SurroundIsAsLargeAsTheTargetAndOnePixelOff) {
   // by 8 neighbours from the cross of 14 x 12 and 12 x 14 (192) to that of 16 x 14 and 14 x 16
   // (252): 60 more. 108 is nearer to 100 than 48.
   const ObjectMap map = rectangle(40, 40, 15, 15, 10, 10);
-  const TargetView view = find_target(map, target);
+  const TargetView view = find_target(map, marked);
   EXPECT_EQ(view.pixels, 100U);
   EXPECT_EQ(view.surround.size(), 108U);
   for (const std::uint32_t pixel : view.surround) {
@@ -49,25 +49,25 @@ TEST(TargetView, SurroundIsAsLargeAsTheTargetAndOnePixelOff) {
 }
 
 TEST(TargetView, SurroundOfATargetInTheCornerKeepsItsSize) {
-  const TargetView view = find_target(rectangle(40, 40, 0, 30, 10, 10), target);
+  const TargetView view = find_target(rectangle(40, 40, 0, 30, 10, 10), marked);
   EXPECT_GE(view.surround.size(), 75U);
   EXPECT_LE(view.surround.size(), 125U);
 }
 
 TEST(TargetView, TargetThatFillsThePictureHasNoSurround) {
-  const TargetView view = find_target(rectangle(8, 6, 0, 0, 8, 6), target);
+  const TargetView view = find_target(rectangle(8, 6, 0, 0, 8, 6), marked);
   EXPECT_EQ(view.pixels, 48U);
   EXPECT_EQ(view.measured.size(), 48U);  // the border of the picture is no outline
   EXPECT_TRUE(view.surround.empty());
 }
 
 TEST(TargetView, LuminanceIsTakenInsideTheOutline) {
-  EXPECT_EQ(find_target(rectangle(40, 40, 15, 15, 10, 10), target).measured.size(), 64U);
+  EXPECT_EQ(find_target(rectangle(40, 40, 15, 15, 10, 10), marked).measured.size(), 64U);
   // A line has no inside: all of it is taken.
-  EXPECT_EQ(find_target(rectangle(40, 40, 15, 5, 1, 30), target).measured.size(), 30U);
+  EXPECT_EQ(find_target(rectangle(40, 40, 15, 5, 1, 30), marked).measured.size(), 30U);
   // 4 x 4 has a core of 4, just a quarter; 3 x 3 has one pixel of 9.
-  EXPECT_EQ(find_target(rectangle(40, 40, 15, 15, 4, 4), target).measured.size(), 4U);
-  EXPECT_EQ(find_target(rectangle(40, 40, 15, 15, 3, 3), target).measured.size(), 9U);
+  EXPECT_EQ(find_target(rectangle(40, 40, 15, 15, 4, 4), marked).measured.size(), 4U);
+  EXPECT_EQ(find_target(rectangle(40, 40, 15, 15, 3, 3), marked).measured.size(), 9U);
 }
 
 TEST(TargetView, TargetThatIsNowhereIsNotInView) {

@@ -11,7 +11,7 @@
 namespace earthshine::studies {
 namespace {
 
-double share_of(const std::vector<LightShare>& shares, const std::string& from, bool reflected) {
+double share_from(const std::vector<LightShare>& shares, const std::string& from, bool reflected) {
   const auto found = std::find_if(shares.begin(), shares.end(), [&](const LightShare& s) {
     return s.from == from && s.reflected == reflected;
   });
@@ -40,18 +40,18 @@ TEST(LastBounce, InAFurnaceSharesAreFormFactors) {
   constexpr int rays = 16384;
   const std::vector<LightShare> shares = light_shares(
       builder.scene, prepared.groups, prepared.query, solution, {&point, 1}, 2.0 / base::pi, rays);
-  EXPECT_NEAR(share_of(shares, own_light, false), 0.5, 1e-9);
-  EXPECT_NEAR(share_of(shares, prepared.groups.names[prepared.groups.material[m]], false), 0.25,
+  EXPECT_NEAR(share_from(shares, own_light, false), 0.5, 1e-9);
+  EXPECT_NEAR(share_from(shares, prepared.groups.names[prepared.groups.material[m]], false), 0.25,
               1e-3);
   const double x = 0.5, h = std::sqrt(1.0 + x * x);
   const double ceiling = 4.0 / (2.0 * base::pi) * 2.0 * x / h * std::atan(x / h);
   // Of p with `rays` independent rays the standard error is sqrt(p (1 - p) / rays); an even
   // sequence does better. Times the reflected quarter.
   const auto within = [](double p) { return 0.25 * 4.0 * std::sqrt(p * (1.0 - p) / rays); };
-  EXPECT_NEAR(share_of(shares, "quad-5", true), 0.25 * ceiling, within(ceiling));
+  EXPECT_NEAR(share_from(shares, "quad-5", true), 0.25 * ceiling, within(ceiling));
   for (const char* wall : {"quad-0", "quad-1", "quad-2", "quad-3"}) {
     const double p = (1.0 - ceiling) / 4.0;
-    EXPECT_NEAR(share_of(shares, wall, true), 0.25 * p, within(p)) << wall;
+    EXPECT_NEAR(share_from(shares, wall, true), 0.25 * p, within(p)) << wall;
   }
   double sum = 0.0;
   for (const LightShare& share : shares) sum += share.share;
