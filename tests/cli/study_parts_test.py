@@ -64,7 +64,7 @@ class StudyParts(StudyPartsCase):
         for name, call in SEVERAL.items():
             self.done(*call, "w-" + name)
             whole = self.results("w-" + name)
-            for count in (1, 3, 8):
+            for count in (1, 5):
                 with self.subTest(name, parts=count):
                     folder = f"{name}-{count}"
                     order = list(range(1, count + 1))
@@ -130,14 +130,14 @@ class StudyParts(StudyPartsCase):
         self.says(self.refused("merge", "o"), "the settings changed")
 
     def test_a_torn_part_is_missing(self):
-        """A third of what a merge reads or trusts is broken in turn: it lists the part, writes nothing, and the part mends it."""
+        """A fifth of what a merge reads or trusts is broken in turn: it lists the part, writes nothing, and the part mends it."""
         for part in (1, 2):
             self.done(*ORBIT, "o", "--part", f"{part}/2", "-q")
         kept = sorted(path for path in (self.folder / "o" / "points").iterdir()
                       if path.suffix in (".json", ".exr") and not path.name.startswith(("parts", "solution")))
         sound = {path: path.read_bytes() for path in kept}
         self.assertGreater(len(sound), 10)
-        for torn in kept[::3]:  # their names are digests: any kind may come
+        for torn in kept[::5]:  # their names are digests: any kind may come
             with self.subTest(torn.name):
                 torn.write_bytes(sound[torn][:-20])
                 message = self.refused("merge", "o", code=1)
