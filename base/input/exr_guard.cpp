@@ -1,16 +1,106 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/input/exr_guard.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstdint>
 #include <fstream>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "base/error.h"
 
 namespace earthshine::base {
 namespace {
+
+// The library reads values of these types by the type alone, whatever size the file gives them, and
+// would take for names and sizes of what follows what this reader takes for something else.
+std::optional<std::uint64_t> size_of(std::string_view type) {
+  constexpr std::pair<std::string_view, std::uint64_t> sizes[] = {{"box2i", 16},
+                                                                  {"box2f", 16},
+                                                                  {"chromaticities", 32},
+                                                                  {"compression", 1},
+                                                                  {"double", 8},
+                                                                  {"envmap", 1},
+                                                                  {"deepImageState", 1},
+                                                                  {"float", 4},
+                                                                  {"int", 4},
+                                                                  {"keycode", 28},
+                                                                  {"lineOrder", 1},
+                                                                  {"m33f", 36},
+                                                                  {"m33d", 72},
+                                                                  {"m44f", 64},
+                                                                  {"m44d", 128},
+                                                                  {"rational", 8},
+                                                                  {"timecode", 8},
+                                                                  {"tiledesc", 9},
+                                                                  {"v2i", 8},
+                                                                  {"v2f", 8},
+                                                                  {"v2d", 16},
+                                                                  {"v3i", 12},
+                                                                  {"v3f", 12},
+                                                                  {"v3d", 24}};
+  for (const auto& [name, size] : sizes) {
+    if (name == type) return size;
+  }
+  return {};
+}
+
+// Bytes of a value, from its front.
+class Value {
+ public:
+  explicit Value(std::string_view bytes) : left_(bytes) {}
+  [[nodiscard]] std::uint64_t left() const { return left_.size(); }
+  [[nodiscard]] std::uint64_t number() {  // past the end: more than any file has
+    if (left_.size() < 4) return std::uint64_t{1} << 40U;
+    std::uint64_t value = 0;
+    for (std::size_t k = 4; k-- > 0;) value = value << 8U | static_cast<unsigned char>(left_[k]);
+    left_.remove_prefix(4);
+    return value;
+  }
+  bool skip(std::uint64_t count) {
+    if (count > left_.size()) return false;
+    left_.remove_prefix(count);
+    return true;
+  }
+  // A name and its zero byte: its length, or nothing if it has no end.
+  std::optional<std::size_t> name() {
+    const std::size_t length = left_.find('\0');
+    if (length == std::string_view::npos) return {};
+    left_.remove_prefix(length + 1);
+    return length;
+  }
+
+ private:
+  std::string_view left_;
+};
+
+// Whether a value that says itself how far it goes ends where its size says.
+bool is_whole(std::string_view type, Value value) {
+  if (type == "chlist") {  // names, each with 16 bytes about the channel; an empty one ends them
+    constexpr std::uint64_t bytes_per_channel = 16;
+    while (true) {
+      const auto length = value.name();
+      if (!length) return false;
+      if (*length == 0) return value.left() == 0;
+      if (!value.skip(bytes_per_channel)) return false;
+    }
+  }
+  if (type == "stringvector") {
+    while (value.left() > 0) {
+      if (!value.skip(value.number())) return false;
+    }
+  }
+  if (type == "preview") {  // columns, rows, four bytes a pixel
+    const std::uint64_t columns = value.number(), rows = value.number();
+    return columns <= value.left() && rows <= value.left() && 4 * columns * rows == value.left();
+  }
+  return true;
+}
 
 // "Technical Introduction to OpenEXR": a magic number, a version with flags, then one header, or
 // several of them and an empty one. A header is a row of attributes, each a name and a type, ended
@@ -43,13 +133,18 @@ class HeaderReader {
     return value;
   }
 
-  // Names have at most 255 bytes.
   [[nodiscard]] std::string word() {
+    constexpr std::size_t most = 255;
     std::string text;
-    for (int byte = file_.get(); byte > 0 && text.size() < 256; byte = file_.get()) {
+    for (int byte = file_.get(); byte > 0; byte = file_.get()) {
+      if (text.size() == most) refuse("has a name of more than 255 bytes in its header");
       text += static_cast<char>(byte);
     }
     return text;
+  }
+
+  [[noreturn]] void refuse(const std::string& found) const {
+    throw Error(Blame::Input, path_.string(), found, {}, "Copy it again");
   }
 
   // False for an empty one, which ends a row of them.
@@ -65,23 +160,31 @@ class HeaderReader {
       const auto here = static_cast<std::uint64_t>(file_.tellg());
       const std::uint64_t left = size_ > here ? size_ - here : 0;
       if (length > left) {
-        throw Error(Blame::Input, path_.string(),
-                    "announces " + std::to_string(length) + " bytes of attribute \"" + name +
-                        "\" and has " + std::to_string(left) + " more",
-                    {}, "Copy it again");
+        refuse(fmt::format("announces {} bytes of attribute \"{}\" and has {} more", length, name,
+                           left));
       }
-      if (name == "chunkCount" && type == "int" && length == 4) {
-        const std::uint64_t chunks = number();
-        constexpr std::uint64_t bytes_per_chunk = 8;  // of the table alone
-        if (chunks * bytes_per_chunk > size_) {
-          throw Error(Blame::Input, path_.string(),
-                      "announces " + std::to_string(chunks) + " chunks of pixels and has " +
-                          std::to_string(size_) + " bytes",
-                      {}, "Copy it again");
-        }
-      } else {
-        file_.seekg(static_cast<std::streamoff>(length), std::ios::cur);
-      }
+      std::string value(length, '\0');
+      file_.read(value.data(), static_cast<std::streamsize>(length));
+      if (!file_) return false;
+      check(name, type, value);
+    }
+  }
+
+  void check(const std::string& name, const std::string& type, const std::string& value) const {
+    const std::uint64_t size = size_of(type).value_or(value.size());
+    if (size != value.size()) {
+      refuse(fmt::format("gives attribute \"{}\" {} bytes; its type, {}, has {}", name,
+                         value.size(), type, size));
+    }
+    if (!is_whole(type, Value(value))) {
+      refuse(fmt::format("gives attribute \"{}\" {} bytes, which are not those of a {}", name,
+                         value.size(), type));
+    }
+    if (name != "chunkCount" || type != "int") return;
+    const std::uint64_t chunks = Value(value).number();
+    constexpr std::uint64_t bytes_per_chunk = 8;  // of the table alone
+    if (chunks * bytes_per_chunk > size_) {
+      refuse(fmt::format("announces {} chunks of pixels and has {} bytes", chunks, size_));
     }
   }
 

@@ -7,8 +7,9 @@
 
 namespace earthshine::base {
 
-// Throws base::Error (Input) where an attribute or a table of chunks is larger than the file. What
-// is no OpenEXR file, or breaks off, is left for the library to name.
+// Throws base::Error (Input) where an attribute or a table of chunks is larger than the file, or an
+// attribute's size is not that of its type, so that the library would read on elsewhere than where
+// it ends. What is no OpenEXR file, or breaks off, is left for the library to name.
 void guard_exr(const std::filesystem::path& path);
 
 }  // namespace earthshine::base

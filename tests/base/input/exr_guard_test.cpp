@@ -51,6 +51,36 @@ TEST(ExrGuard, AnAttributeLargerThanTheFileIsRefusedByItsName) {
   }
 }
 
+// The library reads a float's four bytes, a list of channels to its empty name and as many letters
+// as each text of a vector says; then it goes on from there, not from where the attribute ends.
+TEST(ExrGuard, AnAttributeThatIsNotAsLongAsItsTypeIsRefused) {
+  const std::string hidden =
+      std::string("x\0string\0", 9) + little_endian(1800U << 20U);  // read as the next attribute
+  const auto attribute = [](const std::string& type, const std::string& value) {
+    return std::string("story\0", 6) + type + '\0' +
+           little_endian(static_cast<std::uint32_t>(value.size())) + value;
+  };
+  const std::string channel = std::string("Y\0", 2) + std::string(16, '\0');
+  const std::string sound = attribute("float", little_endian(0)) +
+                            attribute("chlist", channel + '\0') +
+                            attribute("stringvector", little_endian(2) + "ab") +
+                            attribute("preview", little_endian(1) + little_endian(1) + "rgba");
+  const TemporaryFolder folder;
+  write_bytes(folder / "b.exr", picture_with(folder, sound));
+  guard_exr(folder / "b.exr");
+  for (const std::string& torn :
+       {attribute("float", little_endian(0) + hidden), attribute("chlist", channel + '\0' + hidden),
+        attribute("chlist", channel), attribute("stringvector", little_endian(1800U << 20U) + "ab"),
+        attribute("preview", little_endian(1U << 31U) + little_endian(1U << 31U)),
+        attribute("preview", little_endian(1)), attribute(std::string(300, 's'), "")}) {
+    write_bytes(folder / "b.exr", picture_with(folder, torn));
+    const std::string message = error_of(Blame::Input, [&] { guard_exr(folder / "b.exr"); });
+    EXPECT_TRUE(message.find("attribute \"story\"") != std::string::npos ||
+                message.find("a name of more than 255 bytes") != std::string::npos)
+        << message;
+  }
+}
+
 TEST(ExrGuard, MoreChunksThanTheFileHasRoomForAreRefused) {
   const TemporaryFolder folder;
   write_bytes(folder / "b.exr",

@@ -78,7 +78,7 @@ inline Found find(const scenes::Scene& scene, double camera_height_m = 0.5) {
           .image;
   for (const float g : image.find("G")->values) found.drawn += double(g) * base::pi / rho / 16.0;
   const PictureMean paths = estimate(trace_paths(scene, prepared.groups, prepared.effects,
-                                              prepared.query, camera, pixels(4, 256)));
+                                                 prepared.query, camera, pixels(4, 256)));
   found.traced = paths.mean * base::pi / rho;
   found.std_error = paths.std_error * base::pi / rho;
   return found;
