@@ -36,6 +36,16 @@ std::vector<std::string> part_free(const std::vector<std::string>& arguments) {
   return kept;
 }
 
+std::string part_in(const std::vector<std::string>& arguments) {
+  const std::string option = "--part";
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    const std::string& word = arguments[k];
+    if (word == option && k + 1 < arguments.size()) return arguments[k + 1];
+    if (word.starts_with(option + "=")) return word.substr(option.size() + 1);
+  }
+  return "";
+}
+
 void check_ranks_alike(const Json& things) {
   base::Ranks* const ranks = base::ranks();
   if (ranks == nullptr) return;

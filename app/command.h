@@ -37,6 +37,9 @@ struct Common {
 // --max-memory, --quiet and --json.
 [[nodiscard]] std::vector<std::string> part_free(const std::vector<std::string>& arguments);
 
+// What --part says; empty without it.
+[[nodiscard]] std::string part_in(const std::vector<std::string>& arguments);
+
 // Throws base::Error (Input) unless each of these, by name, is the same for all ranks: those that
 // differ would wait for each other for ever, or make one picture of two scenes.
 void check_ranks_alike(const Json& things);

@@ -175,6 +175,10 @@ int run(std::vector<std::string> arguments, const Workers& workers) {
     return 0;
   }
   base::Ranks* const ranks = workers.ranks;
+  if (workers.whole && ranks != nullptr) {
+    const base::RanksInForce all(ranks);
+    check_ranks_alike(Json::object({{"--part", part_in(common.arguments)}}));
+  }
   if (workers.whole && ranks != nullptr && is_study_of_ranks(program, common.arguments)) {
     return study_in_ranks(common.arguments, *ranks);
   }

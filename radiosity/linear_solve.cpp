@@ -54,20 +54,21 @@ class RadiosityOperator : public Eigen::EigenBase<RadiosityOperator> {
   }
 
   [[nodiscard]] Vector apply(const Vector& x) const {
-    ask_for_product(true);
-    // Sent, and not changed.
-    broadcast(const_cast<double*>(x.data()), sizeof(double) * size());
     Vector y(x.size());
-    multiply_own(factors_, {x.data(), size()}, {y.data(), size()}, columns_);
-    factors_.shares.tell_first(y.data(), columns_);
+    product({x.data(), size()}, {y.data(), size()});
     for (Eigen::Index k = 0; k < y.size(); ++k) {
       y[k] = x[k] - reflectance_[static_cast<std::size_t>(k)] * y[k];
     }
     return y;
   }
 
-  [[nodiscard]] bool asks() const {
-    return !factors_.shares.divided() || base::ranks()->number() == 0;
+  // y = F x.
+  void product(std::span<const double> x, std::span<double> y) const {
+    ask_for_product(true);
+    // Sent, and not changed.
+    factors_.shares.tell_all(const_cast<double*>(x.data()), x.size());
+    multiply(factors_, x, y, columns_);
+    factors_.shares.tell_first(y.data(), columns_);
   }
 
   // Until the first rank is done.
@@ -75,31 +76,19 @@ class RadiosityOperator : public Eigen::EigenBase<RadiosityOperator> {
     const auto [begin, end] = factors_.shares.own(factors_.count());
     std::vector<double> x(size()), y((end - begin) * columns_);
     while (ask_for_product(true)) {
-      broadcast(x.data(), sizeof(double) * size());
-      multiply_own(factors_, x, y, columns_);
+      factors_.shares.tell_all(x.data(), x.size());
+      multiply(factors_, x, y, columns_);
       factors_.shares.tell_first(y.data(), columns_);
     }
   }
-
-  // The first rank ends the others' service; all get what it has found.
-  void share(LinearSolve& found) const {
-    if (asks()) ask_for_product(false);
-    found.x.resize(size());
-    broadcast(found.x.data(), sizeof(double) * size());
-    for (double* const number : {&found.residual, &found.error}) broadcast(number, sizeof *number);
-    broadcast(&found.iterations, sizeof found.iterations);
-  }
+  void end_service() const { ask_for_product(false); }
 
  private:
-  [[nodiscard]] std::size_t size() const { return reflectance_.size(); }
-
-  void broadcast(void* first, std::size_t bytes) const {
-    if (factors_.shares.divided()) base::ranks()->broadcast(first, bytes, 0);
-  }
+  [[nodiscard]] std::size_t size() const { return factors_.count() * columns_; }
 
   // What the first rank says.
   bool ask_for_product(bool more) const {
-    broadcast(&more, sizeof more);
+    factors_.shares.tell_all(&more, 1);
     return more;
   }
 
@@ -253,22 +242,25 @@ LinearSolve solve_linear(const FormFactors& factors, std::vector<double> source,
                          std::span<const double> reflectance, std::size_t columns,
                          double tolerance) {
   LinearSolve result;
+  const RadiosityOperator system(factors, reflectance, columns);
+  if (!factors.shares.joins()) {
+    system.serve();
+    return result;
+  }
   const std::vector<double> norms = column_norms(source, columns);
   if (source.empty() || *std::max_element(norms.begin(), norms.end()) <= 0.0) {
     result.x.assign(source.size(), 0.0);
-    return result;
-  }
-  const RadiosityOperator system(factors, reflectance, columns);
-  Vector b;
-  if (system.asks()) b = Eigen::Map<Vector>(source.data(), Eigen::Index(source.size()));
-  base::release(source);
-  if (system.asks()) {
+    result.fx = result.x;
+  } else {
+    Vector b = Eigen::Map<Vector>(source.data(), Eigen::Index(source.size()));
+    base::release(source);
     scale_columns(b, inverse(norms));
     result = solve_scaled(system, b, norms, tolerance);
-  } else {
-    system.serve();
+    b.resize(0);
+    result.fx.resize(result.x.size());
+    system.product(result.x, result.fx);
   }
-  system.share(result);
+  system.end_service();
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include "radiosity/fill_solution.h"
 #include "radiosity/linear_solve.h"
 #include "radiosity/refine.h"
+#include "radiosity/tell_solution.h"
 #include "scenes/reflect/energy.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_cells.h"
@@ -65,7 +66,7 @@ std::vector<std::uint32_t> connected_parts(const FormFactors& f) {
 
 // In a part of the scene that is closed and reflects everything, B = S + rho F B has no solution
 // for any S above 0. Throws base::Error (Input) with the materials of such a part. source,
-// reflectance: count x columns.
+// reflectance: count x columns, with the rank that joins().
 void check_enclosure(const scenes::Scene& scene, const Patches& patches, const FormFactors& factors,
                      std::span<const double> source, std::span<const double> reflectance,
                      std::size_t columns) {
@@ -80,8 +81,10 @@ void check_enclosure(const scenes::Scene& scene, const Patches& patches, const F
   for (std::size_t k = 0; k < source.size() && !suspect; ++k) {
     suspect = !takes(k / columns, k % columns);
   }
+  factors.shares.tell_all(&suspect, 1);
   if (!suspect) return;
   const std::vector<std::uint32_t> part = connected_parts(factors);
+  if (!factors.shares.joins()) return;
   for (std::size_t c = 0; c < columns; ++c) {
     std::vector<char> ends(count, 0), lit(count, 0);
     for (std::size_t i = 0; i < count; ++i) {
@@ -230,30 +233,35 @@ Solution solve_keeping(const scenes::Scene& scene, const scenes::LightGroups& gr
   watch.lap("direct light");
 
   const std::size_t columns = solution.columns;
+  const bool joins = factors.shares.joins();
   PatchLight found;
-  found.reflectance = reflectances(scene, patches, groups.count());
-  found.emitted = exitances(scene, groups, patches);
-  found.direct = std::move(light.illuminance_lx);
+  std::vector<double> source;
+  if (joins) {
+    found.reflectance = reflectances(scene, patches, groups.count());
+    found.direct = std::move(light.illuminance_lx);
+    source = exitances(scene, groups, patches);
+  }
   found.sky = factors.sky_illuminance;
   const std::vector<double>& rho = found.reflectance;
-  std::vector<double> source(rho.size());
-  for (std::size_t k = 0; k < source.size(); ++k) {
-    source[k] = found.emitted[k] + rho[k] * found.direct[k];
-  }
+  for (std::size_t k = 0; k < source.size(); ++k) source[k] += rho[k] * found.direct[k];
   check_enclosure(scene, patches, factors, source, rho, columns);
   LinearSolve linear = solve_linear(factors, std::move(source), rho, columns, options.tolerance);
   report.iterations = linear.iterations;
   report.residual = linear.residual;
   report.solver_error = linear.error;
-  found.indirect.resize(linear.x.size());
-  multiply(factors, linear.x, found.indirect, columns);
   found.radiosity = std::move(linear.x);
+  found.indirect = std::move(linear.fx);
   watch.lap("linear solve");
 
-  fill_solution(scene, groups, effects, factors, report.balance.balanced, found, solution);
-  for (std::size_t o = 0; o < object_backs.size(); ++o) {
-    report.objects[o].back_share = object_backs[o];
+  if (joins) {
+    found.emitted = exitances(scene, groups, patches);
+    fill_solution(scene, groups, effects, factors, report.balance.balanced, found, solution);
+    for (std::size_t o = 0; o < object_backs.size(); ++o) {
+      report.objects[o].back_share = object_backs[o];
+    }
+    found = {};
   }
+  tell_solution(factors.shares, solution);
   watch.lap("ledger");
   return solution;
 }

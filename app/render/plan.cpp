@@ -67,7 +67,7 @@ struct RankBytes {
 };
 
 // Of the solution alone, with its error stated, and of each camera's picture of its own size, the
-// solution included. Returns the most of them where so many ranks divide the matrix.
+// solution included. Returns the most of them where so many ranks divide the matrix; 0: no mpirun.
 RankBytes add_memory(Json& report, const LoadedScene& loaded, const RenderCall& call,
                      const Common& common, const scenes::Asked& asked,
                      const scenes::RayQuery& query, int ranks) {
@@ -83,7 +83,8 @@ RankBytes add_memory(Json& report, const LoadedScene& loaded, const RenderCall& 
   const auto add = [&](Json& to, const studies::MemoryCase& one) {
     to["memory"] = memory_json(studies::memory_needed(one));
     studies::MemoryCase divided = one;
-    divided.ranks = ranks;
+    divided.ranks = std::max(1, ranks);
+    divided.has_mpi = ranks > 0;
     most.take_most(divided);
   };
   studies::MemoryCase alone = sizes;
@@ -176,8 +177,7 @@ Json report_of(const RenderCall& call, const Common& common, int ranks) {
   report["images"] = images_of(loaded.scene, call, asked,
                                solves ? static_cast<std::uint64_t>(knobs.gather_rays) : 0);
   const scenes::RayQuery query(loaded.scene);
-  const RankBytes bytes =
-      add_memory(report, loaded, call, common, asked, query, std::max(1, ranks));
+  const RankBytes bytes = add_memory(report, loaded, call, common, asked, query, ranks);
   add_seconds(report, loaded, call, common, asked, query, ranks, bytes);
   return report;
 }

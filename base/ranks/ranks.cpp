@@ -21,21 +21,25 @@ void work_alone(std::size_t count, const Work& work) {
   });
 }
 
-// Every rank hears what the others have worked out.
-void exchange(Ranks& all, std::vector<std::size_t>& mine, const Transfer& transfer) {
+// Every rank, or the first, hears what the others have worked out.
+void exchange(Ranks& all, std::vector<std::size_t>& mine, const Transfer& transfer, Hears hears) {
   const auto say = [&] {
     Parcel sent;
     sent.pass(mine);
     for (const std::size_t k : mine) transfer(k, sent);
     return sent.take_bytes();
   };
-  hear_all(all, say, [&](int rank, std::string bytes) {
+  const auto hear = [&](int rank, std::string bytes) {
     if (rank == all.number()) return;
     Parcel got(std::move(bytes));
     std::vector<std::size_t> theirs;
     got.pass(theirs);
     for (const std::size_t k : theirs) transfer(k, got);
-  });
+  };
+  if (hears == Hears::All) return hear_all(all, say, hear);
+  if (all.number() > 0) all.send(say(), 0);
+  for (int rank = 1; all.number() == 0 && rank < all.count(); ++rank) hear(rank, all.receive(rank));
+  meet(all);
 }
 
 }  // namespace
@@ -81,7 +85,7 @@ void meet(Ranks& ranks) {
       ranks, [] { return std::string(); }, [](int, const std::string&) {});
 }
 
-void share_loop(std::size_t count, const Work& work, const Transfer& transfer) {
+void share_loop(std::size_t count, const Work& work, const Transfer& transfer, Hears hears) {
   if (count < 2 || ranks() == nullptr) return work_alone(count, work);
   std::vector<std::uint8_t> is_mine(count);
   const auto take_all = [&](std::size_t, std::size_t) {
@@ -95,13 +99,14 @@ void share_loop(std::size_t count, const Work& work, const Transfer& transfer) {
   for (std::size_t k = 0; k < count; ++k) {
     if (is_mine[k] != 0) mine.push_back(k);
   }
-  exchange(*ranks(), mine, transfer);
+  exchange(*ranks(), mine, transfer, hears);
   ranks()->end_of_taking();
 }
 
 void share_chunks(std::size_t count, std::size_t chunk,
                   const std::function<void(std::size_t, std::size_t)>& body,
-                  const std::function<void(std::size_t, std::size_t, Parcel&)>& transfer) {
+                  const std::function<void(std::size_t, std::size_t, Parcel&)>& transfer,
+                  Hears hears) {
   const std::size_t chunks = (count + chunk - 1) / chunk;
   const auto end_of = [&](std::size_t k) { return std::min(count, (k + 1) * chunk); };
   const auto work = [&](std::size_t k) { body(k * chunk, end_of(k)); };
@@ -112,8 +117,9 @@ void share_chunks(std::size_t count, std::size_t chunk,
     mine.push_back(k);
   }
   work_alone(mine.size(), [&](std::size_t i) { work(mine[i]); });
-  exchange(*ranks(), mine,
-           [&](std::size_t k, Parcel& parcel) { transfer(k * chunk, end_of(k), parcel); });
+  exchange(
+      *ranks(), mine,
+      [&](std::size_t k, Parcel& parcel) { transfer(k * chunk, end_of(k), parcel); }, hears);
 }
 
 bool holds_on_all_ranks(bool here) {

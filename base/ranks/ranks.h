@@ -90,6 +90,16 @@ class Parcel {
     values.resize(size);
     pass_bytes(values.data(), size * sizeof(Value));
   }
+  void pass(std::string& text) {
+    std::size_t size = text.size();
+    pass(size);
+    text.resize(size);
+    pass_bytes(text.data(), size);
+  }
+  template <class... Values>
+  void pass_all(Values&... values) {
+    (pass(values), ...);
+  }
   void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
   [[nodiscard]] std::string take_bytes() { return std::move(bytes_); }
   [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
@@ -122,18 +132,23 @@ void hear_all(Ranks& ranks, const std::function<std::string()>& say,
 // Returns once every rank has called it.
 void meet(Ranks& ranks);
 
+// Which rank has all that a shared loop has changed. The others have what they did themselves.
+enum class Hears { All, First };
+
 // work(k) for every k in [0, count), in parallel, each by the rank that comes to it first: for
 // items of a millisecond or more. transfer(k) must pass all that work(k) changes, so that
-// afterwards every rank has all of it. A single item is worked out by every rank, without a word:
-// what is called from within a parallel loop must be so.
+// afterwards every rank has all of it, or the first. A single item is worked out by every rank,
+// without a word: what is called from within a parallel loop must be so.
 void share_loop(std::size_t count, const std::function<void(std::size_t k)>& work,
-                const std::function<void(std::size_t k, Parcel& parcel)>& transfer);
+                const std::function<void(std::size_t k, Parcel& parcel)>& transfer,
+                Hears hears = Hears::All);
 
 // The same of body(begin, end) over [0, count) in chunks, dealt out in turn: for cheap ones.
 void share_chunks(
     std::size_t count, std::size_t chunk,
     const std::function<void(std::size_t begin, std::size_t end)>& body,
-    const std::function<void(std::size_t begin, std::size_t end, Parcel& parcel)>& transfer);
+    const std::function<void(std::size_t begin, std::size_t end, Parcel& parcel)>& transfer,
+    Hears hears = Hears::All);
 
 // Whether it holds on every rank.
 [[nodiscard]] bool holds_on_all_ranks(bool here);

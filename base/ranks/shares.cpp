@@ -2,6 +2,7 @@
 #include "base/ranks/shares.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 
 namespace earthshine::base {
@@ -31,6 +32,20 @@ Shares::Range Shares::own(std::size_t count) const {
 int Shares::holder(std::size_t item) const {
   return static_cast<int>(std::upper_bound(start_.begin(), start_.end(), item) - start_.begin()) -
          1;
+}
+
+void Shares::tell_all(const std::function<void(Parcel&)>& pass) const {
+  if (!divided()) return;
+  Parcel said;
+  if (joins()) pass(said);
+  std::string bytes = said.take_bytes();
+  std::uint64_t size = bytes.size();
+  tell_all(&size, 1);
+  bytes.resize(size);
+  tell_all(bytes.data(), size);
+  if (joins()) return;
+  Parcel heard(std::move(bytes));
+  pass(heard);
 }
 
 void Shares::hear(const Pass& say, const Pass& listen) const {

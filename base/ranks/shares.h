@@ -25,6 +25,9 @@ class Shares {
   [[nodiscard]] bool divided() const { return !start_.empty(); }
   // Of `count` items those that this rank has.
   [[nodiscard]] Range own(std::size_t count) const;
+  // Whether this rank is the one that works on what is found of all items: the first; each rank
+  // where they are undivided.
+  [[nodiscard]] bool joins() const { return !divided() || ranks()->number() == 0; }
   // The rank that has the item, of divided ones.
   [[nodiscard]] int holder(std::size_t item) const;
 
@@ -40,6 +43,13 @@ class Shares {
     static_assert(std::is_trivially_copyable_v<Value>);
     if (divided()) ranks()->gather_at_first(values, each * sizeof(Value), start_);
   }
+  // What the one that joins() has, in all: values, or what it passes.
+  template <class Value>
+  void tell_all(Value* values, std::size_t count) const {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    if (divided()) ranks()->broadcast(values, count * sizeof(Value), 0);
+  }
+  void tell_all(const std::function<void(Parcel& parcel)>& pass) const;
   // What each rank has found among its own, rank after rank: a rank speaks when it has heard those
   // before it, and hears itself too. Nothing where undivided.
   using Pass = std::function<void(Parcel& parcel)>;

@@ -161,21 +161,22 @@ class DirectStage {
       : scene_(scene),
         query_(query),
         patches_(patches),
-        open_(factors.open),
-        landing_{open_areas(factors.open, patches.area_m2), factors.kept_direct},
+        factors_(factors),
+        landing_{factors.shares.joins() ? open_areas(factors.open, patches.area_m2)
+                                        : std::vector<double>(),
+                 factors.kept_direct},
         options_(options),
         light_(light) {}
 
   // A source whose flux is not known (the sky): taken as sampled.
   void add(const Source& source) {
-    const Sampled sampled =
-        sample_patches(query_, patches_, open_, source, options_.seed, light_.shadow_rays);
-    store(sampled.illuminance_lx, source.group, Rgb(1.0));
+    const Sampled sampled = sample(source);
+    if (factors_.shares.joins()) store(sampled.illuminance_lx, source.group, Rgb(1.0));
   }
 
   void add(const Source& source, SourceFlux flux, const Emit& emit) {
-    const Sampled sampled =
-        sample_patches(query_, patches_, open_, source, options_.seed, light_.shadow_rays);
+    const Sampled sampled = sample(source);
+    if (!factors_.shares.joins()) return;
     find_shares(scene_, query_, emit, source.key, options_.flux_rays, options_.seed, flux);
     light_.shadow_rays += static_cast<std::uint64_t>(options_.flux_rays);
     const Rgb landed = landed_as_sampled(sampled, landing_);
@@ -184,10 +185,6 @@ class DirectStage {
     flux.landed_lm = scale * landed;
     store(sampled.illuminance_lx, source.group, scale);
     light_.sources.push_back(std::move(flux));
-  }
-
-  void store(const std::vector<Rgb>& illuminance, std::size_t group, const Rgb& scale) {
-    for (std::size_t i = 0; i < illuminance.size(); ++i) add(i, group, scale * illuminance[i]);
   }
 
   // One of the `parts` values that each patch has.
@@ -199,6 +196,16 @@ class DirectStage {
   }
 
  private:
+  [[nodiscard]] Sampled sample(const Source& source) const {
+    return sample_patches(query_, patches_, factors_.open, source, options_.seed,
+                          light_.shadow_rays,
+                          factors_.shares.divided() ? base::Hears::First : base::Hears::All);
+  }
+
+  void store(const std::vector<Rgb>& illuminance, std::size_t group, const Rgb& scale) {
+    for (std::size_t i = 0; i < illuminance.size(); ++i) add(i, group, scale * illuminance[i]);
+  }
+
   void add(std::size_t patch, std::size_t group, const Rgb& illuminance) {
     for (int c = 0; c < 3; ++c) {
       light_.illuminance_lx[patch * light_.columns + 3 * group + static_cast<std::size_t>(c)] +=
@@ -209,7 +216,7 @@ class DirectStage {
   const scenes::Scene& scene_;
   const scenes::RayQuery& query_;
   const Patches& patches_;
-  const OpenParts& open_;
+  const FormFactors& factors_;
   Landing landing_;
   const DirectOptions& options_;
   DirectLight& light_;
@@ -230,9 +237,10 @@ DirectLight direct_light(const scenes::Scene& scene, const scenes::LightGroups& 
                          const DirectOptions& options) {
   DirectLight light;
   light.columns = 3 * groups.count();
-  light.illuminance_lx.assign(patches.count() * light.columns, 0.0);
+  const bool joins = factors.shares.joins();
+  if (joins) light.illuminance_lx.assign(patches.count() * light.columns, 0.0);
   DirectStage stage(scene, query, patches, factors, options, light);
-  if (effects.earth_by_gather) {
+  if (effects.earth_by_gather && joins) {
     const std::size_t parts = factors.sky_illuminance.size() / patches.count();
     for (std::size_t part = 0; part < parts; ++part) {
       stage.store_part(factors.sky_illuminance, parts, part, groups.earth + part);

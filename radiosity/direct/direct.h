@@ -55,7 +55,8 @@ struct DirectOptions {
 };
 
 // Per patch the mean over factors.open, what no body covers. factors.sky_illuminance is taken for
-// the Earth where it is wide (Effects::earth_by_gather).
+// the Earth where it is wide (Effects::earth_by_gather). Of ranks that divide the factors the first
+// alone has it; the others cast their part of its shadow rays.
 [[nodiscard]] DirectLight direct_light(const scenes::Scene& scene,
                                        const scenes::LightGroups& groups,
                                        const scenes::Effects& effects,

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/numbers/random.h"
-#include "base/ranks/ranks.h"
 #include "radiosity/bodies/closed_bodies.h"
 
 namespace earthshine::radiosity {
@@ -112,7 +111,8 @@ void take_samples(const Source& source, std::span<const scenes::FlatMirror> mirr
 }
 
 Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, const OpenParts& open,
-                       const Source& source, std::uint64_t seed, std::uint64_t& rays) {
+                       const Source& source, std::uint64_t seed, std::uint64_t& rays,
+                       base::Hears hears) {
   Sampled sampled{std::vector<Rgb>(patches.count(), Rgb(0.0)),
                   std::vector<double>(patches.count(), 0.0)};
   constexpr std::size_t chunk = 256;
@@ -147,12 +147,14 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
       chunk_rays[begin / chunk] += receiver.rays();
     }
   };
-  base::share_chunks(patches.count(), chunk, sample,
-                     [&](std::size_t begin, std::size_t end, base::Parcel& parcel) {
-                       parcel.pass_range(&sampled.illuminance_lx[begin], end - begin);
-                       parcel.pass_range(&sampled.variance[begin], end - begin);
-                       parcel.pass(chunk_rays[begin / chunk]);
-                     });
+  base::share_chunks(
+      patches.count(), chunk, sample,
+      [&](std::size_t begin, std::size_t end, base::Parcel& parcel) {
+        parcel.pass_range(&sampled.illuminance_lx[begin], end - begin);
+        parcel.pass_range(&sampled.variance[begin], end - begin);
+        parcel.pass(chunk_rays[begin / chunk]);
+      },
+      hears);
   for (const std::uint64_t count : chunk_rays) rays += count;
   return sampled;
 }

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "base/ranks/ranks.h"
 #include "radiosity/patches/patches.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/ray_query.h"
@@ -40,9 +41,10 @@ void take_samples(const Source& source, std::span<const scenes::FlatMirror> mirr
 
 // Owen-Sobol in four dimensions (point of the patch, point of the source), keyed by patch and
 // source. Points that bodies cover are left out, and the next of the sequence taken; a wholly
-// covered patch gets nothing. Adds the rays cast to `rays`.
+// covered patch gets nothing. Adds the rays cast to `rays`. hears: the rank that has them all.
 [[nodiscard]] Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches,
                                      const OpenParts& open, const Source& source,
-                                     std::uint64_t seed, std::uint64_t& rays);
+                                     std::uint64_t seed, std::uint64_t& rays,
+                                     base::Hears hears = base::Hears::All);
 
 }  // namespace earthshine::radiosity

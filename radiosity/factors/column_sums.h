@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/free_memory.h"
 #include "base/parallel.h"
 #include "base/ranks/ranks.h"
 #include "radiosity/factors/form_factors.h"
@@ -22,8 +23,9 @@ namespace earthshine::radiosity {
 template <class Weight>
 class ColumnSums {
  public:
-  ColumnSums(const FormFactors& f, Weight weight)
-      : f_(f), weight_(weight), count_(f.count()), own_(f.shares.own(count_)) {
+  // hears: who has the sums; the others get none.
+  ColumnSums(const FormFactors& f, Weight weight, base::Hears hears)
+      : f_(f), weight_(weight), hears_(hears), count_(f.count()), own_(f.shares.own(count_)) {
     while (first_ < last_ && begin(first_ + 1) <= own_.begin) ++first_;
     while (first_ < last_ && (begin(last_ - 1) >= own_.end || own_.begin == own_.end)) --last_;
     if (first_ == last_) return;
@@ -101,8 +103,10 @@ class ColumnSums {
       to[r] = sent.take_bytes();
     }
     std::vector<std::string> got = base::swap(all, std::move(to));
-    std::vector<double> total(count_);
-    const std::span<double> mine(total.data() + start[rank], start[rank + 1] - start[rank]);
+    const bool all_here = rank == 0 || hears_ == base::Hears::All;
+    std::vector<double> total(all_here ? count_ : start[rank + 1] - start[rank]);
+    const std::span<double> mine(total.data() + (all_here ? start[rank] : 0),
+                                 start[rank + 1] - start[rank]);
     for (std::size_t r = 0; r < ranks; ++r) {
       base::Parcel theirs(std::move(got[r]));
       while (!theirs.at_end()) add_band(mine, theirs);
@@ -111,8 +115,13 @@ class ColumnSums {
         for (std::size_t k = 0; k < mine.size(); ++k) mine[k] += sums[k];
       }
     }
-    for (std::size_t j = start[rank]; j < start[rank + 1]; ++j) total[j] *= f_.column_scale[j];
-    all.gather(total.data(), sizeof(double), start);
+    for (std::size_t k = 0; k < mine.size(); ++k) mine[k] *= f_.column_scale[start[rank] + k];
+    if (hears_ == base::Hears::All) {
+      all.gather(total.data(), sizeof(double), start);
+    } else {
+      all.gather_at_first(total.data(), sizeof(double), start);
+    }
+    if (!all_here) base::release(total);
     return total;
   }
 
@@ -127,6 +136,7 @@ class ColumnSums {
 
   const FormFactors& f_;
   Weight weight_;
+  base::Hears hears_;
   std::size_t count_;
   base::Shares::Range own_;
   std::size_t first_ = 0, last_ = bands;     // bands with rows here: [first_, last_)
@@ -135,8 +145,9 @@ class ColumnSums {
 };
 
 template <class Weight>
-[[nodiscard]] std::vector<double> weighted_column_sums(const FormFactors& f, Weight weight) {
-  return ColumnSums<Weight>(f, weight).find();
+[[nodiscard]] std::vector<double> weighted_column_sums(const FormFactors& f, Weight weight,
+                                                       base::Hears hears = base::Hears::All) {
+  return ColumnSums<Weight>(f, weight, hears).find();
 }
 
 }  // namespace earthshine::radiosity

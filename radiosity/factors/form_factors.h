@@ -51,7 +51,7 @@ struct FormFactors {
   std::vector<double>
       back_hits;  // per object of the scene: rays of exposed patches that met its back
   std::vector<Rgb> sky_illuminance;  // per patch, or per patch and cell of the sky, lx: pi times
-                                     // the mean over all rays of the sky's radiance
+                                     // the mean over all rays of the sky's radiance; empty: dark
   // A row of a wholly covered patch has no entries; black = lost = 1.
   OpenParts open;
 
@@ -101,11 +101,9 @@ inline constexpr double balance_to_rounding = 1e-13;
 BalanceReport balance(FormFactors& factors, std::span<const double> area_m2,
                       double enough = balance_to_rounding);
 
-// y = F x for `columns` right-hand sides side by side (row-major, count x columns).
+// y = F x for `columns` right-hand sides side by side (row-major, count x columns); y: of this
+// rank's own rows.
 void multiply(const FormFactors& factors, std::span<const double> x, std::span<double> y,
               std::size_t columns);
-// The same of this rank's own rows alone, without a word to the others; y: of these rows.
-void multiply_own(const FormFactors& factors, std::span<const double> x, std::span<double> y,
-                  std::size_t columns);
 
 }  // namespace earthshine::radiosity

@@ -76,8 +76,8 @@ constexpr MultiplyRows multiply_blocks[most_blocks] = {
 
 }  // namespace
 
-void multiply_own(const FormFactors& factors, std::span<const double> x, std::span<double> y,
-                  std::size_t columns) {
+void multiply(const FormFactors& factors, std::span<const double> x, std::span<double> y,
+              std::size_t columns) {
   const base::Shares::Range own = factors.shares.own(factors.count());
   for (std::size_t first = 0; first < columns; first += most_blocks * lanes) {
     const std::size_t blocks = std::min((columns - first + lanes - 1) / lanes, most_blocks);
@@ -87,14 +87,6 @@ void multiply_own(const FormFactors& factors, std::span<const double> x, std::sp
                                   first, &y[begin * columns]);
     });
   }
-}
-
-void multiply(const FormFactors& factors, std::span<const double> x, std::span<double> y,
-              std::size_t columns) {
-  const base::Shares::Range own = factors.shares.own(factors.count());
-  multiply_own(factors, x, y.subspan(own.begin * columns, (own.end - own.begin) * columns),
-               columns);
-  factors.shares.tell(y.data(), columns);
 }
 
 }  // namespace earthshine::radiosity

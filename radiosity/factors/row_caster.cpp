@@ -40,7 +40,9 @@ RowCaster::RowCaster(const scenes::Scene& scene, const scenes::RayQuery& query,
       runs_(runs),
       sky_(sky),
       sky_cells_(options.sky_cells),
-      sky_parts_(sky_cells_ == nullptr ? 1 : sky_cells_->count()),
+      sky_parts_(!sky                    ? 0
+                 : sky_cells_ == nullptr ? 1
+                                         : sky_cells_->count()),
       seed_(options.seed),
       replicate_(options.replicate),
       leave_out_covered_(options.leave_out_covered),

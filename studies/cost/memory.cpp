@@ -10,6 +10,7 @@
 #include "radiosity/refine.h"
 #include "raytrace/frame/cryptomatte.h"
 #include "raytrace/incoming/radiance_table.h"
+#include "scenes/sky/sky_cells.h"
 #include "scenes/surface_texture.h"
 
 namespace earthshine::studies {
@@ -27,24 +28,27 @@ constexpr double facet_bytes = sizeof(radiosity::Facet), target_bytes = 32.0, me
 
 constexpr double patch_bytes = 8.0 + 4.0 + sizeof(radiosity::Cell) + 1.0 + 8.0;
 // Per patch, of the matrix's rows and columns: where a row starts, scales, shares of sky and black
-// backs, what is kept; what is open, the sky's light. While they are cast also what each row found.
-constexpr double row_bytes = 110.0, cast_bytes = 50.0;
-// While they are balanced: the scales' vectors and those of Newton's step; sums of columns in 16
-// bands, of which each rank has its own, has sent as much and got its columns'.
-constexpr double balance_bytes = 140.0, bands_bytes = 128.0;
+// backs, what is kept, what is open; per part of the sky its light. While they are cast also what
+// each row found.
+constexpr double row_bytes = 80.0, sky_bytes = 24.0, cast_bytes = 50.0;
+// While they are balanced: what all ranks have, and the first's vectors of Newton's step; sums of
+// columns in 16 bands, of which each rank has its own, has sent as much and got its columns'.
+constexpr double balance_bytes = 60.0, newton_bytes = 65.0, bands_bytes = 128.0;
 constexpr double counter_bytes = 4.125;  // per patch and thread
 constexpr double entry_bytes = 8.0;      // column and hits
 // Bands of rows are joined to the matrix sixteenth by sixteenth. Ranks send them to one another,
 // and who was free more often has cast more of them than its part.
 constexpr double joined_copies = 1.0 + 1.0 / 16.0, sent_copies = 1.5;
-// Doubles per patch and column. While the linear system is solved: reflectance, exitance and direct
-// light (3), and on the rank that iterates thirteen vectors (linear_solve.h), elsewhere the
-// product's two. After it: those three, radiosity, what falls on it, and the four floats that are
-// kept.
-constexpr double light_vectors = 3.0, iteration_vectors = 13.0, filled_vectors = 7.0;
-// While its error is stated: the solution twice, light and what samples find (surface_samples.h);
-// of a patch those of its samples.
-constexpr double error_vectors = 8.0, error_bytes = 300.0;
+// Doubles per patch and column. Of the first rank while the linear system is solved: reflectance
+// and direct light, and thirteen vectors (linear_solve.h); after it exitance, radiosity and what
+// falls on it, and the four floats that are kept, of which each rank has two while they are filled.
+constexpr double light_vectors = 2.0, iteration_vectors = 13.0, filled_vectors = 7.0,
+                 told_vectors = 2.0;
+// While the solution's error is stated: two parts of the light, the solution, all as floats, and
+// what rays read of it. Bytes: of the first rank what samples found and what is known of patches,
+// of each the list of samples and what is under way; of a linear system of six columns.
+constexpr double error_floats = 3.0, found_bytes = 230.0, samples_bytes = 60.0;
+constexpr double error_columns = 6.0;
 constexpr double solution_bytes = 4.0 * sizeof(float);  // per patch and column
 
 constexpr double texel_bytes = 16.0;  // radiance of a patch or knot in a layer
@@ -58,11 +62,21 @@ double record_bytes(const MemoryCase& m) {
          (m.shares_gather ? b.gather_point + per_layer * layers : 0.0);
 }
 
-// Of the linear solve, whose product packs its columns in fours.
-double solver_vectors(const MemoryCase& m) {
-  const auto columns = static_cast<double>(std::max<std::size_t>(1, m.columns));
-  const double packed = 4.0 * std::ceil(columns / 4.0) / columns;
-  return light_vectors + packed + (m.first_rank ? iteration_vectors : 1.0 + 1.0 / m.ranks);
+// Bytes per patch of a linear solve, whose product packs its columns in fours.
+double solver_bytes(const MemoryCase& m, double columns) {
+  const double packed = 4.0 * std::ceil(columns / 4.0);
+  return sizeof(double) *
+         (packed + columns * (m.first_rank ? iteration_vectors : 1.0 + 1.0 / m.ranks));
+}
+
+// Bytes per patch of the error over the surfaces, beside the matrix: light as samples and rays read
+// it, and then the equation of the error.
+double stating_bytes(const MemoryCase& m, double columns) {
+  const double tables = (columns / 3.0 + 2.0) * texel_bytes;
+  const double more = m.first_rank ? found_bytes + row_bytes : 3.0 * sizeof(double);
+  return columns * error_floats * sizeof(float) + samples_bytes + more +
+         std::max(tables, solver_bytes(m, error_columns) +
+                              (m.first_rank ? error_columns * sizeof(double) : 0.0));
 }
 
 }  // namespace
@@ -77,7 +91,7 @@ MemoryNeed memory_needed(const MemoryCase& m) {
   const auto patches = static_cast<double>(m.patches), columns = static_cast<double>(m.columns);
   const auto triangles = static_cast<double>(m.triangles);
   const auto pixels = static_cast<double>(m.pixels), layers = static_cast<double>(m.layers);
-  MemoryNeed standing = {{{"program", program_bytes + (m.ranks > 1 ? open_mpi_bytes : 0.0)},
+  MemoryNeed standing = {{{"program", program_bytes + (m.has_mpi ? open_mpi_bytes : 0.0)},
                           {"scene", double(m.vertices) * vertex_bytes +
                                         triangles * (triangle_bytes + hierarchy_bytes)}}};
   if (m.texture_bytes > 0) standing.parts.push_back({"textures", double(m.texture_bytes)});
@@ -92,19 +106,23 @@ MemoryNeed memory_needed(const MemoryCase& m) {
   MemoryNeed casting = standing, balancing = standing, solving = standing, stating = standing;
   if (m.solves) {
     const double entries = patches * m.row_entries * entry_bytes / m.ranks;
-    const double rows = patches * (row_bytes + counter_bytes * m.threads);
+    const double counters = patches * counter_bytes * m.threads;
+    const double rows = patches * (row_bytes + sky_bytes * double(m.sky_parts)) + counters;
     const double bands = bands_bytes * (m.ranks > 1 ? 3.0 / m.ranks : 1.0);
+    const double newton = m.first_rank ? newton_bytes : 0.0;
     casting.parts.push_back({"form factors", entries * (m.ranks > 1 ? sent_copies : joined_copies) +
                                                  rows + patches * cast_bytes});
     balancing.parts.push_back({"form factors", entries * (m.copies_matrix ? 2.0 : 1.0) + rows +
-                                                   patches * (balance_bytes + bands)});
-    const double vectors = solver_vectors(m), doubles = patches * columns * sizeof(double);
+                                                   patches * (balance_bytes + newton + bands)});
+    const double doubles = patches * columns * sizeof(double);
     solving.parts.push_back({"form factors", entries + rows});
-    solving.parts.push_back({"light groups", doubles * std::max(vectors, filled_vectors)});
+    solving.parts.push_back(
+        {"light groups", std::max(patches * solver_bytes(m, columns) +
+                                      (m.first_rank ? light_vectors : 0.0) * doubles,
+                                  (m.first_rank ? filled_vectors : told_vectors) * doubles)});
     if (m.states_error) {
-      stating.parts.push_back({"form factors", entries + rows});
-      stating.parts.push_back(
-          {"light groups", doubles * (vectors + error_vectors) + patches * error_bytes});
+      stating.parts.push_back({"form factors", entries + counters});
+      stating.parts.push_back({"light groups", patches * stating_bytes(m, columns)});
     }
   }
   MemoryNeed drawing = standing;
@@ -143,7 +161,8 @@ MemoryCase memory_case(const scenes::Scene& scene, const scenes::LightGroups& gr
   m.triangles = scene.triangles.size();
   m.texture_bytes = scenes::texture_bytes(scene);
   m.threads = base::available_threads();
-  if (base::ranks() != nullptr) m.ranks = base::ranks()->count();
+  m.has_mpi = base::ranks() != nullptr;
+  if (m.has_mpi) m.ranks = base::ranks()->count();
   if (!radiosity::is_lit(effects) || scene.triangles.empty()) return m;
   set_patches(m,
               options.refine.on ? radiosity::most_refined_patches(scene, options)
@@ -152,6 +171,7 @@ MemoryCase memory_case(const scenes::Scene& scene, const scenes::LightGroups& gr
   m.refined = options.refine.on;
   m.copies_matrix = true;
   m.columns = 3 * groups.count();
+  if (effects.earth_by_gather) m.sky_parts = scenes::earth_parts(scene);
   m.solves = true;
   return m;
 }

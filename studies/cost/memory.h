@@ -38,9 +38,11 @@ struct MemoryCase {
   double row_entries = 0.0;    // form factors of a mean row
   bool copies_matrix = false;  // some patch no ray reaches borrows: the matrix is there twice
   std::size_t columns = 0;     // 3 * light groups
+  std::size_t sky_parts = 0;   // whose light form-factor rays bring
   bool solves = false;         // the matrix is cast; false with columns: the solution is read
   int threads = 1;
   int ranks = 1;               // that divide the entries of the matrix among them
+  bool has_mpi = false;        // earthshine-mpi, by mpirun
   bool first_rank = true;      // which iterates for all (radiosity/linear_solve.h)
   bool states_error = false;   // of the solution, over all surfaces (studies/surfaces)
   std::size_t pixels = 0;      // 0: no picture

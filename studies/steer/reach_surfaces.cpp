@@ -53,8 +53,8 @@ class SurfaceSearch {
 
   SteeredSolution run() {
     if (!light_) return std::move(result_);
-    if (light_->mean_radiosity() > 0.0) {
-      mean_ = light_->mean_radiosity();
+    mean_ = light_->told_mean();
+    if (mean_ > 0.0) {
       if (may_cut()) cut_shadows();
       improve();
       if (may_cast() && is_exact()) return with_exact_form_factors();
@@ -65,9 +65,26 @@ class SurfaceSearch {
   }
 
  private:
+  // Of ranks that divide the form factors the first decides, and the others sample with it.
+  [[nodiscard]] bool joins() const { return light_->shares().joins(); }
+  [[nodiscard]] SurfaceSamples sample(std::span<const std::uint32_t> which,
+                                      std::span<const Effort> effort, const std::string& name,
+                                      SamplesOf of) {
+    SurfaceSamples samples = sampler_.sample(
+        light_->light(), which, effort, ++pass_, mean_, light_->bodies(), stage(name), of,
+        light_->shares().divided() ? base::Hears::First : base::Hears::All);
+    rays_ += samples.rays;
+    return samples;
+  }
+  [[nodiscard]] std::vector<radiosity::Cut> worst(const CutChoice& choice, double enough) {
+    const std::size_t most = most_patches();  // as all ranks have memory for
+    std::vector<radiosity::Cut> cuts;
+    if (joins()) cuts = choice.worst(light_->patches(), enough, most);
+    light_->shares().tell_all([&](base::Parcel& parcel) { parcel.pass(cuts); });
+    return cuts;
+  }
   [[nodiscard]] bool may_cut() const { return may_cut_cells(given_); }
   [[nodiscard]] bool may_cast() const { return !given_.form_factor_rays; }
-
   // What reflects was lit by shadow rays alone, and evenly.
   [[nodiscard]] bool is_exact() const {
     return result_.steps.size() == 1 && result_.steps.back().estimate == 0.0 &&
@@ -123,13 +140,11 @@ class SurfaceSearch {
                           0});
       }
       const SurfaceSamples samples =
-          sampler_.sample(light_->light(), which, effort, ++pass_, mean_, light_->bodies(),
-                          stage(fmt::format("shadows, {} patches", light_->patches().count())));
-      rays_ += samples.rays;
+          sample(which, effort, fmt::format("shadows, {} patches", light_->patches().count()),
+                 SamplesOf::Light);
       light_->correct(samples, which, effort);
-      choice.see(light_->patches(), samples, which);
-      const std::vector<radiosity::Cut> cuts =
-          choice.worst(light_->patches(), enough, most_patches());
+      if (joins()) choice.see(light_->patches(), samples, which);
+      const std::vector<radiosity::Cut> cuts = worst(choice, enough);
       if (cuts.empty()) break;
       const std::vector<std::uint32_t> parent = light_->cut(cuts);
       which = choice.follow(light_->patches(), parent);
@@ -143,14 +158,17 @@ class SurfaceSearch {
       std::vector<std::uint32_t> all(light_->patches().count());
       std::iota(all.begin(), all.end(), 0U);
       const double begun = time_gone();
-      const SurfaceSamples samples = sampler_.sample(light_->light(), all, effort, ++pass_, mean_,
-                                                     light_->bodies(), stage(under_way()));
+      const SurfaceSamples samples =
+          sample(all, effort, under_way(), may_cast() ? SamplesOf::Light : SamplesOf::Residual);
       last_took_ = time_gone() - begun;
-      const std::vector<double> variance = ray_variance(light_->patches(), samples, effort);
-      const LightNoise noise = noise_of(*light_, variance, samples);
+      std::vector<double> variance;
+      LightNoise noise;
+      if (joins()) {
+        variance = ray_variance(light_->patches(), samples, effort);
+        noise = noise_of(*light_, variance, samples);
+      }
       const ResidualError found =
           residual_error(*light_, samples, noise, sampler_.reflectances(), mean_, solver_error_);
-      rays_ += samples.rays;
       state(found, samples, effort);
       const double error = found.parts.total().estimate;
       if (error <= wanted_.error) return;
@@ -167,8 +185,8 @@ class SurfaceSearch {
       const std::size_t patches = light_->patches().count();
       if (may_cut() && found.patches > 0.8 * cut_share * squared(aim * wanted_.error)) {
         CutChoice choice(light_->patches());
-        choice.see(light_->patches(), samples, all, noise.rays);
-        const auto wanted = choice.worst(light_->patches(), cut_share * enough, most_patches());
+        if (joins()) choice.see(light_->patches(), samples, all, noise.rays);
+        const auto wanted = worst(choice, cut_share * enough);
         if (!wanted.empty()) {
           parent = light_->cut(wanted);
           cuts = light_->patches().count() > patches;
@@ -179,7 +197,8 @@ class SurfaceSearch {
         return stop(full_ ? Limit::Memory : Limit::Steps);
       }
       before = error;
-      effort = next_effort(variance, parent, noise_share * enough);
+      if (joins()) effort = next_effort(variance, parent, noise_share * enough);
+      light_->shares().tell_all([&](base::Parcel& parcel) { parcel.pass(effort); });
     }
   }
 
@@ -189,32 +208,13 @@ class SurfaceSearch {
            squared(error / wanted_.error) > most_times_more;
   }
 
-  // Rays in proportion to the root of area times variance, so that the noise that is left in all
-  // is `target`; at most four times as many as in the pass before, or as many as the time that is
-  // left pays for, and at least so many points that the error can be stated.
+  // At most four times as many rays as before, or as many as the time that is left pays for.
   [[nodiscard]] std::vector<Effort> next_effort(const std::vector<double>& variance,
                                                 const std::vector<std::uint32_t>& parent,
-                                                double target) {
-    const std::vector<double>& area = light_->patches().area_m2;
-    double roots = 0.0, all = 0.0, wanted = 0.0;
-    for (const double a : area) all += a;
-    std::vector<double> rays(parent.size());
-    for (std::size_t i = 0; i < parent.size(); ++i) {
-      rays[i] = std::sqrt(area[i] / all * variance[parent[i]]);
-      roots += rays[i];
-    }
-    for (std::uint32_t i = 0; i < parent.size(); ++i) {
-      rays[i] = std::max(0.0, rays[i] * roots / std::max(1e-300, target) - light_->gather_rays(i));
-      wanted += rays[i];
-    }
+                                                double target) const {
     double most = std::max(most_growth * last_rays_, double(1 << 20));
     if (last_took_ > 0.0) most = std::min(most, last_rays_ * (1.0 - time_gone()) / last_took_);
-    const double scale = std::min(1.0, most / std::max(1.0, wanted));
-    std::vector<Effort> next;
-    for (std::uint32_t i = 0; i < parent.size(); ++i) {
-      next.push_back(effort_of(std::max(scale * rays[i], 16.0 * points_wanted_ * area[i] / all)));
-    }
-    return next;
+    return effort_for(*light_, variance, parent, target, most, points_wanted_);
   }
 
   void state(const ResidualError& found, const SurfaceSamples& samples,

@@ -13,7 +13,8 @@ namespace {
 
 // Few patches hold much of the error: its mean is nearer to a lognormal than to a normal quantity.
 constexpr double sure = 1.5 * 1.645;
-constexpr double darkest = 0.02;  // of the mean that a solution has, that it should have
+constexpr std::size_t residual_columns = 6;  // three for either half of the samples
+constexpr double darkest = 0.02;             // of the mean that a solution has, that it should have
 
 Rgb at(const std::vector<double>& values, std::size_t first) {
   return {values[first], values[first + 1], values[first + 2]};
@@ -40,6 +41,60 @@ struct MeanSquare {
   }
 };
 
+ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& samples,
+                           const LightNoise& noise, const radiosity::PatchAlbedos& reflectances,
+                           double mean, double solver_error) {
+  ResidualError error;
+  const radiosity::Patches& patches = light.patches();
+  const std::size_t count = patches.count(), groups = light.light().columns() / 3;
+  std::vector<double> residual(count * residual_columns, 0.0);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < residual_columns; ++k) {
+      residual[i * residual_columns + k] = samples.residual[i].half[k / 3][static_cast<int>(k % 3)];
+    }
+  }
+  const std::vector<double> brought = light.brought(std::move(residual), residual_columns);
+  double area = 0.0, square = 0.0, rays = 0.0, lamps = 0.0, variance = 0.0, excess = 0.0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const PatchResidual& r = samples.residual[i];
+    if (r.taken == 0) continue;
+    const double part = patches.area_m2[i] * r.taken / r.tried;  // what no body covers
+    area += part;
+    const Rgb rho = reflectances.of(patches, i);
+    Rgb b(0.0);
+    for (std::size_t g = 0; g < groups; ++g) {
+      const float* own = &light.light().solution.radiosity[(i * groups + g) * 3];
+      b += Rgb(own[0], own[1], own[2]);
+    }
+    const double weight =
+        raytrace::error_weight(base::luminance(b + 0.5 * (r.half[0] + r.half[1])), mean);
+    const std::size_t j = light.coarse(i) * residual_columns;
+    const double ga = weight * base::luminance(rho * at(brought, j)),
+                 gb = weight * base::luminance(rho * at(brought, j + 3));
+    const double ra = weight * base::luminance(r.half[0]), rb = weight * base::luminance(r.half[1]);
+    square += part * (r.square + ra * gb + rb * ga + ga * gb);
+    rays += part * noise.rays[i];
+    lamps += part * noise.lamps[i];
+    variance += part * part * r.square_variance;
+    excess += part * 0.5 * (ra + rb + ga + gb) / std::max(1e-3, weight);
+  }
+  const double seen = light.mean_radiosity();
+  if (area <= 0.0 || seen <= 0.0) return error;
+  error.mean = std::max(darkest * seen, seen + excess / area);
+  const double unit = area * error.mean * error.mean;
+  error.square = std::max(0.0, square / unit);
+  error.doubt = std::sqrt(variance) / unit;
+  // Where noise is less than expected, all of the error is noise.
+  const double by_rays = std::min(error.square, rays / unit);
+  const double by_lamps = std::min(error.square - by_rays, lamps / unit);
+  error.patches = error.square - by_rays - by_lamps;
+  error.parts.form_factors = doubt_of(by_rays, 0.5 * by_rays);
+  error.parts.lamps = doubt_of(by_lamps, 0.5 * by_lamps);
+  error.parts.patches = doubt_of(error.patches, 0.3 * error.patches + sure * error.doubt);
+  error.parts.solver = {solver_error, solver_error};
+  return error;
+}
+
 }  // namespace
 
 Effort effort_of(double rays) {
@@ -56,6 +111,29 @@ std::vector<Effort> even_effort(const radiosity::Patches& patches, double points
     effort.push_back(effort_of(16.0 * (2.0 + points * area / all)));
   }
   return effort;
+}
+
+std::vector<Effort> effort_for(const LightOnSurfaces& light, const std::vector<double>& variance,
+                               const std::vector<std::uint32_t>& parent, double target, double most,
+                               double points) {
+  const std::vector<double>& area = light.patches().area_m2;
+  double roots = 0.0, all = 0.0, wanted = 0.0;
+  for (const double a : area) all += a;
+  std::vector<double> rays(parent.size());
+  for (std::size_t i = 0; i < parent.size(); ++i) {
+    rays[i] = std::sqrt(area[i] / all * variance[parent[i]]);
+    roots += rays[i];
+  }
+  for (std::uint32_t i = 0; i < parent.size(); ++i) {
+    rays[i] = std::max(0.0, rays[i] * roots / std::max(1e-300, target) - light.gather_rays(i));
+    wanted += rays[i];
+  }
+  const double scale = std::min(1.0, most / std::max(1.0, wanted));
+  std::vector<Effort> next;
+  for (std::uint32_t i = 0; i < parent.size(); ++i) {
+    next.push_back(effort_of(std::max(scale * rays[i], 16.0 * points * area[i] / all)));
+  }
+  return next;
 }
 
 std::vector<double> ray_variance(const radiosity::Patches& patches, const SurfaceSamples& samples,
@@ -87,54 +165,12 @@ ResidualError residual_error(const LightOnSurfaces& light, const SurfaceSamples&
                              const LightNoise& noise, const radiosity::PatchAlbedos& reflectances,
                              double mean, double solver_error) {
   ResidualError error;
-  const radiosity::Patches& patches = light.patches();
-  const std::size_t count = patches.count(), groups = light.light().columns() / 3;
-  // Both halves at once, three columns each.
-  std::vector<double> residual(count * 6, 0.0);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t k = 0; k < 6; ++k) {
-      residual[i * 6 + k] = samples.residual[i].half[k / 3][static_cast<int>(k % 3)];
-    }
+  if (light.shares().joins()) {
+    error = error_of_all(light, samples, noise, reflectances, mean, solver_error);
+  } else {
+    (void)light.brought({}, residual_columns);
   }
-  const std::vector<double> brought = light.brought(residual, 6);
-  double area = 0.0, square = 0.0, rays = 0.0, lamps = 0.0, variance = 0.0, excess = 0.0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const PatchResidual& r = samples.residual[i];
-    if (r.taken == 0) continue;
-    const double part = patches.area_m2[i] * r.taken / r.tried;  // what no body covers
-    area += part;
-    const Rgb rho = reflectances.of(patches, i);
-    Rgb b(0.0);
-    for (std::size_t g = 0; g < groups; ++g) {
-      const float* own = &light.light().solution.radiosity[(i * groups + g) * 3];
-      b += Rgb(own[0], own[1], own[2]);
-    }
-    const double weight =
-        raytrace::error_weight(base::luminance(b + 0.5 * (r.half[0] + r.half[1])), mean);
-    const std::size_t j = light.coarse(i) * std::size_t{6};
-    const double ga = weight * base::luminance(rho * at(brought, j)),
-                 gb = weight * base::luminance(rho * at(brought, j + 3));
-    const double ra = weight * base::luminance(r.half[0]), rb = weight * base::luminance(r.half[1]);
-    square += part * (r.square + ra * gb + rb * ga + ga * gb);
-    rays += part * noise.rays[i];
-    lamps += part * noise.lamps[i];
-    variance += part * part * r.square_variance;
-    excess += part * 0.5 * (ra + rb + ga + gb) / std::max(1e-3, weight);
-  }
-  const double seen = light.mean_radiosity();
-  if (area <= 0.0 || seen <= 0.0) return error;
-  error.mean = std::max(darkest * seen, seen + excess / area);
-  const double unit = area * error.mean * error.mean;
-  error.square = std::max(0.0, square / unit);
-  error.doubt = std::sqrt(variance) / unit;
-  // Where noise is less than expected, all of the error is noise.
-  const double by_rays = std::min(error.square, rays / unit);
-  const double by_lamps = std::min(error.square - by_rays, lamps / unit);
-  error.patches = error.square - by_rays - by_lamps;
-  error.parts.form_factors = doubt_of(by_rays, 0.5 * by_rays);
-  error.parts.lamps = doubt_of(by_lamps, 0.5 * by_lamps);
-  error.parts.patches = doubt_of(error.patches, 0.3 * error.patches + sure * error.doubt);
-  error.parts.solver = {solver_error, solver_error};
+  light.shares().tell_all(&error, 1);
   return error;
 }
 

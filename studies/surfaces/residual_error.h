@@ -31,6 +31,14 @@ struct LightNoise {
 // So many points over all patches by area, two on each at least.
 [[nodiscard]] std::vector<Effort> even_effort(const radiosity::Patches& patches, double points);
 
+// Rays in proportion to the root of area times variance, so that the noise that is left in all is
+// `target`; `most` of them, and at least so many points that the error can be stated. variance: of
+// the patches before a cut, of which `parent` tells.
+[[nodiscard]] std::vector<Effort> effort_for(const LightOnSurfaces& light,
+                                             const std::vector<double>& variance,
+                                             const std::vector<std::uint32_t>& parent,
+                                             double target, double most, double points);
+
 // The variance of r as one ray finds it, per patch: half its own guess, half the mean of all.
 [[nodiscard]] std::vector<double> ray_variance(const radiosity::Patches& patches,
                                                const SurfaceSamples& samples,
@@ -39,7 +47,8 @@ struct LightNoise {
                                   const std::vector<double>& ray_variance,
                                   const SurfaceSamples& samples);
 
-// samples: of all patches. mean: that they were weighed by.
+// samples: of all patches, and noise, both the first rank's; of ranks that divide the factors of
+// the light each must ask, and gets it. mean: that they were weighed by.
 [[nodiscard]] ResidualError residual_error(const LightOnSurfaces& light,
                                            const SurfaceSamples& samples, const LightNoise& noise,
                                            const radiosity::PatchAlbedos& reflectances, double mean,

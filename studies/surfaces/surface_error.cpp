@@ -43,9 +43,14 @@ SurfaceError surface_error(const StudyScene& scene, const radiosity::Solution& s
   if (solution.columns == 0 || solution.patches.count() == 0) return error;
   radiosity::FormFactors matrix = matrix_of(scene, solution, solver.seed);
   error.rays = matrix.ray_count;
-  const LightOnSurfaces light(scene, solution, std::move(matrix),
+  radiosity::Solution lit;
+  lit.patches = solution.patches;
+  lit.columns = solution.columns;
+  lit.direct_lx = solution.direct_lx;
+  lit.indirect_lx = solution.indirect_lx;
+  const LightOnSurfaces light(scene, std::move(lit), std::move(matrix),
                               2.0 * solution.report.rays_per_patch);
-  const double mean = light.mean_radiosity();
+  const double mean = light.told_mean();
   error.known = mean > 0.0;
   if (!error.known) return error;
   std::vector<std::uint32_t> all(light.patches().count());
@@ -53,8 +58,12 @@ SurfaceError surface_error(const StudyScene& scene, const radiosity::Solution& s
   const std::vector<Effort> effort = even_effort(light.patches(), points);
   const SurfaceSampler sampler(scene, solver.seed);
   const SurfaceSamples samples =
-      sampler.sample(light.light(), all, effort, 1, mean, light.bodies());
-  const LightNoise noise = noise_of(light, ray_variance(light.patches(), samples, effort), samples);
+      sampler.sample(light.light(), all, effort, 1, mean, light.bodies(), {}, SamplesOf::Residual,
+                     light.shares().divided() ? base::Hears::First : base::Hears::All);
+  LightNoise noise;
+  if (light.shares().joins()) {
+    noise = noise_of(light, ray_variance(light.patches(), samples, effort), samples);
+  }
   error.parts = residual_error(light, samples, noise, sampler.reflectances(), mean,
                                solution.report.solver_error)
                     .parts;

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/free_memory.h"
 #include "radiosity/linear_solve.h"
 #include "scenes/reflect/energy.h"
-#include "scenes/sky/sky_cells.h"
 
 namespace earthshine::studies {
 namespace {
@@ -27,21 +27,24 @@ LightOnSurfaces::LightOnSurfaces(const StudyScene& scene, radiosity::Solution co
     : scene_(scene), factors_(std::move(factors)), reflectances_(scene.scene) {
   const radiosity::Patches& patches = coarse.patches;
   const std::size_t count = patches.count(), columns = coarse.columns;
-  emitted_ = radiosity::exitances(scene.scene, scene.groups, patches);
-  coarse_open_m2_ = radiosity::open_areas(factors_.open, patches.area_m2);
+  const std::vector<bool> is_explicit = radiosity::emitter_is_explicit(scene.scene);
   coarse_.resize(count);
   std::iota(coarse_.begin(), coarse_.end(), 0U);
-  for (std::uint32_t i = 0; i < count; ++i)
+  for (std::uint32_t i = 0; i < count; ++i) {
     coarse_reflectance_.push_back(reflectances_.of(patches, i));
+    emitted_.push_back(is_explicit[patches.material(i)]
+                           ? Rgb(0.0)
+                           : radiosity::patch_emit(scene.scene, patches, i));
+  }
   lamp_points_.assign(count, radiosity::DirectOptions{}.points_per_patch);
   gather_rays_.assign(count, 0.5 * rays);
   open_share_ = factors_.open.share;
   escape_ = factors_.escape;
   lost_ = factors_.lost;
-  light_.lamps = coarse.direct_lx;
-  light_.gathered = coarse.indirect_lx;
+  light_.lamps = std::move(coarse.direct_lx);
+  light_.gathered = std::move(coarse.indirect_lx);
   if (scene.effects.earth_by_gather) {
-    light_.sky = factors_.sky_illuminance;
+    light_.sky = std::move(factors_.sky_illuminance);
     const std::size_t parts = light_.sky.size() / count;
     for (std::size_t i = 0; i < count * parts; ++i) {
       const std::size_t at = (i / parts) * columns + 3 * (scene.groups.earth + i % parts);
@@ -52,8 +55,23 @@ LightOnSurfaces::LightOnSurfaces(const StudyScene& scene, radiosity::Solution co
       }
     }
   }
+  base::release(coarse.soft_radiosity);
   light_.solution = std::move(coarse);
   sum_up();
+  if (!factors_.shares.joins()) keep_what_samples_read();
+}
+
+void LightOnSurfaces::keep_what_samples_read() {
+  for (std::vector<Rgb>* const unread :
+       {&emitted_, &coarse_reflectance_, &light_.sky, &factors_.kept_direct}) {
+    base::release(*unread);
+  }
+  for (std::vector<double>* const unread :
+       {&lamp_points_, &gather_rays_, &open_share_, &escape_, &lost_, &factors_.open.share,
+        &factors_.kept, &factors_.black, &factors_.escape, &factors_.lost}) {
+    base::release(*unread);
+  }
+  base::release(coarse_);
 }
 
 // B = M + rho (lamps + gathered).
@@ -62,12 +80,15 @@ void LightOnSurfaces::sum_up() {
   std::vector<float>& b = light_.solution.radiosity;
   b.resize(light_.count() * columns);
   for (std::size_t i = 0; i < light_.count(); ++i) {
-    const Rgb rho = reflectances_.of(patches(), static_cast<std::uint32_t>(i));
+    const auto patch = static_cast<std::uint32_t>(i);
+    const Rgb rho = reflectances_.of(patches(), patch);
+    const std::size_t group = scene_.groups.material[patches().material(patch)];
     for (std::size_t k = 0; k < columns; ++k) {
       const std::size_t at = i * columns + k;
-      b[at] = static_cast<float>(emitted_[coarse_[i] * columns + k] +
-                                 rho[static_cast<int>(k % 3)] *
-                                     (double(light_.lamps[at]) + double(light_.gathered[at])));
+      const auto c = static_cast<int>(k % 3);
+      const double emitted = k / 3 == group ? emitted_[coarse_[i]][c] : 0.0;
+      b[at] = static_cast<float>(emitted +
+                                 rho[c] * (double(light_.lamps[at]) + double(light_.gathered[at])));
     }
   }
 }
@@ -87,10 +108,27 @@ double LightOnSurfaces::mean_radiosity() const {
   return area > 0.0 ? sum / area : 0.0;
 }
 
-std::vector<double> LightOnSurfaces::brought(const std::vector<double>& residual,
+double LightOnSurfaces::told_mean() const {
+  double mean = factors_.shares.joins() ? mean_radiosity() : 0.0;
+  factors_.shares.tell_all(&mean, 1);
+  return mean;
+}
+
+std::vector<double> LightOnSurfaces::brought(std::vector<double> residual,
                                              std::size_t columns) const {
-  const std::size_t coarse = coarse_reflectance_.size();
-  std::vector<double> source(coarse * columns, 0.0), area(coarse, 0.0), rho(coarse * columns);
+  std::vector<double> source, rho;
+  if (factors_.shares.joins()) find_source(residual, columns, source, rho);
+  base::release(residual);
+  return radiosity::solve_linear(factors_, std::move(source), rho, columns, of_the_error).fx;
+}
+
+// Per coarse patch and column: means of a residual, and what reflects it.
+void LightOnSurfaces::find_source(const std::vector<double>& residual, std::size_t columns,
+                                  std::vector<double>& source, std::vector<double>& rho) const {
+  const std::size_t coarse = factors_.count();
+  std::vector<double> area(coarse, 0.0);
+  source.assign(coarse * columns, 0.0);
+  rho.resize(coarse * columns);
   for (std::size_t i = 0; i < light_.count(); ++i) {
     const double part = patches().area_m2[i] * (open_share_.empty() ? 1.0 : open_share_[i]);
     area[coarse_[i]] += part;
@@ -104,11 +142,6 @@ std::vector<double> LightOnSurfaces::brought(const std::vector<double>& residual
       rho[j * columns + k] = coarse_reflectance_[j][static_cast<int>(k % 3)];
     }
   }
-  const radiosity::LinearSolve error =
-      radiosity::solve_linear(factors_, std::move(source), rho, columns, of_the_error);
-  std::vector<double> light(error.x.size());
-  radiosity::multiply(factors_, error.x, light, columns);
-  return light;
 }
 
 void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std::uint32_t> which,
@@ -117,10 +150,11 @@ void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std
   const std::size_t parts = light_.count() > 0 ? light_.sky.size() / light_.count() : 0;
   const bool gathers =
       std::any_of(effort.begin(), effort.end(), [](const Effort& e) { return e.rays > 0; });
-  std::vector<double> more;
+  const bool joins = factors_.shares.joins();
+  std::vector<double> more, residual;
   if (gathers) {
-    std::vector<double> residual(light_.count() * columns, 0.0);
-    for (const std::uint32_t i : which) {
+    if (joins) residual.assign(light_.count() * columns, 0.0);
+    for (const std::uint32_t i : joins ? which : std::span<const std::uint32_t>()) {
       if (samples.residual[i].taken == 0) continue;
       const Rgb rho = reflectances_.of(patches(), i);
       for (std::size_t k = i * columns; k < (i + 1) * columns; ++k) {
@@ -129,9 +163,9 @@ void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std
                                             double(light_.lamps[k]) - double(light_.gathered[k]));
       }
     }
-    more = brought(residual, columns);
+    more = brought(std::move(residual), columns);
   }
-  for (std::size_t n = 0; n < which.size(); ++n) {
+  for (std::size_t n = 0; joins && n < which.size(); ++n) {
     const std::uint32_t i = which[n];
     const PatchResidual& seen = samples.residual[i];
     if (base::max_component(reflectances_.of(patches(), i)) <= 0.0) continue;  // not sampled
@@ -160,7 +194,11 @@ void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std
     gather_rays_[i] += rays;
     if (!open_share_.empty()) open_share_[i] = double(seen.taken) / seen.tried;
   }
-  sum_up();
+  if (joins) sum_up();
+  for (std::vector<float>* const values :
+       {&light_.lamps, &light_.gathered, &light_.solution.radiosity}) {
+    factors_.shares.tell_all(values->data(), values->size());
+  }
 }
 
 std::vector<std::uint32_t> LightOnSurfaces::cut(const std::vector<radiosity::Cut>& wanted) {
@@ -174,18 +212,22 @@ std::vector<std::uint32_t> LightOnSurfaces::cut(const std::vector<radiosity::Cut
   finer.lamps.resize(count * columns);
   finer.gathered.resize(count * columns);
   finer.sky.resize(count * parts);
-  std::vector<std::uint32_t> coarse(count);
-  std::vector<double> points(count), rays(count), escape(count), lost(count),
+  const bool joins = factors_.shares.joins();
+  const std::size_t kept = joins ? count : 0;
+  std::vector<std::uint32_t> coarse(kept);
+  std::vector<double> points(kept), rays(kept), escape(kept), lost(kept),
       open(open_share_.empty() ? 0 : count);
   std::vector<Rgb> between(groups);
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t parent = made.parent[i];
     const bool whole = made.patches.area_m2[i] >= patches().area_m2[parent];
-    coarse[i] = coarse_[parent];
-    points[i] = whole ? lamp_points_[parent] : 0.0;
-    rays[i] = (whole ? 1.0 : inherited_rays) * gather_rays_[parent];
-    escape[i] = escape_[parent];
-    lost[i] = lost_[parent];
+    if (joins) {
+      coarse[i] = coarse_[parent];
+      points[i] = whole ? lamp_points_[parent] : 0.0;
+      rays[i] = (whole ? 1.0 : inherited_rays) * gather_rays_[parent];
+      escape[i] = escape_[parent];
+      lost[i] = lost_[parent];
+    }
     if (!open.empty()) open[i] = open_share_[parent];
     std::copy_n(&light_.lamps[parent * columns], columns, &finer.lamps[i * columns]);
     std::copy_n(&light_.gathered[parent * columns], columns, &finer.gathered[i * columns]);
@@ -208,79 +250,10 @@ std::vector<std::uint32_t> LightOnSurfaces::cut(const std::vector<radiosity::Cut
   open_share_ = std::move(open);
   escape_ = std::move(escape);
   lost_ = std::move(lost);
-  sum_up();
+  if (joins) sum_up();
+  light_.solution.radiosity.resize(count * columns);
+  factors_.shares.tell_all(light_.solution.radiosity.data(), count * columns);
   return std::move(made.parent);
-}
-
-// B = M + rho (E0 + k I), per column the one k with which all light ends somewhere:
-//   sum A ((a - rho) k I + B (escape + lost)) = sum A (M + rho E0)
-// What samples leave of that sum is their noise and no light. Where rows were not balanced there is
-// no such k to be known.
-void LightOnSurfaces::close_energy(radiosity::PatchLight& found) const {
-  constexpr double most = 0.2;  // off 1
-  const std::size_t columns = light_.columns();
-  std::vector<double> lit(columns, 0.0), ended(columns, 0.0);
-  const auto known = [&](std::size_t at) {
-    return found.emitted[at] + found.reflectance[at] * found.direct[at];
-  };
-  for (std::size_t i = 0; i < light_.count(); ++i) {
-    const double area = patches().area_m2[i] * (open_share_.empty() ? 1.0 : open_share_[i]);
-    const double gone = escape_[i] + lost_[i], kept = factors_.kept[coarse_[i]];
-    for (std::size_t k = 0; k < columns; ++k) {
-      const std::size_t at = i * columns + k;
-      const double rho = found.reflectance[at];
-      lit[k] += area * known(at) * (1.0 - gone);
-      ended[k] += area * found.indirect[at] * (kept - rho + rho * gone);
-    }
-  }
-  found.radiosity.resize(found.direct.size());
-  for (std::size_t at = 0; at < found.radiosity.size(); ++at) {
-    const std::size_t k = at % columns;
-    const double scale = ended[k] > 0.0 ? lit[k] / ended[k] : 1.0;
-    if (light_.solution.report.balance.balanced && std::abs(scale - 1.0) < most) {
-      found.indirect[at] *= scale;
-    }
-    found.radiosity[at] = known(at) + found.reflectance[at] * found.indirect[at];
-  }
-}
-
-radiosity::Solution LightOnSurfaces::finished() const {
-  radiosity::Solution solution;
-  solution.patches = patches();
-  solution.columns = light_.columns();
-  solution.report = light_.solution.report;
-  solution.report.patches = light_.count();
-  const std::size_t columns = light_.columns(), count = light_.count();
-  const std::size_t parts = count > 0 ? light_.sky.size() / count : 0;
-  radiosity::PatchLight found;
-  found.reflectance = radiosity::reflectances(scene_.scene, patches(), scene_.groups.count());
-  found.emitted = radiosity::exitances(scene_.scene, scene_.groups, patches());
-  found.direct.assign(light_.lamps.begin(), light_.lamps.end());
-  found.indirect.assign(light_.gathered.begin(), light_.gathered.end());
-  for (std::size_t i = 0; i < count * parts; ++i) {
-    const std::size_t at = (i / parts) * columns + 3 * (scene_.groups.earth + i % parts);
-    for (std::size_t c = 0; c < 3; ++c) {
-      found.direct[at + c] += light_.sky[i][static_cast<int>(c)];
-      found.indirect[at + c] =
-          std::max(0.0, found.indirect[at + c] - light_.sky[i][static_cast<int>(c)]);
-    }
-  }
-  close_energy(found);
-  found.sky = light_.sky;
-  radiosity::FormFactors ends;  // where light ends, of each patch as of its coarse one
-  for (const std::uint32_t j : coarse_) {
-    ends.kept.push_back(factors_.kept[j]);
-    if (!factors_.kept_direct.empty()) ends.kept_direct.push_back(factors_.kept_direct[j]);
-  }
-  ends.escape = escape_;
-  ends.lost = lost_;
-  ends.open = {open_share_, factors_.open.bodies};
-  std::vector<double> backs;
-  for (const auto& object : solution.report.objects) backs.push_back(object.back_share);
-  radiosity::fill_solution(scene_.scene, scene_.groups, scene_.effects, ends,
-                           solution.report.balance.balanced, found, solution);
-  for (std::size_t o = 0; o < backs.size(); ++o) solution.report.objects[o].back_share = backs[o];
-  return solution;
 }
 
 }  // namespace earthshine::studies

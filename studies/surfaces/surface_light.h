@@ -13,24 +13,34 @@
 
 namespace earthshine::studies {
 
+//
+// Of ranks that divide the factors each has the patches and their light, which samples read, and
+// the first alone the rest: all of them must call what needs the matrix or changes the light, with
+// what the first one gives.
 class LightOnSurfaces {
  public:
-  // coarse: solved with those factors, balanced or not; `rays` of them a patch.
+  // coarse: solved with those factors, balanced or not; `rays` of them a patch. Of its light only
+  // direct_lx and indirect_lx are read.
   LightOnSurfaces(const StudyScene& scene, radiosity::Solution coarse,
                   radiosity::FormFactors factors, double rays);
 
   [[nodiscard]] const SurfaceLight& light() const { return light_; }
   [[nodiscard]] const radiosity::Patches& patches() const { return light_.solution.patches; }
   [[nodiscard]] const radiosity::ClosedBodies* bodies() const { return factors_.open.bodies.get(); }
-  [[nodiscard]] double mean_radiosity() const;  // luminance, over what no body covers
+  [[nodiscard]] const base::Shares& shares() const { return factors_.shares; }
+
+  // The first rank's, as are the two below. Luminance, over what no body covers.
+  [[nodiscard]] double mean_radiosity() const;
+  [[nodiscard]] double told_mean() const;  // the same, by all ranks and to all
   // Samples that are in the light of a patch already.
   [[nodiscard]] double lamp_points(std::uint32_t patch) const { return lamp_points_[patch]; }
   [[nodiscard]] double gather_rays(std::uint32_t patch) const { return gather_rays_[patch]; }
 
   // The illuminance, per coarse patch and column, that a residual of the radiosity (per patch and
   // column) brings there by all its bounces: F (1 - rho F)^-1 r.
-  [[nodiscard]] std::vector<double> brought(const std::vector<double>& residual,
+  [[nodiscard]] std::vector<double> brought(std::vector<double> residual,
                                             std::size_t columns) const;
+  // The coarse patch that a patch is of; the first rank's.
   [[nodiscard]] std::uint32_t coarse(std::uint32_t patch) const { return coarse_[patch]; }
 
   // Takes in samples, each patch by the share of its samples in all that it has seen.
@@ -44,16 +54,19 @@ class LightOnSurfaces {
 
  private:
   void sum_up();
+  void keep_what_samples_read();
+  void fill(radiosity::Solution& solution) const;
+  void find_source(const std::vector<double>& residual, std::size_t columns,
+                   std::vector<double>& source, std::vector<double>& rho) const;
   void close_energy(radiosity::PatchLight& found) const;
 
   StudyScene scene_;
   SurfaceLight light_;
   radiosity::FormFactors factors_;
   radiosity::PatchAlbedos reflectances_;
-  std::vector<double> emitted_;  // per coarse patch and column
-  std::vector<double> coarse_open_m2_;
-  std::vector<std::uint32_t> coarse_;                           // per patch
-  std::vector<Rgb> coarse_reflectance_;                         // per coarse patch
+  std::vector<Rgb> emitted_;             // per coarse patch, through form factors
+  std::vector<std::uint32_t> coarse_;    // per patch
+  std::vector<Rgb> coarse_reflectance_;  // per coarse patch
   std::vector<double> lamp_points_, gather_rays_, open_share_;  // per patch
   std::vector<double> escape_, lost_;  // per patch: shares of what leaves it
 };

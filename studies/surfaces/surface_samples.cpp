@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/numbers/random.h"
-#include "base/ranks/ranks.h"
 #include "radiosity/bodies/closed_bodies.h"
 #include "scenes/reflect/energy.h"
 #include "scenes/sky/sky_cells.h"
@@ -90,7 +89,8 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
                                       std::span<const std::uint32_t> which,
                                       std::span<const Effort> effort, std::uint32_t pass,
                                       double mean, const radiosity::ClosedBodies* bodies,
-                                      const raytrace::Progress& progress) const {
+                                      const raytrace::Progress& progress, SamplesOf of,
+                                      base::Hears hears) const {
   const radiosity::Patches& patches = light.solution.patches;
   const std::size_t groups = light.columns() / 3, columns = light.columns();
   const std::size_t sky_parts =
@@ -104,16 +104,26 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
   const raytrace::RadianceTable lamps_table(light.solution, light.lamps, false, sight),
       gathered_table(light.solution, light.gathered, false, sight);
 
+  const bool of_light = of == SamplesOf::Light;
+  const bool joins =
+      hears == base::Hears::All || base::ranks() == nullptr || base::ranks()->number() == 0;
   SurfaceSamples found;
-  found.lamps.assign(light.count() * columns, 0.0);
-  found.gathered.assign(light.count() * columns, 0.0);
-  found.sky.assign(light.count() * sky_parts, Rgb(0.0));
-  found.escaped.assign(light.count(), 0.0);
-  found.lost.assign(light.count(), 0.0);
-  found.residual.resize(light.count());
+  if (of_light) {
+    found.lamps.assign(light.count() * columns, 0.0);
+    found.gathered.assign(light.count() * columns, 0.0);
+    found.sky.assign(light.count() * sky_parts, Rgb(0.0));
+    found.escaped.assign(light.count(), 0.0);
+    found.lost.assign(light.count(), 0.0);
+  }
+  if (joins) found.residual.resize(light.count());
   found.rays = sight.rays();
   constexpr std::size_t chunk = 32;  // of patches; told_after is a multiple of it
   std::vector<std::uint64_t> rays_of((which.size() + chunk - 1) / chunk, 0);
+  // Ranks wait for each other at the end of a batch: they have few.
+  const std::size_t batch = base::ranks() == nullptr
+                                ? told_after
+                                : std::max(told_after, which.size() / (8 * chunk) * chunk);
+  std::vector<PatchResidual> seen(std::min(batch, which.size()));  // of a batch
   const auto look_at = [&](std::size_t begin, std::size_t end) {
     PatchLooks looks(scene_, kept_, table, groups, sky_parts);
     std::array<std::vector<scenes::LightSample>, 2> taken;
@@ -127,7 +137,7 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
                 emitted = is_explicit_[material]
                               ? Rgb(0.0)
                               : radiosity::patch_emit(scene_.scene, patches, patch);
-      PatchResidual& residual = found.residual[patch];
+      PatchResidual& residual = seen[n % batch];
       residual.tried = residual.taken = work.points;
       if (base::max_component(rho) <= 0.0) continue;  // B = M, whatever falls on it
       const base::Key key =
@@ -193,8 +203,10 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
       looks.finish_shadows();
       if (residual.taken == 0) continue;
       const double share = 0.5 / residual.taken;
-      found.escaped[patch] = share * looks.escaped();
-      found.lost[patch] = share * looks.lost();
+      if (of_light) {
+        found.escaped[patch] = share * looks.escaped();
+        found.lost[patch] = share * looks.lost();
+      }
       for (std::size_t point = 0; point < work.points; ++point) {
         if (!sums.is_placed(point)) continue;
         for (std::size_t half = 0; half < 2; ++half) {
@@ -204,13 +216,13 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
             const Rgb &l = looks.lamps(look)[g], &t = looks.gathered(look)[g];
             lamps += l;
             gathered += t;
-            for (int c = 0; c < 3; ++c) {
+            for (int c = 0; of_light && c < 3; ++c) {
               const std::size_t at = patch * columns + 3 * g + static_cast<std::size_t>(c);
               found.lamps[at] += share * l[c];
               found.gathered[at] += share * t[c];
             }
           }
-          for (std::size_t s = 0; s < sky_parts; ++s) {
+          for (std::size_t s = 0; of_light && s < sky_parts; ++s) {
             found.sky[patch * sky_parts + s] += share * looks.sky(look)[s];
           }
           sums.set(point, half, lamps, gathered);
@@ -221,32 +233,32 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
     rays_of[begin / chunk] += looks.rays();
   };
   const auto transfer = [&](std::size_t begin, std::size_t end, base::Parcel& parcel) {
-    for (std::size_t k = begin; k < end; ++k) {
+    parcel.pass_range(&seen[begin % batch], end - begin);
+    for (std::size_t k = begin; of_light && k < end; ++k) {
       const std::size_t patch = which[k];
       parcel.pass_range(&found.lamps[patch * columns], columns);
       parcel.pass_range(&found.gathered[patch * columns], columns);
       parcel.pass_range(&found.sky[patch * sky_parts], sky_parts);
       parcel.pass(found.escaped[patch]);
       parcel.pass(found.lost[patch]);
-      parcel.pass(found.residual[patch]);
     }
     parcel.pass(rays_of[begin / chunk]);
   };
-  // Ranks wait for each other at the end of a batch: they have few.
-  const std::size_t batch = base::ranks() == nullptr
-                                ? told_after
-                                : std::max(told_after, which.size() / (8 * chunk) * chunk);
   for (std::size_t first = 0; first < which.size(); first += batch) {
     const std::size_t count = std::min(batch, which.size() - first);
     const auto begin_of = [&](std::size_t k) { return first + std::min(count, k * chunk); };
+    std::fill(seen.begin(), seen.end(), PatchResidual());
     base::share_loop((count + chunk - 1) / chunk,
                      [&](std::size_t k) { look_at(begin_of(k), begin_of(k + 1)); },
                      [&](std::size_t k, base::Parcel& parcel) {
                        transfer(begin_of(k), begin_of(k + 1), parcel);
-                     });
+                     },
+                     hears);
+    for (std::size_t k = 0; joins && k < count; ++k) found.residual[which[first + k]] = seen[k];
     if (progress) progress(first + count, which.size());
   }
   for (const std::uint64_t rays : rays_of) found.rays += rays;
+  if (hears == base::Hears::First) base::ranks()->broadcast(&found.rays, sizeof found.rays, 0);
   return found;
 }
 

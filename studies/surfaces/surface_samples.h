@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "base/ranks/ranks.h"
 #include "radiosity/direct/sources.h"
 #include "radiosity/factors/form_factors.h"
 #include "radiosity/patches/patches.h"
@@ -57,6 +58,9 @@ struct SurfaceSamples {
   std::uint64_t rays = 0;
 };
 
+// What of it is wanted: all, or the residual and `rays` alone.
+enum class SamplesOf { Light, Residual };
+
 // The hit of a ray that meets the patch at (x, y), as Patches::point() has it.
 [[nodiscard]] scenes::Hit hit_at(const radiosity::Patches& patches, std::uint32_t patch, double x,
                                  double y);
@@ -68,12 +72,15 @@ class SurfaceSampler {
 
   // which: patches; effort: of each of them. The others' entries stay empty. `pass` numbers
   // independent sets of samples. mean: of the radiosity, that error_weight() goes by. `bodies` may
-  // cover points; null: nothing is covered. progress: told how many patches are done.
+  // cover points; null: nothing is covered. progress: told how many patches are done. hears: the
+  // rank that has what is found, of which each has `rays`; First: only where there are ranks.
   [[nodiscard]] SurfaceSamples sample(const SurfaceLight& light,
                                       std::span<const std::uint32_t> which,
                                       std::span<const Effort> effort, std::uint32_t pass,
                                       double mean, const radiosity::ClosedBodies* bodies,
-                                      const raytrace::Progress& progress = {}) const;
+                                      const raytrace::Progress& progress = {},
+                                      SamplesOf of = SamplesOf::Light,
+                                      base::Hears hears = base::Hears::All) const;
 
   [[nodiscard]] const radiosity::PatchAlbedos& reflectances() const { return reflectances_; }
   [[nodiscard]] const std::vector<bool>& is_explicit() const { return is_explicit_; }

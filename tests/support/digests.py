@@ -1,18 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Digests of what a program makes of every shipped scene, to show that a change of the code, or another number of threads,
-changed no result.
+"""Digests of what a program makes of every shipped scene, to show that a change of the code, or another number of threads or
+ranks, changed no result.
 
-usage: digests.py [--scene NAME] [--threads N[,M ...]] PROGRAM [OTHER]
+usage: digests.py [--scene NAME] [--threads N[,M ...]] [--ranks R[,S ...]] PROGRAM [OTHER]
 
 Renders, relights, solves, degrades and studies each scene small. Prints one line per result, "name digest"; with OTHER
-or several numbers of threads only those that differ, and exits with 1 if any does. Times, sizes of memory, paths and
+or several numbers of threads only those that differ, and exits with 1 if any does; with --ranks those that PROGRAM, earthshine-mpi,
+makes otherwise by so many ranks of mpirun than alone (render, solve, study orbit and visibility; the rest runs alone). Times, sizes of memory, paths and
 versions are left out.
 """
 import argparse
 import csv
 import hashlib
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -58,9 +60,17 @@ def of_file(path):
     return digest(path.read_bytes())
 
 
+# In a container, as root, more ranks than cores; no launching by ssh.
+ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+                            "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_plm": "isolated", "OMPI_MCA_mpi_yield_when_idle": "1"}
+
+
 def run(program, *arguments):
-    done = subprocess.run([*program, *map(str, arguments), "--quiet", "--seed", "5"], cwd=TOP,
-                          capture_output=True, text=True, check=False)
+    by_ranks = arguments[0] in ("render", "solve") or arguments[:2] in (("study", "orbit"), ("study", "visibility"))
+    if program[0] == "mpirun" and not by_ranks:
+        program = program[3:]
+    done = subprocess.run([*program, *map(str, arguments), "--quiet", "--seed", "5"], cwd=TOP, env=ENVIRONMENT,
+                          stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
     if done.returncode:
         sys.exit(f"{' '.join(map(str, arguments))}: exit {done.returncode}\n{done.stderr}")
     return done.stdout
@@ -128,9 +138,11 @@ def main():
     parser = argparse.ArgumentParser(usage=__doc__.split("\n\n")[1].removeprefix("usage: "))
     parser.add_argument("--scene")
     parser.add_argument("--threads", default="0")
+    parser.add_argument("--ranks", default="")
     parser.add_argument("programs", nargs="+")
     call = parser.parse_args()
     runs = [[program, "-j", threads] for threads in call.threads.split(",") for program in call.programs]
+    runs += [["mpirun", "-n", ranks, *runs[0]] for ranks in call.ranks.split(",") if ranks]
     first = dict(results(runs[0], call.scene))
     if len(runs) == 1:
         for name, value in first.items():

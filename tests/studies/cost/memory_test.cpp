@@ -28,7 +28,7 @@ double part(const MemoryNeed& need, const std::string& name) {
 
 TEST(Memory, TheMatrixIsThereOnceAndTwiceWhileItIsCopied) {
   // 500 million entries of a number and a count, 8 bytes; a sixteenth more while bands of rows are
-  // joined; some 400 bytes a patch.
+  // joined; some 350 bytes a patch.
   MemoryCase sizes = large_solve();
   sizes.columns = 0;
   const double joined = part(memory_needed(sizes), "form factors");
@@ -47,12 +47,28 @@ TEST(Memory, RanksDivideTheEntriesAndTheFirstAloneIterates) {
   // Of 4 GB an eighth, and while it is dealt out half of that more.
   EXPECT_NEAR(whole - memory_needed(sizes).total(), 4e9 * (1.0625 - 1.5 / 8.0), 0.3e9);
   // So few entries that the linear solve takes most: with 6 columns packed in eights the first has
-  // 3 + 13 + 8 / 6 doubles a patch and column; the others at most the seven after it.
+  // 2 + 13 + 8 / 6 doubles a patch and column; the others what is multiplied, their rows of the
+  // product and the same 8 / 6.
   sizes.row_entries = 10.0;
   sizes.columns = 6;
   const double first = memory_needed(sizes).total();
   sizes.first_rank = false;
-  EXPECT_NEAR(first - memory_needed(sizes).total(), 48e6 * (3.0 + 13.0 + 8.0 / 6.0 - 7.0), 1.0);
+  EXPECT_NEAR(first - memory_needed(sizes).total(), 48e6 * (15.0 - 1.0 - 1.0 / 8.0), 1.0);
+  // Of the error over the surfaces, six columns, the first has the iteration, its right-hand side
+  // as found, 230 bytes of what samples found and the 80 of the rows; of these the others have 24.
+  sizes.columns = 3;
+  sizes.states_error = true;
+  const double others = memory_needed(sizes).total();
+  sizes.first_rank = true;
+  EXPECT_NEAR(memory_needed(sizes).total() - others, 48e6 * (13.0 + 1.0 - 1.0 - 1.0 / 8.0) + 286e6,
+              1.0);
+}
+
+TEST(Memory, OneRankOfMpirunHasItsLibraries) {
+  MemoryCase sizes = large_solve();
+  const double alone = memory_needed(sizes).total();
+  sizes.has_mpi = true;
+  EXPECT_NEAR(memory_needed(sizes).total() - alone, 12e6, 1.0);
 }
 
 TEST(Memory, APictureOfManyLayersOutweighsItsSolution) {

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// The solution that a LightOnSurfaces ends as.
+#include <algorithm>
+#include <cmath>
+
+#include "radiosity/tell_solution.h"
+#include "studies/surfaces/surface_light.h"
+
+namespace earthshine::studies {
+
+// B = M + rho (E0 + k I), per column the one k with which all light ends somewhere:
+//   sum A ((a - rho) k I + B (escape + lost)) = sum A (M + rho E0)
+// What samples leave of that sum is their noise and no light. Where rows were not balanced there is
+// no such k to be known.
+void LightOnSurfaces::close_energy(radiosity::PatchLight& found) const {
+  constexpr double most = 0.2;  // off 1
+  const std::size_t columns = light_.columns();
+  std::vector<double> lit(columns, 0.0), ended(columns, 0.0);
+  const auto known = [&](std::size_t at) {
+    return found.emitted[at] + found.reflectance[at] * found.direct[at];
+  };
+  for (std::size_t i = 0; i < light_.count(); ++i) {
+    const double area = patches().area_m2[i] * (open_share_.empty() ? 1.0 : open_share_[i]);
+    const double gone = escape_[i] + lost_[i], kept = factors_.kept[coarse_[i]];
+    for (std::size_t k = 0; k < columns; ++k) {
+      const std::size_t at = i * columns + k;
+      const double rho = found.reflectance[at];
+      lit[k] += area * known(at) * (1.0 - gone);
+      ended[k] += area * found.indirect[at] * (kept - rho + rho * gone);
+    }
+  }
+  found.radiosity.resize(found.direct.size());
+  for (std::size_t at = 0; at < found.radiosity.size(); ++at) {
+    const std::size_t k = at % columns;
+    const double scale = ended[k] > 0.0 ? lit[k] / ended[k] : 1.0;
+    if (light_.solution.report.balance.balanced && std::abs(scale - 1.0) < most) {
+      found.indirect[at] *= scale;
+    }
+    found.radiosity[at] = known(at) + found.reflectance[at] * found.indirect[at];
+  }
+}
+
+radiosity::Solution LightOnSurfaces::finished() const {
+  radiosity::Solution solution;
+  solution.patches = patches();
+  solution.columns = light_.columns();
+  solution.report = light_.solution.report;
+  solution.report.patches = light_.count();
+  if (factors_.shares.joins()) fill(solution);
+  radiosity::tell_solution(factors_.shares, solution);
+  return solution;
+}
+
+void LightOnSurfaces::fill(radiosity::Solution& solution) const {
+  const std::size_t columns = light_.columns(), count = light_.count();
+  const std::size_t parts = count > 0 ? light_.sky.size() / count : 0;
+  radiosity::PatchLight found;
+  found.reflectance = radiosity::reflectances(scene_.scene, patches(), scene_.groups.count());
+  found.emitted = radiosity::exitances(scene_.scene, scene_.groups, patches());
+  found.direct.assign(light_.lamps.begin(), light_.lamps.end());
+  found.indirect.assign(light_.gathered.begin(), light_.gathered.end());
+  for (std::size_t i = 0; i < count * parts; ++i) {
+    const std::size_t at = (i / parts) * columns + 3 * (scene_.groups.earth + i % parts);
+    for (std::size_t c = 0; c < 3; ++c) {
+      found.direct[at + c] += light_.sky[i][static_cast<int>(c)];
+      found.indirect[at + c] =
+          std::max(0.0, found.indirect[at + c] - light_.sky[i][static_cast<int>(c)]);
+    }
+  }
+  close_energy(found);
+  found.sky = light_.sky;
+  radiosity::FormFactors ends;  // where light ends, of each patch as of its coarse one
+  for (const std::uint32_t j : coarse_) {
+    ends.kept.push_back(factors_.kept[j]);
+    if (!factors_.kept_direct.empty()) ends.kept_direct.push_back(factors_.kept_direct[j]);
+  }
+  ends.escape = escape_;
+  ends.lost = lost_;
+  ends.open = {open_share_, factors_.open.bodies};
+  std::vector<double> backs;
+  for (const auto& object : solution.report.objects) backs.push_back(object.back_share);
+  radiosity::fill_solution(scene_.scene, scene_.groups, scene_.effects, ends,
+                           solution.report.balance.balanced, found, solution);
+  for (std::size_t o = 0; o < backs.size(); ++o) solution.report.objects[o].back_share = backs[o];
+}
+
+}  // namespace earthshine::studies
