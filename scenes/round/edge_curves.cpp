@@ -117,7 +117,7 @@ std::vector<Vec3> corner_normals(const Mesh& mesh, const std::vector<std::uint32
                                  std::optional<double> crease_deg) {
   const std::vector<Vec3> areas = area_vectors(mesh);
   const Around around = crease_deg ? polygons_around(mesh, ids) : Around{};
-  const double least_cosine = std::cos(base::radians(crease_deg.value_or(0.0)));
+  const double crease_cosine = std::cos(base::radians(crease_deg.value_or(0.0)));
   std::vector<Vec3> normals(mesh.indices.size());
   for (std::size_t p = 0; p < mesh.polygons.size(); ++p) {
     const MeshPolygon& polygon = mesh.polygons[p];
@@ -135,7 +135,7 @@ std::vector<Vec3> corner_normals(const Mesh& mesh, const std::vector<std::uint32
         for (std::uint32_t n = around.first[id]; n < around.first[id + 1]; ++n) {
           const Vec3& other = areas[around.polygon[n]];
           // Beyond a right angle a neighbour that is wound the other way is as likely.
-          if (glm::dot(unit(other), own) >= least_cosine) sum += other;
+          if (glm::dot(unit(other), own) >= crease_cosine) sum += other;
         }
         if (glm::length(sum) > 0.0) normals[k] = unit(sum);
       }
