@@ -79,6 +79,11 @@ class Value {
   std::string_view left_;
 };
 
+// The others are passed over: they may be as long as the file.
+bool tells_its_size(std::string_view type) {
+  return type == "chlist" || type == "stringvector" || type == "preview";
+}
+
 // Whether a value that says itself how far it goes ends where its size says.
 bool is_whole(std::string_view type, Value value) {
   if (type == "chlist") {  // names, each with 16 bytes about the channel; an empty one ends them
@@ -126,11 +131,9 @@ class HeaderReader {
 
  private:
   [[nodiscard]] std::uint32_t number() {
-    std::array<unsigned char, 4> bytes{};
-    file_.read(reinterpret_cast<char*>(bytes.data()), bytes.size());
-    std::uint32_t value = 0;
-    for (std::size_t k = bytes.size(); k-- > 0;) value = value << 8U | bytes[k];
-    return value;
+    std::array<char, 4> bytes{};
+    file_.read(bytes.data(), bytes.size());
+    return static_cast<std::uint32_t>(Value({bytes.data(), bytes.size()}).number());
   }
 
   [[nodiscard]] std::string word() {
@@ -163,25 +166,27 @@ class HeaderReader {
         refuse(fmt::format("announces {} bytes of attribute \"{}\" and has {} more", length, name,
                            left));
       }
+      if (const auto size = size_of(type); size && *size != length) {
+        refuse(fmt::format("gives attribute \"{}\" {} bytes; its type, {}, has {}", name, length,
+                           type, *size));
+      }
+      const bool counts_chunks = name == "chunkCount" && type == "int";
+      if (!counts_chunks && !tells_its_size(type)) {
+        file_.seekg(length, std::ios::cur);
+        continue;
+      }
       std::string value(length, '\0');
       file_.read(value.data(), static_cast<std::streamsize>(length));
       if (!file_) return false;
-      check(name, type, value);
+      if (!is_whole(type, Value(value))) {
+        refuse(fmt::format("gives attribute \"{}\" {} bytes, which are not those of a {}", name,
+                           length, type));
+      }
+      if (counts_chunks) check_chunks(Value(value).number());
     }
   }
 
-  void check(const std::string& name, const std::string& type, const std::string& value) const {
-    const std::uint64_t size = size_of(type).value_or(value.size());
-    if (size != value.size()) {
-      refuse(fmt::format("gives attribute \"{}\" {} bytes; its type, {}, has {}", name,
-                         value.size(), type, size));
-    }
-    if (!is_whole(type, Value(value))) {
-      refuse(fmt::format("gives attribute \"{}\" {} bytes, which are not those of a {}", name,
-                         value.size(), type));
-    }
-    if (name != "chunkCount" || type != "int") return;
-    const std::uint64_t chunks = Value(value).number();
+  void check_chunks(std::uint64_t chunks) const {
     constexpr std::uint64_t bytes_per_chunk = 8;  // of the table alone
     if (chunks * bytes_per_chunk > size_) {
       refuse(fmt::format("announces {} chunks of pixels and has {} bytes", chunks, size_));

@@ -28,6 +28,8 @@ class Shares {
   // Whether this rank is the one that works on what is found of all items: the first; each rank
   // where they are undivided.
   [[nodiscard]] bool joins() const { return !divided() || ranks()->number() == 0; }
+  // Whom such finds are for.
+  [[nodiscard]] Hears hears() const { return divided() ? Hears::First : Hears::All; }
   // The rank that has the item, of divided ones.
   [[nodiscard]] int holder(std::size_t item) const;
 

@@ -198,8 +198,7 @@ class DirectStage {
  private:
   [[nodiscard]] Sampled sample(const Source& source) const {
     return sample_patches(query_, patches_, factors_.open, source, options_.seed,
-                          light_.shadow_rays,
-                          factors_.shares.divided() ? base::Hears::First : base::Hears::All);
+                          light_.shadow_rays, factors_.shares.hears());
   }
 
   void store(const std::vector<Rgb>& illuminance, std::size_t group, const Rgb& scale) {

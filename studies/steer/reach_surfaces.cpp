@@ -70,9 +70,9 @@ class SurfaceSearch {
   [[nodiscard]] SurfaceSamples sample(std::span<const std::uint32_t> which,
                                       std::span<const Effort> effort, const std::string& name,
                                       SamplesOf of) {
-    SurfaceSamples samples = sampler_.sample(
-        light_->light(), which, effort, ++pass_, mean_, light_->bodies(), stage(name), of,
-        light_->shares().divided() ? base::Hears::First : base::Hears::All);
+    SurfaceSamples samples =
+        sampler_.sample(light_->light(), which, effort, ++pass_, mean_, light_->bodies(),
+                        stage(name), of, light_->shares().hears());
     rays_ += samples.rays;
     return samples;
   }

@@ -57,9 +57,8 @@ SurfaceError surface_error(const StudyScene& scene, const radiosity::Solution& s
   std::iota(all.begin(), all.end(), 0U);
   const std::vector<Effort> effort = even_effort(light.patches(), points);
   const SurfaceSampler sampler(scene, solver.seed);
-  const SurfaceSamples samples =
-      sampler.sample(light.light(), all, effort, 1, mean, light.bodies(), {}, SamplesOf::Residual,
-                     light.shares().divided() ? base::Hears::First : base::Hears::All);
+  const SurfaceSamples samples = sampler.sample(light.light(), all, effort, 1, mean, light.bodies(),
+                                                {}, SamplesOf::Residual, light.shares().hears());
   LightNoise noise;
   if (light.shares().joins()) {
     noise = noise_of(light, ray_variance(light.patches(), samples, effort), samples);

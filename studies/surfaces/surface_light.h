@@ -13,7 +13,6 @@
 
 namespace earthshine::studies {
 
-//
 // Of ranks that divide the factors each has the patches and their light, which samples read, and
 // the first alone the rest: all of them must call what needs the matrix or changes the light, with
 // what the first one gives.
