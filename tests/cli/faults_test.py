@@ -9,7 +9,9 @@ Some calls of each kind are made to fail; all of them, and what was found as a t
 (20 minutes). EARTHSHINE_FAULTS=NAME does so for one command or one column of the table. Exit code 77 where the calls cannot be stopped: elsewhere
 than on Linux on x86-64, or with a sanitizer, which wants to be preloaded itself.
 """
+import csv
 import errno
+import io
 import json
 import os
 import pathlib
@@ -49,6 +51,8 @@ RUN = ("study", "run", "s.toml", "-o", "d")
 VISIBILITY = ("study", "visibility", "bay.toml", "-o", "d")
 COMPARE = ("study", "compare", "ball.toml", "-o", "d", "--lights", "2")
 PICTURES = (*RENDER, "--png", "a.png")
+PART = (*RUN, "--part", "solve")
+ACCURACY = ("study", "accuracy", "ball.toml", "-o", "d", "--wanted", "0.5", "--lights", "2", "--paths", "2")
 DEGRADE = ("degrade", "a.exr", "-o", "c.png", "--scene", "ball.toml")
 RELIGHT = ("relight", "a.exr", "--set", "sun=0.5", "-o", "b.exr", "--png", "b.png")
 OLDER = ("--seed", "2")
@@ -62,11 +66,14 @@ COMMANDS = {
     "relight": ([(*RENDER, *OLDER, "--per-light"), RELIGHT, (*RENDER, "--per-light")], RELIGHT),
     "fit-phong": ([], ("fit-phong", "paint.csv")),
     "study run": ([(*RUN, *OLDER)], RUN),
+    "study run --part solve": ([(*RUN, *OLDER)], PART),
     "study orbit": ([(*ORBIT, *OLDER)], ORBIT),
     "study visibility": ([(*VISIBILITY, *OLDER)], VISIBILITY),
     "study compare": ([(*COMPARE, *OLDER)], COMPARE),
+    "study accuracy": ([(*ACCURACY, *OLDER)], ACCURACY),
     "report": ([ORBIT], ("report", "d")),
 }
+DEAR = ("study accuracy",)  # taken when asked for
 # The kind of call, what it answers, whether all later ones fail too.
 FAULTS = {
     "full disk": ("write", errno.ENOSPC, True),
@@ -120,6 +127,14 @@ def results_of(files):
         if path in found:
             found[path] = tiny_bay.Case.without_times(json.loads(found[path]) | {"solve_seconds": None})
             found["d/report.html"] = b""
+    return steady(found) if "d/accuracy.csv" in found else found
+
+
+def steady(files):
+    """What does not follow from seconds: of the study of prices its pictures and their errors."""
+    found = {path: data if path.endswith(".exr") else b"" for path, data in files.items()}
+    rows = csv.DictReader(io.StringIO(files["d/accuracy.csv"].decode()))
+    found["d/accuracy.csv"] = [[row[key] for key in ("method", "series", "setting", "error", "bias", "bound_95")] for row in rows]
     return found
 
 
@@ -142,7 +157,7 @@ class Faults(program.Case):
         fault = {"LD_PRELOAD": self.shim, "FAULT_KIND": kind, "FAULT_AT": at, "FAULT_ERROR": number, "FAULT_STAYS": int(stays),
                  "FAULT_COUNT": self.count, "PATH": "/nowhere"}  # no gnuplot: it would start under the filter
         fault |= more or {}
-        return subprocess.run([program.PROGRAM, *call, "-j", "1", "-q"], cwd=folder, timeout=120, stdin=subprocess.DEVNULL,
+        return subprocess.run([program.PROGRAM, *call, "-j", "1", "-q"], cwd=folder, timeout=program.HANG_S, stdin=subprocess.DEVNULL,
                               capture_output=True, env=os.environ | {key: str(value) for key, value in fault.items()}, check=False)
 
     def before(self, name):
@@ -243,7 +258,7 @@ def case_of(name):
 
 
 for command in COMMANDS:
-    if WANTED in ("", "all", command, *FAULTS):
+    if WANTED in ("all", command, *FAULTS) or (not WANTED and command not in DEAR):
         setattr(Faults, "test_" + command.replace(" ", "_").replace("-", ""), case_of(command))
 
 if __name__ == "__main__":

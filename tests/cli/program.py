@@ -8,6 +8,7 @@ import tempfile
 import unittest
 
 PROGRAM = os.environ["EARTHSHINE_PROGRAM"]
+HANG_S = 600  # what still runs then does so for ever
 TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 
 # A closed room: every patch has radiosity M / (1 - rho). The walls emit, so there is no other source.
@@ -140,7 +141,7 @@ class Case(unittest.TestCase):
             path.write_text(text, encoding="utf-8")
         return name
 
-    def run_program(self, *arguments, timeout=600, **more):
+    def run_program(self, *arguments, timeout=HANG_S, **more):
         return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, timeout=timeout,
                               stdin=subprocess.DEVNULL,
                               **({"capture_output": True, "text": True} | more))

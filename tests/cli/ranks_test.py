@@ -72,7 +72,7 @@ class Ranks(Case):
 
     def ranks(self, count, *arguments, code=0, mpirun=(), environment=()):
         run = subprocess.run(["mpirun", *mpirun, "-n", str(count), MPI, *map(str, arguments)], cwd=self.folder,
-                             env=ENVIRONMENT | dict(environment), capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=300, check=False)
+                             env=ENVIRONMENT | dict(environment), capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=program.HANG_S, check=False)
         self.assertEqual(run.returncode, code, f"{arguments}: {run.stdout}{run.stderr}")
         return run
 
@@ -95,7 +95,7 @@ class Ranks(Case):
         """Three wrote a picture each, one after another."""
         call = ("render", "box.toml", "--no-error", "-q", "-o", "a.exr", "--png", "/dev/stdout")
         run = subprocess.run(["mpirun", "-n", "3", MPI, *call], cwd=self.folder, env=ENVIRONMENT, stdin=subprocess.DEVNULL,
-                             capture_output=True, timeout=300, check=True)
+                             capture_output=True, timeout=program.HANG_S, check=True)
         self.assertEqual(run.stdout, self.run_program(*call, text=False).stdout)
 
     def without_program(self, study):
@@ -208,19 +208,19 @@ class Ranks(Case):
                                  ("ball.toml", BALL + "# a word more\n", []), ("the call", BALL, ["--seed", "2"])):
             self.write("there/ball.toml", text)
             run = subprocess.run(["mpirun", "-n", "2", *call, ":", "-n", "1", "--wdir", "there", *call, *more], cwd=self.folder,
-                                 env=ENVIRONMENT, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=60, check=False)
+                                 env=ENVIRONMENT, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=program.HANG_S, check=False)
             self.assertEqual(run.returncode, 2, run.stderr)
             self.assertEqual(run.stderr.count("earthshine: "), 1, run.stderr)
             self.says(run.stderr, f"rank 0: {what} is not what rank 2 of 3 has")
             self.assertEqual(list((self.folder / "out").iterdir()), [])
         study = [MPI, "study", "orbit", "bay.toml", "-o", "out", "--positions", "3", "--iris", "normal"]  # one would have waited for ever
         run = subprocess.run(["mpirun", "-n", "1", *study, ":", "-n", "1", *study, "--part", "solve"], cwd=self.folder, env=ENVIRONMENT,
-                             capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=60, check=False)
+                             capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=program.HANG_S, check=False)
         self.assertEqual(run.returncode, 2, run.stderr)
         self.says(run.stderr, "rank 0: --part is not what rank 1 of 2 has")
         self.write("there/ball.toml", BALL)  # how many threads and how much memory is each machine's own
         subprocess.run(["mpirun", "-n", "1", *call, "-j2", ":", "-n", "1", "--wdir", "there", *call, "-j1", "--max-memory", "4GiB"],
-                       cwd=self.folder, env=ENVIRONMENT, stdin=subprocess.DEVNULL, timeout=60, check=True)
+                       cwd=self.folder, env=ENVIRONMENT, stdin=subprocess.DEVNULL, timeout=program.HANG_S, check=True)
 
     def test_refined_patches(self):
         self.same(("solve", "bay.toml", "-o", "s.h5", "--set", "quality.refine=true", "--set", "quality.max_patches=2000"),
@@ -324,7 +324,7 @@ class Ranks(Case):
         while self.processor_seconds(ranks[1]) < 1.0:
             time.sleep(0.05)
         os.kill(int(ranks[1]), 9)
-        _, errors = run.communicate(timeout=60)
+        _, errors = run.communicate(timeout=program.HANG_S)
         self.assertNotEqual(run.returncode, 0)
         self.assertIn("signal 9", errors)
         self.assertFalse((self.folder / "v.exr").exists())
@@ -336,7 +336,7 @@ class Ranks(Case):
         while self.processor_seconds(ranks[1]) < 1.0:
             time.sleep(0.05)
         os.kill(int(ranks[1]), signal.SIGTERM)
-        run.communicate(timeout=20)
+        run.communicate(timeout=program.HANG_S)
         self.assertNotEqual(run.returncode, 0)
         self.assertEqual([path.name for path in self.folder.iterdir() if "v.exr" in path.name], [])
 
@@ -361,7 +361,7 @@ class Ranks(Case):
                     time.sleep(wait)
                     with contextlib.suppress(ProcessLookupError):  # the run was faster than the first
                         os.kill(int(ranks[rank]), 9)
-                    run.communicate(timeout=60)
+                    run.communicate(timeout=program.HANG_S)
                     killed += run.returncode != 0
                     for name in names:
                         if (self.folder / name).exists():
@@ -382,7 +382,7 @@ class Ranks(Case):
 code=$?; ls -A full; cat full/v.exr; exit $code"""
         call = ("render", "ball.toml", "--camera", "A", "-o", "full/v.exr", "-q")
         run = subprocess.run([*mounts, "bash", "-c", script, "sh", "mpirun", "-n", "3", MPI, *call], cwd=self.folder,
-                             env=ENVIRONMENT, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=300, check=False)
+                             env=ENVIRONMENT, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=program.HANG_S, check=False)
         self.assertEqual(run.returncode, 1, run.stderr)
         self.assertEqual(run.stderr.count("earthshine: "), 1, run.stderr)
         self.says(run.stderr, "v.exr", "No space left on device")
@@ -407,7 +407,7 @@ code=$?; ls -A full; cat full/v.exr; exit $code"""
                     os.kill(int(ranks[rank]), 9)
                 except ProcessLookupError:  # the run was faster than the first
                     pass
-                run.communicate(timeout=60)
+                run.communicate(timeout=program.HANG_S)
                 killed += run.returncode != 0
                 if (self.folder / folder / "study.json").exists():
                     self.assertEqual(self.without_times(self.study(folder)), whole)
