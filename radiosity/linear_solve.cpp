@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "radiosity/linear_solve.h"
 
-#include <Eigen/Core>
-#include <Eigen/IterativeLinearSolvers>
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,47 +8,21 @@
 
 #include "base/error.h"
 #include "base/free_memory.h"
+#include "radiosity/factors/matrix_free.h"
 
 namespace earthshine::radiosity {
-class RadiosityOperator;
-}
-
-// Eigen takes an operator without a matrix if it looks like a sparse one (Eigen's "Matrix-free
-// solvers").
-namespace Eigen::internal {
-template <>
-struct traits<earthshine::radiosity::RadiosityOperator>
-    : public traits<Eigen::SparseMatrix<double>> {};
-}  // namespace Eigen::internal
-
-namespace earthshine::radiosity {
+namespace {
 
 using Vector = Eigen::VectorXd;
 
 // 1 - rho F. Of ranks that divide F the first asks for products, and the others serve().
-class RadiosityOperator : public Eigen::EigenBase<RadiosityOperator> {
+class RadiosityOperator {
  public:
-  using Scalar = double;
-  using RealScalar = double;
-  using StorageIndex = int;
-  enum {
-    ColsAtCompileTime = Eigen::Dynamic,
-    MaxColsAtCompileTime = Eigen::Dynamic,
-    IsRowMajor = 0
-  };
-
   RadiosityOperator(const FormFactors& factors, std::span<const double> reflectance,
                     std::size_t columns)
       : factors_(factors), reflectance_(reflectance), columns_(columns) {}
 
-  [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(size()); }
-  [[nodiscard]] Eigen::Index cols() const { return rows(); }
-
-  template <class Rhs>
-  Eigen::Product<RadiosityOperator, Rhs, Eigen::AliasFreeProduct> operator*(
-      const Eigen::MatrixBase<Rhs>& x) const {
-    return {*this, x.derived()};
-  }
+  [[nodiscard]] std::size_t size() const { return factors_.count() * columns_; }
 
   [[nodiscard]] Vector apply(const Vector& x) const {
     Vector y(x.size());
@@ -84,8 +55,6 @@ class RadiosityOperator : public Eigen::EigenBase<RadiosityOperator> {
   void end_service() const { ask_for_product(false); }
 
  private:
-  [[nodiscard]] std::size_t size() const { return factors_.count() * columns_; }
-
   // What the first rank says.
   bool ask_for_product(bool more) const {
     factors_.shares.tell_all(&more, 1);
@@ -96,26 +65,6 @@ class RadiosityOperator : public Eigen::EigenBase<RadiosityOperator> {
   std::span<const double> reflectance_;
   std::size_t columns_;
 };
-
-}  // namespace earthshine::radiosity
-
-namespace Eigen::internal {
-template <class Rhs>
-struct generic_product_impl<earthshine::radiosity::RadiosityOperator, Rhs, SparseShape, DenseShape,
-                            GemvProduct>
-    : generic_product_impl_base<
-          earthshine::radiosity::RadiosityOperator, Rhs,
-          generic_product_impl<earthshine::radiosity::RadiosityOperator, Rhs>> {
-  template <class Dest>
-  static void scaleAndAddTo(Dest& y, const earthshine::radiosity::RadiosityOperator& op,
-                            const Rhs& x, const double& alpha) {
-    y.noalias() += alpha * op.apply(x);
-  }
-};
-}  // namespace Eigen::internal
-
-namespace earthshine::radiosity {
-namespace {
 
 std::vector<double> column_norms(std::span<const double> values, std::size_t columns) {
   std::vector<double> norms(columns, 0.0);
@@ -152,8 +101,9 @@ std::span<const double> span_of(const Vector& x) {
 class Solver {
  public:
   Solver(const RadiosityOperator& system, std::size_t columns)
-      : system_(system), columns_(columns) {
-    krylov_.compute(system);
+      : system_(system.size(), [&system](const Vector& x) { return system.apply(x); }),
+        columns_(columns) {
+    krylov_.compute(system_);
     krylov_.setMaxIterations(300);
   }
 
@@ -200,9 +150,9 @@ class Solver {
   int iterations = 0;
 
  private:
-  const RadiosityOperator& system_;
+  MatrixFree system_;
   std::size_t columns_;
-  Eigen::BiCGSTAB<RadiosityOperator, Eigen::IdentityPreconditioner> krylov_;
+  Eigen::BiCGSTAB<MatrixFree, Eigen::IdentityPreconditioner> krylov_;
 };
 
 constexpr int most_corrections = 8;

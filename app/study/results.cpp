@@ -51,6 +51,8 @@ constexpr CsvColumn csv_columns[] = {
     {"signal_rose", cell_of<signal_of<&SignalSight::rose>>},
     {"signal_snr_d", cell_of<signal_of<&SignalSight::snr_d>>},
     {"signal_dprime", cell_of<signal_of<&SignalSight::dprime>>},
+    {"shown_from", cell_of<signal_of<&SignalSight::shown_from>>},
+    {"shown_to", cell_of<signal_of<&SignalSight::shown_to>>},
     {"monitor_luminance", cell_of<monitor_of<&MonitorSight::luminance>>},
     {"monitor_weber", cell_of<monitor_of<&MonitorSight::weber>>},
     {"eye_detect", cell_of<eye_chance_of<&Probability::detect>>},

@@ -47,6 +47,8 @@ void describe(Fields& fields, Either<studies::SignalSight> auto& signal) {
   fields("snr_d", signal.snr_d);
   fields("dprime", signal.dprime);
   fields("limiting_frequency", signal.limiting_frequency);
+  fields("shown_from", signal.shown_from);
+  fields("shown_to", signal.shown_to);
 }
 
 template <class Fields>

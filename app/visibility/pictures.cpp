@@ -217,31 +217,21 @@ void draw_pictures(const PictureTask& task, const studies::BasisView* view,
   }
 }
 
-std::optional<double> expose_alike(const NamedPictures& pictures, const ToneChoice& tone) {
-  std::optional<double> white;
-  if (tone.shared()) {
-    std::vector<const base::Image*> images;
-    for (const auto& [path, image] : pictures) images.push_back(&image);
-    white = white_of(tone, images);
-  }
-  for (const auto& [path, image] : pictures) {
-    const base::ToneMapped shown =
-        white ? base::expose(image, *white, tone.curve) : base::tone_map(image);
-    base::write_png(path, image.width, image.height, 3, shown.rgb);
-  }
-  return white;
-}
-
 void expose_figures(const std::filesystem::path& folder, const ToneChoice& tone,
                     std::vector<FigureEntry>& figures) {
-  NamedPictures pictures;
-  for (const FigureEntry& figure : figures) {
-    if (!figure.clean) continue;
-    pictures.emplace_back(folder / figure.file, base::read_exr(folder / figure.exr).image);
-  }
-  const std::optional<double> white = expose_alike(pictures, tone);
+  std::vector<std::pair<FigureEntry*, base::Image>> clean;
+  std::vector<const base::Image*> images;
   for (FigureEntry& figure : figures) {
-    if (figure.clean) figure.white_cd_m2 = white;
+    if (figure.clean) clean.emplace_back(&figure, base::read_exr(folder / figure.exr).image);
+  }
+  for (const auto& [figure, image] : clean) images.push_back(&image);
+  std::optional<double> white;
+  if (tone.shared()) white = white_of(tone, images);
+  for (const auto& [figure, image] : clean) {
+    const base::ToneMapped shown =
+        white ? base::expose(image, *white, tone.curve) : base::tone_map(image);
+    base::write_png(folder / figure->file, image.width, image.height, 3, shown.rgb);
+    figure->white_cd_m2 = white;
   }
 }
 

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "app/options.h"
@@ -38,11 +37,8 @@ struct PictureTask {
 void draw_pictures(const PictureTask& task, const studies::BasisView* view,
                    std::vector<FigureEntry>& figures);
 
-// Pictures, and the PNG files that show them.
-using NamedPictures = std::vector<std::pair<std::filesystem::path, base::Image>>;
-// Writes the PNGs: of one white for all, or each by its own curve. Returns that white.
-std::optional<double> expose_alike(const NamedPictures& pictures, const ToneChoice& tone);
-// The same for the clean pictures among a study's figures, of their EXR files; fills white_cd_m2.
+// Writes the PNGs of the clean pictures among a study's figures, of their EXR files: of one white
+// for all, or each by its own curve; fills white_cd_m2.
 void expose_figures(const std::filesystem::path& folder, const ToneChoice& tone,
                     std::vector<FigureEntry>& figures);
 

@@ -64,11 +64,9 @@ void check_models(const studies::StudyFile& study, const std::vector<const Study
 
 class Runner {
  public:
-  Runner(const StudyTask& task, const Common& common, const Parts& parts,
-         const ViewListener& listen)
+  Runner(const StudyTask& task, const Common& common, const Parts& parts)
       : task_(task),
         common_(common),
-        listen_(listen),
         parts_(pointers(parts)),
         limits_(parts.size()),
         results_(begin_results(task.study, parts_, task.command, common.seed)) {}
@@ -130,7 +128,7 @@ class Runner {
 
   // Where an earlier run has done all of it, so that not even the picture must be read.
   bool take_finished(const CameraWork& work, CameraFindings& found) {
-    if (listen_ || !pictures_are_there(work.pictures())) return false;
+    if (!pictures_are_there(work.pictures())) return false;
     const auto ways = work.known_configurations();
     auto judged = work.known_conditions();
     if (!ways || !judged || !thumbnails_are_there(work, *judged)) return false;
@@ -150,7 +148,6 @@ class Runner {
     take(frame, found);
     const studies::BasisView view = work.view_of(frame, results_.costs);
     found.conditions = work.judge(view, work.all_batches(), results_.costs);
-    if (listen_) listen_(found.part, found.camera, view, frame);
     if (Interrupt::asked()) return;
     add_all(work.conclude(view, results_.figures));
     found.thumbnails = draw_thumbnails(work, &view, found.conditions);
@@ -158,7 +155,6 @@ class Runner {
 
   const StudyTask& task_;
   const Common& common_;
-  const ViewListener& listen_;
   const std::vector<const StudyPart*> parts_;
   std::vector<std::vector<std::string>> limits_;  // of each scene's solution
   StudyResults results_;
@@ -183,11 +179,9 @@ Json plan_study(StudyTask task, const Common& common) {
   return plan_json(task.study, pointers(parts), task.folder, common);
 }
 
-std::optional<StudyResults> run_study(StudyTask task, const Common& common,
-                                      const ViewListener& listen) {
+std::optional<StudyResults> run_study(StudyTask task, const Common& common) {
   const Parts parts = prepare(task, common);
-  std::vector<std::string> files = {study_file, results_table, report_file};
-  files.insert(files.end(), task.more_files.begin(), task.more_files.end());
+  const std::vector<std::string> files = {study_file, results_table, report_file};
   Files inputs = {task.study.path};
   for (const auto& part : parts) {
     const Files& own = part->loaded.scene.files;
@@ -206,7 +200,7 @@ std::optional<StudyResults> run_study(StudyTask task, const Common& common,
   if (task.part.in_parts() && !StudyShares(task, common, pointers(parts)).run()) {
     return std::nullopt;
   }
-  StudyResults study = Runner(task, common, parts, listen).run();
+  StudyResults study = Runner(task, common, parts).run();
   if (!study.complete && has_finished_results(task.folder)) {
     throw base::Error(base::Blame::Work, "study", "interrupted", {},
                       "The results of the run before stand in " + task.folder +

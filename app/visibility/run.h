@@ -3,12 +3,11 @@
 // What is finished is kept in points/, so that a run that was ended goes on from there.
 #pragma once
 
-#include <functional>
+#include <optional>
+#include <string>
 
 #include "app/options.h"
 #include "app/study/results.h"
-#include "app/views/frames.h"
-#include "studies/orbit/condition.h"
 #include "studies/orbit/study_file.h"
 
 namespace earthshine::app {
@@ -18,24 +17,18 @@ inline constexpr const char* results_table = "results.csv";
 inline constexpr const char* study_tone_help =
     "; default auto, one white for all pictures of the study together";
 
-// Told each camera's view and picture.
-using ViewListener = std::function<void(const StudyPart&, const StudyCamera&,
-                                        const studies::BasisView&, const StudyFrames::Frame&)>;
-
 struct StudyTask {
   studies::StudyFile study;
   std::string folder;
   std::string command;                       // what was called, for the report
   ToneChoice tone = {usual_percent, {}};     // of the clean pictures, together
-  std::vector<std::string> more_files = {};  // that the listener writes in the folder
   PartCall part = {};
 };
 
 // What study.json has; of a part, which writes nothing but points/, nothing. Throws base::Error for
 // bad input before any work is done, and (Work) after everything was written if it was interrupted,
 // or where a merge finds work missing.
-[[nodiscard]] std::optional<StudyResults> run_study(StudyTask task, const Common& common,
-                                                    const ViewListener& listen = {});
+[[nodiscard]] std::optional<StudyResults> run_study(StudyTask task, const Common& common);
 
 // What would be done and its price; throws as run_study. For people: plan_text.
 [[nodiscard]] Json plan_study(StudyTask task, const Common& common);

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "radiosity/factors/column_sums.h"
 #include "radiosity/factors/filled_hits.h"
+#include "radiosity/factors/matrix_free.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -192,46 +193,32 @@ std::vector<double> Scaling::own_response(std::vector<double>& weighted) const {
       base::Hears::First);
 }
 
-// Conjugate gradients with the diagonal as preconditioner; a tenth of the defect is left to the
-// next step, which knows more.
+// In units in which the diagonal is 1; a tenth of the defect is left to the next step, which knows
+// more.
 int Scaling::solve_for_step(std::vector<double>& step, int most_passes) const {
   const std::size_t count = sums_.size();
-  step.assign(count, 0.0);
-  std::vector<double> left(count), way(count), diagonal(count);
-  const auto dot = [count](const std::vector<double>& a, const std::vector<double>& b) {
-    double sum = 0.0;
-    for (std::size_t j = 0; j < count; ++j) sum += a[j] * b[j];
-    return sum;
-  };
-  const auto conditioned = [&](const std::vector<double>& v) {
-    std::vector<double> w(count);
-    for (std::size_t j = 0; j < count; ++j) w[j] = diagonal[j] > 0.0 ? v[j] / diagonal[j] : 0.0;
-    return w;
-  };
+  Eigen::VectorXd unit(count), defect(count);
   for (std::size_t j = 0; j < count; ++j) {
-    diagonal[j] = f_.kept[j] * sums_[j];
-    left[j] = f_.kept[j] * (area_m2_[j] - sums_[j]);
+    const double diagonal = f_.kept[j] * sums_[j];
+    unit[j] = diagonal > 0.0 ? 1.0 / std::sqrt(diagonal) : 0.0;
+    defect[j] = unit[j] * f_.kept[j] * (area_m2_[j] - sums_[j]);
   }
-  std::vector<double> z = conditioned(left);
-  way = z;
-  double size = dot(left, z);
-  const double wanted = 0.01 * size;  // a tenth in the norm whose square this is
   int passes = 0;
-  while (passes < most_passes && size > wanted) {
-    const std::vector<double> change = response(way);
+  const MatrixFree system(count, [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+    if (x.isZero(0.0)) return x;  // where it starts
     ++passes;
-    const double curvature = dot(way, change);
-    if (!(curvature > 0.0)) break;
-    const double length = size / curvature;
-    for (std::size_t j = 0; j < count; ++j) {
-      step[j] += length * way[j];
-      left[j] -= length * change[j];
-    }
-    z = conditioned(left);
-    const double next = dot(left, z);
-    for (std::size_t j = 0; j < count; ++j) way[j] = z[j] + next / size * way[j];
-    size = next;
-  }
+    step.resize(count);
+    Eigen::Map<Eigen::VectorXd>(step.data(), x.size()) = unit.cwiseProduct(x);
+    const std::vector<double> change = response(step);
+    return unit.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(change.data(), x.size()));
+  });
+  Eigen::ConjugateGradient<MatrixFree, Eigen::Lower | Eigen::Upper, Eigen::IdentityPreconditioner>
+      gradients;
+  gradients.compute(system);
+  gradients.setTolerance(0.1).setMaxIterations(most_passes);
+  const Eigen::VectorXd found = unit.cwiseProduct(gradients.solve(defect));
+  step.assign(count, 0.0);
+  if (found.allFinite()) std::copy(found.begin(), found.end(), step.begin());
   // A perfect mirror keeps nothing, so that no row feels its column's scale: it follows alone.
   for (std::size_t j = 0; j < count; ++j) {
     if (f_.kept[j] <= 0.0 && sums_[j] > 0.0) step[j] = std::log(area_m2_[j] / sums_[j]);

@@ -16,7 +16,7 @@
 
 #include "raytrace/render.h"
 #include "studies/study.h"
-#include "studies/targets/visibility.h"
+#include "studies/targets/target_light.h"
 
 namespace earthshine::studies {
 

@@ -141,6 +141,20 @@ double mean_screen_luminance(const CctvSignal& line) {
 
 }  // namespace
 
+ShownRange shown_range(const degrade::CctvCamera& camera, const degrade::Report& report,
+                       double mean_luminance) {
+  // Signal per cd/m^2 before gain; glare takes a share off each point and gives its mean to all.
+  const double per_luminance =
+      degrade::lens_transfer(camera, report.exposure.f_number) / camera.white_lux;
+  const double veil = camera.glare * mean_luminance;
+  const auto luminance_of_signal = [&](double signal) {
+    return (signal / per_luminance - veil) / (1.0 - camera.glare);
+  };
+  double white = degrade::white_signal / report.exposure.gain;
+  if (camera.saturation > 0.0) white = std::min(white, camera.saturation);
+  return {luminance_of_signal(std::sqrt(report.noise.at_black())), luminance_of_signal(white)};
+}
+
 CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup) {
   const degrade::CctvCamera& camera = setup.camera;
   CctvSignal line;

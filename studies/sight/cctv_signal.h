@@ -44,6 +44,17 @@ struct CctvSignal {
   [[nodiscard]] std::size_t resel_count() const { return level.size(); }
 };
 
+// The luminances between which a CCTV camera tells differences, cd/m^2: at `white` the amplified
+// signal reaches 0.995, at `black` it lies within one standard deviation of black's noise. The
+// thresholds of degrade::Levels, carried back through gain, glare, lens and iris.
+struct ShownRange {
+  double black = 0.0;  // below 0 where glare alone lifts every pixel over the noise
+  double white = 0.0;
+};
+// report: of degrade::degrade for a picture of this mean luminance.
+[[nodiscard]] ShownRange shown_range(const degrade::CctvCamera& camera,
+                                     const degrade::Report& report, double mean_luminance);
+
 // Throws as degrade::degrade does.
 [[nodiscard]] CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup);
 

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "studies/sight/target_signal.h"
-#include "studies/targets/visibility.h"
+#include "studies/targets/target_light.h"
 
 namespace earthshine::studies {
 namespace {
@@ -60,9 +60,11 @@ Verdict verdict_of(const Sight& sight, const TargetView& view, const SightOption
   return p.detect >= options.doubtful_probability ? Verdict::Doubtful : Verdict::NotSeen;
 }
 
-void take(Sight& sight, const TargetSignal& cctv) {
+void take(Sight& sight, const TargetSignal& cctv, const ShownRange& shown) {
   sight.tv_lines = cctv.lines;
   sight.signal = cctv.signal;
+  sight.signal->shown_from = shown.black;
+  sight.signal->shown_to = shown.white;
   sight.monitor = cctv.monitor;
   sight.johnson_cycles = cctv.cycles;
   sight.saturated = cctv.saturated;
@@ -92,9 +94,11 @@ CameraSight measure_sight(const SightPlan& plan, const base::Image& radiance,
   for (const float value : luminance) sum += static_cast<double>(value);
   found.mean_luminance = std::max(0.0, sum / static_cast<double>(luminance.size()));
   std::vector<std::optional<TargetSignal>> signals(plan.targets.size());
+  ShownRange shown;
   if (cctv) {
     const CctvSignal line = pass_through(radiance, *cctv);
     found.exposure = line.report.exposure;
+    shown = shown_range(cctv->camera, line.report, found.mean_luminance);
     signals = target_signals(plan, line, *cctv, options);
   }
   for (std::size_t t = 0; t < plan.targets.size(); ++t) {
@@ -117,7 +121,7 @@ CameraSight measure_sight(const SightPlan& plan, const base::Image& radiance,
       sight.eye = eye_sight(target, *light, luminance, found.mean_luminance, options);
       sight.probability = sight.eye->probability;
       if (signals[t]) {
-        take(sight, *signals[t]);
+        take(sight, *signals[t], shown);
         sight.probability = signals[t]->probability;
       }
     }

@@ -46,6 +46,7 @@ struct SignalSight {
   std::optional<double> difference;  // root mean square of t - b over the target's parts
   std::optional<double> dprime;      // ideal observer that knows the target's shape, in that time
   std::optional<double> limiting_frequency;  // cycles per resel where C0 MTF(u) = 3 / SNR of a bar
+  std::optional<double> shown_from, shown_to;  // ShownRange of this view, cd/m^2 of the scene
 };
 
 // On the screen, cd/m^2, as a viewer sees it on average: with noise, phosphor spread and room

@@ -123,10 +123,9 @@ def cut_power(folder, old, log):
 def results_of(files):
     """Without what a study says of the work that it found done, and the page that shows it."""
     found = dict(files)
-    for path in ("d/study.json", "d/visibility.json"):
-        if path in found:
-            found[path] = tiny_bay.Case.without_times(json.loads(found[path]) | {"solve_seconds": None})
-            found["d/report.html"] = b""
+    if "d/study.json" in found:
+        found["d/study.json"] = tiny_bay.Case.without_times(json.loads(found["d/study.json"]))
+        found["d/report.html"] = b""
     return steady(found) if "d/accuracy.csv" in found else found
 
 

@@ -215,43 +215,45 @@ class CompareCases(Study):
 
 class Visibility(Study):
     ENGINE = ["pictures", "points", "report.html", "results.csv", "study.json"]  # of every visibility study
+    BEFORE = ["ball.toml", "monitored.toml"]
 
     def test_all_cameras_by_default(self):
         text = self.done("study", "visibility", "monitored.toml", "-o", "v")
-        self.says(text, "camera", "visible", "contrast", "above")
-        self.assertEqual(self.files("v"), sorted([*self.ENGINE, "cctv-A.png", "view-A.png", "view-above.png",
-                                                  "visibility.csv", "visibility.json"]))
-        rows = self.table("v", "visibility.csv")
+        self.says(text, "camera", "visible", "contrast", "above", "P(detect)")
+        self.assertEqual(self.files("v"), self.ENGINE)
+        rows = self.table("v", "results.csv")
         self.assertEqual([(row["camera"], row["target"]) for row in rows], [("A", "ball"), ("above", "ball")])
         for row in rows:
             self.assertEqual(float(row["visible_fraction"]), 1)
             self.assertEqual(row["cut_by_frame"], "false")
             self.assertGreater(int(row["pixels"]), 0)
         # Camera A alone has a CCTV camera.
-        self.assertTrue(0 <= float(rows[0]["saturated_share"]) <= 1)
-        self.assertEqual((rows[1]["saturated_share"], rows[1]["crushed_share"]), ("", ""))
+        self.assertTrue(0 <= float(rows[0]["saturated"]) <= 1)
+        self.assertLess(float(rows[0]["shown_from"]), float(rows[0]["shown_to"]))
+        self.assertEqual([rows[1][key] for key in ("saturated", "crushed", "shown_from", "shown_to")], [""] * 4)
 
     def test_chosen_cameras_and_json(self):
         printed = self.json("study", "visibility", "monitored.toml", "-o", "v", "--camera", "above",
                             "--camera", "A", "--camera", "above", "--size", "16x12")
-        self.assertEqual(printed, self.result("v", "visibility.json"))
-        self.assertEqual([camera["name"] for camera in printed["cameras"]], ["above", "A"])
-        self.assertIsNone(printed["cameras"][0]["cctv"])
-        shown = printed["cameras"][1]["cctv"]
-        self.assertLess(shown["shown_from_cd_m2"], shown["shown_to_cd_m2"])
-        self.assertEqual(self.png_size("v", "view-A.png"), (16, 12))
+        self.assertEqual(printed, self.result("v", "study.json"))
+        self.assertEqual([camera["name"] for camera in printed["cameras"]], ["A", "above"])
+        self.assertIsNone(printed["results"][1]["signal"])
+        for figure in printed["figures"]:
+            if figure["clean"]:
+                self.assertEqual(self.png_size("v", figure["file"]), (16, 12))
 
     def test_camera_names_become_safe_file_names(self):
         scene = program.BALL.replace('name = "A"', 'name = "../A b"').replace('name = "above"', 'name = ".._A/b"')
         self.write("names.toml", scene)
-        self.done("study", "visibility", "names.toml", "-o", "v")
-        self.assertEqual(self.files("v"), sorted([*self.ENGINE, "view-.._A_b-2.png", "view-.._A_b.png",
-                                                  "visibility.csv", "visibility.json"]))
+        printed = self.json("study", "visibility", "names.toml", "-o", "v")
+        self.assertEqual(self.files("v"), self.ENGINE)
+        self.assertEqual(self.files("."), sorted([*self.BEFORE, "names.toml", "v"]))
+        self.assertEqual(len({figure["file"] for figure in printed["figures"]}), 2)
 
     def test_text_in_the_table_is_quoted(self):
         self.write("names.toml", program.BALL.replace('name = "ball"', "name = 'a \"b\", c'"))
         self.done("study", "visibility", "names.toml", "-o", "v", "--camera", "A")
-        self.assertEqual(self.table("v", "visibility.csv")[0]["target"], 'a "b", c')
+        self.assertEqual(self.table("v", "results.csv")[0]["target"], 'a "b", c')
 
 
 class Refused(Study):

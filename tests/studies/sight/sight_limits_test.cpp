@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "degrade/settings/presets.h"
+#include "studies/sight/cctv_signal.h"
 #include "studies/sight/target_signal.h"
 #include "tests/studies/discs.h"
 
@@ -205,6 +207,44 @@ TEST(SightLimits, BlackBackIsDoubtfulAtBest) {
   EXPECT_EQ(tests::sight_of(picture, {}).verdict, Verdict::Identified);
   target.view.black_back = target.seen;
   EXPECT_EQ(tests::sight_of(picture, {}).verdict, Verdict::Doubtful);
+}
+
+// The chain's own counts, taken from the signal, are those of the range carried back to the scene:
+// on a picture of one pixel per resel, pixel by pixel, with all off that is not the same everywhere
+// or that mixes them.
+TEST(SightLimits, ShownRangeAgreesWithTheChainsLevels) {
+  constexpr int edge = 300;
+  base::Image image = base::make_rgb_image(edge, edge);
+  std::vector<float> luminance(image.pixel_count());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < luminance.size(); ++i) {
+    const double t = std::fmod(static_cast<double>(i) * 0.6180339887498949, 1.0);
+    luminance[i] = static_cast<float>(100.0 * std::pow(10.0, 7.0 * t - 5.0));  // 1e-3 to 1e4
+    sum += double(luminance[i]);
+  }
+  for (base::Channel& channel : image.channels) channel.values = luminance;
+  const double mean = sum / static_cast<double>(luminance.size());
+  for (const degrade::Preset& preset : degrade::presets()) {
+    for (const double glare : {0.0, preset.camera.glare}) {
+      degrade::CctvCamera camera = preset.camera;
+      camera.glare = glare;
+      degrade::Options options;
+      options.off = {"signal-noise", "read-noise", "shading",  "blur",
+                     "smear",        "bloom",      "bandwidth"};
+      const degrade::Result result = degrade::degrade(image, camera, {}, options);
+      const ShownRange shown = shown_range(camera, result.report, mean);
+      double saturated = 0.0, crushed = 0.0;
+      for (const float y : luminance) {
+        if (double(y) >= shown.white) saturated += 1.0;
+        if (double(y) <= shown.black) crushed += 1.0;
+      }
+      // Single precision may move a pixel or two over a threshold.
+      const auto count = static_cast<double>(luminance.size());
+      EXPECT_NEAR(saturated / count, result.report.levels.saturated_share, 3.0 / count)
+          << preset.name;
+      EXPECT_NEAR(crushed / count, result.report.levels.crushed_share, 3.0 / count) << preset.name;
+    }
+  }
 }
 
 }  // namespace

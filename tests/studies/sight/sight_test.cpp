@@ -110,6 +110,8 @@ TEST(Sight, SaturatedFromWhiteAndCrushedWithinTheNoiseOfBlack) {
   const auto shares = [&](double luminance) {
     const Sight s =
         sight_of(discs_on(40.0, {{60.0, 60.0, 20.0, luminance}}, disc_edge, disc_edge), setup);
+    EXPECT_NEAR(*s.signal->shown_from, 1.0, 1e-9);
+    EXPECT_NEAR(*s.signal->shown_to, 99.5, 1e-9);
     return std::pair{*s.saturated, *s.crushed};
   };
   EXPECT_EQ(shares(99.6), (std::pair{1.0, 0.0}));
