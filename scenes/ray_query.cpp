@@ -148,7 +148,7 @@ RayQuery::RayQuery(const Scene& source)
   if (!source.triangles.empty()) {
     // The centre is rounded to what single precision holds, so that subtracting it is exact for
     // near points.
-    centre_ = Vec3(glm::vec3(box_around(source.vertices).middle()));
+    centre_ = Vec3(box_around(source.vertices).middle_in_single());
     embree_->offset_m = scenes::surface_offset_m(source);
     embree_->masks = OpacityMasks(source);
     embree_->add_triangles(embree_->scene, source, 0, own_triangles, 0, own_vertices, centre_);

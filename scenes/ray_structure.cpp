@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <map>
+
+#include "scenes/triangle_point.h"
 
 namespace earthshine::scenes {
 
@@ -78,16 +79,15 @@ void RayQuery::Embree::add_instances(const Scene& source, const Vec3& centre) {
     if (original.scene == nullptr) {
       const Object& first = source.objects[instance.object];
       std::uint32_t low = ~0U, high = 0;
-      Vec3 least(std::numeric_limits<double>::infinity()), most(-least);
+      Box box;
       for (std::uint32_t t = 0; t < first.triangle_count; ++t) {
         for (const std::uint32_t v : source.triangles[first.first_triangle + t].vertex) {
           low = std::min(low, v);
           high = std::max(high, v);
-          least = glm::min(least, source.vertices[v]);
-          most = glm::max(most, source.vertices[v]);
+          box.add(source.vertices[v]);
         }
       }
-      original.centre = Vec3(glm::vec3(0.5 * (least + most)));
+      original.centre = Vec3(box.middle_in_single());
       original.scene = new_scene();
       add_triangles(original.scene, source, first.first_triangle, first.triangle_count, low,
                     std::size_t{high} + 1, original.centre);

@@ -31,6 +31,8 @@ Barycentric barycentric(const Vec3& p, const Vec3& a, const Vec3& edge1, const V
           glm::dot(glm::cross(edge1, at), normal) / square};
 }
 
+glm::vec3 Box::middle_in_single() const { return {middle()}; }
+
 Box box_around(std::span<const Vec3> points) {
   Box box;
   for (const Vec3& point : points) box.add(point);

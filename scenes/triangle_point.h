@@ -17,6 +17,9 @@ struct Box {
     high = glm::max(high, point);
   }
   [[nodiscard]] Vec3 middle() const { return 0.5 * (low + high); }
+  // Not in line: GCC 12 takes double to float and back for nothing where it handles two components
+  // at once, and rounds the third alone.
+  [[nodiscard]] glm::vec3 middle_in_single() const;
   [[nodiscard]] double diagonal() const { return glm::length(high - low); }
 };
 [[nodiscard]] Box box_around(std::span<const Vec3> points);

@@ -53,6 +53,19 @@ TEST(RayQuery, ShadowRayStopsAtItsEnd) {
   EXPECT_EQ(query.occluded(rays, 2), 0b10U);
 }
 
+// Only then is it taken off near points without rounding, and by every compiler alike.
+TEST(RayQuery, SinglePrecisionHoldsTheCentre) {
+  tests::SceneBuilder builder;
+  builder.plate(builder.material(tests::grey(0.5)), 2.0, 1.0, false);
+  for (Vec3& vertex : builder.scene.vertices) vertex += Vec3(0.1, 0.2, 0.3);
+  const Vec3 centre = RayQuery(builder.scene).centre();
+  for (int k = 0; k < 3; ++k) {
+    const volatile auto held = static_cast<float>(centre[k]);
+    EXPECT_EQ(centre[k], double(held)) << k;
+    EXPECT_NE(centre[k], 0.0) << k;
+  }
+}
+
 TEST(RayQuery, EmptySceneLetsEverythingPass) {
   const Scene scene;
   const RayQuery query(scene);
