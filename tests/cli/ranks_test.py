@@ -64,7 +64,7 @@ def without_times(text):
     return strip(json.loads(text)) if text.startswith("{") else ""
 
 
-class Ranks(Case):
+class OfRanks(Case):
     def setUp(self):
         super().setUp()
         for name, text in SCENES.items():
@@ -91,16 +91,35 @@ class Ranks(Case):
                     self.assertEqual((self.folder / name).read_bytes(), whole[name], name)
                 self.assertEqual([p.name for p in self.folder.iterdir() if p.name.startswith(".")], [])
 
+    def without_program(self, study):
+        """earthshine-mpi is another program than earthshine, and study.json says so."""
+        return {key: value for key, value in self.without_times(study).items() if key not in ("build", "provenance")}
+
+    def started(self, count, *arguments):
+        """mpirun, and the ranks as soon as all are there."""
+        run = subprocess.Popen(["mpirun", "-n", str(count), MPI, *arguments, "-j", "1"], cwd=self.folder, env=ENVIRONMENT,
+                               stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(run.stderr.close)
+        self.addCleanup(run.kill)
+        children = pathlib.Path(f"/proc/{run.pid}/task/{run.pid}/children")
+        ranks = []
+        while len(ranks) < count:
+            ranks = children.read_text().split()
+        return run, ranks
+
+    @staticmethod
+    def processor_seconds(process):
+        user, system = pathlib.Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[11:13]
+        return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
+
+
+class Results(OfRanks):
     def test_one_rank_writes_to_a_device(self):
         """Three wrote a picture each, one after another."""
         call = ("render", "box.toml", "--no-error", "-q", "-o", "a.exr", "--png", "/dev/stdout")
         run = subprocess.run(["mpirun", "-n", "3", MPI, *call], cwd=self.folder, env=ENVIRONMENT, stdin=subprocess.DEVNULL,
                              capture_output=True, timeout=program.HANG_S, check=True)
         self.assertEqual(run.stdout, self.run_program(*call, text=False).stdout)
-
-    def without_program(self, study):
-        """earthshine-mpi is another program than earthshine, and study.json says so."""
-        return {key: value for key, value in self.without_times(study).items() if key not in ("build", "provenance")}
 
     def test_solutions(self):
         # Loops over patches go in chunks of 256; a single chunk is nobody's to share.
@@ -199,29 +218,6 @@ class Ranks(Case):
         self.assertEqual(said.count("earthshine: "), 1, said)
         self.says(said, "has no component osc for these machines", "--mca osc ^ucx")
 
-    def test_ranks_that_differ(self):
-        """Another scene, setting or mesh with one rank: the others waited for ever, or wrote a picture of both."""
-        (self.folder / "there").mkdir()
-        (self.folder / "out").mkdir()  # the first rank's alone
-        call = [MPI, "render", "ball.toml", "--camera", "A", "-o", "out/v.exr", "-q"]
-        for what, text, more in (("ball.toml", BALL.replace("radius = 0.5", "radius = 0.4"), []),
-                                 ("ball.toml", BALL + "# a word more\n", []), ("the call", BALL, ["--seed", "2"])):
-            self.write("there/ball.toml", text)
-            run = subprocess.run(["mpirun", "-n", "2", *call, ":", "-n", "1", "--wdir", "there", *call, *more], cwd=self.folder,
-                                 env=ENVIRONMENT, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=program.HANG_S, check=False)
-            self.assertEqual(run.returncode, 2, run.stderr)
-            self.assertEqual(run.stderr.count("earthshine: "), 1, run.stderr)
-            self.says(run.stderr, f"rank 0: {what} is not what rank 2 of 3 has")
-            self.assertEqual(list((self.folder / "out").iterdir()), [])
-        study = [MPI, "study", "orbit", "bay.toml", "-o", "out", "--positions", "3", "--iris", "normal"]  # one would have waited for ever
-        run = subprocess.run(["mpirun", "-n", "1", *study, ":", "-n", "1", *study, "--part", "solve"], cwd=self.folder, env=ENVIRONMENT,
-                             capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=program.HANG_S, check=False)
-        self.assertEqual(run.returncode, 2, run.stderr)
-        self.says(run.stderr, "rank 0: --part is not what rank 1 of 2 has")
-        self.write("there/ball.toml", BALL)  # how many threads and how much memory is each machine's own
-        subprocess.run(["mpirun", "-n", "1", *call, "-j2", ":", "-n", "1", "--wdir", "there", *call, "-j1", "--max-memory", "4GiB"],
-                       cwd=self.folder, env=ENVIRONMENT, stdin=subprocess.DEVNULL, timeout=program.HANG_S, check=True)
-
     def test_refined_patches(self):
         self.same(("solve", "bay.toml", "-o", "s.h5", "--set", "quality.refine=true", "--set", "quality.max_patches=2000"),
                   ("s.h5",), (2, 3))
@@ -248,14 +244,6 @@ class Ranks(Case):
         subprocess.run([MPI, "render", "ball.toml", "--camera", "A", "-o", "v.exr", "-q"], cwd=self.folder, check=True)
         self.assertEqual((self.folder / "v.exr").read_bytes(), whole)
 
-    def test_what_is_wrong_is_said_once(self):
-        run = self.ranks(3, "render", "none.toml", "-o", "v.exr", code=2)
-        self.assertEqual(run.stderr.count("earthshine: "), 1, run.stderr)
-        self.assertIn("none.toml", run.stderr)
-        for call in (("inspect", "ball.toml"), ("render", "ball.toml", "-o", "v.exr", "--part", "1/2"),
-                     ("render", "ball.toml", "-o", "v.exr", "--time-limit", "3")):
-            self.assertIn("earthshine: ", self.ranks(2, *call, code=2).stderr)
-
     def test_a_plan_is_made_once(self):
         plan = self.ranks(2, "study", "orbit", "bay.toml", "-o", "o", "--positions", "3", "--dry-run", "--json").stdout
         self.assertTrue(json.loads(plan)["dry_run"])  # two would be no JSON
@@ -271,6 +259,39 @@ class Ranks(Case):
         for program_, tasks in ((MPI, "1"), (program.PROGRAM, "4")):
             subprocess.run([program_, *call], cwd=self.folder, env=os.environ | {"SLURM_STEP_NUM_TASKS": tasks},
                            stdout=subprocess.DEVNULL, check=True)
+
+
+class Faults(OfRanks):
+    def test_ranks_that_differ(self):
+        """Another scene, setting or mesh with one rank: the others waited for ever, or wrote a picture of both."""
+        (self.folder / "there").mkdir()
+        (self.folder / "out").mkdir()  # the first rank's alone
+        call = [MPI, "render", "ball.toml", "--camera", "A", "-o", "out/v.exr", "-q"]
+        for what, text, more in (("ball.toml", BALL.replace("radius = 0.5", "radius = 0.4"), []),
+                                 ("ball.toml", BALL + "# a word more\n", []), ("the call", BALL, ["--seed", "2"])):
+            self.write("there/ball.toml", text)
+            run = subprocess.run(["mpirun", "-n", "2", *call, ":", "-n", "1", "--wdir", "there", *call, *more], cwd=self.folder,
+                                 env=ENVIRONMENT, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=program.HANG_S, check=False)
+            self.assertEqual(run.returncode, 2, run.stderr)
+            self.assertEqual(run.stderr.count("earthshine: "), 1, run.stderr)
+            self.says(run.stderr, f"rank 0: {what} is not what rank 2 of 3 has")
+            self.assertEqual(list((self.folder / "out").iterdir()), [])
+        study = [MPI, "study", "orbit", "bay.toml", "-o", "out", "--positions", "3", "--iris", "normal"]  # one would have waited for ever
+        run = subprocess.run(["mpirun", "-n", "1", *study, ":", "-n", "1", *study, "--part", "solve"], cwd=self.folder, env=ENVIRONMENT,
+                             capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=program.HANG_S, check=False)
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.says(run.stderr, "rank 0: --part is not what rank 1 of 2 has")
+        self.write("there/ball.toml", BALL)  # how many threads and how much memory is each machine's own
+        subprocess.run(["mpirun", "-n", "1", *call, "-j2", ":", "-n", "1", "--wdir", "there", *call, "-j1", "--max-memory", "4GiB"],
+                       cwd=self.folder, env=ENVIRONMENT, stdin=subprocess.DEVNULL, timeout=program.HANG_S, check=True)
+
+    def test_what_is_wrong_is_said_once(self):
+        run = self.ranks(3, "render", "none.toml", "-o", "v.exr", code=2)
+        self.assertEqual(run.stderr.count("earthshine: "), 1, run.stderr)
+        self.assertIn("none.toml", run.stderr)
+        for call in (("inspect", "ball.toml"), ("render", "ball.toml", "-o", "v.exr", "--part", "1/2"),
+                     ("render", "ball.toml", "-o", "v.exr", "--time-limit", "3")):
+            self.assertIn("earthshine: ", self.ranks(2, *call, code=2).stderr)
 
     def test_work_goes_to_whoever_is_free(self):
         """Two ranks of one thread share W = W1 + W2 CPU seconds of a picture. One is stopped while the other works for W: it
@@ -299,23 +320,6 @@ class Ranks(Case):
         self.assertEqual((self.folder / "v.exr").read_bytes(), whole)
         # Half of the work would be 0.4 W more than it had; one row and the file's encoding are less than 0.2 W.
         self.assertLess(at_end - at_stop, 0.2 * work)
-
-    def started(self, count, *arguments):
-        """mpirun, and the ranks as soon as all are there."""
-        run = subprocess.Popen(["mpirun", "-n", str(count), MPI, *arguments, "-j", "1"], cwd=self.folder, env=ENVIRONMENT,
-                               stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        self.addCleanup(run.stderr.close)
-        self.addCleanup(run.kill)
-        children = pathlib.Path(f"/proc/{run.pid}/task/{run.pid}/children")
-        ranks = []
-        while len(ranks) < count:
-            ranks = children.read_text().split()
-        return run, ranks
-
-    @staticmethod
-    def processor_seconds(process):
-        user, system = pathlib.Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[11:13]
-        return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
 
     def test_a_rank_that_dies_ends_the_run(self):
         run, ranks = self.started(3, "render", "ball.toml", "--camera", "A", "-o", "v.exr", "--indirect", "paths",
