@@ -236,8 +236,8 @@ class Visibility(Study):
         printed = self.json("study", "visibility", "monitored.toml", "-o", "v", "--camera", "above",
                             "--camera", "A", "--camera", "above", "--size", "16x12")
         self.assertEqual(printed, self.result("v", "study.json"))
-        self.assertEqual([camera["name"] for camera in printed["cameras"]], ["A", "above"])
-        self.assertIsNone(printed["results"][1]["signal"])
+        self.assertEqual([camera["name"] for camera in printed["cameras"]], ["above", "A"])
+        self.assertIsNone(printed["results"][0]["signal"])
         for figure in printed["figures"]:
             if figure["clean"]:
                 self.assertEqual(self.png_size("v", figure["file"]), (16, 12))

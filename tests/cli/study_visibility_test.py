@@ -177,9 +177,9 @@ class Visibility(Case):
         self.assertEqual((answer["wanted"], answer["target"], answer["least"]), ("box>=0.9", "box", 0.9))
         self.assertEqual(answer["arcs_deg"], [])
         self.assertIn(answer["iris"], (None, "peak", "average"))
-        self.assertEqual([(row["camera"], row["target"]) for row in printed["targets"]],
+        self.assertEqual([(row["camera"], row["target"]) for row in printed["results"]],
                          [(c, t) for c in "AB" for t in ("box", "far")])
-        self.assertTrue(all(row["verdict"] in VERDICTS for row in printed["targets"]))
+        self.assertTrue(all(row["verdict"] in VERDICTS for row in printed["results"]))
         self.no_nonsense("v")
         self.says(self.done("study", "visibility", "bay.toml", "-o", "w", "--dry-run"), "1 places", "camera B")
         self.assertFalse((self.folder / "w").exists())
