@@ -13,7 +13,8 @@ RANKS = (1, 2, 4, 8, 16, 64, 256, 1024, 4096)
 
 
 # One thread's seconds, of a profile of `solve` with 493083 patches (docs/scaling.md): of an entry in a pass of columns' sums; of a
-# patch in a sweep and of a patch and column in a product, in vectors that every rank has; of a patch in files and tables.
+# patch in a sweep and of a patch and column in a product, in vectors of the first rank, for which the others wait; of a patch in files
+# and tables.
 SUM_S, SWEEP_S, PRODUCT_S, PATCH_S = 1.54e-9, 22e-9, 13e-9, 5.9e-6
 
 
@@ -45,7 +46,9 @@ def exchange(case, ranks, bytes_per_s, message_s):
         return 0.0
     others = ranks - 1
     entries = (8 + (12 if case.filled else 0)) * case.entries / ranks
-    to_all = case.patches * (64 + 24 * case.sweeps + 8 * case.columns * case.products + 160 + 8 * case.columns)
+    # What rows found; column scales, or Newton's way, in each sweep; row scales at the end; what each product is of, or for the first
+    # rank the product; four floats a patch and column of the solution.
+    to_all = case.patches * (64 + 8 * case.sweeps + 8 + 8 * case.columns * case.products + 16 * case.columns)
     sums = case.patches * 8 * case.sweeps * max(1.0, BANDS / ranks, ranks / BANDS)  # in turn within a band
     messages = (16 * 2 * others  # rows to their ranks
                 + case.sweeps * (3 + 2) * others + case.sweeps * max(0, ranks / BANDS - 1)
