@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// B = S + rho F B for many right-hand sides at once. The only user of Eigen in this layer.
+// B = S + rho F B for many right-hand sides at once.
 #pragma once
 
 #include <cstddef>

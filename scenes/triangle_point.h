@@ -17,8 +17,8 @@ struct Box {
     high = glm::max(high, point);
   }
   [[nodiscard]] Vec3 middle() const { return 0.5 * (low + high); }
-  // Not in line: GCC 12 takes double to float and back for nothing where it handles two components
-  // at once, and rounds the third alone.
+  // Out of line: in line GCC 12 drops the rounding, double to float to double, of two components
+  // that it handles as a vector, and rounds only the third.
   [[nodiscard]] glm::vec3 middle_in_single() const;
   [[nodiscard]] double diagonal() const { return glm::length(high - low); }
 };

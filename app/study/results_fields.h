@@ -47,8 +47,6 @@ void describe(Fields& fields, Either<studies::SignalSight> auto& signal) {
   fields("snr_d", signal.snr_d);
   fields("dprime", signal.dprime);
   fields("limiting_frequency", signal.limiting_frequency);
-  fields("shown_from", signal.shown_from);
-  fields("shown_to", signal.shown_to);
 }
 
 template <class Fields>
@@ -109,6 +107,8 @@ void describe(Fields& fields, Either<TargetFindings> auto& found) {
   fields("johnson_cycles", sight.johnson_cycles);
   fields("saturated", sight.saturated);
   fields("crushed", sight.crushed);
+  fields("shown_from", sight.shown_from);
+  fields("shown_to", sight.shown_to);
   fields("luminance_error", found.luminance_error);
   fields("luminance_bound", found.luminance_bound);
   fields("why", found.why);

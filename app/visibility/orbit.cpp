@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 
-#include "app/console.h"
 #include "app/options.h"
 #include "app/study/results.h"
 #include "app/study/study.h"
@@ -53,16 +52,6 @@ std::vector<double> positions_of(const std::string& text) {
   return positions;
 }
 
-void run_task(StudyTask task, const Common& common, bool json, bool dry_run) {
-  if (dry_run) {
-    const Json plan = plan_study(std::move(task), common);
-    return print(json ? dump(plan) : plan_text(plan));
-  }
-  const auto found = run_study(std::move(task), common);
-  if (!found) return;  // a part has nothing to tell
-  print(json ? dump(to_json(*found)) : study_text(*found));
-}
-
 void run_orbit(const OrbitCall& call, const Common& common) {
   studies::StudyFile study = study_of(call.study, call.wanted, call.iris);
   study.positions_deg = call.at.empty() ? studies::even_positions(static_cast<int>(call.positions))
@@ -70,14 +59,14 @@ void run_orbit(const OrbitCall& call, const Common& common) {
   study.timeline = call.at.empty() && call.positions > 1;
   StudyTask task{std::move(study), call.study.folder, "study orbit", call.tone};
   task.part = call.study.part;
-  run_task(std::move(task), common, call.study.json, call.dry_run);
+  run_and_print(std::move(task), common, call.study.json, call.dry_run);
 }
 
 void run_file(const FileCall& call, const Common& common) {
   StudyTask task{studies::read_study_file(call.file), call.folder, "study run " + call.file,
                  call.tone};
   task.part = call.part;
-  run_task(std::move(task), common, call.json, call.dry_run);
+  run_and_print(std::move(task), common, call.json, call.dry_run);
 }
 
 }  // namespace

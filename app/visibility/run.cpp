@@ -219,4 +219,15 @@ std::optional<StudyResults> run_study(StudyTask task, const Common& common) {
   return study;
 }
 
+void run_and_print(StudyTask task, const Common& common, bool json, bool dry_run,
+                   std::string (*text)(const StudyResults& study)) {
+  if (dry_run) {
+    const Json plan = plan_study(std::move(task), common);
+    return print(json ? dump(plan) : plan_text(plan));
+  }
+  const std::optional<StudyResults> found = run_study(std::move(task), common);
+  if (!found) return;  // a part has nothing to tell
+  print(json ? dump(to_json(*found)) : text(*found));
+}
+
 }  // namespace earthshine::app

@@ -20,8 +20,8 @@ inline constexpr const char* study_tone_help =
 struct StudyTask {
   studies::StudyFile study;
   std::string folder;
-  std::string command;                       // what was called, for the report
-  ToneChoice tone = {usual_percent, {}};     // of the clean pictures, together
+  std::string command;                    // what was called, for the report
+  ToneChoice tone = {usual_percent, {}};  // of the clean pictures, together
   PartCall part = {};
 };
 
@@ -29,6 +29,10 @@ struct StudyTask {
 // bad input before any work is done, and (Work) after everything was written if it was interrupted,
 // or where a merge finds work missing.
 [[nodiscard]] std::optional<StudyResults> run_study(StudyTask task, const Common& common);
+
+// The same, or with `dry_run` its plan, on standard output: as JSON, or as `text` has it.
+void run_and_print(StudyTask task, const Common& common, bool json, bool dry_run,
+                   std::string (*text)(const StudyResults& study) = study_text);
 
 // What would be done and its price; throws as run_study. For people: plan_text.
 [[nodiscard]] Json plan_study(StudyTask task, const Common& common);

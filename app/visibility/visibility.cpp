@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <string>
+#include <vector>
 
-#include "app/console.h"
 #include "app/options.h"
 #include "app/study/results.h"
 #include "app/study/study.h"
@@ -24,37 +25,31 @@ std::string cell(const Number& value, double factor, const char* unit) {
   return value ? fmt::format("{:.3g}{}", factor * *value, unit) : "-";
 }
 
-std::string table_of(const StudyResults& study) {
-  if (study.results.empty()) return "";
+std::string text_of(const StudyResults& study) {
+  if (study.results.empty()) return study_text(study);
   std::string text =
       fmt::format("{:<12} {:<24} {:>7} {:>8} {:>9} {:>9} {:>9} {:>9} {:>8}\n", "camera", "target",
                   "pixels", "visible", "cd/m2", "surround", "contrast", "saturated", "crushed");
   for (const ResultEntry& result : study.results) {
     const studies::Sight& sight = result.sight;
-    text += fmt::format(
-        "{:<12} {:<24} {:>7} {:>8} {:>9} {:>9} {:>9} {:>9} {:>8}\n",
-        study.cameras[result.camera].name, study.targets[result.target],
-        fmt::format("{}{}", sight.pixels, sight.cut_by_frame ? "+" : ""),
-        cell(sight.visible_fraction, 100.0, " %"), cell(sight.luminance, 1.0, ""),
-        cell(sight.surround, 1.0, ""), cell(sight.weber, 1.0, ""),
-        cell(sight.saturated, 100.0, " %"), cell(sight.crushed, 100.0, " %"));
+    text += fmt::format("{:<12} {:<24} {:>7} {:>8} {:>9} {:>9} {:>9} {:>9} {:>8}\n",
+                        study.cameras[result.camera].name, study.targets[result.target],
+                        fmt::format("{}{}", sight.pixels, sight.cut_by_frame ? "+" : ""),
+                        cell(sight.visible_fraction, 100.0, " %"), cell(sight.luminance, 1.0, ""),
+                        cell(sight.surround, 1.0, ""), cell(sight.weber, 1.0, ""),
+                        cell(sight.saturated, 100.0, " %"), cell(sight.crushed, 100.0, " %"));
   }
   return text +
          "Luminances of the clean picture, 0.2126 R + 0.7152 G + 0.0722 B.\n"
-         "+ : reaches the picture's border, more of it may lie outside.\n\n";
+         "+ : reaches the picture's border, more of it may lie outside.\n\n" +
+         study_text(study);
 }
 
 void run(const VisibilityCall& call, const Common& common) {
   StudyTask task{study_of(call.study, call.wanted, call.iris), call.study.folder,
                  "study visibility", call.tone};
   task.part = call.study.part;
-  if (call.dry_run) {
-    const Json plan = plan_study(std::move(task), common);
-    return print(call.study.json ? dump(plan) : plan_text(plan));
-  }
-  const std::optional<StudyResults> study = run_study(std::move(task), common);
-  if (!study) return;  // a part has nothing to tell
-  print(call.study.json ? dump(to_json(*study)) : table_of(*study) + study_text(*study));
+  run_and_print(std::move(task), common, call.study.json, call.dry_run, text_of);
 }
 
 }  // namespace

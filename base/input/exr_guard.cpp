@@ -79,7 +79,7 @@ class Value {
   std::string_view left_;
 };
 
-// The others are passed over: they may be as long as the file.
+// These must be read; other types are skipped unread.
 bool tells_its_size(std::string_view type) {
   return type == "chlist" || type == "stringvector" || type == "preview";
 }

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
+#include <cstddef>
 #include <functional>
 #include <utility>
 
@@ -20,7 +21,7 @@ struct traits<earthshine::radiosity::MatrixFree> : public traits<Eigen::SparseMa
 
 namespace earthshine::radiosity {
 
-// Square.
+// Square and linear. Solvers keep a pointer to it.
 class MatrixFree : public Eigen::EigenBase<MatrixFree> {
  public:
   using Scalar = double;
@@ -33,8 +34,8 @@ class MatrixFree : public Eigen::EigenBase<MatrixFree> {
   };
   using Apply = std::function<Eigen::VectorXd(const Eigen::VectorXd& x)>;
 
-  MatrixFree(std::size_t size, Apply product)
-      : product_(std::move(product)), size_(static_cast<Eigen::Index>(size)) {}
+  MatrixFree(std::size_t size, Apply apply_to)
+      : apply_(std::move(apply_to)), size_(static_cast<Eigen::Index>(size)) {}
 
   [[nodiscard]] Eigen::Index rows() const { return size_; }
   [[nodiscard]] Eigen::Index cols() const { return size_; }
@@ -45,10 +46,10 @@ class MatrixFree : public Eigen::EigenBase<MatrixFree> {
     return {*this, x.derived()};
   }
 
-  [[nodiscard]] Eigen::VectorXd apply(const Eigen::VectorXd& x) const { return product_(x); }
+  [[nodiscard]] Eigen::VectorXd apply(const Eigen::VectorXd& x) const { return apply_(x); }
 
  private:
-  Apply product_;
+  Apply apply_;
   Eigen::Index size_;
 };
 

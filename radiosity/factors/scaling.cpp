@@ -193,32 +193,36 @@ std::vector<double> Scaling::own_response(std::vector<double>& weighted) const {
       base::Hears::First);
 }
 
-// In units in which the diagonal is 1; a tenth of the defect is left to the next step, which knows
-// more.
+// Conjugate gradients in units in which the diagonal is 1 (the diagonal as preconditioner); a patch
+// without one is left out. A tenth of the defect is left to the next step, which knows more.
 int Scaling::solve_for_step(std::vector<double>& step, int most_passes) const {
   const std::size_t count = sums_.size();
-  Eigen::VectorXd unit(count), defect(count);
+  Eigen::VectorXd unit(count), missing(count);
   for (std::size_t j = 0; j < count; ++j) {
     const double diagonal = f_.kept[j] * sums_[j];
     unit[j] = diagonal > 0.0 ? 1.0 / std::sqrt(diagonal) : 0.0;
-    defect[j] = unit[j] * f_.kept[j] * (area_m2_[j] - sums_[j]);
+    missing[j] = unit[j] * f_.kept[j] * (area_m2_[j] - sums_[j]);
   }
   int passes = 0;
+  bool broken = false;  // hits that have no scaling: further passes would bring nothing
+  std::vector<double> way(count);
   const MatrixFree system(count, [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
-    if (x.isZero(0.0)) return x;  // where it starts
+    if (broken || !(x.squaredNorm() > 0.0)) return x;  // Eigen begins with the product of 0
     ++passes;
-    step.resize(count);
-    Eigen::Map<Eigen::VectorXd>(step.data(), x.size()) = unit.cwiseProduct(x);
-    const std::vector<double> change = response(step);
-    return unit.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(change.data(), x.size()));
+    Eigen::Map<Eigen::VectorXd>(way.data(), x.size()) = unit.cwiseProduct(x);
+    const std::vector<double> change = response(way);
+    Eigen::VectorXd y =
+        unit.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(change.data(), x.size()));
+    broken = !(x.dot(y) > 0.0);
+    return y;
   });
   Eigen::ConjugateGradient<MatrixFree, Eigen::Lower | Eigen::Upper, Eigen::IdentityPreconditioner>
       gradients;
   gradients.compute(system);
   gradients.setTolerance(0.1).setMaxIterations(most_passes);
-  const Eigen::VectorXd found = unit.cwiseProduct(gradients.solve(defect));
+  const Eigen::VectorXd found = unit.cwiseProduct(gradients.solve(missing));
   step.assign(count, 0.0);
-  if (found.allFinite()) std::copy(found.begin(), found.end(), step.begin());
+  if (!broken && found.allFinite()) std::copy(found.begin(), found.end(), step.begin());
   // A perfect mirror keeps nothing, so that no row feels its column's scale: it follows alone.
   for (std::size_t j = 0; j < count; ++j) {
     if (f_.kept[j] <= 0.0 && sums_[j] > 0.0) step[j] = std::log(area_m2_[j] / sums_[j]);

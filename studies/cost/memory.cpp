@@ -33,7 +33,7 @@ constexpr double patch_bytes = 8.0 + 4.0 + sizeof(radiosity::Cell) + 1.0 + 8.0;
 constexpr double row_bytes = 80.0, sky_bytes = 24.0, cast_bytes = 50.0;
 // While they are balanced: what all ranks have, and the first's vectors of Newton's step; sums of
 // columns in 16 bands, of which each rank has its own, has sent as much and got its columns'.
-constexpr double balance_bytes = 60.0, newton_bytes = 65.0, bands_bytes = 128.0;
+constexpr double balance_bytes = 60.0, newton_bytes = 90.0, bands_bytes = 128.0;
 constexpr double counter_bytes = 4.125;  // per patch and thread
 constexpr double entry_bytes = 8.0;      // column and hits
 // Bands of rows are joined to the matrix sixteenth by sixteenth. Ranks send them to one another,

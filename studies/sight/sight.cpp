@@ -60,11 +60,9 @@ Verdict verdict_of(const Sight& sight, const TargetView& view, const SightOption
   return p.detect >= options.doubtful_probability ? Verdict::Doubtful : Verdict::NotSeen;
 }
 
-void take(Sight& sight, const TargetSignal& cctv, const ShownRange& shown) {
+void take(Sight& sight, const TargetSignal& cctv) {
   sight.tv_lines = cctv.lines;
   sight.signal = cctv.signal;
-  sight.signal->shown_from = shown.black;
-  sight.signal->shown_to = shown.white;
   sight.monitor = cctv.monitor;
   sight.johnson_cycles = cctv.cycles;
   sight.saturated = cctv.saturated;
@@ -94,7 +92,7 @@ CameraSight measure_sight(const SightPlan& plan, const base::Image& radiance,
   for (const float value : luminance) sum += static_cast<double>(value);
   found.mean_luminance = std::max(0.0, sum / static_cast<double>(luminance.size()));
   std::vector<std::optional<TargetSignal>> signals(plan.targets.size());
-  ShownRange shown;
+  std::optional<ShownRange> shown;
   if (cctv) {
     const CctvSignal line = pass_through(radiance, *cctv);
     found.exposure = line.report.exposure;
@@ -106,6 +104,10 @@ CameraSight measure_sight(const SightPlan& plan, const base::Image& radiance,
     Sight sight;
     sight.pixels = target.seen.size();
     sight.cut_by_frame = target.view.cut_by_frame;
+    if (shown) {
+      sight.shown_from = shown->black;
+      sight.shown_to = shown->white;
+    }
     if (target.view.pixels_alone > 0) {
       sight.visible_fraction =
           static_cast<double>(sight.pixels) / static_cast<double>(target.view.pixels_alone);
@@ -121,7 +123,7 @@ CameraSight measure_sight(const SightPlan& plan, const base::Image& radiance,
       sight.eye = eye_sight(target, *light, luminance, found.mean_luminance, options);
       sight.probability = sight.eye->probability;
       if (signals[t]) {
-        take(sight, *signals[t], shown);
+        take(sight, *signals[t]);
         sight.probability = signals[t]->probability;
       }
     }

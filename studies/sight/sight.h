@@ -46,7 +46,6 @@ struct SignalSight {
   std::optional<double> difference;  // root mean square of t - b over the target's parts
   std::optional<double> dprime;      // ideal observer that knows the target's shape, in that time
   std::optional<double> limiting_frequency;  // cycles per resel where C0 MTF(u) = 3 / SNR of a bar
-  std::optional<double> shown_from, shown_to;  // ShownRange of this view, cd/m^2 of the scene
 };
 
 // On the screen, cd/m^2, as a viewer sees it on average: with noise, phosphor spread and room
@@ -76,6 +75,7 @@ struct Sight {
   std::size_t pixels = 0;
   std::optional<double> visible_fraction;  // none where it would not even show alone
   bool cut_by_frame = false;
+  std::optional<double> shown_from, shown_to;  // ShownRange of the view, cd/m^2; with a CCTV
 
   // None of those below where no pixel is seen.
   std::optional<double> angle_deg;  // that the seen part's least extent subtends

@@ -6,7 +6,8 @@ was not flushed is dropped, and names that a folder was given since it was flush
 locks, without renaming onto a file that is there; clocks that jump.
 
 Some calls of each kind are made to fail; all of them, and what was found as a table, with EARTHSHINE_FAULTS=all
-(20 minutes). EARTHSHINE_FAULTS=NAME does so for one command or one column of the table. Exit code 77 where the calls cannot be stopped: elsewhere
+(an hour). EARTHSHINE_FAULTS=NAME does so for one command or one column of the table; `study accuracy`, the dearest, is taken in no other way.
+Exit code 77 where the calls cannot be stopped: elsewhere
 than on Linux on x86-64, or with a sanitizer, which wants to be preloaded itself.
 """
 import csv

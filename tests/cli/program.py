@@ -8,7 +8,7 @@ import tempfile
 import unittest
 
 PROGRAM = os.environ["EARTHSHINE_PROGRAM"]
-HANG_S = 600  # what still runs then does so for ever
+HANG_S = 600  # a call that still runs then does so for ever; CTest gives a whole file three times as long
 TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 
 # A closed room: every patch has radiosity M / (1 - rho). The walls emit, so there is no other source.

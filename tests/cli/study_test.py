@@ -237,10 +237,9 @@ class Visibility(Study):
                             "--camera", "A", "--camera", "above", "--size", "16x12")
         self.assertEqual(printed, self.result("v", "study.json"))
         self.assertEqual([camera["name"] for camera in printed["cameras"]], ["above", "A"])
-        self.assertIsNone(printed["results"][0]["signal"])
-        for figure in printed["figures"]:
-            if figure["clean"]:
-                self.assertEqual(self.png_size("v", figure["file"]), (16, 12))
+        self.assertIsNone(printed["results"][0]["shown_to"])
+        clean = [figure["file"] for figure in printed["figures"] if figure["clean"]]
+        self.assertEqual([self.png_size("v", name) for name in clean], [(16, 12)] * 2)
 
     def test_camera_names_become_safe_file_names(self):
         scene = program.BALL.replace('name = "A"', 'name = "../A b"').replace('name = "above"', 'name = ".._A/b"')
@@ -248,7 +247,9 @@ class Visibility(Study):
         printed = self.json("study", "visibility", "names.toml", "-o", "v")
         self.assertEqual(self.files("v"), self.ENGINE)
         self.assertEqual(self.files("."), sorted([*self.BEFORE, "names.toml", "v"]))
-        self.assertEqual(len({figure["file"] for figure in printed["figures"]}), 2)
+        files = {figure["file"] for figure in printed["figures"]}
+        self.assertEqual(len(files), 2)
+        self.assertTrue(all((self.folder / "v" / name).is_file() for name in files))
 
     def test_text_in_the_table_is_quoted(self):
         self.write("names.toml", program.BALL.replace('name = "ball"', "name = 'a \"b\", c'"))

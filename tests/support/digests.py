@@ -64,8 +64,6 @@ def of_file(path):
     if path.suffix == ".exr":
         _, columns, rows, channels = exr.read(path)
         return digest({name: digest(bytes(values)) for name, values in channels.items()} | {"": [columns, rows]})
-    if path.suffix == ".json":
-        return digest(plain(json.loads(path.read_text())))
     if path.suffix == ".csv":
         rows = list(csv.DictReader(path.open()))
         return digest(plain(rows))
@@ -122,19 +120,19 @@ def of_studies(program, out):
         for file in sorted(folder.rglob("*")):
             if file.suffix in (".csv", ".png"):
                 yield f"study {study[0]} {file.relative_to(folder)}", of_file(file)
-        stated = by_costs(json.loads((folder / "study.json").read_text()))
-        for costs, told in stated.items():
-            yield f"study {study[0]} study.json{costs}", digest(plain(told))
+        for path in sorted(folder.glob("*.json")):
+            for costs, told in by_costs(json.loads(path.read_text())).items():
+                yield f"study {study[0]} {path.name}{costs}", digest(plain(told))
         # Their names hold the build that made them.
         for number, found in enumerate(sorted(of_file(file) for file in folder.rglob("points/*.exr"))):
             yield f"study {study[0]} points {number}", found
-        page = folder / "report.html"
-        if page.exists():
-            made = page.read_bytes()
+        page, file = folder / "report.html", folder / "study.json"
+        if file.exists():
+            made, stated = page.read_bytes(), by_costs(json.loads(file.read_text()))
             run(program, "report", folder)
             yield f"study {study[0]} drawn anew", str(made == page.read_bytes())
             for costs, told in stated.items():
-                (folder / "study.json").write_text(json.dumps(timeless(told)))
+                file.write_text(json.dumps(timeless(told)))
                 run(program, "report", folder)
                 yield f"study {study[0]} report.html{costs}", of_file(page)
 

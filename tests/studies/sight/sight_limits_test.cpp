@@ -247,5 +247,22 @@ TEST(SightLimits, ShownRangeAgreesWithTheChainsLevels) {
   }
 }
 
+// Of a disc that is white on its left and black on its right half of the pixels are either, also
+// where the camera has fewer resels than the picture has pixels, by other factors along and across:
+// a pixel is judged by the resel in which its centre lies.
+TEST(SightLimits, ClippedSharesAreOfPixelsByTheReselOfTheirCentre) {
+  auto picture = bright_disc();
+  for (base::Channel& channel : picture.image.channels) {
+    for (std::size_t i = 0; i < channel.values.size(); ++i) {
+      channel.values[i] = i % disc_edge < disc_edge / 2 ? 100.0F : 0.0F;
+    }
+  }
+  for (const auto& [columns, rows] : {std::pair{disc_edge, disc_edge}, {60, 30}, {20, 40}}) {
+    const Sight sight = sight_of(picture, with_noise(plain_cctv(columns, rows, 100.0), 1e-4));
+    EXPECT_EQ(*sight.saturated, 0.5) << columns;
+    EXPECT_EQ(*sight.crushed, 0.5) << columns;
+  }
+}
+
 }  // namespace
 }  // namespace earthshine::studies

@@ -110,8 +110,8 @@ TEST(Sight, SaturatedFromWhiteAndCrushedWithinTheNoiseOfBlack) {
   const auto shares = [&](double luminance) {
     const Sight s =
         sight_of(discs_on(40.0, {{60.0, 60.0, 20.0, luminance}}, disc_edge, disc_edge), setup);
-    EXPECT_NEAR(*s.signal->shown_from, 1.0, 1e-9);
-    EXPECT_NEAR(*s.signal->shown_to, 99.5, 1e-9);
+    EXPECT_NEAR(*s.shown_from, 1.0, 1e-9);
+    EXPECT_NEAR(*s.shown_to, 99.5, 1e-9);
     return std::pair{*s.saturated, *s.crushed};
   };
   EXPECT_EQ(shares(99.6), (std::pair{1.0, 0.0}));
@@ -146,6 +146,7 @@ TEST(Sight, VerdictGoesByVisibleFractionAndProbability) {
   EXPECT_EQ(out.verdict, Verdict::OutOfView);
   EXPECT_FALSE(out.probability || out.visible_fraction || out.luminance || out.angle_deg ||
                out.eye || out.signal || out.tv_lines);
+  EXPECT_TRUE(out.shown_from && out.shown_to);
   EXPECT_EQ(word_of(out.verdict), "out-of-view");
   EXPECT_EQ(word_of(Verdict::NotSeen), "not-seen");
 }
@@ -162,9 +163,9 @@ void expect_finite(const Sight& sight, const std::string& what) {
     }
   };
   likely(sight.probability);
-  for (const auto& value :
-       {sight.visible_fraction, sight.angle_deg, sight.tv_lines, sight.luminance, sight.surround,
-        sight.weber, sight.johnson_cycles, sight.saturated, sight.crushed}) {
+  for (const auto& value : {sight.visible_fraction, sight.angle_deg, sight.tv_lines,
+                            sight.luminance, sight.surround, sight.weber, sight.johnson_cycles,
+                            sight.saturated, sight.crushed, sight.shown_from, sight.shown_to}) {
     maybe(value);
   }
   if (sight.signal) {
