@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/options.h"
+#include "app/parts/part.h"
 #include "app/study/results.h"
 #include "studies/orbit/study_file.h"
 
