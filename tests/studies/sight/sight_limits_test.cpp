@@ -247,20 +247,22 @@ TEST(SightLimits, ShownRangeAgreesWithTheChainsLevels) {
   }
 }
 
-// Of a disc that is white on its left and black on its right half of the pixels are either, also
-// where the camera has fewer resels than the picture has pixels, by other factors along and across:
-// a pixel is judged by the resel in which its centre lies.
+// Of a disc of which a quarter is white and the rest black these are its pixels' shares, also where
+// the camera has a resel for four pixels: a pixel is judged by the resel in which its centre lies.
 TEST(SightLimits, ClippedSharesAreOfPixelsByTheReselOfTheirCentre) {
-  auto picture = bright_disc();
+  constexpr int width = 180, height = 120;
+  auto picture = discs_on(0.0, {{90.0, 60.0, 20.0, 0.0}}, width, height);
   for (base::Channel& channel : picture.image.channels) {
     for (std::size_t i = 0; i < channel.values.size(); ++i) {
-      channel.values[i] = i % disc_edge < disc_edge / 2 ? 100.0F : 0.0F;
+      if (i % width < width / 2 && i / width < height / 2) channel.values[i] = 100.0F;
     }
   }
-  for (const auto& [columns, rows] : {std::pair{disc_edge, disc_edge}, {60, 30}, {20, 40}}) {
-    const Sight sight = sight_of(picture, with_noise(plain_cctv(columns, rows, 100.0), 1e-4));
-    EXPECT_EQ(*sight.saturated, 0.5) << columns;
-    EXPECT_EQ(*sight.crushed, 0.5) << columns;
+  for (const int pixels : {1, 2}) {
+    const degrade::Setup setup =
+        with_noise(plain_cctv(width / pixels, height / pixels, 100.0), 1e-4);
+    const Sight sight = sight_of(picture, setup);
+    EXPECT_EQ(*sight.saturated, 0.25) << pixels;
+    EXPECT_EQ(*sight.crushed, 0.75) << pixels;
   }
 }
 
