@@ -157,7 +157,7 @@ class Faults(program.Case):
         fault = {"LD_PRELOAD": self.shim, "FAULT_KIND": kind, "FAULT_AT": at, "FAULT_ERROR": number, "FAULT_STAYS": int(stays),
                  "FAULT_COUNT": self.count, "PATH": "/nowhere"}  # no gnuplot: it would start under the filter
         fault |= more or {}
-        return subprocess.run([program.PROGRAM, *call, "-j", "1", "-q"], cwd=folder, timeout=program.HANG_S, stdin=subprocess.DEVNULL,
+        return subprocess.run([program.PROGRAM, *call, "-j", "1", "-q"], cwd=folder, timeout=120, stdin=subprocess.DEVNULL,
                               capture_output=True, env=os.environ | {key: str(value) for key, value in fault.items()}, check=False)
 
     def before(self, name):

@@ -15,6 +15,7 @@ GLTF = """{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], 
 "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
 "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"uri": "pipe", "byteLength": 36}]}"""
 OBJECT = "\n[[object]]\nname = \"it\"\nmesh = \"{}\"\n"
+WAIT_S = 20  # of a busy machine; the program waited for ever
 
 
 class Pipes(program.Case):
@@ -24,6 +25,9 @@ class Pipes(program.Case):
         for ending in ("toml", "obj", "stl", "ply", "gltf", "glb", "exr", "png", "h5", "csv", "mtl"):
             os.mkfifo(self.folder / f"pipe.{ending}")
         self.write("ball.toml", program.BALL)
+
+    def run_program(self, *arguments, timeout=WAIT_S, **more):
+        return super().run_program(*arguments, timeout=timeout, **more)
 
     def refuses(self, *call, name="pipe"):
         message = self.refused(*call)
@@ -91,7 +95,7 @@ class Pipes(program.Case):
         run.send_signal(signal.SIGTERM)
         start = time.monotonic()
         try:
-            run.wait(timeout=program.HANG_S)
+            run.wait(timeout=WAIT_S)
         finally:
             run.kill()
         self.assertLess(time.monotonic() - start, 5.0, call)  # a second, on a machine that is free

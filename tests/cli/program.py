@@ -8,7 +8,6 @@ import tempfile
 import unittest
 
 PROGRAM = os.environ["EARTHSHINE_PROGRAM"]
-HANG_S = 600  # a call that still runs then does so for ever; CTest gives a whole file three times as long
 TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 
 # A closed room: every patch has radiosity M / (1 - rho). The walls emit, so there is no other source.
@@ -141,7 +140,7 @@ class Case(unittest.TestCase):
             path.write_text(text, encoding="utf-8")
         return name
 
-    def run_program(self, *arguments, timeout=HANG_S, **more):
+    def run_program(self, *arguments, timeout=600, **more):
         return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, timeout=timeout,
                               stdin=subprocess.DEVNULL,
                               **({"capture_output": True, "text": True} | more))

@@ -85,7 +85,7 @@ class Folder(Accuracy):
         call = answer["setting"]["command"]
         self.says(call, "--size 12x9", "light.lamp.intensity=500")
         run = subprocess.run(["sh", "-c", call.replace("earthshine", '"$0"', 1), program.PROGRAM],
-                             cwd=self.folder, capture_output=True, text=True, timeout=program.HANG_S)
+                             cwd=self.folder, capture_output=True, text=True, timeout=120)
         self.assertEqual(run.returncode, 0, call + run.stderr)
 
     def test_without_gnuplot_the_figures_are_there_all_the_same(self):
@@ -176,7 +176,7 @@ class GoesOn(Accuracy):
         while process.poll() is None and not (points.is_dir() and list(points.glob("*.json"))):
             time.sleep(0.002)
         process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=program.HANG_S)
+        out, err = process.communicate(timeout=60)
         self.assertEqual((process.returncode, out), (1, ""), err)
         self.says(err, "interrupted", "finished in d", "goes on")
 

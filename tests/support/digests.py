@@ -48,10 +48,6 @@ def timeless(value):
 WITHOUT_COSTS = " without costs"
 
 
-def passed_over(name, found):
-    return name + WITHOUT_COSTS in found
-
-
 def by_costs(study):
     return {"": study, WITHOUT_COSTS: study | {"costs": []}} if "costs" in study else {"": study}
 
@@ -164,7 +160,7 @@ def main():
     wrong = 0
     for other in runs[1:]:
         second = dict(results(other, call.scene))
-        names = [name for name in sorted(first.keys() | second.keys()) if other[0] != "mpirun" or not passed_over(name, first)]
+        names = [name for name in sorted(first.keys() | second.keys()) if other[0] != "mpirun" or name + WITHOUT_COSTS not in first]
         different = [name for name in names if first.get(name) != second.get(name)]
         for name in different:
             print(f"{name}: {first.get(name)} {second.get(name)}")

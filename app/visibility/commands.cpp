@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// earthshine study orbit: all cameras and targets along the orbit; study run: a study file.
+// earthshine study visibility: all cameras and targets of the scene as it is; study orbit: along
+// the orbit; study run: a study file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,13 +16,16 @@
 namespace earthshine::app {
 namespace {
 
-struct OrbitCall {
+struct VisibilityCall {
   StudyCall study;
-  std::uint64_t positions = 36;
-  std::string at;  // positions in degrees, in any order, with commas between
   std::vector<std::string> wanted, iris;
   bool dry_run = false;
   ToneChoice tone = {usual_percent, {}};
+};
+
+struct OrbitCall : VisibilityCall {
+  std::uint64_t positions = 36;
+  std::string at;  // positions in degrees, in any order, with commas between
 };
 
 struct FileCall {
@@ -52,14 +56,59 @@ std::vector<double> positions_of(const std::string& text) {
   return positions;
 }
 
+void add_options(CLI::App& parser, VisibilityCall& call) {
+  add_study_options(parser, call.study);
+  add_cameras_option(parser, call.study);
+  add_wanted_options(parser, call.wanted, call.iris);
+  add_part_options(parser, call.study.part);
+  parser.add_flag("--dry-run", call.dry_run, "Only say what would be done, and its price");
+  add_tone_options(parser, call.tone, study_tone_help);
+}
+
+// Of a study that was made of the call.
+StudyTask task_of(studies::StudyFile study, const VisibilityCall& call,
+                  const std::string& command) {
+  StudyTask task{std::move(study), call.study.folder, command, call.tone};
+  task.part = call.study.part;
+  return task;
+}
+
+std::string cell(const Number& value, double factor, const char* unit) {
+  return value ? fmt::format("{:.3g}{}", factor * *value, unit) : "-";
+}
+
+// Of one condition.
+std::string visibility_text(const StudyResults& study) {
+  if (study.results.empty()) return study_text(study);
+  constexpr const char* row = "{:<12} {:<24} {:>7} {:>8} {:>9} {:>9} {:>9} {:>9} {:>8}\n";
+  std::string text = fmt::format(row, "camera", "target", "pixels", "visible", "cd/m2", "surround",
+                                 "contrast", "saturated", "crushed");
+  for (const ResultEntry& result : study.results) {
+    const studies::Sight& sight = result.sight;
+    text += fmt::format(row, study.cameras[result.camera].name, study.targets[result.target],
+                        fmt::format("{}{}", sight.pixels, sight.cut_by_frame ? "+" : ""),
+                        cell(sight.visible_fraction, 100.0, " %"), cell(sight.luminance, 1.0, ""),
+                        cell(sight.surround, 1.0, ""), cell(sight.weber, 1.0, ""),
+                        cell(sight.saturated, 100.0, " %"), cell(sight.crushed, 100.0, " %"));
+  }
+  return text +
+         "Luminances of the clean picture, 0.2126 R + 0.7152 G + 0.0722 B.\n"
+         "+ : reaches the picture's border, more of it may lie outside.\n\n" +
+         study_text(study);
+}
+
+void run_visibility(const VisibilityCall& call, const Common& common) {
+  StudyTask task = task_of(study_of(call.study, call.wanted, call.iris), call, "study visibility");
+  run_and_print(std::move(task), common, call.study.json, call.dry_run, visibility_text);
+}
+
 void run_orbit(const OrbitCall& call, const Common& common) {
   studies::StudyFile study = study_of(call.study, call.wanted, call.iris);
   study.positions_deg = call.at.empty() ? studies::even_positions(static_cast<int>(call.positions))
                                         : positions_of(call.at);
   study.timeline = call.at.empty() && call.positions > 1;
-  StudyTask task{std::move(study), call.study.folder, "study orbit", call.tone};
-  task.part = call.study.part;
-  run_and_print(std::move(task), common, call.study.json, call.dry_run);
+  run_and_print(task_of(std::move(study), call, "study orbit"), common, call.study.json,
+                call.dry_run);
 }
 
 void run_file(const FileCall& call, const Common& common) {
@@ -71,22 +120,25 @@ void run_file(const FileCall& call, const Common& common) {
 
 }  // namespace
 
+Command add_study_visibility(CLI::App& study) {
+  CLI::App* parser =
+      study.add_subcommand("visibility", "How well each camera sees each target of the scene");
+  const auto call = std::make_shared<VisibilityCall>();
+  add_options(*parser, *call);
+  return {parser, [call](const Common& common) { run_visibility(*call, common); }};
+}
+
 Command add_study_orbit(CLI::App& study) {
   CLI::App* parser = study.add_subcommand(
       "orbit", "How well each camera sees each target along the scene's orbit, from one solution");
   const auto call = std::make_shared<OrbitCall>();
-  add_study_options(*parser, call->study);
-  add_cameras_option(*parser, call->study);
-  add_wanted_options(*parser, call->wanted, call->iris);
-  add_part_options(*parser, call->study.part);
+  add_options(*parser, *call);
   add_whole_number(*parser, "--positions", call->positions, 1, studies::most_positions,
                    "Positions, evenly over one turn from orbit noon");
   parser->add_option("--at", call->at, "Positions in degrees instead, with commas between")
       ->type_name("LIST")
       ->check(not_empty())
       ->excludes("--positions");
-  parser->add_flag("--dry-run", call->dry_run, "Only say what would be done, and its price");
-  add_tone_options(*parser, call->tone, study_tone_help);
   return {parser, [call](const Common& common) { run_orbit(*call, common); }};
 }
 
