@@ -17,9 +17,10 @@ from program import BALL, CLOSED_BOX
 from tiny_bay import Case
 
 MPI = pathlib.Path(program.PROGRAM).with_name("earthshine-mpi")
-# More ranks than cores, in a container, as root; no launching by ssh.
+# More ranks than cores, in a container, as root; no launching by ssh. And mpirun that comes to its end (docs/cluster.md).
 ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                             "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_plm": "isolated",
+                            "PMIX_MCA_gds": "hash",
                             "OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_btl_base_warn_component_unused": "0"}
 # White walls (all that a closed part keeps must be looked for), a mirror (hits that are no whole numbers), a box that covers part
 # of the floor, and so few rays that hits are borrowed and filled in.
