@@ -6,6 +6,7 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 # Off by default: a newer compiler than the tested ones must not stop a user's build.
 option(EARTHSHINE_WERROR "Treat warnings as errors" OFF)
+option(EARTHSHINE_UNITY "Compile several files at a time where that is quicker" ON)
 set(EARTHSHINE_ARCH "x86-64-v3" CACHE STRING "Value of -march; empty for the compiler's default")
 
 add_library(earthshine_flags INTERFACE)
@@ -62,6 +63,6 @@ function(add_layer_test layer)
   target_link_libraries(${layer}_tests PRIVATE earthshine_${layer} earthshine_flags earthshine_test_flags
     fmt::fmt GTest::gtest_main)
   target_precompile_headers(${layer}_tests REUSE_FROM earthshine_test_common)
-  set_target_properties(${layer}_tests PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
+  set_target_properties(${layer}_tests PROPERTIES UNITY_BUILD ${EARTHSHINE_UNITY} UNITY_BUILD_BATCH_SIZE 4)
   gtest_discover_tests(${layer}_tests TEST_PREFIX ${layer}/ DISCOVERY_TIMEOUT 60)
 endfunction()
