@@ -148,10 +148,16 @@ def material_text(material):
     return "\n".join(lines)
 
 
+# Bodies whose mesh is a coarse hull of a round one: no edge turns by more degrees than this in the picture.
+ROUND_DEG = {"tss": 3, "tss-deployer": 5, "canisters": 5, "arm": 5, "ku-antenna": 5}
+
+
 def object_text(entry):
     name, mesh, part, target, note = entry
     lines = ["[[object]]", f'name = "{name}"' + (f"  # {note}" if note and name != "tss" else ""),
              f'mesh = "meshes/{mesh}.obj"', f'part = "{part}"' + (f"  # {note}" if name == "tss" else "")]
+    if name in ROUND_DEG:
+        lines += ["smooth_deg = 30", f"round_deg = {ROUND_DEG[name]}"]
     if target:
         lines.append("target = true")
     return "\n".join(lines)
