@@ -17,10 +17,9 @@ from program import BALL, CLOSED_BOX
 from tiny_bay import Case
 
 MPI = pathlib.Path(program.PROGRAM).with_name("earthshine-mpi")
-# More ranks than cores, in a container, as root; no launching by ssh. And mpirun that comes to its end (docs/cluster.md).
+# More ranks than cores, in a container, as root; no launching by ssh.
 ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                             "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_plm": "isolated",
-                            "PMIX_MCA_gds": "hash",
                             "OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_btl_base_warn_component_unused": "0"}
 # White walls (all that a closed part keeps must be looked for), a mirror (hits that are no whole numbers), a box that covers part
 # of the floor, and so few rays that hits are borrowed and filled in.
@@ -98,7 +97,8 @@ class OfRanks(Case):
 
     def started(self, count, *arguments):
         """mpirun, and the ranks as soon as all are there."""
-        run = subprocess.Popen(["mpirun", "-n", str(count), MPI, *arguments, "-j", "1"], cwd=self.folder, env=ENVIRONMENT,
+        run = subprocess.Popen(["mpirun", "-n", str(count), MPI, *arguments, "-j", "1"], cwd=self.folder,
+                               env=ENVIRONMENT | {"PMIX_MCA_gds": "hash"},  # or mpirun may never come to its end (docs/cluster.md)
                                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         self.addCleanup(run.stderr.close)
         self.addCleanup(run.kill)
