@@ -28,6 +28,11 @@ inline constexpr double earth_radius_m = 6371e3;
   return std::fmax(c.r, std::fmax(c.g, c.b));
 }
 
+[[nodiscard]] inline bool is_lit(const Rgb& c) { return max_component(c) > 0.0; }
+
+// sin(pi x) / (pi x)
+[[nodiscard]] inline double sinc(double x) { return x == 0.0 ? 1.0 : std::sin(pi * x) / (pi * x); }
+
 [[nodiscard]] constexpr double radians(double degrees) { return degrees * (pi / 180.0); }
 [[nodiscard]] constexpr double degrees(double radians_) { return radians_ * (180.0 / pi); }
 

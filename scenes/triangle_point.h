@@ -19,7 +19,7 @@ struct Box {
   [[nodiscard]] Vec3 middle() const { return 0.5 * (low + high); }
   // Out of line: in line GCC 12 drops the rounding, double to float to double, of two components
   // that it handles as a vector, and rounds only the third.
-  [[nodiscard]] glm::vec3 middle_in_single() const;
+  [[nodiscard, gnu::noinline]] glm::vec3 middle_in_single() const;
   [[nodiscard]] double diagonal() const { return glm::length(high - low); }
 };
 [[nodiscard]] Box box_around(std::span<const Vec3> points);

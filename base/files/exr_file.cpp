@@ -168,37 +168,32 @@ void write_exr(const std::filesystem::path& path, const Image& image, const ExrH
 namespace {
 
 // What the reader says about a file it will not take.
-[[noreturn]] void refuse_reading(const std::filesystem::path& path, const std::string& found,
-                                 std::string_view allowed = {}, std::string_view remedy = {}) {
-  throw Error(Blame::Input, path.string(), found, allowed, remedy);
-}
-
 // Before anything is allocated for the pixels.
 void check_header(const std::filesystem::path& path, const Imf::Header& header) {
   if (header.hasType() && Imf::isDeepData(header.type())) {
-    refuse_reading(path, "holds deep data", "only flat pictures can be read",
-                   "Flatten it, for example with oiiotool --flatten");
+    refuse_file(path, "holds deep data", "only flat pictures can be read",
+                "Flatten it, for example with oiiotool --flatten");
   }
   const Imath::Box2i& window = header.dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
   const std::string size = std::to_string(width) + " x " + std::to_string(height);
   if (width < 1 || height < 1 || width > largest_edge_px || height > largest_edge_px) {
-    refuse_reading(path, "has " + size + " pixels", "the largest picture read is 16384 x 16384",
-                   "Crop or shrink it");
+    refuse_file(path, "has " + size + " pixels", "the largest picture read is 16384 x 16384",
+                "Crop or shrink it");
   }
   std::int64_t channels = 0;
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
     ++channels;
     if (c.channel().xSampling == 1 && c.channel().ySampling == 1) continue;
-    refuse_reading(path, "stores channel \"" + std::string(c.name()) + "\" at reduced resolution",
-                   "every channel must have the full resolution",
-                   "Convert luminance/chroma files to R, G, B");
+    refuse_file(path, "stores channel \"" + std::string(c.name()) + "\" at reduced resolution",
+                "every channel must have the full resolution",
+                "Convert luminance/chroma files to R, G, B");
   }
-  if (channels == 0) refuse_reading(path, "has no channels");
+  if (channels == 0) refuse_file(path, "has no channels");
   if (width * height * channels > largest_sample_count) {
-    refuse_reading(path, "has " + size + " pixels in " + std::to_string(channels) + " channels",
-                   "at most 1073741824 values are read", "Leave out some channels");
+    refuse_file(path, "has " + size + " pixels in " + std::to_string(channels) + " channels",
+                "at most 1073741824 values are read", "Leave out some channels");
   }
 }
 
@@ -243,11 +238,11 @@ void check_and_scale_colour(const std::filesystem::path& path, Image& image, flo
       if (white != 1.0F) value *= white;
       if (std::isfinite(value)) continue;
       const std::size_t width = static_cast<std::size_t>(image.width);
-      refuse_reading(path,
-                     "pixel (" + std::to_string(i % width) + ", " + std::to_string(i / width) +
-                         ") of channel \"" + name + "\" is " +
-                         (std::isnan(value) ? "not a number" : "infinite"),
-                     "radiance must be finite", "Render it again or repair the picture");
+      refuse_file(path,
+                  "pixel (" + std::to_string(i % width) + ", " + std::to_string(i / width) +
+                      ") of channel \"" + name + "\" is " +
+                      (std::isnan(value) ? "not a number" : "infinite"),
+                  "radiance must be finite", "Render it again or repair the picture");
     }
   }
 }
@@ -256,7 +251,7 @@ void check_and_scale_colour(const std::filesystem::path& path, Image& image, flo
 
 ExrFile read_exr(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) refuse_reading(path, "there is no such file");
+  if (!std::filesystem::exists(path, ignored)) refuse_file(path, "there is no such file");
   check_input_file(path, {path.string()});
   guard_exr(path);
   ExrFile result;
@@ -266,7 +261,7 @@ ExrFile read_exr(const std::filesystem::path& path) {
     const Imf::Header& header = file.header(0);
     check_header(path, header);
     if (!file.partComplete(0)) {
-      refuse_reading(path, "is incomplete: some of its pixels are missing", {}, "Copy it again");
+      refuse_file(path, "is incomplete: some of its pixels are missing", {}, "Copy it again");
     }
     white = white_luminance(path, header);
     result.header = exr_attributes(header);
@@ -287,7 +282,7 @@ ExrFile read_exr(const std::filesystem::path& path) {
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {
-    refuse_reading(path, std::string("cannot be read as OpenEXR: ") + e.what());
+    refuse_file(path, std::string("cannot be read as OpenEXR: ") + e.what());
   }
   drop_picture_layer(result.image);
   check_and_scale_colour(path, result.image, white);

@@ -26,13 +26,8 @@
 namespace earthshine::base {
 namespace {
 
-constexpr std::int64_t largest_edge_px = 65536;
+constexpr std::int64_t longest_edge_px = 65536;
 constexpr std::int64_t largest_pixel_count = std::int64_t{1} << 30;
-
-[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& found,
-                         std::string_view allowed = {}, std::string_view remedy = {}) {
-  throw Error(Blame::Input, path.string(), found, allowed, remedy);
-}
 
 std::vector<std::string> channel_names(const Imf::Header& header) {
   std::vector<std::string> names;
@@ -72,25 +67,25 @@ std::string size_text(std::int64_t width, std::int64_t height) {
 void check_size(const std::filesystem::path& path, const Imath::Box2i& window) {
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  if (width >= 1 && height >= 1 && width <= largest_edge_px && height <= largest_edge_px &&
+  if (width >= 1 && height >= 1 && width <= longest_edge_px && height <= longest_edge_px &&
       width * height <= largest_pixel_count) {
     return;
   }
-  refuse(path, "has " + size_text(width, height) + " pixels",
-         "the largest picture read has 65536 on an edge and 1073741824 in all",
-         "Crop or shrink it");
+  refuse_file(path, "has " + size_text(width, height) + " pixels",
+              "the largest picture read has 65536 on an edge and 1073741824 in all",
+              "Crop or shrink it");
 }
 
 void check_shape(const std::filesystem::path& path, const Imf::Header& header) {
   if (is_deep(header)) {
-    refuse(path, "holds deep data", "only flat pictures can be read",
-           "Flatten it, for example with oiiotool --flatten");
+    refuse_file(path, "holds deep data", "only flat pictures can be read",
+                "Flatten it, for example with oiiotool --flatten");
   }
   check_size(path, header.dataWindow());
   if (!(std::abs(header.pixelAspectRatio() - 1.0F) < 0.001F)) {
-    refuse(path,
-           "has pixels " + std::to_string(header.pixelAspectRatio()) + " times as wide as high",
-           "pixels must be square", "Resample it");
+    refuse_file(
+        path, "has pixels " + std::to_string(header.pixelAspectRatio()) + " times as wide as high",
+        "pixels must be square", "Resample it");
   }
 }
 
@@ -98,24 +93,25 @@ ExrPicture checked_picture(const std::filesystem::path& path, const Imf::Header&
   const std::vector<std::string> names = channel_names(header);
   for (const char* chroma : {"RY", "BY"}) {
     if (header.channels().findChannel(chroma) == nullptr) continue;
-    refuse(path, "stores colour as luminance and chroma (channel \"" + std::string(chroma) + "\")",
-           "a picture has R, G, B or Y at full resolution", "Convert it to R, G, B");
+    refuse_file(path,
+                "stores colour as luminance and chroma (channel \"" + std::string(chroma) + "\")",
+                "a picture has R, G, B or Y at full resolution", "Convert it to R, G, B");
   }
   ExrPicture picture = find_picture(names);
   if (picture.kind == ExrPicture::Kind::None) {
     if (!picture.layers.empty()) {
-      refuse(path, "has a picture in each of the layers " + joined(picture.layers),
-             "one layer, or one called Combined, is the picture", "Write one of them alone");
+      refuse_file(path, "has a picture in each of the layers " + joined(picture.layers),
+                  "one layer, or one called Combined, is the picture", "Write one of them alone");
     }
-    refuse(path, names.empty() ? "has no channels" : "has the channels " + joined(names),
-           "a picture is R, G and B, or Y, or X, Y and Z",
-           names.empty() ? "" : "Rename those that are radiance in cd/m^2");
+    refuse_file(path, names.empty() ? "has no channels" : "has the channels " + joined(names),
+                "a picture is R, G and B, or Y, or X, Y and Z",
+                names.empty() ? "" : "Rename those that are radiance in cd/m^2");
   }
   for (const std::string& name : picture.channels) {
     const Imf::Channel& channel = header.channels()[name.c_str()];
     if (channel.xSampling == 1 && channel.ySampling == 1) continue;
-    refuse(path, "stores channel \"" + name + "\" at reduced resolution",
-           "every channel must have the full resolution", "Resample it");
+    refuse_file(path, "stores channel \"" + name + "\" at reduced resolution",
+                "every channel must have the full resolution", "Resample it");
   }
   return picture;
 }
@@ -139,7 +135,7 @@ std::optional<Imath::M44f> colour_matrix(const std::filesystem::path& path,
   const Imath::M44f matrix = Imf::RGBtoXYZ(own, 1.0F) * from_xyz;
   for (int i = 0; i < 16; ++i) {
     if (!std::isfinite(matrix.getValue()[i])) {
-      refuse(path, "has chromaticities that span no colours", {}, "Correct the attribute");
+      refuse_file(path, "has chromaticities that span no colours", {}, "Correct the attribute");
     }
   }
   return matrix;
@@ -163,7 +159,7 @@ struct ExrReader::Open {
     check_shape(path, own);
     picture = checked_picture(path, own);
     if (!file.partComplete(part)) {
-      refuse(path, "is incomplete: some of its pixels are missing", {}, "Copy it again");
+      refuse_file(path, "is incomplete: some of its pixels are missing", {}, "Copy it again");
     }
     white = white_luminance(path, own);
     to_rec709 = colour_matrix(path, own, picture.kind);
@@ -212,12 +208,12 @@ struct ExrReader::Open {
       for (std::size_t i = 0; i < channel.values.size(); ++i) {
         if (std::isfinite(channel.values[i] * white)) continue;
         const std::size_t columns = static_cast<std::size_t>(rows.width);
-        refuse(path,
-               "pixel (" + std::to_string(i % columns) + ", " +
-                   std::to_string(i / columns + static_cast<std::size_t>(first)) +
-                   ") of channel \"" + channel.name + "\" is " +
-                   (std::isnan(channel.values[i]) ? "not a number" : "infinite"),
-               "radiance must be finite", "Render it again or repair the picture");
+        refuse_file(path,
+                    "pixel (" + std::to_string(i % columns) + ", " +
+                        std::to_string(i / columns + static_cast<std::size_t>(first)) +
+                        ") of channel \"" + channel.name + "\" is " +
+                        (std::isnan(channel.values[i]) ? "not a number" : "infinite"),
+                    "radiance must be finite", "Render it again or repair the picture");
       }
     }
   }
@@ -245,7 +241,7 @@ struct ExrReader::Open {
 
 ExrReader::ExrReader(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) refuse(path, "there is no such file");
+  if (!std::filesystem::exists(path, ignored)) refuse_file(path, "there is no such file");
   check_input_file(path, {path.string()});
   guard_exr(path);
   try {
@@ -253,7 +249,7 @@ ExrReader::ExrReader(const std::filesystem::path& path) {
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {
-    refuse(path, std::string("cannot be read as OpenEXR: ") + e.what());
+    refuse_file(path, std::string("cannot be read as OpenEXR: ") + e.what());
   }
 }
 
@@ -273,7 +269,7 @@ Image ExrReader::read_rows(int first, int count) {
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {
-    refuse(open_->path, std::string("cannot be read as OpenEXR: ") + e.what());
+    refuse_file(open_->path, std::string("cannot be read as OpenEXR: ") + e.what());
   }
 }
 

@@ -152,23 +152,18 @@ bool read_rows(const Reader& r, png_byte** rows) {
   return true;
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& found,
-                         std::string_view allowed = {}, std::string_view remedy = {}) {
-  throw Error(Blame::Input, path.string(), found, allowed, remedy);
-}
-
 void open(Source& source, const std::filesystem::path& path) {
   check_input_file(path, {path.string()});
   errno = 0;
   source.file.open(path, std::ios::binary);
   if (!source.file) {
-    refuse(path, "cannot be read: " + system_reason(errno));
+    refuse_file(path, "cannot be read: " + system_reason(errno));
   }
   png_byte signature[8] = {};
   source.file.read(reinterpret_cast<char*>(signature), sizeof signature);
   if (!source.file || png_sig_cmp(signature, 0, sizeof signature) != 0) {
-    refuse(path, "is not a PNG file", "photographs are read as PNG",
-           "Convert it, for example with convert photo.jpg photo.png");
+    refuse_file(path, "is not a PNG file", "photographs are read as PNG",
+                "Convert it, for example with convert photo.jpg photo.png");
   }
   source.file.seekg(0);
 }
@@ -219,8 +214,8 @@ Picture8 read_png(const std::filesystem::path& path) {
   open(source, path);
   const auto broken = [&] {
     if (source.message[0] == '\0') throw std::bad_alloc();
-    refuse(path, std::string("is a broken PNG file: ") + source.message, {},
-           "Save the picture once more");
+    refuse_file(path, std::string("is a broken PNG file: ") + source.message, {},
+                "Save the picture once more");
   };
   const Reader reader(source);
   if (reader.info == nullptr) throw std::bad_alloc();
@@ -228,8 +223,8 @@ Picture8 read_png(const std::filesystem::path& path) {
   const png_uint_32 width = png_get_image_width(reader.png, reader.info);
   const png_uint_32 height = png_get_image_height(reader.png, reader.info);
   if (width > largest_png_edge_px || height > largest_png_edge_px) {
-    refuse(path, "has " + std::to_string(width) + " x " + std::to_string(height) + " pixels",
-           "the largest picture read is 16384 x 16384", "Crop or shrink it");
+    refuse_file(path, "has " + std::to_string(width) + " x " + std::to_string(height) + " pixels",
+                "the largest picture read is 16384 x 16384", "Crop or shrink it");
   }
   constexpr std::size_t rgba = 4;
   const std::size_t pixels = static_cast<std::size_t>(width) * height;

@@ -100,4 +100,9 @@ std::string read_input_file(const std::filesystem::path& path, std::size_t max_b
   return bytes;
 }
 
+void refuse_file(const std::filesystem::path& path, const std::string& found,
+                 std::string_view allowed, std::string_view remedy) {
+  throw Error(Blame::Input, path.string(), found, allowed, remedy);
+}
+
 }  // namespace earthshine::base

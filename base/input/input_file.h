@@ -21,4 +21,8 @@ void check_input_file(const std::filesystem::path& path, const Location& asked_a
 [[nodiscard]] std::string read_input_file(const std::filesystem::path& path, std::size_t max_bytes,
                                           const Location& asked_at);
 
+// Throws base::Error (Input) of a file whose contents cannot be read.
+[[noreturn]] void refuse_file(const std::filesystem::path& path, const std::string& found,
+                              std::string_view allowed = {}, std::string_view remedy = {});
+
 }  // namespace earthshine::base

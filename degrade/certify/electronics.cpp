@@ -9,8 +9,6 @@
 namespace earthshine::degrade {
 namespace {
 
-constexpr double rounding = 1e-5;
-
 // The largest signal of a flat field far above `limit`, only `kept` of the limits at work.
 double overloaded(const Bench& bench, double limit, const std::string& kept) {
   Names off = stage::noise + stage::uneven + stage::limits + stage::coding + stage::screen;
@@ -26,14 +24,14 @@ Rows limit_rows(const Bench& bench) {
   if (camera.saturation > 0.0) {
     rows.push_back(within("saturation of the sensor", "1",
                           overloaded(bench, camera.saturation, "saturation"), camera.saturation,
-                          rounding * camera.saturation, "S = min(S, S_most)"));
+                          chain_rounding * camera.saturation, "S = min(S, S_most)"));
   } else {
     rows.push_back(absent("saturation of the sensor", "1", "it holds any signal"));
   }
   if (camera.white_clip > 0.0) {
     rows.push_back(within("white clip of the line", "1",
                           overloaded(bench, camera.white_clip, "white-clip"), camera.white_clip,
-                          rounding * camera.white_clip, "S = min(S, S_clip)"));
+                          chain_rounding * camera.white_clip, "S = min(S, S_clip)"));
   } else {
     rows.push_back(absent("white clip of the line", "1", "the line carries any signal"));
   }
@@ -71,7 +69,7 @@ CertificateRow line_signal(const Bench& bench, const base::Image& ramp, const Pl
     value = static_cast<float>(s);
   }
   return within("gamma: largest distance of the line signal from its law", "1",
-                largest_difference(line, law), 0.0, rounding,
+                largest_difference(line, law), 0.0, chain_rounding,
                 "v = min(max(S, 0), S_clip)^(1/gamma), on a ramp with noise");
 }
 

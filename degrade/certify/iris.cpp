@@ -10,7 +10,6 @@
 namespace earthshine::degrade {
 namespace {
 
-constexpr double rounding = 1e-5;
 constexpr double bright_share = 0.1, dim = 0.1;  // the scene: a tenth of it ten times as bright
 
 // The meters of docs/cctv.md, in double precision.
@@ -113,7 +112,7 @@ CertificateRow fixed_point(const Bench& bench, const Scene& scene, const Reach& 
     const double miss = meter(camera, camera.iris, signal) / reach.target - 1.0;
     worst = farther(worst, miss);
   }
-  return within(name, "1", worst, 0.0, rounding,
+  return within(name, "1", worst, 0.0, chain_rounding,
                 "M(E(N)) = t E_white wherever neither end is reached");
 }
 
@@ -121,10 +120,11 @@ Rows range_rows(const Bench& bench, const Scene& scene, const Reach& reach) {
   const CctvCamera& camera = bench.camera();
   Rows rows;
   const Result darkest = scene.flat(0.5 * reach.dark), brightest = scene.flat(2.0 * reach.bright);
-  rows.push_back(within(
-      "range of the iris", "stops",
-      2.0 * std::log2(brightest.report.exposure.f_number / darkest.report.exposure.f_number),
-      2.0 * std::log2(camera.f_number_max / camera.f_number_min), rounding, "2 lb(N_max / N_min)"));
+  rows.push_back(
+      within("range of the iris", "stops",
+             2.0 * std::log2(brightest.report.exposure.f_number / darkest.report.exposure.f_number),
+             2.0 * std::log2(camera.f_number_max / camera.f_number_min), chain_rounding,
+             "2 lb(N_max / N_min)"));
   const double least = luminance_at(0.01 * reach.dark, 1.001 * reach.dark, [&](double l) {
     return scene.flat(l).report.exposure.underexposed;
   });
@@ -135,9 +135,9 @@ Rows range_rows(const Bench& bench, const Scene& scene, const Reach& reach) {
   rows.push_back(within("brightest flat scene not blown", "cd/m2", most, reach.bright,
                         1e-4 * reach.bright, "4 t E_white N_max^2 (1 + m)^2 / (pi tau)"));
   rows.push_back(within("signal at half the darkest", "1", first_value(darkest), 0.5 * reach.target,
-                        rounding, "falls in proportion: t / 2"));
+                        chain_rounding, "falls in proportion: t / 2"));
   rows.push_back(within("signal at twice the brightest", "1", first_value(brightest),
-                        2.0 * reach.target, 2.0 * rounding, "rises in proportion: 2 t"));
+                        2.0 * reach.target, 2.0 * chain_rounding, "rises in proportion: 2 t"));
   return rows;
 }
 
@@ -149,7 +149,7 @@ CertificateRow square_root(const Bench& bench, const Scene& scene, const Reach& 
   const double low = 1.01 * reach.open, high = 0.99 * reach.bright;
   const double n =
       scene.flat(high).report.exposure.f_number / scene.flat(low).report.exposure.f_number;
-  return within(name, "1", std::log(n) / std::log(high / low), 0.5, rounding,
+  return within(name, "1", std::log(n) / std::log(high / low), 0.5, chain_rounding,
                 "N proportional to sqrt(L)");
 }
 
@@ -157,7 +157,7 @@ CertificateRow gain(const Bench& bench, const Scene& scene, const Reach& reach) 
   constexpr std::string_view name = "signal where the gain has taken over";
   if (bench.camera().gain_max_db == 0.0) return absent(name, "1", "there is no automatic gain");
   const Result result = scene.flat(std::sqrt(reach.dark * reach.open));
-  return within(name, "1", first_value(result), reach.target, rounding,
+  return within(name, "1", first_value(result), reach.target, chain_rounding,
                 "wide open, half of the gain in dB: still t");
 }
 
@@ -181,7 +181,7 @@ Rows mode_rows(const Bench& bench, const Scene& scene, const Reach& reach) {
   };
   const auto row = [&](std::string_view name, IrisMode more, IrisMode less) {
     const double law = due(more) / due(less);
-    return within(name, "1", found(more) / found(less), law, rounding * law,
+    return within(name, "1", found(more) / found(less), law, chain_rounding * law,
                   "sqrt of the metered values' ratio, at least 1");
   };
   return {row("f-numbers, peak over normal", IrisMode::Peak, IrisMode::Normal),

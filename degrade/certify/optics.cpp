@@ -8,8 +8,6 @@
 namespace earthshine::degrade {
 namespace {
 
-constexpr double rounding = 1e-5;
-
 double value_at(const Picture& picture, int x, int y) {
   return static_cast<double>(
       picture.planes[0][static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.columns) +
@@ -23,7 +21,7 @@ CertificateRow aperture(const Bench& bench) {
       bench.options(stage::noise + stage::uneven + stage::limits + stage::coding + stage::screen);
   const Picture signal = to_picture(bench.run(bench.flat(1.0), closed, options).signal);
   return within("signal at twice the f-number", "1",
-                value_at(signal, bench.columns() / 2, bench.rows() / 2), 0.25, rounding,
+                value_at(signal, bench.columns() / 2, bench.rows() / 2), 0.25, chain_rounding,
                 "E proportional to 1 / N^2");
 }
 
@@ -37,11 +35,11 @@ void glare(const Bench& bench, Rows& rows) {
   for (const float value : signal.planes[0]) sum += static_cast<double>(value);
   const double mean = 0.8 * half / bench.columns();
   rows.push_back(within("glare: light of a half bright picture", "1",
-                        sum / static_cast<double>(signal.pixel_count()), mean, rounding,
+                        sum / static_cast<double>(signal.pixel_count()), mean, chain_rounding,
                         "E = (1 - g) E + g mean(E) keeps the mean"));
   rows.push_back(within("glare: veil on black", "1",
                         value_at(signal, bench.columns() - 1, bench.rows() / 2), share * mean,
-                        rounding, "g mean(S)"));
+                        chain_rounding, "g mean(S)"));
 }
 
 // A chart through one uneven stage, beside the same without it.
@@ -65,7 +63,7 @@ CertificateRow fall_off(const Bench& bench) {
   };
   const int x = bench.columns() / 2, y = bench.rows() / 2;
   return within(name, "1", value_at(signal, 0, 0) / value_at(signal, x, y), law(0, 0) / law(x, y),
-                rounding, "cos(theta)^n, at 40 degrees from top to bottom");
+                chain_rounding, "cos(theta)^n, at 40 degrees from top to bottom");
 }
 
 CertificateRow shading(const Bench& bench) {
@@ -80,7 +78,7 @@ CertificateRow shading(const Bench& bench) {
   };
   const int x = bench.columns() / 2, y = bench.rows() / 2;
   return within(name, "1", value_at(signal, 0, 0) / value_at(signal, x, y), law(0, 0) / law(x, y),
-                rounding, "1 - d r^2, r = 1 in the corners");
+                chain_rounding, "1 - d r^2, r = 1 in the corners");
 }
 
 // A patch over a tenth of the lines: in its columns the black is left with the patch's signal times

@@ -10,7 +10,7 @@
 namespace earthshine::degrade {
 namespace {
 
-constexpr double rounding = 2e-6;  // of the screen's white
+constexpr double screen_rounding = 2e-6;  // of the screen's white
 
 class Screen {
  public:
@@ -36,7 +36,7 @@ class Screen {
            veil();
   }
   [[nodiscard]] double slack() const {
-    return rounding *
+    return screen_rounding *
            (bench_.monitor().white_luminance + bench_.monitor().black_luminance + veil());
   }
 

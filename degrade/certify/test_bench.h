@@ -74,6 +74,8 @@ class Bench {
 
 [[nodiscard]] Picture to_picture(const base::Image& image);
 
+inline constexpr double chain_rounding = 1e-5;  // of single precision, over a whole chain
+
 // Rows. A number that is not finite fails.
 [[nodiscard]] CertificateRow within(std::string_view name, std::string_view unit, double measured,
                                     double expected, double tolerance, std::string_view law);

@@ -14,8 +14,6 @@ namespace {
 constexpr double least_share = 1e-6;   // of the largest variance: offsets below are dropped
 constexpr double least_weight = 1e-8;  // of the largest weight: below the rounding of a float
 
-std::size_t size(int n) { return static_cast<std::size_t>(n); }
-
 // C_(dx, lag) for lags of either sign, read from the half that is stored.
 struct Lag {
   int lag = 0;

@@ -9,6 +9,8 @@
 
 namespace earthshine::degrade {
 
+[[nodiscard]] inline std::size_t size(int n) { return static_cast<std::size_t>(n); }
+
 // Columns become rows; z = (x, y) goes to (y, x) and d = (dx, dy) to (dy, dx).
 [[nodiscard]] Plane transposed(const Plane& in, int columns, int rows);
 [[nodiscard]] Covariance transposed(const Covariance& noise);

@@ -29,8 +29,6 @@ void check_same_size(const AxisMap& map) {
       "Use variance_after, which gives the variance on another grid");
 }
 
-std::size_t size(int n) { return static_cast<std::size_t>(n); }
-
 // Weights w(i, u) v(i, u + lag), both maps with the same outputs: what C of that lag is multiplied
 // by.
 AxisMap product(const AxisMap& w, const AxisMap& v, int lag) {

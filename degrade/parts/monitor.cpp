@@ -13,8 +13,6 @@ namespace {
 constexpr int sinc_zeros = 8;
 const double fwhm_per_sigma = 2.0 * std::sqrt(2.0 * std::log(2.0));
 
-double sinc(double x) { return x == 0.0 ? 1.0 : std::sin(base::pi * x) / (base::pi * x); }
-
 // Integral of sinc(x) sinc(x / 8) from 0 to x, x in zeros; Simpson's rule, 64 steps to a zero.
 double windowed_sinc_integral(double x) {
   const int steps = 2 * std::max(1, static_cast<int>(std::ceil(32.0 * x)));
@@ -22,7 +20,7 @@ double windowed_sinc_integral(double x) {
   double sum = 0.0;
   for (int k = 0; k <= steps; ++k) {
     const double weight = k == 0 || k == steps ? 1.0 : (k % 2 == 1 ? 4.0 : 2.0);
-    sum += weight * sinc(k * h) * sinc(k * h / sinc_zeros);
+    sum += weight * base::sinc(k * h) * base::sinc(k * h / sinc_zeros);
   }
   return sum * h / 3.0;
 }

@@ -67,8 +67,6 @@ bool passes(const TransferRow& row, Travels what) {
   return row.amplifier_noise;
 }
 
-double sinc(double x) { return x == 0.0 ? 1.0 : std::sin(base::pi * x) / (base::pi * x); }
-
 double covariance_of(const std::vector<double>& h, int shift) {
   double sum = 0.0;
   const int size = static_cast<int>(h.size());
@@ -181,7 +179,7 @@ double edge_modulation(const CctvCamera& camera, const Monitor& monitor, Axis ax
   const Axis other = axis == Axis::Along ? Axis::Across : Axis::Along;
   const double f = frequency * std::cos(angle), g = frequency * std::sin(angle);
   return transfer(camera, monitor, Travels::Picture, axis, f) *
-         transfer(camera, monitor, Travels::Picture, other, g) * sinc(f) * sinc(g);
+         transfer(camera, monitor, Travels::Picture, other, g) * base::sinc(f) * base::sinc(g);
 }
 
 double edge_profile(const Filter& picture, Axis axis, double angle, double x) {
@@ -225,7 +223,7 @@ double phosphor_edge(const Monitor& monitor, double x) {
     for (int k = 0; k <= steps; ++k) {
       const double u = end * k / steps;
       const double weight = k == 0 || k == steps ? 1.0 : (k % 2 == 1 ? 4.0 : 2.0);
-      sum += weight * sinc(u) * sinc(u / zeros);
+      sum += weight * base::sinc(u) * base::sinc(u / zeros);
     }
     return sum * end / (3.0 * steps);
   };

@@ -15,7 +15,7 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr std::uint32_t none = 0xFFFFFFFFU;
+constexpr std::uint32_t no_triangle = 0xFFFFFFFFU;
 
 struct EdgeUse {
   std::uint32_t low, high, object, triangle;
@@ -141,7 +141,7 @@ ClosedParts find_closed_parts(const scenes::Scene& scene) {
     // An object whose own faces close at this edge hangs together there without the others: a box
     // in the corner of a room is no part of the room.
     int net = 0;
-    std::uint32_t loose = none;
+    std::uint32_t loose = no_triangle;
     while (end < uses.size() && uses[end].edge() == uses[begin].edge()) {
       const std::size_t first = end;
       int own = 0;
@@ -153,7 +153,7 @@ ClosedParts find_closed_parts(const scenes::Scene& scene) {
       }
       if (own == 0) continue;
       net += own;
-      if (loose != none) unite(loose, uses[first].triangle);
+      if (loose != no_triangle) unite(loose, uses[first].triangle);
       loose = uses[first].triangle;
     }
     const auto [low, high] = uses[begin].edge();

@@ -12,7 +12,8 @@ namespace earthshine::radiosity {
 namespace {
 
 constexpr std::uint32_t replicates = 16;
-constexpr std::uint32_t all_points = 1U << 22, most_points = 1U << 20, fewest_points = 1U << 12;
+constexpr std::uint32_t all_points = 1U << 22, most_patch_points = 1U << 20,
+                        fewest_points = 1U << 12;
 
 void measure(const ClosedBodies& bodies, const scenes::RayQuery& query, const Patches& patches,
              std::uint32_t patch, std::uint32_t points, std::uint64_t seed, PatchCover& cover) {
@@ -48,7 +49,7 @@ std::vector<PatchCover> measure_cover(const ClosedBodies& bodies, const scenes::
   }
   const std::uint32_t share =
       all_points / static_cast<std::uint32_t>(std::max<std::size_t>(1, asked.size()));
-  const std::uint32_t points = std::bit_floor(std::clamp(share, fewest_points, most_points));
+  const std::uint32_t points = std::bit_floor(std::clamp(share, fewest_points, most_patch_points));
   base::parallel_chunks(asked.size(), 1, [&](std::size_t k, std::size_t) {
     measure(bodies, query, patches, asked[k], points, seed, covers[asked[k]]);
   });

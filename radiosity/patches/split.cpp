@@ -8,15 +8,16 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr std::uint64_t most_cells = std::uint64_t{1} << 20;  // along one side of a facet
+constexpr std::uint64_t most_cells_a_side = std::uint64_t{1} << 20;  // along one side of a facet
 
 constexpr std::uint8_t most_digits = 30;  // of the parameter s of a cluster
 
 bool can_cut_cell(const Facet& facet, const Cell& cell, Cut cut) {
   if (facet.is_cluster() && cut == Cut::S) return cell.s_cuts < most_digits;
   if (facet.is_cluster() && span_of(facet, cell).count > 1) return false;
-  if (cut == Cut::S) return (std::uint64_t{facet.s_count} << (cell.s_cuts + 1)) <= most_cells;
-  return cut == Cut::T && (std::uint64_t{facet.t_count} << (cell.t_cuts + 1)) <= most_cells;
+  if (cut == Cut::S)
+    return (std::uint64_t{facet.s_count} << (cell.s_cuts + 1)) <= most_cells_a_side;
+  return cut == Cut::T && (std::uint64_t{facet.t_count} << (cell.t_cuts + 1)) <= most_cells_a_side;
 }
 
 Cell half_of(Cell cell, Cut cut, std::uint32_t half) {

@@ -17,12 +17,11 @@ namespace {
 using scenes::HitPacket;
 using scenes::RayPacket;
 
-constexpr std::size_t width = RayPacket::width;
 // Where eight rays cross a pixel: in columns one after another, in rows after van der Corput.
-constexpr std::array<double, width> stray_columns = {0.0625, 0.1875, 0.3125, 0.4375,
-                                                     0.5625, 0.6875, 0.8125, 0.9375};
-constexpr std::array<double, width> stray_rows = {0.0625, 0.5625, 0.3125, 0.8125,
-                                                  0.1875, 0.6875, 0.4375, 0.9375};
+constexpr std::array<double, packet_width> stray_columns = {0.0625, 0.1875, 0.3125, 0.4375,
+                                                            0.5625, 0.6875, 0.8125, 0.9375};
+constexpr std::array<double, packet_width> stray_rows = {0.0625, 0.5625, 0.3125, 0.8125,
+                                                         0.1875, 0.6875, 0.4375, 0.9375};
 constexpr float least_cover = 0.2F;  // of a pixel
 constexpr int region_px = 32;        // over which strays are held to be alike
 // What a lobe reflects turns twice as far as the surface does.
@@ -92,20 +91,20 @@ void GatherField::find_points() {
   camera_rays_ = grid_;
 }
 
-std::array<scenes::Hit, width> GatherField::look(std::size_t pixel, const Places& x_of,
-                                                 const Places& y_of) const {
+std::array<scenes::Hit, packet_width> GatherField::look(std::size_t pixel, const Places& x_of,
+                                                        const Places& y_of) const {
   const auto columns = static_cast<std::size_t>(window_.columns);
   const int x = window_.x + static_cast<int>(pixel % columns);
   const int y = window_.y + static_cast<int>(pixel / columns);
   RayPacket packet;
   HitPacket hits;
-  for (std::size_t k = 0; k < width; ++k) {
+  for (std::size_t k = 0; k < packet_width; ++k) {
     const Ray ray = camera_.ray(x + x_of[k], y + y_of[k], 0.0, 0.0);
     world_.query.set(packet, k, ray.origin, ray.direction);
   }
-  world_.query.closest(packet, width, hits);
-  std::array<scenes::Hit, width> met;
-  for (std::size_t k = 0; k < width; ++k) met[k] = hit_of(hits, k);
+  world_.query.closest(packet, packet_width, hits);
+  std::array<scenes::Hit, packet_width> met;
+  for (std::size_t k = 0; k < packet_width; ++k) met[k] = hit_of(hits, k);
   return met;
 }
 
@@ -130,7 +129,7 @@ void GatherField::find_strays() {
              (!gathers || alike(points_[own], points_[q]));
     });
     if (even) return;
-    rays += width;
+    rays += packet_width;
     for (const scenes::Hit& hit : look(own, stray_columns, stray_rows)) {
       Found more;
       if (!place(hit, more.point, more.origin)) continue;
@@ -141,7 +140,7 @@ void GatherField::find_strays() {
         more.stray.pixel = static_cast<std::uint32_t>(own);
         same = of_tile.insert(same, more);
       }
-      same->stray.cover += 1.0F / width;
+      same->stray.cover += 1.0F / packet_width;
     }
     // Slivers are not worth a point of their own.
     const auto from = of_tile.begin() + static_cast<std::ptrdiff_t>(first);

@@ -11,7 +11,6 @@
 namespace earthshine::raytrace {
 namespace {
 
-constexpr std::size_t width = scenes::RayPacket::width;
 constexpr std::size_t most_cells = 64;
 
 }  // namespace
@@ -24,12 +23,12 @@ GatherRays::GatherRays(std::uint32_t rays) : set_(rays) {
 }
 
 std::size_t GatherRays::batch() const {
-  return std::clamp<std::size_t>(65536 / rays(), width, most_tile_points);
+  return std::clamp<std::size_t>(65536 / rays(), packet_width, most_tile_points);
 }
 
 void GatherRays::draw(const TilePoints& points, std::size_t first, std::size_t count,
                       std::uint64_t seed, Samples& samples) const {
-  samples.padded = (count + width - 1) / width * width;
+  samples.padded = (count + packet_width - 1) / packet_width * packet_width;
   samples.u.resize(rays() * samples.padded);
   samples.v.resize(rays() * samples.padded);
   for (std::size_t k = 0; k < count; ++k) {
@@ -60,11 +59,11 @@ void GatherRays::fill(std::size_t point, base::Key key, Samples& samples) const 
 
 void GatherRays::make(const TilePoints& points, std::size_t first, std::size_t offset,
                       std::size_t j, const Samples& samples, scenes::RayPacket& rays,
-                      std::array<float, width>& cosine) {
+                      std::array<float, packet_width>& cosine) {
   const float* u = &samples.u[j * samples.padded + offset];
   const float* v = &samples.v[j * samples.padded + offset];
   const TilePoints::OriginSet& from = points.set_of(j);
-  for (std::size_t k = 0; k < width; ++k) {
+  for (std::size_t k = 0; k < packet_width; ++k) {
     // Nobody reads the hits of lanes past the last point.
     const std::size_t p = first + offset + k;
     const float radius = std::sqrt(u[k]), z = std::sqrt(1.0F - u[k]);

@@ -14,13 +14,14 @@
 
 namespace earthshine::raytrace {
 
+inline constexpr std::size_t packet_width = scenes::RayPacket::width;
 inline constexpr int gather_tile_px = 8;
 inline constexpr std::size_t most_tile_points =
     static_cast<std::size_t>(gather_tile_px) * gather_tile_px;
 
 // Where a point's rays start: one place behind its pixel's centre, or several of its pixel.
 struct RayOrigins {
-  static constexpr std::size_t most = scenes::RayPacket::width;
+  static constexpr std::size_t most = packet_width;
   std::size_t count = 0;
   std::array<Vec3, most> origin, normal;  // lifted off the surface; unit
   void add(const Vec3& lifted, const Vec3& up) { origin[count] = lifted, normal[count++] = up; }
@@ -109,7 +110,7 @@ class GatherRays {
   // Ray j, below rays(), of the eight points from first + offset on; their cosines.
   static void make(const TilePoints& points, std::size_t first, std::size_t offset, std::size_t j,
                    const Samples& samples, scenes::RayPacket& rays,
-                   std::array<float, scenes::RayPacket::width>& cosine);
+                   std::array<float, packet_width>& cosine);
 
  private:
   void fill(std::size_t point, base::Key key, Samples& samples) const;

@@ -13,7 +13,6 @@ namespace {
 using scenes::HitPacket;
 using scenes::RayPacket;
 
-constexpr std::size_t width = RayPacket::width;
 constexpr std::uint32_t most_rays = 1U << 14U;  // per half
 constexpr std::size_t most_factors = 32;        // more samples may be any power of two as many
 
@@ -33,8 +32,8 @@ class SolutionRays {
       const std::size_t count = std::min(rays_.batch(), points_.count - first);
       rays_.draw(points_, first, count, seed, samples);
       for (std::size_t j = 0; j < rays_.rays(); ++j) {
-        for (std::size_t k = 0; k < count; k += width) {
-          cast(first, k, std::min(width, count - k), j, samples, static_cast<double>(aimed));
+        for (std::size_t k = 0; k < count; k += packet_width) {
+          cast(first, k, std::min(packet_width, count - k), j, samples, static_cast<double>(aimed));
         }
       }
     }
@@ -51,7 +50,7 @@ class SolutionRays {
             const GatherRays::Samples& samples, double aimed) {
     RayPacket rays;
     HitPacket hits;
-    std::array<float, width> cosine;
+    std::array<float, packet_width> cosine;
     GatherRays::make(points_, first, offset, j, samples, rays, cosine);
     query_.closest(rays, count, hits);
     RayShare share;

@@ -17,8 +17,6 @@ constexpr double aimed_share = 0.25;
 // where the solution is wrongly black, a walk that always ended there would never find out.
 constexpr double least_survival = 0.05;
 
-bool lit(const Rgb& c) { return base::max_component(c) > 0.0; }
-
 }  // namespace
 
 std::span<const Rgb> PathWalker::residual(const IncomingLight& solution, const Ray& ray,
@@ -40,7 +38,7 @@ std::span<const Rgb> PathWalker::residual_at(const IncomingLight& solution, cons
   const scenes::Hit hit = world_.query.closest(ray_.origin, ray_.direction);
   if (hit.missed()) return radiance_;
   weight_ *= solution.kept_part(hit, ray_.direction, share_);
-  if (lit(weight_)) follow(solution, hit);
+  if (base::is_lit(weight_)) follow(solution, hit);
   return radiance_;
 }
 
@@ -57,7 +55,7 @@ void PathWalker::follow(const IncomingLight& solution, scenes::Hit hit) {
     solution.add(hit, ray_.direction, share_, weight_, radiance_, rays_);
     if (hit.missed()) return;
     weight_ *= solution.kept_part(hit, ray_.direction, share_);
-    if (!lit(weight_)) return;
+    if (!base::is_lit(weight_)) return;
     const double survival = std::clamp(base::max_component(weight_), least_survival, 1.0);
     if (rng_->next() >= survival) return;
     weight_ /= survival;

@@ -24,8 +24,6 @@ constexpr double sure_weight = 0.25;
 // are so small that the variance stays finite up to reflectances of 0.9999^(1/2).
 constexpr int long_path = 1000;
 constexpr double long_path_survival = 0.9999;
-bool lit(const Rgb& c) { return base::max_component(c) > 0.0; }
-
 }  // namespace
 
 void PathWalker::begin(const Ray& start, base::Rng& rng) {
@@ -63,7 +61,7 @@ PathWalker::Surface PathWalker::surface_at(const scenes::Hit& hit) const {
 }
 
 bool PathWalker::is_black(const Surface& surface) {
-  return !surface.shines && !lit(surface.material.transmit);
+  return !surface.shines && !base::is_lit(surface.material.transmit);
 }
 
 // Adds what the ray's end sends along it and turns the ray; false where the path ends.
@@ -166,10 +164,10 @@ void PathWalker::light_directly(const Surface& surface) {
     const double v = base::uniform(key.with(k), 1);
     const scenes::LightSample light = world_.lights.sample(k, surface.position, u, v);
     const double cosine = glm::dot(light.direction, surface.normal);
-    if (cosine <= 0.0 || !lit(light.normal_illuminance_lx)) continue;
+    if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) continue;
     Rgb reflectance = surface.diffuse;
     const double cos_alpha = glm::dot(light.direction, surface.mirrored);
-    if (lit(surface.material.specular) && cos_alpha > 0.0) {
+    if (base::is_lit(surface.material.specular) && cos_alpha > 0.0) {
       reflectance += surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
     }
     // Short of the source, which may be a surface of the scene.
@@ -214,7 +212,7 @@ bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
   } else {
     scatter(surface, way == Lobe);
   }
-  return lit(weight_);
+  return base::is_lit(weight_);
 }
 
 // Whether light that comes the other way is what shadow rays bring to where the path last turned:

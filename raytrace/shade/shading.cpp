@@ -19,15 +19,14 @@ constexpr int roulette_depth = 3;       // from here on paths end by chance, wit
 constexpr double most_survival = 0.95;  // even between perfect mirrors
 constexpr int lobe_rays = 4;            // per camera sample
 
-bool lit(const Rgb& c) { return base::max_component(c) > 0.0; }
-
 }  // namespace
 
 bool gathers_at(const scenes::Scene& scene, const scenes::Hit& hit, GatherRequest& request) {
   const std::uint32_t number = scene.triangles[hit.triangle].material;
   const scenes::Material& material = scene.materials[number];
-  const bool glossy = lit(material.specular) && material.shininess < sharp_lobe;
-  if (!(hit.front || material.two_sided) || !(lit(material.diffuse) || glossy)) return false;
+  const bool glossy = base::is_lit(material.specular) && material.shininess < sharp_lobe;
+  if (!(hit.front || material.two_sided) || !(base::is_lit(material.diffuse) || glossy))
+    return false;
   const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
   request = {scenes::hit_position(scene, hit), hit.front ? outward : -outward,
              base::luminance(material.diffuse), glossy ? base::luminance(material.specular) : 0.0,
@@ -147,7 +146,7 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
   const scenes::Scene& scene = shared_.scene;
   const scenes::Triangle& triangle = scene.triangles[hit.triangle];
   const scenes::Material& material = scene.materials[triangle.material];
-  const bool glass = lit(material.transmit);
+  const bool glass = base::is_lit(material.transmit);
   if (!hit.front && !material.two_sided && !glass) return;  // the black back
 
   const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
@@ -164,7 +163,7 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
   }
   if (shines) {
     if (material.reflects()) direct(surface, weight, depth);
-    if (lit(material.diffuse)) {
+    if (base::is_lit(material.diffuse)) {
       if (shared_.groups.ambient != no_group) {
         add(shared_.layer[shared_.groups.ambient], sample_,
             depth == 0 ? Part::Indirect : Part::Specular,
@@ -172,9 +171,9 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
       }
       diffuse(surface, hit, weight, depth);
     }
-    if (lit(material.specular) && shared_.gathers) lobe(surface, weight, depth);
+    if (base::is_lit(material.specular) && shared_.gathers) lobe(surface, weight, depth);
   }
-  if (glass || lit(material.mirror)) mirror_and_glass(ray, surface, weight, depth, seen);
+  if (glass || base::is_lit(material.mirror)) mirror_and_glass(ray, surface, weight, depth, seen);
 }
 
 void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
@@ -198,16 +197,16 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
     const auto u = light_point(k);
     const scenes::LightSample light = shared_.lights.sample(k, surface.position, u[0], u[1]);
     const double cosine = glm::dot(light.direction, surface.normal);
-    if (cosine <= 0.0 || !lit(light.normal_illuminance_lx)) continue;
+    if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) continue;
     // L = (E cos / pi) (k_d + k_s cos^n alpha): the measured Phong form.
     Rgb highlight(0.0);
     const double cos_alpha = glm::dot(light.direction, mirrored);
-    if (cos_alpha > 0.0 && lit(surface.material.specular)) {
+    if (cos_alpha > 0.0 && base::is_lit(surface.material.specular)) {
       highlight = surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
     }
     const Rgb incident = weight * light.normal_illuminance_lx * (chance_weight * cosine / pi);
     const Rgb value = incident * (surface.diffuse + highlight);
-    if (!lit(value)) continue;
+    if (!base::is_lit(value)) continue;
     const double reach = light.distance_m * (1.0 - 1e-5) - 2.0 * offset;
     if (reach <= 0.0) continue;
     queue_shadow(origin, light.direction, reach,
@@ -249,7 +248,7 @@ void PixelShader::mirror_and_glass(const Ray& ray, const Surface& surface, const
   const Vec3 lift = surface.normal * shared_.query.surface_offset_m();
   Rgb reflected = weight * surface.material.mirror, through(0.0);
   Vec3 bent(0.0);
-  if (lit(surface.material.transmit)) {
+  if (base::is_lit(surface.material.transmit)) {
     through = weight * surface.material.transmit;
     const scenes::Refraction refraction =
         scenes::refract(surface.material, surface.outward, ray.direction);
@@ -259,7 +258,7 @@ void PixelShader::mirror_and_glass(const Ray& ray, const Surface& surface, const
       through = Rgb(0.0);
     }
   }
-  if (depth >= roulette_depth && lit(reflected) && lit(through)) {
+  if (depth >= roulette_depth && base::is_lit(reflected) && base::is_lit(through)) {
     // Deep paths take one way, or their number would grow without end.
     const double share = base::max_component(reflected) /
                          (base::max_component(reflected) + base::max_component(through));
@@ -267,9 +266,9 @@ void PixelShader::mirror_and_glass(const Ray& ray, const Surface& surface, const
     reflected *= goes_back ? 1.0 / share : 0.0;
     through *= goes_back ? 0.0 : 1.0 / (1.0 - share);
   }
-  if (lit(through))
+  if (base::is_lit(through))
     trace({surface.position - lift, bent}, through, depth + 1, seen, rays_.refraction);
-  if (lit(reflected)) {
+  if (base::is_lit(reflected)) {
     trace({surface.position + lift, glm::reflect(ray.direction, surface.normal)}, reflected,
           depth + 1, seen, rays_.mirror);
   }

@@ -14,7 +14,7 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr std::string_view all_keys[] = {
+constexpr std::string_view object_keys[] = {
     "name",   "mesh",     "part",       "shape",     "material",    "translate", "rotate",
     "scale",  "target",   "inward",     "corners",   "min",         "max",       "center",
     "radius", "segments", "from",       "to",        "caps",        "normal",    "orient",
@@ -27,9 +27,9 @@ constexpr Range lengths{-largest_length, largest_length};
 
 void allow_keys(const TableReader& table, std::initializer_list<std::string_view> own,
                 std::string_view of_what) {
-  std::vector<std::string_view> keys(std::begin(common_keys), std::end(common_keys));
-  keys.insert(keys.end(), own);
-  table.allow_only(keys, of_what);
+  std::vector<std::string_view> allowed(std::begin(common_keys), std::end(common_keys));
+  allowed.insert(allowed.end(), own);
+  table.allow_only(allowed, of_what);
 }
 
 constexpr Range turns_deg{0.25, 90.0};
@@ -201,7 +201,7 @@ Vec3 read_velocity(const TableReader& table) {
 }
 
 Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& shelf) {
-  TableReader table(node, "[[object]]", all_keys);
+  TableReader table(node, "[[object]]", object_keys);
   Object object;
   object.name = table.read_name();
   object.target = table.flag("target").value_or(false);

@@ -15,7 +15,7 @@ namespace {
 using base::Blame;
 using base::Error;
 
-constexpr std::string_view root_keys[] = {"format", "name", "unit"};
+constexpr std::string_view fixed_keys[] = {"format", "name", "unit"};
 constexpr std::string_view plain_tables[] = {"sun",     "earth",   "orbit",
                                              "ambient", "monitor", "quality"};
 constexpr std::string_view named_tables[] = {"material", "object", "light",       "area",
@@ -126,7 +126,7 @@ void apply_override(TomlNode& root, const std::string& setting,
   auto& table = std::get<TomlTable>(root.value);
   TomlNode value = parse_value(std::string_view(setting).substr(equals + 1), where);
 
-  if (among(head, root_keys) && first_dot == std::string_view::npos) {
+  if (among(head, fixed_keys) && first_dot == std::string_view::npos) {
     set(table, head, std::move(value), where);
   } else if (among(head, plain_tables)) {
     if (first_dot == std::string_view::npos || first_dot != last_dot ||
@@ -147,7 +147,7 @@ void apply_override(TomlNode& root, const std::string& setting,
     }
   } else {
     std::vector<std::string> known;
-    known.insert(known.end(), std::begin(root_keys), std::end(root_keys));
+    known.insert(known.end(), std::begin(fixed_keys), std::end(fixed_keys));
     known.insert(known.end(), std::begin(plain_tables), std::end(plain_tables));
     known.insert(known.end(), std::begin(named_tables), std::end(named_tables));
     throw Error(Blame::Input, where, fmt::format("unknown key {}", in_quotes(head)),

@@ -14,7 +14,7 @@ using Points = std::span<const ReflectancePoint>;
 
 constexpr double noise_floor = 0.01;  // of the largest R (ReflectanceNoise::Proportional)
 constexpr double chance_of_lobe = 1e-3;
-constexpr double rounding = 1e-20;  // of a sum of squares
+constexpr double rounding_of_squares = 1e-20;  // of a sum of squares
 constexpr int unknowns = 3;
 
 // The noise of each point to a common factor.
@@ -220,7 +220,7 @@ bool finds_lobe(const PhongFit& fit, const Data& data) {
   PhongFit flat;
   flat.diffuse = sum / weights;
   const double without = weighted_squares(flat, data, basis);
-  if (!(without > rounding * squares)) return false;
+  if (!(without > rounding_of_squares * squares)) return false;
   const double with = weighted_squares(fit, data, basis);
   const double freedom = static_cast<double>(basis.size()) - unknowns;
   return freedom < 1.0 || std::pow(with / without, freedom / 2.0) < chance_of_lobe;

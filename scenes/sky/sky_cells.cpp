@@ -72,11 +72,11 @@ void SkyCells::visit(std::size_t cell, int side,
 void SkyCells::visit_lattice(std::size_t cell, int side,
                              const std::function<void(const Vec3&)>& visit) const {
   const double hair = 1e-8;
-  const auto share = [side, hair](int k) {
+  const auto along = [side, hair](int k) {
     return std::clamp(static_cast<double>(k) / side, hair, 1.0 - hair);
   };
   for (int i = 0; i <= side; ++i) {
-    for (int j = 0; j <= side; ++j) visit(direction_at(cell, share(i), share(j)));
+    for (int j = 0; j <= side; ++j) visit(direction_at(cell, along(i), along(j)));
   }
 }
 

@@ -341,14 +341,14 @@ class Machines(OfRanks):
         """Two ranks of one thread share W = W1 + W2 CPU seconds of a picture. One is stopped while the other works for W: it
         has nothing left to do then, where rows dealt out beforehand would leave it all of its half."""
         call = ("render", "ball.toml", "--camera", "A", "-o", "v.exr", "--indirect", "paths", "-q", "--set",
-                "quality.gather_rays=16384")
+                "quality.gather_rays=8192")
         begun = os.times()
         self.done(*call, "-j", "1")
         ended = os.times()
         work = ended.children_user - begun.children_user
         whole = (self.folder / "v.exr").read_bytes()
         run, ranks = self.started(2, *call)
-        while self.processor_seconds(ranks[1]) < 0.3 + 0.1 * work:
+        while self.processor_seconds(ranks[1]) < 0.1 + 0.1 * work:
             time.sleep(0.01)
         os.kill(int(ranks[1]), signal.SIGSTOP)
         at_stop = self.processor_seconds(ranks[1])
