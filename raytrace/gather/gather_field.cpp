@@ -27,6 +27,7 @@ GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
   find_strays();
   lengths_.assign(points_.size(), {});
   over_pixel_.assign(points_.size(), 0);
+  find_turning_lobes();
   const std::size_t count = points_.size();
   const auto begin = [&](Gathered kind, std::size_t layers) {
     Estimate& estimate = estimate_[number(kind)];

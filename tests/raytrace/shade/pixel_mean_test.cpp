@@ -84,5 +84,64 @@ TEST_P(PixelMean, LightThatChangesWithinAPixelIsItsMean) {
 INSTANTIATE_TEST_SUITE_P(Gather, PixelMean,
                          ::testing::Values(With::Nothing, With::Speck, With::Roof));
 
+// A glossy vault of facets, 2 degrees from one to the next, that turns by 16 degrees across the
+// middle pixel of 3 x 3, under a sunlit strip that is 8 degrees wide. What is behind the pixel's
+// centre mirrors the strip, most of the pixel does not: the shared picture has the mean that
+// gathering at every camera sample has.
+TEST(TurningLobe, IsItsMeanOverThePixel) {
+  constexpr double w = 2.0, height = 10.0, step = base::radians(2.0);
+  const double radius = w / 2.0 / std::sin(4.0 * step);
+  tests::SceneBuilder builder;
+  scenes::Material glossy = tests::grey(0.0);
+  glossy.specular = Rgb(0.5);
+  glossy.shininess = 90.0;
+  const std::uint32_t shiny = builder.material(glossy);
+  const auto along = [&](double turn, double y) {
+    return Vec3(radius * std::sin(turn), y, radius * (std::cos(turn) - 1.0));
+  };
+  for (int k = -12; k < 12; ++k) {
+    const double left = (k + 0.5) * step, right = left + step;
+    builder.quad(shiny, along(left, -50), along(right, -50), along(right, 50), along(left, 50));
+  }
+  builder.quad(builder.material(tests::grey(0.5)), Vec3(-2, -200, 30), Vec3(-2, 200, 30),
+               Vec3(2, 200, 30), Vec3(2, -200, 30));
+  scenes::Sun sun;
+  sun.direction = Vec3(0.8, 0, -0.6);  // below the vault's horizon
+  sun.illuminance_lx = Rgb(1000.0);
+  sun.angular_radius_deg = 1e-5;
+  builder.scene.sun = sun;
+  const tests::Prepared prepared(builder.scene);
+  scenes::Camera camera;
+  camera.position = Vec3(0, 0, height);
+  camera.look_at = Vec3(0.0);
+  camera.up = Vec3(0, 1, 0);
+  camera.fov_deg = base::degrees(2.0 * std::atan(1.5 * w / height));
+  radiosity::SolveOptions solve;
+  solve.patch_edge_m = 5.0;
+  const radiosity::Solution solution = prepared.solve(solve);
+  const auto pixel = [&](bool shared) {
+    RenderOptions options;
+    options.columns = options.rows = 3;
+    options.gather_rays = 64;
+    options.shared.on = shared;
+    options.shared.smooth_share = 0.0;
+    constexpr int pictures = 256;
+    double sum = 0.0, squares = 0.0;
+    for (options.seed = 1; options.seed <= pictures; ++options.seed) {
+      const Frame frame = render(builder.scene, prepared.groups, prepared.effects, prepared.query,
+                                 solution, camera, options);
+      const double found = double(frame.image.find("G")->values[4]);
+      sum += found, squares += found * found;
+    }
+    const double mean = sum / pictures;
+    return std::pair(mean, (squares / pictures - mean * mean) / (pictures - 1));
+  };
+  const auto [right, right_variance] = pixel(false);
+  const auto [found, variance] = pixel(true);
+  const double standard_error = std::sqrt(right_variance + variance);
+  EXPECT_LT(standard_error, 0.05 * right);
+  EXPECT_NEAR(found, right, 4.0 * standard_error);
+}
+
 }  // namespace
 }  // namespace earthshine::raytrace
