@@ -30,21 +30,9 @@ add_library(earthshine_common OBJECT ${CMAKE_CURRENT_LIST_DIR}/common.cpp)
 target_link_libraries(earthshine_common PRIVATE earthshine_flags fmt::fmt glm::glm)
 target_precompile_headers(earthshine_common PRIVATE ${earthshine_common_headers})
 
-# The files of a room are compiled at a time: what they include, templates above all, once.
-function(unite_rooms target)
-  get_target_property(sources ${target} SOURCES)
-  foreach(source ${sources})
-    get_filename_component(room ${source} DIRECTORY)
-    set_source_files_properties(${source} PROPERTIES UNITY_GROUP "room_${room}")
-  endforeach()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${EARTHSHINE_UNITY} UNITY_BUILD_MODE GROUP)
-endfunction()
-
-# add_layer(NAME [FILE_BY_FILE] USES <layers> LIBRARIES <public> PRIVATE_LIBRARIES <owned here> SOURCES <files>)
-# FILE_BY_FILE: not by rooms. The more GCC 12 sees of radiosity's and raytrace's loops, the more roundings to single
-# precision it leaves out (scenes/triangle_point.h), and pictures are no longer those of other compilers.
+# add_layer(NAME USES <layers> LIBRARIES <public> PRIVATE_LIBRARIES <owned here> SOURCES <files>)
 function(add_layer name)
-  cmake_parse_arguments(LAYER "FILE_BY_FILE" "" "USES;LIBRARIES;PRIVATE_LIBRARIES;SOURCES" ${ARGN})
+  cmake_parse_arguments(LAYER "" "" "USES;LIBRARIES;PRIVATE_LIBRARIES;SOURCES" ${ARGN})
   add_library(earthshine_${name} STATIC ${LAYER_SOURCES})
   add_library(earthshine::${name} ALIAS earthshine_${name})
   target_include_directories(earthshine_${name} PUBLIC ${PROJECT_SOURCE_DIR})
@@ -53,9 +41,6 @@ function(add_layer name)
     PUBLIC ${LAYER_USES} ${LAYER_LIBRARIES}
     PRIVATE earthshine_flags fmt::fmt ${LAYER_PRIVATE_LIBRARIES})
   target_precompile_headers(earthshine_${name} REUSE_FROM earthshine_common)
-  if(NOT LAYER_FILE_BY_FILE)
-    unite_rooms(earthshine_${name})
-  endif()
 endfunction()
 
 # What tests of layers share: their headers, compiled once. A local name may be that of another file's constant:

@@ -27,8 +27,8 @@ constexpr int region_px = 32;        // over which strays are held to be alike
 // What a lobe reflects turns twice as far as the surface does.
 constexpr float lobe_cosine = 0.985F;  // 10 degrees
 constexpr float rounding = 0.02F;      // of positions, over the points' spacing
-// From one pixel to the next: the mean of a lobe of exponent n over normals that differ so is off by
-// n 2^2 / (6 57^2) of its peak (its second derivative there), 0.4 % of n = 20.
+// From one pixel to the next: the mean of a lobe of exponent n over normals that differ so is off
+// by n 2^2 / (6 57^2) of its peak (its second derivative there), 0.4 % of n = 20.
 constexpr float turning_cosine = 0.99939F;  // 2 degrees
 
 scenes::Hit hit_of(const HitPacket& hits, std::size_t k) {
