@@ -167,7 +167,6 @@ void write_exr(const std::filesystem::path& path, const Image& image, const ExrH
 
 namespace {
 
-// What the reader says about a file it will not take.
 // Before anything is allocated for the pixels.
 void check_header(const std::filesystem::path& path, const Imf::Header& header) {
   if (header.hasType() && Imf::isDeepData(header.type())) {

@@ -8,7 +8,6 @@
 #include <csetjmp>
 #include <fstream>
 #include <new>
-#include <string_view>
 
 #include "base/error.h"
 #include "base/files/output_file.h"

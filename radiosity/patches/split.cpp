@@ -8,7 +8,7 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr std::uint64_t most_cells_a_side = std::uint64_t{1} << 20;  // along one side of a facet
+constexpr std::uint64_t most_cells_a_side = std::uint64_t{1} << 20;  // of a facet
 
 constexpr std::uint8_t most_digits = 30;  // of the parameter s of a cluster
 

@@ -4,9 +4,9 @@
 // are estimated at each point, each with as many samples as it needs. Where the pixel shows other
 // surfaces beside the one behind its centre, each of these has a point of its own, a stray
 // (strays.h), which lies on no grid. Where what comes in changes within a pixel, as its rays'
-// lengths tell, or a glossy surface turns from one pixel to the next, they start from several places
-// of the point's surface in the pixel's footprint, other ones each time: the point stands for their
-// mean.
+// lengths tell, or a glossy surface turns from one pixel to the next, they start from several
+// places of the point's surface in the pixel's footprint, other ones each time: the point stands
+// for their mean.
 //
 //   solution  mean radiance that cosine-distributed rays read from the radiosity solution, the sky
 //             and what mirrors and glass pass on: T L~ over k_d, L~ what the solution says
@@ -112,7 +112,8 @@ class GatherField {
   static std::size_t number(Gathered kind) { return static_cast<std::size_t>(kind); }
   void find_points();
   void find_strays();
-  // Glossy points about which the surface turns: their rays start all over their pixel.
+  // Glossy points beside which their material has another normal: their rays start all over their
+  // pixel.
   void find_turning_lobes();
   // Of what camera rays met: true where light is gathered there.
   bool place(const scenes::Hit& hit, GatherPoint& point, Vec3& origin) const;

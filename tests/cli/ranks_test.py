@@ -348,7 +348,7 @@ class Machines(OfRanks):
         work = ended.children_user - begun.children_user
         whole = (self.folder / "v.exr").read_bytes()
         run, ranks = self.started(2, *call)
-        while self.processor_seconds(ranks[1]) < 0.1 + 0.1 * work:
+        while self.processor_seconds(ranks[1]) < 0.2 + 0.1 * work:
             time.sleep(0.01)
         os.kill(int(ranks[1]), signal.SIGSTOP)
         at_stop = self.processor_seconds(ranks[1])

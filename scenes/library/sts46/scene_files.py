@@ -148,8 +148,9 @@ def material_text(material):
     return "\n".join(lines)
 
 
-# Bodies whose mesh is a coarse hull of a round one: no edge turns by more degrees than this in the picture.
-ROUND_DEG = {"tss": 3, "tss-deployer": 5, "canisters": 5, "arm": 5, "ku-antenna": 5}
+# Bodies whose mesh is a coarse hull of a round one: smooth_deg, below which an edge is round (the arm's 12 sides turn by 30), and
+# round_deg, by which no round edge turns in the picture.
+ROUND_DEG = {"tss": (30, 3), "tss-deployer": (30, 5), "canisters": (30, 5), "arm": (35, 5), "ku-antenna": (30, 5)}
 
 
 def object_text(entry):
@@ -157,7 +158,8 @@ def object_text(entry):
     lines = ["[[object]]", f'name = "{name}"' + (f"  # {note}" if note and name != "tss" else ""),
              f'mesh = "meshes/{mesh}.obj"', f'part = "{part}"' + (f"  # {note}" if name == "tss" else "")]
     if name in ROUND_DEG:
-        lines += ["smooth_deg = 30", f"round_deg = {ROUND_DEG[name]}"]
+        smooth, fine = ROUND_DEG[name]
+        lines += [f"smooth_deg = {smooth}", f"round_deg = {fine}"]
     if target:
         lines.append("target = true")
     return "\n".join(lines)
