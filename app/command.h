@@ -14,8 +14,7 @@
 
 #include "app/json.h"
 #include "radiosity/solution.h"
-#include "scenes/effects/effects.h"
-#include "scenes/effects/light_groups.h"
+#include "scenes/effects/world.h"
 #include "scenes/scene.h"
 
 namespace CLI {
@@ -91,6 +90,10 @@ struct LoadedScene {
   scenes::Scene scene;
   scenes::LightGroups groups;
   scenes::Effects effects;
+
+  [[nodiscard]] scenes::World world(const scenes::RayQuery& query) const {
+    return {scene, groups, effects, query};
+  }
 };
 [[nodiscard]] LoadedScene load(const SceneInput& input, bool quiet);
 

@@ -77,8 +77,7 @@ std::vector<double> exitances(const scenes::Scene& scene, const scenes::LightGro
   return values;
 }
 
-void fill_solution(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                   const scenes::Effects& effects, const FormFactors& factors, bool balanced,
+void fill_solution(const scenes::World& world, const FormFactors& factors, bool balanced,
                    PatchLight& light, Solution& solution) {
   const Patches& patches = solution.patches;
   const std::size_t columns = solution.columns;
@@ -87,25 +86,26 @@ void fill_solution(const scenes::Scene& scene, const scenes::LightGroups& groups
                            light.emitted, light.direct, light.indirect, light.radiosity};
   close_energy(ledger, balanced, light.radiosity, light.indirect);
   SolveReport& report = solution.report;
-  report.groups = energy_ledger(ledger, groups.names, report.sources);
-  report.objects = object_means(scene, patches, open_m2, columns, emitter_is_explicit(scene),
-                                light.direct, light.indirect, light.radiosity);
+  report.groups = energy_ledger(ledger, world.groups.names, report.sources);
+  report.objects =
+      object_means(world.scene, patches, open_m2, columns, emitter_is_explicit(world.scene),
+                   light.direct, light.indirect, light.radiosity);
   solution.radiosity.assign(light.radiosity.begin(), light.radiosity.end());
   solution.direct_lx.assign(light.direct.begin(), light.direct.end());
   solution.indirect_lx.assign(light.indirect.begin(), light.indirect.end());
   solution.soft_radiosity.resize(light.radiosity.size());
-  const std::size_t sky_parts = scenes::earth_parts(scene);
+  const std::size_t sky_parts = scenes::earth_parts(world.scene);
   Rgb patch_k_d(0.0);
   for (std::size_t k = 0; k < light.radiosity.size(); ++k) {
     const std::size_t column = k % columns;
     if (column == 0) {
-      patch_k_d = patch_diffuse(scene, patches, static_cast<std::uint32_t>(k / columns));
+      patch_k_d = patch_diffuse(world.scene, patches, static_cast<std::uint32_t>(k / columns));
     }
     const double diffuse = patch_k_d[static_cast<int>(column % 3)];
     double soft = diffuse * light.indirect[k];
-    if (effects.earth_by_gather && column / 3 >= groups.earth &&
-        column / 3 < groups.earth + sky_parts) {
-      const std::size_t part = (k / columns) * sky_parts + column / 3 - groups.earth;
+    if (world.effects.earth_by_gather && column / 3 >= world.groups.earth &&
+        column / 3 < world.groups.earth + sky_parts) {
+      const std::size_t part = (k / columns) * sky_parts + column / 3 - world.groups.earth;
       soft += diffuse * light.sky[part][static_cast<int>(column % 3)];
     }
     solution.soft_radiosity[k] = static_cast<float>(soft);

@@ -25,15 +25,13 @@ struct PatchLight {
 
 // Of solution.patches and solution.columns. Of the factors only what each patch keeps, loses and
 // lets escape is looked at, and what is open of it. Closes the energy of `light`.
-void fill_solution(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                   const scenes::Effects& effects, const FormFactors& factors, bool balanced,
+void fill_solution(const scenes::World& world, const FormFactors& factors, bool balanced,
                    PatchLight& light, Solution& solution);
 
 // solve() on patches that are cut already, with its form factors, balanced.
-[[nodiscard]] Solution solve_keeping(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                                     const scenes::Effects& effects, const scenes::RayQuery& query,
-                                     const SolveOptions& options, Patches patches,
-                                     const SolveVariant& variant, FormFactors& factors);
+[[nodiscard]] Solution solve_keeping(const scenes::World& world, const SolveOptions& options,
+                                     Patches patches, const SolveVariant& variant,
+                                     FormFactors& factors);
 
 // Where the energy went. With F balanced (form_factors.h) every line adds up to rounding and the
 // solver's residual:

@@ -110,18 +110,12 @@ std::vector<Cut> choose(const Patches& patches, const std::vector<Unevenness>& u
 // What the rounds of one refinement share.
 class Refinement {
  public:
-  Refinement(const scenes::Scene& scene, const scenes::LightGroups& groups,
-             const scenes::Effects& effects, const scenes::RayQuery& query,
-             const SolveOptions& options)
-      : scene_(scene),
-        groups_(groups),
-        effects_(effects),
-        query_(query),
+  Refinement(const scenes::World& world, const SolveOptions& options)
+      : world_(world),
         options_(options),
-        max_patches_(most_refined_patches(scene, options)),
-        variation_(scene, groups, effects, query,
-                   {0.25 * options.patch_edge_m,
-                    8 * std::clamp(options.form_factor_rays / 256, 1, 4), options.seed}) {
+        max_patches_(most_refined_patches(world.scene, options)),
+        variation_(world, {0.25 * options.patch_edge_m,
+                           8 * std::clamp(options.form_factor_rays / 256, 1, 4), options.seed}) {
     cheap_ = options;
     cheap_.form_factor_rays = std::max(fewest_rays, options.form_factor_rays / 8);
     cheap_.tolerance = std::max(options.tolerance, 1e-4);
@@ -163,7 +157,7 @@ class Refinement {
   void solve_for(const Patches& patches) {
     SolveVariant variant;
     variant.know_objects = false;  // where to cut is no matter of means
-    solution_ = solve(scene_, groups_, effects_, query_, cheap_, patches, variant);
+    solution_ = solve(world_, cheap_, patches, variant);
     refined_.rays += solution_.report.form_factor_rays + solution_.report.shadow_rays;
     light_ = relative_light(solution_);
     uneven_.assign(patches.count(), {});
@@ -175,11 +169,11 @@ class Refinement {
   // as the Sun may in a room with a small window.
   void start() {
     double edge_m = options_.refine.start_edge_m;
-    refined_.patches = subdivide_near_lamps(scene_, edge_m);
+    refined_.patches = subdivide_near_lamps(world_.scene, edge_m);
     solve_for(refined_.patches);
     while (edge_m > options_.patch_edge_m && any_dark()) {
       edge_m = std::max(0.5 * edge_m, options_.patch_edge_m);
-      Patches finer = subdivide_near_lamps(scene_, edge_m);
+      Patches finer = subdivide_near_lamps(world_.scene, edge_m);
       if (finer.count() > max_patches_) return;
       refined_.patches = std::move(finer);
       solve_for(refined_.patches);
@@ -187,7 +181,7 @@ class Refinement {
   }
   [[nodiscard]] bool any_dark() const {
     for (std::size_t g = 0; g < light_.groups; ++g) {
-      if (g != groups_.ambient && light_.scale[g] <= 0.0) return true;
+      if (g != world_.groups.ambient && light_.scale[g] <= 0.0) return true;
     }
     return false;
   }
@@ -213,10 +207,7 @@ class Refinement {
     return true;
   }
 
-  const scenes::Scene& scene_;
-  const scenes::LightGroups& groups_;
-  const scenes::Effects& effects_;
-  const scenes::RayQuery& query_;
+  const scenes::World& world_;
   const SolveOptions& options_;
   SolveOptions cheap_;
   std::size_t max_patches_;
@@ -241,14 +232,12 @@ std::size_t most_refined_patches(const scenes::Scene& scene, const SolveOptions&
   return std::max(budget, count_patches(scene, refine.start_edge_m));
 }
 
-Refined refine(const scenes::Scene& scene, const scenes::LightGroups& groups,
-               const scenes::Effects& effects, const scenes::RayQuery& query,
-               const SolveOptions& options) {
-  if (options.refine.on && is_lit(effects) && !scene.triangles.empty()) {
-    return Refinement(scene, groups, effects, query, options).run();
+Refined refine(const scenes::World& world, const SolveOptions& options) {
+  if (options.refine.on && is_lit(world.effects) && !world.scene.triangles.empty()) {
+    return Refinement(world, options).run();
   }
   Refined even;
-  even.patches = subdivide_near_lamps(scene, options.patch_edge_m);
+  even.patches = subdivide_near_lamps(world.scene, options.patch_edge_m);
   return even;
 }
 

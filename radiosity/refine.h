@@ -21,8 +21,6 @@ struct Refined {
 // starts from cells of start_edge_m and cuts, round by round, the patches that hold half of the
 // squared error, until options.refine is met or no error is left that is not noise. What is cut
 // depends on the scene, the options and the seed alone.
-[[nodiscard]] Refined refine(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                             const scenes::Effects& effects, const scenes::RayQuery& query,
-                             const SolveOptions& options);
+[[nodiscard]] Refined refine(const scenes::World& world, const SolveOptions& options);
 
 }  // namespace earthshine::radiosity

@@ -160,15 +160,14 @@ bool is_lit(const scenes::Effects& effects) {
   return effects.sun || effects.sun_parts || effects.earth || effects.lamps || effects.emitters;
 }
 
-Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
-               const scenes::Effects& effects, const scenes::RayQuery& query,
-               const SolveOptions& options, const PatchListener& listen) {
+Solution solve(const scenes::World& world, const SolveOptions& options,
+               const PatchListener& listen) {
   SolveReport cutting;
   Stopwatch watch(cutting);
-  Refined refined = refine(scene, groups, effects, query, options);
+  Refined refined = refine(world, options);
   watch.lap("patches");
   if (listen) listen(refined.patches);
-  Solution solution = solve(scene, groups, effects, query, options, std::move(refined.patches));
+  Solution solution = solve(world, options, std::move(refined.patches));
   SolveReport& report = solution.report;
   report.seconds.insert(report.seconds.begin(), cutting.seconds.front());
   report.rounds = std::move(refined.rounds);
@@ -176,49 +175,49 @@ Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
   return solution;
 }
 
-Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
-               const scenes::Effects& effects, const scenes::RayQuery& query,
-               const SolveOptions& options, Patches cut, const SolveVariant& variant) {
+Solution solve(const scenes::World& world, const SolveOptions& options, Patches cut,
+               const SolveVariant& variant) {
   FormFactors factors;
-  return solve_keeping(scene, groups, effects, query, options, std::move(cut), variant, factors);
+  return solve_keeping(world, options, std::move(cut), variant, factors);
 }
 
-Solution solve_keeping(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                       const scenes::Effects& effects, const scenes::RayQuery& query,
-                       const SolveOptions& options, Patches cut, const SolveVariant& variant,
-                       FormFactors& factors) {
+Solution solve_keeping(const scenes::World& world, const SolveOptions& options, Patches cut,
+                       const SolveVariant& variant, FormFactors& factors) {
   Solution solution;
   SolveReport& report = solution.report;
   Stopwatch watch(report);
   solution.patches = std::move(cut);
   const Patches& patches = solution.patches;
   report.patches = patches.count();
-  if (!is_lit(effects) || scene.triangles.empty()) return solution;
+  if (!is_lit(world.effects) || world.scene.triangles.empty()) return solution;
   if (patches.count() == 0) {
-    throw base::Error(base::Blame::Work, scene.path.string(),
+    throw base::Error(base::Blame::Work, world.scene.path.string(),
                       "surfaces were left without patches, which would show them without light", {},
                       "Raise quality.patch_edge, and report this as a fault of the program");
   }
-  solution.columns = 3 * groups.count();
+  solution.columns = 3 * world.groups.count();
 
   SkyRadiance sky;
-  if (effects.earth_by_gather) {
-    sky = [&scene](const Vec3& direction) { return scenes::earth_radiance(scene, direction); };
+  if (world.effects.earth_by_gather) {
+    sky = [&world](const Vec3& direction) {
+      return scenes::earth_radiance(world.scene, direction);
+    };
   }
   FormFactorOptions rays{options.form_factor_rays, options.seed, variant.replicate};
-  const std::vector<bool> is_explicit = emitter_is_explicit(scene);
-  if (!effects.earth_by_gather && !any_sends(scene, patches, is_explicit)) {
+  const std::vector<bool> is_explicit = emitter_is_explicit(world.scene);
+  if (!world.effects.earth_by_gather && !any_sends(world.scene, patches, is_explicit)) {
     rays.rays_per_patch = std::min(rays.rays_per_patch, rays_without_light);
   }
   rays.leave_out_covered = true;
   rays.know_objects = variant.know_objects;
-  if (scene.sky_parts && scene.sky_parts->cells) rays.sky_cells = &*scene.sky_parts->cells;
-  factors = cast_form_factors(scene, query, patches, rays, sky);
+  if (world.scene.sky_parts && world.scene.sky_parts->cells)
+    rays.sky_cells = &*world.scene.sky_parts->cells;
+  factors = cast_form_factors(world.scene, world.query, patches, rays, sky);
   const std::vector<double> open_m2 = open_areas(factors.open, patches.area_m2);
   report.form_factor_rays = factors.ray_count;
   report.rays_per_patch = factors.rays_per_patch;
   report.nonzeros = factors.shares.sum(factors.hits.size());
-  const std::vector<double> object_backs = back_shares(scene, patches, factors);
+  const std::vector<double> object_backs = back_shares(world.scene, patches, factors);
   report.back_share = back_share(factors);
   watch.lap("form factors");
   report.balance = balance(factors, open_m2, variant.balance);
@@ -226,7 +225,7 @@ Solution solve_keeping(const scenes::Scene& scene, const scenes::LightGroups& gr
 
   DirectOptions direct_options = variant.direct;
   if (direct_options.seed == 0) direct_options.seed = options.seed;
-  DirectLight light = direct_light(scene, groups, effects, query, patches, factors, direct_options);
+  DirectLight light = direct_light(world, patches, factors, direct_options);
   report.shadow_rays = light.shadow_rays;
   report.sources_cost = light.cost;
   report.sources = std::move(light.sources);
@@ -237,14 +236,14 @@ Solution solve_keeping(const scenes::Scene& scene, const scenes::LightGroups& gr
   PatchLight found;
   std::vector<double> source;
   if (joins) {
-    found.reflectance = reflectances(scene, patches, groups.count());
+    found.reflectance = reflectances(world.scene, patches, world.groups.count());
     found.direct = std::move(light.illuminance_lx);
-    source = exitances(scene, groups, patches);
+    source = exitances(world.scene, world.groups, patches);
   }
   found.sky = factors.sky_illuminance;
   const std::vector<double>& rho = found.reflectance;
   for (std::size_t k = 0; k < source.size(); ++k) source[k] += rho[k] * found.direct[k];
-  check_enclosure(scene, patches, factors, source, rho, columns);
+  check_enclosure(world.scene, patches, factors, source, rho, columns);
   LinearSolve linear = solve_linear(factors, std::move(source), rho, columns, options.tolerance);
   report.iterations = linear.iterations;
   report.residual = linear.residual;
@@ -254,8 +253,8 @@ Solution solve_keeping(const scenes::Scene& scene, const scenes::LightGroups& gr
   watch.lap("linear solve");
 
   if (joins) {
-    found.emitted = exitances(scene, groups, patches);
-    fill_solution(scene, groups, effects, factors, report.balance.balanced, found, solution);
+    found.emitted = exitances(world.scene, world.groups, patches);
+    fill_solution(world, factors, report.balance.balanced, found, solution);
     for (std::size_t o = 0; o < object_backs.size(); ++o) {
       report.objects[o].back_share = object_backs[o];
     }

@@ -15,10 +15,8 @@
 #include "radiosity/direct/sources.h"
 #include "radiosity/factors/form_factors.h"
 #include "radiosity/patches/patches.h"
-#include "scenes/effects/effects.h"
-#include "scenes/effects/light_groups.h"
 #include "scenes/effects/quality.h"
-#include "scenes/ray_query.h"
+#include "scenes/effects/world.h"
 
 namespace earthshine::radiosity {
 
@@ -110,9 +108,8 @@ struct Solution {
 using PatchListener = std::function<void(const Patches& patches)>;
 
 // With no light group there is nothing to solve: patches are cut, no rays are cast.
-[[nodiscard]] Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                             const scenes::Effects& effects, const scenes::RayQuery& query,
-                             const SolveOptions& options, const PatchListener& listen = {});
+[[nodiscard]] Solution solve(const scenes::World& world, const SolveOptions& options,
+                             const PatchListener& listen = {});
 
 // In what a solve differs from the one with the same options.
 struct SolveVariant {
@@ -122,10 +119,8 @@ struct SolveVariant {
   bool know_objects = true;  // FormFactorOptions::know_objects
 };
 // On patches that are cut already; options.patch_edge_m and options.refine are not looked at.
-[[nodiscard]] Solution solve(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                             const scenes::Effects& effects, const scenes::RayQuery& query,
-                             const SolveOptions& options, Patches patches,
-                             const SolveVariant& variant = {});
+[[nodiscard]] Solution solve(const scenes::World& world, const SolveOptions& options,
+                             Patches patches, const SolveVariant& variant = {});
 
 // Whether there is any light to solve for. The ambient term is no source: it lights what the camera
 // sees and bounces nowhere.

@@ -136,16 +136,12 @@ RelativeLight relative_light(const Solution& solution) {
   return light;
 }
 
-Variation::Variation(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                     const scenes::Effects& effects, const scenes::RayQuery& query,
-                     const VariationOptions& options)
-    : scene_(scene),
-      effects_(effects),
-      query_(query),
-      sources_(find_sources(scene, groups, effects, 16)),
-      groups_(groups.count()),
-      earth_group_(groups.earth),
-      reflectances_(scene),
+Variation::Variation(const scenes::World& world, const VariationOptions& options)
+    : world_(world),
+      sources_(find_sources(world, 16)),
+      groups_(world.groups.count()),
+      earth_group_(world.groups.earth),
+      reflectances_(world.scene),
       options_(options) {}
 
 std::vector<Unevenness> Variation::find(const Patches& patches,
@@ -165,12 +161,12 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
   const auto direct = [&](std::uint32_t patch, const Rgb& rho, Looks& looks) {
     const base::Key key(options_.seed, base::Stream::Refinement, identity(patches, patch));
     const base::SobolOwen4 where(key);
-    ShadowQueue queue(query_, looks);
+    ShadowQueue queue(world_.query, looks);
     std::vector<scenes::LightSample> taken;
     for (std::size_t point = 0; point < looks.points(); ++point) {
       const auto p = where.point2(static_cast<std::uint32_t>(point));
       const auto [at, normal] = patches.at(patch, p[0], p[1]);
-      const Vec3 lift = normal * query_.surface_offset_m();
+      const Vec3 lift = normal * world_.query.surface_offset_m();
       looks.place(point, p[0], p[1]);
       for (std::size_t k = 0; k < sources_.size(); ++k) {
         const Source& source = sources_[k].source;
@@ -179,7 +175,7 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
           const base::SobolOwen4 toward(key.with(2 * k + set));
           for (std::size_t m = 0; m < samples; ++m) {
             const auto u = toward.point2(static_cast<std::uint32_t>(m));
-            take_samples(source, query_.ways().mirrors(), at, normal, u[0], u[1], taken);
+            take_samples(source, world_.query.ways().mirrors(), at, normal, u[0], u[1], taken);
             for (const scenes::LightSample& sample : taken) {
               const double cosine = glm::dot(sample.direction, normal);
               const double weight =
@@ -212,19 +208,20 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
           const double x = point < 2 ? 0.25 : 0.75, y = point % 2 == 0 ? 0.25 : 0.75;
           const auto [at, normal] = patches.at(patch, x, y);
           const base::Frame3 frame = base::frame_around(normal);
-          const Vec3 origin = at + frame.normal * query_.surface_offset_m();
+          const Vec3 origin = at + frame.normal * world_.query.surface_offset_m();
           std::array<Vec3, RayPacket::width> directions;
           looks.place(point, x, y);
           for (std::size_t k = 0; k < RayPacket::width; ++k) {
             directions[k] = frame.to_world(local[k]);
-            query_.set(packet, k, origin, directions[k]);
+            world_.query.set(packet, k, origin, directions[k]);
           }
-          query_.closest(packet, RayPacket::width, hits);
+          world_.query.closest(packet, RayPacket::width, hits);
           for (std::size_t k = 0; k < RayPacket::width; ++k) {
             if (hits.triangle[k] == scenes::no_triangle) {
-              if (!effects_.earth_by_gather) continue;
-              const Rgb sky = scenes::earth_radiance(scene_, directions[k]);
-              const std::size_t group = earth_group_ + scenes::earth_part(scene_, directions[k]);
+              if (!world_.effects.earth_by_gather) continue;
+              const Rgb sky = scenes::earth_radiance(world_.scene, directions[k]);
+              const std::size_t group =
+                  earth_group_ + scenes::earth_part(world_.scene, directions[k]);
               looks.at(point, set, group) +=
                   weight * light.scale[group] * base::pi * base::luminance(sky);
               continue;

@@ -47,10 +47,7 @@ struct VariationOptions {
 
 class Variation {
  public:
-  // The scene, the effects and the query must outlive it.
-  Variation(const scenes::Scene& scene, const scenes::LightGroups& groups,
-            const scenes::Effects& effects, const scenes::RayQuery& query,
-            const VariationOptions& options);
+  Variation(const scenes::World& world, const VariationOptions& options);
 
   // Per entry of `which`, patches of `patches`: (area / all area) * variance, mean over the light
   // groups that are not dark.
@@ -60,9 +57,7 @@ class Variation {
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
  private:
-  const scenes::Scene& scene_;
-  const scenes::Effects& effects_;
-  const scenes::RayQuery& query_;
+  const scenes::World world_;
   std::vector<LightSource> sources_;
   std::size_t groups_, earth_group_;
   PatchAlbedos reflectances_;

@@ -104,19 +104,17 @@ void summarise(const PixelSums& sums, const Window& window, Frame& frame) {
 
 }  // namespace
 
-Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
-             const scenes::Effects& effects, const scenes::RayQuery& query,
-             const radiosity::Solution& solution, const scenes::Camera& camera,
-             const RenderOptions& options, const Progress& progress) {
+Frame render(const scenes::World& world, const radiosity::Solution& solution,
+             const scenes::Camera& camera, const RenderOptions& options, const Progress& progress) {
   const auto start = Clock::now();
   Frame frame;
-  ShadingSetup setup(scene, groups, effects, query, solution, camera, options);
+  ShadingSetup setup(world, solution, camera, options);
   ShadingScene& shared = setup.shared();
   const CameraModel& model = setup.camera();
   const Window window = window_of(options);
   frame.window = window;
   const auto with_layers = [&](base::Image& image) {
-    return add_layers(image, options.per_light ? groups.names : std::vector<std::string>{},
+    return add_layers(image, options.per_light ? world.groups.names : std::vector<std::string>{},
                       options.aovs);
   };
   base::Image planned = base::make_rgb_image(0, 0);
@@ -130,10 +128,10 @@ Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
   frame.image = base::make_rgb_image(window.columns, window.rows);
   const Layout layout = with_layers(frame.image);
   fill_layers(sampled, frame.error, layout, window, frame.image);
-  frame.report.rays.layers += fill_first_hit(scene, query, model, window, frame.image);
+  frame.report.rays.layers += fill_first_hit(world.scene, world.query, model, window, frame.image);
   frame.report.rays.layers += fill_cryptomatte(
-      scene, query, model, {options.seed, window, sums.window, sums.samples, shared.filter},
-      frame.image);
+      world.scene, world.query, model,
+      {options.seed, window, sums.window, sums.samples, shared.filter}, frame.image);
   summarise(sums, window, frame);
   frame.report.stopped = options.stop && options.stop();
   frame.report.seconds = std::chrono::duration<double>(Clock::now() - start).count();

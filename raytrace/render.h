@@ -21,10 +21,8 @@
 #include "radiosity/solution.h"
 #include "raytrace/frame/frame.h"
 #include "raytrace/frame/options.h"
-#include "scenes/effects/effects.h"
-#include "scenes/effects/light_groups.h"
 #include "scenes/effects/quality.h"
-#include "scenes/ray_query.h"
+#include "scenes/effects/world.h"
 
 namespace earthshine::raytrace {
 
@@ -32,9 +30,8 @@ namespace earthshine::raytrace {
 // pixels that the whole picture has there.
 // Throws base::Error (Input) for an unknown AOV name or [[area]], or a crop that leaves the
 // picture.
-[[nodiscard]] Frame render(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                           const scenes::Effects& effects, const scenes::RayQuery& query,
-                           const radiosity::Solution& solution, const scenes::Camera& camera,
-                           const RenderOptions& options, const Progress& progress = {});
+[[nodiscard]] Frame render(const scenes::World& world, const radiosity::Solution& solution,
+                           const scenes::Camera& camera, const RenderOptions& options,
+                           const Progress& progress = {});
 
 }  // namespace earthshine::raytrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every study is given.
+// What every study is given: the world (scenes/effects/world.h) and who is told of its progress.
 #pragma once
 
 #include <functional>
@@ -8,14 +8,6 @@
 #include "raytrace/render.h"
 
 namespace earthshine::studies {
-
-// A scene with what the stages need beside it; all must outlive the study.
-struct StudyScene {
-  const scenes::Scene& scene;
-  const scenes::LightGroups& groups;
-  const scenes::Effects& effects;
-  const scenes::RayQuery& query;
-};
 
 // Told the name of each stage as it begins; gives the listener for its progress, which may be
 // empty.

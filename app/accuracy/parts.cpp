@@ -23,7 +23,7 @@ constexpr int most_paths = 1 << 14;  // per pixel and side
 
 }  // namespace
 
-AccuracyParts::AccuracyParts(const AccuracyTask& task, const studies::StudyScene& scene)
+AccuracyParts::AccuracyParts(const AccuracyTask& task, const scenes::World& scene)
     : task_(task), scene_(scene), cpu_start_(base::cpu_seconds()) {
   common_cache_key_ = {{"study", "accuracy"},
                        {"scene", scene_cache_key(task.loaded)},
@@ -226,9 +226,7 @@ ReferencePair PathReference::pair() const {
 }
 
 AccuracyStages::AccuracyStages(const AccuracyTask& task)
-    : task_(task),
-      scene_{task.loaded.scene, task.loaded.groups, task.loaded.effects, task.query},
-      parts_(task, scene_) {}
+    : task_(task), scene_{task.loaded.world(task.query)}, parts_(task, scene_) {}
 
 void AccuracyStages::trace_round(std::vector<PathReference>& references, int index, int paths) {
   for (PathReference& reference : references) {

@@ -14,7 +14,7 @@ namespace earthshine::app {
 
 class AccuracyParts {
  public:
-  AccuracyParts(const AccuracyTask& task, const studies::StudyScene& scene);
+  AccuracyParts(const AccuracyTask& task, const scenes::World& scene);
 
   // Of a reference: channels Y and variance; fact: cpu_seconds.
   [[nodiscard]] CachedResult batch(const studies::Batch& batch);
@@ -52,7 +52,7 @@ class AccuracyParts {
   void see_that_work_is_wanted() const;
 
   const AccuracyTask& task_;
-  const studies::StudyScene& scene_;
+  const scenes::World& scene_;
   Json common_cache_key_;
   std::vector<radiosity::SolveOptions> expected_;
   studies::SolutionShelf shared_, single_;
@@ -95,7 +95,7 @@ class AccuracyStages {
   [[nodiscard]] std::vector<studies::AccuracyStep> make_ladder() const;
 
   const AccuracyTask& task_;
-  studies::StudyScene scene_;
+  scenes::World scene_;
   AccuracyParts parts_;
   AccuracyResult result_;
   std::vector<bool> counted_;

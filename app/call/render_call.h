@@ -130,9 +130,7 @@ struct Studio {
   const LoadedScene& loaded;
   const scenes::RayQuery& query;
   const Solved& light;
-  [[nodiscard]] studies::StudyScene scene() const {
-    return {loaded.scene, loaded.groups, loaded.effects, query};
-  }
+  [[nodiscard]] scenes::World scene() const { return loaded.world(query); }
   double time_limit_s = 0.0;                   // for one picture; 0: none
   std::size_t number = 0;                      // of the picture among the call's
   std::optional<double> white_cd_per_m2 = {};  // of its PNGs, once the first picture has said it

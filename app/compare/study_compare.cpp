@@ -141,8 +141,7 @@ void run(const CompareCall& call, const Common& common) {
   const scenes::RayQuery query(loaded.scene);
   raytrace::check_camera(loaded.scene, query, camera);
   const studies::Comparison comparison =
-      studies::compare({loaded.scene, loaded.groups, loaded.effects, query}, camera, options,
-                       progress_of_stages(common));
+      studies::compare(loaded.world(query), camera, options, progress_of_stages(common));
 
   const base::ToneReport exposure = base::tone_map(comparison.reference().frame.image).report;
   const Json json = json_of(call, camera, options, comparison, exposure);

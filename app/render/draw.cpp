@@ -18,7 +18,7 @@ raytrace::Frame trace(const Studio& studio, const scenes::Camera& camera,
                       const raytrace::RenderOptions& options, const raytrace::Progress& progress) {
   const LoadedScene& loaded = studio.loaded;
   return raytrace::trace_paths(
-      loaded.scene, loaded.groups, loaded.effects, studio.query, camera,
+      loaded.world(studio.query), camera,
       {options.columns, options.rows, options.gather_rays, options.per_light,
        raytrace::PathSet::All, options.seed, options.stop, options.crop},
       progress);
@@ -51,8 +51,8 @@ raytrace::Frame draw_frame(const Studio& studio, const scenes::Camera& camera,
   if (options.indirect == raytrace::Indirect::Paths) {
     return trace(studio, camera, options, std::ref(progress));
   }
-  return raytrace::render(loaded.scene, loaded.groups, loaded.effects, studio.query,
-                          studio.light.solution, camera, options, std::ref(progress));
+  return raytrace::render(loaded.world(studio.query), studio.light.solution, camera, options,
+                          std::ref(progress));
 }
 
 Drawn draw_picture(const Studio& studio, const scenes::Camera& camera, StageTimes& times) {
@@ -123,9 +123,8 @@ Json probe_json(const Studio& studio, const scenes::Camera& camera,
       scene, studio.query, camera, options.columns, options.rows, {&pixel, 1}, 1);
   double rest = 1.0, others = 0.0;
   if (luminance > 0.0 && !points.empty()) {
-    for (const studies::LightShare& share :
-         studies::light_shares(scene, studio.loaded.groups, studio.query, studio.light.solution,
-                               points, luminance, probe_rays)) {
+    for (const studies::LightShare& share : studies::light_shares(
+             studio.scene(), studio.light.solution, points, luminance, probe_rays)) {
       rest -= share.share;
       if (share.share < studies::least_light_share) {
         others += share.share;

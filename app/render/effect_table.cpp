@@ -78,9 +78,8 @@ Expectation expect(const LoadedScene& loaded, const RenderCall& call, const Comm
   if (!call.solution.empty()) sizes.solves = false;
   studies::expect_rows(sizes, loaded.scene, query, solver);
   Expectation expected;
-  expected.pilot = studies::expect_costs(
-      {loaded.scene, loaded.groups, loaded.effects, query, solver, sizes.row_entries},
-      asked.cameras, options);
+  expected.pilot = studies::expect_costs({loaded.world(query), solver, sizes.row_entries},
+                                         asked.cameras, options);
   // The pilot's own solve only lights its pictures then.
   if (!call.solution.empty()) expected.pilot.bill.solve = {};
   expected.costs = studies::effect_costs(expected.pilot.bill, loaded.effects);

@@ -79,7 +79,7 @@ radiosity::SolveOptions solver_of(const RenderCall& call, const scenes::Scene& s
 
 Solved solve_as_exactly(const ExactCall& call, StageTimes& times) {
   const LoadedScene& loaded = call.loaded;
-  const studies::StudyScene scene{loaded.scene, loaded.groups, loaded.effects, call.query};
+  const scenes::World scene = loaded.world(call.query);
   const auto start = std::chrono::steady_clock::now();
   double in_stages = 0.0;
   const studies::Wanted wanted = wanted_error(loaded, call.common, call.time_limit_s, times);
@@ -148,7 +148,7 @@ radiosity::Solution solve_or_read(const LoadedScene& loaded, const scenes::RayQu
     const auto fits = [&](const radiosity::Patches& patches) {
       check_patch_memory(loaded, query, options, patches.count());
     };
-    solution = radiosity::solve(loaded.scene, loaded.groups, loaded.effects, query, options, fits);
+    solution = radiosity::solve(loaded.world(query), options, fits);
     times.add(solution.report.seconds);
   } else {
     solution = times.measure("read solution", [&] {

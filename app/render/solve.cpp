@@ -212,8 +212,7 @@ Solved solve_alone(const SolveCall& call, const Common& common, const LoadedScen
   light.solution = solve_or_read(loaded, query, options, call.solution, times);
   light.solved = true;
   light.surface = times.measure("error", [&] {
-    return studies::surface_error({loaded.scene, loaded.groups, loaded.effects, query},
-                                  light.solution, options);
+    return studies::surface_error(loaded.world(query), light.solution, options);
   });
   return light;
 }

@@ -124,10 +124,9 @@ radiosity::Solution StudyFrames::solve(StageTimes& times) const {
   radiosity::Solution found = times.measure("solve", [&] {
     const scenes::Scene cut = scene_to_cut(basis.scene);
     const scenes::LightGroups groups = scenes::find_light_groups(cut);
-    radiosity::Refined refined = radiosity::refine(
-        cut, groups, scenes::find_effects(cut, groups, {}), *part_.query, solver_);
-    return radiosity::solve(basis.scene, basis.groups, basis.effects, *part_.query, solver_,
-                            std::move(refined.patches));
+    const scenes::Effects effects = scenes::find_effects(cut, groups, {});
+    radiosity::Refined refined = radiosity::refine({cut, groups, effects, *part_.query}, solver_);
+    return radiosity::solve(basis.world(*part_.query), solver_, std::move(refined.patches));
   });
   note_balance(found);
   return found;
@@ -212,7 +211,7 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
   check_memory(basis, *part_.query, solver_, &how, !solution_.has_value());
   const radiosity::Solution& light = solution(costs);
   raytrace::Frame drawn = raytrace::render(
-      basis.scene, basis.groups, basis.effects, *part_.query, light, *camera.camera, how,
+      basis.world(*part_.query), light, *camera.camera, how,
       progress_of_stages(common_)(fmt::format("camera {} of {}", camera.camera->name, part_.path)));
   if (drawn.report.stopped) return std::nullopt;
   Frame frame{{},

@@ -71,8 +71,7 @@ Json plan_of(const StudyPart& part, const std::filesystem::path& folder, const C
     studies::add_picture(sizes, basis.groups, basis.effects, pictures.front());
     memory_mib = studies::memory_needed(sizes).total() / 1048576.0;
     const studies::Pilot pilot = studies::expect_costs(
-        {basis.scene, basis.groups, basis.effects, *part.query, solver, sizes.row_entries}, cameras,
-        pictures);
+        {basis.world(*part.query), solver, sizes.row_entries}, cameras, pictures);
     double drawn = 0.0;
     std::size_t next = 0;
     for (Json& one : listed) {

@@ -92,8 +92,7 @@ void add_notes_of_scene(const StudyPart& part, const std::string& scene,
     notes.push_back(scene + "Found on loading: " + warning);
   }
   for (const std::string& limit : limits) notes.push_back(scene + "Limit reached: " + limit + ".");
-  const studies::StudyScene of{part.basis_scene.scene, part.basis_scene.groups,
-                               part.basis_scene.effects, *part.query};
+  const scenes::World of = part.basis_scene.world(*part.query);
   for (const std::string& missing : studies::not_captured(of, {})) {
     notes.push_back(scene + "Not simulated: " + missing + ".");
   }

@@ -230,22 +230,20 @@ Rgb SourceFlux::escaped_lm() const {
 
 Rgb SourceFlux::lost_lm() const { return emitted_lm - landed_lm - escaped_lm(); }
 
-DirectLight direct_light(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                         const scenes::Effects& effects, const scenes::RayQuery& query,
-                         const Patches& patches, const FormFactors& factors,
-                         const DirectOptions& options) {
+DirectLight direct_light(const scenes::World& world, const Patches& patches,
+                         const FormFactors& factors, const DirectOptions& options) {
   DirectLight light;
-  light.columns = 3 * groups.count();
+  light.columns = 3 * world.groups.count();
   const bool joins = factors.shares.joins();
   if (joins) light.illuminance_lx.assign(patches.count() * light.columns, 0.0);
-  DirectStage stage(scene, query, patches, factors, options, light);
-  if (effects.earth_by_gather && joins) {
+  DirectStage stage(world.scene, world.query, patches, factors, options, light);
+  if (world.effects.earth_by_gather && joins) {
     const std::size_t parts = factors.sky_illuminance.size() / patches.count();
     for (std::size_t part = 0; part < parts; ++part) {
-      stage.store_part(factors.sky_illuminance, parts, part, groups.earth + part);
+      stage.store_part(factors.sky_illuminance, parts, part, world.groups.earth + part);
     }
   }
-  for (LightSource& light_source : find_sources(scene, groups, effects, options.points_per_patch)) {
+  for (LightSource& light_source : find_sources(world, options.points_per_patch)) {
     const auto start = std::chrono::steady_clock::now();
     const std::uint64_t before = light.shadow_rays;
     if (light_source.emit) {

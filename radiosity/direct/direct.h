@@ -10,9 +10,7 @@
 
 #include "radiosity/factors/form_factors.h"
 #include "radiosity/patches/patches.h"
-#include "scenes/effects/effects.h"
-#include "scenes/effects/light_groups.h"
-#include "scenes/ray_query.h"
+#include "scenes/effects/world.h"
 
 namespace earthshine::radiosity {
 
@@ -57,10 +55,7 @@ struct DirectOptions {
 // Per patch the mean over factors.open, what no body covers. factors.sky_illuminance is taken for
 // the Earth where it is wide (Effects::earth_by_gather). Of ranks that divide the factors the first
 // alone has it; the others cast their part of its shadow rays.
-[[nodiscard]] DirectLight direct_light(const scenes::Scene& scene,
-                                       const scenes::LightGroups& groups,
-                                       const scenes::Effects& effects,
-                                       const scenes::RayQuery& query, const Patches& patches,
+[[nodiscard]] DirectLight direct_light(const scenes::World& world, const Patches& patches,
                                        const FormFactors& factors, const DirectOptions& options);
 
 }  // namespace earthshine::radiosity

@@ -10,7 +10,6 @@
 #include "base/numbers/random.h"
 #include "scenes/light/emitters.h"
 #include "scenes/light/light_tree.h"
-#include "scenes/ray_query.h"
 #include "scenes/reflect/energy.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_cells.h"
@@ -172,48 +171,48 @@ double mean_illuminance(const scenes::Scene& scene, const std::vector<double>& a
 
 }  // namespace
 
-std::vector<LightSource> find_sources(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                                      const scenes::Effects& effects, int points) {
+std::vector<LightSource> find_sources(const scenes::World& world, int points) {
   std::vector<LightSource> sources;
   const auto add = [&sources](LightSource source, scenes::LightKind kind) {
     source.kind = kind;
     sources.push_back(std::move(source));
   };
-  if (effects.sun) add(sun_source(scene, groups.sun, points), scenes::LightKind::Sun);
-  for (std::size_t k = 0; effects.sun_parts && k < scene.sky_parts->suns.size(); ++k) {
-    add(free_sun_source(scene.sky_parts->suns[k], (std::uint64_t{1} << 40) + k,
-                        groups.sun_parts + k, points),
+  if (world.effects.sun)
+    add(sun_source(world.scene, world.groups.sun, points), scenes::LightKind::Sun);
+  for (std::size_t k = 0; world.effects.sun_parts && k < world.scene.sky_parts->suns.size(); ++k) {
+    add(free_sun_source(world.scene.sky_parts->suns[k], (std::uint64_t{1} << 40) + k,
+                        world.groups.sun_parts + k, points),
         scenes::LightKind::Sun);
   }
-  if (effects.earth && !effects.earth_by_gather) {
-    add(earth_source(scene, groups.earth, points), scenes::LightKind::Earth);
+  if (world.effects.earth && !world.effects.earth_by_gather) {
+    add(earth_source(world.scene, world.groups.earth, points), scenes::LightKind::Earth);
   }
   // Keys count what shines: one that is off does not change the others' samples.
-  std::vector<std::vector<std::size_t>> lamps(groups.count());
-  std::vector<std::uint64_t> key(scene.lamps.size(), 0);
+  std::vector<std::vector<std::size_t>> lamps(world.groups.count());
+  std::vector<std::uint64_t> key(world.scene.lamps.size(), 0);
   std::uint64_t next_key = 16;
-  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
-    if (groups.lamp[k] == scenes::no_group) continue;
-    lamps[groups.lamp[k]].push_back(k);
+  for (std::size_t k = 0; k < world.scene.lamps.size(); ++k) {
+    if (world.groups.lamp[k] == scenes::no_group) continue;
+    lamps[world.groups.lamp[k]].push_back(k);
     key[k] = next_key++;
   }
   for (std::size_t g = 0; g < lamps.size(); ++g) {
     if (lamps[g].size() < fewest_in_cluster) continue;
     const std::size_t first = lamps[g][0];
-    add(cluster_source(scene, lamps[g], key[first], g, points),
-        scenes::kind_of(scene.lamps[first].kind));
+    add(cluster_source(world.scene, lamps[g], key[first], g, points),
+        scenes::kind_of(world.scene.lamps[first].kind));
   }
-  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
-    if (groups.lamp[k] == scenes::no_group) continue;
-    if (lamps[groups.lamp[k]].size() >= fewest_in_cluster) continue;
-    add(lamp_source(scene.lamps[k], key[k], groups.lamp[k], points),
-        scenes::kind_of(scene.lamps[k].kind));
+  for (std::size_t k = 0; k < world.scene.lamps.size(); ++k) {
+    if (world.groups.lamp[k] == scenes::no_group) continue;
+    if (lamps[world.groups.lamp[k]].size() >= fewest_in_cluster) continue;
+    add(lamp_source(world.scene.lamps[k], key[k], world.groups.lamp[k], points),
+        scenes::kind_of(world.scene.lamps[k].kind));
   }
-  const std::vector<bool> is_explicit = emitter_is_explicit(scene);
+  const std::vector<bool> is_explicit = emitter_is_explicit(world.scene);
   std::uint64_t emitter_key = std::uint64_t{1} << 32;
-  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-    if (!is_explicit[m] || groups.material[m] == scenes::no_group) continue;
-    add(emitter_source(scene, m, emitter_key++, groups.material[m], points),
+  for (std::size_t m = 0; m < world.scene.materials.size(); ++m) {
+    if (!is_explicit[m] || world.groups.material[m] == scenes::no_group) continue;
+    add(emitter_source(world.scene, m, emitter_key++, world.groups.material[m], points),
         scenes::LightKind::Emitter);
   }
   return sources;

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "radiosity/direct/shadowed_samples.h"
-#include "scenes/effects/effects.h"
-#include "scenes/effects/light_groups.h"
+#include "scenes/effects/world.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/scene.h"
 
@@ -27,9 +26,7 @@ struct LightSource {
 
 // Refers to the scene, which must outlive them. points: receiver points per patch for distant
 // sources.
-[[nodiscard]] std::vector<LightSource> find_sources(const scenes::Scene& scene,
-                                                    const scenes::LightGroups& groups,
-                                                    const scenes::Effects& effects, int points);
+[[nodiscard]] std::vector<LightSource> find_sources(const scenes::World& world, int points);
 
 // Many lamps of one light group as one source, whose cost at a patch does not grow with their
 // number: those that matter there get shadow rays, and some of the others by chance

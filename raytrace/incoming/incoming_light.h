@@ -10,9 +10,7 @@
 #include "radiosity/solution.h"
 #include "raytrace/frame/frame.h"
 #include "raytrace/incoming/radiance_table.h"
-#include "scenes/effects/effects.h"
-#include "scenes/effects/light_groups.h"
-#include "scenes/ray_query.h"
+#include "scenes/effects/world.h"
 
 namespace earthshine::raytrace {
 
@@ -61,18 +59,16 @@ struct RayShare {
 
 class IncomingLight {
  public:
-  IncomingLight(const scenes::Scene& scene, const scenes::RayQuery& query,
-                const scenes::Effects& effects, const RadianceTable& table,
-                const BrightPatches& bright, std::size_t layers, std::size_t earth_layer,
-                bool follows_specular)
-      : scene_(scene),
-        query_(query),
+  IncomingLight(const scenes::World& world, const RadianceTable& table, const BrightPatches& bright,
+                std::size_t layers, std::size_t earth_layer, bool follows_specular)
+      : scene_(world.scene),
+        query_(world.query),
         table_(table),
         bright_(bright),
         layers_(layers),
         earth_layer_(earth_layer),
-        sees_earth_(effects.earth_by_gather),
-        by_part_(layers > 1 && scene.sky_parts != nullptr),
+        sees_earth_(world.effects.earth_by_gather),
+        by_part_(layers > 1 && world.scene.sky_parts != nullptr),
         follows_specular_(follows_specular) {}
 
   // Adds weight * radiance along the ray to out[0 .. layers); if out is one longer, what came

@@ -23,45 +23,43 @@ double fraction(double x) { return x - std::floor(x); }
 
 }  // namespace
 
-LightSampler::LightSampler(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                           const scenes::Effects& effects, Indirect indirect,
-                           int distributed_lights, bool per_group,
-                           std::optional<scenes::Lamp> earth_area,
+LightSampler::LightSampler(const scenes::World& world, Indirect indirect, int distributed_lights,
+                           bool per_group, std::optional<scenes::Lamp> earth_area,
                            std::span<const scenes::FlatMirror> mirrors)
-    : scene_(scene),
+    : scene_(world.scene),
       distributed_(indirect == Indirect::Distributed),
       mirrors_(distributed_ ? std::span<const scenes::FlatMirror>() : mirrors),
       earth_area_(distributed_ ? std::move(earth_area) : std::nullopt) {
   const int copies = distributed_ ? distributed_lights : 1;
-  if (effects.sun) {
-    sun_illuminance_lx_ = distributed_
-                              ? scene.sun->illuminance_lx * scenes::visible_sun_share(scene)
-                              : scenes::sun_sample_illuminance(scene);
-    add({Kind::Sun, groups.sun}, 1);
+  if (world.effects.sun) {
+    sun_illuminance_lx_ =
+        distributed_ ? world.scene.sun->illuminance_lx * scenes::visible_sun_share(world.scene)
+                     : scenes::sun_sample_illuminance(world.scene);
+    add({Kind::Sun, world.groups.sun}, 1);
   }
-  for (std::size_t k = 0; effects.sun_parts && k < scene.sky_parts->suns.size(); ++k) {
-    add({Kind::SunPart, groups.sun_parts + k, k}, 1);
-    part_illuminance_lx_.push_back(scenes::sun_sample_illuminance(scene.sky_parts->suns[k]));
+  for (std::size_t k = 0; world.effects.sun_parts && k < world.scene.sky_parts->suns.size(); ++k) {
+    add({Kind::SunPart, world.groups.sun_parts + k, k}, 1);
+    part_illuminance_lx_.push_back(scenes::sun_sample_illuminance(world.scene.sky_parts->suns[k]));
   }
-  if (effects.earth && (distributed_ || !effects.earth_by_gather)) {
-    earth_half_angle_rad_ = base::radians(scene.earth->half_angle_deg);
+  if (world.effects.earth && (distributed_ || !world.effects.earth_by_gather)) {
+    earth_half_angle_rad_ = base::radians(world.scene.earth->half_angle_deg);
     earth_solid_angle_sr_ = scenes::cone_solid_angle_sr(earth_half_angle_rad_);
-    add({earth_area_ ? Kind::EarthArea : Kind::Earth, groups.earth}, copies);
+    add({earth_area_ ? Kind::EarthArea : Kind::Earth, world.groups.earth}, copies);
   }
-  for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
-    if (groups.lamp[k] == scenes::no_group) continue;
-    const bool wide = scenes::is_wide(scene.lamps[k].kind);
-    add({Kind::Lamp, groups.lamp[k], k}, wide ? copies : 1);
+  for (std::size_t k = 0; k < world.scene.lamps.size(); ++k) {
+    if (world.groups.lamp[k] == scenes::no_group) continue;
+    const bool wide = scenes::is_wide(world.scene.lamps[k].kind);
+    add({Kind::Lamp, world.groups.lamp[k], k}, wide ? copies : 1);
     if (wide) surfaces_.lights.push_back(k);
   }
   surfaces_.tree = tree_of(surfaces_.lights);
   // Without interreflection nothing carries emitters through F, so that all of them are sampled.
-  const std::vector<bool> is_explicit = radiosity::emitter_is_explicit(scene);
-  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-    if (groups.material[m] == scenes::no_group) continue;
+  const std::vector<bool> is_explicit = radiosity::emitter_is_explicit(world.scene);
+  for (std::size_t m = 0; m < world.scene.materials.size(); ++m) {
+    if (world.groups.material[m] == scenes::no_group) continue;
     if (indirect == Indirect::Radiosity && !is_explicit[m]) continue;
-    add({Kind::Emitters, groups.material[m], emitters_.size()}, copies);
-    emitters_.emplace_back(scene, m);
+    add({Kind::Emitters, world.groups.material[m], emitters_.size()}, copies);
+    emitters_.emplace_back(world.scene, m);
   }
   gather_clusters(per_group);
   find_one_rays();

@@ -9,6 +9,7 @@
 
 #include "raytrace/frame/frame.h"
 #include "raytrace/frame/options.h"
+#include "scenes/effects/world.h"
 #include "scenes/light/emitters.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/light/light_tree.h"
@@ -23,8 +24,7 @@ class LightSampler {
   // the Earth by points of earth_area (distributed_area.h), or by directions to its disc.
   // per_group: every light group gets an image of its own, so that lamps are chosen within each.
   // mirrors: flat ones, that throw each source's light a second time; not of distributed lights.
-  LightSampler(const scenes::Scene& scene, const scenes::LightGroups& groups,
-               const scenes::Effects& effects, Indirect indirect, int distributed_lights,
+  LightSampler(const scenes::World& world, Indirect indirect, int distributed_lights,
                bool per_group = false, std::optional<scenes::Lamp> earth_area = std::nullopt,
                std::span<const scenes::FlatMirror> mirrors = {});
 

@@ -28,16 +28,15 @@ void check(const PathOptions& options) {
   }
 }
 
-PathWorld make_world(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                     const scenes::Effects& effects, const scenes::RayQuery& query,
-                     const LightSampler& lights, const PathOptions& options) {
-  PathWorld world{scene, groups, effects, query, lights, radiosity::emitter_is_explicit(scene), {}};
-  for (std::size_t g = 0; g < groups.count(); ++g) {
-    world.layer.push_back(options.per_light ? g : 0);
+PathWorld make_world(const scenes::World& world, const LightSampler& lights,
+                     const PathOptions& options) {
+  PathWorld paths{world, lights, radiosity::emitter_is_explicit(world.scene), {}};
+  for (std::size_t g = 0; g < world.groups.count(); ++g) {
+    paths.layer.push_back(options.per_light ? g : 0);
   }
-  if (options.per_light) world.layers = std::max<std::size_t>(1, groups.count());
-  world.paths = options.paths;
-  return world;
+  if (options.per_light) paths.layers = std::max<std::size_t>(1, world.groups.count());
+  paths.paths = options.paths;
+  return paths;
 }
 
 base::Image make_image(const Window& window, const std::vector<std::string>& layers) {
@@ -102,16 +101,14 @@ void store(const PathSums& sums, std::size_t pixel, Frame& frame) {
 
 }  // namespace
 
-Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                  const scenes::Effects& effects, const scenes::RayQuery& query,
-                  const scenes::Camera& camera, const PathOptions& options,
-                  const Progress& progress) {
+Frame trace_paths(const scenes::World& world, const scenes::Camera& camera,
+                  const PathOptions& options, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   check(options);
   // As for the final gather: emitters that are a large part of the area are met, not sampled.
-  const LightSampler lights(scene, groups, effects, Indirect::Radiosity, 1, false, std::nullopt,
-                            query.ways().mirrors());
-  const PathWorld world = make_world(scene, groups, effects, query, lights, options);
+  const LightSampler lights(world, Indirect::Radiosity, 1, false, std::nullopt,
+                            world.query.ways().mirrors());
+  const PathWorld paths = make_world(world, lights, options);
   const CameraModel model = make_camera_model(camera, options.columns, options.rows);
 
   Frame frame;
@@ -119,7 +116,8 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
       options.window.columns > 0 ? options.window : Window{0, 0, options.columns, options.rows};
   frame.window = window;
   frame.error = StatedError(window.pixel_count());
-  frame.image = make_image(window, options.per_light ? groups.names : std::vector<std::string>{});
+  frame.image =
+      make_image(window, options.per_light ? world.groups.names : std::vector<std::string>{});
   const auto columns = static_cast<std::size_t>(window.columns);
   const auto rows = static_cast<std::size_t>(window.rows);
   std::vector<RayCounts> row_rays(rows);
@@ -128,13 +126,13 @@ Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
   std::mutex progress_mutex;
   const auto trace_row = [&](std::size_t y) {
     if (options.stop && options.stop()) return;
-    PathWalker walker(world);
+    PathWalker walker(paths);
     for (std::size_t x = 0; x < columns; ++x) {
       const std::size_t in_x = static_cast<std::size_t>(window.x) + x;
       const std::size_t in_y = static_cast<std::size_t>(window.y) + y;
       const base::Key key(options.seed, base::Stream::Path,
                           in_y * static_cast<std::size_t>(options.columns) + in_x);
-      PathSums sums{std::vector<Rgb>(world.layers, Rgb(0.0)), {}, {}, {}};
+      PathSums sums{std::vector<Rgb>(paths.layers, Rgb(0.0)), {}, {}, {}};
       for (int path = 0; path < options.paths_per_pixel; ++path) {
         base::Rng rng(key.with(static_cast<std::uint64_t>(path)));
         const double at_x = double(in_x) + rng.next();

@@ -24,9 +24,7 @@
 
 #include "raytrace/frame/frame.h"
 #include "raytrace/frame/options.h"
-#include "scenes/effects/effects.h"
-#include "scenes/effects/light_groups.h"
-#include "scenes/ray_query.h"
+#include "scenes/effects/world.h"
 
 namespace earthshine::raytrace {
 
@@ -51,9 +49,7 @@ struct PathOptions {
 // light_<group>.R/G/B, whose sum is R, G, B. Box filter over the pixel. The same bytes on any
 // number of threads. In the report `gather` counts diffuse bounces, gather_rays is 0.
 // Throws base::Error (Input) for a picture without pixels or fewer than two paths.
-[[nodiscard]] Frame trace_paths(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                                const scenes::Effects& effects, const scenes::RayQuery& query,
-                                const scenes::Camera& camera, const PathOptions& options,
-                                const Progress& progress = {});
+[[nodiscard]] Frame trace_paths(const scenes::World& world, const scenes::Camera& camera,
+                                const PathOptions& options, const Progress& progress = {});
 
 }  // namespace earthshine::raytrace

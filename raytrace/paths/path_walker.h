@@ -14,11 +14,7 @@
 namespace earthshine::raytrace {
 
 // What all paths share; read only.
-struct PathWorld {
-  const scenes::Scene& scene;
-  const scenes::LightGroups& groups;
-  const scenes::Effects& effects;
-  const scenes::RayQuery& query;
+struct PathWorld : scenes::World {
   const LightSampler& lights;
   std::vector<bool> sampled_emitter;  // per material: shadow rays carry its light
   std::vector<std::size_t> layer;     // of a light group: its image layer

@@ -24,11 +24,7 @@ enum class DiffuseSource {
 };
 
 // What all pixels share; read only.
-struct ShadingScene {
-  const scenes::Scene& scene;
-  const scenes::LightGroups& groups;
-  const scenes::Effects& effects;
-  const scenes::RayQuery& query;
+struct ShadingScene : scenes::World {
   const LightSampler& lights;
   const RadianceTable& soft_radiance;   // what surfaces seen in mirrors read
   const IncomingLight& incoming;        // along gather rays

@@ -32,37 +32,36 @@ BrightPatches bright_of(const radiosity::Solution& solution, const RenderOptions
 
 }  // namespace
 
-ShadingSetup::ShadingSetup(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                           const scenes::Effects& effects, const scenes::RayQuery& query,
-                           const radiosity::Solution& solution, const scenes::Camera& camera,
-                           const RenderOptions& options, const radiosity::Solution* aimed_at)
+ShadingSetup::ShadingSetup(const scenes::World& world, const radiosity::Solution& solution,
+                           const scenes::Camera& camera, const RenderOptions& options,
+                           const radiosity::Solution* aimed_at)
     : camera_(make_camera_model(camera, options.columns, options.rows)),
-      sight_(reads(solution, options) ? LeakMask(query, solution.patches) : LeakMask()),
+      sight_(reads(solution, options) ? LeakMask(world.query, solution.patches) : LeakMask()),
       all_(solution, values_if(reads(solution, options), solution.radiosity), options.per_light,
            sight_),
       soft_(solution,
             values_if(reads(solution, options) &&
-                          (recursive(effects) || options.shared.on || aimed_at != nullptr),
+                          (recursive(world.effects) || options.shared.on || aimed_at != nullptr),
                       solution.soft_radiosity),
             options.per_light, sight_),
-      lights_(scene, groups, effects, options.indirect, options.distributed_lights,
-              options.per_light, earth_area(scene, options.distributed_over),
-              query.ways().mirrors()),
+      lights_(world, options.indirect, options.distributed_lights, options.per_light,
+              earth_area(world.scene, options.distributed_over), world.query.ways().mirrors()),
       bright_(bright_of(aimed_at != nullptr ? *aimed_at : solution, options)),
-      incoming_(scene, query, effects, all_, bright_, image_layers(groups, options),
-                earth_layer(groups, options), effects.mirror || effects.refraction),
-      world_{scene, groups, effects, query, lights_, {}, {}, 1, PathSet::NoCaustics},
-      shared_{scene, groups, effects, query, lights_, soft_, incoming_} {
+      incoming_(world, all_, bright_, image_layers(world.groups, options),
+                earth_layer(world.groups, options),
+                world.effects.mirror || world.effects.refraction),
+      world_{world, lights_, {}, {}, 1, PathSet::NoCaustics},
+      shared_{world, lights_, soft_, incoming_} {
   shared_.indirect = options.indirect;
-  shared_.layers = image_layers(groups, options);
-  for (std::size_t g = 0; g < groups.count(); ++g) {
+  shared_.layers = image_layers(world.groups, options);
+  for (std::size_t g = 0; g < world.groups.count(); ++g) {
     shared_.layer.push_back(options.per_light ? g : 0);
   }
   shared_.gathers = options.indirect != Indirect::Distributed &&
-                    (reads(solution, options) || effects.earth_by_gather);
-  shared_.sampled_emitter.assign(scene.materials.size(), true);
+                    (reads(solution, options) || world.effects.earth_by_gather);
+  shared_.sampled_emitter.assign(world.scene.materials.size(), true);
   if (options.indirect == Indirect::Radiosity) {
-    shared_.sampled_emitter = radiosity::emitter_is_explicit(scene);
+    shared_.sampled_emitter = radiosity::emitter_is_explicit(world.scene);
   }
   world_.sampled_emitter = shared_.sampled_emitter;
   world_.layer = shared_.layer;

@@ -10,10 +10,9 @@ class ShadingSetup {
  public:
   // All arguments must outlive it. aimed_at: the solution whose bright patches get rays aimed at
   // them, if that is another one than is read.
-  ShadingSetup(const scenes::Scene& scene, const scenes::LightGroups& groups,
-               const scenes::Effects& effects, const scenes::RayQuery& query,
-               const radiosity::Solution& solution, const scenes::Camera& camera,
-               const RenderOptions& options, const radiosity::Solution* aimed_at = nullptr);
+  ShadingSetup(const scenes::World& world, const radiosity::Solution& solution,
+               const scenes::Camera& camera, const RenderOptions& options,
+               const radiosity::Solution* aimed_at = nullptr);
   ShadingSetup(const ShadingSetup&) = delete;
   ShadingSetup& operator=(const ShadingSetup&) = delete;
 

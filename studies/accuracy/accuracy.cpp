@@ -50,9 +50,10 @@ scenes::QualityKnobs knobs_of(const scenes::Scene& scene, const AccuracyStep& st
 struct Asked {
   scenes::LightGroups groups;
   scenes::Effects effects;
+  const scenes::World world;
 
-  Asked(const StudyScene& study, const AccuracyView& view, const AccuracyStep& step)
-      : groups(study.groups) {
+  Asked(const scenes::World& study, const AccuracyView& view, const AccuracyStep& step)
+      : groups(study.groups), world{study.scene, groups, effects, study.query} {
     scenes::Asked asked;
     asked.cameras = {&view.camera};
     asked.paths = paths_of(step.indirect);
@@ -64,29 +65,29 @@ struct Asked {
   }
 };
 
-void fill_shelf(SolutionShelf& shelf, const StudyScene& study, const Asked& asked,
+void fill_shelf(SolutionShelf& shelf, const scenes::World& world,
                 const radiosity::SolveOptions& solver) {
   if (shelf.key && same_solver(*shelf.key, solver)) return;
   shelf = {};
   const Clock clock;
-  shelf.solution = radiosity::solve(study.scene, asked.groups, asked.effects, study.query, solver);
+  shelf.solution = radiosity::solve(world, solver);
   shelf.wall_seconds = clock.wall();
   shelf.cpu_seconds = clock.cpu();
   shelf.key = solver;
 }
 
-double memory_of(const StudyScene& study, const Asked& asked, const radiosity::SolveOptions& solver,
+double memory_of(const scenes::World& world, const radiosity::SolveOptions& solver,
                  const raytrace::RenderOptions& picture, const radiosity::Solution* solution) {
-  MemoryCase sizes = memory_case(study.scene, asked.groups, asked.effects, solver);
+  MemoryCase sizes = memory_case(world.scene, world.groups, world.effects, solver);
   if (solution != nullptr) {
     set_patches(sizes, solution->report.patches, solver);
-    expect_rows(sizes, study.scene, study.query, solver);
+    expect_rows(sizes, world.scene, world.query, solver);
   } else {
     sizes.solves = false;
     sizes.columns = 0;
     sizes.patches = 0;
   }
-  add_picture(sizes, asked.groups, asked.effects, picture);
+  add_picture(sizes, world.groups, world.effects, picture);
   return memory_needed(sizes).total();
 }
 
@@ -95,7 +96,7 @@ std::uint64_t solve_rays(const radiosity::SolveReport& report) {
 }
 
 struct Work {
-  const StudyScene& study;
+  const scenes::World& study;
   const AccuracyView& view;
   const AccuracyStep& step;
   const Asked& asked;
@@ -111,12 +112,11 @@ void add_picture_facts(StepCost& cost, const raytrace::RenderReport& report) {
 // As `render` does for the step's settings.
 std::optional<StepResult> run_plain(const Work& work, SolutionShelf& shelf) {
   const auto& [study, view, step, asked, progress] = work;
-  const StudyScene scene{study.scene, asked.groups, asked.effects, study.query};
   const radiosity::SolveOptions solver = solver_of(study, step, view.seed);
   const raytrace::RenderOptions options = picture_of(study, view, step);
   const bool solves = step.indirect == Indirect::Radiosity && asked.effects.solution;
   const radiosity::Solution none;
-  if (solves) fill_shelf(shelf, study, asked, solver);
+  if (solves) fill_shelf(shelf, asked.world, solver);
   const radiosity::Solution& solution = solves ? shelf.solution : none;
 
   StepResult result;
@@ -124,13 +124,11 @@ std::optional<StepResult> run_plain(const Work& work, SolutionShelf& shelf) {
   const Clock clock;
   const raytrace::Frame frame =
       step.indirect == Indirect::Paths
-          ? raytrace::trace_paths(study.scene, asked.groups, asked.effects, study.query,
-                                  view.camera,
+          ? raytrace::trace_paths(asked.world, view.camera,
                                   {options.columns, options.rows, options.gather_rays, false,
                                    raytrace::PathSet::All, options.seed, options.stop},
                                   progress)
-          : raytrace::render(study.scene, asked.groups, asked.effects, study.query, solution,
-                             view.camera, options, progress);
+          : raytrace::render(asked.world, solution, view.camera, options, progress);
   cost.wall_seconds = clock.wall();
   cost.cpu_seconds = clock.cpu();
   if (frame.report.stopped) return std::nullopt;
@@ -145,9 +143,9 @@ std::optional<StepResult> run_plain(const Work& work, SolutionShelf& shelf) {
     cost.form_factor_rays = solver.form_factor_rays;
   }
   add_picture_facts(cost, frame.report);
-  cost.memory_bytes = memory_of(study, asked, solver, options, solves ? &solution : nullptr);
+  cost.memory_bytes = memory_of(asked.world, solver, options, solves ? &solution : nullptr);
   const Clock statement;
-  cost.stated = error_budget(scene, {&view.camera, options}, frame).total;
+  cost.stated = error_budget(asked.world, {&view.camera, options}, frame).total;
   cost.statement_cpu_seconds = statement.cpu();
   return result;
 }
@@ -156,7 +154,6 @@ std::optional<StepResult> run_plain(const Work& work, SolutionShelf& shelf) {
 // as wanted. The statements that decide about that are part of the cost.
 std::optional<StepResult> run_steered(const Work& work) {
   const auto& [study, view, step, asked, progress] = work;
-  const StudyScene scene{study.scene, asked.groups, asked.effects, study.query};
   const radiosity::SolveOptions solver = picture_solver(study.scene, step.quality, view.seed);
   raytrace::RenderOptions options = picture_of(study, view, step);
   options.error = *step.quality.error;
@@ -165,7 +162,7 @@ std::optional<StepResult> run_steered(const Work& work) {
   StepCost& cost = result.cost;
   radiosity::Solution solution;
   if (asked.effects.solution) {
-    solution = radiosity::solve(study.scene, asked.groups, asked.effects, study.query, solver);
+    solution = radiosity::solve(asked.world, solver);
     cost.solve_rays = solve_rays(solution.report);
     cost.solve_wall_seconds = clock.wall();
     cost.solve_cpu_seconds = clock.cpu();
@@ -173,16 +170,15 @@ std::optional<StepResult> run_steered(const Work& work) {
     cost.form_factor_rays = solver.form_factor_rays;
   }
   const raytrace::Frame frame =
-      raytrace::render(study.scene, asked.groups, asked.effects, study.query, solution, view.camera,
-                       options, progress);
+      raytrace::render(asked.world, solution, view.camera, options, progress);
   cost.wall_seconds = clock.wall();
   cost.cpu_seconds = clock.cpu();
   if (frame.report.stopped) return std::nullopt;
   result.luminance = base::luminance_of(frame.image);
   add_picture_facts(cost, frame.report);
-  cost.stated = error_budget(scene, {&view.camera, options}, frame).total;
+  cost.stated = error_budget(asked.world, {&view.camera, options}, frame).total;
   cost.memory_bytes =
-      memory_of(study, asked, solver, options, asked.effects.solution ? &solution : nullptr);
+      memory_of(asked.world, solver, options, asked.effects.solution ? &solution : nullptr);
   return result;
 }
 
@@ -203,12 +199,12 @@ AccuracyView accuracy_view(const scenes::Camera& camera, int columns, int rows,
   return view;
 }
 
-radiosity::SolveOptions solver_of(const StudyScene& study, const AccuracyStep& step,
+radiosity::SolveOptions solver_of(const scenes::World& study, const AccuracyStep& step,
                                   std::uint64_t seed) {
   return radiosity::solve_options(knobs_of(study.scene, step), seed);
 }
 
-raytrace::RenderOptions picture_of(const StudyScene& study, const AccuracyView& view,
+raytrace::RenderOptions picture_of(const scenes::World& study, const AccuracyView& view,
                                    const AccuracyStep& step) {
   raytrace::RenderOptions options = raytrace::render_options(knobs_of(study.scene, step));
   options.columns = view.columns;
@@ -220,7 +216,7 @@ raytrace::RenderOptions picture_of(const StudyScene& study, const AccuracyView& 
   return options;
 }
 
-std::optional<StepResult> run_step(const StudyScene& study, const AccuracyView& view,
+std::optional<StepResult> run_step(const scenes::World& study, const AccuracyView& view,
                                    const AccuracyStep& step, SolutionShelf& shelf,
                                    const raytrace::Progress& progress) {
   const Asked asked(study, view, step);

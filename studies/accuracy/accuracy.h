@@ -64,14 +64,16 @@ struct SolutionShelf {
 };
 
 [[nodiscard]] bool same_solver(const radiosity::SolveOptions& a, const radiosity::SolveOptions& b);
-[[nodiscard]] radiosity::SolveOptions solver_of(const StudyScene& study, const AccuracyStep& step,
-                                                std::uint64_t seed);
-[[nodiscard]] raytrace::RenderOptions picture_of(const StudyScene& study, const AccuracyView& view,
+[[nodiscard]] radiosity::SolveOptions solver_of(const scenes::World& study,
+                                                const AccuracyStep& step, std::uint64_t seed);
+[[nodiscard]] raytrace::RenderOptions picture_of(const scenes::World& study,
+                                                 const AccuracyView& view,
                                                  const AccuracyStep& step);
 
 // None if view.stop said so meanwhile. Effects that cannot matter are left out as `render` does.
-[[nodiscard]] std::optional<StepResult> run_step(const StudyScene& study, const AccuracyView& view,
-                                                 const AccuracyStep& step, SolutionShelf& shelf,
+[[nodiscard]] std::optional<StepResult> run_step(const scenes::World& study,
+                                                 const AccuracyView& view, const AccuracyStep& step,
+                                                 SolutionShelf& shelf,
                                                  const raytrace::Progress& progress = {});
 
 // A part of a reference: so many paths per pixel.
@@ -82,7 +84,7 @@ struct Batch {
   int paths_per_pixel = 0;
 };
 // Channels Y and variance. None if view.stop said so.
-[[nodiscard]] std::optional<base::Image> trace_batch(const StudyScene& study,
+[[nodiscard]] std::optional<base::Image> trace_batch(const scenes::World& study,
                                                      const AccuracyView& view, const Batch& batch,
                                                      const raytrace::Progress& progress = {});
 // One side: the mean over batches, weighted by their paths.

@@ -15,14 +15,14 @@ std::uint64_t reference_seed(std::uint64_t seed, int side, int index) {
                      static_cast<std::uint64_t>(side));
 }
 
-std::optional<base::Image> trace_batch(const StudyScene& study, const AccuracyView& view,
+std::optional<base::Image> trace_batch(const scenes::World& study, const AccuracyView& view,
                                        const Batch& batch, const raytrace::Progress& progress) {
   scenes::Asked asked;
   asked.cameras = {&view.camera};
   asked.paths = scenes::LightPaths::Traced;
   const scenes::Effects effects = scenes::find_effects(study.scene, study.groups, asked);
   const raytrace::Frame frame =
-      raytrace::trace_paths(study.scene, study.groups, effects, study.query, view.camera,
+      raytrace::trace_paths({study.scene, study.groups, effects, study.query}, view.camera,
                             {view.columns, view.rows, batch.paths_per_pixel, false, batch.paths,
                              reference_seed(view.seed, batch.side, batch.index), view.stop},
                             progress);

@@ -24,7 +24,7 @@ bool shines(const scenes::Scene& scene, std::uint32_t object) {
   return false;
 }
 
-bool has_wide_sources(const StudyScene& study) {
+bool has_wide_sources(const scenes::World& study) {
   const scenes::Scene& scene = study.scene;
   return study.effects.earth ||
          std::any_of(scene.lamps.begin(), scene.lamps.end(),
@@ -35,7 +35,7 @@ bool has_wide_sources(const StudyScene& study) {
 
 class Comparing {
  public:
-  Comparing(const StudyScene& study, const scenes::Camera& camera, const CompareOptions& options,
+  Comparing(const scenes::World& study, const scenes::Camera& camera, const CompareOptions& options,
             const StageListener& listen)
       : study_(study), camera_(camera), options_(options), listen_(listen) {}
 
@@ -74,13 +74,12 @@ class Comparing {
   [[nodiscard]] raytrace::Frame draw(const radiosity::Solution& solution,
                                      const raytrace::RenderOptions& render,
                                      const std::string& stage) const {
-    return raytrace::render(study_.scene, study_.groups, study_.effects, study_.query, solution,
-                            camera_, render, begin_stage(stage));
+    return raytrace::render(study_, solution, camera_, render, begin_stage(stage));
   }
   [[nodiscard]] radiosity::Solution solve(const radiosity::SolveOptions& solver,
                                           const std::string& stage) const {
     (void)begin_stage(stage);
-    return radiosity::solve(study_.scene, study_.groups, study_.effects, study_.query, solver);
+    return radiosity::solve(study_, solver);
   }
 
   void take_references(const Method& method) {
@@ -166,7 +165,7 @@ class Comparing {
     comparison_.methods.push_back(std::move(result));
   }
 
-  const StudyScene& study_;
+  const scenes::World& study_;
   const scenes::Camera& camera_;
   const CompareOptions& options_;
   const StageListener& listen_;
@@ -176,7 +175,7 @@ class Comparing {
 
 }  // namespace
 
-Comparison compare(const StudyScene& study, const scenes::Camera& camera,
+Comparison compare(const scenes::World& study, const scenes::Camera& camera,
                    const CompareOptions& options, const StageListener& listen) {
   return Comparing(study, camera, options, listen).run();
 }

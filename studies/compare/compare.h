@@ -109,7 +109,7 @@ struct Comparison {
 
 // Seconds apart, the same values for the same options and seed on any number of threads. Throws as
 // compare_methods and raytrace::earth_area do.
-[[nodiscard]] Comparison compare(const StudyScene& scene, const scenes::Camera& camera,
+[[nodiscard]] Comparison compare(const scenes::World& scene, const scenes::Camera& camera,
                                  const CompareOptions& options, const StageListener& listen = {});
 
 // map: which pixels show an object.

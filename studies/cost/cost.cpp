@@ -53,7 +53,7 @@ radiosity::SolveReport expect_solve(const PilotCall& call, radiosity::Solution& 
     if (most > few_patches) cheap.patch_edge_m *= std::sqrt(most / few_patches);
   }
   const Stopwatch watch;
-  coarse = radiosity::solve(call.scene, call.groups, call.effects, call.query, cheap);
+  coarse = radiosity::solve(call, cheap);
   radiosity::SolveReport& pilot = coarse.report;
   const double alone = watch.seconds_alone() / std::max(1e-9, watch.seconds());
   for (auto& [stage, seconds] : pilot.seconds) seconds *= alone;
@@ -84,7 +84,7 @@ class PictureDrawer {
     options.shared.noise *= coarser;
     options.crop = {};
     if (options.indirect == raytrace::Indirect::Paths) {
-      return raytrace::trace_paths(call_.scene, call_.groups, call_.effects, call_.query, camera,
+      return raytrace::trace_paths(call_, camera,
                                    {options.columns,
                                     options.rows,
                                     std::max(2, std::min(8, options.gather_rays)),
@@ -98,8 +98,7 @@ class PictureDrawer {
 
   raytrace::Frame begin(const scenes::Camera& camera, raytrace::RenderOptions options) const {
     options.time_limit_s = 0.0;
-    return raytrace::render(call_.scene, call_.groups, call_.effects, call_.query, coarse_, camera,
-                            options);
+    return raytrace::render(call_, coarse_, camera, options);
   }
 
  private:

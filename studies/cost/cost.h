@@ -8,9 +8,7 @@
 
 #include "radiosity/solution.h"
 #include "raytrace/render.h"
-#include "scenes/effects/effects.h"
-#include "scenes/effects/light_groups.h"
-#include "scenes/ray_query.h"
+#include "scenes/effects/world.h"
 
 namespace earthshine::studies {
 
@@ -20,11 +18,7 @@ struct Bill {
   std::vector<raytrace::RenderReport> pictures;  // rays and seconds
 };
 
-struct PilotCall {
-  const scenes::Scene& scene;
-  const scenes::LightGroups& groups;
-  const scenes::Effects& effects;
-  const scenes::RayQuery& query;
+struct PilotCall : scenes::World {
   radiosity::SolveOptions solver;
   double row_entries = 0.0;  // form factors of a mean row (radiosity/factors/row_pilot.h)
 };

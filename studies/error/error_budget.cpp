@@ -56,7 +56,7 @@ ErrorEstimate total_of(const StatedError& stated, const std::vector<std::size_t>
 
 }  // namespace
 
-ErrorBudget error_budget(const StudyScene& scene, const WatchedPicture& picture,
+ErrorBudget error_budget(const scenes::World& scene, const WatchedPicture& picture,
                          const raytrace::Frame& frame) {
   ErrorBudget budget;
   budget.not_captured = not_captured(scene, picture.options);
@@ -89,7 +89,7 @@ ErrorBudget error_budget(const StudyScene& scene, const WatchedPicture& picture,
   return budget;
 }
 
-SurfacePixels::SurfacePixels(const StudyScene& scene, const scenes::Camera& camera,
+SurfacePixels::SurfacePixels(const scenes::World& scene, const scenes::Camera& camera,
                              const raytrace::RenderOptions& options)
     : window_(raytrace::window_of(options)), columns_(static_cast<std::uint32_t>(options.columns)) {
   base::Image map{window_.columns, window_.rows, {}};

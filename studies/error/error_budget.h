@@ -47,11 +47,11 @@ struct WatchedPicture {
 
 // What `frame`, drawn so, states. Its 95 % bound is that of a mean square known from some tiles of
 // the picture: 1.645 standard errors of their mean above it.
-[[nodiscard]] ErrorBudget error_budget(const StudyScene& scene, const WatchedPicture& picture,
+[[nodiscard]] ErrorBudget error_budget(const scenes::World& scene, const WatchedPicture& picture,
                                        const raytrace::Frame& frame);
 
 // Light that no setting brings into a picture drawn so.
-[[nodiscard]] std::vector<std::string> not_captured(const StudyScene& scene,
+[[nodiscard]] std::vector<std::string> not_captured(const scenes::World& scene,
                                                     const raytrace::RenderOptions& options);
 
 // Which pixels of a picture show what.
@@ -60,7 +60,7 @@ struct WatchedPicture {
 // row * columns + column in the whole picture.
 class SurfacePixels {
  public:
-  SurfacePixels(const StudyScene& scene, const scenes::Camera& camera,
+  SurfacePixels(const scenes::World& scene, const scenes::Camera& camera,
                 const raytrace::RenderOptions& options);
 
   [[nodiscard]] const std::vector<std::uint32_t>& all() const { return all_; }

@@ -59,7 +59,7 @@ double middle(const ReferencePair& pair, std::size_t p) {
 constexpr int places = 4;  // along each side of a pixel
 
 struct Look {
-  const StudyScene& study;
+  const scenes::World& study;
   const raytrace::LightSampler& lamps;
   const raytrace::CameraModel& camera;
 
@@ -136,9 +136,8 @@ double resolution(const ReferencePair& truth, const std::vector<bool>& counted) 
   return std::sqrt(2.0 * std::sqrt(squares) / pixels) / mean;
 }
 
-std::vector<bool> surface_pixels(const StudyScene& study, const raytrace::CameraModel& camera) {
-  const raytrace::LightSampler lamps(study.scene, study.groups, study.effects,
-                                     raytrace::Indirect::None, 2);
+std::vector<bool> surface_pixels(const scenes::World& study, const raytrace::CameraModel& camera) {
+  const raytrace::LightSampler lamps(study, raytrace::Indirect::None, 2);
   const Look look{study, lamps, camera};
   const auto columns = static_cast<std::size_t>(camera.columns);
   const auto rows = static_cast<std::size_t>(camera.rows);

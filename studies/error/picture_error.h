@@ -54,7 +54,7 @@ struct PictureError {
 // The pixels that show a surface at their centre and, at 4 x 4 places, no source itself: no lit
 // sky, no shining side of a lamp, no surface that emits. What a source's own pixels are off by is
 // no matter of the settings here, and would drown the rest.
-[[nodiscard]] std::vector<bool> surface_pixels(const StudyScene& study,
+[[nodiscard]] std::vector<bool> surface_pixels(const scenes::World& study,
                                                const raytrace::CameraModel& camera);
 
 }  // namespace earthshine::studies

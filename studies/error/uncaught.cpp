@@ -49,12 +49,11 @@ struct Sent {
 
 class Finder {
  public:
-  Finder(const StudyScene& study, raytrace::Indirect indirect, SourcesOf which)
+  Finder(const scenes::World& study, raytrace::Indirect indirect, SourcesOf which)
       : study_(study),
         mirrors_(indirect != raytrace::Indirect::Distributed),
         which_(which),
-        lights_(study.scene, study.groups, study.effects,
-                mirrors_ ? indirect : raytrace::Indirect::None, 1, false, std::nullopt,
+        lights_(study, mirrors_ ? indirect : raytrace::Indirect::None, 1, false, std::nullopt,
                 mirrors_ ? study.query.ways().mirrors() : std::span<const scenes::FlatMirror>()) {}
 
   [[nodiscard]] UncaughtLight find() const {
@@ -189,7 +188,7 @@ class Finder {
     }
   }
 
-  const StudyScene& study_;
+  const scenes::World& study_;
   bool mirrors_;
   SourcesOf which_;
   raytrace::LightSampler lights_;
@@ -207,12 +206,12 @@ std::string extent(const Uncaught& light) {
 
 }  // namespace
 
-UncaughtLight uncaught_light(const StudyScene& scene, raytrace::Indirect indirect,
+UncaughtLight uncaught_light(const scenes::World& scene, raytrace::Indirect indirect,
                              SourcesOf which) {
   return Finder(scene, indirect, which).find();
 }
 
-std::vector<std::string> not_captured(const StudyScene& scene,
+std::vector<std::string> not_captured(const scenes::World& scene,
                                       const raytrace::RenderOptions& options) {
   const scenes::Effects& effects = scene.effects;
   const bool throws_light = effects.mirror || effects.refraction;

@@ -27,7 +27,7 @@ enum class SourcesOf { All, WithoutSize };
 
 // From shadow rays of 2048 points on all surfaces and as many on mirrors and glass: shares are good
 // to some hundredths of themselves. Flat mirrors are as `indirect` has them.
-[[nodiscard]] UncaughtLight uncaught_light(const StudyScene& scene, raytrace::Indirect indirect,
+[[nodiscard]] UncaughtLight uncaught_light(const scenes::World& scene, raytrace::Indirect indirect,
                                            SourcesOf which);
 
 }  // namespace earthshine::studies

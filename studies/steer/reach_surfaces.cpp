@@ -38,7 +38,7 @@ bool may_cut_cells(const scenes::Quality& given) {
 
 class SurfaceSearch {
  public:
-  SurfaceSearch(const StudyScene& scene, const Wanted& wanted, std::uint64_t seed,
+  SurfaceSearch(const scenes::World& scene, const Wanted& wanted, std::uint64_t seed,
                 const SolveListener& listen, const StageListener& progress)
       : scene_(scene),
         wanted_(wanted),
@@ -97,8 +97,7 @@ class SurfaceSearch {
     if (progress) progress(0, 1);
     result_.solver.form_factor_rays = scenes::resolve_quality(scene_.scene).form_factor_rays;
     result_.steps.back().form_factor_rays = result_.solver.form_factor_rays;
-    result_.solution =
-        radiosity::solve(scene_.scene, scene_.groups, scene_.effects, scene_.query, result_.solver);
+    result_.solution = radiosity::solve(scene_, result_.solver);
     if (listen_) listen_(result_.solution.report);
     result_.solution.report.shadow_rays += rays_;
     return std::move(result_);
@@ -111,8 +110,7 @@ class SurfaceSearch {
         radiosity::subdivide_near_lamps(scene_.scene, result_.solver.patch_edge_m);
     radiosity::FormFactors factors;
     radiosity::Solution coarse =
-        radiosity::solve_keeping(scene_.scene, scene_.groups, scene_.effects, scene_.query,
-                                 result_.solver, std::move(patches), {}, factors);
+        radiosity::solve_keeping(scene_, result_.solver, std::move(patches), {}, factors);
     if (listen_) listen_(coarse.report);
     if (coarse.columns == 0 || coarse.patches.count() == 0) {
       result_.solution = std::move(coarse);
@@ -258,7 +256,7 @@ class SurfaceSearch {
                        100.0 * result_.steps.back().estimate, 100.0 * wanted_.error);
   }
 
-  const StudyScene scene_;
+  const scenes::World scene_;
   const Wanted& wanted_;
   const scenes::Quality& given_;
   SurfaceSampler sampler_;
@@ -289,7 +287,7 @@ radiosity::SolveOptions first_surface_options(const scenes::Scene& scene, double
   return options;
 }
 
-SteeredSolution reach_surfaces(const StudyScene& scene, const Wanted& wanted, std::uint64_t seed,
+SteeredSolution reach_surfaces(const scenes::World& scene, const Wanted& wanted, std::uint64_t seed,
                                const SolveListener& listen, const StageListener& progress) {
   SurfaceSearch search(scene, wanted, seed, listen, progress);
   SteeredSolution found = search.run();

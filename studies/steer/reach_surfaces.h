@@ -15,7 +15,7 @@ namespace earthshine::studies {
 // (surface_light.h), halves the patches that hold most of what is uneven within them, and casts
 // rays where noise is most of it. What the scene's quality names stays as it is. `progress` is
 // told what is under way; it may be empty.
-[[nodiscard]] SteeredSolution reach_surfaces(const StudyScene& scene, const Wanted& wanted,
+[[nodiscard]] SteeredSolution reach_surfaces(const scenes::World& scene, const Wanted& wanted,
                                              std::uint64_t seed, const SolveListener& listen,
                                              const StageListener& progress = {});
 

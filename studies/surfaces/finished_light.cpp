@@ -79,8 +79,7 @@ void LightOnSurfaces::fill(radiosity::Solution& solution) const {
   ends.open = {open_share_, factors_.open.bodies};
   std::vector<double> backs;
   for (const auto& object : solution.report.objects) backs.push_back(object.back_share);
-  radiosity::fill_solution(scene_.scene, scene_.groups, scene_.effects, ends,
-                           solution.report.balance.balanced, found, solution);
+  radiosity::fill_solution(scene_, ends, solution.report.balance.balanced, found, solution);
   for (std::size_t o = 0; o < backs.size(); ++o) solution.report.objects[o].back_share = backs[o];
 }
 

@@ -16,7 +16,7 @@ namespace earthshine::studies {
 class PatchLooks {
  public:
   // All must outlive it. kept: per material, 1 - mirror - transmit; table: what cosine rays read.
-  PatchLooks(const StudyScene& scene, const std::vector<double>& kept,
+  PatchLooks(const scenes::World& scene, const std::vector<double>& kept,
              const raytrace::RadianceTable& table, std::size_t groups, std::size_t sky_parts)
       : scene_(scene), kept_(kept), table_(table), groups_(groups), sky_parts_(sky_parts) {}
 
@@ -42,7 +42,7 @@ class PatchLooks {
   void follow(scenes::Hit hit, Vec3 way, double weight, std::size_t look);
   void escape(const Vec3& way, double weight, std::size_t look);
 
-  const StudyScene& scene_;
+  const scenes::World& scene_;
   const std::vector<double>& kept_;
   const raytrace::RadianceTable& table_;
   std::size_t groups_, sky_parts_;

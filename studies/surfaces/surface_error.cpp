@@ -17,7 +17,7 @@ constexpr int matrix_rays = 64;  // per patch: the error goes through it, not th
 constexpr std::uint32_t replicate = 0x5E57;
 
 // What carries the error on, cast anew: a solution does not keep its form factors.
-radiosity::FormFactors matrix_of(const StudyScene& scene, const radiosity::Solution& solution,
+radiosity::FormFactors matrix_of(const scenes::World& scene, const radiosity::Solution& solution,
                                  std::uint64_t seed) {
   radiosity::SkyRadiance sky;
   if (scene.effects.earth_by_gather) {
@@ -34,7 +34,7 @@ radiosity::FormFactors matrix_of(const StudyScene& scene, const radiosity::Solut
 
 }  // namespace
 
-SurfaceError surface_error(const StudyScene& scene, const radiosity::Solution& solution,
+SurfaceError surface_error(const scenes::World& scene, const radiosity::Solution& solution,
                            const radiosity::SolveOptions& solver) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();

@@ -35,7 +35,7 @@ struct SurfaceError {
 };
 
 // By the residual of the solution (residual_error.h).
-[[nodiscard]] SurfaceError surface_error(const StudyScene& scene,
+[[nodiscard]] SurfaceError surface_error(const scenes::World& scene,
                                          const radiosity::Solution& solution,
                                          const radiosity::SolveOptions& solver);
 

@@ -22,7 +22,7 @@ float mixed(float old, double found, double share) {
 
 }  // namespace
 
-LightOnSurfaces::LightOnSurfaces(const StudyScene& scene, radiosity::Solution coarse,
+LightOnSurfaces::LightOnSurfaces(const scenes::World& scene, radiosity::Solution coarse,
                                  radiosity::FormFactors factors, double rays)
     : scene_(scene), factors_(std::move(factors)), reflectances_(scene.scene) {
   const radiosity::Patches& patches = coarse.patches;

@@ -20,7 +20,7 @@ class LightOnSurfaces {
  public:
   // coarse: solved with those factors, balanced or not; `rays` of them a patch. Of its light only
   // direct_lx and indirect_lx are read.
-  LightOnSurfaces(const StudyScene& scene, radiosity::Solution coarse,
+  LightOnSurfaces(const scenes::World& scene, radiosity::Solution coarse,
                   radiosity::FormFactors factors, double rays);
 
   [[nodiscard]] const SurfaceLight& light() const { return light_; }
@@ -59,7 +59,7 @@ class LightOnSurfaces {
                    std::vector<double>& source, std::vector<double>& rho) const;
   void close_energy(radiosity::PatchLight& found) const;
 
-  StudyScene scene_;
+  scenes::World scene_;
   SurfaceLight light_;
   radiosity::FormFactors factors_;
   radiosity::PatchAlbedos reflectances_;

@@ -72,10 +72,10 @@ bool same(const std::vector<scenes::LightSample>& a, const std::vector<scenes::L
 
 }  // namespace
 
-SurfaceSampler::SurfaceSampler(const StudyScene& scene, std::uint64_t seed)
+SurfaceSampler::SurfaceSampler(const scenes::World& scene, std::uint64_t seed)
     : scene_(scene),
       seed_(seed),
-      sources_(radiosity::find_sources(scene.scene, scene.groups, scene.effects, source_points)),
+      sources_(radiosity::find_sources(scene, source_points)),
       reflectances_(scene.scene),
       is_explicit_(radiosity::emitter_is_explicit(scene.scene)) {
   for (const scenes::Material& m : scene.scene.materials) {

@@ -68,7 +68,7 @@ enum class SamplesOf { Light, Residual };
 class SurfaceSampler {
  public:
   // The scene must outlive it.
-  explicit SurfaceSampler(const StudyScene& scene, std::uint64_t seed);
+  explicit SurfaceSampler(const scenes::World& scene, std::uint64_t seed);
 
   // which: patches; effort: of each of them. The others' entries stay empty. `pass` numbers
   // independent sets of samples. mean: of the radiosity, that error_weight() goes by. `bodies` may
@@ -86,7 +86,7 @@ class SurfaceSampler {
   [[nodiscard]] const std::vector<bool>& is_explicit() const { return is_explicit_; }
 
  private:
-  StudyScene scene_;
+  scenes::World scene_;
   std::uint64_t seed_;
   std::vector<radiosity::LightSource> sources_;
   radiosity::PatchAlbedos reflectances_;

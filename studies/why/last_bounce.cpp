@@ -101,11 +101,11 @@ std::vector<LightShare> LightShares::of(double luminance) const {
   return shares;
 }
 
-std::vector<LightShare> light_shares(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                                     const scenes::RayQuery& query,
+std::vector<LightShare> light_shares(const scenes::World& world,
                                      const radiosity::Solution& solution,
                                      std::span<const SeenPoint> points, double luminance,
                                      int rays) {
+  const auto& [scene, groups, effects, query] = world;
   LightShares shares(scene, groups);
   constexpr int samples = 64;  // of each lamp
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {

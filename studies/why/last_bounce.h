@@ -15,8 +15,7 @@
 
 #include "radiosity/solution.h"
 #include "raytrace/incoming/radiance_table.h"
-#include "scenes/effects/light_groups.h"
-#include "scenes/ray_query.h"
+#include "scenes/effects/world.h"
 #include "studies/why/lit_points.h"
 
 namespace earthshine::studies {
@@ -79,9 +78,7 @@ class LightShares {
 
 // All of them for the light that the scene has now, with a fixed sky; luminance: of the points,
 // cd/m^2, above 0. What the picture shows by mirror, glass, highlight or ambient term is in none.
-[[nodiscard]] std::vector<LightShare> light_shares(const scenes::Scene& scene,
-                                                   const scenes::LightGroups& groups,
-                                                   const scenes::RayQuery& query,
+[[nodiscard]] std::vector<LightShare> light_shares(const scenes::World& world,
                                                    const radiosity::Solution& solution,
                                                    std::span<const SeenPoint> points,
                                                    double luminance, int rays);

@@ -76,9 +76,10 @@ std::uint64_t bytes_of(const Change& change) {
   solver.patch_edge_m = 0.25;
   solver.form_factor_rays = 64;
   const std::uint64_t before = given_bytes;
-  const radiosity::Solution solution = radiosity::solve(view.scene, groups, effects, query, solver);
+  const radiosity::Solution solution =
+      radiosity::solve({view.scene, groups, effects, query}, solver);
   const raytrace::Frame frame =
-      raytrace::render(view.scene, groups, effects, query, solution, view.camera, view.options);
+      raytrace::render({view.scene, groups, effects, query}, solution, view.camera, view.options);
   EXPECT_GT(frame.report.rays.total(), 0U);
   return given_bytes - before;
 }

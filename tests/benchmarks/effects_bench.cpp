@@ -161,9 +161,9 @@ void run(benchmark::State& state, const Setting& setting) {
   double rays = 0.0;
   for (auto _ : state) {
     radiosity::Solution solution;
-    if (effects.solution) solution = radiosity::solve(scene, groups, effects, query, solver);
+    if (effects.solution) solution = radiosity::solve({scene, groups, effects, query}, solver);
     const raytrace::Frame frame =
-        raytrace::render(scene, groups, effects, query, solution, scene.cameras.front(), picture);
+        raytrace::render({scene, groups, effects, query}, solution, scene.cameras.front(), picture);
     if (setting.cctv) {
       const degrade::Preset& preset = *degrade::find_preset("sit-monochrome");
       degrade::Options options;

@@ -24,7 +24,7 @@ const radiosity::Solution& solution() {
     radiosity::SolveOptions options;
     options.patch_edge_m = 0.5;
     options.form_factor_rays = 256;
-    return radiosity::solve(bay.scene, bay.groups, bay.effects, bay.query, options);
+    return radiosity::solve(bay, options);
   }();
   return solved;
 }
@@ -42,8 +42,7 @@ raytrace::RenderOptions view() {
 
 struct Setup {
   const PayloadBay& bay = payload_bay();
-  raytrace::ShadingSetup shading{bay.scene,  bay.groups,           bay.effects, bay.query,
-                                 solution(), bay.scene.cameras[1], view()};
+  raytrace::ShadingSetup shading{bay, solution(), bay.scene.cameras[1], view()};
   const raytrace::CameraModel& camera = shading.camera();
   const raytrace::IncomingLight& incoming = shading.shared().incoming;
   const raytrace::PathWorld& world = shading.world();

@@ -9,8 +9,7 @@
 #include <cmath>
 
 #include "raytrace/light/light_sampler.h"
-#include "scenes/effects/effects.h"
-#include "scenes/effects/light_groups.h"
+#include "scenes/effects/world.h"
 #include "tests/benchmarks/many_lamps.h"
 
 namespace earthshine {
@@ -30,7 +29,7 @@ struct Hall {
         groups(scenes::find_light_groups(scene)),
         effects(scenes::find_effects(scene, groups)),
         query(scene),
-        lights(scene, groups, effects, raytrace::Indirect::None, 1) {}
+        lights({scene, groups, effects, query}, raytrace::Indirect::None, 1) {}
 
   [[nodiscard]] static scenes::Receiver receiver(std::size_t k) {
     const double x = (static_cast<double>(k) + 0.5) / points;

@@ -3,9 +3,7 @@
 // short.
 #pragma once
 
-#include "scenes/effects/effects.h"
-#include "scenes/effects/light_groups.h"
-#include "scenes/ray_query.h"
+#include "scenes/effects/world.h"
 #include "scenes/read/scene_file.h"
 
 namespace earthshine {
@@ -15,6 +13,8 @@ struct PayloadBay {
   scenes::LightGroups groups;
   scenes::Effects effects;
   scenes::RayQuery query;
+
+  operator scenes::World() const { return {scene, groups, effects, query}; }
 };
 
 inline const PayloadBay& payload_bay() {

@@ -49,9 +49,7 @@ tests::Agreement agreement(const scenes::Scene& scene, const Effort& effort) {
   std::vector<base::Image> gathered;
   for (std::size_t k = 0; k < replicates; ++k) {
     gather.seed = 100 + k;
-    gathered.push_back(raytrace::render(scene, prepared.groups, prepared.effects, prepared.query,
-                                        solution, camera, gather)
-                           .image);
+    gathered.push_back(raytrace::render(prepared, solution, camera, gather).image);
   }
   raytrace::PathOptions options;
   options.columns = options.rows = 24;
@@ -60,9 +58,7 @@ tests::Agreement agreement(const scenes::Scene& scene, const Effort& effort) {
   std::vector<tests::Measured> traced;
   for (const std::uint64_t seed : {3, 4}) {
     options.seed = seed;
-    traced.push_back(tests::measured(raytrace::trace_paths(scene, prepared.groups, prepared.effects,
-                                                           prepared.query, camera, options)
-                                         .image));
+    traced.push_back(tests::measured(raytrace::trace_paths(prepared, camera, options).image));
   }
   return tests::compare(tests::measured(gathered), replicates, traced[0], traced[1],
                         static_cast<std::size_t>(effort.paths));

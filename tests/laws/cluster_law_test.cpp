@@ -69,8 +69,7 @@ TEST(ClusterLaw, PicturesAreThoseOfTheTriangles) {
   ASSERT_LT(clusters.patches.count(), 3000U);
   ASSERT_FALSE(raytrace::BrightPatches(clusters).empty());
   const radiosity::Solution triangles =
-      radiosity::solve(builder.scene, prepared.groups, prepared.effects, prepared.query, options,
-                       radiosity::subdivide(builder.scene, 0.25));
+      radiosity::solve(prepared, options, radiosity::subdivide(builder.scene, 0.25));
   ASSERT_GT(triangles.patches.count(), 6000U);
 
   const auto drawn = [&](const radiosity::Solution& solution, bool shares) {
@@ -80,9 +79,7 @@ TEST(ClusterLaw, PicturesAreThoseOfTheTriangles) {
       how.gather_rays = 64;
       how.shared.on = shares;
       how.seed = seed;
-      return raytrace::render(builder.scene, prepared.groups, prepared.effects, prepared.query,
-                              solution, camera, how)
-          .image;
+      return raytrace::render(prepared, solution, camera, how).image;
     });
   };
   const Mean truth = mean_of([&](std::uint64_t seed) {
@@ -91,9 +88,7 @@ TEST(ClusterLaw, PicturesAreThoseOfTheTriangles) {
     how.paths_per_pixel = 256;
     how.paths = raytrace::PathSet::NoCaustics;
     how.seed = seed;
-    return raytrace::trace_paths(builder.scene, prepared.groups, prepared.effects, prepared.query,
-                                 camera, how)
-        .image;
+    return raytrace::trace_paths(prepared, camera, how).image;
   });
   for (const bool shares : {true, false}) {
     const Mean coarse = drawn(clusters, shares), fine = drawn(triangles, shares);

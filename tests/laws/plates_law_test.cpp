@@ -69,8 +69,7 @@ Estimate pictured(const scenes::Scene& scene, int seeds = 16) {
   options.indirect = raytrace::Indirect::None;
   return over_seeds(seeds, [&](std::uint64_t seed) {
     options.seed = seed;
-    const auto frame = raytrace::render(scene, prepared.groups, prepared.effects, prepared.query,
-                                        {}, camera, options);
+    const auto frame = raytrace::render(prepared, {}, camera, options);
     double sum = 0.0;
     for (const float v : frame.image.find("G")->values) sum += pi * double(v) / 4.0;
     return sum;

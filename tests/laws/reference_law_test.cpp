@@ -60,9 +60,7 @@ TEST_P(Reference, PathTracerDrawsWhatOtherPathTracersDraw) {
   options.columns = options.rows = edge;
   options.paths_per_pixel = GetParam().paths;
   const tests::Measured traced =
-      tests::measured(raytrace::trace_paths(scene, prepared.groups, prepared.effects,
-                                            prepared.query, scene.cameras.front(), options)
-                          .image);
+      tests::measured(raytrace::trace_paths(prepared, scene.cameras.front(), options).image);
   const auto n = static_cast<double>(reference.size());
   double mean = 0.0, expected = 0.0, variance = 0.0;
   for (std::size_t p = 0; p < reference.size(); ++p) {

@@ -232,7 +232,7 @@ TEST(Variation, HalvingAcrossAGradientTakesThreeQuartersOfItsErrorAway) {
   options.patch_edge_m = 1.0;
   const Solution solution = prepared.solve(options);
   ASSERT_EQ(solution.patches.count(), 1U);
-  Variation variation(builder.scene, prepared.groups, prepared.effects, prepared.query, {0.01});
+  Variation variation(prepared, {0.01});
   const std::vector<std::uint32_t> all{0};
   const Unevenness found = variation.find(solution.patches, all, relative_light(solution)).front();
   // E = I h / d^3: dE/dx / E = 3 dx / d^2 = 3 / 2 per m at the centre; variance of a linear

@@ -163,8 +163,7 @@ TEST(Solve, SurfacesWithoutPatchesAreNoSolution) {
   const std::uint32_t glowing = builder.material(tests::grey(0.5, 1.0));
   builder.quad(glowing, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
   const tests::Prepared made(builder.scene);
-  EXPECT_THROW((void)solve(made.scene, made.groups, made.effects, made.query, coarse(), Patches{}),
-               base::Error);
+  EXPECT_THROW((void)solve(made, coarse(), Patches{}), base::Error);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ inline scenes::Camera inside_room() {
 inline Frame picture(const scenes::Scene& scene, const scenes::Camera& camera,
                      const PathOptions& options) {
   const tests::Prepared prepared(scene);
-  return trace_paths(scene, prepared.groups, prepared.effects, prepared.query, camera, options);
+  return trace_paths(prepared, camera, options);
 }
 
 inline PathOptions pixels(int edge, int paths) {

@@ -17,8 +17,7 @@ double mean_green(const scenes::Scene& scene, const scenes::Camera& camera, doub
   RenderOptions options;
   options.columns = options.rows = 8;
   options.gather_rays = 64;
-  const Frame frame = render(scene, prepared.groups, prepared.effects, prepared.query,
-                             prepared.solve(solve), camera, options);
+  const Frame frame = render(prepared, prepared.solve(solve), camera, options);
   double sum = 0.0;
   for (const float v : frame.image.find("G")->values) sum += double(v);
   return sum / 64.0;

@@ -30,8 +30,7 @@ Frame picture(const scenes::Scene& scene, const scenes::Camera& camera, RenderOp
     solve.patch_edge_m = patch_edge_m;
     solution = prepared.solve(solve);
   }
-  return render(scene, prepared.groups, prepared.effects, prepared.query, solution, camera,
-                options);
+  return render(prepared, solution, camera, options);
 }
 
 RenderOptions pixels(int columns, int rows, int gather_rays = 64) {

@@ -48,8 +48,7 @@ Frame drawn(const scenes::Scene& scene, bool per_light) {
   options.gather_rays = 64;
   options.shared.on = false;
   options.per_light = per_light;
-  return render(scene, prepared.groups, prepared.effects, prepared.query, prepared.solve(solve),
-                looking_up(), options);
+  return render(prepared, prepared.solve(solve), looking_up(), options);
 }
 
 // Every layer is rounded a few times on its way (radiosity, its sum over rays, the pixel), by

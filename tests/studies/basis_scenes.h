@@ -77,8 +77,9 @@ inline raytrace::Frame same_rays(const scenes::Scene& scene, const scenes::Light
   options.shared.on = false;
   options.per_light = per_light;
   options.aovs = {"object"};
-  return raytrace::render(scene, groups, effects, query,
-                          radiosity::solve(scene, groups, effects, query, solver), camera, options);
+  return raytrace::render({scene, groups, effects, query},
+                          radiosity::solve({scene, groups, effects, query}, solver), camera,
+                          options);
 }
 inline raytrace::Frame same_rays(const scenes::Scene& scene, const scenes::Camera& camera) {
   return same_rays(scene, scenes::find_light_groups(scene), camera, false);

@@ -47,8 +47,7 @@ inline raytrace::Frame direct_picture(const scenes::Scene& scene, const scenes::
   options.gather_rays = 16;
   options.indirect = raytrace::Indirect::None;
   options.aovs = {"object"};
-  return raytrace::render(scene, prepared.groups, prepared.effects, prepared.query, {}, camera,
-                          options);
+  return raytrace::render(prepared, {}, camera, options);
 }
 
 }  // namespace earthshine::tests

@@ -18,12 +18,9 @@ struct SmallRoom {
   radiosity::SolveOptions solver = coarse();
   radiosity::Solution solution = prepared.solve(solver);
 
-  [[nodiscard]] studies::StudyScene study() const {
-    return {scene, prepared.groups, prepared.effects, prepared.query};
-  }
+  [[nodiscard]] scenes::World study() const { return prepared; }
   [[nodiscard]] raytrace::Frame picture(const raytrace::RenderOptions& options) const {
-    return raytrace::render(scene, prepared.groups, prepared.effects, prepared.query, solution,
-                            camera, options);
+    return raytrace::render(prepared, solution, camera, options);
   }
 
   static scenes::Scene made() {

@@ -6,9 +6,7 @@
 #include <string>
 
 #include "radiosity/solution.h"
-#include "scenes/effects/effects.h"
-#include "scenes/effects/light_groups.h"
-#include "scenes/ray_query.h"
+#include "scenes/effects/world.h"
 #include "scenes/scene.h"
 
 namespace earthshine::tests {
@@ -79,8 +77,10 @@ struct Prepared {
         effects(scenes::find_effects(s, groups)),
         query(s) {}
 
+  operator scenes::World() const { return {scene, groups, effects, query}; }
+
   [[nodiscard]] radiosity::Solution solve(const radiosity::SolveOptions& options) const {
-    return radiosity::solve(scene, groups, effects, query, options);
+    return radiosity::solve(*this, options);
   }
 };
 

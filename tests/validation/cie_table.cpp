@@ -26,8 +26,7 @@ radiosity::SolveReport solve(scenes::Scene scene, std::uint64_t seed) {
   }
   studies::Wanted wanted;
   wanted.error = wanted_error;
-  return studies::reach_surfaces({scene, made.groups, made.effects, made.query}, wanted, seed, {})
-      .solution.report;
+  return studies::reach_surfaces(made, wanted, seed, {}).solution.report;
 }
 
 // A share of what is right, or, where that is 0, of the largest of the case.

@@ -36,7 +36,7 @@ scenes::Scene room_of_lamps(bool in_one_group) {
 }
 
 std::vector<LightSource> sources_of(const tests::Prepared& prepared) {
-  return find_sources(prepared.scene, prepared.groups, prepared.effects, 4);
+  return find_sources(prepared, 4);
 }
 
 TEST(LightCluster, ManyLampsOfOneGroupAreOneSourceOfTheirWholeFlux) {

@@ -118,8 +118,7 @@ Spot spot(scenes::Camera camera, double distance_m, double side_m, int edge_px) 
   options.columns = options.rows = edge_px;
   options.gather_rays = 4096;
   options.indirect = Indirect::None;
-  const Frame frame =
-      render(builder.scene, prepared.groups, prepared.effects, prepared.query, {}, camera, options);
+  const Frame frame = render(prepared, {}, camera, options);
   Spot result;
   for (int y = 0; y < edge_px; ++y) {
     for (int x = 0; x < edge_px; ++x) {

@@ -42,8 +42,8 @@ double exact_illuminance() {  // E = pi L sin^2
 // What the sampler's lights give a horizontal plate at a point, with nothing in between.
 double illuminance(const scenes::Scene& scene, int lights, const Vec3& point) {
   const tests::Prepared prepared(scene);
-  const LightSampler sampler(scene, prepared.groups, prepared.effects, Indirect::Distributed,
-                             lights, false, earth_area(scene, "panel"));
+  const LightSampler sampler(prepared, Indirect::Distributed, lights, false,
+                             earth_area(scene, "panel"));
   double sum = 0.0;
   for (std::size_t k = 0; k < sampler.count(); ++k) {
     const scenes::LightSample sample = sampler.sample(k, point, 0.5, 0.5);

@@ -46,7 +46,7 @@ scenes::Camera above() {
 TEST(LightSampler, FewLampsAreAllTakenWhole) {
   const tests::SceneBuilder builder = under_lamps(5);
   const tests::Prepared prepared(builder.scene);
-  const LightSampler lights(builder.scene, prepared.groups, prepared.effects, Indirect::None, 1);
+  const LightSampler lights(prepared, Indirect::None, 1);
   std::vector<scenes::LightChoice> chosen;
   lights.choose({}, 0.5, chosen);
   ASSERT_EQ(chosen.size(), 25U);
@@ -59,8 +59,7 @@ TEST(LightSampler, FewLampsAreAllTakenWhole) {
 TEST(LightSampler, DistributedLightsAreNeverLeftToChance) {
   const tests::SceneBuilder builder = under_lamps(10);
   const tests::Prepared prepared(builder.scene);
-  const LightSampler lights(builder.scene, prepared.groups, prepared.effects, Indirect::Distributed,
-                            4);
+  const LightSampler lights(prepared, Indirect::Distributed, 4);
   std::vector<scenes::LightChoice> chosen;
   lights.choose({}, 0.5, chosen);
   EXPECT_EQ(chosen.size(), 50U + 4 * 50U);
@@ -98,8 +97,7 @@ TEST(LightSampler, PictureOfManyLampsIsThatOfAllOfThem) {
     options.per_light = per_light;
     for (int seed = 1; seed <= seeds; ++seed) {
       options.seed = static_cast<std::uint64_t>(seed);
-      const Frame frame =
-          render(scene, prepared.groups, prepared.effects, prepared.query, {}, above(), options);
+      const Frame frame = render(prepared, {}, above(), options);
       const auto& values = frame.image.find("G")->values;
       std::array<double, 4> value{};
       for (std::size_t p = 0; p < 64; ++p) {
@@ -128,7 +126,7 @@ TEST(LightSampler, PictureOfManyLampsIsThatOfAllOfThem) {
 TEST(LightSampler, NearestLampOnARayIsSeen) {
   const tests::SceneBuilder builder = under_lamps(20);
   const tests::Prepared prepared(builder.scene);
-  const LightSampler lights(builder.scene, prepared.groups, prepared.effects, Indirect::None, 1);
+  const LightSampler lights(prepared, Indirect::None, 1);
   base::Rng rng(base::Key(1, base::Stream::Test, 80));
   int seen_count = 0;
   for (int n = 0; n < 2000; ++n) {

@@ -73,12 +73,9 @@ inline Found find(const scenes::Scene& scene, double camera_height_m = 0.5) {
   options.columns = options.rows = 4;
   options.indirect = Indirect::None;
   const scenes::Camera camera = above(camera_height_m);
-  const base::Image image =
-      render(scene, prepared.groups, prepared.effects, prepared.query, solution, camera, options)
-          .image;
+  const base::Image image = render(prepared, solution, camera, options).image;
   for (const float g : image.find("G")->values) found.drawn += double(g) * base::pi / rho / 16.0;
-  const PictureMean paths = estimate(trace_paths(scene, prepared.groups, prepared.effects,
-                                                 prepared.query, camera, pixels(4, 256)));
+  const PictureMean paths = estimate(trace_paths(prepared, camera, pixels(4, 256)));
   found.traced = paths.mean * base::pi / rho;
   found.std_error = paths.std_error * base::pi / rho;
   return found;

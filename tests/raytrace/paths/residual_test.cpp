@@ -55,9 +55,7 @@ std::vector<Means> pictures_of(const radiosity::Solution& solution, bool shares)
     options.gather_rays = 64;
     options.shared.on = shares;
     options.seed = seed;
-    return render(room.scene, room.prepared.groups, room.prepared.effects, room.prepared.query,
-                  solution, room.camera, options)
-        .image;
+    return render(room.prepared, solution, room.camera, options).image;
   });
 }
 
@@ -69,9 +67,7 @@ const std::vector<Means>& truth() {
         options.paths_per_pixel = 256;
         options.paths = PathSet::NoCaustics;
         options.seed = seed;
-        return trace_paths(room.scene, room.prepared.groups, room.prepared.effects,
-                           room.prepared.query, room.camera, options)
-            .image;
+        return trace_paths(room.prepared, room.camera, options).image;
       });
   return found;
 }
@@ -137,8 +133,7 @@ TEST(Residual, OfAFurnaceIsZeroOnEverySample) {
   options.columns = options.rows = 8;
   options.shared.on = true;
   options.gather_rays = 16;
-  const Frame frame = render(builder.scene, prepared.groups, prepared.effects, prepared.query,
-                             prepared.solve(solve), camera, options);
+  const Frame frame = render(prepared, prepared.solve(solve), camera, options);
   for (const float v : frame.image.find("G")->values) EXPECT_NEAR(double(v), 1.0 / base::pi, 1e-6);
   EXPECT_LT(frame.report.relative_noise, 1e-6);
 }

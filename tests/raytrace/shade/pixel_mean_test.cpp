@@ -61,8 +61,7 @@ TEST_P(PixelMean, LightThatChangesWithinAPixelIsItsMean) {
   constexpr int pictures = 128;
   double sum = 0.0, squares = 0.0;
   for (options.seed = 1; options.seed <= pictures; ++options.seed) {
-    const Frame frame = render(builder.scene, prepared.groups, prepared.effects, prepared.query,
-                               solution, camera, options);
+    const Frame frame = render(prepared, solution, camera, options);
     const double found = double(frame.image.find("G")->values[4]);
     sum += found, squares += found * found;
   }
@@ -128,8 +127,7 @@ TEST(TurningLobe, IsItsMeanOverThePixel) {
     constexpr int pictures = 256;
     double sum = 0.0, squares = 0.0;
     for (options.seed = 1; options.seed <= pictures; ++options.seed) {
-      const Frame frame = render(builder.scene, prepared.groups, prepared.effects, prepared.query,
-                                 solution, camera, options);
+      const Frame frame = render(prepared, solution, camera, options);
       const double found = double(frame.image.find("G")->values[4]);
       sum += found, squares += found * found;
     }

@@ -75,9 +75,7 @@ TEST(PixelSamples, LightInANarrowGapIsGatheredOncePerPixel) {
   options.shared.noise = 1e6;  // no further samples
   const auto gather_rays = [&](int samples) {
     options.shared.least_samples = samples;
-    return render(builder.scene, prepared.groups, prepared.effects, prepared.query, solution,
-                  camera, options)
-        .report.rays.gather;
+    return render(prepared, solution, camera, options).report.rays.gather;
   };
   EXPECT_GT(gather_rays(4), 0U);
   EXPECT_EQ(gather_rays(64), gather_rays(4));

@@ -53,8 +53,7 @@ struct Studio {
     return prepared.solve(solve);
   }();
   [[nodiscard]] Frame picture(const RenderOptions& options) const {
-    return render(room.scene, prepared.groups, prepared.effects, prepared.query, solution,
-                  room.camera, options);
+    return render(prepared, solution, room.camera, options);
   }
 };
 
@@ -189,8 +188,7 @@ TEST(SharedGather, LightStraightFromTheEarthIsDirect) {
   camera.up = Vec3(0, 1, 0);
   RenderOptions options = shared_options(12, 12);
   options.aovs = {"direct", "indirect"};
-  const Frame frame = render(builder.scene, prepared.groups, prepared.effects, prepared.query,
-                             prepared.solve({}), camera, options);
+  const Frame frame = render(prepared, prepared.solve({}), camera, options);
   for (std::size_t p = 0; p < frame.image.pixel_count(); ++p) {
     const double all = double(frame.image.find("G")->values[p]);
     EXPECT_GT(all, 0.0);
@@ -214,8 +212,7 @@ TEST(SharedGather, PathsBetweenMirrorsHaveNoEnd) {
   RenderOptions options = shared_options(32, 32);
   options.shared.on = false;
   options.gather_rays = 256;
-  const Frame frame = render(builder.scene, prepared.groups, prepared.effects, prepared.query,
-                             prepared.solve({}), camera, options);
+  const Frame frame = render(prepared, prepared.solve({}), camera, options);
   double variance = 0.0;
   for (const float v : frame.image.find("variance")->values) variance += double(v);
   const double standard_error = std::sqrt(variance) / 1024.0;

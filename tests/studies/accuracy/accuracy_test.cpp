@@ -89,8 +89,7 @@ TEST(SurfacePixels, SurfacesCountAndSourcesDoNot) {
   const raytrace::CameraModel camera = raytrace::make_camera_model(tests::above(10.0, 2.0), 16, 16);
   const auto count = [&] {
     const tests::Prepared prepared(builder.scene);
-    const std::vector<bool> counted =
-        surface_pixels({builder.scene, prepared.groups, prepared.effects, prepared.query}, camera);
+    const std::vector<bool> counted = surface_pixels(prepared, camera);
     return std::count(counted.begin(), counted.end(), true);
   };
   EXPECT_EQ(count(), 64);
@@ -153,7 +152,7 @@ TEST(Accuracy, PathsErrorFallsWithTheirRoot) {
   earth.radiance = Rgb(100.0);
   scene.earth = earth;
   const tests::Prepared prepared(scene);
-  const StudyScene study{scene, prepared.groups, prepared.effects, prepared.query};
+  const scenes::World study = prepared;
   AccuracyView view = accuracy_view(tests::above(10.0, 2.0), 24, 24, 1);
   const std::vector<bool> counted =
       surface_pixels(study, raytrace::make_camera_model(view.camera, view.columns, view.rows));

@@ -38,7 +38,7 @@ Comparison compared(const scenes::Scene& scene, const scenes::Camera& camera,
   options.columns = options.rows = 16;
   options.gather_rays = gather_rays;
   options.distributed_lights = std::move(lights);
-  return compare({scene, prepared.groups, prepared.effects, prepared.query}, camera, options);
+  return compare(prepared, camera, options);
 }
 
 // A room whose floor lies in the shadow of a table: what reaches it there has been reflected.

@@ -107,8 +107,7 @@ Comparison compared(const scenes::Scene& scene) {
   options.reference_rays = 256;
   options.distributed_lights = {4, 16};
   options.solver.form_factor_rays = 256;
-  return compare({scene, prepared.groups, prepared.effects, prepared.query}, tests::above(1.2, 1.6),
-                 options);
+  return compare(prepared, tests::above(1.2, 1.6), options);
 }
 
 std::string sentence(const Comparison& comparison) {
@@ -151,8 +150,7 @@ TEST(CompareVerdict, TargetInFullShadowIsBlackByTheApproximation) {
   options.gather_rays = 64;
   options.distributed_lights = {4};
   options.solver.form_factor_rays = 256;
-  const Comparison comparison =
-      compare({builder.scene, prepared.groups, prepared.effects, prepared.query}, camera, options);
+  const Comparison comparison = compare(prepared, camera, options);
   const TargetVerdict verdict = judge_approximation(comparison).front();
   EXPECT_EQ(verdict.verdict, ApproximationVerdict::Misled);
   EXPECT_NE(verdict.sentence.find("0 instead of"), std::string::npos) << verdict.sentence;

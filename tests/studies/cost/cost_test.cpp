@@ -173,9 +173,7 @@ TEST(Pilot, RanksDoItWithoutAWord) {
   picture.columns = picture.rows = 64;
   test::Silent silent(0, 2);
   const base::RanksInForce in_force(&silent);
-  const Pilot pilot =
-      expect_costs({prepared.scene, prepared.groups, prepared.effects, prepared.query, {}},
-                   {&camera}, {picture});
+  const Pilot pilot = expect_costs({prepared, {}}, {&camera}, {picture});
   EXPECT_GT(pilot.bill.pictures.at(0).rays.total(), 0U);
 }
 

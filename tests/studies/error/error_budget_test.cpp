@@ -35,9 +35,7 @@ NoisyPicture traced(std::uint64_t seed) {
   options.columns = options.rows = 40;
   options.paths_per_pixel = 512;
   options.seed = seed;
-  const raytrace::Frame frame =
-      raytrace::trace_paths(room.scene, room.prepared.groups, room.prepared.effects,
-                            room.prepared.query, room.camera, options);
+  const raytrace::Frame frame = raytrace::trace_paths(room.prepared, room.camera, options);
   NoisyPicture picture;
   for (const float y : base::luminance_of(frame.image)) picture.luminance.push_back(double(y));
   for (const float v : frame.image.find("variance")->values) picture.variance.push_back(double(v));
@@ -96,11 +94,8 @@ TEST(ErrorBudget, ASurfaceThatEmitsAndReflectsCounts) {
   for (scenes::Material& material : faint.materials) material.emit = Rgb(0.001);
   const tests::Prepared prepared(faint);
   const raytrace::Frame all_emit =
-      raytrace::render(faint, prepared.groups, prepared.effects, prepared.query,
-                       prepared.solve(small_room().solver), small_room().camera, options);
-  const ErrorBudget budget =
-      error_budget({faint, prepared.groups, prepared.effects, prepared.query},
-                   {&small_room().camera, options}, all_emit);
+      raytrace::render(prepared, prepared.solve(small_room().solver), small_room().camera, options);
+  const ErrorBudget budget = error_budget(prepared, {&small_room().camera, options}, all_emit);
   EXPECT_GT(budget.pixels, frame.error.counts.size() * 9 / 10);
   EXPECT_GT(budget.total.estimate, 0.0);
 }
@@ -125,10 +120,8 @@ TEST(ErrorBudget, APictureOfNothingHasNone) {
   for (scenes::Material& material : dark.materials) material.emit = Rgb(0.0);
   const tests::Prepared prepared(dark);
   const raytrace::Frame frame =
-      raytrace::render(dark, prepared.groups, prepared.effects, prepared.query,
-                       prepared.solve(room.solver), room.camera, options);
-  const ErrorBudget budget = error_budget({dark, prepared.groups, prepared.effects, prepared.query},
-                                          {&room.camera, options}, frame);
+      raytrace::render(prepared, prepared.solve(room.solver), room.camera, options);
+  const ErrorBudget budget = error_budget(prepared, {&room.camera, options}, frame);
   EXPECT_EQ(budget.pixels, 0U);
   EXPECT_EQ(budget.total.estimate, 0.0);
 }

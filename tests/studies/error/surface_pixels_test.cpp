@@ -22,9 +22,7 @@ struct View {
   tests::SceneBuilder builder = tests::plate_on_ground(0.4, 0.6);
   tests::Prepared prepared{builder.scene};
   [[nodiscard]] SurfacePixels seen(const raytrace::RenderOptions& options) const {
-    return {{builder.scene, prepared.groups, prepared.effects, prepared.query},
-            tests::above(4.0, 8.0),
-            options};
+    return {prepared, tests::above(4.0, 8.0), options};
   }
 };
 

@@ -16,7 +16,7 @@ SteeredSolution reached(const scenes::Scene& scene, double error) {
   const tests::Prepared prepared(scene);
   Wanted wanted;
   wanted.error = error;
-  return reach_surfaces({scene, prepared.groups, prepared.effects, prepared.query}, wanted, 1, {});
+  return reach_surfaces(prepared, wanted, 1, {});
 }
 
 // What was reached has no limit, however little the last solve brought, and what was not has one.
@@ -52,9 +52,7 @@ SteeredSolution within(double limit_s, double pass_s) {
       if (done == total) now += step;
     };
   };
-  return reach_surfaces(
-      {tests::small_room().scene, prepared.groups, prepared.effects, prepared.query}, wanted, 1, {},
-      stage);
+  return reach_surfaces(prepared, wanted, 1, {}, stage);
 }
 
 // Where no time is left the error of the first solve is stated, and nothing else is begun: one

@@ -81,8 +81,7 @@ radiosity::SolveOptions even(double edge_m) {
 
 SurfaceError error_of(const tests::Prepared& prepared, const radiosity::Solution& solution,
                       const radiosity::SolveOptions& options) {
-  return surface_error({prepared.scene, prepared.groups, prepared.effects, prepared.query},
-                       solution, options);
+  return surface_error(prepared, solution, options);
 }
 
 // A plate of 1 m under a point lamp of 100 cd at 0.6 m: B = rho I h / d^3.

@@ -35,12 +35,10 @@ struct Solved {
       : scene(std::move(made)) {
     options.patch_edge_m = edge_m;
     options.form_factor_rays = rays;
-    solution = radiosity::solve_keeping(scene, prepared.groups, prepared.effects, prepared.query,
-                                        options, radiosity::subdivide(scene, edge_m), {}, factors);
+    solution = radiosity::solve_keeping(prepared, options, radiosity::subdivide(scene, edge_m), {},
+                                        factors);
   }
-  [[nodiscard]] StudyScene study() const {
-    return {scene, prepared.groups, prepared.effects, prepared.query};
-  }
+  [[nodiscard]] scenes::World study() const { return prepared; }
   // With all illuminances times a factor.
   [[nodiscard]] LightOnSurfaces light(float factor = 1.0F) const {
     radiosity::Solution changed = solution;

@@ -38,8 +38,8 @@ TEST(LastBounce, InAFurnaceSharesAreFormFactors) {
   point.reflectance = 0.5;
   point.emitted = Rgb(1.0 / base::pi);
   constexpr int rays = 16384;
-  const std::vector<LightShare> shares = light_shares(
-      builder.scene, prepared.groups, prepared.query, solution, {&point, 1}, 2.0 / base::pi, rays);
+  const std::vector<LightShare> shares =
+      light_shares(prepared, solution, {&point, 1}, 2.0 / base::pi, rays);
   EXPECT_NEAR(share_from(shares, own_light, false), 0.5, 1e-9);
   EXPECT_NEAR(share_from(shares, prepared.groups.names[prepared.groups.material[m]], false), 0.25,
               1e-3);
@@ -68,8 +68,7 @@ TEST(LastBounce, WithNothingRoundItLightComesStraight) {
   const scenes::Camera camera = tests::above(2.0, 2.0);
   const std::uint32_t pixel = 16 * 32 + 16;
   const auto points = seen_points(builder.scene, prepared.query, camera, 32, 32, {&pixel, 1}, 1);
-  const auto shares = light_shares(builder.scene, prepared.groups, prepared.query, {}, points,
-                                   0.6 * 1000.0 / base::pi, 256);
+  const auto shares = light_shares(prepared, {}, points, 0.6 * 1000.0 / base::pi, 256);
   ASSERT_EQ(shares.size(), 1U);
   EXPECT_EQ(shares[0].from, "sun");
   EXPECT_FALSE(shares[0].reflected);
