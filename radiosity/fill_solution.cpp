@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/free_memory.h"
+#include "base/parallel.h"
 #include "radiosity/factors/covered_patches.h"
+#include "radiosity/factors/row_sums.h"
 #include "radiosity/patches/patches.h"
 #include "scenes/sky/sky_cells.h"
 
@@ -13,137 +16,173 @@ namespace {
 
 // Means over what is open of each object; over all of it where nothing is.
 std::vector<ObjectLight> object_means(const scenes::Scene& scene, const Patches& patches,
-                                      const std::vector<double>& open_m2, std::size_t columns,
-                                      const std::vector<bool>& is_explicit,
-                                      const std::vector<double>& direct,
-                                      const std::vector<double>& indirect,
-                                      const std::vector<double>& radiosity) {
-  std::vector<ObjectLight> means(scene.objects.size());
-  std::vector<double> open(means.size(), 0.0), weight(means.size(), 0.0);
-  for (std::uint32_t i = 0; i < patches.count(); ++i) open[patches.object(i)] += open_m2[i];
-  for (std::size_t i = 0; i < patches.count(); ++i) {
-    const auto patch = static_cast<std::uint32_t>(i);
-    const std::uint32_t object = patches.object(patch);
-    ObjectLight& mean = means[object];
-    const double area = open[object] > 0.0 ? open_m2[i] : patches.area_m2[i];
-    mean.area_m2 += patches.area_m2[i];
-    weight[object] += area;
-    for (std::size_t k = 0; k < columns; ++k) {
-      const auto c = static_cast<int>(k % 3);
-      mean.illuminance_lx[c] += area * (direct[i * columns + k] + indirect[i * columns + k]);
-      mean.radiosity_lm_m2[c] += area * radiosity[i * columns + k];
+                                      const LedgerInput& in) {
+  const std::vector<bool> is_explicit = emitter_is_explicit(scene);
+  const std::size_t objects = scene.objects.size();
+  std::vector<double> open(objects, 0.0);
+  for (std::uint32_t i = 0; i < patches.count(); ++i) open[patches.object(i)] += in.area_m2[i];
+  // Per object its area, its weight, illuminance and radiosity.
+  constexpr std::size_t each = 8;
+  std::vector<double> sums(objects * each, 0.0);
+  in.factors.shares.add_up(sums, false, [&](std::vector<double>& all) {
+    const auto [begin, end] = in.factors.shares.own(patches.count());
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto patch = static_cast<std::uint32_t>(i);
+      const std::size_t object = patches.object(patch), row = (i - begin) * in.columns;
+      double* const of = &all[object * each];
+      const double area = open[object] > 0.0 ? in.area_m2[i] : patches.area_m2[i];
+      of[0] += patches.area_m2[i];
+      of[1] += area;
+      for (std::size_t k = 0; k < in.columns; ++k) {
+        of[2 + k % 3] += area * (in.direct[row + k] + in.indirect[row + k]);
+        of[5 + k % 3] += area * in.radiosity[row + k];
+      }
+      const std::uint32_t m = patches.material(patch);
+      if (!is_explicit[m]) continue;
+      const Rgb emitted = area * patch_emit(scene, patches, patch);
+      for (int c = 0; c < 3; ++c) of[5 + c] += emitted[c];
     }
-    const std::uint32_t m = patches.material(patch);
-    if (is_explicit[m]) mean.radiosity_lm_m2 += area * patch_emit(scene, patches, patch);
-  }
-  for (std::size_t o = 0; o < means.size(); ++o) {
+  });
+  std::vector<ObjectLight> means(objects);
+  for (std::size_t o = 0; o < objects; ++o) {
+    const double* const of = &sums[o * each];
     means[o].name = scene.objects[o].name;
-    if (weight[o] > 0.0) {
-      means[o].illuminance_lx /= weight[o];
-      means[o].radiosity_lm_m2 /= weight[o];
-    }
+    means[o].area_m2 = of[0];
+    const double weight = of[1] > 0.0 ? of[1] : 1.0;
+    means[o].illuminance_lx = Rgb(of[2], of[3], of[4]) / weight;
+    means[o].radiosity_lm_m2 = Rgb(of[5], of[6], of[7]) / weight;
   }
   return means;
+}
+
+// body(patch, its row here, sums).
+template <class Body>
+std::vector<double> sums_over_patches(const LedgerInput& in, std::size_t each, Body body) {
+  const std::size_t first = in.factors.shares.own(in.factors.count()).begin;
+  return sums_over_rows(in.factors, each, [&](std::size_t begin, std::size_t end, double* sums) {
+    for (std::size_t row = begin; row < end; ++row) body(first + row, row, sums);
+  });
 }
 
 }  // namespace
 
 std::vector<double> reflectances(const scenes::Scene& scene, const Patches& patches,
-                                 std::size_t groups) {
-  std::vector<double> values(patches.count() * 3 * groups);
+                                 base::Shares::Range rows) {
+  std::vector<double> values;
+  values.reserve((rows.end - rows.begin) * 3);
   const PatchAlbedos albedos(scene);
-  for (std::size_t i = 0; i < patches.count(); ++i) {
+  for (std::size_t i = rows.begin; i < rows.end; ++i) {
     const Rgb rho = albedos.of(patches, static_cast<std::uint32_t>(i));
-    for (std::size_t k = 0; k < 3 * groups; ++k) {
-      values[i * 3 * groups + k] = rho[static_cast<int>(k % 3)];
-    }
+    for (int c = 0; c < 3; ++c) values.push_back(rho[c]);
   }
   return values;
 }
 
 std::vector<double> exitances(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                              const Patches& patches) {
+                              const Patches& patches, base::Shares::Range rows) {
   const std::vector<bool> is_explicit = emitter_is_explicit(scene);
   const std::size_t columns = 3 * groups.count();
-  std::vector<double> values(patches.count() * columns, 0.0);
-  for (std::size_t i = 0; i < patches.count(); ++i) {
+  std::vector<double> values((rows.end - rows.begin) * columns, 0.0);
+  for (std::size_t i = rows.begin; i < rows.end; ++i) {
     const std::uint32_t m = patches.material(static_cast<std::uint32_t>(i));
     if (is_explicit[m] || groups.material[m] == scenes::no_group) continue;
     const Rgb emitted = patch_emit(scene, patches, static_cast<std::uint32_t>(i));
     for (int c = 0; c < 3; ++c) {
-      values[i * columns + 3 * groups.material[m] + static_cast<std::size_t>(c)] = emitted[c];
+      values[(i - rows.begin) * columns + 3 * groups.material[m] + static_cast<std::size_t>(c)] =
+          emitted[c];
     }
   }
   return values;
 }
 
 void fill_solution(const scenes::World& world, const FormFactors& factors, bool balanced,
-                   PatchLight& light, Solution& solution) {
+                   PatchLight light, Solution& solution) {
   const Patches& patches = solution.patches;
   const std::size_t columns = solution.columns;
-  const std::vector<double> open_m2 = open_areas(factors.open, patches.area_m2);
-  const LedgerInput ledger{factors,       open_m2,      columns,        light.reflectance,
-                           light.emitted, light.direct, light.indirect, light.radiosity};
-  close_energy(ledger, balanced, light.radiosity, light.indirect);
-  SolveReport& report = solution.report;
-  report.groups = energy_ledger(ledger, world.groups.names, report.sources);
-  report.objects =
-      object_means(world.scene, patches, open_m2, columns, emitter_is_explicit(world.scene),
-                   light.direct, light.indirect, light.radiosity);
-  solution.radiosity.assign(light.radiosity.begin(), light.radiosity.end());
-  solution.direct_lx.assign(light.direct.begin(), light.direct.end());
-  solution.indirect_lx.assign(light.indirect.begin(), light.indirect.end());
-  solution.soft_radiosity.resize(light.radiosity.size());
-  const std::size_t sky_parts = scenes::earth_parts(world.scene);
-  Rgb patch_k_d(0.0);
-  for (std::size_t k = 0; k < light.radiosity.size(); ++k) {
-    const std::size_t column = k % columns;
-    if (column == 0) {
-      patch_k_d = patch_diffuse(world.scene, patches, static_cast<std::uint32_t>(k / columns));
-    }
-    const double diffuse = patch_k_d[static_cast<int>(column % 3)];
-    double soft = diffuse * light.indirect[k];
-    if (world.effects.earth_by_gather && column / 3 >= world.groups.earth &&
-        column / 3 < world.groups.earth + sky_parts) {
-      const std::size_t part = (k / columns) * sky_parts + column / 3 - world.groups.earth;
-      soft += diffuse * light.sky[part][static_cast<int>(column % 3)];
-    }
-    solution.soft_radiosity[k] = static_cast<float>(soft);
+  {
+    const std::vector<double> open_m2 = open_areas(factors.open, patches.area_m2);
+    const LedgerInput ledger{factors,       open_m2,      columns,        light.reflectance,
+                             light.emitted, light.direct, light.indirect, light.radiosity};
+    close_energy(ledger, balanced, light.radiosity, light.indirect);
+    SolveReport& report = solution.report;
+    report.groups = energy_ledger(ledger, world.groups.names, report.sources);
+    report.objects = object_means(world.scene, patches, ledger);
   }
+  base::release(light.reflectance);
+  base::release(light.emitted);
+  const auto [begin, end] = factors.shares.own(patches.count());
   const CoveredPatches covered(patches, factors.open);
-  for (std::vector<float>* values : {&solution.radiosity, &solution.soft_radiosity,
-                                     &solution.direct_lx, &solution.indirect_lx}) {
-    covered.show_neighbours(*values, columns);
-  }
+  // row_of(row, values): of an own row.
+  const auto tell = [&](std::vector<float>& values, auto row_of) {
+    values.resize(patches.count() * columns);
+    base::parallel_chunks(end - begin, 4096, [&](std::size_t from, std::size_t to) {
+      for (std::size_t row = from; row < to; ++row) row_of(row, &values[(begin + row) * columns]);
+    });
+    factors.shares.tell(values.data(), columns);
+    covered.show_neighbours(values, columns);
+  };
+  const auto copy_of = [columns](const std::vector<double>& from) {
+    return [&from, columns](std::size_t row, float* values) {
+      std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(row * columns), columns, values);
+    };
+  };
+  tell(solution.radiosity, copy_of(light.radiosity));
+  base::release(light.radiosity);
+  tell(solution.direct_lx, copy_of(light.direct));
+  base::release(light.direct);
+  const std::size_t sky_parts = scenes::earth_parts(world.scene);
+  tell(solution.soft_radiosity, [&](std::size_t row, float* values) {
+    const std::size_t i = begin + row;
+    const Rgb diffuse = patch_diffuse(world.scene, patches, static_cast<std::uint32_t>(i));
+    for (std::size_t k = 0; k < columns; ++k) {
+      const auto c = static_cast<int>(k % 3);
+      double soft = diffuse[c] * light.indirect[row * columns + k];
+      if (world.effects.earth_by_gather && k / 3 >= world.groups.earth &&
+          k / 3 < world.groups.earth + sky_parts) {
+        soft += diffuse[c] * light.sky[i * sky_parts + k / 3 - world.groups.earth][c];
+      }
+      values[k] = static_cast<float>(soft);
+    }
+  });
+  tell(solution.indirect_lx, copy_of(light.indirect));
 }
 
 std::vector<GroupLedger> energy_ledger(const LedgerInput& in,
                                        const std::vector<std::string>& group_names,
                                        std::span<const SourceFlux> sources) {
+  enum { Emitted, Landed, Absorbed, Escaped, Lines };
+  const std::vector<double> sums =
+      sums_over_patches(in, in.columns * Lines, [&](std::size_t i, std::size_t row, double* all) {
+        const double area = in.area_m2[i];
+        for (std::size_t k = 0; k < in.columns; ++k) {
+          const std::size_t at = row * in.columns + k;
+          const double rho = in.reflectance[row * 3 + k % 3];
+          const double ends = in.factors.kept_direct.empty()
+                                  ? 1.0
+                                  : in.factors.kept_direct[i][static_cast<int>(k % 3)];
+          double* const line = &all[k * Lines];
+          line[Emitted] += area * in.emitted[at];
+          line[Landed] += area * ends * in.direct[at];
+          line[Absorbed] +=
+              area * ((in.factors.kept[i] - rho) * in.indirect[at] + (ends - rho) * in.direct[at] +
+                      in.radiosity[at] * in.factors.lost[i]);
+          line[Escaped] += area * in.radiosity[at] * in.factors.escape[i];
+        }
+      });
   std::vector<GroupLedger> ledger(group_names.size());
   for (std::size_t g = 0; g < group_names.size(); ++g) {
     GroupLedger& line = ledger[g];
     line.name = group_names[g];
     for (int c = 0; c < 3; ++c) {
-      double emitted = 0.0, landed = 0.0, absorbed = 0.0, escaped = 0.0;
-      for (std::size_t i = 0; i < in.area_m2.size(); ++i) {
-        const std::size_t k = i * in.columns + 3 * g + static_cast<std::size_t>(c);
-        const double area = in.area_m2[i];
-        emitted += area * in.emitted[k];
-        const double ends = in.factors.kept_direct.empty() ? 1.0 : in.factors.kept_direct[i][c];
-        landed += area * ends * in.direct[k];
-        absorbed += area * ((in.factors.kept[i] - in.reflectance[k]) * in.indirect[k] +
-                            (ends - in.reflectance[k]) * in.direct[k] +
-                            in.radiosity[k] * in.factors.lost[i]);
-        escaped += area * in.radiosity[k] * in.factors.escape[i];
-      }
-      line.emitted_lm[c] = emitted;
-      line.landed_lm[c] = landed;
-      line.absorbed_lm[c] = absorbed;
-      line.escaped_lm[c] = escaped;
-      const double in_all = emitted + landed;
+      const double* const found = &sums[(3 * g + static_cast<std::size_t>(c)) * Lines];
+      line.emitted_lm[c] = found[Emitted];
+      line.landed_lm[c] = found[Landed];
+      line.absorbed_lm[c] = found[Absorbed];
+      line.escaped_lm[c] = found[Escaped];
+      const double in_all = found[Emitted] + found[Landed];
       if (in_all > 0.0) {
-        line.imbalance = std::max(line.imbalance, std::abs(in_all - absorbed - escaped) / in_all);
+        line.imbalance =
+            std::max(line.imbalance, std::abs(in_all - found[Absorbed] - found[Escaped]) / in_all);
       }
     }
   }
@@ -160,22 +199,26 @@ std::vector<GroupLedger> energy_ledger(const LedgerInput& in,
 
 void close_energy(const LedgerInput& in, bool balanced, std::span<double> radiosity,
                   std::span<double> indirect) {
-  std::vector<double> source(in.columns, 0.0), ended(in.columns, 0.0);
-  for (std::size_t k = 0; k < radiosity.size(); ++k) {
-    const std::size_t i = k / in.columns;
-    const double s = in.emitted[k] + in.reflectance[k] * in.direct[k];
-    // Balanced: where B ends, in absorption, the sky and black backs. Else by what the solver left.
-    const double end = balanced ? (in.factors.kept[i] - in.reflectance[k]) * in.indirect[k] +
-                                      in.radiosity[k] * (in.factors.lost[i] + in.factors.escape[i])
-                                : in.radiosity[k] - in.reflectance[k] * in.indirect[k];
-    source[k % in.columns] += in.area_m2[i] * s;
-    ended[k % in.columns] += in.area_m2[i] * end;
-  }
-  for (std::size_t k = 0; k < radiosity.size(); ++k) {
-    const double all = source[k % in.columns], end = ended[k % in.columns];
+  // Per column what there is and where it ends.
+  const std::vector<double> sums =
+      sums_over_patches(in, in.columns * 2, [&](std::size_t i, std::size_t row, double* all) {
+        for (std::size_t k = 0; k < in.columns; ++k) {
+          const std::size_t at = row * in.columns + k;
+          const double rho = in.reflectance[row * 3 + k % 3];
+          // Balanced: in absorption, the sky and black backs. Else by what the solver left.
+          const double end =
+              balanced ? (in.factors.kept[i] - rho) * in.indirect[at] +
+                             in.radiosity[at] * (in.factors.lost[i] + in.factors.escape[i])
+                       : in.radiosity[at] - rho * in.indirect[at];
+          all[2 * k] += in.area_m2[i] * (in.emitted[at] + rho * in.direct[at]);
+          all[2 * k + 1] += in.area_m2[i] * end;
+        }
+      });
+  for (std::size_t at = 0; at < radiosity.size(); ++at) {
+    const double all = sums[at % in.columns * 2], end = sums[at % in.columns * 2 + 1];
     if (all <= 0.0 || std::abs(all - end) > 0.01 * all) continue;
-    radiosity[k] *= all / end;
-    indirect[k] *= all / end;
+    radiosity[at] *= all / end;
+    indirect[at] *= all / end;
   }
 }
 

@@ -9,24 +9,25 @@
 
 namespace earthshine::radiosity {
 
-// Per patch and column, unless said otherwise.
+// Per own row of the factors and column, unless said otherwise.
 struct PatchLight {
-  std::vector<double> reflectance, emitted;         // reflectances(), exitances()
-  std::vector<double> direct, indirect, radiosity;  // lx, lx, lm/m^2
+  std::vector<double> reflectance;                           // reflectances(): three a row
+  std::vector<double> emitted, direct, indirect, radiosity;  // exitances(); lx, lx, lm/m^2
   std::span<const Rgb> sky;  // per patch and part of the sky: what of `direct` gather rays bring
 };
 
 [[nodiscard]] std::vector<double> reflectances(const scenes::Scene& scene, const Patches& patches,
-                                               std::size_t groups);
+                                               base::Shares::Range rows);
 // Of what is carried by form factors.
 [[nodiscard]] std::vector<double> exitances(const scenes::Scene& scene,
                                             const scenes::LightGroups& groups,
-                                            const Patches& patches);
+                                            const Patches& patches, base::Shares::Range rows);
 
 // Of solution.patches and solution.columns. Of the factors only what each patch keeps, loses and
-// lets escape is looked at, and what is open of it. Closes the energy of `light`.
+// lets escape is looked at, and what is open of it. Closes the energy of `light`. Of ranks that
+// divide the factors each gives its own rows' light; all get all of the solution.
 void fill_solution(const scenes::World& world, const FormFactors& factors, bool balanced,
-                   PatchLight& light, Solution& solution);
+                   PatchLight light, Solution& solution);
 
 // solve() on patches that are cut already, with its form factors, balanced.
 [[nodiscard]] Solution solve_keeping(const scenes::World& world, const SolveOptions& options,
@@ -48,8 +49,8 @@ struct LedgerInput {
   const FormFactors& factors;
   std::span<const double> area_m2;  // what is open of each patch
   std::size_t columns = 0;
-  std::span<const double> reflectance;  // all below: count x columns
-  std::span<const double> emitted;      // M through F
+  std::span<const double> reflectance;  // own rows x 3
+  std::span<const double> emitted;      // all below: own rows x columns; M through F
   std::span<const double> direct;       // E0
   std::span<const double> indirect;     // F B
   std::span<const double> radiosity;    // B

@@ -8,141 +8,135 @@
 
 #include "base/error.h"
 #include "base/free_memory.h"
-#include "radiosity/factors/matrix_free.h"
+#include "radiosity/factors/row_sums.h"
 
 namespace earthshine::radiosity {
 namespace {
 
-using Vector = Eigen::VectorXd;
+// Of own rows, row-major.
+using Values = std::vector<double>;
 
-// 1 - rho F. Of ranks that divide F the first asks for products, and the others serve().
+// A = 1 - rho F, and loops over vectors whose rows are divided as those of F are.
 class RadiosityOperator {
  public:
   RadiosityOperator(const FormFactors& factors, std::span<const double> reflectance,
                     std::size_t columns)
-      : factors_(factors), reflectance_(reflectance), columns_(columns) {}
+      : factors_(factors),
+        rows_(factors.shares.own(factors.count()).end - factors.shares.own(factors.count()).begin),
+        reflectance_(reflectance),
+        columns_(columns),
+        period_(rows_ > 0 ? reflectance.size() / rows_ : columns) {}
 
-  [[nodiscard]] std::size_t size() const { return factors_.count() * columns_; }
-
-  [[nodiscard]] Vector apply(const Vector& x) const {
-    Vector y(x.size());
-    product({x.data(), size()}, {y.data(), size()});
-    for (Eigen::Index k = 0; k < y.size(); ++k) {
-      y[k] = x[k] - reflectance_[static_cast<std::size_t>(k)] * y[k];
-    }
-    return y;
-  }
+  [[nodiscard]] std::size_t size() const { return rows_ * columns_; }
+  [[nodiscard]] std::size_t columns() const { return columns_; }
+  [[nodiscard]] const base::Shares& shares() const { return factors_.shares; }
 
   // y = F x.
-  void product(std::span<const double> x, std::span<double> y) const {
-    ask_for_product(true);
-    // Sent, and not changed.
-    factors_.shares.tell_all(const_cast<double*>(x.data()), x.size());
-    multiply(factors_, x, y, columns_);
-    factors_.shares.tell_first(y.data(), columns_);
+  void product(const Values& x, Values& y) const { multiply(factors_, x, y, columns_); }
+
+  // body(begin, end, sums): of the values from `begin` to `end`. Returned are the sums of all.
+  template <class Body>
+  std::vector<double> sums(std::size_t each, Body body) const {
+    return sums_over_rows(factors_, each, [&](std::size_t begin, std::size_t end, double* sums) {
+      body(begin * columns_, end * columns_, sums);
+    });
   }
 
-  // Until the first rank is done.
-  void serve() const {
-    const auto [begin, end] = factors_.shares.own(factors_.count());
-    std::vector<double> x(size()), y((end - begin) * columns_);
-    while (ask_for_product(true)) {
-      factors_.shares.tell_all(x.data(), x.size());
-      multiply(factors_, x, y, columns_);
-      factors_.shares.tell_first(y.data(), columns_);
+  // From y = F x to y = x - rho y.
+  void finish(const Values& x, Values& y, std::size_t begin, std::size_t end) const {
+    for (std::size_t k = begin; k < end; k += columns_) {
+      const double* const rho = &reflectance_[k / columns_ * period_];
+      for (std::size_t c = 0; c < columns_; c += period_) {
+        for (std::size_t p = 0; p < period_; ++p) {
+          y[k + c + p] = x[k + c + p] - rho[p] * y[k + c + p];
+        }
+      }
     }
   }
-  void end_service() const { ask_for_product(false); }
+
+  // left = b - A x. Returns its square.
+  double rest(const Values& b, const Values& x, Values& left) const {
+    left.resize(size());
+    product(x, left);
+    return sums(1, [&](std::size_t begin, std::size_t end, double* sum) {
+      finish(x, left, begin, end);
+      for (std::size_t k = begin; k < end; ++k) left[k] = b[k] - left[k];
+      sum[0] += dot(&left[begin], &left[begin], end - begin);
+    })[0];
+  }
+
+  [[nodiscard]] std::vector<double> column_norms(const Values& values) const {
+    std::vector<double> norms =
+        sums(columns_, [&](std::size_t begin, std::size_t end, double* sum) {
+          for (std::size_t k = begin; k < end; k += columns_) {
+            for (std::size_t c = 0; c < columns_; ++c) sum[c] += values[k + c] * values[k + c];
+          }
+        });
+    for (double& norm : norms) norm = std::sqrt(norm);
+    return norms;
+  }
+
+  // Multiplies column c by scale[c]; a scale of 0 leaves its column 0.
+  void scale_columns(Values& values, const std::vector<double>& scale) const {
+    (void)sums(0, [&](std::size_t begin, std::size_t end, const double*) {
+      for (std::size_t k = begin; k < end; k += columns_) {
+        for (std::size_t c = 0; c < columns_; ++c) values[k + c] *= scale[c];
+      }
+    });
+  }
 
  private:
-  // What the first rank says.
-  bool ask_for_product(bool more) const {
-    factors_.shares.tell_all(&more, 1);
-    return more;
-  }
-
   const FormFactors& factors_;
+  std::size_t rows_;
   std::span<const double> reflectance_;
-  std::size_t columns_;
+  std::size_t columns_, period_;
 };
-
-std::vector<double> column_norms(std::span<const double> values, std::size_t columns) {
-  std::vector<double> norms(columns, 0.0);
-  for (std::size_t k = 0; k < values.size(); ++k) norms[k % columns] += values[k] * values[k];
-  for (double& norm : norms) norm = std::sqrt(norm);
-  return norms;
-}
-
-std::vector<double> column_maxima(const Vector& values, std::size_t columns) {
-  std::vector<double> maxima(columns, 0.0);
-  for (Eigen::Index k = 0; k < values.size(); ++k) {
-    double& largest = maxima[static_cast<std::size_t>(k) % columns];
-    largest = std::max(largest, std::abs(values[k]));
-  }
-  return maxima;
-}
-
-// Multiplies column c by scale[c]; a scale of 0 leaves its column 0.
-void scale_columns(Vector& values, const std::vector<double>& scale) {
-  for (Eigen::Index k = 0; k < values.size(); ++k) {
-    values[k] *= scale[static_cast<std::size_t>(k) % scale.size()];
-  }
-}
 
 std::vector<double> inverse(std::vector<double> values) {
   for (double& value : values) value = value > 0.0 ? 1.0 / value : 0.0;
   return values;
 }
 
-std::span<const double> span_of(const Vector& x) {
-  return {x.data(), static_cast<std::size_t>(x.size())};
-}
-
 class Solver {
  public:
-  Solver(const RadiosityOperator& system, std::size_t columns)
-      : system_(system.size(), [&system](const Vector& x) { return system.apply(x); }),
-        columns_(columns) {
-    krylov_.compute(system_);
-    krylov_.setMaxIterations(300);
-  }
+  explicit Solver(const RadiosityOperator& system) : system_(system) {}
 
-  // The x of (1 - rho F) x = b to a joint relative residual, from b on.
-  [[nodiscard]] Vector solve(const Vector& b, double wanted) {
-    krylov_.setTolerance(wanted);
-    Vector x = krylov_.solveWithGuess(b, b);
-    iterations += static_cast<int>(krylov_.iterations());
-    if (x.allFinite() && rest(b, x).squaredNorm() <= rest(b, b).squaredNorm()) return x;
-    // BiCGSTAB can break down; bouncing the light once more a time never does.
+  // The x of A x = b to a joint relative residual, from b on.
+  [[nodiscard]] Values solve(const Values& b, double wanted) {
+    double first = 0.0, bound = 0.0;
+    Values x = stabilised(b, wanted, first, bound), left;
+    if (system_.rest(b, x, left) <= first) return x;
+    // The iteration can break down; bouncing the light once more a time never does.
     x = b;
     for (int bounce = 0; bounce < 1000; ++bounce, ++iterations) {
-      const Vector left = rest(b, x);
-      if (left.norm() <= wanted * b.norm()) break;
-      x += left;
+      if (system_.rest(b, x, left) <= bound) break;
+      for (std::size_t k = 0; k < x.size(); ++k) x[k] += left[k];
     }
     return x;
   }
 
-  [[nodiscard]] Vector rest(const Vector& b, const Vector& x) const {
-    Vector left = system_.apply(x);
-    left = b - left;
-    return left;
-  }
-
   // Adds to x what its residual asks for. Returns by how much it changed x: worst over the columns
   // of max |d| / max |x|.
-  double correct(const Vector& b, Vector& x) {
-    Vector left = rest(b, x);
-    const std::vector<double> size = column_norms(span_of(left), columns_);
+  double correct(const Values& b, Values& x) {
+    Values left;
+    (void)system_.rest(b, x, left);
+    const std::vector<double> size = system_.column_norms(left);
     if (*std::max_element(size.begin(), size.end()) <= 0.0) return 0.0;
-    scale_columns(left, inverse(size));
-    Vector d = solve(left, 0.01);
-    scale_columns(d, size);
-    x += d;
-    const std::vector<double> change = column_maxima(d, columns_), all = column_maxima(x, columns_);
+    system_.scale_columns(left, inverse(size));
+    Values d = solve(left, 0.01);
+    system_.scale_columns(d, size);
+    const std::size_t columns = system_.columns();
+    std::vector<double> largest(2 * columns, 0.0);  // of d, of x
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      x[k] += d[k];
+      double &change = largest[k % columns], &all = largest[columns + k % columns];
+      change = std::max(change, std::abs(d[k]));
+      all = std::max(all, std::abs(x[k]));
+    }
+    keep_largest(system_.shares(), largest);
     double worst = 0.0;
-    for (std::size_t c = 0; c < columns_; ++c) {
-      if (all[c] > 0.0) worst = std::max(worst, change[c] / all[c]);
+    for (std::size_t c = 0; c < columns; ++c) {
+      if (largest[columns + c] > 0.0) worst = std::max(worst, largest[c] / largest[columns + c]);
     }
     return worst;
   }
@@ -150,27 +144,86 @@ class Solver {
   int iterations = 0;
 
  private:
-  MatrixFree system_;
-  std::size_t columns_;
-  Eigen::BiCGSTAB<MatrixFree, Eigen::IdentityPreconditioner> krylov_;
+  // BiCGSTAB (van der Vorst 1992). first: the square of the residual that it began with; bound:
+  // that it was to come below.
+  Values stabilised(const Values& b, double wanted, double& first, double& bound) {
+    constexpr int most_iterations = 300;
+    constexpr double rounding = std::numeric_limits<double>::epsilon();
+    Values x = b, r, v(b.size());
+    double square = system_.rest(b, x, r), shadow = square;  // r r, r0 r
+    first = square;
+    bound = wanted * wanted * dots(b, b);
+    Values r0 = r, p = r, t(b.size());
+    double begun = square;  // r0 r0
+    for (int i = 0; i < most_iterations && square > bound; ++i, ++iterations) {
+      system_.product(p, v);
+      const double alpha =
+          shadow / system_.sums(1, [&](std::size_t begin, std::size_t end, double* sum) {
+            system_.finish(p, v, begin, end);
+            sum[0] += dot(&r0[begin], &v[begin], end - begin);
+          })[0];
+      (void)system_.sums(0, [&](std::size_t begin, std::size_t end, const double*) {
+        for (std::size_t k = begin; k < end; ++k) r[k] -= alpha * v[k];
+      });
+      system_.product(r, t);
+      const auto along = system_.sums(2, [&](std::size_t begin, std::size_t end, double* sum) {
+        system_.finish(r, t, begin, end);
+        sum[0] += dot(&t[begin], &r[begin], end - begin);
+        sum[1] += dot(&t[begin], &t[begin], end - begin);
+      });
+      const double omega = along[1] > 0.0 ? along[0] / along[1] : 0.0;
+      const auto found = system_.sums(2, [&](std::size_t begin, std::size_t end, double* sum) {
+        for (std::size_t k = begin; k < end; ++k) x[k] += alpha * p[k] + omega * r[k];
+        for (std::size_t k = begin; k < end; ++k) r[k] -= omega * t[k];
+        sum[0] += dot(&r[begin], &r[begin], end - begin);
+        sum[1] += dot(&r0[begin], &r[begin], end - begin);
+      });
+      square = found[0];
+      double beta = found[1] / shadow * (alpha / omega);
+      shadow = found[1];
+      if (std::abs(shadow) < rounding * rounding * begun) {  // no direction is left: begin anew
+        begun = shadow = square = system_.rest(b, x, r);
+        r0 = r;
+        beta = 0.0;
+      }
+      (void)system_.sums(0, [&](std::size_t begin, std::size_t end, const double*) {
+        if (beta == 0.0) {
+          std::copy(&r[begin], &r[begin] + (end - begin), &p[begin]);
+          return;
+        }
+        for (std::size_t k = begin; k < end; ++k) p[k] = r[k] + beta * (p[k] - omega * v[k]);
+      });
+    }
+    return x;
+  }
+
+  [[nodiscard]] double dots(const Values& a, const Values& b) const {
+    return system_.sums(1, [&](std::size_t begin, std::size_t end, double* sum) {
+      sum[0] += dot(&a[begin], &b[begin], end - begin);
+    })[0];
+  }
+
+  const RadiosityOperator& system_;
 };
 
 constexpr int most_corrections = 8;
 constexpr double still_a_solution = 1e-6;
 
 // b: scaled as the norms tell.
-LinearSolve solve_scaled(const RadiosityOperator& system, const Vector& b,
+LinearSolve solve_scaled(const RadiosityOperator& system, const Values& b,
                          const std::vector<double>& norms, double tolerance) {
   LinearSolve result;
-  Solver solver(system, norms.size());
-  Vector x = solver.solve(b, tolerance / std::sqrt(static_cast<double>(norms.size())));
+  Solver solver(system);
+  Values x = solver.solve(b, tolerance / std::sqrt(static_cast<double>(norms.size())));
   result.error = std::numeric_limits<double>::infinity();
   for (int round = 0; round < most_corrections && result.error > tolerance; ++round) {
     const double previous = result.error;
     result.error = solver.correct(b, x);
     if (!(result.error < 0.5 * previous)) break;  // rounding is reached
   }
-  const std::vector<double> left = column_norms(span_of(solver.rest(b, x)), norms.size());
+  Values rest;
+  (void)system.rest(b, x, rest);
+  const std::vector<double> left = system.column_norms(rest);
   result.residual = *std::max_element(left.begin(), left.end());
   result.iterations = solver.iterations;
   if (!(result.error <= std::max(tolerance, still_a_solution))) {
@@ -181,8 +234,8 @@ LinearSolve solve_scaled(const RadiosityOperator& system, const Vector& b,
                       "1e-6 is the largest that is still a solution",
                       "Lower reflectances that are nearly 1, or report the scene as a defect");
   }
-  scale_columns(x, norms);
-  result.x.assign(x.begin(), x.end());
+  system.scale_columns(x, norms);
+  result.x = std::move(x);
   return result;
 }
 
@@ -191,26 +244,19 @@ LinearSolve solve_scaled(const RadiosityOperator& system, const Vector& b,
 LinearSolve solve_linear(const FormFactors& factors, std::vector<double> source,
                          std::span<const double> reflectance, std::size_t columns,
                          double tolerance) {
-  LinearSolve result;
   const RadiosityOperator system(factors, reflectance, columns);
-  if (!factors.shares.joins()) {
-    system.serve();
-    return result;
-  }
-  const std::vector<double> norms = column_norms(source, columns);
-  if (source.empty() || *std::max_element(norms.begin(), norms.end()) <= 0.0) {
+  const std::vector<double> norms = system.column_norms(source);
+  LinearSolve result;
+  if (norms.empty() || *std::max_element(norms.begin(), norms.end()) <= 0.0) {
     result.x.assign(source.size(), 0.0);
     result.fx = result.x;
-  } else {
-    Vector b = Eigen::Map<Vector>(source.data(), Eigen::Index(source.size()));
-    base::release(source);
-    scale_columns(b, inverse(norms));
-    result = solve_scaled(system, b, norms, tolerance);
-    b.resize(0);
-    result.fx.resize(result.x.size());
-    system.product(result.x, result.fx);
+    return result;
   }
-  system.end_service();
+  system.scale_columns(source, inverse(norms));
+  result = solve_scaled(system, source, norms, tolerance);
+  base::release(source);
+  result.fx.resize(result.x.size());
+  system.product(result.x, result.fx);
   return result;
 }
 

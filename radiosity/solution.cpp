@@ -65,35 +65,39 @@ std::vector<std::uint32_t> connected_parts(const FormFactors& f) {
 }
 
 // In a part of the scene that is closed and reflects everything, B = S + rho F B has no solution
-// for any S above 0. Throws base::Error (Input) with the materials of such a part. source,
-// reflectance: count x columns, with the rank that joins().
+// for any S above 0. Throws base::Error (Input) with the materials of such a part. Of own rows,
+// source: x columns, reflectance: x 3.
 void check_enclosure(const scenes::Scene& scene, const Patches& patches, const FormFactors& factors,
                      std::span<const double> source, std::span<const double> reflectance,
                      std::size_t columns) {
   // Only where some material reflects all of what it keeps can a part keep all light.
   const std::size_t count = factors.count();
+  const auto [begin, end] = factors.shares.own(count);
   // What rounding leaves of 1 - mirror - diffuse takes nothing.
   constexpr double rounding = 1e-12;
-  const auto takes = [&](std::size_t i, std::size_t c) {
-    return factors.kept[i] - reflectance[i * columns + c] > rounding;
-  };
-  bool suspect = false;
-  for (std::size_t k = 0; k < source.size() && !suspect; ++k) {
-    suspect = !takes(k / columns, k % columns);
+  std::vector<std::uint8_t> takes(3 * count);  // per patch and colour
+  for (std::size_t i = begin; i < end; ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      takes[3 * i + c] = factors.kept[i] - reflectance[3 * (i - begin) + c] > rounding;
+    }
   }
-  factors.shares.tell_all(&suspect, 1);
-  if (!suspect) return;
+  factors.shares.tell(takes.data(), 3);
+  if (std::find(takes.begin(), takes.end(), 0) == takes.end()) return;
   const std::vector<std::uint32_t> part = connected_parts(factors);
-  if (!factors.shares.joins()) return;
+  std::vector<std::uint8_t> lit(columns * count, 0);
+  for (std::size_t k = 0; k < source.size(); ++k) lit[begin * columns + k] = source[k] > 0.0;
+  factors.shares.tell(lit.data(), columns);
   for (std::size_t c = 0; c < columns; ++c) {
-    std::vector<char> ends(count, 0), lit(count, 0);
+    std::vector<char> part_ends(count, 0), part_lit(count, 0);
     for (std::size_t i = 0; i < count; ++i) {
-      if (takes(i, c) || factors.escape[i] > 0.0 || factors.lost[i] > 0.0) ends[part[i]] = 1;
-      if (source[i * columns + c] > 0.0) lit[part[i]] = 1;
+      if (takes[3 * i + c % 3] != 0 || factors.escape[i] > 0.0 || factors.lost[i] > 0.0) {
+        part_ends[part[i]] = 1;
+      }
+      if (lit[i * columns + c] != 0) part_lit[part[i]] = 1;
     }
     std::set<std::string> names;
     for (std::size_t i = 0; i < count; ++i) {
-      if (lit[part[i]] == 0 || ends[part[i]] != 0) continue;
+      if (part_lit[part[i]] == 0 || part_ends[part[i]] != 0) continue;
       names.insert(scene.materials[patches.material(static_cast<std::uint32_t>(i))].name);
     }
     if (names.empty()) continue;
@@ -232,19 +236,18 @@ Solution solve_keeping(const scenes::World& world, const SolveOptions& options, 
   watch.lap("direct light");
 
   const std::size_t columns = solution.columns;
-  const bool joins = factors.shares.joins();
+  const base::Shares::Range rows = factors.shares.own(patches.count());
   PatchLight found;
-  std::vector<double> source;
-  if (joins) {
-    found.reflectance = reflectances(world.scene, patches, world.groups.count());
-    found.direct = std::move(light.illuminance_lx);
-    source = exitances(world.scene, world.groups, patches);
-  }
+  found.reflectance = reflectances(world.scene, patches, rows);
+  found.direct = std::move(light.illuminance_lx);
   found.sky = factors.sky_illuminance;
-  const std::vector<double>& rho = found.reflectance;
-  for (std::size_t k = 0; k < source.size(); ++k) source[k] += rho[k] * found.direct[k];
-  check_enclosure(world.scene, patches, factors, source, rho, columns);
-  LinearSolve linear = solve_linear(factors, std::move(source), rho, columns, options.tolerance);
+  std::vector<double> source = exitances(world.scene, world.groups, patches, rows);
+  for (std::size_t k = 0; k < source.size(); ++k) {
+    source[k] += found.reflectance[k / columns * 3 + k % 3] * found.direct[k];
+  }
+  check_enclosure(world.scene, patches, factors, source, found.reflectance, columns);
+  LinearSolve linear =
+      solve_linear(factors, std::move(source), found.reflectance, columns, options.tolerance);
   report.iterations = linear.iterations;
   report.residual = linear.residual;
   report.solver_error = linear.error;
@@ -252,15 +255,12 @@ Solution solve_keeping(const scenes::World& world, const SolveOptions& options, 
   found.indirect = std::move(linear.fx);
   watch.lap("linear solve");
 
-  if (joins) {
-    found.emitted = exitances(world.scene, world.groups, patches);
-    fill_solution(world, factors, report.balance.balanced, found, solution);
-    for (std::size_t o = 0; o < object_backs.size(); ++o) {
-      report.objects[o].back_share = object_backs[o];
-    }
-    found = {};
+  found.emitted = exitances(world.scene, world.groups, patches, rows);
+  fill_solution(world, factors, report.balance.balanced, std::move(found), solution);
+  for (std::size_t o = 0; o < object_backs.size(); ++o) {
+    report.objects[o].back_share = object_backs[o];
   }
-  tell_solution(factors.shares, solution);
+  tell_report(factors.shares, report);
   watch.lap("ledger");
   return solution;
 }

@@ -31,19 +31,23 @@ void pass(base::Parcel& parcel, std::vector<Line>& lines) {
 
 }  // namespace
 
-void tell_solution(const base::Shares& shares, Solution& solution) {
-  for (std::vector<float>* const values : {&solution.radiosity, &solution.soft_radiosity,
-                                           &solution.direct_lx, &solution.indirect_lx}) {
-    values->resize(solution.patches.count() * solution.columns);
-    shares.tell_all(values->data(), values->size());
-  }
-  shares.tell_all([&report = solution.report](base::Parcel& parcel) {
+void tell_report(const base::Shares& shares, SolveReport& report) {
+  shares.tell_all([&report](base::Parcel& parcel) {
     parcel.pass_all(report.shadow_rays, report.sources_cost, report.iterations, report.residual,
                     report.solver_error);
     pass(parcel, report.groups);
     pass(parcel, report.sources);
     pass(parcel, report.objects);
   });
+}
+
+void tell_solution(const base::Shares& shares, Solution& solution) {
+  for (std::vector<float>* const values : {&solution.radiosity, &solution.soft_radiosity,
+                                           &solution.direct_lx, &solution.indirect_lx}) {
+    values->resize(solution.patches.count() * solution.columns);
+    shares.tell_all(values->data(), values->size());
+  }
+  tell_report(shares, solution.report);
 }
 
 }  // namespace earthshine::radiosity

@@ -7,9 +7,12 @@
 
 namespace earthshine::radiosity {
 
-// Of ranks that divide the form factors the first has made the four values of each patch, and what
-// the report says of direct light, of the linear solve and of where light went: gives them to the
-// others, who have the patches and the rest of the report.
+// Of ranks that divide the form factors the first alone knows what the report says of direct light
+// and of where it went: gives it to the others.
+void tell_report(const base::Shares& shares, SolveReport& report);
+
+// The same with the four values of each patch, where the first alone has made them. The others have
+// the patches and the rest of the report.
 void tell_solution(const base::Shares& shares, Solution& solution);
 
 }  // namespace earthshine::radiosity

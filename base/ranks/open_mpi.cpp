@@ -107,6 +107,15 @@ class OpenMpi : public Ranks {
                 division.counts.data(), division.begins.data(), division.item, 0, MPI_COMM_);
   }
 
+  void scatter_from_first(void* items, std::size_t bytes_each,
+                          const std::vector<std::size_t>& start) override {
+    const Division division(bytes_each, start);
+    MPI_Scatterv(items, division.counts.data(), division.begins.data(), division.item,
+                 number_ == 0 ? MPI_IN_PLACE : items,
+                 division.counts[static_cast<std::size_t>(number_)], division.item, 0,
+                 MPI_COMM_WORLD);
+  }
+
   [[nodiscard]] std::size_t take() override { return add_to_counter(1, MPI_SUM); }
 
   // Two counters in turn: this one is set back while the ranks may be taking from the other, and

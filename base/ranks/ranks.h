@@ -39,6 +39,9 @@ class Ranks {
   // The same, but the first rank alone has all afterwards; elsewhere `items` are the own.
   virtual void gather_at_first(void* items, std::size_t bytes_each,
                                const std::vector<std::size_t>& start) = 0;
+  // The other way round: the first rank has all, afterwards `items` are the own everywhere.
+  virtual void scatter_from_first(void* items, std::size_t bytes_each,
+                                  const std::vector<std::size_t>& start) = 0;
   // Of a loop's items, by number from 0, one that no rank has taken yet; from any thread. After the
   // last of them numbers go on.
   [[nodiscard]] virtual std::size_t take() = 0;

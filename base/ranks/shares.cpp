@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <numeric>
 
+#include "base/parallel.h"
+
 namespace earthshine::base {
 
-Shares::Shares(std::span<const double> cost) {
+Shares::Shares(std::span<const double> cost, std::size_t grain) {
   if (ranks() == nullptr) return;
   const auto count = static_cast<std::size_t>(ranks()->count());
   const double all = std::accumulate(cost.begin(), cost.end(), 0.0);
@@ -15,11 +17,13 @@ Shares::Shares(std::span<const double> cost) {
   start_[0] = 0;
   double before = 0.0;
   std::size_t rank = 1;
-  for (std::size_t i = 0; i < cost.size() && rank < count; ++i) {
-    // Whichever end of the item is nearer to where the range should end.
-    const double middle = before + 0.5 * cost[i];
+  for (std::size_t i = 0; i < cost.size() && rank < count; i += grain) {
+    const std::span<const double> grains = cost.subspan(i, std::min(grain, cost.size() - i));
+    const double held = std::accumulate(grains.begin(), grains.end(), 0.0);
+    // Whichever end of the grain is nearer to where the range should end.
+    const double middle = before + 0.5 * held;
     for (; rank < count && middle * double(count) >= all * double(rank); ++rank) start_[rank] = i;
-    before += cost[i];
+    before += held;
   }
 }
 
@@ -70,6 +74,27 @@ std::size_t Shares::sum(std::size_t of_own) const {
          all += found;
        });
   return all;
+}
+
+std::vector<double> Shares::ordered_sums(std::size_t count, std::size_t chunk, std::size_t each,
+                                         const AddChunk& add) const {
+  constexpr std::size_t chunks_at_once = 64;
+  const auto chunks = [chunk](std::size_t items) { return (items + chunk - 1) / chunk; };
+  const Range mine = own(count);
+  const std::size_t first = chunks(mine.begin), last = chunks(mine.end);
+  std::vector<double> parts(chunks(count) * each, 0.0), sums(each, 0.0);
+  parallel_chunks(last - first, chunks_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = first + begin; k < first + end; ++k) {
+      add(k * chunk, std::min(count, (k + 1) * chunk), &parts[k * each]);
+    }
+  });
+  if (divided() && each > 0) {
+    std::vector<std::size_t> start;
+    for (const std::size_t item : start_) start.push_back(chunks(item));
+    ranks()->gather(parts.data(), each * sizeof(double), start);
+  }
+  for (std::size_t k = 0; k < parts.size(); ++k) sums[k % each] += parts[k];
+  return sums;
 }
 
 void Shares::add_up(std::vector<double>& sums, bool exact,

@@ -162,36 +162,39 @@ class DirectStage {
         query_(query),
         patches_(patches),
         factors_(factors),
+        own_(factors.shares.own(patches.count())),
         landing_{factors.shares.joins() ? open_areas(factors.open, patches.area_m2)
                                         : std::vector<double>(),
                  factors.kept_direct},
         options_(options),
-        light_(light) {}
-
-  // A source whose flux is not known (the sky): taken as sampled.
-  void add(const Source& source) {
-    const Sampled sampled = sample(source);
-    if (factors_.shares.joins()) store(sampled.illuminance_lx, source.group, Rgb(1.0));
+        light_(light) {
+    light_.illuminance_lx.assign((own_.end - own_.begin) * light_.columns, 0.0);
   }
 
+  // A source whose flux is not known (the sky): taken as sampled.
+  void add(const Source& source) { store(sample(source), source.group, Rgb(1.0)); }
+
   void add(const Source& source, SourceFlux flux, const Emit& emit) {
-    const Sampled sampled = sample(source);
-    if (!factors_.shares.joins()) return;
-    find_shares(scene_, query_, emit, source.key, options_.flux_rays, options_.seed, flux);
-    light_.shadow_rays += static_cast<std::uint64_t>(options_.flux_rays);
-    const Rgb landed = landed_as_sampled(sampled, landing_);
-    flux.scale = landing_scale(sampled, landing_, base::luminance(landed), flux);
-    const Rgb scale = channel_scales(flux, landed);
-    flux.landed_lm = scale * landed;
-    store(sampled.illuminance_lx, source.group, scale);
-    light_.sources.push_back(std::move(flux));
+    Sampled sampled = sample(source);
+    Rgb scale(0.0);
+    if (factors_.shares.joins()) {
+      find_shares(scene_, query_, emit, source.key, options_.flux_rays, options_.seed, flux);
+      light_.shadow_rays += static_cast<std::uint64_t>(options_.flux_rays);
+      const Rgb landed = landed_as_sampled(sampled, landing_);
+      flux.scale = landing_scale(sampled, landing_, base::luminance(landed), flux);
+      scale = channel_scales(flux, landed);
+      flux.landed_lm = scale * landed;
+      light_.sources.push_back(std::move(flux));
+    }
+    factors_.shares.tell_all(&scale, 1);
+    store(std::move(sampled), source.group, scale);
   }
 
   // One of the `parts` values that each patch has.
   void store_part(const std::vector<Rgb>& illuminance, std::size_t parts, std::size_t part,
                   std::size_t group) {
-    for (std::size_t i = 0; i * parts < illuminance.size(); ++i) {
-      add(i, group, illuminance[i * parts + part]);
+    for (std::size_t row = 0; row < own_.end - own_.begin; ++row) {
+      add(row, group, illuminance[(own_.begin + row) * parts + part]);
     }
   }
 
@@ -201,13 +204,17 @@ class DirectStage {
                           light_.shadow_rays, factors_.shares.hears());
   }
 
-  void store(const std::vector<Rgb>& illuminance, std::size_t group, const Rgb& scale) {
-    for (std::size_t i = 0; i < illuminance.size(); ++i) add(i, group, scale * illuminance[i]);
+  // What the first rank has sampled.
+  void store(Sampled sampled, std::size_t group, const Rgb& scale) {
+    factors_.shares.tell_own(sampled.illuminance_lx.data());
+    for (std::size_t row = 0; row < own_.end - own_.begin; ++row) {
+      add(row, group, scale * sampled.illuminance_lx[row]);
+    }
   }
 
-  void add(std::size_t patch, std::size_t group, const Rgb& illuminance) {
+  void add(std::size_t row, std::size_t group, const Rgb& illuminance) {
     for (int c = 0; c < 3; ++c) {
-      light_.illuminance_lx[patch * light_.columns + 3 * group + static_cast<std::size_t>(c)] +=
+      light_.illuminance_lx[row * light_.columns + 3 * group + static_cast<std::size_t>(c)] +=
           illuminance[c];
     }
   }
@@ -216,6 +223,7 @@ class DirectStage {
   const scenes::RayQuery& query_;
   const Patches& patches_;
   const FormFactors& factors_;
+  base::Shares::Range own_;
   Landing landing_;
   const DirectOptions& options_;
   DirectLight& light_;
@@ -234,10 +242,8 @@ DirectLight direct_light(const scenes::World& world, const Patches& patches,
                          const FormFactors& factors, const DirectOptions& options) {
   DirectLight light;
   light.columns = 3 * world.groups.count();
-  const bool joins = factors.shares.joins();
-  if (joins) light.illuminance_lx.assign(patches.count() * light.columns, 0.0);
   DirectStage stage(world.scene, world.query, patches, factors, options, light);
-  if (world.effects.earth_by_gather && joins) {
+  if (world.effects.earth_by_gather) {
     const std::size_t parts = factors.sky_illuminance.size() / patches.count();
     for (std::size_t part = 0; part < parts; ++part) {
       stage.store_part(factors.sky_illuminance, parts, part, world.groups.earth + part);

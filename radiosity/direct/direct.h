@@ -40,7 +40,7 @@ struct SourceCost {
 
 struct DirectLight {
   std::size_t columns = 0;             // 3 * groups
-  std::vector<double> illuminance_lx;  // patch * columns + 3 * group + channel
+  std::vector<double> illuminance_lx;  // of own rows: row * columns + 3 * group + channel
   std::vector<SourceFlux> sources;
   std::uint64_t shadow_rays = 0;
   std::array<SourceCost, scenes::light_kinds> cost{};  // by LightKind
@@ -53,8 +53,8 @@ struct DirectOptions {
 };
 
 // Per patch the mean over factors.open, what no body covers. factors.sky_illuminance is taken for
-// the Earth where it is wide (Effects::earth_by_gather). Of ranks that divide the factors the first
-// alone has it; the others cast their part of its shadow rays.
+// the Earth where it is wide (Effects::earth_by_gather). Of ranks that divide the factors each has
+// the light of its own rows, and the first alone what is said of sources.
 [[nodiscard]] DirectLight direct_light(const scenes::World& world, const Patches& patches,
                                        const FormFactors& factors, const DirectOptions& options);
 

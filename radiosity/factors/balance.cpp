@@ -64,18 +64,10 @@ BalanceReport balance(FormFactors& factors, std::span<const double> area_m2, dou
     report.balanced = true;
     return report;
   }
-  const bool joins = factors.shares.joins();
-  if (const Scaling as_cast(factors, area_m2); joins) report.before = as_cast.defect();
+  report.before = Scaling(factors, area_m2).defect();
   report.borrowed = borrow_starved_columns(factors, area_m2);
   Scaling scaling(factors, area_m2);
-  if (joins) {
-    const bool fills = find_scales(scaling, enough, report);
-    scaling.end();
-    if (fills) report.held = scaling.held();
-  } else {
-    scaling.serve();
-  }
-  factors.shares.tell_all(&report, 1);
+  if (find_scales(scaling, enough, report)) report.held = scaling.held();
   scaling.finish();
   base::give_back_freed_memory();
   return report;

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/free_memory.h"
 #include "base/parallel.h"
 #include "base/ranks/ranks.h"
 #include "radiosity/factors/form_factors.h"
@@ -23,9 +22,8 @@ namespace earthshine::radiosity {
 template <class Weight>
 class ColumnSums {
  public:
-  // hears: who has the sums; the others get none.
-  ColumnSums(const FormFactors& f, Weight weight, base::Hears hears)
-      : f_(f), weight_(weight), hears_(hears), count_(f.count()), own_(f.shares.own(count_)) {
+  ColumnSums(const FormFactors& f, Weight weight)
+      : f_(f), weight_(weight), count_(f.count()), own_(f.shares.own(count_)) {
     while (first_ < last_ && begin(first_ + 1) <= own_.begin) ++first_;
     while (first_ < last_ && (begin(last_ - 1) >= own_.end || own_.begin == own_.end)) --last_;
     if (first_ == last_) return;
@@ -33,6 +31,7 @@ class ColumnSums {
     goes_on_ = begin(last_) > own_.end;
   }
 
+  // Of the patches whose rows are here.
   [[nodiscard]] std::vector<double> find() {
     partial_.assign((last_ - first_) * count_, 0.0);
     // The last band first: another rank may wait for it.
@@ -82,47 +81,36 @@ class ColumnSums {
     return total;
   }
 
-  // Each rank adds up some of the columns: of the bands that ended with every rank, which are in
-  // order as the ranks are.
+  // Each rank adds up the columns of its patches: of the bands that ended with every rank, which
+  // are in order as the ranks are.
   [[nodiscard]] std::vector<double> total_of_ranks() {
     base::Ranks& all = *base::ranks();
     const auto ranks = static_cast<std::size_t>(all.count()),
                rank = static_cast<std::size_t>(all.number());
-    std::vector<std::size_t> start;
-    for (std::size_t r = 0; r <= ranks; ++r) start.push_back(r * count_ / ranks);
     const std::size_t ended = last_ - first_ - (goes_on_ ? 1 : 0);
     std::vector<std::string> to(ranks);
     for (std::size_t r = 0; r < ranks; ++r) {
       if (r == rank) continue;
-      const std::size_t columns = start[r + 1] - start[r];
+      const auto [begin, end] = f_.shares.of(r);
       base::Parcel sent;
-      sent.reserve(ended * columns * sizeof(double));
+      sent.reserve(ended * (end - begin) * sizeof(double));
       for (std::size_t band = first_; band < first_ + ended; ++band) {
-        sent.pass_range(sums_of(band) + start[r], columns);
+        sent.pass_range(sums_of(band) + begin, end - begin);
       }
       to[r] = sent.take_bytes();
     }
     std::vector<std::string> got = base::swap(all, std::move(to));
-    const bool all_here = rank == 0 || hears_ == base::Hears::All;
-    std::vector<double> total(all_here ? count_ : start[rank + 1] - start[rank]);
-    const std::span<double> mine(total.data() + (all_here ? start[rank] : 0),
-                                 start[rank + 1] - start[rank]);
+    std::vector<double> mine(own_.end - own_.begin);
     for (std::size_t r = 0; r < ranks; ++r) {
       base::Parcel theirs(std::move(got[r]));
       while (!theirs.at_end()) add_band(mine, theirs);
       for (std::size_t band = first_; r == rank && band < first_ + ended; ++band) {
-        const double* const sums = sums_of(band) + start[rank];
+        const double* const sums = sums_of(band) + own_.begin;
         for (std::size_t k = 0; k < mine.size(); ++k) mine[k] += sums[k];
       }
     }
-    for (std::size_t k = 0; k < mine.size(); ++k) mine[k] *= f_.column_scale[start[rank] + k];
-    if (hears_ == base::Hears::All) {
-      all.gather(total.data(), sizeof(double), start);
-    } else {
-      all.gather_at_first(total.data(), sizeof(double), start);
-    }
-    if (!all_here) base::release(total);
-    return total;
+    for (std::size_t k = 0; k < mine.size(); ++k) mine[k] *= f_.column_scale[own_.begin + k];
+    return mine;
   }
 
   static void add_band(std::span<double> total, base::Parcel& sums) {
@@ -136,7 +124,6 @@ class ColumnSums {
 
   const FormFactors& f_;
   Weight weight_;
-  base::Hears hears_;
   std::size_t count_;
   base::Shares::Range own_;
   std::size_t first_ = 0, last_ = bands;     // bands with rows here: [first_, last_)
@@ -145,9 +132,8 @@ class ColumnSums {
 };
 
 template <class Weight>
-[[nodiscard]] std::vector<double> weighted_column_sums(const FormFactors& f, Weight weight,
-                                                       base::Hears hears = base::Hears::All) {
-  return ColumnSums<Weight>(f, weight, hears).find();
+[[nodiscard]] std::vector<double> weighted_column_sums(const FormFactors& f, Weight weight) {
+  return ColumnSums<Weight>(f, weight).find();
 }
 
 }  // namespace earthshine::radiosity

@@ -126,13 +126,13 @@ std::size_t borrow_starved_columns(FormFactors& f, std::span<const double> area_
   constexpr double starved = 0.01;  // share of what a column should hold by its own row
   const std::vector<double> sums =
       weighted_column_sums(f, [&](std::size_t i) { return area_m2[i] * f.kept[i]; });
+  const base::Shares::Range own = f.shares.own(f.count());
   const auto reached = [&](std::size_t j) {
-    return sums[j] >= starved * area_m2[j] * (1.0 - f.sky[j] - f.black[j]);
+    return sums[j - own.begin] >= starved * area_m2[j] * (1.0 - f.sky[j] - f.black[j]);
   };
   NewHits borrowed(f, false);
   std::size_t patches = 0;
-  const auto [begin, end] = f.shares.own(f.count());
-  for (std::size_t j = begin; j < end; ++j) {
+  for (std::size_t j = own.begin; j < own.end; ++j) {
     if (reached(j) || f.row_start[j] == f.row_start[j + 1]) continue;
     ++patches;
     for (std::uint64_t e = f.row_start[j]; e < f.row_start[j + 1]; ++e) {

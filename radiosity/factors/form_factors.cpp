@@ -58,7 +58,7 @@ void join_rows(std::vector<Band>& bands, FormFactors& factors) {
       factors.back_hits[o] += band.back_hits[o];
     }
   }
-  if (divided) factors.shares = base::Shares(cost);
+  if (divided) factors.shares = base::Shares(cost, patches_a_sum(cost.size()));
   const auto [begin, end] = factors.shares.own(factors.count());
   std::size_t i = 0;
   for (const Band& band : bands) {

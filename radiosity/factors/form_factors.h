@@ -10,6 +10,8 @@
 // + transmit); a_j = 1 everywhere else.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -101,8 +103,14 @@ inline constexpr double balance_to_rounding = 1e-13;
 BalanceReport balance(FormFactors& factors, std::span<const double> area_m2,
                       double enough = balance_to_rounding);
 
-// y = F x for `columns` right-hand sides side by side (row-major, count x columns); y: of this
-// rank's own rows.
+// Sums over patches are taken in chunks of so many, one after the other, so that neither threads
+// nor ranks change a bit of them (base::Shares::ordered_sums).
+[[nodiscard]] constexpr std::size_t patches_a_sum(std::size_t count) {
+  return std::bit_floor(std::clamp<std::size_t>(count / 512, 1, 64));
+}
+
+// y = F x for `columns` right-hand sides side by side (row-major, rows x columns), both of this
+// rank's own rows; all ranks that divide the factors call it.
 void multiply(const FormFactors& factors, std::span<const double> x, std::span<double> y,
               std::size_t columns);
 

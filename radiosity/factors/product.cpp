@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // F x for many right-hand sides: the matrix is read once for up to 32 of them.
 #include <algorithm>
+#include <memory>
 
 #include "base/parallel.h"
 #include "radiosity/factors/form_factors.h"
@@ -13,19 +14,24 @@ using Lanes [[gnu::vector_size(lanes * sizeof(double))]] = double;
 
 constexpr std::size_t most_blocks = 8;  // of four columns, held in registers
 
-// x with its columns scaled by column_scale and padded to whole blocks, from column `first` on.
-std::vector<Lanes> packed(const FormFactors& factors, std::span<const double> x,
-                          std::size_t columns, std::size_t first, std::size_t blocks) {
+// x of all patches with its columns scaled by column_scale and padded to whole blocks, from column
+// `first` on. x: of own rows.
+std::unique_ptr<Lanes[]> packed(const FormFactors& factors, std::span<const double> x,
+                                std::size_t columns, std::size_t first, std::size_t blocks) {
   const std::size_t used = std::min(columns - first, blocks * lanes);
-  std::vector<Lanes> z(factors.count() * blocks);
-  base::parallel_chunks(factors.count(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t j = begin; j < end; ++j) {
+  const base::Shares::Range own = factors.shares.own(factors.count());
+  // What a thread writes first is near it.
+  auto z = std::make_unique_for_overwrite<Lanes[]>(factors.count() * blocks);
+  base::parallel_chunks(own.end - own.begin, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      const std::size_t j = own.begin + row;
       for (std::size_t c = 0; c < blocks * lanes; ++c) {
         z[j * blocks + c / lanes][c % lanes] =
-            c < used ? factors.column_scale[j] * x[j * columns + first + c] : 0.0;
+            c < used ? factors.column_scale[j] * x[row * columns + first + c] : 0.0;
       }
     }
   });
+  factors.shares.tell(z.get(), blocks);
   return z;
 }
 
@@ -81,9 +87,9 @@ void multiply(const FormFactors& factors, std::span<const double> x, std::span<d
   const base::Shares::Range own = factors.shares.own(factors.count());
   for (std::size_t first = 0; first < columns; first += most_blocks * lanes) {
     const std::size_t blocks = std::min((columns - first + lanes - 1) / lanes, most_blocks);
-    const std::vector<Lanes> z = packed(factors, x, columns, first, blocks);
+    const std::unique_ptr<Lanes[]> z = packed(factors, x, columns, first, blocks);
     base::parallel_chunks(own.end - own.begin, 256, [&](std::size_t begin, std::size_t end) {
-      multiply_blocks[blocks - 1](factors, z.data(), own.begin + begin, own.begin + end, columns,
+      multiply_blocks[blocks - 1](factors, z.get(), own.begin + begin, own.begin + end, columns,
                                   first, &y[begin * columns]);
     });
   }

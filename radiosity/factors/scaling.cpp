@@ -5,10 +5,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/free_memory.h"
 #include "base/parallel.h"
 #include "radiosity/factors/column_sums.h"
 #include "radiosity/factors/filled_hits.h"
-#include "radiosity/factors/matrix_free.h"
+#include "radiosity/factors/row_sums.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -17,40 +18,22 @@ constexpr double largest_scale = 1e6;
 
 }  // namespace
 
+template <class Value>
+double Scaling::sum_of(Value value) const {
+  return sums_over_rows(f_, 1, [&](std::size_t begin, std::size_t end, double* sum) {
+    for (std::size_t k = begin; k < end; ++k) sum[0] += value(k);
+  })[0];
+}
+
 Scaling::Scaling(FormFactors& factors, std::span<const double> area_m2)
     : f_(factors),
       area_m2_(area_m2),
       own_(factors.shares.own(factors.count())),
       raw_(factors.row_scale.begin() + static_cast<std::ptrdiff_t>(own_.begin),
            factors.row_scale.begin() + static_cast<std::ptrdiff_t>(own_.end)),
-      row_(factors.count(), 1.0),
+      row_(raw_.size(), 1.0),
       total_m2_(std::accumulate(area_m2.begin(), area_m2.end(), 0.0)) {
   update_sums();
-}
-
-Scaling::Task Scaling::say(Task task) const {
-  f_.shares.tell_all(&task, 1);
-  return task;
-}
-
-void Scaling::end() {
-  say(Task::End);
-  f_.shares.tell(row_.data());
-}
-
-void Scaling::serve() {
-  for (Task task = say(Task::End); task != Task::End; task = say(Task::End)) {
-    if (task == Task::Fill) {
-      fill_own_rows();
-    } else if (task == Task::CloseRows) {
-      f_.shares.tell_all(f_.column_scale.data(), f_.count());
-      close_own_rows();
-    } else {
-      std::vector<double> weighted(f_.count());
-      (void)own_response(weighted);
-    }
-  }
-  f_.shares.tell(row_.data());
 }
 
 void Scaling::start() {
@@ -59,62 +42,73 @@ void Scaling::start() {
 }
 
 std::size_t Scaling::fill() {
-  say(Task::Fill);
-  const std::size_t filled = fill_own_rows();
+  std::copy(raw_.begin(), raw_.end(),
+            f_.row_scale.begin() + static_cast<std::ptrdiff_t>(own_.begin));
+  const std::size_t filled = fill_both_ways(f_, area_m2_);
   start();
   return filled;
 }
 
-std::size_t Scaling::fill_own_rows() {
-  std::copy(raw_.begin(), raw_.end(),
-            f_.row_scale.begin() + static_cast<std::ptrdiff_t>(own_.begin));
-  return fill_both_ways(f_, area_m2_);
-}
-
 double Scaling::defect() const {
-  double sum = 0.0;
-  for (std::size_t j = 0; j < sums_.size(); ++j) sum += std::abs(sums_[j] - area_m2_[j]);
-  return total_m2_ > 0.0 ? sum / total_m2_ : 0.0;
+  if (total_m2_ <= 0.0) return 0.0;
+  return sum_of([&](std::size_t k) { return std::abs(sums_[k] - area_m2_[own_.begin + k]); }) /
+         total_m2_;
 }
 
 std::uint32_t Scaling::worst() const {
-  std::size_t worst = 0;
-  const auto defect = [&](std::size_t j) { return std::abs(sums_[j] - area_m2_[j]); };
-  for (std::size_t j = 1; j < sums_.size(); ++j) {
-    if (defect(j) > defect(worst)) worst = j;
+  struct Patch {
+    double defect = -1.0;
+    std::uint32_t number = 0;
+  } worst;
+  for (std::size_t k = 0; k < sums_.size(); ++k) {
+    const double defect = std::abs(sums_[k] - area_m2_[own_.begin + k]);
+    if (defect > worst.defect) worst = {defect, static_cast<std::uint32_t>(own_.begin + k)};
   }
-  return static_cast<std::uint32_t>(worst);
+  Patch of_all = f_.shares.divided() ? Patch() : worst;
+  f_.shares.hear([&](base::Parcel& parcel) { parcel.pass(worst); },
+                 [&](base::Parcel& parcel) {
+                   Patch theirs;
+                   parcel.pass(theirs);
+                   if (theirs.defect > of_all.defect) of_all = theirs;
+                 });
+  return of_all.number;
 }
 
 double Scaling::held() const {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < row_.size(); ++i) {
-    if (!keeps_its_own(f_, area_m2_, i)) continue;
-    sum += area_m2_[i] * f_.kept[i] * own_share * row_[i] * f_.column_scale[i];
-  }
-  return sum / total_m2_;
+  return sum_of([&](std::size_t k) {
+           const std::size_t i = own_.begin + k;
+           return keeps_its_own(f_, area_m2_, i)
+                      ? area_m2_[i] * f_.kept[i] * own_share * row_[k] * f_.column_scale[i]
+                      : 0.0;
+         }) /
+         total_m2_;
 }
 
 void Scaling::sweep() {
-  for (std::size_t j = 0; j < sums_.size(); ++j) {
-    if (sums_[j] > 0.0) scale_column(j, area_m2_[j] / sums_[j]);
+  for (std::size_t k = 0; k < sums_.size(); ++k) {
+    const std::size_t j = own_.begin + k;
+    if (sums_[k] > 0.0) scale_column(j, area_m2_[j] / sums_[k]);
   }
   close_rows();
 }
 
 int Scaling::newton_step(int most_passes) {
-  const std::vector<double> old_column = f_.column_scale;
+  const auto own = f_.column_scale.begin() + static_cast<std::ptrdiff_t>(own_.begin);
+  const std::vector<double> old_scales(own, own + static_cast<std::ptrdiff_t>(row_.size()));
   const double before = defect();
   std::vector<double> step;
   int passes = solve_for_step(step, most_passes);
-  const double largest = *std::max_element(
-      step.begin(), step.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  std::vector<double> largest = {0.0};
+  for (const double s : step) largest[0] = std::max(largest[0], std::abs(s));
+  keep_largest(f_.shares, largest);
   // Logarithms beyond this are outside of what first order says.
-  const double damping = std::min(1.0, 1.0 / std::max(1e-300, std::abs(largest)));
-  for (std::size_t j = 0; j < step.size(); ++j) scale_column(j, std::exp(damping * step[j]));
+  const double damping = std::min(1.0, 1.0 / std::max(1e-300, largest[0]));
+  for (std::size_t k = 0; k < step.size(); ++k) {
+    scale_column(own_.begin + k, std::exp(damping * step[k]));
+  }
   close_rows();
   if (!(defect() < before)) {
-    f_.column_scale = old_column;
+    std::copy(old_scales.begin(), old_scales.end(), own);
     close_rows();
     sweep();
   }
@@ -122,13 +116,8 @@ int Scaling::newton_step(int most_passes) {
 }
 
 void Scaling::close_rows() {
-  say(Task::CloseRows);
-  f_.shares.tell_all(f_.column_scale.data(), f_.count());
-  close_own_rows();
-}
-
-void Scaling::close_own_rows() {
-  base::parallel_chunks(own_.end - own_.begin, 1024, [&](std::size_t begin, std::size_t end) {
+  f_.shares.tell(f_.column_scale.data());
+  base::parallel_chunks(row_.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t i = own_.begin + k;
       double landed = 0.0;
@@ -137,20 +126,26 @@ void Scaling::close_own_rows() {
         landed += double(f_.hits[e]) * f_.kept[j] * f_.column_scale[j];
       }
       const double sum = landed * raw_[k] + seen(i);
-      row_[i] = sum > 0.0 ? 1.0 / sum : 1.0;
-      f_.row_scale[i] = raw_[k] * row_[i];
+      row_[k] = sum > 0.0 ? 1.0 / sum : 1.0;
+      f_.row_scale[i] = raw_[k] * row_[k];
     }
   });
   update_sums();
 }
 
 void Scaling::finish() {
-  const std::size_t parts = row_.empty() ? 0 : f_.sky_illuminance.size() / row_.size();
-  for (std::size_t i = 0; i < row_.size(); ++i) {
-    if (i < own_.begin || i >= own_.end) f_.row_scale[i] *= row_[i];
-    f_.sky[i] *= row_[i];
-    f_.black[i] *= row_[i];
-    for (std::size_t p = 0; p < parts; ++p) f_.sky_illuminance[i * parts + p] *= row_[i];
+  base::release(raw_);
+  base::release(sums_);
+  const std::size_t count = f_.count();
+  std::vector<double> row(count);
+  std::copy(row_.begin(), row_.end(), row.begin() + static_cast<std::ptrdiff_t>(own_.begin));
+  f_.shares.tell(row.data());
+  const std::size_t parts = f_.sky_illuminance.size() / count;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i < own_.begin || i >= own_.end) f_.row_scale[i] *= row[i];
+    f_.sky[i] *= row[i];
+    f_.black[i] *= row[i];
+    for (std::size_t p = 0; p < parts; ++p) f_.sky_illuminance[i * parts + p] *= row[i];
     f_.escape[i] *= f_.column_scale[i];
     f_.lost[i] *= f_.column_scale[i];
   }
@@ -162,70 +157,69 @@ void Scaling::scale_column(std::size_t j, double factor) {
 }
 
 void Scaling::update_sums() {
-  sums_ = weighted_column_sums(
-      f_, [&](std::size_t i) { return area_m2_[i] * f_.kept[i]; }, base::Hears::First);
-  for (std::size_t j = 0; j < sums_.size(); ++j) {
-    sums_[j] += area_m2_[j] * f_.column_scale[j] * seen(j);
+  sums_ = weighted_column_sums(f_, [&](std::size_t i) { return area_m2_[i] * f_.kept[i]; });
+  for (std::size_t k = 0; k < sums_.size(); ++k) {
+    const std::size_t j = own_.begin + k;
+    sums_[k] += area_m2_[j] * f_.column_scale[j] * seen(j);
   }
 }
 
 // The change of a_j * sums when the column scales' logarithms change by `step`.
 std::vector<double> Scaling::response(const std::vector<double>& step) const {
-  const std::size_t count = step.size();
-  std::vector<double> weighted(count);
-  for (std::size_t j = 0; j < count; ++j) weighted[j] = f_.kept[j] * step[j];
-  say(Task::Respond);
-  std::vector<double> change = own_response(weighted);
-  for (std::size_t j = 0; j < count; ++j) {
-    change[j] = f_.kept[j] * (sums_[j] * step[j] - change[j]);
+  std::vector<double> weighted(step.size()), rows(step.size());
+  for (std::size_t k = 0; k < step.size(); ++k) weighted[k] = f_.kept[own_.begin + k] * step[k];
+  multiply(f_, weighted, rows, 1);
+  std::vector<double> change = weighted_column_sums(
+      f_, [&](std::size_t i) { return area_m2_[i] * f_.kept[i] * rows[i - own_.begin]; });
+  for (std::size_t k = 0; k < step.size(); ++k) {
+    change[k] = f_.kept[own_.begin + k] * (sums_[k] * step[k] - change[k]);
   }
   return change;
-}
-
-// What the rows that are here add to the columns' sums, summed over the ranks at the first.
-// weighted: the first rank's.
-std::vector<double> Scaling::own_response(std::vector<double>& weighted) const {
-  f_.shares.tell_all(weighted.data(), weighted.size());
-  std::vector<double> rows(own_.end - own_.begin);
-  multiply(f_, weighted, rows, 1);
-  return weighted_column_sums(
-      f_, [&](std::size_t i) { return area_m2_[i] * f_.kept[i] * rows[i - own_.begin]; },
-      base::Hears::First);
 }
 
 // Conjugate gradients in units in which the diagonal is 1 (the diagonal as preconditioner); a patch
 // without one is left out. A tenth of the defect is left to the next step, which knows more.
 int Scaling::solve_for_step(std::vector<double>& step, int most_passes) const {
+  constexpr double left = 0.1;
   const std::size_t count = sums_.size();
-  Eigen::VectorXd unit(count), missing(count);
-  for (std::size_t j = 0; j < count; ++j) {
-    const double diagonal = f_.kept[j] * sums_[j];
-    unit[j] = diagonal > 0.0 ? 1.0 / std::sqrt(diagonal) : 0.0;
-    missing[j] = unit[j] * f_.kept[j] * (area_m2_[j] - sums_[j]);
+  std::vector<double> unit(count), missing(count), way(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t j = own_.begin + k;
+    const double diagonal = f_.kept[j] * sums_[k];
+    unit[k] = diagonal > 0.0 ? 1.0 / std::sqrt(diagonal) : 0.0;
+    missing[k] = unit[k] * f_.kept[j] * (area_m2_[j] - sums_[k]);
   }
-  int passes = 0;
-  bool broken = false;  // hits that have no scaling: further passes would bring nothing
-  std::vector<double> way(count);
-  const MatrixFree system(count, [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
-    if (broken || !(x.squaredNorm() > 0.0)) return x;  // Eigen begins with the product of 0
-    ++passes;
-    Eigen::Map<Eigen::VectorXd>(way.data(), x.size()) = unit.cwiseProduct(x);
-    const std::vector<double> change = response(way);
-    Eigen::VectorXd y =
-        unit.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(change.data(), x.size()));
-    broken = !(x.dot(y) > 0.0);
-    return y;
-  });
-  Eigen::ConjugateGradient<MatrixFree, Eigen::Lower | Eigen::Upper, Eigen::IdentityPreconditioner>
-      gradients;
-  gradients.compute(system);
-  gradients.setTolerance(0.1).setMaxIterations(most_passes);
-  const Eigen::VectorXd found = unit.cwiseProduct(gradients.solve(missing));
   step.assign(count, 0.0);
-  if (!broken && found.allFinite()) std::copy(found.begin(), found.end(), step.begin());
+  std::vector<double> along = missing;
+  double square = sum_of([&](std::size_t k) { return missing[k] * missing[k]; });
+  const double enough = left * left * square;
+  int passes = 0;
+  for (; passes < most_passes && square > enough; ++passes) {
+    for (std::size_t k = 0; k < count; ++k) way[k] = unit[k] * along[k];
+    std::vector<double> change = response(way);
+    for (std::size_t k = 0; k < count; ++k) change[k] *= unit[k];
+    const double curvature = sum_of([&](std::size_t k) { return along[k] * change[k]; });
+    if (!(curvature > 0.0)) {  // hits that have no scaling: further passes would bring nothing
+      std::fill(step.begin(), step.end(), 0.0);
+      ++passes;
+      break;
+    }
+    const double alpha = square / curvature;
+    for (std::size_t k = 0; k < count; ++k) {
+      step[k] += alpha * along[k];
+      missing[k] -= alpha * change[k];
+    }
+    const double before = square;
+    square = sum_of([&](std::size_t k) { return missing[k] * missing[k]; });
+    for (std::size_t k = 0; k < count; ++k) along[k] = missing[k] + square / before * along[k];
+  }
+  const bool finite =
+      sum_of([&](std::size_t k) { return std::isfinite(step[k]) ? 0.0 : 1.0; }) == 0.0;
+  for (std::size_t k = 0; k < count; ++k) step[k] = finite ? unit[k] * step[k] : 0.0;
   // A perfect mirror keeps nothing, so that no row feels its column's scale: it follows alone.
-  for (std::size_t j = 0; j < count; ++j) {
-    if (f_.kept[j] <= 0.0 && sums_[j] > 0.0) step[j] = std::log(area_m2_[j] / sums_[j]);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t j = own_.begin + k;
+    if (f_.kept[j] <= 0.0 && sums_[k] > 0.0) step[k] = std::log(area_m2_[j] / sums_[k]);
   }
   return passes;
 }

@@ -233,14 +233,14 @@ RanksCost ranks_cost(const Bill& bill, std::size_t columns, double pixels) {
     (alone ? cost.alone_s : cost.shared_s) += seconds;
   }
   for (const raytrace::RenderReport& report : bill.pictures) cost.shared_s += report.seconds;
-  // Of a patch: what a row found; in each sweep of the balance its column, and its sums in 16
-  // bands, at the end its row; in each iteration two products; four floats of the solution.
+  // Of a patch: what a row found; in each sweep of the balance what is multiplied, and its sums in
+  // 16 bands, at the end its row; in each iteration two products; four floats of the solution. What
+  // is multiplied goes in fours of columns.
   const auto patches = static_cast<double>(bill.solve.patches);
-  const double sweeps = bill.solve.balance.sweeps;
-  cost.bytes_to_all =
-      patches * (64.0 + 8.0 * (sweeps + 1.0) +
-                 16.0 * static_cast<double>(columns) * (double(bill.solve.iterations) + 1.0)) +
-      24.0 * pixels;
+  const double sweeps = bill.solve.balance.sweeps, fours = std::ceil(double(columns) / 4.0);
+  cost.bytes_to_all = patches * (64.0 + 32.0 * sweeps + 8.0 + 16.0 * double(columns) +
+                                 64.0 * fours * double(bill.solve.iterations)) +
+                      24.0 * pixels;
   // The entries come once from whoever cast them; where hits are filled in, once more, with their
   // rows.
   const double filling = bill.solve.balance.filled > 0 ? 12.0 : 0.0;

@@ -31,19 +31,19 @@ constexpr double patch_bytes = 8.0 + 4.0 + sizeof(radiosity::Cell) + 1.0 + 8.0;
 // backs, what is kept, what is open; per part of the sky its light. While they are cast also what
 // each row found.
 constexpr double row_bytes = 80.0, sky_bytes = 24.0, cast_bytes = 50.0;
-// While they are balanced: what all ranks have, and the first's vectors of Newton's step; sums of
-// columns in 16 bands, of which each rank has its own, has sent as much and got its columns'.
-constexpr double balance_bytes = 60.0, newton_bytes = 90.0, bands_bytes = 128.0;
+// While they are balanced: what all ranks have, and of its own patches the vectors of Newton's step;
+// sums of columns in 16 bands, of which each rank has its own, has sent as much and got its columns'.
+constexpr double balance_bytes = 48.0, newton_bytes = 90.0, bands_bytes = 128.0;
 constexpr double counter_bytes = 4.125;  // per patch and thread
 constexpr double entry_bytes = 8.0;      // column and hits
 // Bands of rows are joined to the matrix sixteenth by sixteenth. Ranks send them to one another,
 // and who was free more often has cast more of them than its part.
 constexpr double joined_copies = 1.0 + 1.0 / 16.0, sent_copies = 1.5;
-// Doubles per patch and column. Of the first rank while the linear system is solved: reflectance
-// and direct light, and thirteen vectors (linear_solve.h); after it exitance, radiosity and what
-// falls on it, and the four floats that are kept, of which each rank has two while they are filled.
-constexpr double light_vectors = 2.0, iteration_vectors = 13.0, filled_vectors = 7.0,
-                 told_vectors = 2.0;
+// Doubles per patch and column, of own rows: while the linear system is solved direct light and nine
+// vectors (linear_solve.h), and three of reflectance a row; after it exitance, radiosity and what
+// falls on it, which make room for the four floats that are kept, with every rank.
+constexpr double light_vectors = 1.0, iteration_vectors = 9.0, found_vectors = 4.0;
+constexpr double reflectance_bytes = 24.0;
 // While the solution's error is stated: two parts of the light, the solution, all as floats, and
 // what rays read of it. Bytes: of the first rank what samples found and what is known of patches,
 // of each the list of samples and what is under way; of a linear system of six columns.
@@ -65,8 +65,8 @@ double record_bytes(const MemoryCase& m) {
 // Bytes per patch of a linear solve, whose product packs its columns in fours.
 double solver_bytes(const MemoryCase& m, double columns) {
   const double packed = 4.0 * std::ceil(columns / 4.0);
-  return sizeof(double) *
-         (packed + columns * (m.first_rank ? iteration_vectors : 1.0 + 1.0 / m.ranks));
+  return sizeof(double) * (packed + columns * iteration_vectors / m.ranks) +
+         reflectance_bytes / m.ranks;
 }
 
 // Bytes per patch of the error over the surfaces, beside the matrix: light as samples and rays read
@@ -109,17 +109,15 @@ MemoryNeed memory_needed(const MemoryCase& m) {
     const double counters = patches * counter_bytes * m.threads;
     const double rows = patches * (row_bytes + sky_bytes * double(m.sky_parts)) + counters;
     const double bands = bands_bytes * (m.ranks > 1 ? 3.0 / m.ranks : 1.0);
-    const double newton = m.first_rank ? newton_bytes : 0.0;
     casting.parts.push_back({"form factors", entries * (m.ranks > 1 ? sent_copies : joined_copies) +
                                                  rows + patches * cast_bytes});
     balancing.parts.push_back({"form factors", entries * (m.copies_matrix ? 2.0 : 1.0) + rows +
-                                                   patches * (balance_bytes + newton + bands)});
-    const double doubles = patches * columns * sizeof(double);
+                                                   patches * (balance_bytes + newton_bytes / m.ranks + bands)});
+    const double own = columns * sizeof(double) / m.ranks, kept = columns * solution_bytes;
     solving.parts.push_back({"form factors", entries + rows});
     solving.parts.push_back(
-        {"light groups", std::max(patches * solver_bytes(m, columns) +
-                                      (m.first_rank ? light_vectors : 0.0) * doubles,
-                                  (m.first_rank ? filled_vectors : told_vectors) * doubles)});
+        {"light groups", patches * std::max({solver_bytes(m, columns) + light_vectors * own,
+                                             found_vectors * own, own + kept})});
     if (m.states_error) {
       stating.parts.push_back({"form factors", entries + counters});
       stating.parts.push_back({"light groups", patches * stating_bytes(m, columns)});

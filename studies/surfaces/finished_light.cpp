@@ -16,15 +16,18 @@ void LightOnSurfaces::close_energy(radiosity::PatchLight& found) const {
   constexpr double most = 0.2;  // off 1
   const std::size_t columns = light_.columns();
   std::vector<double> lit(columns, 0.0), ended(columns, 0.0);
+  const auto reflected = [&](std::size_t at) {
+    return found.reflectance[at / columns * 3 + at % 3];
+  };
   const auto known = [&](std::size_t at) {
-    return found.emitted[at] + found.reflectance[at] * found.direct[at];
+    return found.emitted[at] + reflected(at) * found.direct[at];
   };
   for (std::size_t i = 0; i < light_.count(); ++i) {
     const double area = patches().area_m2[i] * (open_share_.empty() ? 1.0 : open_share_[i]);
     const double gone = escape_[i] + lost_[i], kept = factors_.kept[coarse_[i]];
     for (std::size_t k = 0; k < columns; ++k) {
       const std::size_t at = i * columns + k;
-      const double rho = found.reflectance[at];
+      const double rho = reflected(at);
       lit[k] += area * known(at) * (1.0 - gone);
       ended[k] += area * found.indirect[at] * (kept - rho + rho * gone);
     }
@@ -36,7 +39,7 @@ void LightOnSurfaces::close_energy(radiosity::PatchLight& found) const {
     if (light_.solution.report.balance.balanced && std::abs(scale - 1.0) < most) {
       found.indirect[at] *= scale;
     }
-    found.radiosity[at] = known(at) + found.reflectance[at] * found.indirect[at];
+    found.radiosity[at] = known(at) + reflected(at) * found.indirect[at];
   }
 }
 
@@ -55,8 +58,8 @@ void LightOnSurfaces::fill(radiosity::Solution& solution) const {
   const std::size_t columns = light_.columns(), count = light_.count();
   const std::size_t parts = count > 0 ? light_.sky.size() / count : 0;
   radiosity::PatchLight found;
-  found.reflectance = radiosity::reflectances(scene_.scene, patches(), scene_.groups.count());
-  found.emitted = radiosity::exitances(scene_.scene, scene_.groups, patches());
+  found.reflectance = radiosity::reflectances(scene_.scene, patches(), {0, count});
+  found.emitted = radiosity::exitances(scene_.scene, scene_.groups, patches(), {0, count});
   found.direct.assign(light_.lamps.begin(), light_.lamps.end());
   found.indirect.assign(light_.gathered.begin(), light_.gathered.end());
   for (std::size_t i = 0; i < count * parts; ++i) {
@@ -79,7 +82,8 @@ void LightOnSurfaces::fill(radiosity::Solution& solution) const {
   ends.open = {open_share_, factors_.open.bodies};
   std::vector<double> backs;
   for (const auto& object : solution.report.objects) backs.push_back(object.back_share);
-  radiosity::fill_solution(scene_, ends, solution.report.balance.balanced, found, solution);
+  radiosity::fill_solution(scene_, ends, solution.report.balance.balanced, std::move(found),
+                           solution);
   for (std::size_t o = 0; o < backs.size(); ++o) solution.report.objects[o].back_share = backs[o];
 }
 

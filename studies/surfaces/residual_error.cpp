@@ -16,6 +16,8 @@ constexpr double sure = 1.5 * 1.645;
 constexpr std::size_t residual_columns = 6;  // three for either half of the samples
 constexpr double darkest = 0.02;             // of the mean that a solution has, that it should have
 
+double squared(double x) { return x * x; }
+
 Rgb at(const std::vector<double>& values, std::size_t first) {
   return {values[first], values[first + 1], values[first + 2]};
 }
@@ -50,7 +52,8 @@ ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& s
   std::vector<double> residual(count * residual_columns, 0.0);
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t k = 0; k < residual_columns; ++k) {
-      residual[i * residual_columns + k] = samples.residual[i].half[k / 3][static_cast<int>(k % 3)];
+      residual[i * residual_columns + k] =
+          double(samples.residual[i].half[k / 3][static_cast<int>(k % 3)]);
     }
   }
   const std::vector<double> brought = light.brought(std::move(residual), residual_columns);
@@ -58,6 +61,7 @@ ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& s
   for (std::uint32_t i = 0; i < count; ++i) {
     const PatchResidual& r = samples.residual[i];
     if (r.taken == 0) continue;
+    const std::array<Rgb, 2> half = {Rgb(r.half[0]), Rgb(r.half[1])};
     const double part = patches.area_m2[i] * r.taken / r.tried;  // what no body covers
     area += part;
     const Rgb rho = reflectances.of(patches, i);
@@ -67,15 +71,15 @@ ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& s
       b += Rgb(own[0], own[1], own[2]);
     }
     const double weight =
-        raytrace::error_weight(base::luminance(b + 0.5 * (r.half[0] + r.half[1])), mean);
+        raytrace::error_weight(base::luminance(b + 0.5 * (half[0] + half[1])), mean);
     const std::size_t j = light.coarse(i) * residual_columns;
     const double ga = weight * base::luminance(rho * at(brought, j)),
                  gb = weight * base::luminance(rho * at(brought, j + 3));
-    const double ra = weight * base::luminance(r.half[0]), rb = weight * base::luminance(r.half[1]);
-    square += part * (r.square + ra * gb + rb * ga + ga * gb);
+    const double ra = weight * base::luminance(half[0]), rb = weight * base::luminance(half[1]);
+    square += part * (double(r.square) + ra * gb + rb * ga + ga * gb);
     rays += part * noise.rays[i];
     lamps += part * noise.lamps[i];
-    variance += part * part * r.square_variance;
+    variance += squared(part * double(r.square_error));
     excess += part * 0.5 * (ra + rb + ga + gb) / std::max(1e-3, weight);
   }
   const double seen = light.mean_radiosity();
@@ -142,7 +146,7 @@ std::vector<double> ray_variance(const radiosity::Patches& patches, const Surfac
   double mean = 0.0, area = 0.0;
   for (std::size_t i = 0; i < variance.size(); ++i) {
     const PatchResidual& r = samples.residual[i];
-    variance[i] = r.mean_variance * 2.0 * r.taken * effort[i].rays;
+    variance[i] = double(r.mean_variance) * 2.0 * r.taken * effort[i].rays;
     mean += patches.area_m2[i] * variance[i];
     area += patches.area_m2[i];
   }
@@ -156,7 +160,8 @@ LightNoise noise_of(const LightOnSurfaces& light, const std::vector<double>& ray
   for (std::uint32_t i = 0; i < ray_variance.size(); ++i) {
     const PatchResidual& r = samples.residual[i];
     noise.rays.push_back(ray_variance[i] / std::max(1.0, light.gather_rays(i)));
-    noise.lamps.push_back(r.lamps_mean_variance * r.taken / std::max(1.0, light.lamp_points(i)));
+    noise.lamps.push_back(double(r.lamps_mean_variance) * r.taken /
+                          std::max(1.0, light.lamp_points(i)));
   }
   return noise;
 }
@@ -201,25 +206,27 @@ void ResidualSums::finish(double mean, PatchResidual& residual) {
     }
   }
   if (all.count == 0.0) return;
-  residual.square = products.sum / all.count;
-  residual.square_variance = products.variance();
-  residual.mean_square = all.unbiased();
-  residual.lamps_mean_square = lamps.unbiased();
+  const auto kept = [](double value) { return static_cast<float>(value); };
+  residual.square = kept(products.sum / all.count);
+  residual.square_error = kept(std::sqrt(products.variance()));
+  residual.mean_square = kept(all.unbiased());
+  residual.lamps_mean_square = kept(lamps.unbiased());
   const double n2 = all.count * all.count;
-  residual.mean_variance = apart / n2;
-  residual.lamps_mean_variance = lamps_apart / n2;
-  residual.along_s = std::max(0.0, s_step[0] * s_step[1] / n2);
-  residual.along_t = std::max(0.0, t_step[0] * t_step[1] / n2);
+  residual.mean_variance = kept(apart / n2);
+  residual.lamps_mean_variance = kept(lamps_apart / n2);
+  residual.along_s = kept(std::max(0.0, s_step[0] * s_step[1] / n2));
+  residual.along_t = kept(std::max(0.0, t_step[0] * t_step[1] / n2));
   // Every other of the points that are there.
+  std::array<Rgb, 2> half{Rgb(0.0), Rgb(0.0)};
   std::size_t k = 0;
   for (const Point& p : points_) {
     if (!p.placed) continue;
-    residual.half[k % 2] += 0.5 * (p.rgb[0] + p.rgb[1]);
+    half[k % 2] += 0.5 * (p.rgb[0] + p.rgb[1]);
     half_count[k % 2] += 1.0;
     ++k;
   }
-  for (std::size_t half = 0; half < 2; ++half) {
-    if (half_count[half] > 0.0) residual.half[half] /= half_count[half];
+  for (std::size_t h = 0; h < 2; ++h) {
+    if (half_count[h] > 0.0) residual.half[h] = glm::vec3(half[h] / half_count[h]);
   }
 }
 

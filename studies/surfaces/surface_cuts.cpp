@@ -36,10 +36,10 @@ void CutChoice::see(const radiosity::Patches& patches, const SurfaceSamples& sam
     Uneven& u = uneven_[i];
     u = {};
     if (r.taken < 2) continue;
-    const double within = r.square - (noise.empty() ? 0.0 : noise[i]);
-    if (within <= clear * std::sqrt(r.square_variance)) continue;
+    const double within = double(r.square) - (noise.empty() ? 0.0 : noise[i]);
+    if (within <= clear * double(r.square_error)) continue;
     const double part = patches.area_m2[i] / area_m2_;
-    u = {part * within, part * r.along_s, part * r.along_t};
+    u = {part * within, part * double(r.along_s), part * double(r.along_t)};
   }
 }
 

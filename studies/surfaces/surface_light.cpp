@@ -30,11 +30,14 @@ LightOnSurfaces::LightOnSurfaces(const scenes::World& scene, radiosity::Solution
   const std::vector<bool> is_explicit = radiosity::emitter_is_explicit(scene.scene);
   coarse_.resize(count);
   std::iota(coarse_.begin(), coarse_.end(), 0U);
+  coarse_reflectance_ = radiosity::reflectances(scene.scene, patches, factors_.shares.own(count));
   for (std::uint32_t i = 0; i < count; ++i) {
-    coarse_reflectance_.push_back(reflectances_.of(patches, i));
     emitted_.push_back(is_explicit[patches.material(i)]
                            ? Rgb(0.0)
                            : radiosity::patch_emit(scene.scene, patches, i));
+  }
+  if (std::all_of(emitted_.begin(), emitted_.end(), [](const Rgb& m) { return m == Rgb(0.0); })) {
+    base::release(emitted_);
   }
   lamp_points_.assign(count, radiosity::DirectOptions{}.points_per_patch);
   gather_rays_.assign(count, 0.5 * rays);
@@ -62,8 +65,7 @@ LightOnSurfaces::LightOnSurfaces(const scenes::World& scene, radiosity::Solution
 }
 
 void LightOnSurfaces::keep_what_samples_read() {
-  for (std::vector<Rgb>* const unread :
-       {&emitted_, &coarse_reflectance_, &light_.sky, &factors_.kept_direct}) {
+  for (std::vector<Rgb>* const unread : {&emitted_, &light_.sky, &factors_.kept_direct}) {
     base::release(*unread);
   }
   for (std::vector<double>* const unread :
@@ -86,7 +88,7 @@ void LightOnSurfaces::sum_up() {
     for (std::size_t k = 0; k < columns; ++k) {
       const std::size_t at = i * columns + k;
       const auto c = static_cast<int>(k % 3);
-      const double emitted = k / 3 == group ? emitted_[coarse_[i]][c] : 0.0;
+      const double emitted = k / 3 == group && !emitted_.empty() ? emitted_[coarse_[i]][c] : 0.0;
       b[at] = static_cast<float>(emitted +
                                  rho[c] * (double(light_.lamps[at]) + double(light_.gathered[at])));
     }
@@ -116,32 +118,40 @@ double LightOnSurfaces::told_mean() const {
 
 std::vector<double> LightOnSurfaces::brought(std::vector<double> residual,
                                              std::size_t columns) const {
-  std::vector<double> source, rho;
-  if (factors_.shares.joins()) find_source(residual, columns, source, rho);
+  const base::Shares& shares = factors_.shares;
+  const auto [begin, end] = shares.own(factors_.count());
+  std::vector<double> source(shares.joins() ? 0 : (end - begin) * columns);
+  if (shares.joins()) source = means_of(residual, columns);
   base::release(residual);
-  return radiosity::solve_linear(factors_, std::move(source), rho, columns, of_the_error).fx;
+  shares.tell_own(source.data(), columns);
+  source.resize((end - begin) * columns);
+  source.shrink_to_fit();
+  std::vector<double> found = radiosity::solve_linear(factors_, std::move(source),
+                                                      coarse_reflectance_, columns, of_the_error)
+                                  .fx;
+  if (shares.joins()) found.resize(factors_.count() * columns);
+  shares.tell_first(found.data(), columns);
+  return found;
 }
 
-// Per coarse patch and column: means of a residual, and what reflects it.
-void LightOnSurfaces::find_source(const std::vector<double>& residual, std::size_t columns,
-                                  std::vector<double>& source, std::vector<double>& rho) const {
+// Per coarse patch and column: means of a residual.
+std::vector<double> LightOnSurfaces::means_of(const std::vector<double>& residual,
+                                              std::size_t columns) const {
   const std::size_t coarse = factors_.count();
-  std::vector<double> area(coarse, 0.0);
-  source.assign(coarse * columns, 0.0);
-  rho.resize(coarse * columns);
+  std::vector<double> area(coarse, 0.0), mean(coarse * columns, 0.0);
   for (std::size_t i = 0; i < light_.count(); ++i) {
     const double part = patches().area_m2[i] * (open_share_.empty() ? 1.0 : open_share_[i]);
     area[coarse_[i]] += part;
     for (std::size_t k = 0; k < columns; ++k) {
-      source[coarse_[i] * columns + k] += part * residual[i * columns + k];
+      mean[coarse_[i] * columns + k] += part * residual[i * columns + k];
     }
   }
   for (std::size_t j = 0; j < coarse; ++j) {
     for (std::size_t k = 0; k < columns; ++k) {
-      source[j * columns + k] = area[j] > 0.0 ? source[j * columns + k] / area[j] : 0.0;
-      rho[j * columns + k] = coarse_reflectance_[j][static_cast<int>(k % 3)];
+      mean[j * columns + k] = area[j] > 0.0 ? mean[j * columns + k] / area[j] : 0.0;
     }
   }
+  return mean;
 }
 
 void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std::uint32_t> which,

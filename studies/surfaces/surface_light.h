@@ -55,17 +55,17 @@ class LightOnSurfaces {
   void sum_up();
   void keep_what_samples_read();
   void fill(radiosity::Solution& solution) const;
-  void find_source(const std::vector<double>& residual, std::size_t columns,
-                   std::vector<double>& source, std::vector<double>& rho) const;
+  [[nodiscard]] std::vector<double> means_of(const std::vector<double>& residual,
+                                             std::size_t columns) const;
   void close_energy(radiosity::PatchLight& found) const;
 
   scenes::World scene_;
   SurfaceLight light_;
   radiosity::FormFactors factors_;
   radiosity::PatchAlbedos reflectances_;
-  std::vector<Rgb> emitted_;             // per coarse patch, through form factors
-  std::vector<std::uint32_t> coarse_;    // per patch
-  std::vector<Rgb> coarse_reflectance_;  // per coarse patch
+  std::vector<Rgb> emitted_;                // per coarse patch, through form factors; empty: none
+  std::vector<std::uint32_t> coarse_;       // per patch
+  std::vector<double> coarse_reflectance_;  // per own coarse row and colour
   std::vector<double> lamp_points_, gather_rays_, open_share_;  // per patch
   std::vector<double> escape_, lost_;  // per patch: shares of what leaves it
 };

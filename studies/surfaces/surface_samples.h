@@ -41,13 +41,14 @@ struct Effort {
 
 // Of one patch. r as luminance of the radiosity, lm/m^2, times error_weight() at the point.
 struct PatchResidual {
-  int tried = 0, taken = 0;                    // points; some may be covered
-  double square = 0.0, square_variance = 0.0;  // mean of r^2 over the patch
-  double mean_square = 0.0;                    // of r's mean, without its noise
-  double mean_variance = 0.0;                  // of the mean of the taken points, due to rays
-  double lamps_mean_square = 0.0, lamps_mean_variance = 0.0;  // of S's part of r
-  double along_s = 0.0, along_t = 0.0;          // of r^2, what halving the patch takes away
-  std::array<Rgb, 2> half{Rgb(0.0), Rgb(0.0)};  // means of r, not weighted, of every other point
+  std::uint16_t tried = 0, taken = 0;        // points; some may be covered
+  float square = 0.0F, square_error = 0.0F;  // mean of r^2 over the patch, and its standard error
+  float mean_square = 0.0F;                  // of r's mean, without its noise
+  float mean_variance = 0.0F;                // of the mean of the taken points, due to rays
+  float lamps_mean_square = 0.0F, lamps_mean_variance = 0.0F;  // of S's part of r
+  float along_s = 0.0F, along_t = 0.0F;  // of r^2, what halving the patch takes away
+  // Means of r, not weighted, of every other point.
+  std::array<glm::vec3, 2> half{glm::vec3(0.0F), glm::vec3(0.0F)};
 };
 
 struct SurfaceSamples {

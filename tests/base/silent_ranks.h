@@ -24,6 +24,7 @@ class Silent : public base::Ranks {
   [[nodiscard]] std::string receive(int) override { throw std::logic_error("asked"); }
   void gather(void*, std::size_t, const std::vector<std::size_t>&) override { FAIL(); }
   void gather_at_first(void*, std::size_t, const std::vector<std::size_t>&) override { FAIL(); }
+  void scatter_from_first(void*, std::size_t, const std::vector<std::size_t>&) override { FAIL(); }
   [[nodiscard]] std::size_t take() override { throw std::logic_error("asked"); }
   void end_of_taking() override { FAIL(); }
   [[noreturn]] void end_all(int) override { throw std::logic_error("ended"); }

@@ -13,9 +13,8 @@ RANKS = (1, 2, 4, 8, 16, 64, 256, 1024, 4096)
 
 
 # One thread's seconds, of a profile of `solve` with 493083 patches (docs/scaling.md): of an entry in a pass of columns' sums; of a
-# patch in a sweep and of a patch and column in a product, in vectors of the first rank, for which the others wait; of a patch in files
-# and tables.
-SUM_S, SWEEP_S, PRODUCT_S, PATCH_S = 1.54e-9, 22e-9, 13e-9, 5.9e-6
+# patch in files and tables.
+SUM_S, PATCH_S = 1.54e-9, 5.9e-6
 
 
 @dataclasses.dataclass
@@ -36,23 +35,23 @@ class Case:
 
     @property
     def alone(self):
-        return self.patches * (SWEEP_S * self.sweeps + PRODUCT_S * self.columns * self.products + PATCH_S)
+        return self.patches * PATCH_S
 
 
 def exchange(case, ranks, bytes_per_s, message_s):
-    """Seconds: bytes that come to a rank, and messages one after another. A gather goes round a ring, a swap to each, a broadcast
-    down a tree."""
+    """Seconds: bytes that come to a rank, and messages one after another. A gather goes round a ring, a swap to each."""
     if ranks == 1:
         return 0.0
     others = ranks - 1
     entries = (8 + (12 if case.filled else 0)) * case.entries / ranks
-    # What rows found; column scales, or Newton's way, in each sweep; row scales at the end; what each product is of, or for the first
-    # rank the product; four floats a patch and column of the solution.
-    to_all = case.patches * (64 + 8 * case.sweeps + 8 + 8 * case.columns * case.products + 16 * case.columns)
+    # What rows found; in each sweep what is multiplied; row scales at the end; what each product is of, in fours of columns; four
+    # floats a patch and column of the solution. Sums in chunks of 64 patches.
+    to_all = case.patches * (64 + 32 * case.sweeps + 8 + 32 * math.ceil(case.columns / 4) * case.products + 16 * case.columns
+                             + 8 / 64 * (2 * case.sweeps + 5 / 2 * case.products))
     sums = case.patches * 8 * case.sweeps * max(1.0, BANDS / ranks, ranks / BANDS)  # in turn within a band
     messages = (16 * 2 * others  # rows to their ranks
-                + case.sweeps * (3 + 2) * others + case.sweeps * max(0, ranks / BANDS - 1)
-                + case.products * (others + 2 * math.log2(ranks))  # rows to the first, which has sent x and that more is to come
+                + case.sweeps * (2 + 2) * others + case.sweeps * max(0, ranks / BANDS - 1)
+                + case.products * (1 + 1.5) * others  # what is multiplied; three times sums in two products
                 + 10 * ranks * math.log2(ranks))  # loops after which each rank speaks in turn
     return (entries + to_all + sums) / bytes_per_s + messages * message_s
 

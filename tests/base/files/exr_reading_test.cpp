@@ -153,7 +153,7 @@ TEST(ExrReading, FirstPartOfAMultiPartFileIsThePicture) {
 
 TEST(ExrReading, DeepSubsampledAndOversizedFilesAreRefusedByName) {
   const TemporaryFolder folder;
-  const auto header_only = [&](Imf::Header header) {  // the file is left without pixels
+  const auto header_only = [&](const Imf::Header& header) {  // the file is left without pixels
     Imf::OutputFile file((folder / "a.exr").c_str(), header);
   };
   const auto message = [&] {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -49,6 +50,73 @@ TEST(Shares, RanksHaveAsMuchCostEachToWithinTheDearestItem) {
       EXPECT_NEAR(held, all / count, dearest * (1.0 + 1e-12));
     }
     EXPECT_EQ(end, cost.size());
+  }
+}
+
+TEST(Shares, RangesBeginAtMultiplesOfTheGrain) {
+  // 103 items of one cost in grains of 8, 12 whole ones and 7 items: each end is off its place, k /
+  // R of them, by half a grain at most.
+  const std::vector<double> cost(103, 1.0);
+  for (const int count : {2, 3, 5, 8, 64}) {
+    std::size_t end = 0;
+    for (int rank = 0; rank < count; ++rank) {
+      Silent silent(rank, count);
+      const RanksInForce in_force(&silent);
+      const Shares::Range range = Shares(cost, 8).own(cost.size());
+      EXPECT_EQ(range.begin, end);
+      EXPECT_TRUE(range.begin % 8 == 0 || range.begin == cost.size()) << range.begin;
+      EXPECT_NEAR(double(range.begin), 103.0 * rank / count, 4.0);
+      end = range.end;
+    }
+    EXPECT_EQ(end, cost.size());
+  }
+}
+
+// One of some ranks of which each has the numbers 1 / (1 + k) for its items k.
+class OneOfSome : public Silent {
+ public:
+  using Silent::Silent;
+  // The others' chunks: what they would have said is worked out.
+  void gather(void* items, std::size_t bytes_each, const std::vector<std::size_t>& start) override {
+    ASSERT_EQ(bytes_each, 2 * sizeof(double));
+    auto* const parts = static_cast<double*>(items);
+    const auto mine = static_cast<std::size_t>(number());
+    for (std::size_t chunk = 0; chunk < start.back(); ++chunk) {
+      const bool is_here = chunk >= start[mine] && chunk < start[mine + 1];
+      double sums[2] = {0.0, 0.0};
+      add(chunk * 4, std::min<std::size_t>(items_, chunk * 4 + 4), sums);
+      for (int k = 0; k < 2; ++k) {
+        EXPECT_EQ(parts[2 * chunk + std::size_t(k)], is_here ? sums[k] : 0.0);
+        parts[2 * chunk + std::size_t(k)] = sums[k];
+      }
+    }
+  }
+  static void add(std::size_t begin, std::size_t end, double* sums) {
+    for (std::size_t k = begin; k < end; ++k) {
+      sums[0] += 1.0 / (1.0 + double(k));
+      sums[1] += double(k);
+    }
+  }
+  static constexpr std::size_t items_ = 1002;
+};
+
+TEST(Shares, OrderedSumsHaveTheSameBitsOnAnyNumberOfRanks) {
+  // 1 + 1/2 + ... + 1/1002 is rounded at every addition; adding it up from the other end, or
+  // without chunks, has another last digit.
+  const auto sums = [](int rank, int count) {
+    OneOfSome one(rank, count);
+    const RanksInForce in_force(count > 1 ? &one : nullptr);
+    const Shares shares(std::vector<double>(OneOfSome::items_, 1.0), 4);
+    return shares.ordered_sums(OneOfSome::items_, 4, 2, OneOfSome::add);
+  };
+  const std::vector<double> alone = sums(0, 1);
+  EXPECT_NEAR(alone[0], std::log(1002.0) + 0.5772156649 + 0.5 / 1002.0, 1e-6);
+  EXPECT_EQ(alone[1], 1001.0 * 1002.0 / 2.0);
+  double plain[2] = {0.0, 0.0};
+  OneOfSome::add(0, OneOfSome::items_, plain);
+  EXPECT_NE(alone[0], plain[0]);
+  for (const int count : {2, 3, 7}) {
+    for (int rank = 0; rank < count; ++rank) EXPECT_EQ(sums(rank, count), alone) << rank;
   }
 }
 

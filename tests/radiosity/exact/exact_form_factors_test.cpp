@@ -18,7 +18,7 @@ struct Made {
   Patches patches;
   ExactFormFactors exact;
 
-  [[nodiscard]] double F(std::size_t i, std::size_t j) const {
+  [[nodiscard]] double form_factor(std::size_t i, std::size_t j) const {
     const FormFactors& f = exact.factors;
     for (std::uint64_t e = f.row_start[i]; e < f.row_start[i + 1]; ++e) {
       if (f.column[e] == j) return f.row_scale[i] * double(f.hits[e]);
@@ -70,8 +70,8 @@ TEST(ExactFormFactors, ARoomOfWholeFacesIsExactHereAndAMillionMetresAway) {
     builder.room({m, m, m, m, m, m});
     for (Vec3& v : builder.scene.vertices) v += Vec3(away, -away, away);
     const Made made = make(builder.scene, whole);
-    EXPECT_NEAR(made.F(0, 2), 0.2000437760754, 1e-7) << away;
-    EXPECT_NEAR(made.F(4, 5), 0.19982489569838, 1e-7) << away;
+    EXPECT_NEAR(made.form_factor(0, 2), 0.2000437760754, 1e-7) << away;
+    EXPECT_NEAR(made.form_factor(4, 5), 0.19982489569838, 1e-7) << away;
     EXPECT_LT(made.exact.report.max_closed_defect, 1e-6) << away;
   }
 }
@@ -88,13 +88,13 @@ TEST(ExactFormFactors, BlockersAtHalfHeightTakeTheirExactShare) {
     builder.plate(m, 1.0, 1.0, false);
     builder.plate(thin, side[k], 0.5, true);
     const Made made = make(builder.scene, whole);
-    EXPECT_NEAR(made.F(0, 1), exact[k], 1e-5) << side[k];
+    EXPECT_NEAR(made.form_factor(0, 1), exact[k], 1e-5) << side[k];
     // Cut into 4 x 4 patches each, the mean over the patches is the same. A sheet's front faces up,
     // its patches follow those of the plates.
     const Made cut = make(builder.scene, 0.25);
     double sum = 0.0;
     for (std::size_t i = 0; i < 16; ++i) {
-      for (std::size_t j = 16; j < 32; ++j) sum += cut.F(i, j) / 16.0;
+      for (std::size_t j = 16; j < 32; ++j) sum += cut.form_factor(i, j) / 16.0;
     }
     EXPECT_NEAR(sum, exact[k], 1e-5) << side[k];
   }
@@ -116,7 +116,7 @@ TEST(ExactFormFactors, ATiltedBlockerHidesWhatRaysSayItHides) {
   for (std::size_t i = 0; i < cast.count(); ++i) {
     for (std::uint64_t e = cast.row_start[i]; e < cast.row_start[i + 1]; ++e) {
       const double f = double(cast.hits[e]) * cast.row_scale[i];
-      EXPECT_NEAR(made.F(i, cast.column[e]), f, 4.0 * std::sqrt(f * (1.0 - f) / rays));
+      EXPECT_NEAR(made.form_factor(i, cast.column[e]), f, 4.0 * std::sqrt(f * (1.0 - f) / rays));
     }
   }
   EXPECT_GT(made.exact.report.counts.partly_hidden, 0U);
@@ -174,8 +174,8 @@ TEST(ExactFormFactors, ExchangesAreReciprocalToSinglePrecision) {
   const Made made = make(cut.scene, cut.patches, {.tolerance = 1e-7});
   for (std::size_t i = 0; i < cut.patches.count(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const double there = cut.patches.area_m2[i] * made.F(i, j);
-      EXPECT_NEAR(there, cut.patches.area_m2[j] * made.F(j, i), 1e-6 * there);
+      const double there = cut.patches.area_m2[i] * made.form_factor(i, j);
+      EXPECT_NEAR(there, cut.patches.area_m2[j] * made.form_factor(j, i), 1e-6 * there);
     }
   }
 }
@@ -188,11 +188,11 @@ TEST(ExactFormFactors, BothSidesOfASheetSeeTheirOwnHalfOfTheRoom) {
   builder.room({m, m, m, m, m, m});
   builder.quad(thin, {0, 0, 0.5}, {1, 0, 0.5}, {1, 1, 0.5}, {0, 1, 0.5});
   const Made made = make(builder.scene, whole);
-  EXPECT_NEAR(made.F(6, 5), 0.41525328357715, 1e-7);
-  EXPECT_NEAR(made.F(7, 4), 0.41525328357715, 1e-7);
-  EXPECT_EQ(made.F(6, 4), 0.0);
-  EXPECT_EQ(made.F(6, 7), 0.0);
-  EXPECT_EQ(made.F(4, 5), 0.0);
+  EXPECT_NEAR(made.form_factor(6, 5), 0.41525328357715, 1e-7);
+  EXPECT_NEAR(made.form_factor(7, 4), 0.41525328357715, 1e-7);
+  EXPECT_EQ(made.form_factor(6, 4), 0.0);
+  EXPECT_EQ(made.form_factor(6, 7), 0.0);
+  EXPECT_EQ(made.form_factor(4, 5), 0.0);
   EXPECT_LT(made.exact.report.max_closed_defect, 2e-5);
 }
 
@@ -253,7 +253,7 @@ TEST(ExactFormFactors, AWallThroughTheFloorCountsWithItsUpperPart) {
   const std::uint32_t m = builder.material(tests::grey(0.5));
   builder.quad(m, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
   builder.quad(m, {0, 0, -1}, {0, 1, -1}, {0, 1, 1}, {0, 0, 1});
-  EXPECT_NEAR(make(builder.scene, whole).F(0, 1), 0.2000437760754, 1e-7);
+  EXPECT_NEAR(make(builder.scene, whole).form_factor(0, 1), 0.2000437760754, 1e-7);
 }
 
 TEST(ExactFormFactors, SameBytesOnOneAndTwoThreads) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the lines of an MTL file become.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/files/png_file.h"

@@ -75,7 +75,7 @@ TEST(SurfaceResidual, OfAFurnaceIsZeroToRounding) {
   const LightOnSurfaces light = furnace.light();
   const SurfaceSamples samples = sampled(furnace, light, 1024.0);
   for (const PatchResidual& r : samples.residual) {
-    EXPECT_LT(std::abs(base::luminance(r.half[0])), 1e-5 * 20.0);
+    EXPECT_LT(std::abs(base::luminance(Rgb(r.half[0]))), 1e-5 * 20.0);
     EXPECT_LT(std::abs(r.square), 1e-10 * 400.0);
   }
   const SurfaceError error = surface_error(furnace.study(), furnace.solution, furnace.options);
