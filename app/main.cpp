@@ -217,7 +217,8 @@ void end_by_signal(int signal) {
 }
 
 void take_signals() {
-  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported where it is written to
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported where it is written to,
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows beyond `ulimit -f` likewise
   std::set_terminate(end_by_exception);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     // Whoever started the program may have it ignore a signal, as nohup does.

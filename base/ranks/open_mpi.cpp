@@ -26,23 +26,23 @@ constexpr std::uint64_t most_at_once = 1U << 30U;
 class OpenMpi : public Ranks {
  public:
   OpenMpi() {
-    MPI_Comm_rank(MPI_COMM_, &number_);
-    MPI_Comm_size(MPI_COMM_, &count_);
+    MPI_Comm_rank(MPI_COMM_WORLD, &number_);
+    MPI_Comm_size(MPI_COMM_WORLD, &count_);
     MPI_Comm here = MPI_COMM_NULL;
-    MPI_Comm_split_type(MPI_COMM_, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
     MPI_Comm_size(here, &count_here_);
     MPI_Allreduce(&number_, &lowest_here_, 1, MPI_INT, MPI_MIN, here);
     MPI_Comm_free(&here);
     const MPI_Aint bytes = number_ == 0 ? 2 * sizeof(std::uint64_t) : 0;
     std::uint64_t* counters = nullptr;
-    MPI_Comm_set_errhandler(MPI_COMM_, MPI_ERRORS_RETURN);
-    int problem = MPI_Win_allocate(bytes, sizeof(std::uint64_t), MPI_INFO_NULL, MPI_COMM_,
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+    int problem = MPI_Win_allocate(bytes, sizeof(std::uint64_t), MPI_INFO_NULL, MPI_COMM_WORLD,
                                    static_cast<void*>(&counters), &window_);
-    MPI_Comm_set_errhandler(MPI_COMM_, MPI_ERRORS_ARE_FATAL);
-    MPI_Allreduce(MPI_IN_PLACE, &problem, 1, MPI_INT, MPI_MAX, MPI_COMM_);
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_ARE_FATAL);
+    MPI_Allreduce(MPI_IN_PLACE, &problem, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
     if (problem != MPI_SUCCESS) refuse_window();
     if (number_ == 0) std::fill_n(counters, 2, 0);
-    MPI_Barrier(MPI_COMM_);
+    MPI_Barrier(MPI_COMM_WORLD);
     MPI_Win_lock_all(MPI_MODE_NOCHECK, window_);
   }
   ~OpenMpi() override {
@@ -61,8 +61,9 @@ class OpenMpi : public Ranks {
   [[nodiscard]] bool first_is_here() const override { return lowest_here_ == 0; }
 
   void broadcast(void* first, std::size_t bytes, int from) override {
-    in_pieces(first, bytes,
-              [&](char* piece, int count) { MPI_Bcast(piece, count, MPI_BYTE, from, MPI_COMM_); });
+    in_pieces(first, bytes, [&](char* piece, int count) {
+      MPI_Bcast(piece, count, MPI_BYTE, from, MPI_COMM_WORLD);
+    });
   }
 
   void send(std::string bytes, int to) override {
@@ -76,19 +77,19 @@ class OpenMpi : public Ranks {
     Sent& sent = sent_.emplace_back();
     sent.size = bytes.size();
     sent.bytes = std::move(bytes);
-    MPI_Isend(&sent.size, 1, MPI_UINT64_T, to, 0, MPI_COMM_, &sent.requests.emplace_back());
+    MPI_Isend(&sent.size, 1, MPI_UINT64_T, to, 0, MPI_COMM_WORLD, &sent.requests.emplace_back());
     in_pieces(sent.bytes.data(), sent.size, [&](char* first, int count) {
-      MPI_Isend(first, count, MPI_BYTE, to, 0, MPI_COMM_, &sent.requests.emplace_back());
+      MPI_Isend(first, count, MPI_BYTE, to, 0, MPI_COMM_WORLD, &sent.requests.emplace_back());
     });
   }
 
   [[nodiscard]] std::string receive(int from) override {
     const std::lock_guard alone(speaking_);
     std::uint64_t size = 0;
-    MPI_Recv(&size, 1, MPI_UINT64_T, from, 0, MPI_COMM_, MPI_STATUS_IGNORE);
+    MPI_Recv(&size, 1, MPI_UINT64_T, from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
     std::string bytes(size, '\0');
     in_pieces(bytes.data(), size, [&](char* first, int count) {
-      MPI_Recv(first, count, MPI_BYTE, from, 0, MPI_COMM_, MPI_STATUS_IGNORE);
+      MPI_Recv(first, count, MPI_BYTE, from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
     });
     return bytes;
   }
@@ -96,7 +97,7 @@ class OpenMpi : public Ranks {
   void gather(void* items, std::size_t bytes_each, const std::vector<std::size_t>& start) override {
     const Division division(bytes_each, start);
     MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, items, division.counts.data(),
-                   division.begins.data(), division.item, MPI_COMM_);
+                   division.begins.data(), division.item, MPI_COMM_WORLD);
   }
 
   void gather_at_first(void* items, std::size_t bytes_each,
@@ -104,7 +105,7 @@ class OpenMpi : public Ranks {
     const Division division(bytes_each, start);
     MPI_Gatherv(number_ == 0 ? MPI_IN_PLACE : items,
                 division.counts[static_cast<std::size_t>(number_)], division.item, items,
-                division.counts.data(), division.begins.data(), division.item, 0, MPI_COMM_);
+                division.counts.data(), division.begins.data(), division.item, 0, MPI_COMM_WORLD);
   }
 
   void scatter_from_first(void* items, std::size_t bytes_each,
@@ -126,7 +127,7 @@ class OpenMpi : public Ranks {
   }
 
   [[noreturn]] void end_all(int exit_code) override {
-    MPI_Abort(MPI_COMM_, exit_code);
+    MPI_Abort(MPI_COMM_WORLD, exit_code);
     std::_Exit(exit_code);
   }
 
@@ -166,7 +167,7 @@ class OpenMpi : public Ranks {
 
   // The first speaks for all, and the others wait to be ended with it.
   [[noreturn]] void refuse_window() const {
-    if (number_ > 0) MPI_Barrier(MPI_COMM_);
+    if (number_ > 0) MPI_Barrier(MPI_COMM_WORLD);
     const char* const allowed = std::getenv(components);
     throw Error(Blame::Work, "Open MPI", "has no component osc for these machines",
                 std::string("allowed are ") + (allowed == nullptr ? "its own" : allowed),

@@ -2,6 +2,7 @@
 """What is written, and what is left alone when something goes wrong."""
 import os
 import pty
+import resource
 import signal
 import struct
 import subprocess
@@ -109,6 +110,15 @@ class Output(program.Case):
                 run = self.run_program(*call, capture_output=False, stdout=full, stderr=subprocess.PIPE)
                 self.assertEqual(run.returncode, 1)
                 self.assertIn("standard output", run.stderr)
+
+    def test_files_beyond_the_limit_on_their_size(self):
+        # SIGXFSZ would end the program with the temporary file left; Python lets it through to its children.
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))  # noqa: E731
+        for call in (["render", "ball.toml", "-o", "a.exr"], ["solve", "ball.toml", "-o", "a.h5"]):
+            run = self.run_program(*call, preexec_fn=limit)
+            self.assertEqual(run.returncode, 1, run.stderr)
+            self.assertIn("a." + call[-1].split(".")[1], run.stderr)
+            self.assertEqual(self.files(), ["ball.toml"])
 
     def test_closed_pipe(self):
         read_end, write_end = os.pipe()

@@ -48,7 +48,7 @@ inline std::ostream& operator<<(std::ostream& out, const Defect& defect) {
   return out << defect.name;
 }
 
-inline Defect changed(std::string name, std::string row, std::function<void(Call&)> change) {
+inline Defect changed(std::string name, std::string row, const std::function<void(Call&)>& change) {
   return {std::move(name), std::move(row), [change](Call call) {
             change(call);
             return call.run();
@@ -57,7 +57,7 @@ inline Defect changed(std::string name, std::string row, std::function<void(Call
 
 // change(signal, resel) where the signal before gamma is looked at.
 inline Defect linear(std::string name, std::string row,
-                     std::function<double(double, std::size_t)> change) {
+                     const std::function<double(double, std::size_t)>& change) {
   return {std::move(name), std::move(row), [change](const Call& call) {
             Result result = call.run();
             if (!call.leaves_out("camera-gamma")) return result;
@@ -75,7 +75,7 @@ inline double uniform(std::size_t i) {
 
 // Steps of the line signal by a rule of its own, rule(v in steps, resel).
 inline Defect steps(std::string name, std::string row,
-                    std::function<double(double, std::size_t)> rule) {
+                    const std::function<double(double, std::size_t)>& rule) {
   return {std::move(name), std::move(row), [rule](const Call& call) {
             if (call.leaves_out("quantisation")) return call.run();
             Result result = call.run_without({"quantisation"});

@@ -9,7 +9,7 @@
 
 namespace earthshine::fuzz {
 
-// What a failure names.
+// What a failure names; GoogleTest looks for it. NOLINTNEXTLINE(readability-identifier-naming)
 void PrintTo(const Reader& reader, std::ostream* out) { *out << reader.name; }
 
 namespace {

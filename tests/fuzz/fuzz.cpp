@@ -5,6 +5,7 @@
 
 #include "tests/fuzz/readers.h"
 
+// libFuzzer calls it. NOLINTNEXTLINE(readability-identifier-naming)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const earthshine::fuzz::Reader* const reader = [] {
     const char* const wanted = std::getenv("EARTHSHINE_FUZZ");

@@ -21,8 +21,8 @@ scenes::Camera above(double height_m, double size_m = 0.002) {
   return camera;
 }
 
-Frame picture(const scenes::Scene& scene, const scenes::Camera& camera, RenderOptions options,
-              double patch_edge_m = 0.25) {
+Frame picture(const scenes::Scene& scene, const scenes::Camera& camera,
+              const RenderOptions& options, double patch_edge_m = 0.25) {
   const tests::Prepared prepared(scene);
   radiosity::Solution solution;
   if (options.indirect == Indirect::Radiosity) {

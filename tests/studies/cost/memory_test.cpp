@@ -40,28 +40,30 @@ TEST(Memory, TheMatrixIsThereOnceAndTwiceWhileItIsCopied) {
   EXPECT_LT(copied, 8.5e9);
 }
 
-TEST(Memory, RanksDivideTheEntriesAndTheFirstAloneIterates) {
+TEST(Memory, RanksDivideEntriesAndVectors) {
   MemoryCase sizes = large_solve();
   const double whole = memory_needed(sizes).total();
   sizes.ranks = 8;
   // Of 4 GB an eighth, and while it is dealt out half of that more.
   EXPECT_NEAR(whole - memory_needed(sizes).total(), 4e9 * (1.0625 - 1.5 / 8.0), 0.3e9);
-  // So few entries that the linear solve takes most: with 6 columns packed in eights the first has
-  // 2 + 13 + 8 / 6 doubles a patch and column; the others what is multiplied, their rows of the
-  // product and the same 8 / 6.
+  // So few entries that the linear solve takes most. With 6 columns, packed in eights, an eighth each
+  // has of 80 bytes of entries a patch, of nine vectors and direct light of 48, and of 24 of
+  // reflectance.
   sizes.row_entries = 10.0;
   sizes.columns = 6;
-  const double first = memory_needed(sizes).total();
+  const double of_eight = memory_needed(sizes).total();
+  sizes.ranks = 1;
+  EXPECT_NEAR(memory_needed(sizes).total() - of_eight, 7.0 / 8.0 * (80e6 + 480e6 + 24e6), 1.0);
+  sizes.ranks = 8;
   sizes.first_rank = false;
-  EXPECT_NEAR(first - memory_needed(sizes).total(), 48e6 * (15.0 - 1.0 - 1.0 / 8.0), 1.0);
-  // Of the error over the surfaces, six columns, the first has the iteration, its right-hand side
-  // as found, 400 bytes of what samples found and the 80 of the rows; of these the others have 24.
+  EXPECT_EQ(memory_needed(sizes).total(), of_eight);
+  // Of the error over the surfaces the first has what comes back, six columns of 8 bytes, 190 bytes
+  // of what samples found and the 80 of the rows; of these the others have 24.
   sizes.columns = 3;
   sizes.states_error = true;
   const double others = memory_needed(sizes).total();
   sizes.first_rank = true;
-  EXPECT_NEAR(memory_needed(sizes).total() - others, 48e6 * (13.0 + 1.0 - 1.0 - 1.0 / 8.0) + 456e6,
-              1.0);
+  EXPECT_NEAR(memory_needed(sizes).total() - others, 48e6 + 190e6 + 56e6, 1.0);
 }
 
 TEST(Memory, OneRankOfMpirunHasItsLibraries) {
