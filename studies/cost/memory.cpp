@@ -31,17 +31,18 @@ constexpr double patch_bytes = 8.0 + 4.0 + sizeof(radiosity::Cell) + 1.0 + 8.0;
 // backs, what is kept, what is open; per part of the sky its light. While they are cast also what
 // each row found.
 constexpr double row_bytes = 80.0, sky_bytes = 24.0, cast_bytes = 50.0;
-// While they are balanced: what all ranks have, and of its own patches the vectors of Newton's step;
-// sums of columns in 16 bands, of which each rank has its own, has sent as much and got its columns'.
+// While they are balanced: what all ranks have, and of its own patches the vectors of Newton's
+// step; sums of columns in 16 bands, of which each rank has its own, has sent as much and got its
+// columns'.
 constexpr double balance_bytes = 48.0, newton_bytes = 90.0, bands_bytes = 128.0;
 constexpr double counter_bytes = 4.125;  // per patch and thread
 constexpr double entry_bytes = 8.0;      // column and hits
 // Bands of rows are joined to the matrix sixteenth by sixteenth. Ranks send them to one another,
 // and who was free more often has cast more of them than its part.
 constexpr double joined_copies = 1.0 + 1.0 / 16.0, sent_copies = 1.5;
-// Doubles per patch and column, of own rows: while the linear system is solved direct light and nine
-// vectors (linear_solve.h), and three of reflectance a row; after it exitance, radiosity and what
-// falls on it, which make room for the four floats that are kept, with every rank.
+// Doubles per patch and column, of own rows: while the linear system is solved direct light and
+// nine vectors (linear_solve.h), and three of reflectance a row; after it exitance, radiosity and
+// what falls on it, which make room for the four floats that are kept, with every rank.
 constexpr double light_vectors = 1.0, iteration_vectors = 9.0, found_vectors = 4.0;
 constexpr double reflectance_bytes = 24.0;
 // While the solution's error is stated: two parts of the light, the solution, all as floats, and
@@ -111,8 +112,9 @@ MemoryNeed memory_needed(const MemoryCase& m) {
     const double bands = bands_bytes * (m.ranks > 1 ? 3.0 / m.ranks : 1.0);
     casting.parts.push_back({"form factors", entries * (m.ranks > 1 ? sent_copies : joined_copies) +
                                                  rows + patches * cast_bytes});
-    balancing.parts.push_back({"form factors", entries * (m.copies_matrix ? 2.0 : 1.0) + rows +
-                                                   patches * (balance_bytes + newton_bytes / m.ranks + bands)});
+    balancing.parts.push_back(
+        {"form factors", entries * (m.copies_matrix ? 2.0 : 1.0) + rows +
+                             patches * (balance_bytes + newton_bytes / m.ranks + bands)});
     const double own = columns * sizeof(double) / m.ranks, kept = columns * solution_bytes;
     solving.parts.push_back({"form factors", entries + rows});
     solving.parts.push_back(

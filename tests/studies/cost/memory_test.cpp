@@ -46,8 +46,8 @@ TEST(Memory, RanksDivideEntriesAndVectors) {
   sizes.ranks = 8;
   // Of 4 GB an eighth, and while it is dealt out half of that more.
   EXPECT_NEAR(whole - memory_needed(sizes).total(), 4e9 * (1.0625 - 1.5 / 8.0), 0.3e9);
-  // So few entries that the linear solve takes most. With 6 columns, packed in eights, an eighth each
-  // has of 80 bytes of entries a patch, of nine vectors and direct light of 48, and of 24 of
+  // So few entries that the linear solve takes most. With 6 columns, packed in eights, an eighth
+  // each has of 80 bytes of entries a patch, of nine vectors and direct light of 48, and of 24 of
   // reflectance.
   sizes.row_entries = 10.0;
   sizes.columns = 6;
