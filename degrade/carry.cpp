@@ -6,8 +6,6 @@
 
 #include "base/parallel.h"
 #include "degrade/moments/point_moments.h"
-#include "degrade/parts/electronics.h"
-#include "degrade/parts/sensor.h"
 
 namespace earthshine::degrade {
 namespace {
@@ -32,21 +30,6 @@ void add_white(Moments& m, std::vector<Covariance>& to, std::size_t plane, doubl
   if (!(variance > 0.0)) return;
   Plane level(m.mean.pixel_count(), static_cast<float>(variance));
   to[plane] = plus(std::move(to[plane]), white_of(m, std::move(level)));
-}
-
-Moments filter(Moments m, const AxisMap& along, const AxisMap& across) {
-  m = settled(std::move(m));
-  m.mean = apply(m.mean, along, across);
-  for (Covariance& noise : m.grain) noise = filtered(noise, along, across);
-  for (Covariance& noise : m.pattern) noise = filtered(noise, along, across);
-  return m;
-}
-
-template <class Step>
-Moments point(Moments m, Step step) {
-  step(m.pending);
-  m.is_pending = true;
-  return m;
 }
 
 }  // namespace
@@ -82,6 +65,23 @@ Moments settled(Moments m) {
   return m;
 }
 
+Moments carry(Moments m, const Stage& stage, const StageContext& at) {
+  if (stage.carry != nullptr) return stage.carry(std::move(m), at);
+  if (stage.law.points != nullptr) {
+    stage.law.points(m.pending, at);
+    m.is_pending = true;
+  } else if (stage.law.filter != nullptr) {
+    m = settled(std::move(m));
+    const PlaneMap map = stage.law.filter(m.mean, at);
+    m.mean = apply(m.mean, map.along, map.across);
+    for (Covariance& noise : m.grain) noise = filtered(noise, map.along, map.across);
+    for (Covariance& noise : m.pattern) noise = filtered(noise, map.along, map.across);
+  } else if (!m.is_pending) {
+    m.mean = stage.law.picture(std::move(m.mean), at);
+  }
+  return m;
+}
+
 Moments carry_signal_noise(Moments m, const StageContext& at) {
   const NoiseLaw& law = at.report.noise;
   for (std::size_t p = 0; p < m.mean.planes.size(); ++p) {
@@ -105,12 +105,6 @@ Moments carry_lag(Moments m, const StageContext& at) {
   return m;
 }
 
-Moments carry_blur(Moments m, const StageContext& at) {
-  const AxisMap along = gaussian_blur(m.mean.columns, at.setup.camera.blur_h),
-                across = gaussian_blur(m.mean.rows, at.setup.camera.blur_v);
-  return filter(std::move(m), along, across);
-}
-
 Moments carry_bloom(Moments m, const StageContext& at) {
   const CctvCamera& camera = at.setup.camera;
   // Mean of what lies above: S - min(S, S_most).
@@ -132,8 +126,9 @@ Moments carry_bloom(Moments m, const StageContext& at) {
 }
 
 Moments carry_saturation(Moments m, const StageContext& at) {
-  return settled(
-      point(std::move(m), [&](PointMap& map) { map.limit_above(at.setup.camera.saturation); }));
+  m.pending.limit_above(at.setup.camera.saturation);
+  m.is_pending = true;
+  return settled(std::move(m));
 }
 
 Moments carry_read_noise(Moments m, const StageContext& at) {
@@ -145,45 +140,10 @@ Moments carry_read_noise(Moments m, const StageContext& at) {
   return m;
 }
 
-Moments carry_bandwidth(Moments m, const StageContext& at) {
-  const CctvCamera& camera = at.setup.camera;
-  const AxisMap along = line_filter(m.mean.columns, camera.bandwidth_mhz,
-                                    camera.aperture_correction, at.setup.monitor.columns),
-                across = gaussian_blur(m.mean.rows, 0.0);
-  return filter(std::move(m), along, across);
-}
-
-Moments carry_black_clamp(Moments m, const StageContext&) {
-  return point(std::move(m), [](PointMap& map) { map.limit_below(0.0); });
-}
-
-Moments carry_gain(Moments m, const StageContext& at) {
-  return point(std::move(m), [&](PointMap& map) { map.amplify(at.report.exposure.gain); });
-}
-
-Moments carry_white_clip(Moments m, const StageContext& at) {
-  return point(std::move(m), [&](PointMap& map) { map.limit_above(at.setup.camera.white_clip); });
-}
-
-Moments carry_camera_gamma(Moments m, const StageContext& at) {
-  return point(std::move(m), [&](PointMap& map) { map.power(1.0 / at.setup.camera.gamma); });
-}
-
-Moments carry_quantisation(Moments m, const StageContext& at) {
-  return point(std::move(m), [&](PointMap& map) { map.quantise(at.setup.camera.bits); });
-}
-
 Moments carry_interlace(Moments m, const StageContext& at) {
   // Both fields have the same moments; a pending map is the same for all rows.
   for (Covariance& noise : m.grain) noise = weave(std::move(noise), at.setup.camera.lag);
   return m;
-}
-
-Moments carry_screen(Moments m, const StageContext& at) {
-  const Monitor& monitor = at.setup.monitor;
-  return point(std::move(m), [&](PointMap& map) {
-    map.screen(monitor.black_luminance, monitor.white_luminance, monitor.gamma);
-  });
 }
 
 Moments carry_spread(Moments m, const StageContext& at) {

@@ -29,23 +29,18 @@ struct Moments {
 // Variance of one plane, of all its noise.
 [[nodiscard]] Plane variance(const Moments& moments, std::size_t plane);
 
-// Stages; each is the twin of the stage of its name.
+// What the stage makes of them.
+[[nodiscard]] Moments carry(Moments moments, const Stage& stage, const StageContext& at);
+
+// Of the stages whose law is of a whole picture; each is the twin of the stage of its name.
 [[nodiscard]] Moments carry_signal_noise(Moments moments, const StageContext& at);
 [[nodiscard]] Moments carry_lag(Moments moments, const StageContext& at);
-[[nodiscard]] Moments carry_blur(Moments moments, const StageContext& at);
 // The noise of the halo itself is left out: spread over a Gaussian of many resels it is below 1 /
 // (4 pi radius^2) of the excess' own.
 [[nodiscard]] Moments carry_bloom(Moments moments, const StageContext& at);
 [[nodiscard]] Moments carry_saturation(Moments moments, const StageContext& at);
 [[nodiscard]] Moments carry_read_noise(Moments moments, const StageContext& at);
-[[nodiscard]] Moments carry_bandwidth(Moments moments, const StageContext& at);
-[[nodiscard]] Moments carry_black_clamp(Moments moments, const StageContext& at);
-[[nodiscard]] Moments carry_gain(Moments moments, const StageContext& at);
-[[nodiscard]] Moments carry_white_clip(Moments moments, const StageContext& at);
-[[nodiscard]] Moments carry_camera_gamma(Moments moments, const StageContext& at);
-[[nodiscard]] Moments carry_quantisation(Moments moments, const StageContext& at);
 [[nodiscard]] Moments carry_interlace(Moments moments, const StageContext& at);
-[[nodiscard]] Moments carry_screen(Moments moments, const StageContext& at);
 // Light below zero, which a sinc makes, is not cut here.
 [[nodiscard]] Moments carry_spread(Moments moments, const StageContext& at);
 [[nodiscard]] Moments carry_room_light(Moments moments, const StageContext& at);

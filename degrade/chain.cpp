@@ -72,7 +72,7 @@ Result run_chain(std::initializer_list<const base::Image*> seen, const Setup& se
     } else {
       for (std::size_t f = 0; f < fields.size(); ++f) {
         fields[f] =
-            stage.apply(std::move(fields[f]), {setup, report, result.memory, f, fields.size()});
+            stage.law(std::move(fields[f]), {setup, report, result.memory, f, fields.size()});
       }
     }
     report.stages.emplace_back(stage.name);
@@ -116,6 +116,17 @@ Picture sensor_input(const base::Image& radiance, bool colour, std::size_t& nega
     }
   }
   return picture;
+}
+
+Picture StageLaw::operator()(Picture&& in, const StageContext& at) const {
+  if (picture != nullptr) return picture(std::move(in), at);
+  if (filter != nullptr) {
+    const PlaneMap map = filter(in, at);
+    return apply(in, map.along, map.across);
+  }
+  PointMap map;
+  points(map, at);
+  return transform(std::move(in), map);
 }
 
 bool runs(const Stage& stage, const Setup& setup, const Report* found) {

@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "base/image.h"
@@ -18,8 +19,10 @@
 #include "degrade/parts/iris.h"
 #include "degrade/parts/monitor.h"
 #include "degrade/parts/noise.h"
+#include "degrade/stage/axis_map.h"
 #include "degrade/stage/camera.h"
 #include "degrade/stage/picture.h"
+#include "degrade/stage/point_map.h"
 
 namespace earthshine::degrade {
 
@@ -100,6 +103,29 @@ enum class Kind : unsigned {
   return static_cast<Kind>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
 }
 
+// What a stage does: to the picture as a whole, to each point alike, or as filters along and across
+// the lines. Of the last two the moments of noise follow.
+struct StageLaw {
+  using OfPicture = Picture (*)(Picture&&, const StageContext&);
+  using OfPoints = void (*)(PointMap&, const StageContext&);
+  using OfLines = PlaneMap (*)(const Picture&, const StageContext&);
+  OfPicture picture = nullptr;
+  OfPoints points = nullptr;
+  OfLines filter = nullptr;
+
+  template <class Law>
+  constexpr StageLaw(Law law) {  // NOLINT(google-explicit-constructor): rows of the table say it
+    if constexpr (std::is_convertible_v<Law, OfPicture>) {
+      picture = law;
+    } else if constexpr (std::is_convertible_v<Law, OfPoints>) {
+      points = law;
+    } else if constexpr (std::is_convertible_v<Law, OfLines>) {
+      filter = law;
+    }
+  }
+  [[nodiscard]] Picture operator()(Picture&& in, const StageContext& at) const;
+};
+
 struct Stage {
   std::string_view name;
   Part part;
@@ -107,14 +133,14 @@ struct Stage {
   // That decide whether it runs; those of the monitor as "monitor.NAME". None: it always does.
   std::array<std::string_view, 3> settings;
   std::string_view in, out;  // units
-  std::string_view law;
+  std::string_view formula;
   // Report: what earlier stages found, nullptr while there is no picture yet.
   bool (*runs)(const Setup&, const Report*);
-  Picture (*apply)(Picture&&, const StageContext&);
-  // What the stage does to the moments of a picture with noise; without it noise passes unchanged
-  // and the mean goes through apply. Stages of the lens come before any noise.
+  StageLaw law;
+  // What the law of a whole picture does to the moments of one with noise; without it noise passes
+  // unchanged and the mean goes through the law. Stages of the lens come before any noise.
   Moments (*carry)(Moments, const StageContext&) = nullptr;
-  // Where the two fields become a frame, in place of apply.
+  // Where the two fields become a frame, in place of the law.
   Picture (*merge)(Picture first, const Picture& second) = nullptr;
 
   [[nodiscard]] constexpr bool is(Kind of) const {

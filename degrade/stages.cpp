@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table. A new stage is a function in a file and a row here.
+// The table. A new stage is its setting in stage/camera.h and a row here with its law: a map of
+// points, a filter, or a function of the picture in a file of parts/ with its twin in carry.cpp.
 #include <cmath>
 
 #include "base/error.h"
@@ -97,8 +98,8 @@ Picture bloom(Picture&& p, const StageContext& at) {
   return bloom_over(std::move(p), camera.saturation, camera.bloom, camera.bloom_radius);
 }
 
-Picture blur(const Picture& p, double along, double across) {
-  return apply(p, gaussian_blur(p.columns, along), gaussian_blur(p.rows, across));
+PlaneMap blur(const Picture& p, double along, double across) {
+  return {gaussian_blur(p.columns, along), gaussian_blur(p.rows, across)};
 }
 
 bool gain_runs(const Setup& setup, const Report* found) {
@@ -117,10 +118,10 @@ constexpr std::array<std::string_view, 3> decided_by(Names... names) {
 constexpr Stage table[] = {
     {"sensor-grid", Part::Lens, Kind::Plain, decided_by(), "cd/m^2", "cd/m^2",
      "area average onto 300 rows", always,
-     [](Picture&& p, const StageContext& at) {
+     [](const Picture& p, const StageContext& at) {
        const Grid grid = picture_grid(p.columns, p.rows, at.setup.monitor);
        at.report.sensor = grid;
-       return apply(p, area_average(p.columns, grid.columns), area_average(p.rows, grid.rows));
+       return PlaneMap{area_average(p.columns, grid.columns), area_average(p.rows, grid.rows)};
      }},
     {"iris", Part::Lens, Kind::Plain, decided_by(), "cd/m^2", "cd/m^2",
      "finds N and the gain; the picture passes", always, iris},
@@ -141,7 +142,7 @@ constexpr Stage table[] = {
     {"lens-spread", Part::Lens, Kind::Spatial, decided_by("lens_blur"), "lx", "lx",
      "discrete Gaussian, in light",
      [](const Setup& s, const Report*) { return s.camera.lens_blur > 0.0; },
-     [](Picture&& p, const StageContext& at) {
+     [](const Picture& p, const StageContext& at) {
        return blur(p, at.setup.camera.lens_blur, at.setup.camera.lens_blur);
      }},
     {"conversion", Part::Lens, Kind::Plain, decided_by(), "lx", "signal", "S = E / E_white", always,
@@ -164,10 +165,9 @@ constexpr Stage table[] = {
     {"blur", Part::Sensor, Kind::Spatial, decided_by("blur_h", "blur_v"), "signal", "signal",
      "discrete Gaussian, sigma_h along and sigma_v across lines",
      [](const Setup& s, const Report*) { return s.camera.blur_h > 0.0 || s.camera.blur_v > 0.0; },
-     [](Picture&& p, const StageContext& at) {
+     [](const Picture& p, const StageContext& at) {
        return blur(p, at.setup.camera.blur_h, at.setup.camera.blur_v);
-     },
-     carry_blur},
+     }},
     {"smear", Part::Sensor, Kind::Uneven, decided_by("smear_db"), "signal", "signal",
      "S = S + 10 smear mean(column)",
      [](const Setup& s, const Report*) { return s.camera.smear_db > 0.0; },
@@ -194,55 +194,40 @@ constexpr Stage table[] = {
      [](const Setup& s, const Report*) {
        return s.camera.bandwidth_mhz > 0.0 || s.camera.aperture_correction > 0.0;
      },
-     [](Picture&& p, const StageContext& at) {
+     [](const Picture& p, const StageContext& at) {
        const CctvCamera& camera = at.setup.camera;
-       return apply(p,
-                    line_filter(p.columns, camera.bandwidth_mhz, camera.aperture_correction,
-                                at.setup.monitor.columns),
-                    gaussian_blur(p.rows, 0.0));
-     },
-     carry_bandwidth},
+       return PlaneMap{line_filter(p.columns, camera.bandwidth_mhz, camera.aperture_correction,
+                                   at.setup.monitor.columns),
+                       gaussian_blur(p.rows, 0.0)};
+     }},
     {"black-clamp", Part::Sensor, Kind::Limit, decided_by("black_clamp"), "signal", "signal",
      "S = max(S, 0)", [](const Setup& s, const Report*) { return s.camera.black_clamp; },
-     [](Picture&& p, const StageContext&) { return limit_below_zero(std::move(p)); },
-     carry_black_clamp},
+     [](PointMap& map, const StageContext&) { map.limit_below(0.0); }},
     {"gain", Part::Sensor, Kind::Plain, decided_by("iris", "gain_db", "gain_max_db"), "signal",
      "signal", "S = G S", gain_runs,
-     [](Picture&& p, const StageContext& at) {
-       return amplify(std::move(p), at.report.exposure.gain);
-     },
-     carry_gain},
+     [](PointMap& map, const StageContext& at) { map.amplify(at.report.exposure.gain); }},
     {"levels", Part::Sensor, Kind::Meter, decided_by(), "signal", "signal",
      "counts white and black resels; the picture passes", always, levels},
     {"white-clip", Part::Sensor, Kind::Limit, decided_by("white_clip"), "signal", "signal",
      "S = min(S, S_clip)", [](const Setup& s, const Report*) { return s.camera.white_clip > 0.0; },
-     [](Picture&& p, const StageContext& at) {
-       return limit_above(std::move(p), at.setup.camera.white_clip);
-     },
-     carry_white_clip},
+     [](PointMap& map, const StageContext& at) { map.limit_above(at.setup.camera.white_clip); }},
     {"camera-gamma", Part::Sensor, Kind::Coding, decided_by("gamma"), "signal", "line signal",
      "v = S^(1/gamma)", [](const Setup& s, const Report*) { return s.camera.gamma != 1.0; },
-     [](Picture&& p, const StageContext& at) {
-       return encode_gamma(std::move(p), at.setup.camera.gamma);
-     },
-     carry_camera_gamma},
+     [](PointMap& map, const StageContext& at) { map.power(1.0 / at.setup.camera.gamma); }},
     {"quantisation", Part::Sensor, Kind::Coding, decided_by("bits"), "line signal", "line signal",
      "nearest of 2^bits levels", [](const Setup& s, const Report*) { return s.camera.bits > 0; },
-     [](Picture&& p, const StageContext& at) {
-       return quantise(std::move(p), at.setup.camera.bits);
-     },
-     carry_quantisation},
+     [](PointMap& map, const StageContext& at) { map.quantise(at.setup.camera.bits); }},
     {"interlace", Part::Sensor, Kind::Plain, decided_by("interlace"), "line signal", "line signal",
      "even lines from the first field, odd ones from the second",
      [](const Setup& s, const Report*) { return s.camera.interlace; }, nullptr, carry_interlace,
      weave},
     {"screen", Part::Monitor, Kind::Plain, decided_by(), "line signal", "cd/m^2",
      "I = I_b + (I_w - I_b) v^gamma", always,
-     [](Picture&& p, const StageContext& at) {
-       at.report.white = at.setup.monitor.white_luminance;
-       return drive_screen(std::move(p), at.setup.monitor);
-     },
-     carry_screen},
+     [](PointMap& map, const StageContext& at) {
+       const Monitor& monitor = at.setup.monitor;
+       at.report.white = monitor.white_luminance;
+       map.screen(monitor.black_luminance, monitor.white_luminance, monitor.gamma);
+     }},
     {"spread", Part::Monitor, Kind::Plain, decided_by("monitor.spread", "monitor.pixels_per_resel"),
      "cd/m^2", "cd/m^2", "point spread, on the finer grid of pixels",
      [](const Setup& s, const Report*) {

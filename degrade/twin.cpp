@@ -123,11 +123,7 @@ Twin twin(const base::Image& radiance, const CctvCamera& camera, const Monitor& 
     if (stage.part == Part::Lens) continue;
     if (stage.part == Part::Monitor && !line) line = settled(moments);
     if (!runs(stage, setup, &report)) continue;
-    if (stage.carry != nullptr) {
-      moments = stage.carry(std::move(moments), at);
-    } else if (!moments.is_pending) {
-      moments.mean = stage.apply(std::move(moments.mean), at);
-    }
+    moments = carry(std::move(moments), stage, at);
   }
   moments = settled(std::move(moments));
 

@@ -197,8 +197,8 @@ void list_cameras(bool as_json) {
                       {"part", stage.part == degrade::Part::Monitor ? "monitor" : "camera"},
                       {"in", stage.in},
                       {"out", stage.out},
-                      {"law", stage.law}});
-    text += fmt::format("  {:<18} {}\n", stage.name, stage.law);
+                      {"law", stage.formula}});
+    text += fmt::format("  {:<18} {}\n", stage.name, stage.formula);
   }
   print(as_json ? dump({{"presets", cameras}, {"stages", stages}}) : text);
 }

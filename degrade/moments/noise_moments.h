@@ -70,9 +70,6 @@ struct Covariance {
 
 // The covariance of two such results at each pixel: of apply(n, a.along, a.across) with
 // apply(n, b.along, b.across). All four maps fit the picture, and the two results are of one size.
-struct PlaneMap {
-  AxisMap along, across;
-};
 [[nodiscard]] Plane covariance_between(const Covariance& noise, const PlaneMap& a,
                                        const PlaneMap& b);
 

@@ -20,25 +20,6 @@ Picture to_signal(Picture illuminance, double white_lux) {
                    [&](double e) { return std::min(e / white_lux, endless); });
 }
 
-Picture limit_below_zero(Picture signal) {
-  return transform(std::move(signal), [](double s) { return std::max(s, 0.0); });
-}
-
-Picture amplify(Picture signal, double gain) {
-  return transform(std::move(signal), [&](double s) { return s * gain; });
-}
-
-Picture encode_gamma(Picture signal, double gamma) {
-  return transform(std::move(signal),
-                   [&](double s) { return s > 0.0 ? std::pow(s, 1.0 / gamma) : 0.0; });
-}
-
-Picture quantise(Picture line_signal, int bits) {
-  const double levels = std::ldexp(1.0, bits) - 1.0;
-  return transform(std::move(line_signal),
-                   [&](double v) { return std::round(std::clamp(v, 0.0, 1.0) * levels) / levels; });
-}
-
 Levels measure_levels(const Picture& signal, double black_noise) {
   const Plane luminance = luminance_plane(signal);
   std::size_t saturated = 0, crushed = 0;

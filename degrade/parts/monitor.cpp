@@ -101,14 +101,6 @@ AxisMap spread_map(Spread spread, double width, int resels, int pixels_per_resel
   return map;
 }
 
-Picture drive_screen(Picture line_signal, const Monitor& monitor) {
-  const double black = monitor.black_luminance;
-  const double range = monitor.white_luminance - black;
-  return transform(std::move(line_signal), [&](double v) {
-    return black + range * std::pow(std::clamp(v, 0.0, 1.0), monitor.gamma);
-  });
-}
-
 Picture spread_on_screen(const Picture& light, const Monitor& monitor, double& negative_share) {
   const auto map = [&](int resels) {
     return spread_map(monitor.spread, monitor.spread_width, resels, monitor.pixels_per_resel);

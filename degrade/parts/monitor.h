@@ -70,8 +70,6 @@ struct Grid {
 // Row sums are 1.
 [[nodiscard]] AxisMap spread_map(Spread spread, double width, int resels, int pixels_per_resel);
 
-// I = black + (white - black) v^gamma, v clamped to [0, 1].
-[[nodiscard]] Picture drive_screen(Picture line_signal, const Monitor& monitor);
 // On the finer grid of pixels. Light adds, so this comes after gamma. Below zero (sinc) it is cut;
 // `negative_share` receives how much light that was, relative to all light.
 [[nodiscard]] Picture spread_on_screen(const Picture& light, const Monitor& monitor,

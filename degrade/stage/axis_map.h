@@ -38,6 +38,10 @@ void add_output(AxisMap& map, int first, const std::vector<double>& weight);
 // The same taps at every place; their number is odd.
 [[nodiscard]] AxisMap symmetric_filter(int size, const std::vector<double>& taps);
 
+struct PlaneMap {
+  AxisMap along, across;
+};
+
 // Every row through `along`, then every column through `across`.
 [[nodiscard]] Picture apply(const Picture& picture, const AxisMap& along, const AxisMap& across);
 

@@ -12,14 +12,13 @@ namespace earthshine::degrade {
 class PointMap {
  public:
   // Each acts on what the steps before it gave and returns the map, so that steps can be chained.
-  // Their meaning is that of the functions in degrade/parts/electronics.h.
   PointMap& limit_below(double least);  // max(v, least)
   PointMap& limit_above(double most);   // min(v, most)
   PointMap& amplify(double gain);       // gain > 0
   PointMap& shift(double by);
   PointMap& power(double exponent);  // exponent > 0; 0 where v <= 0
   PointMap& quantise(int bits);      // nearest of 2^bits levels from 0 to 1
-  // black + (white - black) clamp(v, 0, 1)^gamma: degrade::drive_screen.
+  // black + (white - black) clamp(v, 0, 1)^gamma.
   PointMap& screen(double black, double white, double gamma);
 
   [[nodiscard]] double operator()(double signal) const;

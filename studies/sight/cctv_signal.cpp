@@ -177,15 +177,23 @@ CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup
   // A picture of one resel, on which the maps point by point leave what they are.
   degrade::Moments maps = degrade::still({1, 1, {{0.0F}}});
   Picture exposed, full;
-  bool at_maps = false;
+  bool at_maps = false, amplified = false, on_screen = false;
   for (const degrade::Stage& stage : degrade::stages()) {
     const bool sensor = stage.part == degrade::Part::Sensor;
-    if (sensor && exposed.planes.empty()) exposed = picture;
-    at_maps = at_maps || stage.carry == degrade::carry_black_clamp;
+    if (sensor && exposed.planes.empty()) {
+      exposed = picture;
+      line.blur_along = line.bandwidth = nothing(picture.columns);
+      line.blur_across = nothing(picture.rows);
+    }
+    at_maps = at_maps || (sensor && stage.law.points != nullptr);
+    amplified = amplified || stage.carry == degrade::carry_read_noise;
     if (stage.is(degrade::Kind::Meter)) {
       line.level = luminance_plane(transform(picture, maps.pending));
     }
-    if (stage.carry == degrade::carry_screen) line.line = maps.pending;
+    if (stage.part == degrade::Part::Monitor && !on_screen) {
+      line.line = maps.pending;
+      on_screen = true;
+    }
     if (stage.carry == degrade::carry_bloom) full = picture;  // and saturation after it
     if (!degrade::runs(stage, setup, &report)) continue;
     if (stage.merge != nullptr || stage.is(degrade::Kind::Noise)) continue;
@@ -193,25 +201,25 @@ CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup
         stage.carry == degrade::carry_room_light) {
       continue;
     }
+    if (sensor && stage.law.filter != nullptr) {
+      const degrade::PlaneMap filter = stage.law.filter(picture, at);
+      if (amplified) {
+        line.bandwidth = without_far_taps(filter.along);
+      } else {
+        line.blur_along = without_far_taps(filter.along);
+        line.blur_across = without_far_taps(filter.across);
+      }
+    }
     if (at_maps) {
-      if (stage.carry != nullptr) maps = stage.carry(std::move(maps), at);
+      maps = carry(std::move(maps), stage, at);
     } else {
-      picture = stage.apply(std::move(picture), at);
+      picture = stage.law(std::move(picture), at);
     }
   }
   line.screen = maps.pending;
   line.columns = picture.columns;
   line.rows = picture.rows;
-  const bool blurs = is_on(degrade::carry_blur), limits = is_on(degrade::carry_bandwidth),
-             spreads = is_on(degrade::carry_spread);
-  line.blur_along =
-      without_far_taps(degrade::gaussian_blur(line.columns, blurs ? camera.blur_h : 0.0));
-  line.blur_across =
-      without_far_taps(degrade::gaussian_blur(line.rows, blurs ? camera.blur_v : 0.0));
-  line.bandwidth = limits ? without_far_taps(degrade::line_filter(
-                                line.columns, camera.bandwidth_mhz, camera.aperture_correction,
-                                setup.monitor.columns))
-                          : nothing(line.columns);
+  const bool spreads = is_on(degrade::carry_spread);
   line.spread_along = spreads ? mean_spread(setup.monitor, line.columns) : nothing(line.columns);
   line.spread_across = spreads ? mean_spread(setup.monitor, line.rows) : nothing(line.rows);
   if (is_on(degrade::carry_room_light))

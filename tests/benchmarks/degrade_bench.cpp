@@ -93,7 +93,7 @@ void one_stage(benchmark::State& state, const degrade::Stage& stage) {
   for (auto round : state) {
     const Picture after = stage.merge != nullptr
                               ? stage.merge(before, before)
-                              : stage.apply(Picture(before), {setup, report, memory, 1, 2});
+                              : stage.law(Picture(before), {setup, report, memory, 1, 2});
     benchmark::DoNotOptimize(after.planes.front().data());
   }
   set_rate(state, before.pixel_count());

@@ -8,7 +8,7 @@
 
 #include "base/units.h"
 #include "degrade/parts/noise.h"
-#include "degrade/parts/sensor.h"
+#include "degrade/stage/point_map.h"
 #include "tests/degrade/fields.h"
 
 namespace earthshine::degrade {
@@ -36,7 +36,7 @@ TEST(WhiteClip, MomentsOfClippedNoiseAreTheirClosedForm) {
     const double square = (m * m + sigma * sigma) * distribution(z) -
                           sigma * (m + limit) * density(z) +
                           limit * limit * (1.0 - distribution(z));
-    const Picture clipped = limit_above(gaussian_field(mu, sigma), limit);
+    const Picture clipped = transform(gaussian_field(mu, sigma), PointMap().limit_above(limit));
     const auto found = moments(clipped.planes[0]);
     EXPECT_NEAR(found.mean, mean, 4.0 * std::sqrt((square - mean * mean) / count)) << mu;
     // The variance's standard error from the sample's own fourth moment.
@@ -53,7 +53,7 @@ TEST(WhiteClip, MomentsOfClippedNoiseAreTheirClosedForm) {
 
 // max(X, 0) of a Gaussian about 0: mean sigma / sqrt(2 pi).
 TEST(BlackClamp, HalfOfTheNoiseOfBlackBecomesBlack) {
-  const Picture clamped = limit_below_zero(gaussian_field(0.0F, 0.2));
+  const Picture clamped = transform(gaussian_field(0.0F, 0.2), PointMap().limit_below(0.0));
   const auto found = moments(clamped.planes[0]);
   EXPECT_NEAR(found.mean, 0.2 * density(0.0), 4.0 * std::sqrt(found.variance / count));
   EXPECT_EQ(measure_levels(clamped, 0.0).crushed_share > 0.49, true);
@@ -61,15 +61,20 @@ TEST(BlackClamp, HalfOfTheNoiseOfBlackBecomesBlack) {
 
 TEST(Gain, ScalesSignalAndNoiseAndKeepsTheirRatio) {
   const Picture in = gaussian_field(0.5F, 0.05);
-  const auto before = moments(in.planes[0]), after = moments(amplify(in, 4.0).planes[0]);
+  const auto before = moments(in.planes[0]),
+             after = moments(transform(in, PointMap().amplify(4.0)).planes[0]);
   EXPECT_NEAR(after.mean / std::sqrt(after.variance), before.mean / std::sqrt(before.variance),
               1e-6);
   EXPECT_NEAR(after.mean, 4.0 * before.mean, 1e-6);
 }
 
+Picture encode_gamma(Picture signal) {
+  return transform(std::move(signal), PointMap().power(1.0 / 2.2));
+}
+
 TEST(Gamma, RoundTripIsTheIdentityAndNegativeIsBlackNotNan) {
   const Picture in{5, 1, {{-0.5F, 0.0F, 1e-6F, 0.3F, 1.1F}}};
-  const Plane coded = encode_gamma(in, 2.2).planes[0];
+  const Plane coded = encode_gamma(in).planes[0];
   EXPECT_EQ(coded[0], 0.0F);
   EXPECT_EQ(coded[1], 0.0F);
   for (std::size_t i = 1; i < 5; ++i) {
@@ -82,7 +87,7 @@ TEST(Gamma, RoundTripIsTheIdentityAndNegativeIsBlackNotNan) {
 TEST(Gamma, LiftsTheNoiseOfShadowsAsItsSlopeSays) {
   for (const float s : {0.2F, 0.8F}) {
     const double sigma = 0.002;
-    const auto coded = moments(encode_gamma(gaussian_field(s, sigma), 2.2).planes[0]);
+    const auto coded = moments(encode_gamma(gaussian_field(s, sigma)).planes[0]);
     const double expected = sigma * std::pow(static_cast<double>(s), 1.0 / 2.2 - 1.0) / 2.2;
     EXPECT_NEAR(std::sqrt(coded.variance) / expected, 1.0, 4.0 / std::sqrt(2.0 * count) + 2e-4);
   }
@@ -98,7 +103,7 @@ TEST(Quantise, RoundsWithoutBiasAndAddsATwelfth) {
   for (std::size_t i = 0; i < ramp.pixel_count(); ++i) {
     ramp.planes[0][i] = static_cast<float>(0.1 + 0.8 * (static_cast<double>(i) + 0.5) / count);
   }
-  const Picture out = quantise(ramp, bits);
+  const Picture out = transform(ramp, PointMap().quantise(bits));
   Plane error(ramp.pixel_count());
   for (std::size_t i = 0; i < error.size(); ++i) error[i] = out.planes[0][i] - ramp.planes[0][i];
   EXPECT_NEAR(moments(error).mean, 0.0,
@@ -107,10 +112,10 @@ TEST(Quantise, RoundsWithoutBiasAndAddsATwelfth) {
 }
 
 TEST(Quantise, OneBitIsBlackOrWhiteAndLevelsStayPut) {
-  EXPECT_EQ(quantise(Picture{4, 1, {{-1.0F, 0.4F, 0.6F, 3.0F}}}, 1).planes[0],
-            (Plane{0.0F, 0.0F, 1.0F, 1.0F}));
+  const Picture in{4, 1, {{-1.0F, 0.4F, 0.6F, 3.0F}}};
+  EXPECT_EQ(transform(in, PointMap().quantise(1)).planes[0], (Plane{0.0F, 0.0F, 1.0F, 1.0F}));
   const Picture level{1, 1, {{static_cast<float>(100.0 / 255.0)}}};
-  EXPECT_EQ(quantise(level, 8).planes[0], level.planes[0]);
+  EXPECT_EQ(transform(level, PointMap().quantise(8)).planes[0], level.planes[0]);
 }
 
 TEST(Levels, SharesCountWhiteAndNoiseOfBlack) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "degrade/stage/point_map.h"
 #include "tests/degrade/fields.h"
 
 namespace earthshine::degrade {
@@ -169,6 +170,12 @@ TEST(Spread, RoundSpotOfTheGaussianIsTheSameInEveryDirection) {
   EXPECT_NEAR(at(10, 0) / at(6, 8), 1.0, 4e-3);
 }
 
+Picture driven(Picture line_signal, const Monitor& m) {
+  PointMap map;
+  map.screen(m.black_luminance, m.white_luminance, m.gamma);
+  return transform(std::move(line_signal), map);
+}
+
 // Light adds after gamma: a fine checkerboard seen through a wide spot has half the light of white.
 // Spread before gamma it would have 0.5^2.2 = 0.218 of it.
 TEST(Screen, GammaComesBeforeTheSpread) {
@@ -180,14 +187,13 @@ TEST(Screen, GammaComesBeforeTheSpread) {
     board.planes[0][i] = static_cast<float>((i / 40 + i % 40) % 2);
   }
   double negative = 0.0;
-  const Picture out = spread_on_screen(drive_screen(board, monitor), monitor, negative);
+  const Picture out = spread_on_screen(driven(board, monitor), monitor, negative);
   EXPECT_NEAR(out.planes[0][60 * 120 + 60], 0.5 * monitor.white_luminance, 1e-3);
 }
 
 TEST(Screen, DriveIsMonotoneFromBlackToWhiteAndClampedOutside) {
   const Monitor monitor;
-  const Picture light =
-      drive_screen(Picture{6, 1, {{-1e9F, 0.0F, 0.25F, 0.5F, 1.0F, 7.0F}}}, monitor);
+  const Picture light = driven(Picture{6, 1, {{-1e9F, 0.0F, 0.25F, 0.5F, 1.0F, 7.0F}}}, monitor);
   const Plane& values = light.planes[0];
   EXPECT_FLOAT_EQ(values[0], 1.0F);
   EXPECT_FLOAT_EQ(values[1], 1.0F);

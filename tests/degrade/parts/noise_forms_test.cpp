@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "degrade/parts/electronics.h"
 #include "degrade/parts/noise.h"
 #include "degrade/settings/presets.h"
+#include "degrade/stage/point_map.h"
 #include "tests/degrade/fields.h"
 
 namespace earthshine::degrade {
@@ -85,10 +85,11 @@ TEST(NoiseForms, GammaAddsTheSameDecibelsEverywhere) {
   const NoiseWords words = noise_words(camera);
   const auto slope = [&](double s) {
     const double h = 1e-3 * s;
-    const float up =
-        encode_gamma(test::flat(1, 1, static_cast<float>(s + h)), camera.gamma).planes[0][0];
-    const float down =
-        encode_gamma(test::flat(1, 1, static_cast<float>(s - h)), camera.gamma).planes[0][0];
+    const auto coded = [&](const Picture& in) {
+      return transform(in, PointMap().power(1.0 / camera.gamma)).planes[0][0];
+    };
+    const float up = coded(test::flat(1, 1, static_cast<float>(s + h)));
+    const float down = coded(test::flat(1, 1, static_cast<float>(s - h)));
     return static_cast<double>(up - down) / (2.0 * h);
   };
   EXPECT_NEAR(words.line_sigma_white, 0.01 * slope(1.0), 1e-5);
