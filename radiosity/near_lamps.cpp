@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "radiosity/bodies/wall_traces.h"
 #include "radiosity/patches/cluster_members.h"
 #include "radiosity/patches/split.h"
 #include "scenes/light/lamp_light.h"
@@ -109,6 +110,7 @@ class LampCuts {
 
 Patches subdivide_near_lamps(const scenes::Scene& scene, double edge_m) {
   Patches patches = subdivide(scene, edge_m, edge_m);
+  patches = part_along(std::move(patches), find_wall_traces(scene, patches));
   const LampCuts cuts(scene);
   const std::size_t most = 2 * patches.count() + most_more;
   while (patches.count() < most) {

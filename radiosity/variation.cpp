@@ -108,7 +108,7 @@ std::uint64_t identity(const Patches& patches, std::uint32_t patch) {
   const std::uint64_t place = (std::uint64_t{cell.s} << 32) | cell.t;
   const std::uint64_t facet =
       (std::uint64_t{patches.facet[patch]} << 16) | (std::uint64_t{cell.s_cuts} << 8) | cell.t_cuts;
-  return base::mix64(base::mix64(facet) ^ place) ^ patches.is_back[patch];
+  return base::mix64(base::mix64(facet) ^ place) ^ (2U * cell.part + patches.is_back[patch]);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ std::uint32_t runs_of(std::size_t patches, std::size_t wanted, int rays_per_patc
 
 PatchRays::Sender PatchRays::sender(std::uint32_t patch, base::Key key) const {
   const Facet& owner = patches_.facets[patches_.facet[patch]];
-  if (patches_.is_several(patch)) {
+  if (patches_.is_several(patch) || patches_.is_part(patch)) {
     const glm::vec3 unused(0.0F);
     return {base::SobolSet4::Scramble(key),
             unused,

@@ -2,6 +2,7 @@
 #include "radiosity/factors/row_caster.h"
 
 #include "base/numbers/random.h"
+#include "radiosity/patches/parted_cell.h"
 #include "scenes/reflect/specular.h"
 
 namespace earthshine::radiosity {
@@ -145,7 +146,12 @@ void RowCaster::count_hits(const RayPacket& packet, const HitPacket& hits,
              counter, band);
       continue;
     }
-    const std::uint32_t to = targets_.find(triangle, hits.u[k], hits.v[k], hits.front[k] != 0);
+    const bool front = hits.front[k] != 0;
+    std::uint32_t to = targets_.find(triangle, hits.u[k], hits.v[k], front);
+    if (to != no_patch && patches_.is_part(to)) {
+      to = find_before(patches_, {triangle, double(hits.u[k]), double(hits.v[k])}, front,
+                       direction(packet, k), query_.surface_offset_m());
+    }
     if (to == no_patch) {
       row.black += 1.0;
       band.backs_met.push_back(scene_.triangles[triangle].object);

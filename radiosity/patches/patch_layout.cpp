@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "radiosity/patches/patch_layout.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "radiosity/patches/cluster_members.h"
+#include "radiosity/patches/parted_cell.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -24,8 +26,15 @@ void demand(bool holds, const char* otherwise) {
 // some facet has led through, so that no two share a pair and none runs in a circle.
 class Leaves {
  public:
-  Leaves(const Facet& facet, const std::vector<std::uint32_t>& tree, std::vector<bool>& used)
-      : facet_(facet), tree_(tree), used_(used), cells_(facet.leaves), seen_(facet.leaves) {
+  Leaves(Patches& patches, std::uint32_t number, std::vector<bool>& used)
+      : patches_(patches),
+        number_(number),
+        facet_(patches.facets[number]),
+        tree_(patches.tree),
+        used_(used),
+        cells_(facet_.leaves),
+        seen_(facet_.leaves) {
+    const Facet& facet = facet_;
     const std::uint64_t grid = std::uint64_t{facet.s_count} * facet.t_count;
     for (std::uint32_t s = 0; s < facet.s_count; ++s) {
       for (std::uint32_t t = 0; t < facet.t_count; ++t) {
@@ -33,7 +42,7 @@ class Leaves {
         if (facet.tree == no_tree) {
           take(in_grid, {s, t, 0, 0});
         } else {
-          demand(facet.tree + grid <= tree.size(), "a facet's tree leads out of the table");
+          demand(facet.tree + grid <= tree_.size(), "a facet's tree leads out of the table");
           walk(std::uint64_t{facet.tree} + in_grid, {s, t, 0, 0});
         }
       }
@@ -55,8 +64,9 @@ class Leaves {
     used_[at] = true;
     const std::uint32_t entry = tree_[at];
     if ((entry & Patches::split_cell) == 0) return take(entry, cell);
+    if ((entry & Patches::parted_cell) != 0) return take_parts(entry & Patches::pair_of, cell);
     const bool along_t = (entry & Patches::halves_t) != 0;
-    const std::uint64_t pair = entry & ~(Patches::split_cell | Patches::halves_t);
+    const std::uint64_t pair = entry & Patches::pair_of;
     demand(pair + 2 <= tree_.size(), "the tree leads out of the table");
     demand((along_t ? cell.t_cuts : cell.s_cuts) < deepest_level && cell.s <= last_row &&
                cell.t <= last_row,
@@ -76,8 +86,29 @@ class Leaves {
     }
   }
 
+  // The walls of the scene say where the parts are.
+  void take_parts(std::uint64_t at, const Cell& cell) {
+    demand(at + 2 <= tree_.size() && !used_[at] && !used_[at + 1],
+           "the tree leads out of the table");
+    used_[at] = used_[at + 1] = true;
+    demand(patches_.traces != nullptr, "a cell is parted that no wall stands on");
+    std::vector<Trace> near;
+    patches_.traces->near(number_, outline_of(facet_, cell), near);
+    const PartedCell parted = part_cell(facet_, cell, near);
+    demand(!parted.outlines.empty(), "a cell is parted that no wall stands on");
+    tree_[at + 1] = static_cast<std::uint32_t>(patches_.part_nodes.size());
+    Cell part = cell;
+    part.outline = static_cast<std::uint32_t>(patches_.outlines.size());
+    append(patches_, parted);
+    for (std::size_t k = 0; k < parted.outlines.size(); ++k, ++part.part, ++part.outline) {
+      take(tree_[at] + static_cast<std::uint32_t>(k), part);
+    }
+  }
+
+  Patches& patches_;
+  std::uint32_t number_;
   const Facet& facet_;
-  const std::vector<std::uint32_t>& tree_;
+  std::vector<std::uint32_t>& tree_;
   std::vector<bool>& used_;
   std::vector<Cell> cells_;
   std::vector<bool> seen_;
@@ -119,7 +150,7 @@ PatchLayout layout_of(const Patches& patches) {
   return layout;
 }
 
-Patches rebuild_patches(const scenes::Scene& scene, PatchLayout layout) {
+Patches rebuild_patches(const scenes::Scene& scene, PatchLayout layout, const FindTraces& walls) {
   // Facets without a cut give the geometry.
   Patches patches =
       subdivide(scene, std::numeric_limits<double>::infinity(), layout.cluster_edge_m);
@@ -130,6 +161,11 @@ Patches rebuild_patches(const scenes::Scene& scene, PatchLayout layout) {
   }
   patches.tree = std::move(layout.tree);
   patches.area_m2 = std::move(layout.area_m2);
+  constexpr std::uint32_t parted = Patches::split_cell | Patches::parted_cell;
+  if (walls && std::any_of(patches.tree.begin(), patches.tree.end(),
+                           [](std::uint32_t entry) { return (entry & parted) == parted; })) {
+    patches.traces = std::make_shared<const Traces>(walls(scene, patches));
+  }
   const std::size_t count = patches.area_m2.size();
   demand(count <= most_cells, "it has too many patches");
   patches.facet.assign(count, no_patch);
@@ -152,7 +188,7 @@ Patches rebuild_patches(const scenes::Scene& scene, PatchLayout layout) {
     placed += std::uint64_t{facet.leaves} * (sheet ? 2 : 1);
     demand(placed <= count, "the facets have more leaves than there are patches");
     demand((facet.first_back != no_patch) == sheet, "a sheet has no back, or another surface has");
-    const Leaves leaves(facet, patches.tree, used);
+    const Leaves leaves(patches, k, used);
     place(patches, k, facet.first_front, 0, leaves.cells());
     if (sheet) place(patches, k, facet.first_back, 1, leaves.cells());
   }

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <stdexcept>
 #include <vector>
 
+#include "radiosity/patches/parted_cell.h"
 #include "radiosity/patches/patches.h"
 
 namespace earthshine::radiosity {
@@ -21,9 +23,13 @@ struct PatchLayout {
 
 [[nodiscard]] PatchLayout layout_of(const Patches& patches);
 
+// The walls on the facets: asked for where cells are parted along them.
+using FindTraces = std::function<Traces(const scenes::Scene&, const Patches&)>;
+
 // The patches of that layout. Throws std::invalid_argument, saying what is wrong, unless every
 // patch belongs to exactly one leaf of one side, every leaf is reached once, and areas add up to
 // their facets'.
-[[nodiscard]] Patches rebuild_patches(const scenes::Scene& scene, PatchLayout layout);
+[[nodiscard]] Patches rebuild_patches(const scenes::Scene& scene, PatchLayout layout,
+                                      const FindTraces& walls = {});
 
 }  // namespace earthshine::radiosity

@@ -30,6 +30,42 @@ Parameters in_triangle(std::uint8_t apex, double u, double v) {
   return {s, s > 0.0 ? wb / s : 0.0};
 }
 
+// Points of a part keep off its edges, where rounding could put them behind the walls there: by
+// this share of their way to its middle, and where it is narrow by more, up to half of it.
+constexpr double part_inset = 1e-4;
+constexpr double rounding = 0x1p-20;  // of single precision, over the facet's size and place
+
+PlanePoint in_plane(const Facet& f, Parameters p) {
+  return f.parallelogram ? PlanePoint(p.s, p.t) : PlanePoint(p.s * (1.0 - p.t), p.s * p.t);
+}
+Parameters from_plane(const Facet& f, const PlanePoint& p) {
+  if (f.parallelogram) return {p.x, p.y};
+  const double s = p.x + p.y;
+  return {s, s > 0.0 ? p.y / s : 0.0};
+}
+
+// Uniform in the area of a part, but for its edges.
+PlanePoint in_outline(const Facet& f, const Outline& o, double x, double y) {
+  const auto area = [&](std::size_t b, std::size_t c) {
+    const PlanePoint u = o[b] - o[0], v = o[c] - o[0];
+    return u.x * v.y - u.y * v.x;
+  };
+  const double first = area(1, 2), all = first + area(2, 3), share = first / all;
+  const bool in_first = x < share || share >= 1.0;
+  const double r = std::sqrt(in_first ? x / share : (x - share) / (1.0 - share));
+  const PlanePoint &b = o[in_first ? 1 : 2], &c = o[in_first ? 2 : 3];
+  const PlanePoint p = o[0] + r * (b - o[0] + y * (c - b));
+  double around = 0.0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const PlanePoint edge = o[(k + 1) % 4] - o[k];
+    around += glm::length(edge.x * f.a + edge.y * f.b);
+  }
+  const double width = all * glm::length(glm::cross(f.a, f.b)) / around;
+  const double size = glm::length(f.corner) + glm::length(f.a) + glm::length(f.b);
+  const double inset = part_inset + std::min(0.5, rounding * size / width);
+  return p + inset * (0.25 * (o[0] + o[1] + o[2] + o[3]) - p);
+}
+
 // The facet, or the triangle of a cluster, that holds the point (x, y) of a patch.
 struct Holder {
   Facet facet;
@@ -37,6 +73,9 @@ struct Holder {
 };
 Holder holder_of(const Patches& patches, std::uint32_t patch, double x, double y) {
   const Facet& f = patches.facets[patches.facet[patch]];
+  if (patches.is_part(patch)) {
+    return {f, from_plane(f, in_outline(f, patches.outlines[patches.cell[patch].outline], x, y))};
+  }
   if (!f.is_cluster()) return {f, parameters_at(f, patches.rectangle(patch), x, y)};
   const ClusterSpan span = span_of(f, patches.cell[patch]);
   const Facet member = patches.clustered->facet(patches.clustered->pick(span, x));
@@ -97,7 +136,13 @@ double area_of(const Facet& facet, const Rectangle& r) {
   return facet.area_m2 * (r.s1 * r.s1 - r.s0 * r.s0) * (r.t1 - r.t0);
 }
 
+double area_of(const Facet& facet, const Outline& o) {
+  const PlanePoint u = o[2] - o[0], v = o[3] - o[1];
+  return (facet.parallelogram ? 0.5 : 1.0) * facet.area_m2 * (u.x * v.y - u.y * v.x);
+}
+
 double area_of(const Patches& patches, const Facet& facet, const Cell& cell) {
+  if (cell.outline != no_outline) return area_of(facet, patches.outlines[cell.outline]);
   if (facet.is_cluster()) return patches.clustered->area(span_of(facet, cell));
   return area_of(facet, rectangle_of(facet, cell));
 }
@@ -133,12 +178,25 @@ Patches::Place Patches::place(const Facet& of, Parameters where) const {
   if (of.tree == no_tree) return {grid_cell, x, y};
   std::uint32_t entry = tree[of.tree + grid_cell];
   while ((entry & split_cell) != 0) {
+    if ((entry & parted_cell) != 0) {
+      const std::uint32_t at = entry & pair_of;
+      return {tree[at] + part_at(tree[at + 1], in_plane(of, where)), x, y};
+    }
     double& along = (entry & halves_t) != 0 ? y : x;
     const std::uint32_t half = along >= 0.5 ? 1 : 0;
     along = 2.0 * along - half;
-    entry = tree[(entry & ~(split_cell | halves_t)) + half];
+    entry = tree[(entry & pair_of) + half];
   }
   return {entry, x, y};
+}
+
+std::uint32_t Patches::part_at(std::uint32_t first_node, const PlanePoint& p) const {
+  for (std::uint32_t node = first_node;;) {
+    const PartNode& at = part_nodes[node];
+    const std::int32_t side = at.side[glm::dot(at.way, p) >= at.reach ? 1 : 0];
+    if (side < 0) return static_cast<std::uint32_t>(~side);
+    node = first_node + static_cast<std::uint32_t>(side);
+  }
 }
 
 Rectangle Patches::rectangle(std::uint32_t patch) const {
@@ -154,6 +212,11 @@ std::array<Vec3, 4> Patches::corners(std::uint32_t patch) const {
                    on_facet(f, r.s0, r.t1)});
   };
   const Facet& f = facets[facet[patch]];
+  if (is_part(patch)) {
+    const Outline& o = outlines[cell[patch].outline];
+    const auto at = [&](const PlanePoint& p) { return f.corner + p.x * f.a + p.y * f.b; };
+    return turned({at(o[0]), at(o[1]), at(o[2]), at(o[3])});
+  }
   if (!f.is_cluster()) return of(f, rectangle(patch));
   const ClusterSpan span = span_of(f, cell[patch]);
   if (span.count > 1) return turned(clustered->corners(span));

@@ -28,6 +28,7 @@ inline constexpr std::uint32_t no_tree = 0xFFFFFFFFU;
 //                  square ones
 // Or a cluster of small triangles (clusters.h), whose parameters only number them
 // (cluster_members.h): normal and area are those of all, corner, a and b are not used.
+// Cells that walls stand on or pierce are parted along them (parted_cell.h).
 struct Facet {
   Vec3 corner, a, b;
   Vec3 normal;  // unit, of the front
@@ -62,12 +63,30 @@ struct SurfacePoint {
 };
 
 struct ClusterMembers;
+class Traces;
+
+// In the plane of a facet: p = corner + x a + y b.
+using PlanePoint = glm::dvec2;
+// A part of a cell, counter-clockwise as the facet has it; of a triangle the last corner stands
+// twice.
+using Outline = std::array<PlanePoint, 4>;
+inline constexpr std::uint32_t no_outline = 0xFFFFFFFFU;
+
+// Where a cell is parted: points with way . p >= reach are on the second side. A side is another
+// such node, or as ~k part k of the cell.
+struct PartNode {
+  PlanePoint way;
+  double reach;
+  std::array<std::int32_t, 2> side;
+};
 
 // A leaf: cell (s, t) of the (s_count << s_cuts) x (t_count << t_cuts) cells that its facet would
-// have if all of its grid had been halved as often.
+// have if all of its grid had been halved as often, or part of it.
 struct Cell {
   std::uint32_t s = 0, t = 0;
   std::uint8_t s_cuts = 0, t_cuts = 0;
+  std::uint16_t part = 0;              // which one; 0 also where it is whole
+  std::uint32_t outline = no_outline;  // in Patches::outlines; no_outline: it is whole
 };
 
 struct Rectangle {  // in parameters
@@ -85,10 +104,17 @@ class Patches {
   std::vector<std::uint8_t> second_half;   // per triangle: the second of a parallelogram
   // Facets with split cells: s_count * t_count entries each, then pairs of halves. An entry is a
   // leaf's number within its facet, or split_cell + where its pair is, with halves_t if the halves
-  // lie side by side along t and not along s.
+  // lie side by side along t and not along s; with parted_cell it is no pair but the number of the
+  // leaf that is the cell's first part, the others follow, and where its first node is in
+  // part_nodes.
   std::vector<std::uint32_t> tree;
   static constexpr std::uint32_t split_cell = 0x80000000U;
   static constexpr std::uint32_t halves_t = 0x40000000U;
+  static constexpr std::uint32_t parted_cell = 0x20000000U;
+  static constexpr std::uint32_t pair_of = 0x1FFFFFFFU;  // the bits of an entry that say where
+  std::vector<PartNode> part_nodes;
+  std::vector<Outline> outlines;
+  std::shared_ptr<const Traces> traces;  // of walls, that cells are parted along; or null
   std::shared_ptr<const ClusterMembers> clustered;  // null: there is no cluster
   double cluster_edge_m = 0.0;                      // that clusters were made for; 0: none
 
@@ -106,11 +132,13 @@ class Patches {
     double x, y;
   };
   [[nodiscard]] Place place(const Facet& of, Parameters where) const;
+  // Of a parted cell.
+  [[nodiscard]] std::uint32_t part_at(std::uint32_t first_node, const PlanePoint& p) const;
   [[nodiscard]] std::uint32_t leaf(const Facet& of, Parameters where) const {
     return place(of, where).leaf;
   }
 
-  [[nodiscard]] Rectangle rectangle(std::uint32_t patch) const;
+  [[nodiscard]] Rectangle rectangle(std::uint32_t patch) const;  // of its cell
   // Counter-clockwise about the patch's own normal; where a triangle's apex is a corner it stands
   // twice. Of several triangles: of a rectangle about their mean normal that they all lie over.
   [[nodiscard]] std::array<Vec3, 4> corners(std::uint32_t patch) const;
@@ -128,6 +156,10 @@ class Patches {
   [[nodiscard]] Vec3 normal_at(std::uint32_t triangle, bool front) const;
   // Whether the patch is several triangles of a cluster.
   [[nodiscard]] bool is_several(std::uint32_t patch) const;
+  // Whether it is a part of its cell.
+  [[nodiscard]] bool is_part(std::uint32_t patch) const {
+    return cell[patch].outline != no_outline;
+  }
   [[nodiscard]] std::uint32_t material(std::uint32_t patch) const {
     return facets[facet[patch]].material;
   }
@@ -146,9 +178,10 @@ class Patches {
 // does.
 [[nodiscard]] std::size_t count_patches(const scenes::Scene& scene, double edge_m);
 
-// Area and place in parameters of a cell of a facet, no cluster's.
+// Area and place in parameters of a cell, or of a part, of a facet, no cluster's.
 [[nodiscard]] Rectangle rectangle_of(const Facet& facet, const Cell& cell);
 [[nodiscard]] double area_of(const Facet& facet, const Rectangle& rectangle);
+[[nodiscard]] double area_of(const Facet& facet, const Outline& outline);
 // The place in the triangle: the inverse of Patches::parameters.
 [[nodiscard]] TrianglePlace triangle_place(const Facet& facet, Parameters where);
 // Of a cell of any facet.

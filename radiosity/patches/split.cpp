@@ -4,6 +4,7 @@
 #include <array>
 
 #include "radiosity/patches/cluster_members.h"
+#include "radiosity/patches/parted_cell.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -39,6 +40,7 @@ class Cutter {
     result_.patches.second_half = old.second_half;
     result_.patches.clustered = old.clustered;
     result_.patches.cluster_edge_m = old.cluster_edge_m;
+    result_.patches.traces = old.traces;
     result_.patches.facets.reserve(old.facets.size());
   }
 
@@ -48,7 +50,9 @@ class Cutter {
     facet_ = &facet;
     const std::uint32_t grid = facet.s_count * facet.t_count;
     Facet made = facet;
-    const bool splits = facet.tree != no_tree || any_wanted();
+    number_ = static_cast<std::uint32_t>(patches.facets.size());
+    has_walls_ = old_.traces && old_.traces->any(number_);
+    const bool splits = facet.tree != no_tree || has_walls_ || any_wanted();
     if (splits) {
       made.tree = static_cast<std::uint32_t>(patches.tree.size());
       patches.tree.resize(patches.tree.size() + grid);
@@ -76,10 +80,14 @@ class Cutter {
     std::uint32_t parent;  // leaf of the old facet
   };
 
-  [[nodiscard]] Cut cut_of(std::uint32_t leaf) const {
-    Cut cut = wanted_[facet_->first_front + leaf];
-    if (cut == Cut::None && facet_->first_back != no_patch) {
-      cut = wanted_[facet_->first_back + leaf];
+  // As any of `count` leaves wants it: the parts of one cell.
+  [[nodiscard]] Cut cut_of(std::uint32_t leaf, std::uint32_t count = 1) const {
+    Cut cut = Cut::None;
+    for (const std::uint32_t first : {facet_->first_front, facet_->first_back}) {
+      if (first == no_patch) continue;
+      for (std::uint32_t k = leaf; k < leaf + count && cut == Cut::None; ++k) {
+        cut = wanted_[first + k];
+      }
     }
     return can_cut_cell(*facet_, old_.cell[facet_->first_front + leaf], cut) ? cut : Cut::None;
   }
@@ -93,39 +101,80 @@ class Cutter {
   // The old entry's cell goes to `slot` of the new tree, halved if it is a leaf that is wanted.
   void place(std::uint32_t entry, const Cell& cell, std::uint32_t slot) {
     std::vector<std::uint32_t>& tree = result_.patches.tree;
-    const bool was_split = (entry & Patches::split_cell) != 0;
+    const bool was_parted = (entry & Patches::parted_cell) != 0;
+    const bool was_split = !was_parted && (entry & Patches::split_cell) != 0;
     Cut cut = (entry & Patches::halves_t) != 0 ? Cut::T : Cut::S;
-    if (!was_split) cut = cut_of(entry);
-    if (cut == Cut::None) {
-      tree[slot] = add_leaf(cell, entry);
-      return;
-    }
+    if (!was_split) cut = was_parted ? cut_of_parts(entry & Patches::pair_of) : cut_of(entry);
+    if (cut == Cut::None) return add_leaf(cell, entry, slot);
     const auto pair = static_cast<std::uint32_t>(tree.size());
     tree.resize(tree.size() + 2);
     tree[slot] = (Patches::split_cell | (cut == Cut::T ? Patches::halves_t : 0U)) + pair;
-    const std::uint32_t old_pair = entry & ~(Patches::split_cell | Patches::halves_t);
+    const std::uint32_t old_pair = entry & Patches::pair_of;
     for (std::uint32_t half = 0; half < 2; ++half) {
       const Cell child = half_of(cell, cut, half);
       if (was_split) {
         place(old_.tree[old_pair + half], child, pair + half);
       } else {
-        tree[pair + half] = add_leaf(child, entry);
+        add_leaf(child, entry, pair + half);
       }
     }
   }
 
-  std::uint32_t add_leaf(const Cell& cell, std::uint32_t parent) {
-    leaves_.push_back({cell, parent});
-    return static_cast<std::uint32_t>(leaves_.size() - 1);
+  [[nodiscard]] Cut cut_of_parts(std::uint32_t at) const {
+    const std::uint32_t first = old_.tree[at];
+    std::uint32_t count = 1;
+    while (first + count < facet_->leaves &&
+           old_.cell[facet_->first_front + first + count].part == count) {
+      ++count;
+    }
+    return cut_of(first, count);
+  }
+
+  // The cell, or its parts, at `slot` of the new tree. `entry`: of the old cell that holds it.
+  void add_leaf(const Cell& cell, std::uint32_t entry, std::uint32_t slot) {
+    std::vector<std::uint32_t>& tree = result_.patches.tree;
+    const auto first = static_cast<std::uint32_t>(leaves_.size());
+    const PartedCell parted = has_walls_ ? parts_of(cell) : PartedCell();
+    if (parted.outlines.empty()) {
+      leaves_.push_back({cell, parent_of(entry, cell, nullptr)});
+      tree[slot] = first;
+      return;
+    }
+    Patches& patches = result_.patches;
+    tree[slot] =
+        Patches::split_cell | Patches::parted_cell | static_cast<std::uint32_t>(tree.size());
+    tree.push_back(first);
+    tree.push_back(static_cast<std::uint32_t>(patches.part_nodes.size()));
+    Cell part = cell;
+    part.outline = static_cast<std::uint32_t>(patches.outlines.size());
+    append(patches, parted);
+    for (const Outline& outline : parted.outlines) {
+      leaves_.push_back({part, parent_of(entry, cell, &outline)});
+      ++part.part;
+      ++part.outline;
+    }
+  }
+
+  [[nodiscard]] PartedCell parts_of(const Cell& cell) {
+    old_.traces->near(number_, outline_of(*facet_, cell), near_);
+    return part_cell(*facet_, cell, near_);
+  }
+
+  // The old leaf that holds the middle of a cell, or of a part of it.
+  [[nodiscard]] std::uint32_t parent_of(std::uint32_t entry, const Cell& cell,
+                                        const Outline* part) const {
+    if ((entry & Patches::parted_cell) == 0) return entry;
+    const Outline o = part != nullptr ? *part : outline_of(*facet_, cell);
+    const std::uint32_t at = entry & Patches::pair_of;
+    return old_.tree[at] + old_.part_at(old_.tree[at + 1], 0.25 * (o[0] + o[1] + o[2] + o[3]));
   }
 
   std::uint32_t add_side(const Facet& made, std::uint32_t old_first, std::uint8_t side) {
     Patches& patches = result_.patches;
     const auto first = static_cast<std::uint32_t>(patches.count());
-    const auto index = static_cast<std::uint32_t>(patches.facets.size());
     for (const Leaf& leaf : leaves_) {
       patches.area_m2.push_back(area_of(patches, made, leaf.cell));
-      patches.facet.push_back(index);
+      patches.facet.push_back(number_);
       patches.cell.push_back(leaf.cell);
       patches.is_back.push_back(side);
       result_.parent.push_back(old_first + leaf.parent);
@@ -136,6 +185,9 @@ class Cutter {
   const Patches& old_;
   const std::vector<Cut>& wanted_;
   const Facet* facet_ = nullptr;
+  std::uint32_t number_ = 0;  // of the facet
+  bool has_walls_ = false;
+  std::vector<Trace> near_;
   std::vector<Leaf> leaves_;
   Split result_;
 };
@@ -146,6 +198,13 @@ Split split(const Patches& patches, const std::vector<Cut>& wanted) {
   Cutter cutter(patches, wanted);
   for (const Facet& facet : patches.facets) cutter.add(facet);
   return cutter.take();
+}
+
+Patches part_along(Patches patches, Traces traces) {
+  if (!traces.any()) return patches;
+  patches.traces = std::make_shared<const Traces>(std::move(traces));
+  const std::vector<Cut> none(patches.count(), Cut::None);
+  return split(patches, none).patches;
 }
 
 void grade(const Patches& patches, std::vector<Cut>& wanted) {
@@ -192,6 +251,14 @@ CellSize cell_size(const Patches& patches, std::uint32_t patch) {
   if (patches.is_several(patch)) {
     const auto [low, high] = patches.box(patch);
     return {base::max_component(high - low), 0.0};
+  }
+  const Facet& f = patches.facets[patches.facet[patch]];
+  if (patches.is_part(patch)) {
+    const Outline o = outline_of(f, patches.cell[patch]);
+    const auto edge = [&](std::size_t a, std::size_t b) {
+      return glm::length((o[b].x - o[a].x) * f.a + (o[b].y - o[a].y) * f.b);
+    };
+    return {std::max(edge(0, 1), edge(3, 2)), std::max(edge(1, 2), edge(0, 3))};
   }
   const std::array<Vec3, 4> c = patches.corners(patch);
   const auto longest = [&](int a, int b, int d, int e) {

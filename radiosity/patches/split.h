@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "radiosity/patches/parted_cell.h"
 #include "radiosity/patches/patches.h"
 
 namespace earthshine::radiosity {
@@ -22,14 +23,17 @@ struct Split {
 // halves apart.
 [[nodiscard]] Split split(const Patches& patches, const std::vector<Cut>& wanted);
 
+// Parts whole cells along the walls on them, now and whenever they are split.
+[[nodiscard]] Patches part_along(Patches patches, Traces traces);
+
 // Marks what else must be cut so that no cell grows more than twice as long along s, or along t, as
 // a neighbour on its facet. What a few samples of a large cell missed is found from beside it.
 void grade(const Patches& patches, std::vector<Cut>& wanted);
 
 [[nodiscard]] bool can_cut(const Patches& patches, std::uint32_t patch, Cut cut);
 
-// Lengths of a cell along s and along t, m; of a trapezoid the longest. Of several triangles of a
-// cluster, which are halved along s only, that of their box and 0.
+// Lengths of a cell along s and along t, m; of a trapezoid the longest, of a part its cell's. Of
+// several triangles of a cluster, which are halved along s only, that of their box and 0.
 struct CellSize {
   double s_m, t_m;
 };

@@ -7,6 +7,7 @@
 
 #include "base/files/hdf5_file.h"
 #include "base/input/input_file.h"
+#include "radiosity/bodies/wall_traces.h"
 #include "radiosity/store/solution_fields.h"
 #include "radiosity/store/solution_file.h"
 #include "radiosity/store/solution_key.h"
@@ -163,7 +164,7 @@ Solution read_solution(const std::filesystem::path& path, const SolutionOrigin& 
   visit_layout(store, layout);
   Solution solution;
   try {
-    solution.patches = rebuild_patches(origin.scene, std::move(layout));
+    solution.patches = rebuild_patches(origin.scene, std::move(layout), find_wall_traces);
   } catch (const std::invalid_argument& problem) {
     file.fail(problem.what());
   }

@@ -26,14 +26,14 @@ std::uint64_t identity(const radiosity::Patches& patches, std::uint32_t patch) {
   const std::uint64_t place = (std::uint64_t{cell.s} << 32) | cell.t;
   const std::uint64_t facet =
       (std::uint64_t{patches.facet[patch]} << 16) | (std::uint64_t{cell.s_cuts} << 8) | cell.t_cuts;
-  return base::mix64(base::mix64(facet) ^ place) ^ patches.is_back[patch];
+  return base::mix64(base::mix64(facet) ^ place) ^ (2U * cell.part + patches.is_back[patch]);
 }
 
 }  // namespace
 
 scenes::Hit hit_at(const radiosity::Patches& patches, std::uint32_t patch, double x, double y) {
   const radiosity::Facet& facet = patches.facets[patches.facet[patch]];
-  if (facet.is_cluster()) {
+  if (facet.is_cluster() || patches.is_part(patch)) {
     const auto [triangle, u, v] = patches.on_triangle(patch, x, y);
     scenes::Hit hit;
     hit.triangle = triangle;
