@@ -20,9 +20,11 @@ void intersect8(const int* valid, RTCScene scene, RTCRayHit8& rays) {
   rtcInitIntersectArguments(&arguments);
   rtcIntersect8(valid, scene, &rays, &arguments);
 }
-void occluded8(const int* valid, RTCScene scene, RTCRay8& rays) {
+void occluded8(const int* valid, RTCScene scene, RTCRay8& rays, ShadowContext& context) {
+  rtcInitRayQueryContext(&context);
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
+  arguments.context = &context;
   rtcOccluded8(valid, scene, &rays, &arguments);
 }
 void intersect1(RTCScene scene, RTCRayHit& ray) {
@@ -36,8 +38,7 @@ void intersect8(const int* valid, RTCScene scene, RTCRayHit8& rays) {
   rtcInitIntersectContext(&context);
   rtcIntersect8(valid, scene, &context, &rays);
 }
-void occluded8(const int* valid, RTCScene scene, RTCRay8& rays) {
-  RTCIntersectContext context;
+void occluded8(const int* valid, RTCScene scene, RTCRay8& rays, ShadowContext& context) {
   rtcInitIntersectContext(&context);
   rtcOccluded8(valid, scene, &context, &rays);
 }
@@ -61,7 +62,7 @@ void fill(const RayPacket& rays, RTCRay8& ray) {
     ray.tnear[k] = 0.0F;
     ray.time[k] = 0.0F;
     ray.mask[k] = all_rays;
-    ray.id[k] = 0;
+    ray.id[k] = static_cast<unsigned>(k);
     ray.flags[k] = 0;
   }
 }
@@ -75,6 +76,15 @@ constexpr auto lane_masks() {
   return masks;
 }
 alignas(32) constexpr std::array<std::array<int, 8>, 9> valid_lanes = lane_masks();
+
+// Bit k is set if ray k met anything.
+std::uint32_t hidden_bits(const RTCRay8& rays, std::size_t count) {
+  std::uint32_t bits = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (rays.tfar[k] < 0.0F) bits |= 1U << k;
+  }
+  return bits;
+}
 
 // RayQuery's shadow rays: through glass that does not bend light, off flat mirrors.
 
@@ -151,6 +161,7 @@ RayQuery::RayQuery(const Scene& source)
     centre_ = Vec3(box_around(source.vertices).middle_in_single());
     embree_->offset_m = scenes::surface_offset_m(source);
     embree_->masks = OpacityMasks(source);
+    embree_->any_ways = !ways_.empty();
     embree_->add_triangles(embree_->scene, source, 0, own_triangles, 0, own_vertices, centre_);
     embree_->add_instances(source, centre_);
   }
@@ -229,12 +240,9 @@ Hit RayQuery::closest(const Vec3& origin, const Vec3& direction) const {
 std::uint32_t RayQuery::occluded(const RayPacket& rays, std::size_t count) const {
   RTCRay8 query;
   fill(rays, query);
-  occluded8(valid_lanes[count].data(), embree_->scene, query);
-  std::uint32_t bits = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    if (query.tfar[k] < 0.0F) bits |= 1U << k;
-  }
-  return bits;
+  ShadowContext context;
+  occluded8(valid_lanes[count].data(), embree_->scene, query, context);
+  return hidden_bits(query, count);
 }
 
 Vec3 hit_position(const Scene& scene, const Hit& hit) {
@@ -252,19 +260,34 @@ double triangle_area(const Scene& scene, std::uint32_t triangle) {
 
 void RayQuery::light_shares(const RayPacket& rays, const std::uint32_t* mirrors, std::size_t count,
                             Rgb* shares) const {
-  if (ways_.empty()) {
-    const std::uint32_t hidden = occluded(rays, count);
-    for (std::size_t k = 0; k < count; ++k) shares[k] = Rgb(((hidden >> k) & 1U) != 0 ? 0.0 : 1.0);
-    return;
+  RTCRay8 query;
+  fill(rays, query);
+  ShadowContext context;
+  context.ways = ways_.empty() ? nullptr : &ways_;
+  std::array<Vec3, RayPacket::width> origin, direction;
+  for (std::size_t k = 0; k < count && context.ways != nullptr; ++k) {
+    origin[k] = centre_ + Vec3(rays.origin_x[k], rays.origin_y[k], rays.origin_z[k]);
+    direction[k] = Vec3(rays.direction_x[k], rays.direction_y[k], rays.direction_z[k]);
+    if (mirrors[k] == no_mirror) continue;
+    // Only what is before the mirror stands in the way.
+    const FlatMirror& mirror = ways_.mirrors()[mirrors[k]];
+    const double fall = -glm::dot(direction[k], mirror.normal);
+    const double to_mirror = mirror.height_m(origin[k]) / std::max(fall, 1e-12);
+    query.tfar[k] = std::min(
+        query.tfar[k], static_cast<float>(std::max(0.0, to_mirror - 2.0 * embree_->offset_m)));
   }
-  HitPacket hits;
-  closest(rays, count, hits);
+  occluded8(valid_lanes[count].data(), embree_->scene, query, context);
+  const std::uint32_t hidden = hidden_bits(query, count);
   for (std::size_t k = 0; k < count; ++k) {
-    const Vec3 origin = centre_ + Vec3(rays.origin_x[k], rays.origin_y[k], rays.origin_z[k]);
-    const Vec3 direction(rays.direction_x[k], rays.direction_y[k], rays.direction_z[k]);
-    shares[k] =
-        Way(*this, origin, direction, double(rays.t_max[k]), mirrors[k])
-            .follow({hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0});
+    const bool turns = context.ways != nullptr && mirrors[k] != no_mirror;
+    if (((hidden >> k) & 1U) != 0) {
+      shares[k] = Rgb(0.0);
+    } else if (!turns && ((context.met >> k) & 1U) == 0) {
+      shares[k] = Rgb(1.0);
+    } else {
+      shares[k] = Way(*this, origin[k], direction[k], double(rays.t_max[k]), mirrors[k])
+                      .follow(closest(origin[k], direction[k]));
+    }
   }
 }
 

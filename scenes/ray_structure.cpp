@@ -14,16 +14,32 @@ void RayQuery::Embree::fail(const std::string& what) {
                     "Use a smaller scene or a machine with more memory");
 }
 
+bool RayQuery::Embree::is_hole(const RTCFilterFunctionNArguments* found, unsigned k,
+                               std::uint32_t triangle) const {
+  return !masks.empty() && masks.is_hole(triangle, double(RTCHitN_u(found->hit, found->N, k)),
+                                         double(RTCHitN_v(found->hit, found->N, k)));
+}
+
 // Rays go on through the holes of opacity masks.
 void RayQuery::Embree::pass_holes(const RTCFilterFunctionNArguments* found) {
   const auto& embree = *static_cast<const Embree*>(found->geometryUserPtr);
   for (unsigned k = 0; k < found->N; ++k) {
     if (found->valid[k] != -1) continue;
-    const std::uint32_t triangle = embree.triangle(RTCHitN_instID(found->hit, found->N, k, 0),
-                                                   RTCHitN_primID(found->hit, found->N, k));
-    const bool hole = embree.masks.is_hole(triangle, double(RTCHitN_u(found->hit, found->N, k)),
-                                           double(RTCHitN_v(found->hit, found->N, k)));
-    if (hole) found->valid[k] = 0;
+    if (embree.is_hole(found, k, embree.triangle_of(found, k))) found->valid[k] = 0;
+  }
+}
+
+// So do shadow rays, and through what may let light through or turn it.
+void RayQuery::Embree::pass_shadow(const RTCFilterFunctionNArguments* found) {
+  const auto& embree = *static_cast<const Embree*>(found->geometryUserPtr);
+  auto& shadow = *static_cast<ShadowContext*>(found->context);
+  for (unsigned k = 0; k < found->N; ++k) {
+    if (found->valid[k] != -1) continue;
+    const std::uint32_t triangle = embree.triangle_of(found, k);
+    const bool hole = embree.is_hole(found, k, triangle);
+    const bool way = shadow.ways != nullptr && shadow.ways->face(triangle) != nullptr;
+    if (!hole && way) shadow.met |= 1U << RTCRayN_id(found->ray, found->N, k);
+    if (hole || way) found->valid[k] = 0;
   }
 }
 
@@ -54,11 +70,9 @@ void RayQuery::Embree::add_triangles(RTCScene to, const Scene& source, std::size
       indices[3 * i + k] = static_cast<unsigned>(source.triangles[first + i].vertex[k] - low);
   }
   rtcSetGeometryMask(geometry, all_rays);  // Embree 4 would default to 1
-  if (!masks.empty()) {
-    rtcSetGeometryUserData(geometry, this);
-    rtcSetGeometryIntersectFilterFunction(geometry, pass_holes);
-    rtcSetGeometryOccludedFilterFunction(geometry, pass_holes);
-  }
+  rtcSetGeometryUserData(geometry, this);
+  if (!masks.empty()) rtcSetGeometryIntersectFilterFunction(geometry, pass_holes);
+  if (!masks.empty() || any_ways) rtcSetGeometryOccludedFilterFunction(geometry, pass_shadow);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(to, geometry);
   rtcReleaseGeometry(geometry);

@@ -25,11 +25,24 @@ namespace earthshine::scenes {
 
 inline constexpr unsigned all_rays = 0xFFFFFFFFU;
 
+#if EARTHSHINE_EMBREE_MAJOR == 4
+using EmbreeContext = RTCRayQueryContext;
+#else
+using EmbreeContext = RTCIntersectContext;
+#endif
+
+// Of shadow rays: what goes on from `ways` stops none of them, but is told of.
+struct ShadowContext : EmbreeContext {
+  const LightWays* ways = nullptr;  // null: all surfaces stop rays
+  std::uint32_t met = 0;            // bit k: ray k met one that does not
+};
+
 struct RayQuery::Embree {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   double offset_m = 0.0;
   OpacityMasks masks;
+  bool any_ways = false;  // some faces let shadow rays go on
   // Instances have the structure of their original's triangles, once; by the number of their
   // geometry in the scene, of which the first is that of all other triangles.
   struct Placed {
@@ -47,6 +60,13 @@ struct RayQuery::Embree {
     return instance == RTC_INVALID_GEOMETRY_ID ? primitive
                                                : placed[instance].first_triangle + primitive;
   }
+  [[nodiscard]] std::uint32_t triangle_of(const RTCFilterFunctionNArguments* found,
+                                          unsigned k) const {
+    return triangle(RTCHitN_instID(found->hit, found->N, k, 0),
+                    RTCHitN_primID(found->hit, found->N, k));
+  }
+  [[nodiscard]] bool is_hole(const RTCFilterFunctionNArguments* found, unsigned k,
+                             std::uint32_t triangle) const;
   // Whether a ray comes from the front. Embree has normals as the original has them.
   [[nodiscard]] bool is_front(unsigned instance, const glm::vec3& normal, glm::vec3 way) const {
     if (instance != RTC_INVALID_GEOMETRY_ID) way = placed[instance].to_original * way;
@@ -54,6 +74,7 @@ struct RayQuery::Embree {
   }
 
   static void pass_holes(const RTCFilterFunctionNArguments* found);
+  static void pass_shadow(const RTCFilterFunctionNArguments* found);
   [[noreturn]] static void fail(const std::string& what);
   [[nodiscard]] RTCScene new_scene() const;
   // Triangles first .. first + count - 1 and vertices low .. high - 1, about `centre`.

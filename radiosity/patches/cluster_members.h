@@ -29,6 +29,7 @@ struct ClusterSpan {
 struct ClusterMembers {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> corner;  // per member
+  std::vector<std::uint8_t> apex;                    // per member: as of facet()
   std::vector<std::uint32_t> triangle;               // per member: of the scene
   std::vector<std::uint32_t> of_triangle;            // per triangle of the scene; no_member: none
   std::vector<double> area_to;                       // of the members before; one entry more

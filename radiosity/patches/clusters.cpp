@@ -226,6 +226,8 @@ Clusters find_clusters(const scenes::Scene& scene, double edge_m, Members wanted
   for (const std::uint32_t t : members.triangle) {
     const auto& v = scene.triangles[t].vertex;
     members.corner.push_back({v[0], v[1], v[2]});
+    members.apex.push_back(
+        facet_of_triangle(scene.vertices[v[0]], scene.vertices[v[1]], scene.vertices[v[2]]).apex);
     members.area_to.push_back(members.area_to.back() + scenes::triangle_area(scene, t));
   }
   return found;

@@ -151,7 +151,7 @@ Parameters Patches::parameters(std::uint32_t triangle, double u, double v) const
   const Facet& f = facets[of_triangle[triangle]];
   if (f.is_cluster()) {
     const std::uint32_t member = clustered->of_triangle[triangle];
-    return clustered->parameters(f, member, in_triangle(clustered->facet(member).apex, u, v));
+    return clustered->parameters(f, member, in_triangle(clustered->apex[member], u, v));
   }
   if (f.parallelogram) {
     return second_half[triangle] != 0 ? Parameters{u, u + v} : Parameters{u + v, v};

@@ -131,6 +131,8 @@ class GatherField {
   // Where the rays of a point start, other places for each `turn`.
   [[nodiscard]] RayOrigins draw_origins(Gathered kind, std::size_t point, std::uint32_t turn,
                                         RayCounts& counts) const;
+  // Of a pixel of the window, in the picture.
+  [[nodiscard]] std::array<int, 2> place_of(std::size_t pixel) const;
   // All points of a tile, pixel by pixel.
   [[nodiscard]] std::vector<std::size_t> points_of_tile(std::size_t tile) const;
   // Tells each point's random numbers apart, whatever the crop.

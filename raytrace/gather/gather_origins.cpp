@@ -50,17 +50,19 @@ RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t
                               .with(number(kind))
                               .with(turn);
     const base::SobolOwen4 places(key);
-    Places x, y;
+    Places in_x, in_y;
     for (std::uint32_t k = 0; k < RayOrigins::most; ++k) {
       const auto u = places.point2(k);
-      x[k] = double(u[0]), y[k] = double(u[1]);
+      in_x[k] = double(u[0]), in_y[k] = double(u[1]);
     }
     counts.camera += RayOrigins::most;
-    for (const scenes::Hit& hit : look(pixel_of(p), x, y)) {
+    const auto [x, y] = place_of(pixel_of(p));
+    for (const scenes::Hit& hit : look(pixel_of(p), in_x, in_y)) {
       GatherPoint found;
       Vec3 origin;
       if (!place(hit, found, origin)) continue;
-      if (!stands_for(points_[p], found.position, found.normal)) continue;
+      // Only where camera samples read this point: it stands for the mean over just these places.
+      if (find(x, y, found.position, found.normal) != p) continue;
       origins.add(origin, Vec3(found.normal));
     }
   }

@@ -96,9 +96,7 @@ void GatherField::find_points() {
 
 std::array<scenes::Hit, packet_width> GatherField::look(std::size_t pixel, const Places& x_of,
                                                         const Places& y_of) const {
-  const auto columns = static_cast<std::size_t>(window_.columns);
-  const int x = window_.x + static_cast<int>(pixel % columns);
-  const int y = window_.y + static_cast<int>(pixel / columns);
+  const auto [x, y] = place_of(pixel);
   RayPacket packet;
   HitPacket hits;
   for (std::size_t k = 0; k < packet_width; ++k) {
@@ -193,13 +191,10 @@ void GatherField::find_strays() {
 }
 
 void GatherField::find_turning_lobes() {
-  const auto columns = static_cast<std::size_t>(window_.columns);
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const GatherPoint& point = points_[p];
     if (point.lobe <= 0.0F) continue;
-    const std::size_t pixel = pixel_of(p);
-    const int x = window_.x + static_cast<int>(pixel % columns);
-    const int y = window_.y + static_cast<int>(pixel / columns);
+    const auto [x, y] = place_of(pixel_of(p));
     for (int ring = 0; ring <= 1; ++ring) {
       each_neighbour(window_, x, y, ring, [&](std::size_t q) {
         const bool turns = points_[q].reach_m > 0.0F && points_[q].material == point.material &&
@@ -208,6 +203,12 @@ void GatherField::find_turning_lobes() {
       });
     }
   }
+}
+
+std::array<int, 2> GatherField::place_of(std::size_t pixel) const {
+  const auto columns = static_cast<std::size_t>(window_.columns);
+  return {window_.x + static_cast<int>(pixel % columns),
+          window_.y + static_cast<int>(pixel / columns)};
 }
 
 std::vector<std::size_t> GatherField::points_of_tile(std::size_t t) const {

@@ -54,7 +54,7 @@ double IncomingLight::kept_part(const scenes::Hit& hit, const Vec3& direction,
     const bool there = share.triangle == scenes::no_triangle || share.triangle == hit.triangle;
     return patch == share.aimed_at && there ? 1.0 : 0.0;
   }
-  if (patch == radiosity::no_patch) return 1.0;
+  if (patch == radiosity::no_patch || !bright_.holds(patch)) return 1.0;
   const double density = bright_.density_per_sr(
       patch, hit.t, glm::dot(direction, patches.normal_at(hit.triangle, hit.front)));
   const double found = share.found_rays * share.cosine / pi;

@@ -26,6 +26,7 @@ class BrightPatches {
   explicit BrightPatches(const radiosity::Solution& solution);
 
   [[nodiscard]] bool empty() const { return patches_.empty(); }
+  [[nodiscard]] bool holds(std::uint32_t patch) const { return density_per_m2_[patch] > 0.0F; }
 
   struct Aim {
     std::uint32_t patch;

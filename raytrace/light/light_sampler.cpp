@@ -52,6 +52,7 @@ LightSampler::LightSampler(const scenes::World& world, Indirect indirect, int di
     add({Kind::Lamp, world.groups.lamp[k], k}, wide ? copies : 1);
     if (wide) surfaces_.lights.push_back(k);
   }
+  for (const scenes::Lamp& lamp : scene.lamps) cones_.push_back(scenes::spot_cone(lamp));
   surfaces_.tree = tree_of(surfaces_.lights);
   // Without interreflection nothing carries emitters through F, so that all of them are sampled.
   const std::vector<bool> is_explicit = radiosity::emitter_is_explicit(world.scene);
@@ -63,6 +64,7 @@ LightSampler::LightSampler(const scenes::World& world, Indirect indirect, int di
   }
   gather_clusters(per_group);
   find_one_rays();
+  find_throws();
 }
 
 void LightSampler::gather_clusters(bool per_group) {
@@ -124,7 +126,7 @@ std::optional<LightSampler::SeenLamp> LightSampler::seen_lamp(const Vec3& origin
 
 void LightSampler::choose(const scenes::Receiver& receiver, double u,
                           std::vector<scenes::LightChoice>& chosen) const {
-  choose_straight(receiver, u, chosen);
+  choose_thrown(throws_.front(), receiver, u, 0, chosen);
   for (std::size_t m = 0; m < mirrors_.size(); ++m) {
     const scenes::FlatMirror& mirror = mirrors_[m];
     if (mirror.height_m(receiver.point) <= 0.0) continue;
@@ -132,20 +134,19 @@ void LightSampler::choose(const scenes::Receiver& receiver, double u,
     image.point = mirror.image(receiver.point);
     image.normal = mirror.turned(receiver.normal);
     image.mirrored = mirror.turned(receiver.mirrored);
-    const std::size_t first = chosen.size();
-    choose_straight(image, u, chosen);
-    for (std::size_t k = first; k < chosen.size(); ++k) chosen[k].light += (m + 1) * lights_.size();
+    choose_thrown(throws_[m + 1], image, u, (m + 1) * lights_.size(), chosen);
   }
 }
 
-void LightSampler::choose_straight(const scenes::Receiver& receiver, double u,
-                                   std::vector<scenes::LightChoice>& chosen) const {
-  for (const std::size_t light : always_) chosen.push_back({light, 1.0});
+void LightSampler::choose_thrown(const Throws& throws, const scenes::Receiver& receiver, double u,
+                                 std::size_t first,
+                                 std::vector<scenes::LightChoice>& chosen) const {
+  for (const std::size_t light : throws.always) chosen.push_back({light, 1.0});
   for (const Cluster& crowd : clusters_) {
-    const std::size_t first = chosen.size();
+    const std::size_t from = chosen.size();
     crowd.tree.choose(receiver, u, smallest_share, chosen);
-    for (std::size_t k = first; k < chosen.size(); ++k) {
-      chosen[k].light = crowd.lights[chosen[k].light];
+    for (std::size_t k = from; k < chosen.size(); ++k) {
+      chosen[k].light = first + crowd.lights[chosen[k].light];
     }
   }
 }
@@ -179,6 +180,34 @@ void LightSampler::find_one_rays() {
     if (lamp.kind == scenes::LampKind::Spot) ray.field_cosine = scenes::field_cosine(lamp);
     if (mirror != nullptr) ray.lamp_height_m = mirror->height_m(lamp.position);
   }
+}
+
+void LightSampler::find_throws() {
+  throws_.resize(1 + mirrors_.size());
+  for (std::size_t m = 0; m < throws_.size(); ++m) {
+    if (m > 0) throws_[m].mirror = &mirrors_[m - 1];
+    const std::size_t first = m * lights_.size();
+    for (std::size_t k = 0; k < lights_.size(); ++k) {
+      if (m == 0 || reaches_mirror(first + k)) throws_[m].lights.push_back(first + k);
+    }
+    for (const std::size_t k : always_) {
+      if (m == 0 || reaches_mirror(first + k)) throws_[m].always.push_back(first + k);
+    }
+  }
+}
+
+// False where nothing of a light falls on its mirror's front, as far as it is known without rays.
+bool LightSampler::reaches_mirror(std::size_t index) const {
+  const scenes::FlatMirror& mirror = *mirror_of(index);
+  const OneRay& ray = one_rays_[index];
+  if (!ray.is_all) return true;
+  if (ray.lamp_height_m <= 0.0) return false;
+  if (ray.field_cosine < -1.0) return true;
+  const Vec3 way = mirror.centre - ray.position;  // from the image, whose axis is turned as well
+  const double distance = glm::length(way);
+  if (distance <= mirror.radius_m) return true;
+  const double off = std::acos(std::clamp(glm::dot(way, ray.axis) / distance, -1.0, 1.0));
+  return off <= std::acos(ray.field_cosine) + std::asin(mirror.radius_m / distance) + 1e-6;
 }
 
 bool LightSampler::may_reach(std::size_t index, const Vec3& point, const Vec3& normal) const {
@@ -247,7 +276,9 @@ scenes::LightSample LightSampler::sample_straight(const Light& light, const Vec3
       sample = scenes::sample_lamp(*earth_area_, point, u, v);
       break;
     case Kind::Lamp:
-      sample = scenes::sample_lamp(scene_.lamps[light.index], point, u, v, spread);
+      sample = scene_.lamps[light.index].kind == scenes::LampKind::Spot
+                   ? scenes::sample_spot(scene_.lamps[light.index], cones_[light.index], point)
+                   : scenes::sample_lamp(scene_.lamps[light.index], point, u, v, spread);
       break;
     case Kind::Emitters:
       sample = emitters_[light.index].sample(point, u, v, spread);

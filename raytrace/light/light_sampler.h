@@ -52,6 +52,18 @@ class LightSampler {
   // one: a Sun below the horizon, a lamp behind the surface or not turned to it, one whose image is
   // not seen in the mirror from there.
   [[nodiscard]] bool may_reach(std::size_t light, const Vec3& point, const Vec3& normal) const;
+  // Whether (u, v) of sample() choose anything: not of lamps without size.
+  [[nodiscard]] bool has_extent(std::size_t light) const { return !one_rays_[light].is_all; }
+  // visit(light) for each that may reach such a surface.
+  template <class Visit>
+  void each_that_may_reach(const Vec3& point, const Vec3& normal, const Visit& visit) const {
+    for (const Throws& throws : throws_) {
+      if (throws.mirror != nullptr && throws.mirror->height_m(point) <= 0.0) continue;
+      for (const std::size_t light : throws.lights) {
+        if (may_reach(light, point, normal)) visit(light);
+      }
+    }
+  }
   [[nodiscard]] scenes::LightSample sample(std::size_t light, const Vec3& point, double u,
                                            double v) const;
 
@@ -82,13 +94,22 @@ class LightSampler {
   [[nodiscard]] const scenes::FlatMirror* mirror_of(std::size_t light) const {
     return light < lights_.size() ? nullptr : &mirrors_[light / lights_.size() - 1];
   }
-  void choose_straight(const scenes::Receiver& receiver, double u,
-                       std::vector<scenes::LightChoice>& chosen) const;
+  // What comes by one mirror, or straight.
+  struct Throws {
+    const scenes::FlatMirror* mirror = nullptr;
+    std::vector<std::size_t> lights;  // that reach it
+    std::vector<std::size_t> always;  // of these, those that are not left to chance
+  };
+  void find_throws();
+  [[nodiscard]] bool reaches_mirror(std::size_t light) const;
   [[nodiscard]] scenes::LightSample sample_straight(const Light& light, const Vec3& point, double u,
                                                     double v) const;
   void add(Light light, int copies);
   void gather_clusters(bool per_group);
   void find_one_rays();
+  // choose() of what comes by one mirror, or straight; the lights' numbers there begin at `first`.
+  void choose_thrown(const Throws& throws, const scenes::Receiver& receiver, double u,
+                     std::size_t first, std::vector<scenes::LightChoice>& chosen) const;
   [[nodiscard]] scenes::LightTree tree_of(const std::vector<std::size_t>& lamps) const;
 
   const scenes::Scene& scene_;
@@ -97,10 +118,12 @@ class LightSampler {
   std::optional<scenes::Lamp> earth_area_;
   std::vector<Light> lights_;
   std::vector<OneRay> one_rays_;     // by number of the light, images too
+  std::vector<Throws> throws_;       // straight, then by each mirror
   std::vector<std::size_t> always_;  // lights that are not left to chance
   std::vector<Cluster> clusters_;
   Cluster surfaces_{scenes::LightTree({}), {}};  // lamps that a ray can meet, by their number there
   std::vector<scenes::EmitterSet> emitters_;
+  std::vector<scenes::SpotCone> cones_;  // per lamp; of spots
   Rgb sun_illuminance_lx_{0.0};
   std::vector<Rgb> part_illuminance_lx_;  // of a sky in parts
   double earth_half_angle_rad_ = 0.0;

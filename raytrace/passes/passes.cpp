@@ -21,9 +21,9 @@ constexpr std::array<Gathered, gathered_kinds> every_kind = {Gathered::Solution,
 constexpr double most_step = 2.0;  // less squared error a round
 // What planning by few samples promises is off by that much.
 constexpr double least_kept = 0.7, most_kept = 2.0;
-// Near the wanted error, how much more is cast before looking again, over all so far: what was
-// known by few samples is often better than it seemed.
-constexpr double last_step_share = 0.4;
+// Near the wanted error, how much more is cast before looking again, over what samples spread as
+// so far would take: what was known by few samples is often better than it seemed.
+constexpr double last_step_share = 0.5, least_last_step = 0.05;
 // Of the wanted error, what samples are planned for: the next statement may turn out larger.
 constexpr double aimed_share = 0.97;
 
@@ -136,9 +136,8 @@ class Passes {
     if (shared_.gathers) {
       const auto start = Clock::now();
       begin_field();
-      const bool early = options_.time_limit_s > 0.0;  // a first look at all of the picture
       cast_evenly(Gathered::Solution, GatherField::fewest_samples(Gathered::Solution));
-      cast_evenly(Gathered::Residual, early ? 2U : 4U);
+      cast_evenly(Gathered::Residual, 4U);
       cast_evenly(Gathered::Lobe, 2U);
       share();
       report_.gather_seconds += seconds_since(start);
@@ -157,7 +156,10 @@ class Passes {
       const double step = now - (now - std::max(aim * aim, now / most_step)) / kept;
       const double so_far = spent(*sums_, field(), each);
       double most = affordable(so_far);
-      if (now < most_step * aim * aim) most = std::min(most, last_step_share * so_far);
+      if (now < most_step * aim * aim) {
+        const double missing = last_step_share * (now / (aim * aim) - 1.0);
+        most = std::min(most, std::max(least_last_step, missing) * so_far);
+      }
       const SamplePlan plan = planner.plan(step, most);
       if (plan.cost <= 0.0) break;
       before = now, promised = now - plan.squared_error;

@@ -158,13 +158,13 @@ void PathWalker::light_directly(const Surface& surface) {
   // Each light has numbers of its own, so that a lamp that is switched off moves no other's light.
   const base::Key key(static_cast<std::uint64_t>(rng_->next() * 0x1p53), base::Stream::LightSample,
                       0);
-  for (std::size_t k = 0; k < world_.lights.count(); ++k) {
-    if (!world_.lights.may_reach(k, surface.position, surface.normal)) continue;
-    const double u = base::uniform(key.with(k), 0);
-    const double v = base::uniform(key.with(k), 1);
+  world_.lights.each_that_may_reach(surface.position, surface.normal, [&](std::size_t k) {
+    const bool chooses = world_.lights.has_extent(k);
+    const double u = chooses ? base::uniform(key.with(k), 0) : 0.0;
+    const double v = chooses ? base::uniform(key.with(k), 1) : 0.0;
     const scenes::LightSample light = world_.lights.sample(k, surface.position, u, v);
     const double cosine = glm::dot(light.direction, surface.normal);
-    if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) continue;
+    if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) return;
     Rgb reflectance = surface.diffuse;
     const double cos_alpha = glm::dot(light.direction, surface.mirrored);
     if (base::is_lit(surface.material.specular) && cos_alpha > 0.0) {
@@ -172,14 +172,14 @@ void PathWalker::light_directly(const Surface& surface) {
     }
     // Short of the source, which may be a surface of the scene.
     const double reach = light.distance_m * (1.0 - 1e-5) - 2.0 * offset;
-    if (reach <= 0.0) continue;
+    if (reach <= 0.0) return;
     value[count] = reflectance * light.normal_illuminance_lx * (cosine / pi);
     group[count] = world_.lights.group(k);
     kind[count] = world_.lights.kind(k);
     mirror[count] = light.mirror;
     world_.query.set(packet, count, origin, light.direction, reach);
     if (++count == width) trace();
-  }
+  });
   trace();
 }
 

@@ -71,7 +71,7 @@ void PixelShader::add_sample(std::size_t sample, const Ray& ray, const scenes::H
 }
 
 void PixelShader::end_pixel() {
-  flush_shadow();
+  trace_shadows();
   flush_gather();
 }
 
@@ -194,7 +194,7 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
       double(choice[0]) + 0x1p-24 * double(choice[1]), chosen_);
   for (const auto& [k, chance_weight] : chosen_) {
     if (!shared_.lights.may_reach(k, surface.position, surface.normal)) continue;
-    const auto u = light_point(k);
+    const auto u = shared_.lights.has_extent(k) ? light_point(k) : std::array<float, 2>{};
     const scenes::LightSample light = shared_.lights.sample(k, surface.position, u[0], u[1]);
     const double cosine = glm::dot(light.direction, surface.normal);
     if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) continue;
@@ -209,9 +209,9 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
     if (!base::is_lit(value)) continue;
     const double reach = light.distance_m * (1.0 - 1e-5) - 2.0 * offset;
     if (reach <= 0.0) continue;
-    queue_shadow(origin, light.direction, reach,
-                 {value, incident * highlight, shared_.layer[shared_.lights.group(k)], sample_,
-                  depth == 0, shared_.lights.kind(k), light.mirror});
+    queue_shadow({origin, light.direction, reach, k, value, incident * highlight,
+                  shared_.layer[shared_.lights.group(k)], sample_, depth == 0,
+                  shared_.lights.kind(k), light.mirror});
   }
 }
 

@@ -121,6 +121,9 @@ class PixelShader {
                         Seen seen);
 
   struct ShadowRay {
+    Vec3 origin{0.0}, direction{0.0};
+    double reach_m = 0.0;
+    std::size_t light = 0;
     Rgb value{0.0};     // what it brings if nothing is in its way
     Rgb specular{0.0};  // the part of it by a highlight
     std::size_t layer = 0, sample = 0;
@@ -128,8 +131,7 @@ class PixelShader {
     scenes::LightKind kind = scenes::LightKind::Sun;
     std::uint32_t mirror = scenes::no_mirror;  // that throws the light
   };
-  void queue_shadow(const Vec3& origin, const Vec3& direction, double reach_m,
-                    const ShadowRay& ray);
+  void queue_shadow(const ShadowRay& ray);
   struct GatherRay {
     Vec3 direction{0.0};
     Rgb weight{0.0};
@@ -137,9 +139,10 @@ class PixelShader {
     Part part = Part::Indirect;
     std::size_t sample = 0;
     std::uint64_t number = 0;  // in the sample: the key of what follows it
+    double lacking = 1.0;      // } how much of that it stands for; 0: it is not followed
   };
   void queue_gather(const Vec3& origin, const GatherRay& ray);
-  void flush_shadow();
+  void trace_shadows();
   void add_lacking(const GatherRay& ray, const scenes::Hit& hit);
   void flush_gather();
   void add(std::size_t layer, std::size_t sample, Part part, const Rgb& radiance);
@@ -161,10 +164,10 @@ class PixelShader {
   base::Rng rng_;
 
   static constexpr std::size_t width = scenes::RayPacket::width;
-  scenes::RayPacket shadow_packet_, gather_packet_;
-  std::array<ShadowRay, width> shadow_rays_;
+  std::vector<ShadowRay> shadow_rays_;
+  scenes::RayPacket gather_packet_;
   std::array<GatherRay, width> gather_rays_;
-  std::size_t shadow_count_ = 0, gather_count_ = 0;
+  std::size_t gather_count_ = 0;
 };
 
 }  // namespace earthshine::raytrace

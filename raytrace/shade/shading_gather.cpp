@@ -13,9 +13,10 @@ namespace {
 
 // Gather rays of a camera sample that finds no gather point for its surface: a lens out of focus, a
 // wire thinner than a pixel.
-constexpr int rays_without_point = 4;
+constexpr int rays_without_point = 2;
 // And of one that was met by mirrors or glass.
-constexpr int rays_behind_mirror = 4;
+constexpr int rays_behind_mirror = 2;
+constexpr std::size_t most_shadow_rays = 256;  // that wait to be traced together
 
 }  // namespace
 
@@ -104,6 +105,8 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
     ray.direction = frame.to_world({r * std::cos(phi), r * std::sin(phi), cosine});
     if (shares) ray.share.cosine = double(cosine);
     ray.number = ++gathered_;
+    // One of them is followed for all: what it lacks is little, and finding it dear.
+    ray.lacking = k == 0 ? count : 0.0;
     queue_gather(origin, ray);
   }
   if (!shares) return;
@@ -115,36 +118,45 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   ray.direction = aimed.direction;
   ray.weight = weight * aimed.weight;
   ray.share = aimed.share;
+  ray.lacking = 1.0;
   ray.number = ++gathered_;
   queue_gather(origin, ray);
 }
 
-void PixelShader::queue_shadow(const Vec3& origin, const Vec3& direction, double reach_m,
-                               const ShadowRay& ray) {
-  shared_.query.set(shadow_packet_, shadow_count_, origin, direction, reach_m);
-  shadow_rays_[shadow_count_] = ray;
-  if (++shadow_count_ == width) flush_shadow();
+void PixelShader::queue_shadow(const ShadowRay& ray) {
+  shadow_rays_.push_back(ray);
+  if (shadow_rays_.size() == most_shadow_rays) trace_shadows();
 }
 
-void PixelShader::flush_shadow() {
-  if (shadow_count_ == 0) return;
+// Those to one light side by side: they go the same way.
+void PixelShader::trace_shadows() {
+  std::stable_sort(shadow_rays_.begin(), shadow_rays_.end(),
+                   [](const ShadowRay& a, const ShadowRay& b) { return a.light < b.light; });
+  scenes::RayPacket packet;
   std::array<std::uint32_t, width> mirrors;
   std::array<Rgb, width> shares;
-  for (std::size_t k = 0; k < shadow_count_; ++k) mirrors[k] = shadow_rays_[k].mirror;
-  shared_.query.light_shares(shadow_packet_, mirrors.data(), shadow_count_, shares.data());
-  for (std::size_t k = 0; k < shadow_count_; ++k) {
-    const ShadowRay& ray = shadow_rays_[k];
-    rays_.add_shadow(ray.kind);
-    if (base::max_component(shares[k]) <= 0.0) continue;
-    add(ray.layer, ray.sample, ray.by_camera ? Part::Direct : Part::Specular,
-        shares[k] * ray.value);
-    if (shared_.splits_parts && ray.by_camera) {
-      const Rgb specular = shares[k] * ray.specular;
-      sums_[shared_.layers + static_cast<std::size_t>(Part::Direct)] -= specular;
-      sums_[shared_.layers + static_cast<std::size_t>(Part::Specular)] += specular;
+  for (std::size_t first = 0; first < shadow_rays_.size(); first += width) {
+    const std::size_t count = std::min(width, shadow_rays_.size() - first);
+    for (std::size_t k = 0; k < count; ++k) {
+      const ShadowRay& ray = shadow_rays_[first + k];
+      shared_.query.set(packet, k, ray.origin, ray.direction, ray.reach_m);
+      mirrors[k] = ray.mirror;
+    }
+    shared_.query.light_shares(packet, mirrors.data(), count, shares.data());
+    for (std::size_t k = 0; k < count; ++k) {
+      const ShadowRay& ray = shadow_rays_[first + k];
+      rays_.add_shadow(ray.kind);
+      if (base::max_component(shares[k]) <= 0.0) continue;
+      add(ray.layer, ray.sample, ray.by_camera ? Part::Direct : Part::Specular,
+          shares[k] * ray.value);
+      if (shared_.splits_parts && ray.by_camera) {
+        const Rgb specular = shares[k] * ray.specular;
+        sums_[shared_.layers + static_cast<std::size_t>(Part::Direct)] -= specular;
+        sums_[shared_.layers + static_cast<std::size_t>(Part::Specular)] += specular;
+      }
     }
   }
-  shadow_count_ = 0;
+  shadow_rays_.clear();
 }
 
 void PixelShader::queue_gather(const Vec3& origin, const GatherRay& ray) {
@@ -161,7 +173,7 @@ void PixelShader::add_lacking(const GatherRay& ray, const scenes::Hit& hit) {
       base::Key(shared_.seed, base::Stream::Residual, pixel_).with(ray.sample).with(ray.number));
   const auto lacking = walker_->residual(shared_.incoming, {Vec3(0.0), ray.direction}, hit, rng);
   for (std::size_t layer = 0; layer < shared_.layers; ++layer) {
-    add(layer, ray.sample, ray.part, kept * ray.weight * lacking[layer]);
+    add(layer, ray.sample, ray.part, kept * ray.lacking * ray.weight * lacking[layer]);
   }
 }
 
@@ -179,7 +191,7 @@ void PixelShader::flush_gather() {
     for (std::size_t layer = 0; layer < shared_.layers; ++layer) {
       add(layer, ray.sample, part, scratch_[layer]);
     }
-    if (walker_ && !hit.missed()) add_lacking(ray, hit);
+    if (walker_ && ray.lacking > 0.0 && !hit.missed()) add_lacking(ray, hit);
   }
   gather_count_ = 0;
 }

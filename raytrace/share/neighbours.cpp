@@ -81,49 +81,66 @@ void Neighbours::blur(std::size_t level, const Planes& values, const std::vector
                         });
 }
 
-// One neighbour of all points of the row after another, so that the points go side by side.
+// The points of a row go side by side, by the five neighbours of one row after another.
 void Neighbours::blur_row(std::size_t level, std::size_t y, const Planes& values,
                           const std::vector<float>* weight, Planes& means) const {
   const auto columns = static_cast<std::ptrdiff_t>(columns_);
   const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(y) * columns;
   const std::ptrdiff_t step = std::ptrdiff_t{1} << level;
   const std::uint32_t* mask = &masks_[level][static_cast<std::size_t>(first)];
-  std::vector<float> sum(static_cast<std::size_t>(columns_), 0.0F), share(sum.size());
+  const auto width = static_cast<std::size_t>(columns_);
+  std::vector<float> sum(width, 0.0F);
+  // Shares of the five, and values: those of points beside the row are 0.
+  std::vector<float> share(spline.size() * width);
+  const std::ptrdiff_t margin = 2 * step;
+  std::vector<float> from(width + static_cast<std::size_t>(2 * margin), 0.0F);
   for (std::vector<float>& mean : means) std::fill_n(mean.begin() + first, columns, 0.0F);
   std::uint32_t bit = 0;
-  for (std::ptrdiff_t dy = -2; dy <= 2; ++dy) {
-    for (std::ptrdiff_t dx = -2; dx <= 2; ++dx, ++bit) {
-      const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(y) + dy * step;
-      const std::ptrdiff_t x0 = std::max<std::ptrdiff_t>(0, -dx * step);
-      const std::ptrdiff_t x1 = std::min(columns, columns - dx * step);
-      if (row < 0 || row >= rows_ || x0 >= x1) continue;
-      const std::ptrdiff_t to =
-          row * columns + dx * step;  // the neighbour of the row's first point
-      const float kernel =
-          spline[static_cast<std::size_t>(dy + 2)] * spline[static_cast<std::size_t>(dx + 2)];
-      for (std::ptrdiff_t x = x0; x < x1; ++x) {
-        share[static_cast<std::size_t>(x)] =
-            kernel * static_cast<float>(static_cast<std::int32_t>((mask[x] >> bit) & 1U));
+  for (std::ptrdiff_t dy = -2; dy <= 2; ++dy, bit += 5) {
+    const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(y) + dy * step;
+    if (row < 0 || row >= rows_) continue;
+    for (std::size_t k = 0; k < spline.size(); ++k) {
+      const float kernel = spline[static_cast<std::size_t>(dy + 2)] * spline[k];
+      float* of = &share[k * width];
+      for (std::size_t x = 0; x < width; ++x) {
+        of[x] = kernel * static_cast<float>(static_cast<std::int32_t>((mask[x] >> (bit + k)) & 1U));
       }
-      if (weight != nullptr) {
-        const float* of = weight->data() + to;
-        for (std::ptrdiff_t x = x0; x < x1; ++x) share[static_cast<std::size_t>(x)] *= of[x];
+    }
+    // What lies beside the row in memory has no share: only the first and last rows need margins.
+    const std::ptrdiff_t begin = row * columns - margin;
+    const bool inside = begin >= 0 && begin + columns + 2 * margin <= columns * rows_;
+    const auto load = [&](const std::vector<float>& plane) -> const float* {
+      if (inside) return plane.data() + begin;
+      std::copy_n(plane.begin() + row * columns, columns, from.begin() + margin);
+      return from.data();
+    };
+    const float *w0 = share.data(), *w1 = w0 + width, *w2 = w1 + width, *w3 = w2 + width,
+                *w4 = w3 + width;
+    if (weight != nullptr) {
+      const float* at = load(*weight);
+      for (std::size_t k = 0; k < spline.size(); ++k) {
+        float* of = &share[k * width];
+        const float* by = at + static_cast<std::ptrdiff_t>(k) * step;
+        for (std::size_t x = 0; x < width; ++x) of[x] *= by[x];
       }
-      for (std::ptrdiff_t x = x0; x < x1; ++x) {
-        sum[static_cast<std::size_t>(x)] += share[static_cast<std::size_t>(x)];
-      }
-      for (std::size_t k = 0; k < values.size(); ++k) {
-        const float* from = values[k].data() + to;
-        float* mean = means[k].data() + first;
-        const float* w = share.data();
-        for (std::ptrdiff_t x = x0; x < x1; ++x) mean[x] += w[x] * from[x];
+    }
+    for (std::size_t x = 0; x < width; ++x) {
+      sum[x] = ((((sum[x] + w0[x]) + w1[x]) + w2[x]) + w3[x]) + w4[x];
+    }
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const float* v0 = load(values[k]);
+      const float *v1 = v0 + step, *v2 = v1 + step, *v3 = v2 + step, *v4 = v3 + step;
+      float* mean = means[k].data() + first;
+      for (std::size_t x = 0; x < width; ++x) {
+        mean[x] = ((((mean[x] + w0[x] * v0[x]) + w1[x] * v1[x]) + w2[x] * v2[x]) + w3[x] * v3[x]) +
+                  w4[x] * v4[x];
       }
     }
   }
   for (float& of : sum) of = of > 0.0F ? 1.0F / of : 0.0F;
   for (std::vector<float>& mean : means) {
     float* of = mean.data() + first;
-    for (std::ptrdiff_t x = 0; x < columns; ++x) of[x] *= sum[static_cast<std::size_t>(x)];
+    for (std::size_t x = 0; x < width; ++x) of[x] *= sum[x];
   }
 }
 

@@ -49,13 +49,40 @@ double relative_intensity(const Lamp& lamp, const Vec3& direction) {
 
 double field_cosine(const Lamp& lamp) { return std::cos(base::radians(lamp.field_deg / 2)); }
 
-double spot_profile(const Lamp& lamp, double cos_angle) {
-  const double inner = beam_cosine(lamp);
-  if (cos_angle >= inner) return 1.0;
-  const double outer = field_cosine(lamp);
-  if (cos_angle <= outer) return 0.0;
-  const double x = (cos_angle - outer) / (inner - outer);
+SpotCone spot_cone(const Lamp& lamp) { return {beam_cosine(lamp), field_cosine(lamp)}; }
+
+double SpotCone::profile(double cos_angle) const {
+  if (cos_angle >= beam_cosine) return 1.0;
+  if (cos_angle <= field_cosine) return 0.0;
+  const double x = (cos_angle - field_cosine) / (beam_cosine - field_cosine);
   return x * x * (3.0 - 2.0 * x);
+}
+
+double spot_profile(const Lamp& lamp, double cos_angle) {
+  return spot_cone(lamp).profile(cos_angle);
+}
+
+namespace {
+
+// Of a lamp without size; relative(direction): its intensity that way, relative to intensity_cd.
+template <class Relative>
+LightSample sample_point(const Lamp& lamp, const Vec3& point, const Relative& relative) {
+  LightSample sample;
+  const Vec3 way = lamp.position - point;
+  const double distance2 = glm::dot(way, way);
+  if (distance2 <= 0.0) return sample;
+  sample.distance_m = std::sqrt(distance2);
+  sample.direction = way / sample.distance_m;
+  sample.normal_illuminance_lx = lamp.intensity_cd * (relative(-sample.direction) / distance2);
+  return sample;
+}
+
+}  // namespace
+
+LightSample sample_spot(const Lamp& lamp, const SpotCone& cone, const Vec3& point) {
+  return sample_point(lamp, point, [&](const Vec3& direction) {
+    return cone.profile(glm::dot(direction, lamp.axis));
+  });
 }
 
 LightSample sample_lamp(const Lamp& lamp, const Vec3& point, double u, double v, Spread spread) {
@@ -64,15 +91,8 @@ LightSample sample_lamp(const Lamp& lamp, const Vec3& point, double u, double v,
     return toward_area(point, disk_point(lamp, u, v), lamp.axis, false, lamp.exitance,
                        surface_area(lamp));
   }
-  LightSample sample;
-  const Vec3 way = lamp.position - point;
-  const double distance2 = glm::dot(way, way);
-  if (distance2 <= 0.0) return sample;
-  sample.distance_m = std::sqrt(distance2);
-  sample.direction = way / sample.distance_m;
-  sample.normal_illuminance_lx =
-      lamp.intensity_cd * (relative_intensity(lamp, -sample.direction) / distance2);
-  return sample;
+  return sample_point(lamp, point,
+                      [&](const Vec3& direction) { return relative_intensity(lamp, direction); });
 }
 
 Rgb lamp_flux_lm(const Lamp& lamp) {

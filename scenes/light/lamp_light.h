@@ -26,6 +26,13 @@ struct LightSample {
 // cosine, 0 outside field_deg. Its flux is I 2 pi (1 - (cos(beam/2) + cos(field/2)) / 2) exactly.
 [[nodiscard]] double spot_profile(const Lamp& lamp, double cos_angle);
 
+// The two cosines, for who asks of a spot lamp often.
+struct SpotCone {
+  double beam_cosine, field_cosine;
+  [[nodiscard]] double profile(double cos_angle) const;
+};
+[[nodiscard]] SpotCone spot_cone(const Lamp& lamp);
+
 // What (u, v) are even over: what leaves least noise where the point is, or always the same points
 // of the source, wherever it is seen from.
 enum class Spread { Best, OverArea };
@@ -33,6 +40,9 @@ enum class Spread { Best, OverArea };
 // (u, v) in [0,1)^2 choose the point of a rectangle or disk; other lamps do not use them.
 [[nodiscard]] LightSample sample_lamp(const Lamp& lamp, const Vec3& point, double u, double v,
                                       Spread spread = Spread::Best);
+
+// The same of a spot lamp, whose cone is `cone`.
+[[nodiscard]] LightSample sample_spot(const Lamp& lamp, const SpotCone& cone, const Vec3& point);
 
 [[nodiscard]] Rgb lamp_flux_lm(const Lamp& lamp);
 
