@@ -105,8 +105,8 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
     ray.direction = frame.to_world({r * std::cos(phi), r * std::sin(phi), cosine});
     if (shares) ray.share.cosine = double(cosine);
     ray.number = ++gathered_;
-    // One of them is followed for all: what it lacks is little, and finding it dear.
-    ray.lacking = k == 0 ? count : 0.0;
+    // Beside a field one of them is followed for all: what it lacks is little, and finding it dear.
+    if (shared_.field != nullptr) ray.lacking = k == 0 ? count : 0.0;
     queue_gather(origin, ray);
   }
   if (!shares) return;
