@@ -52,7 +52,7 @@ LightSampler::LightSampler(const scenes::World& world, Indirect indirect, int di
     add({Kind::Lamp, world.groups.lamp[k], k}, wide ? copies : 1);
     if (wide) surfaces_.lights.push_back(k);
   }
-  for (const scenes::Lamp& lamp : scene.lamps) cones_.push_back(scenes::spot_cone(lamp));
+  for (const scenes::Lamp& lamp : scene_.lamps) cones_.push_back(scenes::spot_cone(lamp));
   surfaces_.tree = tree_of(surfaces_.lights);
   // Without interreflection nothing carries emitters through F, so that all of them are sampled.
   const std::vector<bool> is_explicit = radiosity::emitter_is_explicit(world.scene);
