@@ -49,7 +49,61 @@ void pixel_radiance(const Sampled& sampled, std::size_t pixel, std::vector<Rgb>&
   }
 }
 
-void fill_layers(const Sampled& sampled, const StatedError& error, const Layout& layout,
+// What pixels read from gather points goes into their own sums, as means, and the points are let
+// go: with many layers they take as much memory as all else.
+void fold_field(Sampled& sampled, const Window& window) {
+  PixelSums& sums = sampled.sums;
+  base::parallel_chunks(
+      static_cast<std::size_t>(window.rows), 1, [&](std::size_t begin, std::size_t end) {
+        std::vector<Rgb> radiance(sums.entries);
+        for (std::size_t row = begin; row < end; ++row) {
+          for (int x = window.x; x < window.x + window.columns; ++x) {
+            const std::size_t pixel = sums.window.index(x, window.y + static_cast<int>(row));
+            if (sums.samples[pixel] == 0) continue;
+            pixel_radiance(sampled, pixel, radiance);
+            for (std::size_t k = 0; k < sums.entries; ++k) {
+              sums.radiance[pixel * sums.entries + k] = glm::vec3(radiance[k]);
+            }
+          }
+        }
+      });
+  sampled.field.reset();
+}
+
+// As far as one round of samples tells it: later ones go where the sum of all needs them.
+LayerErrors errors_by_layer(const Sampled& sampled, const StatedError& error,
+                            const RenderOptions& options) {
+  LayerErrors errors;
+  if (!sampled.field || sampled.sums.image_layers < 2 || options.error > 0.0) return errors;
+  const ErrorSums all = add_up(error);
+  errors.squared.assign(all.squared.begin(), all.squared.end());
+  for (const Gathered kind : {Gathered::Solution, Gathered::Residual, Gathered::Lobe}) {
+    errors.noise.push_back(sampled.field->layer_noise(kind));
+  }
+  errors.noise.push_back(sampled.sums.layer_noise());
+  return errors;
+}
+
+// Once the field is folded in.
+std::vector<double> layer_luminance(const PixelSums& sums, const StatedError& error,
+                                    const Window& window) {
+  std::vector<double> mean(sums.image_layers, 0.0);
+  double pixels = 0.0;
+  for (std::size_t to = 0; to < error.counts.size(); ++to) {
+    if (error.counts[to] == 0) continue;
+    const auto columns = static_cast<std::size_t>(window.columns);
+    const std::size_t from = sums.window.index(window.x + static_cast<int>(to % columns),
+                                               window.y + static_cast<int>(to / columns));
+    for (std::size_t k = 0; k < mean.size(); ++k) {
+      mean[k] += base::luminance(Rgb(sums.radiance[from * sums.entries + k]));
+    }
+    pixels += 1.0;
+  }
+  for (double& of_layer : mean) of_layer /= std::max(1.0, pixels);
+  return mean;
+}
+
+void fill_layers(const PixelSums& sums, const StatedError& error, const Layout& layout,
                  const Window& window, base::Image& image) {
   const auto put = [&](std::size_t first, std::size_t pixel, const Rgb& value) {
     for (int c = 0; c < 3; ++c) {
@@ -57,23 +111,20 @@ void fill_layers(const Sampled& sampled, const StatedError& error, const Layout&
           static_cast<float>(value[c]);
     }
   };
-  const PixelSums& sums = sampled.sums;
-  std::vector<Rgb> radiance(sums.entries);
   for (int y = window.y; y < window.y + window.rows; ++y) {
     for (int x = window.x; x < window.x + window.columns; ++x) {
       const std::size_t from = sums.window.index(x, y), to = window.index(x, y);
       if (sums.samples[from] == 0) continue;
-      pixel_radiance(sampled, from, radiance);
+      const glm::vec3* radiance = &sums.radiance[from * sums.entries];
       glm::vec3 total(0.0F);
       for (std::size_t k = 0; k < sums.image_layers; ++k) {
-        const glm::vec3 layer(radiance[k]);  // rounded first: the layers add up to the last bit
-        total += layer;
-        if (!layout.radiance.empty()) put(layout.radiance[k], to, Rgb(layer));
+        total += radiance[k];
+        if (!layout.radiance.empty()) put(layout.radiance[k], to, Rgb(radiance[k]));
       }
       put(0, to, Rgb(total));
       for (std::size_t part = 0; part < layout.parts.size(); ++part) {
         if (layout.parts[part] == Layout::none_wanted) continue;
-        put(layout.parts[part], to, radiance[sums.image_layers + part]);
+        put(layout.parts[part], to, Rgb(radiance[sums.image_layers + part]));
       }
       if (layout.variance == Layout::none_wanted) continue;
       const auto& squared = error.squared[to];
@@ -120,14 +171,18 @@ Frame render(const scenes::World& world, const radiosity::Solution& solution,
   base::Image planned = base::make_rgb_image(0, 0);
   shared.splits_parts = with_layers(planned).splits_parts();
 
-  const Sampled sampled =
-      sample_picture(shared, setup.world(), model, options, progress, frame.report);
+  Sampled sampled = sample_picture(shared, setup.world(), model, options, progress, frame.report);
   const PixelSums& sums = sampled.sums;
   frame.error = state_error(sums, sampled.field ? &*sampled.field : nullptr, window);
+  if (options.per_light) frame.layers = errors_by_layer(sampled, frame.error, options);
+  fold_field(sampled, window);
+  if (!frame.layers.noise.empty()) {
+    frame.layers.luminance = layer_luminance(sums, frame.error, window);
+  }
   // Not before: with many layers it is as large as what is sampled.
   frame.image = base::make_rgb_image(window.columns, window.rows);
   const Layout layout = with_layers(frame.image);
-  fill_layers(sampled, frame.error, layout, window, frame.image);
+  fill_layers(sums, frame.error, layout, window, frame.image);
   frame.report.rays.layers += fill_first_hit(world.scene, world.query, model, window, frame.image);
   frame.report.rays.layers += fill_cryptomatte(
       world.scene, world.query, model,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
 
 #include "app/report/sections.h"
 #include "app/report/text.h"
@@ -101,7 +102,8 @@ std::string short_html(const StudyResults& study) {
       "it does not</caption>\n<thead><tr>";
   for (const char* head :
        {"Target", "Under", "Best camera", "Seen", "Other cameras", "Else mostly"}) {
-    html += fmt::format("<th scope=\"col\">{}</th>", head);
+    const bool number = std::string_view(head) == "Seen";
+    html += fmt::format("<th scope=\"col\"{}>{}</th>", number ? "" : " class=\"t\"", head);
   }
   html += "</tr></thead>\n<tbody>\n" + rows + "</tbody>\n</table>\n</div>\n";
   if (count > most_rows_in_short) {

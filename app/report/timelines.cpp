@@ -58,13 +58,16 @@ std::string in_words(const Timeline& line) {
     text = fmt::format("Nowhere likely to be detected; at best {} at {}.",
                        figure(line.detect[best], Form::Chance), place(line, best));
   } else {
-    text = fmt::format(
-        "Likely detected (P at least 0.5) at {} of {}: {}. Between {} at {} and {} at {}.", seen,
-        counted(count, "position", "positions"),
-        seen == count ? "everywhere"
-                      : runs(line, [&](std::size_t k) { return line.detect[k] >= likely; }),
-        figure(line.detect[worst], Form::Chance), place(line, worst),
-        figure(line.detect[best], Form::Chance), place(line, best));
+    const std::string least = figure(line.detect[worst], Form::Chance),
+                      most = figure(line.detect[best], Form::Chance);
+    text = fmt::format("Likely detected (P at least 0.5) at {} of {}: {}. {}.", seen,
+                       counted(count, "position", "positions"),
+                       seen == count
+                           ? "everywhere"
+                           : runs(line, [&](std::size_t k) { return line.detect[k] >= likely; }),
+                       least == most ? "P is " + most + " throughout"
+                                     : fmt::format("Between {} at {} and {} at {}", least,
+                                                   place(line, worst), most, place(line, best)));
   }
   const std::string dark = runs(line, [&](std::size_t k) { return line.sun_share[k] == 0.0; });
   const std::string dusk =

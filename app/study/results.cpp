@@ -45,6 +45,7 @@ constexpr CsvColumn csv_columns[] = {
     {"shown_from", cell_of<sight_of<&Sight::shown_from>>},
     {"shown_to", cell_of<sight_of<&Sight::shown_to>>},
     {"luminance_error", cell_of<figure_of<&TargetFindings::luminance_error>>},
+    {"picture_noise", cell_of<figure_of<&TargetFindings::picture_noise>>},
     {"black_back", cell_of<sight_of<&Sight::black_back>>},
     {"signal_mean", cell_of<signal_of<&SignalSight::mean>>},
     {"signal_weber", cell_of<signal_of<&SignalSight::weber>>},

@@ -62,6 +62,7 @@ struct TargetFindings {
   std::vector<GroupShare> lit_by, light_by;
   std::vector<studies::LightShare> light_from;
   Number luminance_error, luminance_bound;
+  Number picture_noise;  // of the condition's picture by that camera, over its mean
   std::string why;
   std::vector<studies::Reason> reasons;
   std::string why_of;  // the condition whose reasons these are; "": this one

@@ -111,6 +111,7 @@ void describe(Fields& fields, Either<TargetFindings> auto& found) {
   fields("shown_to", sight.shown_to);
   fields("luminance_error", found.luminance_error);
   fields("luminance_bound", found.luminance_bound);
+  fields("picture_noise", found.picture_noise);
   fields("why", found.why);
   fields("reasons", found.reasons);
   fields.or_null("why_of", found.why_of);

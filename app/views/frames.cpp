@@ -49,12 +49,25 @@ void scale(base::Channel& channel, int exponent) {
 
 // As it is kept beside the picture.
 template <class Fields>
+void describe(Fields& fields, Either<raytrace::LayerNoise> auto& noise) {
+  fields("products", noise.products);
+}
+
+template <class Fields>
+void describe(Fields& fields, Either<raytrace::LayerErrors> auto& errors) {
+  fields("luminance", errors.luminance);
+  fields("squared", errors.squared);
+  fields("noise", errors.noise);
+}
+
+template <class Fields>
 void describe(Fields& fields, Either<StudyFrames::Frame> auto& frame) {
   fields("seconds", frame.seconds);
   fields("relative_noise", frame.relative_noise);
   fields("rays", frame.rays);
   fields("limits", frame.limits);
   fields("patches", frame.patches);
+  fields("errors", frame.errors);
 }
 
 namespace {
@@ -219,7 +232,8 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
               drawn.report.relative_noise,
               drawn.report.rays.total(),
               limits_of_balance(light),
-              light.report.patches};
+              light.report.patches,
+              drawn.layers};
   // Of the few layers without an orbit no digit is spared.
   const int digits =
       part_.basis->in_parts() ? round_layers(drawn.image, drawn.report.relative_noise) : 0;
@@ -228,6 +242,12 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
   frame.image = unpacked_layers(std::move(kept));
   costs.push_back(cost_of(camera, frame, false));
   return frame;
+}
+
+std::optional<double> StudyFrames::Frame::noise_of(const studies::GroupWeights& weights) const {
+  std::vector<double> luminance;
+  for (const Rgb& weight : weights.weight) luminance.push_back(base::luminance(weight));
+  return errors.of(luminance);
 }
 
 int round_layers(base::Image& image, double relative_noise) {

@@ -27,6 +27,9 @@ class StudyFrames {
     std::uint64_t rays = 0;
     std::vector<std::string> limits = {};  // that the solution it was drawn from reached
     std::size_t patches = 0;               // of that solution
+    raytrace::LayerErrors errors = {};
+    // Relative, of the weighted sum that a condition is.
+    [[nodiscard]] std::optional<double> noise_of(const studies::GroupWeights& weights) const;
   };
   [[nodiscard]] std::optional<Frame> frame(const StudyCamera& camera,
                                            std::vector<StudyCost>& costs);

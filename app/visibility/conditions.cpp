@@ -18,11 +18,6 @@ namespace {
 // Conditions that are kept together: a run that is killed loses no more of them.
 constexpr std::size_t batch_size = 16;
 
-studies::ConditionAt place_of(const StudyPart& part, std::size_t condition) {
-  const std::size_t places = part.basis->places().size();
-  return {condition % places, condition / places};
-}
-
 std::string condition_id(const StudyPart& part, std::size_t condition) {
   return fmt::format("{}-c{}", part.id, condition);
 }
@@ -54,10 +49,15 @@ using Batch = std::vector<std::vector<TargetFindings>>;
 
 }  // namespace
 
+studies::ConditionAt condition_at(const StudyPart& part, std::size_t condition) {
+  const std::size_t places = part.basis->places().size();
+  return {condition % places, condition / places};
+}
+
 std::vector<ConditionEntry> conditions_of(const StudyPart& part, std::size_t scene) {
   std::vector<ConditionEntry> conditions;
   for (std::size_t k = 0; k < part.conditions(); ++k) {
-    const auto [place, setting] = place_of(part, k);
+    const auto [place, setting] = condition_at(part, k);
     const studies::LampSetting& lamps = part.basis->settings()[setting];
     const studies::SkyPlace& sky = part.basis->places()[place];
     const bool along = !part.positions_deg.empty();
@@ -93,7 +93,7 @@ Json StudyConditions::cache_key(const StudyCamera& camera, const Json& frame_cac
   Json cache_key = {{"what", "conditions"}, {"picture", frame_cache_key}};
   Json& weights = cache_key["weights"] = Json::array();
   for (std::size_t k = first; k < last; ++k) {
-    const auto [place, setting] = place_of(part_, k);
+    const auto [place, setting] = condition_at(part_, k);
     const studies::GroupWeights found = part_.basis->weights(place, setting);
     Json one = Json::array();
     for (const Rgb& weight : found.weight) one.push_back(to_json(weight));
@@ -167,7 +167,7 @@ Judged StudyConditions::judge(const StudyCamera& camera, const studies::BasisVie
     found = false;
     if (Interrupt::asked()) break;
     std::vector<studies::ConditionAt> conditions;
-    for (std::size_t k = first; k < last; ++k) conditions.push_back(place_of(part_, k));
+    for (std::size_t k = first; k < last; ++k) conditions.push_back(condition_at(part_, k));
     const std::vector<studies::Outcome> outcomes =
         studies::judge_conditions(*part_.basis, *part_.query, view, conditions, cctv, options());
     Batch batch_found(last - first);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 #include "app/parts/result_cache.h"
 #include "app/study/results.h"
@@ -12,7 +13,26 @@
 namespace earthshine::app {
 namespace {
 
-CameraEntry camera_entry(const CameraFindings& found, std::size_t scene) {
+// The least and the most of a camera's conditions; none where they have none of their own.
+struct NoiseRange {
+  double least = 0.0, most = 0.0;
+  std::size_t noisiest = 0;
+};
+std::optional<NoiseRange> noise_range(const CameraFindings& found) {
+  std::optional<NoiseRange> range;
+  for (std::size_t k = 0; k < found.noise.size(); ++k) {
+    if (!found.noise[k]) continue;
+    const double noise = *found.noise[k];
+    if (!range) range = {noise, noise, k};
+    if (noise > range->most) range = {range->least, noise, k};
+    range->least = std::min(range->least, noise);
+  }
+  return range;
+}
+
+// conditions: of its scene.
+CameraEntry camera_entry(const CameraFindings& found, std::size_t scene,
+                         std::span<const ConditionEntry> conditions) {
   const scenes::Camera& camera = *found.camera.camera;
   CameraEntry entry{scene,
                     camera.name,
@@ -28,10 +48,15 @@ CameraEntry camera_entry(const CameraFindings& found, std::size_t scene) {
     entry.cctv = cctv->name;
     entry.iris = degrade::word_of(cctv->chain.camera.iris);
   }
-  entry.error_text = fmt::format(
-      "noise of {:.2g} % in the picture of all lights together; the radiosity's own "
-      "error is that of the scene's quality settings",
-      100.0 * found.relative_noise);
+  const auto range = noise_range(found);
+  entry.error_text =
+      range ? fmt::format(
+                  "noise of {:.2g} to {:.2g} % of the mean in the conditions' pictures, most in "
+                  "{}; {:.2g} % in the picture of all lights together",
+                  100.0 * range->least, 100.0 * range->most, conditions[range->noisiest].name,
+                  100.0 * found.relative_noise)
+            : fmt::format("noise of {:.2g} % in the picture of all lights together",
+                          100.0 * found.relative_noise);
   return entry;
 }
 
@@ -131,12 +156,14 @@ void add_camera(StudyResults& results, const CameraFindings& found) {
                                  [&](const SceneEntry& s) { return s.id == found.part.id; });
   const auto scene = static_cast<std::size_t>(part - results.scenes.begin());
   const std::size_t camera = results.cameras.size(), first = first_condition(results, scene);
-  results.cameras.push_back(camera_entry(found, scene));
+  results.cameras.push_back(
+      camera_entry(found, scene, std::span(results.conditions).subspan(first)));
   for (std::size_t k = 0; k < found.conditions.size(); ++k) {
     if (!found.conditions[k]) continue;
     for (std::size_t t = 0; t < found.conditions[k]->size(); ++t) {
       ResultEntry result{(*found.conditions[k])[t], first + k, camera,
                          target_number(results, found.part.targets[t])};
+      if (k < found.noise.size()) result.picture_noise = found.noise[k];
       Number& worst = results.conditions[first + k].earth_error;
       if (result.luminance_error) {
         worst = std::max(worst.value_or(0.0), *result.luminance_error);
@@ -183,10 +210,7 @@ std::vector<std::string> notes_of(const StudyResults& results,
     add_notes_of_scene(*parts[k], scene, limits[k], notes);
   }
   for (const CameraEntry& camera : results.cameras) {
-    notes.push_back(fmt::format(
-        "Picture of camera {}: noise of {:.2g} % of the mean in the sum of all lights; the "
-        "conditions' own noise is larger where little of that light shines.",
-        camera.name, 100.0 * *camera.relative_noise));
+    notes.push_back(fmt::format("Pictures of camera {}: {}.", camera.name, camera.error_text));
     const auto wanted = parts[camera.scene]->loaded.scene.quality.error;
     if (wanted && *camera.relative_noise > *wanted) {
       notes.push_back(fmt::format("Limit reached: the scene wants {:.2g} %.", 100.0 * *wanted));

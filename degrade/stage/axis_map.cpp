@@ -113,12 +113,15 @@ std::vector<double> discrete_gaussian(double sigma) {
   // rule on a periodic function is exact up to terms of order 2 * steps - n, far beyond any kernel
   // here.
   const int steps = std::max(512, static_cast<int>(std::ceil(16.0 * sigma)));
+  std::vector<double> weight;  // of each step, whatever n
+  for (int k = 0; k <= steps; ++k) {
+    const double end = k == 0 || k == steps ? 0.5 : 1.0;
+    weight.push_back(end * std::exp(-t * (1.0 - std::cos(base::pi * k / steps))));
+  }
   const auto term = [&](int n) {
     double sum = 0.0;
     for (int k = 0; k <= steps; ++k) {
-      const double u = base::pi * k / steps;
-      const double end = k == 0 || k == steps ? 0.5 : 1.0;
-      sum += end * std::exp(-t * (1.0 - std::cos(u))) * std::cos(n * u);
+      sum += weight[static_cast<std::size_t>(k)] * std::cos(n * (base::pi * k / steps));
     }
     return sum / steps;
   };
@@ -135,7 +138,22 @@ AxisMap symmetric_filter(int size, const std::vector<double>& taps) {
   AxisMap map;
   map.in = size;
   const int radius = static_cast<int>(taps.size() / 2);
-  for (int i = 0; i < size; ++i) add_output(map, i - radius, taps);
+  std::size_t first = 0, count = 0;  // of the first output that no border is near to
+  for (int i = 0; i < size; ++i) {
+    const bool inside = i >= radius && i + radius < size;
+    if (!inside || count == 0) {
+      add_output(map, i - radius, taps);
+      if (inside) first = map.start[map.start.size() - 2], count = map.source.size() - first;
+      continue;
+    }
+    // The same a few places on.
+    const std::size_t on = static_cast<std::size_t>(i - radius);
+    for (std::size_t k = first; k < first + count; ++k) {
+      map.source.push_back(map.source[k] + on);
+      map.weight.push_back(map.weight[k]);
+    }
+    map.start.push_back(map.source.size());
+  }
   return map;
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -126,6 +127,34 @@ struct ErrorSums {
 [[nodiscard]] ErrorSums add_up(const StatedError& stated, std::span<const std::size_t> pixels);
 [[nodiscard]] ErrorSums add_up(const StatedError& stated);  // all
 
+// How the noise of layers goes together: sums of products of luminance, the lower triangle of a
+// symmetric matrix, row by row.
+class LayerNoise {
+ public:
+  // off: by layer, half of what the means of two independent halves of the samples at a place
+  // differ by, as far as the camera sees it.
+  void add(std::span<const float> off);
+  // The same sum for a weighted sum of the layers.
+  [[nodiscard]] double of(std::span<const double> weights) const;
+  std::vector<double> products;
+};
+
+// What the error of any weighted sum of a picture's layers follows from.
+struct LayerErrors {
+  std::vector<double> luminance;  // of each layer, mean of the pixels that count, cd/m^2
+  std::vector<double> squared;    // by part, of the sum of all: mean, relative, as stated
+  std::vector<LayerNoise> noise;  // by part
+  // Relative error of the sum with these weights: of each part what is stated of the sum of all,
+  // by as much as its samples' noise is that of the weighted sum, before neighbours share it.
+  // None where the sum is dark or nothing is known.
+  [[nodiscard]] std::optional<double> of(std::span<const double> weights) const;
+};
+// Every so many pixels or gather points tell the noise of the layers.
+[[nodiscard]] inline std::size_t layer_noise_step(std::size_t count) {
+  constexpr std::size_t enough = 8192;
+  return count / enough + 1;
+}
+
 // image: R, G, B radiance in cd/m^2; with per_light also light_<group>.R/G/B, whose sum is R, G, B;
 // with aovs:
 //   direct, indirect, specular .R/G/B: what the camera sees of sources themselves and of light
@@ -137,6 +166,7 @@ struct Frame {
   base::Image image;
   Window window;  // which part of the picture the image is
   StatedError error;
+  LayerErrors layers;  // with per_light and layers for samples of all pixels alike; else empty
   RenderReport report;
 };
 }  // namespace earthshine::raytrace

@@ -75,9 +75,9 @@ void GatherField::share(Gathered kind, bool last) {
   if (lobe && !of_material_) of_material_ = of_surface_->of_like_material(points_);
   Estimate& estimate = estimate_[number(kind)];
   Shared& shared = shared_[number(kind)];
-  shared = raytrace::share(lobe ? *of_material_ : *of_surface_, estimate);
+  const Neighbours& neighbours = lobe ? *of_material_ : *of_surface_;
+  shared = last ? share_in_place(neighbours, estimate) : raytrace::share(neighbours, estimate);
   add_strays(strays_, estimate, shared);
-  if (last) std::vector<glm::vec3>().swap(estimate.sum);
   if (lobe) return;
   std::vector<glm::vec3> radiance;
   radiance.swap(shared.radiance);
@@ -96,6 +96,28 @@ std::span<const glm::vec3> GatherField::lobe(std::size_t point) const {
   if (points_[point].lobe <= 0.0F) return {};
   const Shared& shared = shared_[number(Gathered::Lobe)];
   return {&shared.radiance[point * image_layers_], image_layers_};
+}
+
+void GatherField::note_half(std::uint32_t half, std::span<const Rgb> sum, std::span<float> off) {
+  for (std::size_t layer = 0; layer < off.size(); ++layer) {
+    const auto luminance = static_cast<float>(base::luminance(sum[layer]));
+    off[layer] += half == 0 ? luminance : -luminance;
+  }
+}
+
+// samples: of both halves.
+void GatherField::finish_note(Gathered kind, std::size_t point, double samples,
+                              std::span<float> off) const {
+  const auto factor = static_cast<float>(reflected(kind, point) / samples);
+  for (float& of_layer : off) of_layer *= factor;
+}
+
+void GatherField::add_notes(Gathered kind, const std::vector<std::vector<float>>& of_tiles) {
+  for (const std::vector<float>& off : of_tiles) {
+    for (std::size_t k = 0; k < off.size(); k += image_layers_) {
+      noise_[number(kind)].add({&off[k], image_layers_});
+    }
+  }
 }
 
 double GatherField::reflected(Gathered kind, std::size_t point) const {

@@ -57,7 +57,8 @@ class GatherField {
     std::size_t image_layers = 1;
     bool keeps_sky_apart = false;  // one more layer: what came straight from the sky
     bool gathers_residual = true;
-    bool shares = true;  // between neighbours
+    bool shares = true;         // between neighbours
+    bool notes_layers = false;  // keeps how the layers' noise goes together, of the first round
     std::uint64_t seed = 1;
   };
   // Finds the points: one for each pixel of the window, row by row, then the strays. `world` and
@@ -105,6 +106,7 @@ class GatherField {
   [[nodiscard]] double error_of(Gathered kind, std::size_t point) const;
   // The factor from what is estimated to what the camera sees: k_d or k_s.
   [[nodiscard]] double reflected(Gathered kind, std::size_t point) const;
+  [[nodiscard]] const LayerNoise& layer_noise(Gathered kind) const { return noise_[number(kind)]; }
   [[nodiscard]] RayCounts rays() const;  // all
   [[nodiscard]] const RayCounts& rays_of(Gathered kind) const { return rays_of_[number(kind)]; }
 
@@ -137,6 +139,13 @@ class GatherField {
   [[nodiscard]] std::vector<std::size_t> points_of_tile(std::size_t tile) const;
   // Tells each point's random numbers apart, whatever the crop.
   [[nodiscard]] std::uint64_t random_number_of(std::size_t point) const;
+  // Whether the point tells the layers' noise; what its halves' sums differ by, half after half.
+  [[nodiscard]] bool notes(std::size_t point, std::uint32_t round) const {
+    return setting_.notes_layers && round == 0 && point % layer_noise_step(points_.size()) == 0;
+  }
+  static void note_half(std::uint32_t half, std::span<const Rgb> sum, std::span<float> off);
+  void finish_note(Gathered kind, std::size_t point, double samples, std::span<float> off) const;
+  void add_notes(Gathered kind, const std::vector<std::vector<float>>& of_tiles);
   void cast_solution(const std::vector<std::uint32_t>& more, std::uint32_t round,
                      const std::function<bool()>& stop);
   void cast_paths(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
@@ -163,6 +172,7 @@ class GatherField {
   std::array<Shared, gathered_kinds> shared_;
   std::vector<glm::vec3> diffuse_;  // point * layers
   std::array<RayCounts, gathered_kinds> rays_of_;
+  std::array<LayerNoise, gathered_kinds> noise_;
   std::uint64_t camera_rays_ = 0;
   bool any_lobe_ = false;
   std::optional<Neighbours> of_surface_, of_material_;  // who shares diffuse light, and lobes

@@ -17,16 +17,20 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
   Estimate& estimate = estimate_[number(kind)];
   const bool lobe = kind == Gathered::Lobe;
   std::vector<RayCounts> counts_of(tile_count(window_));
+  std::vector<std::vector<float>> off_of(counts_of.size());
   const auto cast_tile = [&](std::size_t t) {
     if (stop && stop()) return;
     PathWalker walker(world_);
     RayCounts& counts = counts_of[t];
     std::vector<Rgb> sum(image_layers_);
+    std::vector<float> off;
     for (const std::size_t p : points_of_tile(t)) {
       const GatherPoint& point = points_[p];
       const std::uint32_t each = more[p] / 2;
+      const auto first = static_cast<std::uint64_t>(estimate.samples[p]);
       if (point.reach_m <= 0.0F || each == 0) continue;
       if ((lobe ? point.lobe : point.reflectance) <= 0.0F) continue;
+      off.assign(notes(p, round) ? image_layers_ : 0, 0.0F);
       for (std::uint32_t half = 0; half < 2; ++half) {
         std::fill(sum.begin(), sum.end(), Rgb(0.0));
         const base::Key key =
@@ -37,6 +41,8 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
         const RayOrigins origins = draw_origins(kind, p, 2 * round + half, counts);
         for (std::uint32_t k = 0; k < each; ++k) {
           base::Rng rng(key.with(k));
+          // Both halves together take all turns, at neighbouring points in another order.
+          walker.take_turn(random_number_of(p) + first + 2 * std::uint64_t{k} + half);
           const auto u = directions.point2(k);
           const Vec3 &origin = origins.origin[k % origins.count],
                      &normal = origins.normal[k % origins.count];
@@ -52,16 +58,21 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
           estimate.sum[p * image_layers_ + layer] += glm::vec3(sum[layer]);
         }
         estimate.luminance[p][half] += static_cast<float>(luminance_of(sum));
+        note_half(half, sum, off);
       }
+      finish_note(kind, p, 2.0 * each, off);
+      off_of[t].insert(off_of[t].end(), off.begin(), off.end());
       estimate.samples[p] += static_cast<float>(2 * each);
     }
     counts += walker.rays();
   };
   base::share_loop(counts_of.size(), cast_tile, [&](std::size_t t, base::Parcel& parcel) {
     parcel.pass(counts_of[t]);
+    parcel.pass(off_of[t]);
     for (const std::size_t p : points_of_tile(t)) estimate.pass(p, parcel);
   });
   for (const RayCounts& tile : counts_of) rays_of_[number(kind)] += tile;
+  add_notes(kind, off_of);
 }
 
 // L = integral of L_in (k_s / pi) cos^n alpha cos theta by a ray of density

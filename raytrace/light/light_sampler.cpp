@@ -39,7 +39,9 @@ LightSampler::LightSampler(const scenes::World& world, Indirect indirect, int di
   }
   for (std::size_t k = 0; world.effects.sun_parts && k < world.scene.sky_parts->suns.size(); ++k) {
     add({Kind::SunPart, world.groups.sun_parts + k, k}, 1);
-    part_illuminance_lx_.push_back(scenes::sun_sample_illuminance(world.scene.sky_parts->suns[k]));
+    const scenes::Sun& sun = world.scene.sky_parts->suns[k];
+    sun_parts_.push_back({scenes::sun_sample_illuminance(sun),
+                          {sun.direction, base::radians(sun.angular_radius_deg)}});
   }
   if (world.effects.earth && (distributed_ || !world.effects.earth_by_gather)) {
     earth_half_angle_rad_ = base::radians(world.scene.earth->half_angle_deg);
@@ -61,6 +63,9 @@ LightSampler::LightSampler(const scenes::World& world, Indirect indirect, int di
     if (indirect == Indirect::Radiosity && !is_explicit[m]) continue;
     add({Kind::Emitters, world.groups.material[m], emitters_.size()}, copies);
     emitters_.emplace_back(world.scene, m);
+  }
+  if (per_group && world.effects.sun_parts) {
+    turns_ = SunTurns(world.groups.sun_parts, world.scene.sky_parts->suns.size());
   }
   gather_clusters(per_group);
   find_one_rays();
@@ -124,9 +129,9 @@ std::optional<LightSampler::SeenLamp> LightSampler::seen_lamp(const Vec3& origin
   return seen;
 }
 
-void LightSampler::choose(const scenes::Receiver& receiver, double u,
+void LightSampler::choose(const scenes::Receiver& receiver, double u, std::size_t turn,
                           std::vector<scenes::LightChoice>& chosen) const {
-  choose_thrown(throws_.front(), receiver, u, 0, chosen);
+  choose_thrown(throws_.front(), receiver, u, turn, 0, chosen);
   for (std::size_t m = 0; m < mirrors_.size(); ++m) {
     const scenes::FlatMirror& mirror = mirrors_[m];
     if (mirror.height_m(receiver.point) <= 0.0) continue;
@@ -134,14 +139,17 @@ void LightSampler::choose(const scenes::Receiver& receiver, double u,
     image.point = mirror.image(receiver.point);
     image.normal = mirror.turned(receiver.normal);
     image.mirrored = mirror.turned(receiver.mirrored);
-    choose_thrown(throws_[m + 1], image, u, (m + 1) * lights_.size(), chosen);
+    choose_thrown(throws_[m + 1], image, u, turn, (m + 1) * lights_.size(), chosen);
   }
 }
 
 void LightSampler::choose_thrown(const Throws& throws, const scenes::Receiver& receiver, double u,
-                                 std::size_t first,
+                                 std::size_t turn, std::size_t first,
                                  std::vector<scenes::LightChoice>& chosen) const {
-  for (const std::size_t light : throws.always) chosen.push_back({light, 1.0});
+  for (const std::size_t light : throws.always) {
+    const double times = weight(of(light), turn);
+    if (times > 0.0) chosen.push_back({light, times});
+  }
   for (const Cluster& crowd : clusters_) {
     const std::size_t from = chosen.size();
     crowd.tree.choose(receiver, u, smallest_share, chosen);
@@ -260,9 +268,8 @@ scenes::LightSample LightSampler::sample_straight(const Light& light, const Vec3
                 std::numeric_limits<double>::infinity(), sun_illuminance_lx_};
       break;
     case Kind::SunPart: {
-      const scenes::Sun& sun = scene_.sky_parts->suns[light.index];
-      sample = {scenes::sample_cone(sun.direction, base::radians(sun.angular_radius_deg), u, v),
-                std::numeric_limits<double>::infinity(), part_illuminance_lx_[light.index]};
+      const SunPart& sun = sun_parts_[light.index];
+      sample = {sun.disc.sample(u, v), std::numeric_limits<double>::infinity(), sun.illuminance_lx};
       break;
     }
     case Kind::Earth: {

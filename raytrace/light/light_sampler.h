@@ -9,6 +9,7 @@
 
 #include "raytrace/frame/frame.h"
 #include "raytrace/frame/options.h"
+#include "raytrace/light/sun_turns.h"
 #include "scenes/effects/world.h"
 #include "scenes/light/emitters.h"
 #include "scenes/light/lamp_light.h"
@@ -22,7 +23,8 @@ class LightSampler {
   // Radiosity and None: each source once, sampled at random. Distributed: wide sources are replaced
   // by `distributed_lights` fixed points or directions of equal share, the same for every pixel;
   // the Earth by points of earth_area (distributed_area.h), or by directions to its disc.
-  // per_group: every light group gets an image of its own, so that lamps are chosen within each.
+  // per_group: every light group gets an image of its own, so that lamps are chosen within each and
+  // the Suns of a sky in parts take turns.
   // mirrors: flat ones, that throw each source's light a second time; not of distributed lights.
   LightSampler(const scenes::World& world, Indirect indirect, int distributed_lights,
                bool per_group = false, std::optional<scenes::Lamp> earth_area = std::nullopt,
@@ -32,9 +34,11 @@ class LightSampler {
   // matter, with weight 1, and some of the others by chance, with weight 1 / probability
   // (scenes/light/light_tree.h), for u uniform in [0, 1). Everything that is no lamp is always
   // among them, and so is every one of the distributed lights, whose number is the point of having
-  // them.
-  void choose(const scenes::Receiver& receiver, double u,
+  // them. Of Suns that take turns those of one turn, with their weight.
+  void choose(const scenes::Receiver& receiver, double u, std::size_t turn,
               std::vector<scenes::LightChoice>& chosen) const;
+
+  [[nodiscard]] const SunTurns& turns() const { return turns_; }
 
   // The lamp whose shining surface a ray meets first, nearer than nearer_than_m.
   struct SeenLamp {
@@ -54,12 +58,14 @@ class LightSampler {
   [[nodiscard]] bool may_reach(std::size_t light, const Vec3& point, const Vec3& normal) const;
   // Whether (u, v) of sample() choose anything: not of lamps without size.
   [[nodiscard]] bool has_extent(std::size_t light) const { return !one_rays_[light].is_all; }
-  // visit(light) for each that may reach such a surface.
+  // visit(light) for each that may reach such a surface, but for the Suns of other turns.
   template <class Visit>
-  void each_that_may_reach(const Vec3& point, const Vec3& normal, const Visit& visit) const {
+  void each_that_may_reach(const Vec3& point, const Vec3& normal, std::size_t turn,
+                           const Visit& visit) const {
     for (const Throws& throws : throws_) {
       if (throws.mirror != nullptr && throws.mirror->height_m(point) <= 0.0) continue;
       for (const std::size_t light : throws.lights) {
+        if (weight(of(light), turn) <= 0.0) continue;
         if (may_reach(light, point, normal)) visit(light);
       }
     }
@@ -109,13 +115,18 @@ class LightSampler {
   void find_one_rays();
   // choose() of what comes by one mirror, or straight; the lights' numbers there begin at `first`.
   void choose_thrown(const Throws& throws, const scenes::Receiver& receiver, double u,
-                     std::size_t first, std::vector<scenes::LightChoice>& chosen) const;
+                     std::size_t turn, std::size_t first,
+                     std::vector<scenes::LightChoice>& chosen) const;
+  [[nodiscard]] double weight(const Light& light, std::size_t turn) const {
+    return light.kind == Kind::SunPart ? turns_.weight(light.group, turn) : 1.0;
+  }
   [[nodiscard]] scenes::LightTree tree_of(const std::vector<std::size_t>& lamps) const;
 
   const scenes::Scene& scene_;
   bool distributed_;
   std::span<const scenes::FlatMirror> mirrors_;
   std::optional<scenes::Lamp> earth_area_;
+  SunTurns turns_;
   std::vector<Light> lights_;
   std::vector<OneRay> one_rays_;     // by number of the light, images too
   std::vector<Throws> throws_;       // straight, then by each mirror
@@ -125,7 +136,11 @@ class LightSampler {
   std::vector<scenes::EmitterSet> emitters_;
   std::vector<scenes::SpotCone> cones_;  // per lamp; of spots
   Rgb sun_illuminance_lx_{0.0};
-  std::vector<Rgb> part_illuminance_lx_;  // of a sky in parts
+  struct SunPart {
+    Rgb illuminance_lx;
+    scenes::Cone disc;
+  };
+  std::vector<SunPart> sun_parts_;
   double earth_half_angle_rad_ = 0.0;
   double earth_solid_angle_sr_ = 0.0;
 };

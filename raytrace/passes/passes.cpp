@@ -198,7 +198,8 @@ class Passes {
     field_.emplace(
         world_, shared_.incoming, surface, camera_, Window{0, 0, camera_.columns, camera_.rows},
         GatherField::Setting{shared_.layers, shared_.splits_parts, shared_.world != nullptr,
-                             options_.shared.smooth_share > 0.0, options_.seed});
+                             options_.shared.smooth_share > 0.0, shared_.layers > 1,
+                             options_.seed});
     shared_.diffuse = DiffuseSource::Field;
     shared_.field = &*field_;
   }

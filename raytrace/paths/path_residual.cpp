@@ -25,7 +25,7 @@ std::span<const Rgb> PathWalker::residual(const IncomingLight& solution, const R
   sees_sampled_ = from_camera_ = false;
   turn();
   follow(solution, first);
-  return radiance_;
+  return finished();
 }
 
 std::span<const Rgb> PathWalker::residual_at(const IncomingLight& solution, const Vec3& origin,
@@ -34,12 +34,12 @@ std::span<const Rgb> PathWalker::residual_at(const IncomingLight& solution, cons
   begin({}, rng);
   sees_sampled_ = from_camera_ = false;
   turn();
-  if (!turn_diffusely(solution, origin, normal, u, v)) return radiance_;
+  if (!turn_diffusely(solution, origin, normal, u, v)) return finished();
   const scenes::Hit hit = world_.query.closest(ray_.origin, ray_.direction);
-  if (hit.missed()) return radiance_;
+  if (hit.missed()) return finished();
   weight_ *= solution.kept_part(hit, ray_.direction, share_);
   if (base::is_lit(weight_)) follow(solution, hit);
-  return radiance_;
+  return finished();
 }
 
 // From a hit on: (S + T L~ - L~) of the surface that was met, T by one ray; what the next surface

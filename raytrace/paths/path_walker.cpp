@@ -36,6 +36,11 @@ void PathWalker::begin(const Ray& start, base::Rng& rng) {
   source_luminance_ = 0.0;
 }
 
+std::span<const Rgb> PathWalker::finished() {
+  world_.lights.turns().weigh(turn_of_suns_, radiance_);
+  return radiance_;
+}
+
 std::span<const Rgb> PathWalker::walk(const Ray& start, base::Rng& rng) {
   begin(start, rng);
   sees_sampled_ = from_camera_ = at_first_ = true;
@@ -43,7 +48,7 @@ std::span<const Rgb> PathWalker::walk(const Ray& start, base::Rng& rng) {
   ++rays_.camera;
   for (int bounce = 0; step() && survives(bounce); ++bounce) {
   }
-  return radiance_;
+  return finished();
 }
 
 PathWalker::Surface PathWalker::surface_at(const scenes::Hit& hit) const {
@@ -158,28 +163,30 @@ void PathWalker::light_directly(const Surface& surface) {
   // Each light has numbers of its own, so that a lamp that is switched off moves no other's light.
   const base::Key key(static_cast<std::uint64_t>(rng_->next() * 0x1p53), base::Stream::LightSample,
                       0);
-  world_.lights.each_that_may_reach(surface.position, surface.normal, [&](std::size_t k) {
-    const bool chooses = world_.lights.has_extent(k);
-    const double u = chooses ? base::uniform(key.with(k), 0) : 0.0;
-    const double v = chooses ? base::uniform(key.with(k), 1) : 0.0;
-    const scenes::LightSample light = world_.lights.sample(k, surface.position, u, v);
-    const double cosine = glm::dot(light.direction, surface.normal);
-    if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) return;
-    Rgb reflectance = surface.diffuse;
-    const double cos_alpha = glm::dot(light.direction, surface.mirrored);
-    if (base::is_lit(surface.material.specular) && cos_alpha > 0.0) {
-      reflectance += surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
-    }
-    // Short of the source, which may be a surface of the scene.
-    const double reach = light.distance_m * (1.0 - 1e-5) - 2.0 * offset;
-    if (reach <= 0.0) return;
-    value[count] = reflectance * light.normal_illuminance_lx * (cosine / pi);
-    group[count] = world_.lights.group(k);
-    kind[count] = world_.lights.kind(k);
-    mirror[count] = light.mirror;
-    world_.query.set(packet, count, origin, light.direction, reach);
-    if (++count == width) trace();
-  });
+  world_.lights.each_that_may_reach(
+      surface.position, surface.normal, turn_of_suns_, [&](std::size_t k) {
+        const bool chooses = world_.lights.has_extent(k);
+        const double u = chooses ? base::uniform(key.with(k), 0) : 0.0;
+        const double v = chooses ? base::uniform(key.with(k), 1) : 0.0;
+        const scenes::LightSample light = world_.lights.sample(k, surface.position, u, v);
+        const double cosine = glm::dot(light.direction, surface.normal);
+        if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) return;
+        Rgb reflectance = surface.diffuse;
+        const double cos_alpha = glm::dot(light.direction, surface.mirrored);
+        if (base::is_lit(surface.material.specular) && cos_alpha > 0.0) {
+          reflectance +=
+              surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
+        }
+        // Short of the source, which may be a surface of the scene.
+        const double reach = light.distance_m * (1.0 - 1e-5) - 2.0 * offset;
+        if (reach <= 0.0) return;
+        value[count] = reflectance * light.normal_illuminance_lx * (cosine / pi);
+        group[count] = world_.lights.group(k);
+        kind[count] = world_.lights.kind(k);
+        mirror[count] = light.mirror;
+        world_.query.set(packet, count, origin, light.direction, reach);
+        if (++count == width) trace();
+      });
   trace();
 }
 

@@ -27,6 +27,9 @@ class PathWalker {
  public:
   explicit PathWalker(const PathWorld& world) : world_(world), radiance_(world.layers) {}
 
+  // Which turn of Suns (light/sun_turns.h) the paths that follow carry.
+  void take_turn(std::uint64_t sample) { turn_of_suns_ = world_.lights.turns().turn_of(sample); }
+
   // Radiance that one path brings, cd/m^2 per layer; valid until the next call. All its random
   // numbers come from `rng`.
   [[nodiscard]] std::span<const Rgb> walk(const Ray& start, base::Rng& rng);
@@ -59,6 +62,7 @@ class PathWalker {
   };
 
   void begin(const Ray& start, base::Rng& rng);
+  std::span<const Rgb> finished();
   bool step();
   [[nodiscard]] Surface surface_at(const scenes::Hit& hit) const;
   [[nodiscard]] static bool is_black(const Surface& surface);
@@ -94,6 +98,7 @@ class PathWalker {
   bool at_first_ = false;     // on the way from the camera to what it sees itself
   bool met_surface_ = false;
   double source_luminance_ = 0.0;
+  std::size_t turn_of_suns_ = 0;
   RayShare share_;  // of the last ray, with those aimed at bright patches
 };
 

@@ -61,7 +61,31 @@ PixelSums::PixelSums(const Window& of, std::size_t layers, bool splits_parts)
       luminance2(of.pixel_count(), 0.0),
       half_difference(of.pixel_count(), 0.0),
       source(of.pixel_count()),
-      rays(of.pixel_count(), 0.0F) {}
+      rays(of.pixel_count(), 0.0F) {
+  const std::size_t step = layer_noise_step(samples.size());
+  if (layers > 1) layers_differ.assign((samples.size() + step - 1) / step * layers, 0.0F);
+}
+
+std::span<float> PixelSums::layers_of(std::size_t pixel) {
+  const std::size_t step = layer_noise_step(samples.size());
+  if (layers_differ.empty() || pixel % step != 0) return {};
+  return {&layers_differ[pixel / step * image_layers], image_layers};
+}
+
+LayerNoise PixelSums::layer_noise() const {
+  LayerNoise noise;
+  const std::size_t step = layer_noise_step(samples.size());
+  std::vector<float> off(image_layers);
+  for (std::size_t k = 0; k < layers_differ.size(); k += image_layers) {
+    const std::size_t pixel = k / image_layers * step;
+    if (!counts(pixel)) continue;
+    for (std::size_t layer = 0; layer < image_layers; ++layer) {
+      off[layer] = layers_differ[k + layer] / static_cast<float>(samples[pixel]);
+    }
+    noise.add(off);
+  }
+  return noise;
+}
 
 void PixelSums::add(std::size_t pixel, const PixelShader& shader, std::uint32_t first,
                     std::uint32_t count) {
@@ -74,6 +98,10 @@ void PixelSums::add(std::size_t pixel, const PixelShader& shader, std::uint32_t 
     luminance[pixel] += y;
     luminance2[pixel] += y * y;
     half_difference[pixel] += (first + k) % 2 == 0 ? y : -y;
+  }
+  const std::span<float> differ = layers_of(pixel);
+  for (std::size_t k = 0; k < differ.size(); ++k) {
+    differ[k] += static_cast<float>(shader.halves_differ()[k]);
   }
   source[pixel].luminance += shader.source().luminance;
   source[pixel].luminance2 += shader.source().luminance2;
@@ -173,6 +201,7 @@ void PixelSums::pass(std::size_t pixel, base::Parcel& parcel) {
   parcel.pass(half_difference[pixel]);
   parcel.pass(source[pixel]);
   parcel.pass(rays[pixel]);
+  parcel.pass_range(layers_of(pixel).data(), layers_of(pixel).size());
 }
 
 namespace {

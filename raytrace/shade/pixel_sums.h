@@ -25,7 +25,12 @@ struct PixelSums {
   std::vector<SourceSeen> source;
   std::vector<float> rays;  // cast for the samples, of all kinds
 
+  std::vector<float> layers_differ;  // the same by layer, of every so many pixels
+
   PixelSums(const Window& of, std::size_t image_layers, bool splits_parts);
+  // Of a pixel that tells the noise of the layers (layer_noise_step).
+  [[nodiscard]] std::span<float> layers_of(std::size_t pixel);
+  [[nodiscard]] LayerNoise layer_noise() const;
   // Of the mean luminance, from the spread of the samples alone.
   [[nodiscard]] double sample_variance(std::size_t pixel) const;
   // Standard deviation of one sample's luminance. Pixels brighter than `bright` are wanted as exact

@@ -38,6 +38,7 @@ PixelShader::PixelShader(const ShadingScene& shared)
     : shared_(shared),
       sums_(shared.layers + (shared.splits_parts ? part_count : 0)),
       scratch_(shared.layers),
+      halves_differ_(shared.layers, 0.0),
       gather_points_{base::SobolOwen4(base::Key(0, base::Stream::FinalGather, 0)),
                      base::SobolOwen4(base::Key(0, base::Stream::FinalGather, 0))},
       rng_(base::Key(0, base::Stream::Roulette, 0)) {
@@ -51,12 +52,14 @@ void PixelShader::begin_pixel(std::uint64_t pixel, std::size_t first, std::size_
   terms_.clear();
   std::fill(sums_.begin(), sums_.end(), Rgb(0.0));
   sample_luminance_.assign(count, 0.0);
+  std::fill(halves_differ_.begin(), halves_differ_.end(), 0.0);
   const base::Key key(shared_.seed, base::Stream::FinalGather, pixel);
   gather_points_ = {base::SobolOwen4(key.with(0)), base::SobolOwen4(key.with(1))};
 }
 
 void PixelShader::add_sample(std::size_t sample, const Ray& ray, const scenes::Hit& hit) {
   sample_ = sample;
+  turn_of_suns_ = shared_.lights.turns().turn_of(pixel_ + sample);
   gathered_ = 0;
   source_of_sample_ = 0.0;
   rng_ = base::Rng(base::Key(shared_.lamp_seed, base::Stream::Roulette, pixel_).with(sample));
@@ -84,7 +87,7 @@ RayCounts PixelShader::rays() const {
 void PixelShader::add(std::size_t layer, std::size_t sample, Part part, const Rgb& radiance) {
   sums_[layer] += radiance;
   if (shared_.splits_parts) sums_[shared_.layers + static_cast<std::size_t>(part)] += radiance;
-  sample_luminance_[sample - first_sample_] += base::luminance(radiance);
+  count_luminance(layer, sample, radiance);
 }
 
 void PixelShader::trace(const Ray& ray, const Rgb& weight, int depth, Seen seen,
@@ -191,7 +194,7 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
   shared_.lights.choose(
       {surface.position, surface.normal, mirrored, base::max_component(surface.diffuse),
        base::max_component(surface.material.specular), surface.material.shininess},
-      double(choice[0]) + 0x1p-24 * double(choice[1]), chosen_);
+      double(choice[0]) + 0x1p-24 * double(choice[1]), turn_of_suns_, chosen_);
   for (const auto& [k, chance_weight] : chosen_) {
     if (!shared_.lights.may_reach(k, surface.position, surface.normal)) continue;
     const auto u = shared_.lights.has_extent(k) ? light_point(k) : std::array<float, 2>{};

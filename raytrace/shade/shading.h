@@ -82,6 +82,8 @@ class PixelShader {
   // Sums over samples of the light that comes straight from a source that the camera sees; their
   // luminance is without it.
   [[nodiscard]] const SourceSeen& source() const { return source_; }
+  // Of each layer, the luminance that samples of the first half brought less that of the second.
+  [[nodiscard]] std::span<const double> halves_differ() const { return halves_differ_; }
   // What the samples read from gather points, which is in their luminance but not in sums().
   [[nodiscard]] std::span<const FieldTerm> field_terms() const { return terms_; }
   [[nodiscard]] RayCounts rays() const;  // all that were cast for samples so far
@@ -146,13 +148,19 @@ class PixelShader {
   void add_lacking(const GatherRay& ray, const scenes::Hit& hit);
   void flush_gather();
   void add(std::size_t layer, std::size_t sample, Part part, const Rgb& radiance);
+  void count_luminance(std::size_t layer, std::size_t sample, const Rgb& radiance) {
+    const double luminance = base::luminance(radiance);
+    sample_luminance_[sample - first_sample_] += luminance;
+    halves_differ_[layer] += sample % 2 == 0 ? luminance : -luminance;
+  }
 
   const ShadingScene& shared_;
   RayCounts rays_;
   std::vector<Rgb> sums_;
   std::vector<Rgb> scratch_;  // one per layer, and what came straight from the sky
-  std::vector<double> sample_luminance_;
+  std::vector<double> sample_luminance_, halves_differ_;
   std::size_t sample_ = 0, first_sample_ = 0;
+  std::size_t turn_of_suns_ = 0;
   SourceSeen source_;
   double source_of_sample_ = 0.0;
   std::vector<FieldTerm> terms_;

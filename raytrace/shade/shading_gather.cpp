@@ -57,9 +57,9 @@ bool PixelShader::read_field(const Surface& surface, const Rgb& weight) {
   if (point == no_point || shared_.field->points()[point].reflectance <= 0.0F) return false;
   term_of(point).diffuse += glm::vec3(weight);
   const std::span<const glm::vec3> radiance = shared_.field->diffuse(point);
-  Rgb all(0.0);
-  for (std::size_t k = 0; k < shared_.layers; ++k) all += Rgb(radiance[k]);
-  sample_luminance_[sample_ - first_sample_] += base::luminance(weight * all);
+  for (std::size_t k = 0; k < shared_.layers; ++k) {
+    count_luminance(k, sample_, weight * Rgb(radiance[k]));
+  }
   return true;
 }
 
@@ -72,9 +72,9 @@ bool PixelShader::read_lobe(const Surface& surface, const Rgb& weight) {
   if (radiance.empty()) return false;
   const Rgb reflected = weight * surface.material.specular;
   term_of(point).lobe += glm::vec3(reflected);
-  Rgb all(0.0);
-  for (const glm::vec3& layer : radiance) all += Rgb(layer);
-  sample_luminance_[sample_ - first_sample_] += base::luminance(reflected * all);
+  for (std::size_t k = 0; k < radiance.size(); ++k) {
+    count_luminance(k, sample_, reflected * Rgb(radiance[k]));
+  }
   return true;
 }
 
@@ -171,6 +171,7 @@ void PixelShader::add_lacking(const GatherRay& ray, const scenes::Hit& hit) {
   if (kept <= 0.0) return;
   base::Rng rng(
       base::Key(shared_.seed, base::Stream::Residual, pixel_).with(ray.sample).with(ray.number));
+  walker_->take_turn(pixel_ + ray.sample + ray.number);
   const auto lacking = walker_->residual(shared_.incoming, {Vec3(0.0), ray.direction}, hit, rng);
   for (std::size_t layer = 0; layer < shared_.layers; ++layer) {
     add(layer, ray.sample, ray.part, kept * ray.lacking * ray.weight * lacking[layer]);

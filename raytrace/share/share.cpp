@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "raytrace/share/share.h"
 
+#include <utility>
+
 #include "base/numbers/random.h"
+#include "base/parallel.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -11,6 +14,7 @@ namespace {
 constexpr float doubt = 1.5F;
 constexpr std::size_t noise_fields = 4;
 constexpr std::size_t layers_at_once = 4;
+constexpr std::size_t points_at_once = 1024;
 
 }  // namespace
 
@@ -51,8 +55,14 @@ namespace {
 
 class Sharer {
  public:
-  Sharer(const Neighbours& neighbours, const Estimate& estimate)
-      : neighbours_(neighbours), estimate_(estimate), points_(neighbours.count()) {}
+  // own: sums of the estimate, whose place the shared means take.
+  Sharer(const Neighbours& neighbours, const Estimate& estimate, std::vector<glm::vec3> own)
+      : neighbours_(neighbours),
+        estimate_(estimate),
+        points_(neighbours.count()),
+        in_place_(!own.empty()) {
+    shared_.radiance = std::move(own);
+  }
 
   Shared run() {
     shared_.layers = estimate_.layers;
@@ -75,13 +85,15 @@ class Sharer {
   void step(std::size_t level, Planes& values, Planes& detail) {
     neighbours_.blur(level, values, level == 0 ? &estimate_.samples : &weight_, coarse_);
     detail.resize(values.size());
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      detail[k].resize(points_);
-      for (std::size_t p = 0; p < points_; ++p) {
-        const bool none = level == 0 && estimate_.samples[p] <= 0.0F;
-        detail[k][p] = none ? 0.0F : values[k][p] - coarse_[k][p];
+    for (std::vector<float>& of : detail) of.resize(points_);
+    for_all([&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        for (std::size_t p = begin; p < end; ++p) {
+          const bool none = level == 0 && estimate_.samples[p] <= 0.0F;
+          detail[k][p] = none ? 0.0F : values[k][p] - coarse_[k][p];
+        }
       }
-    }
+    });
     values.swap(coarse_);
   }
 
@@ -160,8 +172,10 @@ class Sharer {
 
   // A few layers at a time: planes of all of them would take more memory than all else.
   void take_layers() {
-    shared_.radiance.reserve(estimate_.samples.size() * estimate_.layers);  // strays follow
-    shared_.radiance.resize(points_ * estimate_.layers);
+    if (!in_place_) {
+      shared_.radiance.reserve(estimate_.samples.size() * estimate_.layers);  // strays follow
+      shared_.radiance.resize(points_ * estimate_.layers);
+    }
     for (std::size_t first = 0; first < estimate_.layers; first += layers_at_once) {
       take_layers(first, std::min(layers_at_once, estimate_.layers - first));
     }
@@ -172,28 +186,42 @@ class Sharer {
     const auto at = [&](std::size_t p, std::size_t k) {
       return p * estimate_.layers + first + k / 3;
     };
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      for (std::size_t p = 0; p < points_; ++p) {
+    const std::vector<glm::vec3>& sums = in_place_ ? shared_.radiance : estimate_.sum;
+    // Point by point where all layers of one lie side by side, plane by plane where its planes do.
+    for_all([&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
         if (estimate_.samples[p] <= 0.0F) continue;
-        values[k][p] = estimate_.sum[at(p, k)][static_cast<int>(k % 3)] / estimate_.samples[p];
+        for (std::size_t k = 0; k < values.size(); ++k) {
+          values[k][p] = sums[at(p, k)][static_cast<int>(k % 3)] / estimate_.samples[p];
+        }
       }
-    }
+    });
     for (std::size_t level = 0; level < share_levels; ++level) {
       step(level, values, detail);
-      for (std::size_t k = 0; k < values.size(); ++k) {
-        for (std::size_t p = 0; p < points_; ++p) kept[k][p] += keep_[p][level] * detail[k][p];
-      }
+      for_all([&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = 0; k < values.size(); ++k) {
+          for (std::size_t p = begin; p < end; ++p) kept[k][p] += keep_[p][level] * detail[k][p];
+        }
+      });
     }
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      for (std::size_t p = 0; p < points_; ++p) {
-        shared_.radiance[at(p, k)][static_cast<int>(k % 3)] = values[k][p] + kept[k][p];
+    for_all([&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
+        for (std::size_t k = 0; k < values.size(); ++k) {
+          shared_.radiance[at(p, k)][static_cast<int>(k % 3)] = values[k][p] + kept[k][p];
+        }
       }
-    }
+    });
+  }
+
+  template <class Visit>
+  void for_all(const Visit& visit) const {
+    base::parallel_chunks(points_, points_at_once, visit);
   }
 
   const Neighbours& neighbours_;
   const Estimate& estimate_;
   std::size_t points_;
+  bool in_place_;
   Shared shared_;
   std::vector<std::array<float, share_levels>> keep_;
   std::vector<float> weight_;
@@ -203,7 +231,11 @@ class Sharer {
 }  // namespace
 
 Shared share(const Neighbours& neighbours, const Estimate& estimate) {
-  return Sharer(neighbours, estimate).run();
+  return Sharer(neighbours, estimate, {}).run();
+}
+
+Shared share_in_place(const Neighbours& neighbours, Estimate& estimate) {
+  return Sharer(neighbours, estimate, std::exchange(estimate.sum, {})).run();
 }
 
 }  // namespace earthshine::raytrace

@@ -117,6 +117,9 @@ struct Shared {
 
 // The points of the grid, which come first in the estimate.
 [[nodiscard]] Shared share(const Neighbours& neighbours, const Estimate& estimate);
+// The same where the estimate's sums are: it is left without, and those of strays stay in
+// Shared::radiance until add_strays() has them.
+[[nodiscard]] Shared share_in_place(const Neighbours& neighbours, Estimate& estimate);
 
 // The share of a detail of signal s and noise q that is kept, mean squares.
 [[nodiscard]] float kept_share(float s, float q);

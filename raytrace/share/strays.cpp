@@ -27,6 +27,7 @@ void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared&
   if (strays.empty()) return;
   const std::size_t layers = estimate.layers, all = estimate.samples.size();
   const std::size_t grid = all - strays.size();
+  const bool in_place = estimate.sum.empty();
   shared.radiance.resize(all * layers, glm::vec3(0.0F));
   shared.signal.resize(all);
   shared.noise.resize(all);
@@ -72,9 +73,9 @@ void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared&
     }
     for (std::size_t layer = 0; layer < layers; ++layer) {
       glm::vec3& value = shared.radiance[point * layers + layer];
+      const glm::vec3 sum = in_place ? value : estimate.sum[point * layers + layer];
       value = has_base ? shared.radiance[strays[k].base * layers + layer] : glm::vec3(0.0F);
-      if (!sampled) continue;
-      value += keep * (estimate.sum[point * layers + layer] / estimate.samples[point] - value);
+      if (sampled) value += keep * (sum / estimate.samples[point] - value);
     }
     shared.squared_error[point] = static_cast<float>(shared.squared_error_with(point, 1.0));
   }

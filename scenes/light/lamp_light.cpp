@@ -160,14 +160,16 @@ Vec3 cosine_direction(const base::Frame3& frame, double x, double y) {
   return frame.to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0, 1.0 - x))});
 }
 
-Vec3 sample_cone(const Vec3& axis, double half_angle_rad, double u, double v) {
-  // 1 - cos written as 2 sin^2 keeps its digits for the Sun's small disc.
-  const double half_sine = std::sin(half_angle_rad / 2);
-  const double one_minus_cos = u * 2.0 * half_sine * half_sine;
+// 1 - cos written as 2 sin^2 keeps its digits for the Sun's small disc.
+Cone::Cone(const Vec3& axis, double half_angle_rad)
+    : frame_(base::frame_around(axis)), most_(2.0 * std::pow(std::sin(half_angle_rad / 2), 2)) {}
+
+Vec3 Cone::sample(double u, double v) const {
+  const double one_minus_cos = u * most_;
   const double sine = std::sqrt(std::max(0.0, one_minus_cos * (2.0 - one_minus_cos)));
   const double phi = 2.0 * pi * v;
-  return glm::normalize(base::frame_around(axis).to_world(
-      {sine * std::cos(phi), sine * std::sin(phi), 1.0 - one_minus_cos}));
+  return glm::normalize(
+      frame_.to_world({sine * std::cos(phi), sine * std::sin(phi), 1.0 - one_minus_cos}));
 }
 
 double cone_solid_angle_sr(double half_angle_rad) {

@@ -67,7 +67,18 @@ struct LampHit {
 
 // Light that reaches a point from a distant disc of directions, sampled uniformly over its solid
 // angle.
-[[nodiscard]] Vec3 sample_cone(const Vec3& axis, double half_angle_rad, double u, double v);
+class Cone {
+ public:
+  Cone(const Vec3& axis, double half_angle_rad);
+  [[nodiscard]] Vec3 sample(double u, double v) const;
+
+ private:
+  base::Frame3 frame_;
+  double most_;  // 1 - cos at its edge
+};
+[[nodiscard]] inline Vec3 sample_cone(const Vec3& axis, double half_angle_rad, double u, double v) {
+  return Cone(axis, half_angle_rad).sample(u, v);
+}
 [[nodiscard]] double cone_solid_angle_sr(double half_angle_rad);
 
 // Light of a source that a flat mirror throws onto a point: that of the source's image.

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures under a sky in parts: with the same rays the layers of the parts add up to the picture
 // under the whole sky.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "raytrace/render.h"
 #include "scenes/sky/sky_cells.h"
@@ -37,7 +40,8 @@ scenes::Camera looking_up() {
   return camera;
 }
 
-Frame drawn(const scenes::Scene& scene, bool per_light) {
+Frame drawn(const scenes::Scene& scene, bool per_light, bool shared = false,
+            std::uint64_t seed = 1) {
   const tests::Prepared prepared(scene);
   radiosity::SolveOptions solve;
   solve.patch_edge_m = 0.5;
@@ -45,8 +49,9 @@ Frame drawn(const scenes::Scene& scene, bool per_light) {
   solve.tolerance = 1e-13;
   RenderOptions options;
   options.columns = options.rows = 24;
-  options.gather_rays = 64;
-  options.shared.on = false;
+  options.gather_rays = shared ? 8 : 64;
+  options.shared.on = shared;
+  options.seed = seed;
   options.per_light = per_light;
   return render(prepared, prepared.solve(solve), looking_up(), options);
 }
@@ -117,6 +122,59 @@ TEST(SkyParts, TheDiscOfASunIsSeen) {
   }
   EXPECT_GT(disc, 0U);
 }
+
+double mean_of(const Frame& frame, const std::string& channel) {
+  const std::vector<float>& values = frame.image.find(channel)->values;
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+// Many Suns take turns at camera samples and paths. What each of them gives has the mean that it
+// has in a picture of its own: over pictures of other seeds, within four standard errors of their
+// difference.
+void expect_same_means(bool shared) {
+  constexpr std::size_t count = 9;
+  constexpr std::uint64_t seeds = 12;
+  scenes::SkyParts all;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double angle = base::radians(-60.0 + 15.0 * static_cast<double>(k));
+    scenes::Sun sun;
+    sun.direction = glm::normalize(Vec3(std::sin(angle), -0.4, std::cos(angle)));
+    sun.illuminance_lx = Rgb(1000.0);
+    all.suns.push_back(sun);
+  }
+  const auto under = [](scenes::SkyParts parts) {
+    scenes::Scene scene = things();
+    scene.sky_parts = std::make_shared<const scenes::SkyParts>(std::move(parts));
+    return scene;
+  };
+  std::array<std::vector<double>, count> taking_turns;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const Frame together = drawn(under(all), true, shared, seed);
+    for (std::size_t k = 0; k < count; ++k) {
+      taking_turns[k].push_back(mean_of(together, fmt::format("light_sun-{}.G", k)));
+    }
+  }
+  for (const std::size_t k : {std::size_t{0}, std::size_t{3}, std::size_t{8}}) {
+    scenes::SkyParts one;
+    one.suns = {all.suns[k]};
+    double sum = 0.0, squares = 0.0;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+      // A single group has no layer of its own.
+      const double off =
+          taking_turns[k][seed - 1] - mean_of(drawn(under(one), true, shared, seed + seeds), "G");
+      sum += off;
+      squares += off * off;
+    }
+    const double mean = sum / double(seeds);
+    const double error = std::sqrt((squares / double(seeds) - mean * mean) / double(seeds - 1));
+    EXPECT_GT(taking_turns[k].front(), 1.0);
+    EXPECT_LT(std::abs(mean), 4.0 * error) << "sun " << k;
+    EXPECT_LT(error, 0.02 * taking_turns[k].front()) << "sun " << k;
+  }
+}
+
+TEST(SkyParts, SunsThatTakeTurnsGiveWhatEachGivesAlone) { expect_same_means(true); }
+TEST(SkyParts, SunsThatTakeTurnsGiveWhatEachGivesAlonePerSample) { expect_same_means(false); }
 
 }  // namespace
 }  // namespace earthshine::raytrace

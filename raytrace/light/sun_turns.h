@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The Suns of a sky in parts take turns: a sample (a path, a camera sample) carries one set of them
+// alone, as many times as bright as there are sets. A picture that is to be weighted by one Sun at
+// a time gains little from a shadow ray to every Sun at every sample.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "base/units.h"
+
+namespace earthshine::raytrace {
+
+class SunTurns {
+ public:
+  SunTurns() = default;  // nothing takes turns: turn 0 has it all
+  // first_layer: of the first Sun, with one layer after another for each.
+  SunTurns(std::size_t first_layer, std::size_t suns)
+      : first_(first_layer), suns_(suns), count_(suns > most ? most : 1) {}
+
+  [[nodiscard]] std::size_t count() const { return count_; }
+  // Samples with numbers that follow each other take all turns one after another.
+  [[nodiscard]] std::size_t turn_of(std::uint64_t sample) const { return sample % count_; }
+  // What the light of a layer counts in samples of that turn. Suns of one turn are spread over the
+  // orbit, so that all turns are about equally bright.
+  [[nodiscard]] double weight(std::size_t layer, std::size_t turn) const {
+    if (count_ == 1 || layer < first_ || layer >= first_ + suns_) return 1.0;
+    return (layer - first_) % count_ == turn ? static_cast<double>(count_) : 0.0;
+  }
+  // Of a whole sample.
+  void weigh(std::size_t turn, std::span<Rgb> layers) const {
+    for (std::size_t k = 0; count_ > 1 && k < suns_; ++k) {
+      layers[first_ + k] *= weight(first_ + k, turn);
+    }
+  }
+
+ private:
+  // A power of two: samples are, so that each Sun has equally many.
+  static constexpr std::size_t most = 4;
+  std::size_t first_ = 0, suns_ = 0, count_ = 1;
+};
+
+}  // namespace earthshine::raytrace
