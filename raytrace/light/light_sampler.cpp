@@ -129,9 +129,9 @@ std::optional<LightSampler::SeenLamp> LightSampler::seen_lamp(const Vec3& origin
   return seen;
 }
 
-void LightSampler::choose(const scenes::Receiver& receiver, double u, std::size_t turn,
+void LightSampler::choose(const scenes::Receiver& receiver, double u,
                           std::vector<scenes::LightChoice>& chosen) const {
-  choose_thrown(throws_.front(), receiver, u, turn, 0, chosen);
+  choose_thrown(throws_.front(), receiver, u, 0, chosen);
   for (std::size_t m = 0; m < mirrors_.size(); ++m) {
     const scenes::FlatMirror& mirror = mirrors_[m];
     if (mirror.height_m(receiver.point) <= 0.0) continue;
@@ -139,17 +139,14 @@ void LightSampler::choose(const scenes::Receiver& receiver, double u, std::size_
     image.point = mirror.image(receiver.point);
     image.normal = mirror.turned(receiver.normal);
     image.mirrored = mirror.turned(receiver.mirrored);
-    choose_thrown(throws_[m + 1], image, u, turn, (m + 1) * lights_.size(), chosen);
+    choose_thrown(throws_[m + 1], image, u, (m + 1) * lights_.size(), chosen);
   }
 }
 
 void LightSampler::choose_thrown(const Throws& throws, const scenes::Receiver& receiver, double u,
-                                 std::size_t turn, std::size_t first,
+                                 std::size_t first,
                                  std::vector<scenes::LightChoice>& chosen) const {
-  for (const std::size_t light : throws.always) {
-    const double times = weight(of(light), turn);
-    if (times > 0.0) chosen.push_back({light, times});
-  }
+  for (const std::size_t light : throws.always) chosen.push_back({light, 1.0});
   for (const Cluster& crowd : clusters_) {
     const std::size_t from = chosen.size();
     crowd.tree.choose(receiver, u, smallest_share, chosen);

@@ -34,8 +34,8 @@ class LightSampler {
   // matter, with weight 1, and some of the others by chance, with weight 1 / probability
   // (scenes/light/light_tree.h), for u uniform in [0, 1). Everything that is no lamp is always
   // among them, and so is every one of the distributed lights, whose number is the point of having
-  // them. Of Suns that take turns those of one turn, with their weight.
-  void choose(const scenes::Receiver& receiver, double u, std::size_t turn,
+  // them, all Suns too.
+  void choose(const scenes::Receiver& receiver, double u,
               std::vector<scenes::LightChoice>& chosen) const;
 
   [[nodiscard]] const SunTurns& turns() const { return turns_; }
@@ -115,8 +115,7 @@ class LightSampler {
   void find_one_rays();
   // choose() of what comes by one mirror, or straight; the lights' numbers there begin at `first`.
   void choose_thrown(const Throws& throws, const scenes::Receiver& receiver, double u,
-                     std::size_t turn, std::size_t first,
-                     std::vector<scenes::LightChoice>& chosen) const;
+                     std::size_t first, std::vector<scenes::LightChoice>& chosen) const;
   [[nodiscard]] double weight(const Light& light, std::size_t turn) const {
     return light.kind == Kind::SunPart ? turns_.weight(light.group, turn) : 1.0;
   }

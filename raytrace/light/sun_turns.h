@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Suns of a sky in parts take turns: a sample (a path, a camera sample) carries one set of them
-// alone, as many times as bright as there are sets. A picture that is to be weighted by one Sun at
-// a time gains little from a shadow ray to every Sun at every sample.
+// The Suns of a sky in parts take turns: a path carries one set of them alone, as many times as
+// bright as there are sets. A picture that is to be weighted by one Sun at a time gains little from
+// a shadow ray to every Sun wherever a path turns. Camera samples carry them all: their few show
+// each Sun's shadow edges.
 #pragma once
 
 #include <cstddef>

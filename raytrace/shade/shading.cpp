@@ -59,7 +59,6 @@ void PixelShader::begin_pixel(std::uint64_t pixel, std::size_t first, std::size_
 
 void PixelShader::add_sample(std::size_t sample, const Ray& ray, const scenes::Hit& hit) {
   sample_ = sample;
-  turn_of_suns_ = shared_.lights.turns().turn_of(pixel_ + sample);
   gathered_ = 0;
   source_of_sample_ = 0.0;
   rng_ = base::Rng(base::Key(shared_.lamp_seed, base::Stream::Roulette, pixel_).with(sample));
@@ -194,7 +193,7 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
   shared_.lights.choose(
       {surface.position, surface.normal, mirrored, base::max_component(surface.diffuse),
        base::max_component(surface.material.specular), surface.material.shininess},
-      double(choice[0]) + 0x1p-24 * double(choice[1]), turn_of_suns_, chosen_);
+      double(choice[0]) + 0x1p-24 * double(choice[1]), chosen_);
   for (const auto& [k, chance_weight] : chosen_) {
     if (!shared_.lights.may_reach(k, surface.position, surface.normal)) continue;
     const auto u = shared_.lights.has_extent(k) ? light_point(k) : std::array<float, 2>{};

@@ -160,7 +160,6 @@ class PixelShader {
   std::vector<Rgb> scratch_;  // one per layer, and what came straight from the sky
   std::vector<double> sample_luminance_, halves_differ_;
   std::size_t sample_ = 0, first_sample_ = 0;
-  std::size_t turn_of_suns_ = 0;
   SourceSeen source_;
   double source_of_sample_ = 0.0;
   std::vector<FieldTerm> terms_;

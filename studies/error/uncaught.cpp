@@ -132,7 +132,7 @@ class Finder {
         (side.front ? 1.0 : -1.0) * scenes::triangle_normal(study_.scene, side.triangle);
     const double offset = study_.query.surface_offset_m();
     std::vector<scenes::LightChoice> chosen;
-    lights_.choose({at, normal, normal, 1.0, 0.0, 0.0}, base::uniform(key, 2), 0, chosen);
+    lights_.choose({at, normal, normal, 1.0, 0.0, 0.0}, base::uniform(key, 2), chosen);
     Falling found;
     for (const auto& [light, weight] : chosen) {
       if (!is_asked(light)) continue;

@@ -128,7 +128,7 @@ double mean_of(const Frame& frame, const std::string& channel) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-// Many Suns take turns at camera samples and paths. What each of them gives has the mean that it
+// Many Suns take turns at paths. What each of them gives has the mean that it
 // has in a picture of its own: over pictures of other seeds, within four standard errors of their
 // difference.
 void expect_same_means(bool shared) {

@@ -48,7 +48,7 @@ TEST(LightSampler, FewLampsAreAllTakenWhole) {
   const tests::Prepared prepared(builder.scene);
   const LightSampler lights(prepared, Indirect::None, 1);
   std::vector<scenes::LightChoice> chosen;
-  lights.choose({}, 0.5, 0, chosen);
+  lights.choose({}, 0.5, chosen);
   ASSERT_EQ(chosen.size(), 25U);
   for (std::size_t k = 0; k < 25; ++k) {
     EXPECT_EQ(chosen[k].light, k);
@@ -61,7 +61,7 @@ TEST(LightSampler, DistributedLightsAreNeverLeftToChance) {
   const tests::Prepared prepared(builder.scene);
   const LightSampler lights(prepared, Indirect::Distributed, 4);
   std::vector<scenes::LightChoice> chosen;
-  lights.choose({}, 0.5, 0, chosen);
+  lights.choose({}, 0.5, chosen);
   EXPECT_EQ(chosen.size(), 50U + 4 * 50U);
   // The report's lights are fixed points: the same wherever they are seen from, near or far.
   for (std::size_t k = 0; k < lights.count(); ++k) {
