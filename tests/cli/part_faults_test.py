@@ -75,8 +75,8 @@ class PartFaults(study_parts_test.StudyPartsCase):
             self.done(*call, "--part", f"{number}/{of}", "-q")
 
     def test_kills_at_random_moments(self):
-        """Any part, killed at EARTHSHINE_KILLS (five) moments."""
-        chance, kills = random.Random(1), int(os.environ.get("EARTHSHINE_KILLS", "5"))
+        """Any part, killed at EARTHSHINE_KILLS (ten) moments."""
+        chance, kills = random.Random(1), int(os.environ.get("EARTHSHINE_KILLS", "10"))
         for name, call, folder, _, whole, seconds in self.works():
             killed = 0
             for kill in range(kills):
@@ -94,8 +94,8 @@ class PartFaults(study_parts_test.StudyPartsCase):
     def test_two_schedulers_start_the_same_part(self):
         for name, call, folder, _, whole, _ in self.works():
             for part in ("1/2", "2/2"):
-                runs = [self.started(*call, "--part", part, "-q") for _ in range(2)]
-                self.assertEqual([run.wait() for run in runs], [0] * 2)
+                runs = [self.started(*call, "--part", part, "-q") for _ in range(4)]
+                self.assertEqual([run.wait() for run in runs], [0] * 4)
             self.assertEqual(self.merged(name, folder), whole)
 
     def test_a_part_of_another_build(self):
