@@ -77,7 +77,7 @@ void lamps(benchmark::State& state) {
       if (chooses) {
         chosen.clear();
         u = std::fmod(u + 0.6180339887498949, 1.0);
-        hall.lights.choose(at, u, 0, chosen);
+        hall.lights.choose(at, u, chosen);
       }
       benchmark::DoNotOptimize(hall.shadowed(at, chooses ? chosen : all, rays));
     }
@@ -90,7 +90,7 @@ void lamps(benchmark::State& state) {
     mean += exact / points;
     for (int n = 0; n < 16; ++n) {
       chosen.clear();
-      if (chooses) hall.lights.choose(at, (n + 0.5) / 16.0, 0, chosen);
+      if (chooses) hall.lights.choose(at, (n + 0.5) / 16.0, chosen);
       const double error = hall.shadowed(at, chooses ? chosen : all, ignored) - exact;
       square += error * error / (16.0 * points);
     }
