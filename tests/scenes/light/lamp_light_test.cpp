@@ -72,6 +72,29 @@ TEST(Lamp, DiskGivesItsAxisTheClosedForm) {
   EXPECT_NEAR(sum / 1024 / (1000.0 / 5.0), 1.0, 1e-4);
 }
 
+TEST(Lamp, DiskOverAFloorGivesItTheClosedFormHoweverNear) {
+  // E = M r^2 / (r^2 + h^2) again, by 64 x 64 points. Points even over the disk find nothing at
+  // h = 1e-3 r: one in a million of them is as near as h. Those even over the solid angle of the
+  // square around it are off by the strips along the rim, 4 in 64 of few cells: 1 % is asked.
+  Lamp lamp;
+  lamp.kind = LampKind::Disk;
+  lamp.axis = glm::normalize(Vec3(0.3, -0.5, 0.8));
+  lamp.radius_m = 2.0;
+  lamp.exitance = Rgb(1000.0);
+  for (const double height : {2e-6, 2e-3, 0.1, 1.0, 1.9}) {
+    lamp.position = Vec3(1, 2, 3);
+    const Vec3 below = lamp.position + height * lamp.axis;
+    double sum = 0.0;
+    for (int i = 0; i < 64; ++i) {
+      for (int k = 0; k < 64; ++k) {
+        const LightSample s = sample_lamp(lamp, below, (i + 0.5) / 64, (k + 0.5) / 64);
+        sum -= s.normal_illuminance_lx.g * glm::dot(s.direction, lamp.axis);
+      }
+    }
+    EXPECT_NEAR(sum / 4096 / (1000.0 * 4.0 / (4.0 + height * height)), 1.0, 0.01) << height;
+  }
+}
+
 TEST(Lamp, RectangleShinesOneWayAndCanBeSeenFromThereOnly) {
   Lamp lamp;
   lamp.kind = LampKind::Rectangle;
