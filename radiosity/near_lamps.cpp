@@ -27,6 +27,26 @@ double half_size(const scenes::Lamp& lamp) {
   return std::max(lamp.radius_m, 0.5 * edges);
 }
 
+// The point of its surface, if it has one, that is nearest.
+Vec3 nearest_on_lamp(const scenes::Lamp& lamp, const Vec3& point) {
+  const Vec3 from_centre = point - lamp.position;
+  if (lamp.kind == scenes::LampKind::Rectangle) {
+    const Vec3 corner = lamp.position - 0.5 * (lamp.edge_u + lamp.edge_v);
+    const Vec3 far = corner + lamp.edge_u + lamp.edge_v;
+    const Vec3 first = scenes::nearest_on_triangle(point, corner, corner + lamp.edge_u, far);
+    const Vec3 second = scenes::nearest_on_triangle(point, corner, far, corner + lamp.edge_v);
+    return glm::length(first - point) < glm::length(second - point) ? first : second;
+  }
+  if (lamp.kind != scenes::LampKind::Disk) return lamp.position;
+  const Vec3 in_plane = from_centre - glm::dot(from_centre, lamp.axis) * lamp.axis;
+  const double r = glm::length(in_plane);
+  return lamp.position + in_plane * (r > lamp.radius_m ? lamp.radius_m / r : 1.0);
+}
+
+double radius(const scenes::Lamp& lamp) {
+  return scenes::is_wide(lamp.kind) ? scenes::row_of(lamp.kind).radius(lamp) : 0.0;
+}
+
 class LampCuts {
  public:
   explicit LampCuts(const scenes::Scene& scene) {
@@ -56,7 +76,7 @@ class LampCuts {
     double least = std::numeric_limits<double>::infinity();
     for (const scenes::Lamp& lamp : lamps_) {
       // No point of the patch is farther than that from its middle.
-      if (glm::length(middle - lamp.position) > 3.0 * enough) continue;
+      if (glm::length(middle - lamp.position) > 3.0 * enough + radius(lamp)) continue;
       if (!several && glm::dot(lamp.position - middle, normal) <= 0.0) continue;
       const Near near = several ? near_of_several(lamp, patches, patch) : near_of(lamp, corner);
       const double scale = std::max(near.distance_m, half_size(lamp));
@@ -70,14 +90,21 @@ class LampCuts {
     Vec3 point{0.0};
     double distance_m = std::numeric_limits<double>::infinity();
   };
+  // From one to the other and back is ever nearer, as both are convex.
   static Near near_of(const scenes::Lamp& lamp, const std::array<Vec3, 4>& corner) {
-    const auto nearest = [&](std::size_t b, std::size_t c) {
-      return scenes::nearest_on_triangle(lamp.position, corner[0], corner[b], corner[c]);
-    };
-    const Vec3 first = nearest(1, 2), second = nearest(2, 3);
-    const double to_first = glm::length(first - lamp.position);
-    const double to_second = glm::length(second - lamp.position);
-    return {to_first < to_second ? first : second, std::min(to_first, to_second)};
+    Near near;
+    Vec3 from = lamp.position;
+    for (int k = 0; k < (scenes::is_wide(lamp.kind) ? 4 : 1); ++k) {
+      const auto nearest = [&](std::size_t b, std::size_t c) {
+        return scenes::nearest_on_triangle(from, corner[0], corner[b], corner[c]);
+      };
+      const Vec3 first = nearest(1, 2), second = nearest(2, 3);
+      const double to_first = glm::length(first - from);
+      const double to_second = glm::length(second - from);
+      near = {to_first < to_second ? first : second, std::min(to_first, to_second)};
+      from = nearest_on_lamp(lamp, near.point);
+    }
+    return near;
   }
   // Of those triangles whose side of the patch the lamp is on.
   static Near near_of_several(const scenes::Lamp& lamp, const Patches& patches,

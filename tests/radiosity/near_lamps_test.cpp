@@ -59,6 +59,28 @@ TEST(NearLamps, NoPatchIsLongerThanAQuarterOfItsDistance) {
   }
 }
 
+// A lamp of 1.6 m is as near at its ends as in its middle.
+TEST(NearLamps, LongLampsAreNearAlongAllTheirLength) {
+  scenes::Scene scene = floor_under_lamp(0.07, scenes::LampKind::Rectangle);
+  scenes::Lamp& lamp = scene.lamps[0];
+  lamp.edge_u = Vec3(0.0, 1.6, 0.0);
+  lamp.edge_v = Vec3(0.01, 0.0, 0.0);
+  lamp.axis = Vec3(0.0, 0.0, -1.0);
+  lamp.exitance = Rgb(1000.0);
+  const Patches patches = cut(scene);
+  for (std::uint32_t i = 0; i < patches.count(); ++i) {
+    const CellSize size = cell_size(patches, i);
+    double distance = 1e9;
+    for (int k = 0; k < 81; ++k) {
+      const Vec3 way = patches.point(i, k % 9 / 8.0, k / 9 / 8.0) - lamp.position;
+      const double beyond_u = std::max(std::abs(way.y) - 0.8, 0.0);
+      const double beyond_v = std::max(std::abs(way.x) - 0.005, 0.0);
+      distance = std::min(distance, std::hypot(beyond_u, beyond_v, way.z));
+    }
+    EXPECT_LE(std::max(size.s_m, size.t_m), distance / 4.0);
+  }
+}
+
 TEST(NearLamps, OnlyWhatTheyShineAtIsCut) {
   const std::size_t even = subdivide(floor_under_lamp(1.0), start_edge).count();
   EXPECT_EQ(cut(floor_under_lamp(1.0)).count(), even);
