@@ -69,33 +69,32 @@ std::string memory_text(const Json& need) {
 void check_memory(const LoadedScene& loaded, const scenes::RayQuery& query,
                   const radiosity::SolveOptions& solver, const raytrace::RenderOptions* picture,
                   bool solves) {
+  // Refinement to an error begins with the coarse patches, and asks again before it takes more.
+  std::optional<std::size_t> patches;
+  if (solver.refine.on && solver.refine.error > 0.0 && radiosity::is_lit(loaded.effects)) {
+    patches = radiosity::count_patches(loaded.scene, solver.refine.start_edge_m);
+  }
   studies::MemoryCase sizes =
-      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
+      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver, patches);
   if (picture != nullptr) {
     studies::add_picture(sizes, loaded.groups, loaded.effects, *picture);
   }
   sizes.states_error = picture == nullptr;
   if (!solves) sizes.solves = false;
-  if (solver.refine.on && solver.refine.error > 0.0) {
-    const std::size_t coarse = radiosity::count_patches(loaded.scene, solver.refine.start_edge_m);
-    studies::set_patches(sizes, std::min(coarse, sizes.patches), solver);
-  }
   refuse_too_much(loaded, query, solver, sizes);
 }
 
 void check_patch_memory(const LoadedScene& loaded, const scenes::RayQuery& query,
                         const radiosity::SolveOptions& solver, std::size_t patches) {
   studies::MemoryCase sizes =
-      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
-  studies::set_patches(sizes, patches, solver);
+      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver, patches);
   refuse_too_much(loaded, query, solver, sizes);
 }
 
 bool patches_fit(const LoadedScene& loaded, const radiosity::SolveOptions& solver,
                  std::size_t patches) {
   studies::MemoryCase sizes =
-      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
-  studies::set_patches(sizes, patches, solver);
+      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver, patches);
   const auto free_bytes = base::free_memory_bytes();
   // Machines differ, and ranks must decide alike.
   return base::holds_on_all_ranks(!free_bytes ||
@@ -109,8 +108,6 @@ void check_row_memory(const LoadedScene& loaded, const scenes::RayQuery& query, 
   rows.form_factor_rays = rays_per_patch;
   studies::MemoryCase sizes =
       studies::memory_case(loaded.scene, loaded.groups, loaded.effects, rows);
-  sizes.patches = radiosity::count_patches(loaded.scene, patch_edge_m);
-  sizes.row_entries = std::min(double(sizes.patches), double(rays_per_patch));
   sizes.columns = 0;
   sizes.solves = true;
   refuse_too_much(loaded, query, rows, sizes);

@@ -140,11 +140,12 @@ Patches subdivide_near_lamps(const scenes::Scene& scene, double edge_m) {
   patches = part_along(std::move(patches), find_wall_traces(scene, patches));
   const LampCuts cuts(scene);
   const std::size_t most = 2 * patches.count() + most_more;
+  std::vector<char> is_new(patches.count(), 1);
   while (patches.count() < most) {
     std::vector<Cut> wanted(patches.count(), Cut::None);
     base::parallel_chunks(patches.count(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        wanted[i] = cuts.cut(patches, static_cast<std::uint32_t>(i));
+        if (is_new[i] != 0) wanted[i] = cuts.cut(patches, static_cast<std::uint32_t>(i));
       }
     });
     if (std::all_of(wanted.begin(), wanted.end(), [](Cut cut) { return cut == Cut::None; })) {
@@ -153,6 +154,11 @@ Patches subdivide_near_lamps(const scenes::Scene& scene, double edge_m) {
     grade(patches, wanted);
     Split made = split(patches, wanted);
     if (made.patches.count() == patches.count()) return patches;
+    is_new.resize(made.parent.size());
+    for (std::size_t i = 0; i < is_new.size(); ++i) {
+      const Cell &now = made.patches.cell[i], &before = patches.cell[made.parent[i]];
+      is_new[i] = now.s_cuts != before.s_cuts || now.t_cuts != before.t_cuts ? 1 : 0;
+    }
     patches = std::move(made.patches);
   }
   return patches;

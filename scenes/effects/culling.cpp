@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "scenes/light/lamp_light.h"
 #include "scenes/ray_query.h"
@@ -30,22 +31,18 @@ double along(const Face& face, const Vec3& point) {
 class CullingPass {
  public:
   explicit CullingPass(const Scene& scene) : scene_(scene) {
-    for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
-      const Triangle& triangle = scene.triangles[t];
-      const Material& material = scene.materials[triangle.material];
-      Face face;
-      for (std::size_t k = 0; k < 3; ++k) face.corner[k] = scene.vertices[triangle.vertex[k]];
-      face.normal = triangle_normal(scene, t);
-      face.both_sides = material.two_sided || base::max_component(material.transmit) > 0.0;
-      faces_.push_back(face);
-      for (const Vec3& corner : face.corner)
-        extent_ = std::max(extent_, glm::length(corner - faces_[0].corner[0]));
+    if (scene.triangles.empty()) return;
+    const Vec3 first = scene.vertices[scene.triangles[0].vertex[0]];
+    for (const Triangle& triangle : scene.triangles) {
+      for (const std::uint32_t v : triangle.vertex) {
+        extent_ = std::max(extent_, glm::length(scene.vertices[v] - first));
+      }
     }
   }
 
   // A disc of directions that no surface has above its horizon.
   [[nodiscard]] bool below_every_horizon(const Vec3& direction, double radius_rad) const {
-    return std::none_of(faces_.begin(), faces_.end(), [&](const Face& face) {
+    return no_face([&](const Face& face) {
       return face.both_sides || glm::dot(face.normal, direction) > -std::sin(radius_rad) - rounding;
     });
   }
@@ -59,21 +56,22 @@ class CullingPass {
         })) {
       return false;
     }
-    return std::none_of(faces_.begin(), faces_.end(),
-                        [&](const Face& face) { return may_light(lamp, face); });
+    return no_face([&](const Face& face) { return may_light(lamp, face); });
   }
 
   // Whether any surface is in front of one that is in front of it.
   [[nodiscard]] bool any_facing() const {
-    if (faces_.size() > most_triangles) return true;
+    if (scene_.triangles.size() > most_triangles) return true;
+    std::vector<Face> faces;
+    for (std::uint32_t t = 0; t < scene_.triangles.size(); ++t) faces.push_back(face_of(t));
     const auto reaches = [this](const Face& from, const Face& to) {
       return from.both_sides || std::any_of(to.corner.begin(), to.corner.end(), [&](const Vec3& p) {
                return along(from, p) > slack();
              });
     };
-    for (std::size_t a = 0; a < faces_.size(); ++a) {
+    for (std::size_t a = 0; a < faces.size(); ++a) {
       for (std::size_t b = 0; b < a; ++b) {
-        if (reaches(faces_[a], faces_[b]) && reaches(faces_[b], faces_[a])) return true;
+        if (reaches(faces[a], faces[b]) && reaches(faces[b], faces[a])) return true;
       }
     }
     return false;
@@ -90,6 +88,23 @@ class CullingPass {
   }
 
  private:
+  [[nodiscard]] Face face_of(std::uint32_t t) const {
+    const Triangle& triangle = scene_.triangles[t];
+    const Material& material = scene_.materials[triangle.material];
+    Face face;
+    for (std::size_t k = 0; k < 3; ++k) face.corner[k] = scene_.vertices[triangle.vertex[k]];
+    face.normal = triangle_normal(scene_, t);
+    face.both_sides = material.two_sided || base::max_component(material.transmit) > 0.0;
+    return face;
+  }
+  // The first one that is, mostly among the first of all, ends it.
+  [[nodiscard]] bool no_face(const std::function<bool(const Face&)>& is) const {
+    for (std::uint32_t t = 0; t < scene_.triangles.size(); ++t) {
+      if (is(face_of(t))) return false;
+    }
+    return true;
+  }
+
   [[nodiscard]] double slack() const { return rounding * std::max(extent_, 1e-3); }
 
   [[nodiscard]] bool may_light(const Lamp& lamp, const Face& face) const {
@@ -125,7 +140,6 @@ class CullingPass {
   }
 
   const Scene& scene_;
-  std::vector<Face> faces_;
   double extent_ = 0.0;  // m
 };
 

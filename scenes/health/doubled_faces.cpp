@@ -18,16 +18,8 @@
 namespace earthshine::scenes {
 namespace {
 
-// The triangles of a polygon of the file; they follow each other in the scene.
-struct Face {
-  std::uint32_t first = 0, count = 0;
-  std::vector<std::uint32_t> corners;  // welded, ascending, each once
-  Vec3 area{0.0};                      // m^2, along its normal
-};
-
 // Polygons whose corners another one may have too: those alike in a digest of the corners.
-std::vector<Face> faces_of(const Scene& scene) {
-  const std::vector<std::uint32_t> ids = welded(scene.vertices);
+std::vector<Face> faces_of(const Scene& scene, std::span<const std::uint32_t> ids) {
   std::vector<Face> faces;
   std::vector<std::uint64_t> digests;
   Face face;
@@ -58,14 +50,18 @@ std::vector<Face> faces_of(const Scene& scene) {
     times = times == 0 ? 1 : 2;
   }
   each([&](std::size_t number) {
-    if (seen[digests[number] & (seen.size() - 1)] < 2) return;
-    face.area = Vec3(0.0);
-    for (std::uint32_t t = face.first; t < face.first + face.count; ++t) {
-      face.area += 0.5 * corners_of(scene, t).normal();
-    }
-    faces.push_back(face);
+    if (seen[digests[number] & (seen.size() - 1)] >= 2) faces.push_back(face);
   });
   return faces;
+}
+
+// m^2, along its normal.
+Vec3 area_of(const Scene& scene, const Face& face) {
+  Vec3 area{0.0};
+  for (std::uint32_t t = face.first; t < face.first + face.count; ++t) {
+    area += 0.5 * corners_of(scene, t).normal();
+  }
+  return area;
 }
 
 // What was found between two objects (or within one), in faces.
@@ -75,9 +71,9 @@ struct Found {
 
 // Two polygons of the same corners cover the same place if they have the same area: corners in
 // another order enclose another one.
-bool same_place(const Face& a, const Face& b) {
-  const double size = glm::length(a.area);
-  return std::min(glm::length(a.area - b.area), glm::length(a.area + b.area)) <= 1e-9 * size;
+bool same_place(const Vec3& area, const Vec3& other) {
+  const double size = glm::length(area);
+  return std::min(glm::length(area - other), glm::length(area + other)) <= 1e-9 * size;
 }
 
 std::string where(const Scene& scene, std::uint32_t kept, std::uint32_t other) {
@@ -126,38 +122,30 @@ void refuse_doubles(const Scene& scene, const std::vector<std::size_t>& doubled)
   }
 }
 
-// Faces at the same place, the first of the scene first.
-std::vector<std::vector<std::uint32_t>> doubled_groups(const Scene& scene,
-                                                       const std::vector<Face>& faces) {
-  std::vector<std::uint32_t> order(faces.size());
-  for (std::uint32_t f = 0; f < order.size(); ++f) order[f] = f;
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::tie(faces[a].corners, a) < std::tie(faces[b].corners, b);
-  });
-  std::vector<std::vector<std::uint32_t>> groups;
-  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-    while (end < order.size() && faces[order[end]].corners == faces[order[begin]].corners) ++end;
+}  // namespace
+
+DoubledFaces find_doubled_faces(const Scene& scene, std::span<const std::uint32_t> ids) {
+  std::vector<Face> faces = faces_of(scene, ids);
+  std::stable_sort(faces.begin(), faces.end(),
+                   [](const Face& a, const Face& b) { return a.corners < b.corners; });
+  DoubledFaces groups;
+  for (auto begin = faces.begin(), end = begin; begin != faces.end(); begin = end) {
+    while (end != faces.end() && end->corners == begin->corners) ++end;
     if (end - begin < 2) continue;
-    std::vector<std::uint32_t> group;
-    for (std::size_t k = begin; k < end; ++k) {
-      const Triangle& triangle = scene.triangles[faces[order[k]].first];
-      if (scene.objects[triangle.object].orient != Orient::AsIs) group.push_back(order[k]);
+    std::vector<Face> group;
+    for (auto face = begin; face != end; ++face) {
+      const Triangle& triangle = scene.triangles[face->first];
+      if (scene.objects[triangle.object].orient != Orient::AsIs) group.push_back(*face);
     }
     if (group.size() > 1) groups.push_back(std::move(group));
   }
   return groups;
 }
 
-}  // namespace
-
-bool has_doubled_faces(const Scene& scene) {
-  return !doubled_groups(scene, faces_of(scene)).empty();
-}
-
-bool mend_doubled_faces(Scene& scene, Sheets& sheets, const FaceParts& parts) {
-  const std::vector<Face> faces = faces_of(scene);
+bool mend_doubled_faces(Scene& scene, const DoubledFaces& doubled, Sheets& sheets,
+                        const FaceParts& parts) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, Found> found;
-  std::vector<std::size_t> doubled(scene.objects.size(), 0);
+  std::vector<std::size_t> doubles(scene.objects.size(), 0);
   std::vector<char> gone(scene.triangles.size(), 0);
   // Of two bodies: where those touch, each hides the other's face.
   const auto apart = [&](std::uint32_t a, std::uint32_t b) {
@@ -165,22 +153,23 @@ bool mend_doubled_faces(Scene& scene, Sheets& sheets, const FaceParts& parts) {
     return one != two && parts.kind[one] != FaceParts::Kind::Open &&
            parts.kind[two] != FaceParts::Kind::Open;
   };
-  for (const std::vector<std::uint32_t>& group : doubled_groups(scene, faces)) {
+  for (const std::vector<Face>& group : doubled) {
     // Each later face is held against the first one at its very place.
-    for (std::size_t other = 1; other < group.size(); ++other) {
-      const Face& face = faces[group[other]];
-      const auto at = std::find_if(
-          group.begin(), group.begin() + static_cast<std::ptrdiff_t>(other),
-          [&](std::uint32_t f) { return gone[faces[f].first] == 0 && same_place(faces[f], face); });
-      if (at == group.begin() + static_cast<std::ptrdiff_t>(other)) continue;
-      const Face& kept = faces[*at];
+    for (auto other = group.begin() + 1; other != group.end(); ++other) {
+      const Face& face = *other;
+      const Vec3 area = area_of(scene, face);
+      const auto at = std::find_if(group.begin(), other, [&](const Face& f) {
+        return gone[f.first] == 0 && same_place(area_of(scene, f), area);
+      });
+      if (at == other) continue;
+      const Face& kept = *at;
       const Triangle &keeps = scene.triangles[kept.first], &goes = scene.triangles[face.first];
-      const bool turned_alike = glm::dot(kept.area, face.area) > 0.0;
+      const bool turned_alike = glm::dot(area_of(scene, kept), area) > 0.0;
       const bool touch = apart(kept.first, face.first);
       if (!turned_alike && touch) continue;
       Found& count = found[{keeps.object, goes.object}];
       const bool same = sheets.alike(keeps.material, goes.material);
-      if (same && turned_alike && keeps.object != goes.object) ++doubled[goes.object];
+      if (same && turned_alike && keeps.object != goes.object) ++doubles[goes.object];
       const bool sheet =
           same && !turned_alike && keeps.object == goes.object && !sheets.is_glass(keeps.material);
       if (!sheet && !(same && turned_alike && !touch)) {
@@ -196,7 +185,7 @@ bool mend_doubled_faces(Scene& scene, Sheets& sheets, const FaceParts& parts) {
     }
   }
   if (found.empty()) return false;
-  refuse_doubles(scene, doubled);
+  refuse_doubles(scene, doubles);
   for (const auto& [objects, count] : found) {
     const std::string place = where(scene, objects.first, objects.second);
     if (count.twice > 0) {

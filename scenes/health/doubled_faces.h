@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
+#include <vector>
 
 #include "scenes/health/coincident.h"
 #include "scenes/scene.h"
@@ -11,7 +13,6 @@
 namespace earthshine::scenes {
 
 // Two-sided twins of materials.
-
 class Sheets {
  public:
   explicit Sheets(Scene& scene) : scene_(scene) {}
@@ -50,10 +51,20 @@ class Sheets {
   std::map<std::uint32_t, std::uint32_t> twins_, originals_;
 };
 
-// Whether there are any but in objects that are to be left as they are.
-[[nodiscard]] bool has_doubled_faces(const Scene& scene);
+// The triangles of a polygon of the file; they follow each other in the scene.
+struct Face {
+  std::uint32_t first = 0, count = 0;
+  std::vector<std::uint32_t> corners;  // welded, ascending, each once
+};
+
+// Groups of faces with the same corners, the first of the scene first; of none whose object is to
+// be left as it is. ids: as welded() gives them.
+using DoubledFaces = std::vector<std::vector<Face>>;
+[[nodiscard]] DoubledFaces find_doubled_faces(const Scene& scene,
+                                              std::span<const std::uint32_t> ids);
 
 // As mend_surfaces has it; whether any were taken out or changed.
-[[nodiscard]] bool mend_doubled_faces(Scene& scene, Sheets& sheets, const FaceParts& parts);
+[[nodiscard]] bool mend_doubled_faces(Scene& scene, const DoubledFaces& doubled, Sheets& sheets,
+                                      const FaceParts& parts);
 
 }  // namespace earthshine::scenes

@@ -9,6 +9,7 @@
 
 #include "scenes/health/doubled_faces.h"
 #include "scenes/health/orienter.h"
+#include "scenes/health/topology.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/ray_query.h"
 #include "scenes/text/message_text.h"
@@ -92,11 +93,15 @@ FaceParts mend_surfaces(Scene& scene) {
       triangle.material = sheets.of(triangle.material);
     }
   }
-  std::optional<Orienter> orienter(std::in_place, scene);
-  if (has_doubled_faces(scene)) {
+  const std::vector<std::uint32_t> ids = welded(scene.vertices);
+  std::optional<Orienter> orienter(std::in_place, scene, ids);
+  const DoubledFaces doubled = find_doubled_faces(scene, ids);
+  if (!doubled.empty()) {
     // Bodies first: where one that is inside out touches another, their faces look alike.
     orienter->orient_all(true);
-    if (mend_doubled_faces(scene, sheets, orienter->parts())) orienter.emplace(scene);
+    if (mend_doubled_faces(scene, doubled, sheets, orienter->parts())) {
+      orienter.emplace(scene, ids);
+    }
   }
   orienter->orient_all(false);
   return orienter->parts();

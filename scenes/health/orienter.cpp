@@ -22,8 +22,6 @@ constexpr double wide = 8.0;  // over the median of the parts' widths
 
 }  // namespace
 
-Orienter::Orienter(Scene& scene) : scene_(scene), ids_(welded(scene.vertices)) {}
-
 Orienter::Parts& Orienter::parts_of(std::size_t object) {
   const auto [entry, fresh] = parts_.try_emplace(object);
   Parts& parts = entry->second;

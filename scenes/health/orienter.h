@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "scenes/health/coincident.h"
@@ -16,7 +17,8 @@ namespace earthshine::scenes {
 // As mend_surfaces has it. Made anew when triangles have been added or taken out.
 class Orienter {
  public:
-  explicit Orienter(Scene& scene);
+  // ids: as welded() gives them, and as long as the Orienter is there.
+  Orienter(Scene& scene, std::span<const std::uint32_t> ids) : scene_(scene), ids_(ids) {}
 
   // bodies_alone: closed parts only, and nothing is said of others.
   void orient_all(bool bodies_alone);
@@ -50,7 +52,7 @@ class Orienter {
   void say(const Object& object, const Counts& counts);
 
   Scene& scene_;
-  std::vector<std::uint32_t> ids_;
+  std::span<const std::uint32_t> ids_;
   std::map<std::size_t, Parts> parts_;
 };
 

@@ -78,14 +78,13 @@ void fill_shelf(SolutionShelf& shelf, const scenes::World& world,
 
 double memory_of(const scenes::World& world, const radiosity::SolveOptions& solver,
                  const raytrace::RenderOptions& picture, const radiosity::Solution* solution) {
-  MemoryCase sizes = memory_case(world.scene, world.groups, world.effects, solver);
+  MemoryCase sizes = memory_case(world.scene, world.groups, world.effects, solver,
+                                 solution != nullptr ? solution->report.patches : 0);
   if (solution != nullptr) {
-    set_patches(sizes, solution->report.patches, solver);
     expect_rows(sizes, world.scene, world.query, solver);
   } else {
     sizes.solves = false;
     sizes.columns = 0;
-    sizes.patches = 0;
   }
   add_picture(sizes, world.groups, world.effects, picture);
   return memory_needed(sizes).total();

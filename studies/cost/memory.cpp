@@ -155,7 +155,8 @@ std::string memory_remedy(const MemoryNeed& need) {
 }
 
 MemoryCase memory_case(const scenes::Scene& scene, const scenes::LightGroups& groups,
-                       const scenes::Effects& effects, const radiosity::SolveOptions& options) {
+                       const scenes::Effects& effects, const radiosity::SolveOptions& options,
+                       std::optional<std::size_t> patches) {
   MemoryCase m;
   m.vertices = scene.vertices.size();
   m.triangles = scene.triangles.size();
@@ -164,21 +165,16 @@ MemoryCase memory_case(const scenes::Scene& scene, const scenes::LightGroups& gr
   m.has_mpi = base::ranks() != nullptr;
   if (m.has_mpi) m.ranks = base::ranks()->count();
   if (!radiosity::is_lit(effects) || scene.triangles.empty()) return m;
-  set_patches(m,
-              options.refine.on ? radiosity::most_refined_patches(scene, options)
-                                : radiosity::count_patches(scene, options.patch_edge_m),
-              options);
+  m.patches = patches             ? *patches
+              : options.refine.on ? radiosity::most_refined_patches(scene, options)
+                                  : radiosity::count_patches(scene, options.patch_edge_m);
+  m.row_entries = std::min(double(m.patches), double(options.form_factor_rays));
   m.refined = options.refine.on;
   m.copies_matrix = true;
   m.columns = 3 * groups.count();
   if (effects.earth_by_gather) m.sky_parts = scenes::earth_parts(scene);
   m.solves = true;
   return m;
-}
-
-void set_patches(MemoryCase& m, std::size_t patches, const radiosity::SolveOptions& options) {
-  m.patches = patches;
-  m.row_entries = std::min(double(patches), double(options.form_factor_rays));
 }
 
 void add_picture(MemoryCase& m, const scenes::LightGroups& groups, const scenes::Effects& effects,

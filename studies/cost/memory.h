@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -69,13 +70,13 @@ struct MemoryNeed {
 // What to lower, for the largest part of it.
 [[nodiscard]] std::string memory_remedy(const MemoryNeed& need);
 
-// The case of a scene, with the most patches there can be: refinement to an error may end with far
-// fewer. row_entries is the most there can be, one for each ray or patch, and copies_matrix is
-// true, until expect_rows() looks.
+// The case of a scene. patches: if they are known; else the most there can be, for which its meshes
+// are gone through: refinement to an error may end with far fewer. row_entries is the most there
+// can be, one for each ray or patch, and copies_matrix is true, until expect_rows() looks.
 [[nodiscard]] MemoryCase memory_case(const scenes::Scene& scene, const scenes::LightGroups& groups,
                                      const scenes::Effects& effects,
-                                     const radiosity::SolveOptions& options);
-void set_patches(MemoryCase& sizes, std::size_t patches, const radiosity::SolveOptions& options);
+                                     const radiosity::SolveOptions& options,
+                                     std::optional<std::size_t> patches = std::nullopt);
 void add_picture(MemoryCase& sizes, const scenes::LightGroups& groups,
                  const scenes::Effects& effects, const raytrace::RenderOptions& options);
 // Casts a few rows (radiosity/factors/row_pilot.h).
