@@ -8,6 +8,8 @@
 namespace earthshine::scenes {
 namespace {
 
+constexpr std::uint32_t no_glass = 0xFFFFFFFFU;
+
 bool holds(double u, double v) { return u >= 0.0 && v >= 0.0 && u + v <= 1.0; }
 
 }  // namespace
@@ -26,9 +28,19 @@ CoincidentFaces::CoincidentFaces(const Scene& scene) {
     }
     return faces_[number];
   };
+  const auto material = [&](std::uint32_t t) -> const Material& {
+    return scene.materials[scene.triangles[t].material];
+  };
+  // Of a pair of which one is glass, that one: the other is over both of its sides.
+  const auto glass_of = [&](const FacePair& pair) {
+    if (material(pair.a).lets_light_through()) return pair.a;
+    return material(pair.b).lets_light_through() ? pair.b : no_glass;
+  };
   for (const FacePair& pair : scene.coincident) {
-    ++face_of(pair.a).end;
-    ++face_of(pair.b).end;
+    const std::uint32_t glass = glass_of(pair);
+    for (const std::uint32_t t : {pair.a, pair.b}) {
+      face_of(t).end += glass == no_glass ? 1 : glass == t ? 2 : 0;
+    }
   }
   std::uint32_t first = 0;
   for (Face& face : faces_) {
@@ -37,17 +49,22 @@ CoincidentFaces::CoincidentFaces(const Scene& scene) {
     face.end = face.first;
   }
   others_.resize(first);
-  const auto lay = [&](std::uint32_t other, Face& on, bool before, bool hides_both) {
-    others_[on.end++] = {number_[other], before, hides_both};
+  const auto lay = [&](std::uint32_t other, std::uint32_t under, bool before, bool hides_both) {
+    const std::uint32_t number = number_[other];
+    Face& on = faces_[number_[under]];
+    others_[on.end++] = {number, before, hides_both};
     on.covered[before ? 0 : 1] = true;
   };
   for (const FacePair& pair : scene.coincident) {
-    const auto sheet = [&](std::uint32_t t) {
-      return scene.materials[scene.triangles[t].material].two_sided;
-    };
-    const bool both = pair.a_before_b && pair.b_before_a && !sheet(pair.a) && !sheet(pair.b);
-    lay(pair.b, face_of(pair.a), pair.b_before_a, both);
-    lay(pair.a, face_of(pair.b), pair.a_before_b, both);
+    if (const std::uint32_t glass = glass_of(pair); glass != no_glass) {
+      const std::uint32_t over = glass == pair.a ? pair.b : pair.a;
+      for (const bool front : {true, false}) lay(over, glass, front, false);
+      continue;
+    }
+    const bool both = pair.a_before_b && pair.b_before_a && !material(pair.a).two_sided &&
+                      !material(pair.b).two_sided;
+    lay(pair.b, pair.a, pair.b_before_a, both);
+    lay(pair.a, pair.b, pair.a_before_b, both);
   }
 }
 

@@ -74,9 +74,9 @@ struct Triangle {
       polygon;  // running number over the scene; the triangles of one file polygon share it
 };
 
-// Two triangles of which parts lie on each other, nearer than rays tell apart, and which of them is
-// over which there (scenes/health/coincident.h). Each hides the other's front, or back, from light
-// on the side that the other is on.
+// Two triangles of which parts lie on each other, nearer than rays tell apart, and which is over
+// which there (scenes/health/coincident.h). Each hides the other's front, or back, from light on
+// that side; what is opaque hides both sides of glass, whatever is said.
 struct FacePair {
   std::uint32_t a, b;
   bool b_before_a;  // b is on the side of a's front

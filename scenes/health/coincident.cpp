@@ -91,8 +91,7 @@ class Coincidence {
     std::vector<LabelledBox> boxes;
     boxes.reserve(scene_.triangles.size());
     for (std::uint32_t t = 0; t < scene_.triangles.size(); ++t) {
-      const Material& material = scene_.materials[scene_.triangles[t].material];
-      if (material.lets_light_through()) continue;
+      if (material(t).has_holes()) continue;
       const auto [low, high] = box_of(t);
       boxes.push_back({low, high, parts_.of[t], t});
     }
@@ -136,9 +135,16 @@ class Coincidence {
   }
 
   void look_at(std::uint32_t a, std::uint32_t b) {
+    const bool glass_a = material(a).lets_light_through(),
+               glass_b = material(b).lets_light_through();
+    if (glass_a && glass_b) return;
     const Corners first = corners_of(scene_, a), second = corners_of(scene_, b);
     const std::optional<Overlap> overlap = overlap_of(first, second, offset_m_);
     if (!overlap) return;
+    if (glass_a || glass_b) {
+      add({a, b, false, false});
+      return;
+    }
     const bool same_way = glm::dot(first.normal(), second.normal()) > 0.0;
     // Walls of a house are seen from both sides, whichever of them rounding has put in front.
     const bool wall = !same_way && !material(a).two_sided && !material(b).two_sided &&
@@ -147,10 +153,7 @@ class Coincidence {
     const bool tie = wall || std::abs(overlap->height_m) < tie_share * offset_m_;
     const bool b_before = tie ? is_before(a, b, same_way) : overlap->height_m > 0.0;
     const bool a_before = same_way != b_before;
-    scene_.coincident.push_back({a, b, b_before, a_before});
-    if (scene_.coincident.size() % asked_every == 0) {
-      base::check_room(scene_.coincident.size() * 2 * sizeof(FacePair), scene_.path.string());
-    }
+    add({a, b, b_before, a_before});
     const bool sheet = material(a).two_sided || material(b).two_sided;
     if (!tie || (a_before && b_before && !sheet) ||
         scene_.triangles[a].material == scene_.triangles[b].material) {
@@ -162,6 +165,13 @@ class Coincidence {
     Decided& decided =
         decided_[b_over ? std::pair(object(a), object(b)) : std::pair(object(b), object(a))];
     (same_way || sheet ? decided.over_m2 : decided.sides_m2) += overlap->area_m2;
+  }
+
+  void add(const FacePair& pair) {
+    scene_.coincident.push_back(pair);
+    if (scene_.coincident.size() % asked_every == 0) {
+      base::check_room(scene_.coincident.size() * 2 * sizeof(FacePair), scene_.path.string());
+    }
   }
 
   // Whether b is before a's front, where heights do not tell.

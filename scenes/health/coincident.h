@@ -19,9 +19,11 @@ struct FaceParts {
 // Of instances, which stand after all other objects: as the parts of their originals.
 void add_instances(FaceParts& parts, const Scene& scene);
 
-// Fills scene.coincident: opaque triangles of two parts that overlap by more than rays are lifted
-// off surfaces (RayQuery::surface_offset_m) and are nearer to each other than that. Where one is
-// before the other by a fiftieth of it or more, so it is seen. Otherwise
+// Fills scene.coincident: triangles of two parts, one of them opaque and the other without holes,
+// that overlap by more than rays are lifted off surfaces (RayQuery::surface_offset_m) and are
+// nearer to each other than that. Of glass and what is opaque this one is met, from both sides: a
+// ray that went on from the glass would begin beyond it. Of two that are opaque, where one is
+// before the other by a fiftieth of that or more, so it is seen. Otherwise
 //   a body's face and another that look at each other hide each other, unless the other's part is
 //   within the body's box: the walls of a house;
 //   other one-sided faces that look opposite ways are the two sides of a sheet: each is seen;

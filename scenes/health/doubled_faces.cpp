@@ -200,9 +200,9 @@ bool mend_doubled_faces(Scene& scene, const DoubledFaces& doubled, Sheets& sheet
     }
     if (count.left > 0) {
       scene.warnings.push_back(fmt::format(
-          "{}: {} exactly on another, one of the two is glass, and which is met first is "
-          "undecided; remove one of each, move it by some 0.1 mm, or say orient = \"as-is\" where "
-          "that is meant",
+          "{}: {} exactly on another, one of the two is glass: what is opaque is seen, of two of "
+          "glass either; remove one of each, move it by some 0.1 mm, or say orient = \"as-is\" "
+          "where that is meant",
           place, count.left == 1 ? "a face lies" : fmt::format("{} faces lie", count.left)));
     }
   }

@@ -74,6 +74,20 @@ TEST(ThrownLight, TwoPanesMultiplyAndAPlateOfTwoFacesIsTwo) {
   }
 }
 
+// In one plane with it, and in either order: an opaque plate stops light whatever lies on it.
+TEST(ThrownLight, GlassOnAnOpaquePlateLetsNothingThrough) {
+  for (const bool glass_first : {true, false}) {
+    Floor scene;
+    const std::uint32_t pane = scene.material(glass(0.9, 1.0, true)),
+                        plate = scene.material(tests::grey(rho));
+    for (const std::uint32_t m : {glass_first ? pane : plate, glass_first ? plate : pane}) {
+      scene.plate(m, 8.0, 1.0, true);
+    }
+    scene.scene.lamps.push_back(point_lamp({0.3, 0, 2}, 100.0));
+    expect_all(find(scene.scene), 0.0);
+  }
+}
+
 TEST(ThrownLight, GlassThatBendsLightCastsAShadow) {
   Floor scene;
   const std::uint32_t pane = scene.material(glass(0.9, 1.5, false));

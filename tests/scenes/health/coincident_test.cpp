@@ -120,6 +120,33 @@ TEST(CoincidentFaces, OpenOnesBackToBackAreTheSidesOfASheet) {
   EXPECT_TRUE(holds(warnings(scene), {"3 m2", "back to back"})) << warnings(scene);
 }
 
+// Whichever comes first in the scene, and nearer by less than rays are lifted: one that went on
+// from the glass would begin beyond the plate.
+TEST(CoincidentFaces, WhatIsOpaqueIsMetWhereGlassLiesOnIt) {
+  const std::string glass = "[[material]]\nname = \"glass\"\ntransmit = 0.8\n";
+  const std::string plate = square("plate", 0, 2, 0, true);
+  for (const bool is_sheet : {true, false}) {
+    for (const double lift : {0.0, 1e-5, -1e-5}) {
+      const std::string pane = square("pane", 1, 0.5, lift, true, "glass");
+      for (const std::string& both : {plate + pane, pane + plate}) {
+        const Scene scene =
+            read_scene(glass + (is_sheet ? "two_sided = true\n" : "ior = 1.5\n") + both);
+        EXPECT_EQ(met(scene, 1.0, 0.1, true), "plate");
+        EXPECT_EQ(met(scene, 1.0, 0.1, false), "back of plate");
+        EXPECT_EQ(warnings(scene), "");
+        const CoincidentFaces faces(scene);
+        for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+          const bool is_pane = scene.objects[scene.triangles[t].object].name == "pane";
+          for (const bool front : {true, false}) EXPECT_EQ(faces.is_covered(t, front), is_pane);
+        }
+      }
+    }
+  }
+  EXPECT_TRUE(
+      read_scene(glass + square("a", 0, 1, 0, true, "glass") + square("b", 0, 1, 0, true, "glass"))
+          .coincident.empty());
+}
+
 // Whether the fronts of a box's faces are covered at its bottom, x = 0.2, and those of the other
 // object there.
 std::pair<bool, bool> covered(const Scene& scene) {
