@@ -114,4 +114,29 @@ Interrupt::~Interrupt() {
 
 bool Interrupt::asked() { return interrupted; }
 
+namespace {
+
+// Where a signal is handled in one way, in the other from now on; what is ignored stays so. Returns
+// whether any was.
+bool handle_otherwise(void (*from)(int), void (*to)(int)) {
+  bool changed = false;
+  for (const int signal : {SIGINT, SIGTERM}) {
+    struct sigaction action {};
+    ::sigaction(signal, nullptr, &action);
+    if (action.sa_handler != from) continue;
+    action.sa_handler = to;
+    ::sigaction(signal, &action, nullptr);
+    changed = true;
+  }
+  return changed;
+}
+
+}  // namespace
+
+EndAtOnce::EndAtOnce() : changed_(handle_otherwise(remember, at_once)) {}
+
+EndAtOnce::~EndAtOnce() {
+  if (changed_) (void)handle_otherwise(at_once, remember);
+}
+
 }  // namespace earthshine::app

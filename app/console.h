@@ -67,4 +67,17 @@ class Interrupt {
   Handler int_before_, term_before_;
 };
 
+// While an Interrupt lives, for work of which nothing could be kept, as a solve: the first signal
+// ends the program at once.
+class EndAtOnce {
+ public:
+  EndAtOnce();
+  ~EndAtOnce();
+  EndAtOnce(const EndAtOnce&) = delete;
+  EndAtOnce& operator=(const EndAtOnce&) = delete;
+
+ private:
+  bool changed_;
+};
+
 }  // namespace earthshine::app

@@ -131,6 +131,7 @@ Json StudyFrames::cache_key(const StudyCamera& camera) const {
 }
 
 radiosity::Solution StudyFrames::solve(StageTimes& times) const {
+  const EndAtOnce nothing_to_keep;
   const LoadedScene& basis = part_.basis_scene;
   const raytrace::Progress progress = progress_of_stages(common_)("solve " + part_.path);
   if (progress) progress(0, 1);

@@ -105,11 +105,29 @@ class Resume(Case):
         self.says(run.stderr, "is broken; it is recomputed")
         self.assertEqual(self.without_times(self.study("o")), whole)
 
+    @staticmethod
+    def cpu_seconds(run):
+        fields = pathlib.Path(f"/proc/{run.pid}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def test_a_signal_ends_a_solve_at_once(self):
+        """Nothing of it could be kept: the study went on until all of the solve was done, and ended with exit code 1."""
+        call = ("study", "orbit", "bay.toml", "--positions", "4", "-o", "o", "--set", "quality.patch_edge=0.1",
+                "--set", "quality.form_factor_rays=16384")
+        for number in (signal.SIGINT, signal.SIGTERM):
+            run = self.started(*call)
+            while run.poll() is None and self.cpu_seconds(run) < 1.0:  # some 0.1 before the solve, 5 within it
+                time.sleep(0.01)
+            run.send_signal(number)
+            run.communicate()
+            self.assertEqual(run.returncode, -number)
+            self.assertEqual(list(self.folder.glob("o/points/solution-*.h5")), [])
+
     def test_an_interrupted_run_says_so_and_goes_on(self):
         call = ("study", "orbit", "bay.toml", "--positions", "4", "-o", "o", "--wanted", "box>=0.5",
                 "--set", "quality.gather=per-sample", "--set", "quality.gather_rays=2048")
         run = self.started(*call)
-        while run.poll() is None and not (self.folder / "o" / "points").exists():
+        while run.poll() is None and not list(self.folder.glob("o/points/solution-*.h5")):
             time.sleep(0.01)
         time.sleep(0.3)
         run.send_signal(signal.SIGINT)
