@@ -155,7 +155,7 @@ class Second : public Silent {
 TEST(Shares, SumsThatAreRoundedAreTakenItemByItem) {
   // The first rank's item is 1e16, whose neighbours in doubles are 2 apart: 1e16 + 1 + 1 = 1e16 in
   // the order of the items, 1e16 + 2 if the second rank's were added up alone.
-  const auto total = [](bool exact) {
+  const auto total = [](bool exact, double item = 1.0) {
     std::vector<double> first = {1e16};
     Parcel parcel;
     parcel.pass(first);
@@ -163,14 +163,15 @@ TEST(Shares, SumsThatAreRoundedAreTakenItemByItem) {
     const RanksInForce in_force(&second);
     const Shares shares(std::vector<double>{2.0, 1.0, 1.0});
     std::vector<double> sums = {0.0};
-    shares.add_up(sums, exact, [](std::vector<double>& all) {
-      all[0] += 1.0;
-      all[0] += 1.0;
+    shares.add_up(sums, exact, [item](std::vector<double>& all) {
+      all[0] += item;
+      all[0] += item;
     });
     return sums[0];
   };
   EXPECT_EQ(total(false), 1e16);
   EXPECT_EQ(total(true), 1e16 + 2.0);
+  for (const bool exact : {false, true}) EXPECT_EQ(total(exact, 2.0), 1e16 + 4.0);
 }
 
 TEST(Ranks, TheFirstAloneMakesFiles) {

@@ -210,6 +210,7 @@ TEST(WallTraces, PiecesOfOneWallAreOneWall) {
   };
   EXPECT_EQ(cells(1), 8U);
   EXPECT_EQ(cells(9), 8U);
+  EXPECT_EQ(cells(200), 8U);
 }
 
 }  // namespace
