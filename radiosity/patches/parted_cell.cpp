@@ -14,6 +14,7 @@ constexpr double least_share = 1e-4;  // of the cell, on either side
 constexpr double least_reach = 0.25;  // of the line's way through the cell, that the wall stands on
 constexpr double opposite = -0.5;     // cosine
 constexpr int most_cuts_deep = 8;
+constexpr double rounding = 1e-12;  // of the cell's area
 
 using Polygon = std::vector<PlanePoint>;
 
@@ -23,6 +24,21 @@ double area_of(const Polygon& p) {
   double twice = 0.0;
   for (std::size_t k = 2; k < p.size(); ++k) twice += cross(p[k - 1] - p[0], p[k] - p[0]);
   return 0.5 * twice;
+}
+
+// Without corners that are none: a line through a corner of a polygon leaves it twice, and a part
+// with nothing between three corners would have no area to send light from.
+Polygon with_corners(const Polygon& polygon, double least_area) {
+  Polygon kept;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const PlanePoint& before = kept.empty() ? polygon.back() : kept.back();
+    const bool last = k + 1 == polygon.size();
+    const PlanePoint &here = polygon[k], &after = last && !kept.empty()
+                                                      ? kept.front()
+                                                      : polygon[(k + 1) % polygon.size()];
+    if (cross(here - before, after - here) > least_area) kept.push_back(here);
+  }
+  return kept;
 }
 
 struct Line {
@@ -65,7 +81,8 @@ class Parting {
   Parting(std::span<const Trace> traces, double area) : traces_(traces), area_(area) {}
 
   // The side of a node that the polygon is.
-  std::int32_t part(Polygon polygon, int depth = 0) {
+  std::int32_t part(const Polygon& whole, int depth = 0) {
+    Polygon polygon = with_corners(whole, rounding * area_);
     const std::optional<Line> line = depth < most_cuts_deep ? best(polygon) : std::nullopt;
     if (line) return node(*line, halves(polygon, *line), depth + 1);
     if (polygon.size() > 4) {
@@ -77,7 +94,7 @@ class Parting {
       sides[0].assign(polygon.begin(), polygon.begin() + static_cast<std::ptrdiff_t>(half) + 1);
       sides[1].assign(polygon.begin() + static_cast<std::ptrdiff_t>(half), polygon.end());
       sides[1].push_back(polygon[0]);
-      return node({way, glm::dot(way, polygon[0])}, std::move(sides), most_cuts_deep);
+      return node({way, glm::dot(way, polygon[0])}, sides, most_cuts_deep);
     }
     if (polygon.size() == 3) polygon.push_back(polygon.back());
     cell_.outlines.push_back({polygon[0], polygon[1], polygon[2], polygon[3]});
@@ -90,11 +107,11 @@ class Parting {
   }
 
  private:
-  std::int32_t node(const Line& line, std::array<Polygon, 2> sides, int depth) {
+  std::int32_t node(const Line& line, const std::array<Polygon, 2>& sides, int depth) {
     const std::size_t at = cell_.nodes.size();
     cell_.nodes.push_back({line.way, line.reach, {}});
     for (std::size_t k = 0; k < 2; ++k) {
-      const std::int32_t side = part(std::move(sides[k]), depth);
+      const std::int32_t side = part(sides[k], depth);
       cell_.nodes[at].side[k] = side;
     }
     return static_cast<std::int32_t>(at);
@@ -193,7 +210,7 @@ PartedCell part_cell(const Facet& facet, const Cell& cell, std::span<const Trace
   }
   const double area = area_of(polygon);
   Parting parting(traces, area);
-  parting.part(std::move(polygon));
+  parting.part(polygon);
   return parting.take();
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "radiosity/near_lamps.h"
+#include "radiosity/patches/parted_cell.h"
 #include "radiosity/patches/patch_layout.h"
 #include "radiosity/patches/split.h"
 #include "tests/support/boxes.h"
@@ -211,6 +212,38 @@ TEST(WallTraces, PiecesOfOneWallAreOneWall) {
   EXPECT_EQ(cells(1), 8U);
   EXPECT_EQ(cells(9), 8U);
   EXPECT_EQ(cells(200), 8U);
+}
+
+// A line through a corner of a part leaves that corner twice. A part with nothing between three
+// corners has no area: it was given rays from nowhere.
+TEST(PartedCell, WallsThroughCornersLeavePartsWithArea) {
+  Facet facet;
+  facet.parallelogram = true;
+  facet.a = Vec3(1.0, 0.0, 0.0), facet.b = Vec3(0.0, 1.0, 0.0);
+  facet.s_count = facet.t_count = 1;
+  const auto wall = [](const PlanePoint& from, const PlanePoint& to) {
+    const PlanePoint along = to - from, way{-along.y, along.x};
+    return Trace{from, to, way, glm::dot(way, from), Vec3(way.x, way.y, 0.0), false};
+  };
+  const PlanePoint a{0, 0}, b{1, 0}, c{1, 1}, d{0, 1}, middle{0.5, 0.5};
+  for (const std::vector<Trace>& walls :
+       {std::vector{wall(a, c)}, std::vector{wall(a, c), wall(b, d)},
+        std::vector{wall(c, a), wall(middle, d), wall({0.25, 0.25}, d), wall(b, {0.25, 0.25})},
+        std::vector{wall({0.5, 0}, {0.5, 1}), wall(a, middle), wall(middle, c), wall(d, b)}}) {
+    const PartedCell parted = part_cell(facet, {}, walls);
+    ASSERT_GT(parted.outlines.size(), walls.size());  // each parts what is there
+    double all = 0.0;
+    for (const Outline& o : parted.outlines) {
+      const auto twice = [&](std::size_t k) {
+        const PlanePoint u = o[k] - o[0], v = o[k + 1] - o[0];
+        return u.x * v.y - u.y * v.x;
+      };
+      const double area = 0.5 * (twice(1) + twice(2));
+      EXPECT_GT(area, 1e-4);
+      all += area;
+    }
+    EXPECT_NEAR(all, 1.0, 1e-14);
+  }
 }
 
 }  // namespace
