@@ -142,7 +142,9 @@ std::vector<std::string> limits_of_balance(const radiosity::Solution& solution) 
                     "themselves, as no other patch has room for it; raise quality.form_factor_rays",
                     balance.held));
   }
-  if (balance.balanced || balance.sweeps == 0) return limits;
+  // Less light than that no result shows, whatever else is exact.
+  constexpr double tells = 1e-6;
+  if (balance.balanced || balance.sweeps == 0 || balance.after <= tells) return limits;
   std::string where;
   if (balance.worst < solution.patches.count()) {
     const std::uint32_t object = solution.patches.object(balance.worst);
