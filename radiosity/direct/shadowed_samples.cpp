@@ -90,18 +90,31 @@ void add_samples(const Source& source, const Vec3& point, const Vec3& normal, do
   }
 }
 
+// A flat patch that a Sun is below the horizon of, straight and by mirrors.
+bool sees_nothing_of(const Source& source, std::span<const scenes::FlatMirror> mirrors,
+                     const Patches& patches, std::uint32_t patch) {
+  if (!source.disc || patches.is_several(patch)) return false;
+  const Vec3 normal = patches.normal(patch);
+  return source.is_below_horizon(normal) &&
+         std::all_of(mirrors.begin(), mirrors.end(), [&](const scenes::FlatMirror& mirror) {
+           return source.is_below_horizon(mirror.turned(normal));
+         });
+}
+
 }  // namespace
 
 void take_samples(const Source& source, std::span<const scenes::FlatMirror> mirrors,
                   const Vec3& point, const Vec3& normal, double u, double v,
                   std::vector<LightSample>& samples) {
   samples.clear();
-  add_samples(source, point, normal, u, v, samples);
+  if (!source.is_below_horizon(normal)) add_samples(source, point, normal, u, v, samples);
   for (std::uint32_t m = 0; m < mirrors.size(); ++m) {
     const scenes::FlatMirror& mirror = mirrors[m];
     if (mirror.height_m(point) <= 0.0) continue;
+    const Vec3 turned = mirror.turned(normal);
+    if (source.is_below_horizon(turned)) continue;
     std::size_t kept = samples.size();
-    add_samples(source, mirror.image(point), mirror.turned(normal), u, v, samples);
+    add_samples(source, mirror.image(point), turned, u, v, samples);
     for (std::size_t k = kept; k < samples.size(); ++k) {
       const LightSample sample = scenes::thrown(samples[k], mirror, m, point);
       if (base::max_component(sample.normal_illuminance_lx) > 0.0) samples[kept++] = sample;
@@ -123,6 +136,7 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
       const auto patch = static_cast<std::uint32_t>(i);
       const double share = open.share.empty() ? 1.0 : open.share[i];
       if (share <= 0.0) continue;
+      if (sees_nothing_of(source, query.ways().mirrors(), patches, patch)) continue;
       std::vector<std::uint32_t> near;
       if (share < 1.0) near = open.bodies->near(patches, patch, 2.0 * query.surface_offset_m());
       const base::SobolOwen4 sobol(base::Key(seed, base::Stream::DirectLight, i).with(source.key));

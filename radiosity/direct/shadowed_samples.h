@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,13 @@
 #include "scenes/ray_query.h"
 
 namespace earthshine::radiosity {
+
+// A disc of the sky, and the cosine between its middle and a normal below which none of it is above
+// the horizon.
+struct Disc {
+  Vec3 direction;
+  double lowest_cosine;
+};
 
 // A source as the patches see it.
 struct Source {
@@ -27,6 +35,12 @@ struct Source {
                      std::vector<scenes::LightSample>& samples)>
       cluster;
   std::function<double(const Vec3& point)> distance_m;  // empty for the sky
+  std::optional<Disc> disc;                             // of a Sun
+
+  // Whether a surface of that normal cannot get any of it straight.
+  [[nodiscard]] bool is_below_horizon(const Vec3& normal) const {
+    return disc && glm::dot(disc->direction, normal) < disc->lowest_cosine;
+  }
 };
 
 struct Sampled {

@@ -19,6 +19,8 @@ namespace {
 
 using scenes::LightSample;
 
+constexpr double rounding = 1e-9;  // of cosines
+
 LightSource sun_source(const scenes::Scene& scene, std::size_t group, int points) {
   const Rgb illuminance = scenes::sun_sample_illuminance(scene);
   Source source;
@@ -38,12 +40,13 @@ LightSource free_sun_source(const scenes::Sun& sun, std::uint64_t key, std::size
   const double radius = base::radians(sun.angular_radius_deg);
   const Rgb illuminance = scenes::sun_sample_illuminance(sun);
   Source source;
+  source.disc = Disc{sun.direction, -std::sin(radius) - rounding};
   source.key = key;
   source.group = group;
   source.points = points;
-  source.sample = [&sun, radius, illuminance](const Vec3&, double u, double v) {
-    return LightSample{scenes::sample_cone(sun.direction, radius, u, v),
-                       std::numeric_limits<double>::infinity(), illuminance};
+  source.sample = [cone = scenes::Cone(sun.direction, radius), illuminance](const Vec3&, double u,
+                                                                            double v) {
+    return LightSample{cone.sample(u, v), std::numeric_limits<double>::infinity(), illuminance};
   };
   return {{}, std::move(source), Rgb(0.0), {}};
 }
