@@ -90,7 +90,6 @@ class Study : AccuracyStages {
       result_.reference_cpu_seconds += part.facts["cpu_seconds"].get<double>();
       const std::vector<float>& values = part.image.find("Y")->values;
       sides[side]->luminance.assign(values.begin(), values.end());
-      sides[side]->variance.assign(values.size(), 0.0);  // not known; small beside the paths'
     }
   }
 

@@ -35,12 +35,11 @@ std::string methods_html(const studies::Comparison& comparison) {
   for (const MethodResult& result : comparison.methods) {
     html += fmt::format(
         "<tr><th scope=\"row\">{}</th><td>{}</td><td>{:+.2f} %</td><td>{}</td><td>{}</td></tr>\n",
-        escaped(result.method.name), percent(result.difference.relative_rmse),
-        100.0 * result.difference.bias, percent(result.difference.off_share),
-        figure(result.cpu_seconds()));
+        escaped(result.method.name), percent(result.error.error), 100.0 * result.error.bias,
+        percent(result.off_share), figure(result.cpu_seconds()));
   }
   return html + "</tbody>\n</table></div>\n<p>The reference itself is uncertain by " +
-         percent(comparison.reference_noise.relative_rmse) + ".</p>\n";
+         percent(comparison.reference_noise) + ".</p>\n";
 }
 
 std::string legend_html() {
@@ -68,8 +67,8 @@ std::string pair_html(const MethodResult& result) {
                             escaped(file), name, is_difference ? " over the reference" : "",
                             times * image.width, times * image.height);
     if (!is_difference) continue;
-    caption += fmt::format(": RMSE {}, bias {:+.2f} %", percent(result.difference.relative_rmse),
-                           100.0 * result.difference.bias);
+    caption += fmt::format(": RMSE {}, bias {:+.2f} %", percent(result.error.error),
+                           100.0 * result.error.bias);
   }
   return "<figure>\n<figcaption>" + caption + "</figcaption>\n<div class=\"beside\">\n" + pictures +
          "</div>\n</figure>\n";

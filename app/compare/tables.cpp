@@ -40,19 +40,17 @@ std::string fixed_table(const studies::Comparison& comparison) {
   std::string text = fmt::format("{:<18} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "method",
                                  "solve s", "render s", "rays", "RMSE", "bias", "off");
   for (const studies::MethodResult& result : comparison.methods) {
-    const studies::PictureDifference& difference = result.difference;
     text += fmt::format("{:<18} {:>9.1f} {:>9.1f} {:>9} {:>7.1f} % {:>+7.1f} % {:>7.1f} %\n",
                         result.method.name, result.solve_seconds, result.render_seconds,
                         short_count(static_cast<double>(result.frame.report.rays.total())),
-                        100.0 * difference.relative_rmse, 100.0 * difference.bias,
-                        100.0 * difference.off_share);
+                        100.0 * result.error.error, 100.0 * result.error.bias,
+                        100.0 * result.off_share);
   }
-  const studies::PictureDifference& noise = comparison.reference_noise;
   return text +
          fmt::format(
              "{:<18} {:>39} {:>7.2f} %  of the reference itself\n"
              "RMSE and bias: of the luminance, over the reference's mean; off: by a factor {}\n",
-             "noise-floor", "", 100.0 * noise.relative_rmse, studies::misleading_factor);
+             "noise-floor", "", 100.0 * comparison.reference_noise, studies::misleading_factor);
 }
 
 // Errors smaller than what the reference itself is uncertain by are found, as the mean over all
@@ -62,13 +60,12 @@ std::string noise_text(const studies::Comparison& comparison) {
   for (const std::size_t k : studies::errors_below_the_references_noise(comparison)) {
     const studies::MethodResult& result = comparison.methods[k];
     judged.push_back(fmt::format("{} ({:.2g} +- {:.1g} %)", result.method.name,
-                                 100.0 * result.difference.relative_rmse,
-                                 100.0 * result.difference.standard_error));
+                                 100.0 * result.error.error, 100.0 * result.error.standard_error));
   }
   return fmt::format(
       "The references are noisier, {:.2g} %, than the errors that they judge of: {}. A smaller "
       "--error, or more rays, make them surer.",
-      100.0 * comparison.reference_noise.relative_rmse, fmt::join(judged, ", "));
+      100.0 * comparison.reference_noise, fmt::join(judged, ", "));
 }
 
 std::string lights_text(const studies::Comparison& comparison, bool over_area) {
@@ -97,11 +94,11 @@ Json method_rows(const studies::Comparison& comparison) {
     row["solve_seconds"] = result.solve_seconds;
     row["render_seconds"] = result.render_seconds;
     row["rays"] = report.rays.total();
-    row["relative_rmse"] = result.difference.relative_rmse;
-    row["bias"] = result.difference.bias;
-    row["off_share"] = result.difference.off_share;
+    row["relative_rmse"] = result.error.error;
+    row["bias"] = result.error.bias;
+    row["off_share"] = result.off_share;
     row["relative_noise"] = report.relative_noise;
-    row["standard_error"] = result.difference.standard_error;
+    row["standard_error"] = result.error.standard_error;
     row["solve_cpu_seconds"] = result.solve_cpu_seconds;
     row["render_cpu_seconds"] = result.render_cpu_seconds;
     rows.push_back(std::move(row));
@@ -110,9 +107,7 @@ Json method_rows(const studies::Comparison& comparison) {
   Json noise = rows.front();
   for (auto& [key, value] : noise.items()) value = nullptr;
   noise["method"] = "noise-floor";
-  noise["relative_rmse"] = comparison.reference_noise.relative_rmse;
-  noise["bias"] = comparison.reference_noise.bias;
-  noise["standard_error"] = comparison.reference_noise.standard_error;
+  noise["relative_rmse"] = comparison.reference_noise;
   rows.push_back(std::move(noise));
   return rows;
 }
@@ -137,9 +132,9 @@ Json lights_rows(const studies::Comparison& comparison) {
     Json row = {{"lights", result.method.distributed_lights},
                 {"area", method_row(result.method)["area"]},
                 {"cpu_seconds", result.cpu_seconds()},
-                {"relative_rmse", result.difference.relative_rmse},
-                {"standard_error", result.difference.standard_error},
-                {"bias", result.difference.bias}};
+                {"relative_rmse", result.error.error},
+                {"standard_error", result.error.standard_error},
+                {"bias", result.error.bias}};
     rows.push_back(std::move(row));
   }
   return rows;
@@ -151,7 +146,7 @@ std::optional<int> levels_out_at(const studies::Comparison& comparison, bool ove
   for (const studies::MethodResult& result : comparison.methods) {
     const bool area = !result.method.distributed_over.empty();
     if (result.method.distributed_lights == 0 || area != over_area) continue;
-    errors.emplace_back(result.method.distributed_lights, result.difference.relative_rmse);
+    errors.emplace_back(result.method.distributed_lights, result.error.error);
   }
   if (errors.size() < 2) return std::nullopt;
   const double last = errors.back().second;

@@ -106,7 +106,8 @@ class Comparing {
       raytrace::Frame frame = draw(solution, render, stage);
       result.render_cpu_seconds += base::cpu_seconds() - solved;
       result.render_seconds += frame.report.seconds;
-      (k == 1 ? yardstick_.first : yardstick_.second) = base::luminance_of(frame.image);
+      const std::vector<float> luminance = base::luminance_of(frame.image);
+      (k == 1 ? pair_.first : pair_.second).luminance.assign(luminance.begin(), luminance.end());
       if (k == 1) {
         result.frame = std::move(frame);
         continue;
@@ -122,12 +123,14 @@ class Comparing {
     for (const TargetView& view : comparison_.targets) {
       comparison_.target_shines.push_back(shines(study_.scene, view.object));
     }
-    yardstick_.mean = base::luminance_of(image);
-    comparison_.reference_noise =
-        reference_noise(yardstick_.first, yardstick_.second, comparison_.map);
-    result.difference = picture_difference(image, image, comparison_.map);
+    mean_ = base::luminance_of(image);
+    for (const std::int32_t object : comparison_.map.object)
+      counted_.push_back(object != no_object);
+    comparison_.reference_noise = noise_of_mean(pair_, counted_);
+    result.error.pixels =
+        static_cast<std::size_t>(std::count(counted_.begin(), counted_.end(), true));
     for (const TargetView& view : comparison_.targets) {
-      const auto light = measure_light(view, yardstick_.mean);
+      const auto light = measure_light(view, mean_);
       result.targets.push_back(light ? std::optional(target_difference(*light, *light))
                                      : std::nullopt);
     }
@@ -159,9 +162,10 @@ class Comparing {
     result.frame = draw(solution, render_options(method), method.name);
     result.render_cpu_seconds = base::cpu_seconds() - solved;
     result.render_seconds = result.frame.report.seconds;
-    result.difference = picture_difference(base::luminance_of(result.frame.image), yardstick_.first,
-                                           yardstick_.second, comparison_.map);
-    result.targets = target_differences(result.frame.image, comparison_.targets, yardstick_);
+    const std::vector<float> luminance = base::luminance_of(result.frame.image);
+    result.error = picture_error(luminance, pair_, counted_);
+    result.off_share = off_share(luminance, mean_, counted_);
+    result.targets = target_differences(result.frame.image, comparison_.targets, pair_, mean_);
     comparison_.methods.push_back(std::move(result));
   }
 
@@ -169,7 +173,9 @@ class Comparing {
   const scenes::Camera& camera_;
   const CompareOptions& options_;
   const StageListener& listen_;
-  Yardstick yardstick_;
+  ReferencePair pair_;
+  std::vector<float> mean_;    // luminance of the pair's mean
+  std::vector<bool> counted_;  // pixels that show an object
   Comparison comparison_;
 };
 

@@ -5,8 +5,8 @@
 // All are measured against a reference that shares nothing with them: the mean of two pictures,
 // each of a radiosity solution of its own (patches of half the edge, other random numbers), drawn
 // to half the wanted error or, where none is wanted, without sharing and with `reference_factor`
-// times the rays. Two, because the noise of a single one would count as error of every method: mean
-// (L - R1)(L - R2) is free of it.
+// times the rays. The error is that of all studies (picture_error.h); the variances of the pair are
+// not known, as no picture states the noise of its solution.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "raytrace/render.h"
+#include "studies/error/picture_error.h"
 #include "studies/study.h"
 #include "studies/targets/target_light.h"
 
@@ -38,17 +39,6 @@ struct CompareOptions {
   [[nodiscard]] int rays_of_a_reference() const {
     return reference_rays > 0 ? reference_rays : gather_rays * reference_factor;
   }
-};
-
-// Of luminance, over the pixels whose centre shows an object: the sky is the same in all pictures.
-struct PictureDifference {
-  std::size_t pixels = 0;
-  double relative_rmse = 0.0;  // sqrt(mean (L - L_ref)^2) / mean L_ref; 0 where all is black
-  double bias = 0.0;           // mean (L - L_ref) / mean L_ref
-  double off_share = 0.0;      // pixels off by more than misleading_factor
-  // How much the references' noise may have added to relative_rmse, one standard deviation. Where
-  // the error is nothing against the noise, this is the least error that would be seen.
-  double standard_error = 0.0;
 };
 
 // An approximation would have misled about a target when its luminance is off by more than this
@@ -89,7 +79,8 @@ struct MethodResult {
   double solve_seconds = 0.0;  // of the radiosity solution; 0 for methods without
   double render_seconds = 0.0;
   double solve_cpu_seconds = 0.0, render_cpu_seconds = 0.0;
-  PictureDifference difference;
+  PictureError error;      // over the pixels that show an object: the sky is the same in all
+  double off_share = 0.0;  // of them, those off by more than misleading_factor
   std::vector<std::optional<TargetDifference>>
       targets;  // as Comparison::targets; none: not in view
   [[nodiscard]] double cpu_seconds() const { return solve_cpu_seconds + render_cpu_seconds; }
@@ -102,8 +93,8 @@ struct Comparison {
   ObjectMap map;
   radiosity::SolveReport solution;  // at the scene's settings
   std::size_t reference_patches = 0;
-  PictureDifference reference_noise;  // of the reference, from the difference of its two halves
-  bool wide_sources = true;           // anything for distributed lights to stand for
+  double reference_noise = 0.0;  // noise_of_mean: what the reference itself is uncertain by
+  bool wide_sources = true;      // anything for distributed lights to stand for
   [[nodiscard]] const MethodResult& reference() const { return methods.front(); }
 };
 
@@ -112,18 +103,11 @@ struct Comparison {
 [[nodiscard]] Comparison compare(const scenes::World& scene, const scenes::Camera& camera,
                                  const CompareOptions& options, const StageListener& listen = {});
 
-// map: which pixels show an object.
-[[nodiscard]] PictureDifference picture_difference(const base::Image& image,
-                                                   const base::Image& reference,
-                                                   const ObjectMap& map);
-// Against two pictures of independent noise: e^2 = mean (L - R1)(L - R2), whose mean is that of the
-// noise-free (L - R)^2; below 0, which noise can make it, counts as 0. With Gaussian noise its
-// variance is the mean of (m d)^2 / n, m = L - (R1 + R2) / 2 and d = R1 - R2. Bias and off_share
-// against the mean of the two.
-[[nodiscard]] PictureDifference picture_difference(const std::vector<float>& luminance,
-                                                   const std::vector<float>& first,
-                                                   const std::vector<float>& second,
-                                                   const ObjectMap& map);
+// The share of the counted pixels that are off by more than misleading_factor, up or down.
+[[nodiscard]] double off_share(const std::vector<float>& luminance,
+                               const std::vector<float>& reference,
+                               const std::vector<bool>& counted);
+
 [[nodiscard]] TargetDifference target_difference(const TargetLight& light,
                                                  const TargetLight& reference);
 
@@ -132,12 +116,6 @@ struct Comparison {
 
 // Whether luminance or contrast are off by more than the rule allows.
 [[nodiscard]] bool breaks_rule(const TargetDifference& difference);
-
-// The mean of two pictures has the noise of half their difference: relative_rmse; standard_error is
-// its own.
-[[nodiscard]] PictureDifference reference_noise(const std::vector<float>& first,
-                                                const std::vector<float>& second,
-                                                const ObjectMap& map);
 
 // Methods, by number, whose error is less than what the reference itself is uncertain by.
 [[nodiscard]] std::vector<std::size_t> errors_below_the_references_noise(

@@ -38,58 +38,15 @@ std::vector<Method> compare_methods(std::vector<int> lights, const std::string& 
   return methods;
 }
 
-PictureDifference picture_difference(const base::Image& image, const base::Image& reference,
-                                     const ObjectMap& map) {
-  const std::vector<float> value = base::luminance_of(image);
-  const std::vector<float> right = base::luminance_of(reference);
-  PictureDifference result;
-  double squares = 0.0, sum = 0.0, right_sum = 0.0;
-  std::size_t off = 0;
-  for (std::size_t i = 0; i < map.object.size(); ++i) {
-    if (map.object[i] == no_object) continue;
-    ++result.pixels;
-    const double difference = double(value[i]) - double(right[i]);
-    squares += difference * difference;
-    sum += difference;
-    right_sum += double(right[i]);
-    if (far_off(ratio_of(double(value[i]), double(right[i])))) ++off;
+double off_share(const std::vector<float>& luminance, const std::vector<float>& reference,
+                 const std::vector<bool>& counted) {
+  std::size_t off = 0, pixels = 0;
+  for (std::size_t i = 0; i < counted.size(); ++i) {
+    if (!counted[i]) continue;
+    ++pixels;
+    if (far_off(ratio_of(double(luminance[i]), double(reference[i])))) ++off;
   }
-  if (result.pixels == 0) return result;
-  const auto n = static_cast<double>(result.pixels);
-  result.off_share = static_cast<double>(off) / n;
-  if (right_sum <= 0.0) return result;
-  result.relative_rmse = std::sqrt(squares / n) / (right_sum / n);
-  result.bias = sum / right_sum;
-  return result;
-}
-
-PictureDifference picture_difference(const std::vector<float>& luminance,
-                                     const std::vector<float>& first,
-                                     const std::vector<float>& second, const ObjectMap& map) {
-  PictureDifference result;
-  double products = 0.0, variance = 0.0, sum = 0.0, right_sum = 0.0;
-  std::size_t off = 0;
-  for (std::size_t i = 0; i < map.object.size(); ++i) {
-    if (map.object[i] == no_object) continue;
-    ++result.pixels;
-    const double value = luminance[i], right = 0.5 * (double(first[i]) + double(second[i]));
-    const double apart = double(first[i]) - double(second[i]);
-    products += (value - double(first[i])) * (value - double(second[i]));
-    variance += (value - right) * (value - right) * apart * apart;
-    sum += value - right;
-    right_sum += right;
-    if (far_off(ratio_of(value, right))) ++off;
-  }
-  if (result.pixels == 0) return result;
-  const auto n = static_cast<double>(result.pixels);
-  result.off_share = static_cast<double>(off) / n;
-  if (right_sum <= 0.0) return result;
-  const double mean = right_sum / n;
-  const double square = std::max(0.0, products / n);
-  result.relative_rmse = std::sqrt(square) / mean;
-  result.bias = sum / right_sum;
-  result.standard_error = (std::sqrt(square + std::sqrt(variance) / n) - std::sqrt(square)) / mean;
-  return result;
+  return pixels > 0 ? static_cast<double>(off) / static_cast<double>(pixels) : 0.0;
 }
 
 double ratio_of(double value, double reference) {
@@ -123,29 +80,6 @@ radiosity::SolveOptions reference_solver(radiosity::SolveOptions options, std::u
   options.refine.max_patches *= 4;
   options.seed += number;
   return options;
-}
-
-PictureDifference reference_noise(const std::vector<float>& first, const std::vector<float>& second,
-                                  const ObjectMap& map) {
-  PictureDifference noise;
-  double squares = 0.0, fourth = 0.0, sum = 0.0, apart_sum = 0.0;
-  for (std::size_t i = 0; i < map.object.size(); ++i) {
-    if (map.object[i] == no_object) continue;
-    ++noise.pixels;
-    const double half = 0.5 * (double(first[i]) - double(second[i]));
-    squares += half * half;
-    fourth += half * half * half * half;
-    apart_sum += half;
-    sum += 0.5 * (double(first[i]) + double(second[i]));
-  }
-  if (sum <= 0.0) return noise;
-  const auto n = static_cast<double>(noise.pixels);
-  noise.relative_rmse = std::sqrt(squares / n) / (sum / n);
-  noise.bias = apart_sum / sum;
-  if (squares > 0.0) {
-    noise.standard_error = 0.5 * noise.relative_rmse * std::sqrt(fourth) / squares;
-  }
-  return noise;
 }
 
 }  // namespace earthshine::studies

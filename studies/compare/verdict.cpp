@@ -107,8 +107,8 @@ TargetVerdict judge(const Comparison& comparison, std::size_t target) {
 std::vector<std::size_t> errors_below_the_references_noise(const Comparison& comparison) {
   std::vector<std::size_t> below;
   for (std::size_t k = 1; k < comparison.methods.size(); ++k) {
-    const double error = comparison.methods[k].difference.relative_rmse;
-    if (error < comparison.reference_noise.relative_rmse) below.push_back(k);
+    const double error = comparison.methods[k].error.error;
+    if (error < comparison.reference_noise) below.push_back(k);
   }
   return below;
 }

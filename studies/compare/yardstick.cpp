@@ -10,10 +10,10 @@
 namespace earthshine::studies {
 namespace {
 
-double mean_square(const std::vector<std::uint32_t>& pixels, const Yardstick& right) {
+double mean_square(const std::vector<std::uint32_t>& pixels, const ReferencePair& right) {
   double sum = 0.0;
   for (const std::uint32_t i : pixels) {
-    const double apart = double(right.first[i]) - double(right.second[i]);
+    const double apart = right.first.luminance[i] - right.second.luminance[i];
     sum += 0.25 * apart * apart;
   }
   const auto n = static_cast<double>(std::max<std::size_t>(1, pixels.size()));
@@ -29,12 +29,12 @@ double mean_square(const std::vector<std::uint32_t>& pixels, const base::Image& 
 
 // The noise of both pictures, with pixels taken as independent.
 void add_noise(const TargetView& view, const TargetLight& light, const TargetLight& right,
-               const base::Image& image, const Yardstick& yardstick, TargetDifference& difference) {
+               const base::Image& image, const ReferencePair& pair, TargetDifference& difference) {
   if (!(right.luminance > 0.0)) return;
   // Squared standard errors over the squared luminance.
   const auto relative = [&](const std::vector<std::uint32_t>& pixels, double found, double wanted) {
     return std::pair{found > 0.0 ? mean_square(pixels, image) / (found * found) : 0.0,
-                     wanted > 0.0 ? mean_square(pixels, yardstick) / (wanted * wanted) : 0.0};
+                     wanted > 0.0 ? mean_square(pixels, pair) / (wanted * wanted) : 0.0};
   };
   const auto [on, on_right] = relative(view.measured, light.luminance, right.luminance);
   difference.ratio_error = difference.luminance_ratio * std::sqrt(on + on_right);
@@ -69,7 +69,8 @@ bool decided(const TargetDifference& difference) {
 }
 
 std::vector<std::optional<TargetDifference>> target_differences(
-    const base::Image& image, const std::vector<TargetView>& targets, const Yardstick& right) {
+    const base::Image& image, const std::vector<TargetView>& targets, const ReferencePair& pair,
+    const std::vector<float>& mean) {
   std::vector<std::optional<TargetDifference>> result;
   const std::vector<float> luminance = base::luminance_of(image);
   for (const TargetView& view : targets) {
@@ -78,9 +79,9 @@ std::vector<std::optional<TargetDifference>> target_differences(
       result.emplace_back();
       continue;
     }
-    const TargetLight wanted = *measure_light(view, right.mean);
+    const TargetLight wanted = *measure_light(view, mean);
     TargetDifference difference = target_difference(*light, wanted);
-    add_noise(view, *light, wanted, image, right, difference);
+    add_noise(view, *light, wanted, image, pair, difference);
     result.emplace_back(difference);
   }
   return result;

@@ -4,9 +4,11 @@
 //
 //   error^2 = mean of (L - R1)(L - R2), over the square of mean (R1 + R2) / 2
 // With R1 = T + n1, R2 = T + n2, n1 and n2 independent of each other and of L: the mean of the
-// product is that of (L - T)^2, whatever their noise. Its standard error, from the variances v1, v2
-// of the references' pixels:
+// product is that of (L - T)^2, whatever their noise. Its standard error s, where the variances v1,
+// v2 of the references' pixels are known, and where they are not:
 //   s^2 = sum of [ (L - T)^2 (v1 + v2) + v1 v2 ] / pixels^2
+//   s^2 = sum of [ (m d)^2 ] / pixels^2,  m = L - (R1 + R2) / 2, d = R1 - R2
+// Of normal noise with v1 = v2 both have one mean; the second is the larger one otherwise.
 // Differences of pixels brighter than four times the mean count in proportion, as in the errors
 // that pictures state of themselves (error_weight, raytrace/frame/frame.h).
 #pragma once
@@ -22,17 +24,22 @@ namespace earthshine::studies {
 
 // Luminance, cd/m^2, and its variance, (cd/m^2)^2, per pixel.
 struct NoisyPicture {
-  std::vector<double> luminance, variance;
+  std::vector<double> luminance, variance;  // variance: empty if it is not known
 };
 struct ReferencePair {
   NoisyPicture first, second;
+  [[nodiscard]] bool has_variances() const {
+    return !first.variance.empty() && !second.variance.empty();
+  }
 };
 
 struct PictureError {
   std::size_t pixels = 0;
   double error = 0.0;            // relative; 0 where the mean product is not positive
   double low = 0.0, high = 0.0;  // the same for the mean product less and plus 2 s
-  double bias = 0.0;             // mean of L - (R1 + R2) / 2, relative
+  // high - error for one s. Where the error is 0 against it, the least error that would be seen.
+  double standard_error = 0.0;
+  double bias = 0.0;  // mean of L - (R1 + R2) / 2, relative
 };
 
 // counted: which pixels. Relative figures are 0 where the mean of the references is.
@@ -45,8 +52,11 @@ struct PictureError {
 [[nodiscard]] PictureError limit_error(const ReferencePair& limit, const ReferencePair& truth,
                                        const std::vector<bool>& counted);
 
+// Of the mean of the pair: the root of the mean of ((R1 - R2) / 2)^2, weighted and relative alike.
+[[nodiscard]] double noise_of_mean(const ReferencePair& truth, const std::vector<bool>& counted);
+
 // The least error that the pair tells from none: that whose square is 2 s of an exact picture.
-// Relative; 0 where the mean is.
+// Relative; 0 where the mean is. Wants the variances.
 [[nodiscard]] double resolution(const ReferencePair& truth, const std::vector<bool>& counted);
 
 [[nodiscard]] double mean_luminance(const ReferencePair& truth, const std::vector<bool>& counted);

@@ -46,6 +46,72 @@ TEST(PictureError, NoiseOfTheReferencesIsTakenOff) {
   EXPECT_LT(error.high, 0.1);
 }
 
+// The same without the variances: what one s adds to the error is, over many pairs, how far it
+// spreads, d sqrt(x) = dx / (2 sqrt(x)). L is off by 0.2 in every pixel and so, by chance, is each
+// reference; the square, 0.04, has the standard error sqrt((2 + 1) 0.2^4 / 400) and is never
+// clamped at 0.
+TEST(PictureError, WithoutVariancesThePairTellsItsNoise) {
+  constexpr std::size_t few = 400, pairs = 400;
+  const auto unknown = [](std::uint64_t seed) {
+    NoisyPicture picture = noisy(few, 1.0, 0.2, seed);
+    picture.variance.clear();
+    return picture;
+  };
+  double sum = 0.0, squares = 0.0, claimed = 0.0;
+  for (std::uint64_t k = 0; k < pairs; ++k) {
+    const ReferencePair truth{unknown(200 + 2 * k), unknown(201 + 2 * k)};
+    const PictureError found =
+        picture_error(std::vector<float>(few, 1.2F), truth, std::vector<bool>(few, true));
+    const double mean = 1.2 / (1.0 + found.bias);
+    const double square = std::pow(found.error * mean, 2);
+    sum += square;
+    squares += square * square;
+    claimed += found.standard_error * mean * 2.0 * 0.2 / pairs;
+  }
+  const double mean = sum / pairs;
+  const double spread = std::sqrt(squares / pairs - mean * mean);
+  EXPECT_NEAR(mean, 0.04, 4.0 * spread / std::sqrt(double(pairs)));
+  // The spread of 400 pictures is known to 1 / sqrt(800).
+  EXPECT_NEAR(claimed / spread, 1.0, 4.0 / std::sqrt(2.0 * pairs) + 0.05);
+}
+
+// An exact picture, without the variances: mean n1 n2 has the standard error 0.2^2 / sqrt(pixels),
+// whose root is what could be hidden. Half the difference of the pair has the noise of their mean.
+TEST(PictureError, NoErrorIsNotMadeOneByThePairsNoise) {
+  constexpr std::size_t many = 10000;
+  ReferencePair truth{noisy(many, 1.0, 0.2, 101), noisy(many, 1.0, 0.2, 102)};
+  truth.first.variance.clear();
+  truth.second.variance.clear();
+  const std::vector<bool> all(many, true);
+  const PictureError found = picture_error(std::vector<float>(many, 1.0F), truth, all);
+  const double hidden = 0.2 / std::sqrt(std::sqrt(double(many)));
+  EXPECT_LT(found.error, 2.0 * hidden);
+  EXPECT_NEAR(found.standard_error + found.error, hidden, hidden);
+  EXPECT_NEAR(noise_of_mean(truth, all), 0.2 / std::sqrt(2.0),
+              4.0 * 0.2 / std::sqrt(2.0) / std::sqrt(2.0 * many) + 0.002);
+}
+
+// Known by hand: without noise differences 1, 1 and -2 on a mean of 7 / 3, what is not counted left
+// out. Of nine pixels of 1 and one of 91, mean 10, off by a tenth each: the bright one, 9.1 times
+// the mean, counts by 4 / 9.1 of its difference, (9 * 0.1^2 + 4^2) / 10 on a mean of 10.
+TEST(PictureError, CountsBrightPixelsInProportion) {
+  const auto exact = [](const std::vector<double>& values) {
+    const NoisyPicture picture{values, {}};
+    return ReferencePair{picture, picture};
+  };
+  const PictureError plain =
+      picture_error({2, 5, 0, 100}, exact({1, 4, 2, 0}), {true, true, true, false});
+  EXPECT_EQ(plain.pixels, 3U);
+  EXPECT_NEAR(plain.error, std::sqrt(6.0 / 3.0) / (7.0 / 3.0), 1e-12);
+  EXPECT_NEAR(plain.bias, 0.0, 1e-12);
+  std::vector<double> truth(10, 1.0);
+  truth.back() = 91.0;
+  std::vector<float> picture(10, 1.1F);
+  picture.back() = 100.1F;
+  const PictureError bright = picture_error(picture, exact(truth), std::vector<bool>(10, true));
+  EXPECT_NEAR(bright.error, std::sqrt((9 * 0.01 + 16.0) / 10.0) / 10.0, 1e-6);
+}
+
 // An exact picture: 2 s = 2 sigma^2 / sqrt(pixels), of which resolution is the root over the mean.
 TEST(PictureError, ResolutionIsWhatNoiseCouldFeign) {
   const ReferencePair truth{noisy(pixels, 10.0, 2.0, 3), noisy(pixels, 10.0, 2.0, 4)};

@@ -1,72 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The comparison's error without the references' noise, and the sentences for cases that are easily
-// got wrong.
+// The sentences for cases that are easily got wrong.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "base/numbers/random.h"
 #include "studies/compare/yardstick.h"
 #include "tests/studies/plates.h"
 
 namespace earthshine::studies {
 namespace {
-
-struct Normal {
-  base::Rng rng;
-  double operator()() {  // Box and Muller
-    const double u = 1.0 - rng.next(), v = rng.next();
-    return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * base::pi * v);
-  }
-};
-
-// L is off by 0.2 in every pixel and so, by chance, is each reference: with a single one the square
-// would be 0.04 + 0.04. It is so far from 0 that it is never clamped there.
-TEST(PictureDifference, TwoReferencesLeaveTheErrorWithoutTheirNoise) {
-  constexpr std::size_t pixels = 400, pictures = 400;
-  const ObjectMap map{20, 20, std::vector<std::int32_t>(pixels, 0)};
-  Normal normal{base::Rng(base::Key(1, base::Stream::Pixel, 7))};
-  double sum = 0.0, squares = 0.0, claimed = 0.0;
-  for (std::size_t picture = 0; picture < pictures; ++picture) {
-    std::vector<float> first(pixels), second(pixels);
-    for (std::size_t i = 0; i < pixels; ++i) {
-      first[i] = static_cast<float>(1.0 + 0.2 * normal());
-      second[i] = static_cast<float>(1.0 + 0.2 * normal());
-    }
-    const PictureDifference found =
-        picture_difference(std::vector<float>(pixels, 1.2F), first, second, map);
-    const double mean = 1.2 / (1.0 + found.bias);
-    const double square = std::pow(found.relative_rmse * mean, 2);
-    sum += square;
-    squares += square * square;
-    claimed += found.standard_error * mean * 2.0 * 0.2 / pictures;
-  }
-  const double mean = sum / pictures;
-  const double spread = std::sqrt(squares / pictures - mean * mean);
-  EXPECT_NEAR(mean, 0.04, 4.0 * spread / std::sqrt(double(pictures)));
-  // d sqrt(x) = dx / (2 sqrt(x)); the spread of 400 pictures is known to 1 / sqrt(800).
-  EXPECT_NEAR(claimed / spread, 1.0, 4.0 / std::sqrt(800.0) + 0.05);
-}
-
-TEST(PictureDifference, NoErrorIsNotMadeOneByTheReferencesNoise) {
-  constexpr std::size_t pixels = 10000;
-  const ObjectMap map{100, 100, std::vector<std::int32_t>(pixels, 0)};
-  Normal normal{base::Rng(base::Key(2, base::Stream::Pixel, 7))};
-  std::vector<float> first(pixels), second(pixels);
-  for (std::size_t i = 0; i < pixels; ++i) {
-    first[i] = static_cast<float>(1.0 + 0.2 * normal());
-    second[i] = static_cast<float>(1.0 + 0.2 * normal());
-  }
-  const PictureDifference found =
-      picture_difference(std::vector<float>(pixels, 1.0F), first, second, map);
-  // mean n1 n2 has the standard error 0.2^2 / sqrt(pixels); its root is what could be hidden.
-  const double hidden = 0.2 / std::sqrt(std::sqrt(double(pixels)));
-  EXPECT_LT(found.relative_rmse, 2.0 * hidden);
-  EXPECT_NEAR(std::hypot(found.relative_rmse, found.standard_error + found.relative_rmse), hidden,
-              2.0 * hidden);
-  EXPECT_NEAR(reference_noise(first, second, map).relative_rmse, 0.2 / std::sqrt(2.0),
-              4.0 * 0.2 / std::sqrt(2.0) / std::sqrt(2.0 * pixels) + 0.002);
-}
 
 TEST(Decided, OnlyIfTwiceTheNoiseLeavesTheVerdict) {
   const TargetLight right{100.0, 50.0, 1.0};
@@ -119,7 +59,7 @@ TEST(CompareVerdict, BlackSurfacesLeaveNothingForRadiosityToAdd) {
   builder.scene.lamps.push_back(panel(1000.0));
   const Comparison comparison = compared(builder.scene);
   for (const MethodResult& result : comparison.methods) {
-    EXPECT_EQ(result.difference.relative_rmse, 0.0) << result.method.name;
+    EXPECT_EQ(result.error.error, 0.0) << result.method.name;
   }
   EXPECT_EQ(sentence(comparison), "quad-1: black by every method; there is nothing to tell.");
 }
@@ -182,10 +122,10 @@ TEST(CompareVerdict, WithoutWideSourcesThereIsNothingToDistribute) {
 TEST(Compare, ErrorsBelowTheReferencesOwnNoiseAreNamed) {
   Comparison comparison;
   comparison.methods.resize(4);
-  comparison.methods[1].difference.relative_rmse = 0.01;
-  comparison.methods[2].difference.relative_rmse = 0.02;
-  comparison.methods[3].difference.relative_rmse = 0.0;
-  comparison.reference_noise.relative_rmse = 0.02;
+  comparison.methods[1].error.error = 0.01;
+  comparison.methods[2].error.error = 0.02;
+  comparison.methods[3].error.error = 0.0;
+  comparison.reference_noise = 0.02;
   EXPECT_EQ(errors_below_the_references_noise(comparison), (std::vector<std::size_t>{1, 3}));
 }
 
