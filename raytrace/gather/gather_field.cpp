@@ -7,6 +7,12 @@
 #include "raytrace/gather/gather_tiles.h"
 
 namespace earthshine::raytrace {
+namespace {
+
+// Pixels from one that a quick look samples to the next; sharing reaches two at its finest.
+constexpr std::size_t quick_step = 3;
+
+}  // namespace
 
 GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
                          const GatherSurface& surface, const CameraModel& camera,
@@ -66,6 +72,22 @@ void GatherField::cast(Gathered kind, const std::vector<std::uint32_t>& more, st
   } else {
     cast_paths(kind, more, round, stop);
   }
+}
+
+void GatherField::look_quickly(Gathered kind) {
+  if (!gathers(kind)) return;
+  std::vector<std::uint32_t> missing(points_.size(), 0U);
+  const auto columns = static_cast<std::size_t>(window_.columns);
+  const auto served = [&](std::size_t p) {
+    if (!setting_.shares) return false;
+    if (p >= grid_) return strays_[p - grid_].base != no_base;
+    const std::size_t by = p - p % columns % quick_step - p / columns % quick_step * columns;
+    return by != p && points_[by].reach_m > 0.0F && points_[by].triangle == points_[p].triangle;
+  };
+  for (std::size_t p = 0; p < missing.size(); ++p) {
+    if (samples(kind, p) <= 0.0F && !served(p)) missing[p] = fewest_samples(kind);
+  }
+  cast(kind, missing, 0, {});
 }
 
 void GatherField::share(Gathered kind, bool last) {

@@ -206,19 +206,9 @@ class Passes {
 
   void cast_evenly(Gathered kind, std::uint32_t each) {
     const std::vector<std::uint32_t> more(field_->points().size(), each);
-    field_->cast(kind, more, 0, [this] { return stops(); });
+    field_->cast(kind, more, 0, [this] { return ends(); });
     tell(pixels() * each);
-    if (stops()) cast_fewest(kind);
-  }
-
-  // Where a stop left nothing: a quick look.
-  void cast_fewest(Gathered kind) {
-    if (!field_->gathers(kind)) return;
-    std::vector<std::uint32_t> missing(field_->points().size(), 0U);
-    for (std::size_t p = 0; p < missing.size(); ++p) {
-      if (field_->samples(kind, p) <= 0.0F) missing[p] = GatherField::fewest_samples(kind);
-    }
-    field_->cast(kind, missing, 0, {});
+    if (ends()) field_->look_quickly(kind);
   }
 
   void share() {

@@ -249,6 +249,20 @@ TEST(SharedGather, AStoppedPictureKeepsWhatIsFinished) {
   EXPECT_GT(cut_short, 0);
 }
 
+TEST(SharedGather, AStopAtTheFirstQuestionCostsLittle) {
+  // One of nine pixels of a triangle is sampled, with all strays that no pixel serves: less than
+  // half of the rays of the first look all over the picture, which a stop at its end leaves.
+  RenderOptions options = shared_options(96, 80);
+  options.error = 1.0;
+  const auto gathered = [&](bool at_once) {
+    options.stop = [at_once] { return at_once; };
+    const Frame frame = studio().picture(options);
+    for (const float v : frame.image.find("G")->values) EXPECT_GT(v, 0.0F);
+    return static_cast<double>(frame.report.rays.gather);
+  };
+  EXPECT_LT(gathered(true), 0.5 * gathered(false));
+}
+
 TEST(SharedGather, ATimeLimitIsKeptAndStillGivesEveryPixelASample) {
   RenderOptions options = shared_options(64, 64);
   options.time_limit_s = 1e-3;
