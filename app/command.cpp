@@ -12,6 +12,8 @@
 #include "base/ranks/ranks.h"
 #include "degrade/range/range_sensor.h"
 #include "degrade/settings/camera_file.h"
+#include "radiosity/bodies/walls.h"
+#include "scenes/effects/quality.h"
 #include "scenes/read/scene_file.h"
 
 namespace earthshine::app {
@@ -67,13 +69,12 @@ void check_ranks_alike(const Json& things) {
               "Copy them, or put them where all machines see them");
 }
 
-LoadedScene load(const SceneInput& input, bool quiet) {
+LoadedScene load(const SceneInput& input, bool quiet, const AskEffects& ask) {
   LoadedScene loaded;
   loaded.scene = scenes::read_scene(input.path, input.overrides, input.overrides_at);
   degrade::check_settings(loaded.scene);
   degrade::check_range_sensors(loaded.scene);
   loaded.groups = scenes::find_light_groups(loaded.scene);
-  loaded.effects = scenes::find_effects(loaded.scene, loaded.groups);
   if (base::ranks() != nullptr) {
     Json read = Json::object(
         {{"the program", digest_of_file("/proc/self/exe")}, {"its setting", input.overrides}});
@@ -82,6 +83,15 @@ LoadedScene load(const SceneInput& input, bool quiet) {
   }
   for (const std::string& warning : loaded.scene.warnings) {
     if (!quiet) note("warning: " + warning);
+  }
+  const WantedEffects wanted = ask ? ask(loaded.scene) : WantedEffects{};
+  loaded.asked = wanted.asked;
+  loaded.effects = scenes::find_effects(loaded.scene, loaded.groups, loaded.asked);
+  if (wanted.culls) {
+    loaded.culled = scenes::cull_effects(
+        loaded.scene, loaded.asked, loaded.scene.quality.error.value_or(scenes::default_error),
+        radiosity::hidden_lights(loaded.scene, loaded.asked.cameras), loaded.groups,
+        loaded.effects);
   }
   return loaded;
 }

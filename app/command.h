@@ -14,6 +14,7 @@
 
 #include "app/json.h"
 #include "radiosity/solution.h"
+#include "scenes/effects/culling.h"
 #include "scenes/effects/world.h"
 #include "scenes/scene.h"
 
@@ -85,17 +86,26 @@ struct StoppedShort : std::runtime_error {
 struct Size {
   int columns = 0, rows = 0;
 };
-// A scene with what follows from it alone. Warnings go to standard error unless `quiet`.
+// A scene with the effects that were decided for the call.
 struct LoadedScene {
   scenes::Scene scene;
+  scenes::Asked asked;  // what the call asks of it
   scenes::LightGroups groups;
   scenes::Effects effects;
+  std::vector<scenes::Culling> culled;  // switched off in the above, as they cannot matter
 
   [[nodiscard]] scenes::World world(const scenes::RayQuery& query) const {
     return {scene, groups, effects, query};
   }
 };
-[[nodiscard]] LoadedScene load(const SceneInput& input, bool quiet);
+// What a call wants of the scene that was read; nothing said: all of it.
+struct WantedEffects {
+  scenes::Asked asked;
+  bool culls = false;  // those that cannot matter are switched off
+};
+using AskEffects = std::function<WantedEffects(const scenes::Scene&)>;
+// Warnings go to standard error unless `quiet`. The only place where a call's effects are decided.
+[[nodiscard]] LoadedScene load(const SceneInput& input, bool quiet, const AskEffects& ask = {});
 
 // The camera of that name, or the first one when the name is empty. Throws base::Error (Input).
 [[nodiscard]] const scenes::Camera& choose_camera(const scenes::Scene& scene,

@@ -18,7 +18,6 @@
 #include "app/options.h"
 #include "base/error.h"
 #include "base/files/overlay.h"
-#include "radiosity/bodies/walls.h"
 #include "raytrace/camera/camera.h"
 #include "raytrace/camera/wire.h"
 #include "scenes/effects/quality.h"
@@ -195,17 +194,7 @@ void check_aovs(const RenderCall& call) {
   }
 }
 
-std::vector<scenes::Culling> decide_effects(LoadedScene& loaded, const RenderCall& call,
-                                            const scenes::Asked& asked) {
-  loaded.effects = scenes::find_effects(loaded.scene, loaded.groups, asked);
-  const bool reference = call.indirect == raytrace::Indirect::Paths;
-  if (call.all_effects || reference || !call.solution.empty()) return {};
-  return scenes::cull_effects(
-      loaded.scene, asked, loaded.scene.quality.error.value_or(scenes::default_error),
-      radiosity::hidden_lights(loaded.scene, asked.cameras), loaded.groups, loaded.effects);
-}
-
-scenes::Asked asked_of(const RenderCall& call, std::vector<const scenes::Camera*> cameras) {
+WantedEffects wanted_effects(const RenderCall& call, std::vector<const scenes::Camera*> cameras) {
   scenes::Asked asked;
   asked.cameras = std::move(cameras);
   if (call.indirect == raytrace::Indirect::Paths) asked.paths = scenes::LightPaths::Traced;
@@ -216,7 +205,8 @@ scenes::Asked asked_of(const RenderCall& call, std::vector<const scenes::Camera*
   asked.earth_on_area = !call.distributed_over.empty();
   asked.per_light = call.per_light;
   asked.layers = call.aovs;
-  return asked;
+  const bool reference = call.indirect == raytrace::Indirect::Paths;
+  return {asked, !call.all_effects && !reference && call.solution.empty()};
 }
 
 void add_over_options(CLI::App& command, OverCall& call) {

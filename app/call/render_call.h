@@ -99,15 +99,10 @@ void check_aovs(const RenderCall& call);
 [[nodiscard]] std::vector<const scenes::Camera*> wanted_cameras(
     const std::vector<std::string>& texts, const scenes::Scene& scene);
 
-// Decides about the effects for the call; those that cannot matter are switched off and returned,
-// unless the call wants all of them, paths as a reference, or a solution that is there already.
-[[nodiscard]] std::vector<scenes::Culling> decide_effects(LoadedScene& loaded,
-                                                          const RenderCall& call,
-                                                          const scenes::Asked& asked);
-
-// What the call asks of the scene, which decides with it about the effects.
-[[nodiscard]] scenes::Asked asked_of(const RenderCall& call,
-                                     std::vector<const scenes::Camera*> cameras);
+// What the call asks of the scene, for load(). Effects that cannot matter run if the call wants all
+// of them, paths as a reference, or a solution that is there already.
+[[nodiscard]] WantedEffects wanted_effects(const RenderCall& call,
+                                           std::vector<const scenes::Camera*> cameras);
 
 // The light of the scene, for all of its cameras.
 struct Solved {

@@ -15,10 +15,9 @@ namespace earthshine::app {
 namespace {
 
 // A stage runs where one of the cameras needs it; the first that does gives the reason.
-void add_cctv_rows(Json& rows, const LoadedScene& loaded, const RenderCall& call,
-                   const scenes::Asked& asked) {
+void add_cctv_rows(Json& rows, const LoadedScene& loaded, const RenderCall& call) {
   Json stages = Json::array();
-  for (const scenes::Camera* camera : asked.cameras) {
+  for (const scenes::Camera* camera : loaded.asked.cameras) {
     Json planned = plan_cctv(loaded.scene, *camera, !call.cctv.empty());
     if (stages.empty()) {
       stages = std::move(planned);
@@ -37,13 +36,12 @@ void add_cctv_rows(Json& rows, const LoadedScene& loaded, const RenderCall& call
 
 }  // namespace
 
-Json effect_rows(const LoadedScene& loaded, const RenderCall& call, const scenes::Asked& asked,
-                 const std::vector<scenes::Culling>& culled) {
+Json effect_rows(const LoadedScene& loaded, const RenderCall& call) {
   Json rows = Json::array();
-  for (const auto& row : scenes::describe_effects(loaded.scene, loaded.groups, asked)) {
+  for (const auto& row : scenes::describe_effects(loaded.scene, loaded.groups, loaded.asked)) {
     rows.push_back({{"effect", row.effect}, {"runs", row.runs}, {"why", row.reason}});
   }
-  for (const scenes::Culling& off : culled) {
+  for (const scenes::Culling& off : loaded.culled) {
     const auto row = std::find_if(rows.begin(), rows.end(),
                                   [&](const Json& r) { return r["effect"] == off.effect; });
     // Other lamps of the kind may be on.
@@ -57,15 +55,15 @@ Json effect_rows(const LoadedScene& loaded, const RenderCall& call, const scenes
     (*row)["why"] = still ? (*row)["why"].get<std::string>() + "; " + off.why : off.why;
     (*row)["skipped_error"] = off.error;
   }
-  add_cctv_rows(rows, loaded, call, asked);
+  add_cctv_rows(rows, loaded, call);
   return rows;
 }
 
 Expectation expect(const LoadedScene& loaded, const RenderCall& call, const Common& common,
-                   const scenes::Asked& asked, const scenes::RayQuery& query) {
+                   const scenes::RayQuery& query) {
   const radiosity::SolveOptions solver = solver_of(call, loaded.scene, common);
   std::vector<raytrace::RenderOptions> options;
-  for (const scenes::Camera* camera : asked.cameras) {
+  for (const scenes::Camera* camera : loaded.asked.cameras) {
     options.push_back(picture_options(call, common, loaded, *camera));
   }
   // Looked at once, for the memory and for the solver's seconds.
@@ -79,16 +77,16 @@ Expectation expect(const LoadedScene& loaded, const RenderCall& call, const Comm
   studies::expect_rows(sizes, loaded.scene, query, solver);
   Expectation expected;
   expected.pilot = studies::expect_costs({loaded.world(query), solver, sizes.row_entries},
-                                         asked.cameras, options);
+                                         loaded.asked.cameras, options);
   // The pilot's own solve only lights its pictures then.
   if (!call.solution.empty()) expected.pilot.bill.solve = {};
   expected.costs = studies::effect_costs(expected.pilot.bill, loaded.effects);
   studies::EffectCost cctv{"cctv"};
   Common quiet = common;
   quiet.quiet = true;
-  for (std::size_t k = 0; k < asked.cameras.size(); ++k) {
+  for (std::size_t k = 0; k < loaded.asked.cameras.size(); ++k) {
     if (call.cctv.empty()) break;
-    const CctvSetup setup = cctv_of_camera(loaded.scene, *asked.cameras[k], quiet);
+    const CctvSetup setup = cctv_of_camera(loaded.scene, *loaded.asked.cameras[k], quiet);
     StageTimes times;
     times.measure("cctv", [&] { return run_chain(setup, expected.pilot.pictures[k]); });
     cctv.seconds += times.total();
@@ -151,8 +149,7 @@ void add_expectation(Json& rows, const Expectation& expected) {
   for (Json& row : rows) row.update(expectation_json(expected, row));
 }
 
-Json report_json(const LoadedScene& loaded, const RenderCall& call, const scenes::Asked& asked,
-                 const std::vector<scenes::Culling>& culled, const Expectation& expected,
+Json report_json(const LoadedScene& loaded, const RenderCall& call, const Expectation& expected,
                  const radiosity::SolveReport& solved, const std::vector<Picture>& pictures,
                  const StageTimes& times, double cpu_seconds) {
   const double threads = base::available_threads();
@@ -168,7 +165,7 @@ Json report_json(const LoadedScene& loaded, const RenderCall& call, const scenes
   }
   std::vector<studies::EffectCost> taken = studies::effect_costs(bill, loaded.effects);
   taken.push_back(cctv);
-  Json rows = effect_rows(loaded, call, asked, culled);
+  Json rows = effect_rows(loaded, call);
   rows.push_back(camera_row());
   for (Json& row : rows) {
     row["expected"] = expectation_json(expected, row);

@@ -14,9 +14,7 @@ namespace earthshine::app {
 
 // {"effect", "runs", "why", "skipped_error"} per effect (the last of those that cannot matter), the
 // stages of the CCTV cameras among them as "cctv: glare".
-[[nodiscard]] Json effect_rows(const LoadedScene& loaded, const RenderCall& call,
-                               const scenes::Asked& asked,
-                               const std::vector<scenes::Culling>& culled);
+[[nodiscard]] Json effect_rows(const LoadedScene& loaded, const RenderCall& call);
 
 // What each effect is expected to take.
 struct Expectation {
@@ -26,8 +24,7 @@ struct Expectation {
 };
 // A small run of the same code (studies/cost/cost.h).
 [[nodiscard]] Expectation expect(const LoadedScene& loaded, const RenderCall& call,
-                                 const Common& common, const scenes::Asked& asked,
-                                 const scenes::RayQuery& query);
+                                 const Common& common, const scenes::RayQuery& query);
 
 // Adds {"rays", "seconds", "memory_mib"} to the rows; effects that are not in `costs` take none.
 // Appends a row for the camera rays, which every picture has.
@@ -36,8 +33,6 @@ void add_expectation(Json& rows, const Expectation& expected);
 // The table once more with what each effect really took, in `taken` beside `expected`. cpu_seconds:
 // of solve and pictures, all threads.
 [[nodiscard]] Json report_json(const LoadedScene& loaded, const RenderCall& call,
-                               const scenes::Asked& asked,
-                               const std::vector<scenes::Culling>& culled,
                                const Expectation& expected, const radiosity::SolveReport& solved,
                                const std::vector<Picture>& pictures, const StageTimes& times,
                                double cpu_seconds);

@@ -69,8 +69,7 @@ struct RankBytes {
 // Of the solution alone, with its error stated, and of each camera's picture of its own size, the
 // solution included. Returns the most of them where so many ranks divide the matrix; 0: no mpirun.
 RankBytes add_memory(Json& report, const LoadedScene& loaded, const RenderCall& call,
-                     const Common& common, const scenes::Asked& asked,
-                     const scenes::RayQuery& query, int ranks) {
+                     const Common& common, const scenes::RayQuery& query, int ranks) {
   const radiosity::SolveOptions solver = solver_of(call, loaded.scene, common);
   studies::MemoryCase sizes =
       studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
@@ -90,10 +89,10 @@ RankBytes add_memory(Json& report, const LoadedScene& loaded, const RenderCall& 
   studies::MemoryCase alone = sizes;
   alone.states_error = true;
   add(report, alone);
-  for (std::size_t k = 0; k < asked.cameras.size(); ++k) {
+  for (std::size_t k = 0; k < loaded.asked.cameras.size(); ++k) {
     studies::MemoryCase with_picture = sizes;
     studies::add_picture(with_picture, loaded.groups, loaded.effects,
-                         picture_options(call, common, loaded, *asked.cameras[k]));
+                         picture_options(call, common, loaded, *loaded.asked.cameras[k]));
     add(report["images"][k], with_picture);
   }
   return most;
@@ -129,9 +128,9 @@ void add_ranks(Json& report, const studies::Bill& bill, int ranks, const RankByt
 }
 
 void add_seconds(Json& report, const LoadedScene& loaded, const RenderCall& call,
-                 const Common& common, const scenes::Asked& asked, const scenes::RayQuery& query,
-                 int ranks, const RankBytes& bytes) {
-  const Expectation expected = expect(loaded, call, common, asked, query);
+                 const Common& common, const scenes::RayQuery& query, int ranks,
+                 const RankBytes& bytes) {
+  const Expectation expected = expect(loaded, call, common, query);
   add_expectation(report["effects"], expected);
   const studies::Bill& bill = expected.pilot.bill;
   double pictures = 0.0;
@@ -150,9 +149,9 @@ void add_seconds(Json& report, const LoadedScene& loaded, const RenderCall& call
 }
 
 Json report_of(const RenderCall& call, const Common& common, int ranks) {
-  LoadedScene loaded = load(call.scene, common.quiet);
-  const scenes::Asked asked = asked_of(call, planned_cameras(call, loaded.scene));
-  const std::vector<scenes::Culling> culled = decide_effects(loaded, call, asked);
+  const LoadedScene loaded = load(call.scene, common.quiet, [&](const scenes::Scene& scene) {
+    return wanted_effects(call, planned_cameras(call, scene));
+  });
   const scenes::QualityKnobs knobs = scenes::resolve_quality(loaded.scene);
   const radiosity::SolveOptions solver = solver_of(call, loaded.scene, common);
   const auto rays_per_patch = std::bit_ceil(static_cast<std::uint64_t>(solver.form_factor_rays));
@@ -163,7 +162,7 @@ Json report_of(const RenderCall& call, const Common& common, int ranks) {
   Json report;
   report["scene"] = loaded.scene.path.string();
   report["name"] = loaded.scene.name;
-  report["effects"] = effect_rows(loaded, call, asked, culled);
+  report["effects"] = effect_rows(loaded, call);
   report["light_groups"] = loaded.groups.names;
   report["quality"] = {{"patch_edge_m", solver.patch_edge_m},
                        {"refine", solver.refine.on},
@@ -174,11 +173,11 @@ Json report_of(const RenderCall& call, const Common& common, int ranks) {
   report["patches_at_most"] = refines;
   report["rays"] = solves ? patches * rays_per_patch : 0;
   report["right_hand_sides"] = 3 * loaded.groups.count();
-  report["images"] = images_of(loaded.scene, call, asked,
+  report["images"] = images_of(loaded.scene, call, loaded.asked,
                                solves ? static_cast<std::uint64_t>(knobs.gather_rays) : 0);
   const scenes::RayQuery query(loaded.scene);
-  const RankBytes bytes = add_memory(report, loaded, call, common, asked, query, ranks);
-  add_seconds(report, loaded, call, common, asked, query, ranks, bytes);
+  const RankBytes bytes = add_memory(report, loaded, call, common, query, ranks);
+  add_seconds(report, loaded, call, common, query, ranks, bytes);
   return report;
 }
 

@@ -153,12 +153,15 @@ void run(RenderCall call, const Common& common) {
   check_call(call);
   check_part(call);
   StageTimes times;
-  LoadedScene loaded = times.measure("read", [&] { return load(call.scene, common.quiet); });
-  const std::vector<Wanted> pictures = wanted_pictures(call, loaded.scene, common.quiet);
+  std::vector<Wanted> pictures;
+  const LoadedScene loaded = times.measure("read", [&] {
+    return load(call.scene, common.quiet, [&](const scenes::Scene& scene) {
+      pictures = wanted_pictures(call, scene, common.quiet);
+      return wanted_effects(call, cameras_of(pictures));
+    });
+  });
   const scenes::RayQuery query =
       times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
-  const scenes::Asked asked = asked_of(call, cameras_of(pictures));
-  const std::vector<scenes::Culling> culled = decide_effects(loaded, call, asked);
   for (const Wanted& picture : pictures) {
     raytrace::check_camera(loaded.scene, query, *picture.camera);
   }
@@ -191,12 +194,12 @@ void run(RenderCall call, const Common& common) {
   }
   std::optional<Expectation> expected;
   if (!call.report.empty()) {
-    expected = times.measure("pilot", [&] { return expect(loaded, call, common, asked, query); });
+    expected = times.measure("pilot", [&] { return expect(loaded, call, common, query); });
   }
   const double cpu_before = base::cpu_seconds();
   std::optional<RenderParts> parts;
   if (call.part.in_parts()) {
-    parts.emplace(LightCall{call, common, loaded, query}, call.part, cameras_of(pictures), culled);
+    parts.emplace(LightCall{call, common, loaded, query}, call.part, cameras_of(pictures));
   }
   const Solved light =
       parts ? parts->light(times) : find_light({call, common, loaded, query}, times);
@@ -232,8 +235,8 @@ void run(RenderCall call, const Common& common) {
   }
   if (expected) {
     base::write_text(call.report,
-                     dump(report_json(loaded, call, asked, culled, *expected, light.solution.report,
-                                      taken, times, base::cpu_seconds() - cpu_before)));
+                     dump(report_json(loaded, call, *expected, light.solution.report, taken, times,
+                                      base::cpu_seconds() - cpu_before)));
   }
   if (call.json) print(dump(reports.size() == 1 ? reports.front() : reports));
   if (whole) {

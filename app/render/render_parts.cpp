@@ -37,8 +37,7 @@ Json settings_of(const RenderCall& call, const raytrace::RenderOptions& how) {
 }  // namespace
 
 RenderParts::RenderParts(const LightCall& wanted, PartCall& part,
-                         const std::vector<const scenes::Camera*>& cameras,
-                         const std::vector<scenes::Culling>& culled)
+                         const std::vector<const scenes::Camera*>& cameras)
     : wanted_(wanted),
       part_(part),
       cameras_(cameras),
@@ -46,7 +45,8 @@ RenderParts::RenderParts(const LightCall& wanted, PartCall& part,
       folder_(wanted.call.output + ".parts") {
   scene_key_ = scene_cache_key(wanted.loaded);
   scene_key_["solver"] = solver_cache_key(solver_);
-  for (const scenes::Culling& effect : culled) scene_key_["left_out"].push_back(effect.effect);
+  for (const scenes::Culling& effect : wanted.loaded.culled)
+    scene_key_["left_out"].push_back(effect.effect);
   Json views = Json::array(), settings = Json::array();
   for (const scenes::Camera* camera : cameras_) {
     options_.push_back(picture_options(wanted.call, wanted.common, wanted.loaded, *camera));

@@ -17,8 +17,7 @@ class RenderParts {
   // `light` of the scene before it is solved: its solver's settings. Joins the parts' folder,
   // FILE.exr.parts; throws base::Error (Input) where it belongs to another call.
   RenderParts(const LightCall& wanted, PartCall& part,
-              const std::vector<const scenes::Camera*>& cameras,
-              const std::vector<scenes::Culling>& culled);
+              const std::vector<const scenes::Camera*>& cameras);
 
   // Of all parts: solved here or by another process.
   [[nodiscard]] Solved light(StageTimes& times);

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <numeric>
 
 #include "base/numbers/random.h"
+#include "scenes/effects/shining.h"
 #include "scenes/light/emitters.h"
 #include "scenes/light/light_tree.h"
 #include "scenes/reflect/energy.h"
@@ -175,50 +177,62 @@ double mean_illuminance(const scenes::Scene& scene, const std::vector<double>& a
 }  // namespace
 
 std::vector<LightSource> find_sources(const scenes::World& world, int points) {
-  std::vector<LightSource> sources;
-  const auto add = [&sources](LightSource source, scenes::LightKind kind) {
-    source.kind = kind;
-    sources.push_back(std::move(source));
-  };
-  if (world.effects.sun)
-    add(sun_source(world.scene, world.groups.sun, points), scenes::LightKind::Sun);
-  for (std::size_t k = 0; world.effects.sun_parts && k < world.scene.sky_parts->suns.size(); ++k) {
-    add(free_sun_source(world.scene.sky_parts->suns[k], (std::uint64_t{1} << 40) + k,
-                        world.groups.sun_parts + k, points),
-        scenes::LightKind::Sun);
-  }
-  if (world.effects.earth && !world.effects.earth_by_gather) {
-    add(earth_source(world.scene, world.groups.earth, points), scenes::LightKind::Earth);
-  }
+  using Kind = scenes::ShiningLight::Kind;
+  const scenes::Scene& scene = world.scene;
+  const std::vector<scenes::ShiningLight> lights = scenes::shining_lights(world);
   // Keys count what shines: one that is off does not change the others' samples.
   std::vector<std::vector<std::size_t>> lamps(world.groups.count());
-  std::vector<std::uint64_t> key(world.scene.lamps.size(), 0);
+  std::vector<std::uint64_t> key(scene.lamps.size(), 0);
   std::uint64_t next_key = 16;
-  for (std::size_t k = 0; k < world.scene.lamps.size(); ++k) {
-    if (world.groups.lamp[k] == scenes::no_group) continue;
-    lamps[world.groups.lamp[k]].push_back(k);
-    key[k] = next_key++;
+  for (const scenes::ShiningLight& light : lights) {
+    if (light.kind != Kind::Lamp) continue;
+    lamps[light.group].push_back(light.index);
+    key[light.index] = next_key++;
   }
-  for (std::size_t g = 0; g < lamps.size(); ++g) {
-    if (lamps[g].size() < fewest_in_cluster) continue;
-    const std::size_t first = lamps[g][0];
-    add(cluster_source(world.scene, lamps[g], key[first], g, points),
-        scenes::kind_of(world.scene.lamps[first].kind));
-  }
-  for (std::size_t k = 0; k < world.scene.lamps.size(); ++k) {
-    if (world.groups.lamp[k] == scenes::no_group) continue;
-    if (lamps[world.groups.lamp[k]].size() >= fewest_in_cluster) continue;
-    add(lamp_source(world.scene.lamps[k], key[k], world.groups.lamp[k], points),
-        scenes::kind_of(world.scene.lamps[k].kind));
-  }
-  const std::vector<bool> is_explicit = emitter_is_explicit(world.scene);
+  std::vector<LightSource> sky, clusters, alone;
+  const auto add = [](std::vector<LightSource>& list, LightSource source, scenes::LightKind kind) {
+    source.kind = kind;
+    list.push_back(std::move(source));
+  };
+  const std::vector<bool> is_explicit = emitter_is_explicit(scene);
   std::uint64_t emitter_key = std::uint64_t{1} << 32;
-  for (std::size_t m = 0; m < world.scene.materials.size(); ++m) {
-    if (!is_explicit[m] || world.groups.material[m] == scenes::no_group) continue;
-    add(emitter_source(world.scene, m, emitter_key++, world.groups.material[m], points),
-        scenes::LightKind::Emitter);
+  for (const auto& [kind, group, k] : lights) {
+    switch (kind) {
+      case Kind::Sun:
+        add(sky, sun_source(scene, group, points), scenes::LightKind::Sun);
+        break;
+      case Kind::SunPart:
+        add(sky,
+            free_sun_source(scene.sky_parts->suns[k], (std::uint64_t{1} << 40) + k, group, points),
+            scenes::LightKind::Sun);
+        break;
+      case Kind::Earth:
+        if (world.effects.earth_by_gather) break;
+        add(sky, earth_source(scene, group, points), scenes::LightKind::Earth);
+        break;
+      case Kind::Lamp:
+        if (lamps[group].size() < fewest_in_cluster) {
+          add(alone, lamp_source(scene.lamps[k], key[k], group, points),
+              scenes::kind_of(scene.lamps[k].kind));
+        } else if (k == lamps[group].front()) {
+          add(clusters, cluster_source(scene, lamps[group], key[k], group, points),
+              scenes::kind_of(scene.lamps[k].kind));
+        }
+        break;
+      case Kind::Emitter:
+        if (!is_explicit[k]) break;
+        add(alone, emitter_source(scene, k, emitter_key++, group, points),
+            scenes::LightKind::Emitter);
+        break;
+    }
   }
-  return sources;
+  std::stable_sort(
+      clusters.begin(), clusters.end(),
+      [](const LightSource& a, const LightSource& b) { return a.source.group < b.source.group; });
+  for (std::vector<LightSource>* const more : {&clusters, &alone}) {
+    std::move(more->begin(), more->end(), std::back_inserter(sky));
+  }
+  return sky;
 }
 
 LightSource cluster_source(const scenes::Scene& scene, const std::vector<std::size_t>& lamps,

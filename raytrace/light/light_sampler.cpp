@@ -8,6 +8,7 @@
 
 #include "base/numbers/sobol_set.h"
 #include "radiosity/direct/sources.h"
+#include "scenes/effects/shining.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_cells.h"
 
@@ -31,39 +32,43 @@ LightSampler::LightSampler(const scenes::World& world, Indirect indirect, int di
       mirrors_(distributed_ ? std::span<const scenes::FlatMirror>() : mirrors),
       earth_area_(distributed_ ? std::move(earth_area) : std::nullopt) {
   const int copies = distributed_ ? distributed_lights : 1;
-  if (world.effects.sun) {
-    sun_illuminance_lx_ =
-        distributed_ ? world.scene.sun->illuminance_lx * scenes::visible_sun_share(world.scene)
-                     : scenes::sun_sample_illuminance(world.scene);
-    add({Kind::Sun, world.groups.sun}, 1);
-  }
-  for (std::size_t k = 0; world.effects.sun_parts && k < world.scene.sky_parts->suns.size(); ++k) {
-    add({Kind::SunPart, world.groups.sun_parts + k, k}, 1);
-    const scenes::Sun& sun = world.scene.sky_parts->suns[k];
-    sun_parts_.push_back({scenes::sun_sample_illuminance(sun),
-                          {sun.direction, base::radians(sun.angular_radius_deg)}});
-  }
-  if (world.effects.earth && (distributed_ || !world.effects.earth_by_gather)) {
-    earth_half_angle_rad_ = base::radians(world.scene.earth->half_angle_deg);
-    earth_solid_angle_sr_ = scenes::cone_solid_angle_sr(earth_half_angle_rad_);
-    add({earth_area_ ? Kind::EarthArea : Kind::Earth, world.groups.earth}, copies);
-  }
-  for (std::size_t k = 0; k < world.scene.lamps.size(); ++k) {
-    if (world.groups.lamp[k] == scenes::no_group) continue;
-    const bool wide = scenes::is_wide(world.scene.lamps[k].kind);
-    add({Kind::Lamp, world.groups.lamp[k], k}, wide ? copies : 1);
-    if (wide) surfaces_.lights.push_back(k);
+  // Without interreflection nothing carries emitters through F, so that all of them are sampled.
+  const std::vector<bool> is_explicit = radiosity::emitter_is_explicit(scene_);
+  using Shines = scenes::ShiningLight::Kind;
+  for (const auto& [kind, group, k] : scenes::shining_lights(world)) {
+    switch (kind) {
+      case Shines::Sun:
+        sun_illuminance_lx_ = distributed_
+                                  ? scene_.sun->illuminance_lx * scenes::visible_sun_share(scene_)
+                                  : scenes::sun_sample_illuminance(scene_);
+        add({Kind::Sun, group}, 1);
+        break;
+      case Shines::SunPart: {
+        const scenes::Sun& sun = scene_.sky_parts->suns[k];
+        sun_parts_.push_back({scenes::sun_sample_illuminance(sun),
+                              {sun.direction, base::radians(sun.angular_radius_deg)}});
+        add({Kind::SunPart, group, k}, 1);
+        break;
+      }
+      case Shines::Earth:
+        if (!distributed_ && world.effects.earth_by_gather) break;
+        earth_half_angle_rad_ = base::radians(scene_.earth->half_angle_deg);
+        earth_solid_angle_sr_ = scenes::cone_solid_angle_sr(earth_half_angle_rad_);
+        add({earth_area_ ? Kind::EarthArea : Kind::Earth, group}, copies);
+        break;
+      case Shines::Lamp:
+        add({Kind::Lamp, group, k}, scenes::is_wide(scene_.lamps[k].kind) ? copies : 1);
+        if (scenes::is_wide(scene_.lamps[k].kind)) surfaces_.lights.push_back(k);
+        break;
+      case Shines::Emitter:
+        if (indirect == Indirect::Radiosity && !is_explicit[k]) break;
+        add({Kind::Emitters, group, emitters_.size()}, copies);
+        emitters_.emplace_back(scene_, k);
+        break;
+    }
   }
   for (const scenes::Lamp& lamp : scene_.lamps) cones_.push_back(scenes::spot_cone(lamp));
   surfaces_.tree = tree_of(surfaces_.lights);
-  // Without interreflection nothing carries emitters through F, so that all of them are sampled.
-  const std::vector<bool> is_explicit = radiosity::emitter_is_explicit(world.scene);
-  for (std::size_t m = 0; m < world.scene.materials.size(); ++m) {
-    if (world.groups.material[m] == scenes::no_group) continue;
-    if (indirect == Indirect::Radiosity && !is_explicit[m]) continue;
-    add({Kind::Emitters, world.groups.material[m], emitters_.size()}, copies);
-    emitters_.emplace_back(world.scene, m);
-  }
   if (per_group && world.effects.sun_parts) {
     turns_ = SunTurns(world.groups.sun_parts, world.scene.sky_parts->suns.size());
   }
