@@ -8,8 +8,10 @@ import time
 import unittest
 
 import program
-from tiny_bay import Case
+from tiny_bay import BAY, Case
 
+# Small, and shown by a camera without any stage: these tests are about files and who writes them.
+PLAIN_BAY = BAY.replace("[48, 48]", "[16, 16]").replace("sit-monochrome", "plain") + '\n[[cctv]]\nname = "plain"\n'
 ORBIT = ("study", "orbit", "bay.toml", "--positions", "33", "--iris", "normal", "--wanted", "box>=0.5", "-o")  # 3 batches a camera
 SEVERAL = {
     "orbit": ORBIT,
@@ -23,6 +25,10 @@ TIMES = ("seconds", "render_seconds", "costs", "solve_seconds", "wall_seconds", 
 
 
 class StudyPartsCase(Case):
+    def setUp(self):
+        super().setUp()
+        self.write("bay.toml", PLAIN_BAY)
+
     def strip(self, value):
         if isinstance(value, dict):
             return {key: self.strip(item) for key, item in value.items() if key not in TIMES}
@@ -62,6 +68,7 @@ class StudyPartsCase(Case):
 class StudyParts(StudyPartsCase):
     def test_any_order_and_number(self):
         for name, call in SEVERAL.items():
+            self.write("bay.toml", PLAIN_BAY if name == "orbit" else BAY)
             self.done(*call, "w-" + name)
             whole = self.results("w-" + name)
             for count in (1, 5):
