@@ -14,7 +14,7 @@ import unittest
 
 import program
 from program import BALL, CLOSED_BOX
-from tiny_bay import Case
+from tiny_bay import PLAIN_BAY, Case
 
 MPI = pathlib.Path(program.PROGRAM).with_name("earthshine-mpi")
 # More ranks than cores, in a container, as root; no launching by ssh.
@@ -47,7 +47,7 @@ material = "half a mirror"
 # Open with shadows and two light groups; closed, lit by its walls.
 # Nothing set: cut, and sampled in passes, until an error is reached.
 FREE = BALL.replace("patch_edge = 0.5\nform_factor_rays = 64\n", "")
-SCENES = {"ball.toml": BALL, "box.toml": CLOSED_BOX, "hard.toml": HARD, "free.toml": FREE}
+SCENES = {"ball.toml": BALL, "box.toml": CLOSED_BOX, "hard.toml": HARD, "free.toml": FREE, "bay.toml": PLAIN_BAY}
 RENDERS = {
     "shared": ("--set", "quality.gather=shared", "--aov", "variance,object"),
     "alone": ("--set", "quality.gather=per-sample", "--per-light"),

@@ -43,7 +43,8 @@ def changed(value, way, new):
 class StudyJson(program.Case):
     def setUp(self):
         super().setUp()
-        self.write("bay.toml", re.sub("resolution = .*", "resolution = [16, 12]", re.sub("cctv = .*", "", tiny_bay.BAY)))
+        bay = re.sub("resolution = .*", "resolution = [16, 12]", re.sub("cctv = .*", "", tiny_bay.BAY))
+        self.write("bay.toml", bay.replace("patch_edge = 0.5", "patch_edge = 2").replace("_rays = 64", "_rays = 16"))
         self.chance = random.Random(1)
 
     def sound(self, call, file, what):

@@ -8,10 +8,8 @@ import time
 import unittest
 
 import program
-from tiny_bay import BAY, Case
+from tiny_bay import BAY, PLAIN_BAY, Case
 
-# Small, and shown by a camera without any stage: these tests are about files and who writes them.
-PLAIN_BAY = BAY.replace("[48, 48]", "[16, 16]").replace("sit-monochrome", "plain") + '\n[[cctv]]\nname = "plain"\n'
 ORBIT = ("study", "orbit", "bay.toml", "--positions", "33", "--iris", "normal", "--wanted", "box>=0.5", "-o")  # 3 batches a camera
 SEVERAL = {
     "orbit": ORBIT,

@@ -10,11 +10,15 @@ import time
 import unittest
 
 import program
-from tiny_bay import Case
+from tiny_bay import BAY, PLAIN_BAY, Case
 
 
 class Resume(Case):
     CALL = ("study", "orbit", "bay.toml", "--positions", "12", "--wanted", "box>=0.5")
+
+    def setUp(self):
+        super().setUp()
+        self.write("bay.toml", PLAIN_BAY)
 
     def started(self, *arguments):
         run = subprocess.Popen([program.PROGRAM, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL,
@@ -124,6 +128,7 @@ class Resume(Case):
             self.assertEqual(list(self.folder.glob("o/points/solution-*.h5")), [])
 
     def test_an_interrupted_run_says_so_and_goes_on(self):
+        self.write("bay.toml", BAY)
         call = ("study", "orbit", "bay.toml", "--positions", "4", "-o", "o", "--wanted", "box>=0.5",
                 "--set", "quality.gather=per-sample", "--set", "quality.gather_rays=2048")
         run = self.started(*call)

@@ -88,6 +88,9 @@ form_factor_rays = 64
 gather_rays = 16
 """
 
+# Small, and shown by a camera without any stage: for tests of files and of who writes them.
+PLAIN_BAY = BAY.replace("[48, 48]", "[16, 16]").replace("sit-monochrome", "plain") + '\n[[cctv]]\nname = "plain"\n'
+
 STUDY = """format = 1
 name = "day and night"
 scene = "bay.toml"

@@ -224,7 +224,7 @@ TEST(SharedGather, PathsBetweenMirrorsHaveNoEnd) {
 TEST(SharedGather, AStoppedPictureKeepsWhatIsFinished) {
   // Stopped after any number of questions every pixel shows something; from some number on, some
   // pixels are finished and others are not.
-  RenderOptions options = shared_options(96, 80);
+  RenderOptions options = shared_options(64, 48);
   const Frame whole = studio().picture(options);
   EXPECT_FALSE(whole.report.stopped);
   EXPECT_EQ(whole.report.finished_share, 1.0);
