@@ -36,7 +36,7 @@ def other_build(folder):
 
 
 class PartFaults(study_parts_test.StudyPartsCase):
-    alone = {}  # of each work: what one process makes of it, and the seconds that takes
+    alone = {}  # what one process makes of each work
 
     def setUp(self):
         super().setUp()
@@ -60,13 +60,12 @@ class PartFaults(study_parts_test.StudyPartsCase):
         return found
 
     def works(self):
-        """Each work, with what one process makes of it and the seconds that takes: found once for all tests."""
+        """Each work, with what one process makes of it, found once for all tests."""
         for name, (call, folder, record) in WORKS.items():
             if name not in self.alone:
-                begun = time.monotonic()
                 self.done(*call, "-q")
-                self.alone[name] = self.outcome(name), time.monotonic() - begun
-            yield name, call, folder, record, *self.alone[name]
+                self.alone[name] = self.outcome(name)
+            yield name, call, folder, record, self.alone[name]
 
     def merged(self, name, folder):
         self.done("merge", folder, "-q")
@@ -80,8 +79,11 @@ class PartFaults(study_parts_test.StudyPartsCase):
     def test_kills_at_random_moments(self):
         """Any part, killed at EARTHSHINE_KILLS (ten) moments."""
         chance, kills = random.Random(1), int(os.environ.get("EARTHSHINE_KILLS", "10"))
-        for name, call, folder, _, whole, seconds in self.works():
-            killed = 0
+        for name, call, folder, _, whole in self.works():
+            killed, begun = 0, time.monotonic()
+            self.done(*call, "-q")
+            seconds = time.monotonic() - begun
+            self.outcome(name)
             for kill in range(kills):
                 run = self.started(*call, "--part", f"{chance.randint(1, 3)}/3", "-q")
                 time.sleep(0.5 * seconds * (kill + chance.random()) / kills)
@@ -95,7 +97,7 @@ class PartFaults(study_parts_test.StudyPartsCase):
             self.assertEqual(self.merged(name, folder), whole)
 
     def test_two_schedulers_start_the_same_part(self):
-        for name, call, folder, _, whole, _ in self.works():
+        for name, call, folder, _, whole in self.works():
             for part in ("1/2", "2/2"):
                 runs = [self.started(*call, "--part", part, "-q") for _ in range(4)]
                 self.assertEqual([run.wait() for run in runs], [0] * 4)
@@ -103,7 +105,7 @@ class PartFaults(study_parts_test.StudyPartsCase):
 
     def test_a_part_of_another_build(self):
         other = other_build(self.folder)
-        for name, call, folder, record, whole, _ in self.works():
+        for name, call, folder, record, whole in self.works():
             subprocess.run([other, *call, "--part", "1/2", "-q"], cwd=self.folder, check=True)
             self.says(self.refused(*call, "--part", "2/2"), "parts.json", "the program changed")
             self.says(self.refused("merge", folder), "the program changed")
@@ -114,7 +116,7 @@ class PartFaults(study_parts_test.StudyPartsCase):
             self.assertEqual(self.merged(name, folder), whole)
 
     def test_clocks_that_differ_by_an_hour(self):
-        for name, call, folder, _, whole, _ in self.works():
+        for name, call, folder, _, whole in self.works():
             for part in (1, 2):
                 self.parts(call, part)
                 for path in [*(self.folder / folder).rglob("*"), *self.folder.glob("[ft][0-9].*")]:
@@ -123,7 +125,7 @@ class PartFaults(study_parts_test.StudyPartsCase):
 
     def test_a_full_disk_in_one_part(self):
         """No file may grow past its limit of kB: what a full disk is to the one who writes (EFBIG for ENOSPC)."""
-        for name, call, folder, _, whole, _ in self.works():
+        for name, call, folder, _, whole in self.works():
             self.parts(call, 1)
             before = {path: path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}
             limited = subprocess.run(["bash", "-c", "trap '' XFSZ; ulimit -f 1; exec \"$@\"", "sh", program.PROGRAM, *call,

@@ -3,9 +3,11 @@
 import csv
 import json
 import os
+import pathlib
 import shutil
 import signal
 import subprocess
+import tempfile
 import time
 import unittest
 import xml.etree.ElementTree as xml
@@ -17,6 +19,8 @@ CALL = ("--size", "12x9", "--wanted", "0.5,0.3", "--reference-factor", "1", "--p
 
 
 class Accuracy(program.Case):
+    kept = []
+
     def setUp(self):
         super().setUp()
         scene = program.BALL[:program.BALL.index("[quality]")]
@@ -27,6 +31,15 @@ class Accuracy(program.Case):
 
     def study(self, *more, scene="floor.toml", folder="d"):
         return ("study", "accuracy", scene, "-o", folder, "--camera", "A", *CALL, *more)
+
+    def finished(self, folder="d"):
+        """The folder of a run that nothing disturbed: made once for all tests."""
+        if not Accuracy.kept:
+            Accuracy.kept.append(tempfile.TemporaryDirectory(prefix="earthshine accuracy "))
+            self.done(*self.study(folder=folder))
+            shutil.copytree(self.folder / folder, pathlib.Path(Accuracy.kept[0].name) / "d")
+            return
+        shutil.copytree(pathlib.Path(Accuracy.kept[0].name) / "d", self.folder / folder)
 
     def result(self, folder="d"):
         return json.loads((self.folder / folder / "accuracy.json").read_text(encoding="utf-8"),
@@ -109,7 +122,7 @@ class Folder(Accuracy):
 
 class GoesOn(Accuracy):
     def test_a_killed_run_goes_on_to_the_same_figures(self):
-        self.done(*self.study(folder="whole"))
+        self.finished("whole")
         process = subprocess.Popen([program.PROGRAM, *self.study()], cwd=self.folder, stdout=subprocess.DEVNULL,
                                    stderr=subprocess.DEVNULL)
         points = self.folder / "d" / "points"
@@ -129,14 +142,14 @@ class GoesOn(Accuracy):
         self.assertEqual(self.figures(self.result()), self.figures(self.result("whole")))
 
     def test_a_finished_run_does_nothing_again(self):
-        self.done(*self.study())
+        self.finished()
         before, result = self.parts(), self.result()
         self.done(*self.study())
         self.assertEqual(before, self.parts())
         self.assertEqual(result, self.result())
 
     def test_what_changed_is_done_again_and_what_did_not_is_not(self):
-        self.done(*self.study())
+        self.finished()
         before = set(self.parts())
         self.done(*self.study("--set", "material.paint.specular=0.2"))
         self.assertFalse([name for name in before if name not in self.parts()])
@@ -152,7 +165,7 @@ class GoesOn(Accuracy):
         self.assertEqual(len(self.parts()), count)
 
     def test_torn_and_foreign_parts_are_named_and_done_again(self):
-        self.done(*self.study())
+        self.finished()
         result = self.result()
         parts = sorted((self.folder / "d" / "points").glob("*.json"))
         parts[0].write_text(parts[0].read_text()[:40])

@@ -90,7 +90,7 @@ void expect_agreement(const tests::Agreement& a) {
 // 525 / 2 100 / 8 237 patches in the furnace, but -0.05 % for 533 with its box lifted off the
 // floor.
 TEST(Agreement, CornellBox) {
-  expect_agreement(agreement(read("tests/data/peers/cornell/scene.toml"), {0.5, 6000, 256, 1536}));
+  expect_agreement(agreement(read("tests/data/peers/cornell/scene.toml"), {0.5, 6000, 640, 1024}));
 }
 
 TEST(Agreement, CornellBoxWithAMirrorForAWall) {
@@ -100,7 +100,7 @@ TEST(Agreement, CornellBoxWithAMirrorForAWall) {
     material.mirror = Rgb(0.8);
     material.diffuse = Rgb(0.1);
   }
-  expect_agreement(agreement(scene, {0.5, 6000, 256, 768}));
+  expect_agreement(agreement(scene, {0.5, 6000, 512, 512}));
 }
 
 // A room of two halves with a coloured pane between, that mirrors a little, and a mirror for a
