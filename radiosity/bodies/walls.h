@@ -30,8 +30,8 @@
 
 namespace earthshine::radiosity {
 
-// cameras: those of the call; empty: all of the scene's. Throws base::Error (Work) where memory does
-// not hold it.
+// cameras: those of the call; empty: all of the scene's. Throws base::Error (Work) where memory
+// does not hold it.
 [[nodiscard]] scenes::HiddenLights hidden_lights(const scenes::Scene& scene,
                                                  std::vector<const scenes::Camera*> cameras);
 
