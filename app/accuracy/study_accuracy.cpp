@@ -90,6 +90,10 @@ void run(const AccuracyCall& call, const Common& common) {
       studies::accuracy_view(camera, call.size ? call.size->columns : camera.columns,
                              call.size ? call.size->rows : camera.rows, common.seed);
   view.stop = Interrupt::asked;
+  view.while_solving = [](const std::function<void()>& solve) {
+    const EndAtOnce nothing_to_keep;
+    solve();
+  };
   view.fits = [&](double patches, int rays) {
     radiosity::SolveOptions solver = solve_options(loaded.scene, common);
     solver.form_factor_rays = rays;

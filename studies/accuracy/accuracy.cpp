@@ -65,12 +65,24 @@ struct Asked {
   }
 };
 
-void fill_shelf(SolutionShelf& shelf, const scenes::World& world,
+radiosity::Solution solve(const scenes::World& world, const AccuracyView& view,
+                          const radiosity::SolveOptions& solver) {
+  radiosity::Solution solution;
+  const auto work = [&] { solution = radiosity::solve(world, solver); };
+  if (view.while_solving) {
+    view.while_solving(work);
+  } else {
+    work();
+  }
+  return solution;
+}
+
+void fill_shelf(SolutionShelf& shelf, const scenes::World& world, const AccuracyView& view,
                 const radiosity::SolveOptions& solver) {
   if (shelf.key && same_solver(*shelf.key, solver)) return;
   shelf = {};
   const Clock clock;
-  shelf.solution = radiosity::solve(world, solver);
+  shelf.solution = solve(world, view, solver);
   shelf.wall_seconds = clock.wall();
   shelf.cpu_seconds = clock.cpu();
   shelf.key = solver;
@@ -115,7 +127,7 @@ std::optional<StepResult> run_plain(const Work& work, SolutionShelf& shelf) {
   const raytrace::RenderOptions options = picture_of(study, view, step);
   const bool solves = step.indirect == Indirect::Radiosity && asked.effects.solution;
   const radiosity::Solution none;
-  if (solves) fill_shelf(shelf, asked.world, solver);
+  if (solves) fill_shelf(shelf, asked.world, view, solver);
   const radiosity::Solution& solution = solves ? shelf.solution : none;
 
   StepResult result;
@@ -161,7 +173,7 @@ std::optional<StepResult> run_steered(const Work& work) {
   StepCost& cost = result.cost;
   radiosity::Solution solution;
   if (asked.effects.solution) {
-    solution = radiosity::solve(asked.world, solver);
+    solution = solve(asked.world, view, solver);
     cost.solve_rays = solve_rays(solution.report);
     cost.solve_wall_seconds = clock.wall();
     cost.solve_cpu_seconds = clock.cpu();

@@ -32,6 +32,8 @@ struct AccuracyView {
   std::uint64_t seed = 1;
   std::function<bool()> stop = {};
   std::function<bool(double patches, int rays)> fits = {};  // into memory; empty: anything does
+  // Around each solve, of which nothing is kept if it is broken off; empty: nothing.
+  std::function<void(const std::function<void()>& solve)> while_solving = {};
 };
 [[nodiscard]] AccuracyView accuracy_view(const scenes::Camera& camera, int columns, int rows,
                                          std::uint64_t seed);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "base/numbers/random.h"
@@ -207,16 +208,20 @@ TEST(Reference, SeedsAreAllDifferent) {
   EXPECT_EQ(seeds.size(), 202U);
 }
 
-// Paths against themselves: the error of n paths is their noise, sigma / sqrt(n). 4 and 64 paths
-// differ by 4 in the error.
-TEST(Accuracy, PathsErrorFallsWithTheirRoot) {
-  const auto builder = tests::plate_on_ground(0.5, 0.2);
-  scenes::Scene scene = builder.scene;
+scenes::Scene plate_under_earth() {
+  scenes::Scene scene = tests::plate_on_ground(0.5, 0.2).scene;
   scenes::Earth earth;
   earth.half_angle_deg = 60.0;
   earth.model = scenes::EarthModel::Uniform;
   earth.radiance = Rgb(100.0);
   scene.earth = earth;
+  return scene;
+}
+
+// Paths against themselves: the error of n paths is their noise, sigma / sqrt(n). 4 and 64 paths
+// differ by 4 in the error.
+TEST(Accuracy, PathsErrorFallsWithTheirRoot) {
+  const scenes::Scene scene = plate_under_earth();
   const tests::Prepared prepared(scene);
   const scenes::World study = prepared;
   AccuracyView view = accuracy_view(tests::above(10.0, 2.0), 24, 24, 1);
@@ -245,6 +250,31 @@ TEST(Accuracy, PathsErrorFallsWithTheirRoot) {
   // The square of either is known to sqrt(2 / 576) of itself.
   EXPECT_NEAR(errors[0] / errors[1], 4.0,
               4.0 * 4.0 * std::sqrt(2.0 / 576.0) / 2.0 * std::sqrt(2.0));
+}
+
+// A caller may watch over every solve: of one that is broken off nothing is kept. What the shelf
+// has is not solved again.
+TEST(Accuracy, EverySolveIsTheCallersToWatch) {
+  const scenes::Scene scene = plate_under_earth();
+  const tests::Prepared prepared(scene);
+  const scenes::World study = prepared;
+  AccuracyView view = accuracy_view(tests::above(10.0, 2.0), 4, 4, 1);
+  int solves = 0;
+  view.while_solving = [&](const std::function<void()>& solve) {
+    ++solves;
+    solve();
+  };
+  AccuracyStep step;
+  step.quality.patch_edge_m = 1.0;
+  step.quality.gather_rays = 2;
+  SolutionShelf shelf;
+  ASSERT_TRUE(run_step(study, view, step, shelf));
+  EXPECT_EQ(solves, 1);
+  ASSERT_TRUE(run_step(study, view, step, shelf));
+  EXPECT_EQ(solves, 1);
+  step.quality.error = 0.5;
+  ASSERT_TRUE(run_step(study, view, step, shelf));
+  EXPECT_EQ(solves, 2);
 }
 
 }  // namespace
