@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The report in headless Chromium (report/check.mjs): errors, keyboard, accessibility, print.
 
-usage: report_browser.py PROGRAM OUT    screenshots and a PDF go to OUT
+usage: report_browser.py PROGRAM [OUT]    screenshots and a PDF go to OUT
 
 Exit code 77 where there is no browser, no Node.js or no report/node_modules.
 """
@@ -39,7 +39,7 @@ def hostile(value):
 
 
 def main():
-    program, out = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    program, out = pathlib.Path(sys.argv[1]).resolve(), [pathlib.Path(name).resolve() for name in sys.argv[2:]]
     node = shutil.which("node") or shutil.which("nodejs")
     if not node or not (TOP / "report" / "node_modules").is_dir():
         print("skipped: no Node.js or no report/node_modules")
@@ -59,7 +59,7 @@ def main():
         if "<script>" not in pages[0].read_text(encoding="utf-8"):
             print("skipped: the program was built without the report's script")
             return SKIPPED
-        return subprocess.run([node, TOP / "report" / "check.mjs", *pages, out]).returncode
+        return subprocess.run([node, TOP / "report" / "check.mjs", *pages, *out]).returncode
 
 
 if __name__ == "__main__":
