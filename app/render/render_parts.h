@@ -9,6 +9,7 @@
 #include "app/call/render_call.h"
 #include "app/parts/part.h"
 #include "app/parts/result_cache.h"
+#include "app/render/light.h"
 
 namespace earthshine::app {
 
