@@ -110,12 +110,13 @@ void fill_solution(const scenes::World& world, const FormFactors& factors, bool 
   }
   base::release(light.reflectance);
   base::release(light.emitted);
-  const auto [begin, end] = factors.shares.own(patches.count());
+  const auto own = factors.shares.own(patches.count());
+  const std::size_t begin = own.begin;
   const CoveredPatches covered(patches, factors.open);
   // row_of(row, values): of an own row.
   const auto tell = [&](std::vector<float>& values, auto row_of) {
     values.resize(patches.count() * columns);
-    base::parallel_chunks(end - begin, 4096, [&](std::size_t from, std::size_t to) {
+    base::parallel_chunks(own.end - begin, 4096, [&](std::size_t from, std::size_t to) {
       for (std::size_t row = from; row < to; ++row) row_of(row, &values[(begin + row) * columns]);
     });
     factors.shares.tell(values.data(), columns);

@@ -137,7 +137,8 @@ class LampCuts {
 
 Patches subdivide_near_lamps(const scenes::Scene& scene, double edge_m) {
   Patches patches = subdivide(scene, edge_m, edge_m);
-  patches = part_along(std::move(patches), find_wall_traces(scene, patches));
+  Traces walls = find_wall_traces(scene, patches);
+  patches = part_along(std::move(patches), std::move(walls));
   const LampCuts cuts(scene);
   const std::size_t most = 2 * patches.count() + most_more;
   std::vector<char> is_new(patches.count(), 1);
