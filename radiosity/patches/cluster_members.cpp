@@ -29,25 +29,32 @@ ClusterSpan span_of(const Facet& cluster, const Cell& cell) {
   return span;
 }
 
-Facet facet_of_triangle(const Vec3& p0, const Vec3& p1, const Vec3& p2) {
+namespace {
+
+Facet facet_about(const std::array<Vec3, 3>& p, std::uint8_t apex) {
   Facet facet;
-  const std::array<Vec3, 3> p{p0, p1, p2};
-  // The apex is the corner opposite the shortest edge; edge k runs between corners k + 1 and k + 2.
-  double shortest = std::numeric_limits<double>::infinity();
-  for (std::uint8_t corner = 0; corner < 3; ++corner) {
-    const double length = glm::length(p[(corner + 1) % 3] - p[(corner + 2) % 3]);
-    if (length < shortest) {
-      shortest = length;
-      facet.apex = corner;
-    }
-  }
-  facet.corner = p[facet.apex];
-  facet.a = p[(facet.apex + 1) % 3] - facet.corner;
-  facet.b = p[(facet.apex + 2) % 3] - facet.corner;
+  facet.apex = apex;
+  facet.corner = p[apex];
+  facet.a = p[(apex + 1) % 3] - facet.corner;
+  facet.b = p[(apex + 2) % 3] - facet.corner;
   const Vec3 cross = glm::cross(facet.a, facet.b);
   facet.area_m2 = 0.5 * glm::length(cross);
   facet.normal = glm::normalize(cross);
   return facet;
+}
+
+}  // namespace
+
+std::uint8_t apex_of(const std::array<Vec3, 3>& p) {
+  const auto squared = [](const Vec3& edge) { return glm::dot(edge, edge); };
+  const double a = squared(p[1] - p[2]), b = squared(p[2] - p[0]), c = squared(p[0] - p[1]);
+  if (a <= b && a <= c) return 0;
+  return b <= c ? 1 : 2;
+}
+
+Facet facet_of_triangle(const Vec3& p0, const Vec3& p1, const Vec3& p2) {
+  const std::array<Vec3, 3> p{p0, p1, p2};
+  return facet_about(p, apex_of(p));
 }
 
 TriangleLengths lengths_of(const Facet& triangle) {
@@ -57,7 +64,7 @@ TriangleLengths lengths_of(const Facet& triangle) {
 
 Facet ClusterMembers::facet(std::uint32_t member) const {
   const auto& v = corner[member];
-  Facet facet = facet_of_triangle(vertices[v[0]], vertices[v[1]], vertices[v[2]]);
+  Facet facet = facet_about({vertices[v[0]], vertices[v[1]], vertices[v[2]]}, apex[member]);
   facet.triangle = triangle[member];
   return facet;
 }

@@ -52,6 +52,8 @@ struct ClusterMembers {
   [[nodiscard]] std::pair<Vec3, Vec3> box(const ClusterSpan& span) const;
 };
 
+// The corner opposite the shortest edge, the first of those.
+[[nodiscard]] std::uint8_t apex_of(const std::array<Vec3, 3>& corners);
 // The triangle as a facet, uncut.
 [[nodiscard]] Facet facet_of_triangle(const Vec3& p0, const Vec3& p1, const Vec3& p2);
 

@@ -220,16 +220,20 @@ Clusters find_clusters(const scenes::Scene& scene, double edge_m, Members wanted
   }
   found.first.push_back(static_cast<std::uint32_t>(members.triangle.size()));
   if (wanted == Members::Unordered) return found;
-  members.corner.reserve(members.triangle.size());
-  members.area_to.reserve(members.triangle.size() + 1);
-  members.area_to.push_back(0.0);
-  for (const std::uint32_t t : members.triangle) {
-    const auto& v = scene.triangles[t].vertex;
-    members.corner.push_back({v[0], v[1], v[2]});
-    members.apex.push_back(
-        facet_of_triangle(scene.vertices[v[0]], scene.vertices[v[1]], scene.vertices[v[2]]).apex);
-    members.area_to.push_back(members.area_to.back() + scenes::triangle_area(scene, t));
-  }
+  const std::size_t count = members.triangle.size();
+  members.corner.resize(count);
+  members.apex.resize(count);
+  members.area_to.resize(count + 1);
+  base::parallel_chunks(count, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t m = begin; m < end; ++m) {
+      const auto& v = scene.triangles[members.triangle[m]].vertex;
+      const std::array<Vec3, 3> p{scene.vertices[v[0]], scene.vertices[v[1]], scene.vertices[v[2]]};
+      members.corner[m] = {v[0], v[1], v[2]};
+      members.apex[m] = apex_of(p);
+      members.area_to[m + 1] = scenes::triangle_area(scene, members.triangle[m]);
+    }
+  });
+  std::partial_sum(members.area_to.begin(), members.area_to.end(), members.area_to.begin());
   return found;
 }
 

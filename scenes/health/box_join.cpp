@@ -10,7 +10,7 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr std::size_t few = 16;
+constexpr std::size_t few = 16, many = std::size_t{1} << 16U;
 constexpr int deepest = 22;  // single precision has no smaller parts
 
 float longest_of(const glm::vec3& size) { return std::max({size.x, size.y, size.z}); }
@@ -103,6 +103,66 @@ class Join {
   const std::function<void(std::uint32_t, std::uint32_t)>& take_;
 };
 
+// A grid over all boxes that knows where those of several labels come together: of a fine mesh most
+// are far from any other's.
+class Meetings {
+ public:
+  Meetings(const std::vector<LabelledBox>& boxes, const glm::vec3& low, const glm::vec3& high)
+      : low_(low) {
+    const glm::vec3 size = high - low;
+    // About as many cells as boxes, of like edges; a flat scene has one layer.
+    const float volume = std::max(size.x, 1e-3F * longest_of(size)) *
+                         std::max(size.y, 1e-3F * longest_of(size)) *
+                         std::max(size.z, 1e-3F * longest_of(size));
+    edge_ = std::cbrt(volume / static_cast<float>(boxes.size()));
+    for (int axis = 0; axis < 3; ++axis) count_[axis] = 1 + static_cast<int>(size[axis] / edge_);
+    std::size_t cells = 0;
+    for (const LabelledBox& box : boxes) {
+      const glm::ivec3 span = cell_of(box.high) - cell_of(box.low) + 1;
+      cells += std::size_t(span.x) * std::size_t(span.y) * std::size_t(span.z);
+    }
+    if (cells > most_cells_a_box * boxes.size()) return;  // of needles and walls
+    labels_.assign(std::size_t(count_.x) * std::size_t(count_.y) * std::size_t(count_.z), nobody);
+    for (const LabelledBox& box : boxes) {
+      any_cell(box, [&](std::uint32_t& label) {
+        label = label == nobody || label == box.label ? box.label : several;
+        return false;
+      });
+    }
+  }
+  [[nodiscard]] bool meets_others(const LabelledBox& box) {
+    return labels_.empty() || any_cell(box, [](std::uint32_t label) { return label == several; });
+  }
+
+ private:
+  static constexpr std::size_t most_cells_a_box = 16;
+  static constexpr std::uint32_t nobody = 0xFFFFFFFFU, several = 0xFFFFFFFEU;
+
+  [[nodiscard]] glm::ivec3 cell_of(const glm::vec3& p) const {
+    return glm::ivec3((p - low_) / edge_);
+  }
+  // Whether it is so of a cell that the box reaches into: until one is found.
+  template <class Is>
+  bool any_cell(const LabelledBox& box, const Is& is) {
+    const glm::ivec3 from = cell_of(box.low), to = cell_of(box.high);
+    for (int z = from.z; z <= to.z; ++z) {
+      for (int y = from.y; y <= to.y; ++y) {
+        const std::size_t row =
+            (std::size_t(z) * std::size_t(count_.y) + std::size_t(y)) * std::size_t(count_.x);
+        for (int x = from.x; x <= to.x; ++x) {
+          if (is(labels_[row + std::size_t(x)])) return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  glm::vec3 low_;
+  float edge_;
+  glm::ivec3 count_{1};
+  std::vector<std::uint32_t> labels_;
+};
+
 }  // namespace
 
 void join_boxes(std::vector<LabelledBox> boxes,
@@ -115,6 +175,10 @@ void join_boxes(std::vector<LabelledBox> boxes,
   }
   for (int axis = 0; axis < 3; ++axis) {
     high[axis] = std::nextafter(high[axis], std::numeric_limits<float>::infinity());
+  }
+  if (boxes.size() >= many) {
+    Meetings meetings(boxes, low, high);
+    std::erase_if(boxes, [&](const LabelledBox& box) { return !meetings.meets_others(box); });
   }
   Join(take).within(std::move(boxes), low, high, 0);
 }

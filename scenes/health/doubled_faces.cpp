@@ -20,37 +20,52 @@ namespace {
 
 // Polygons whose corners another one may have too: those alike in a digest of the corners.
 std::vector<Face> faces_of(const Scene& scene, std::span<const std::uint32_t> ids) {
-  std::vector<Face> faces;
-  std::vector<std::uint64_t> digests;
+  const auto& triangles = scene.triangles;
   Face face;
+  const auto corners_from = [&](std::uint32_t first, std::uint32_t end) {
+    face.corners.clear();
+    for (std::uint32_t t = first; t < end; ++t) {
+      for (const std::uint32_t v : triangles[t].vertex) face.corners.push_back(ids[v]);
+    }
+    std::sort(face.corners.begin(), face.corners.end());
+    face.corners.erase(std::unique(face.corners.begin(), face.corners.end()), face.corners.end());
+  };
+  const auto digest_of = [&](std::uint32_t first, std::uint32_t end) {
+    // A sum, whatever corner comes first.
+    std::uint64_t digest = 0;
+    if (end == first + 1) {  // most of a large mesh
+      for (const std::uint32_t v : triangles[first].vertex) digest += base::mix64(ids[v]);
+    } else {
+      corners_from(first, end);
+      for (const std::uint32_t corner : face.corners) digest += base::mix64(corner);
+    }
+    return digest;
+  };
   const auto each = [&](const auto& take) {
     std::size_t number = 0;
-    for (std::uint32_t t = 0; t < scene.triangles.size(); t += face.count, ++number) {
-      face.first = t;
-      face.count = 0;
-      face.corners.clear();
-      for (std::uint32_t k = t;
-           k < scene.triangles.size() && scene.triangles[k].polygon == scene.triangles[t].polygon;
-           ++k, ++face.count) {
-        for (const std::uint32_t v : scene.triangles[k].vertex) face.corners.push_back(ids[v]);
-      }
-      std::sort(face.corners.begin(), face.corners.end());
-      face.corners.erase(std::unique(face.corners.begin(), face.corners.end()), face.corners.end());
-      take(number);
+    for (std::uint32_t t = 0, end = 0; t < triangles.size(); t = end, ++number) {
+      while (end < triangles.size() && triangles[end].polygon == triangles[t].polygon) ++end;
+      take(number, t, end);
     }
   };
-  each([&](std::size_t) {
-    std::uint64_t digest = 0;
-    for (const std::uint32_t corner : face.corners) digest = base::mix64(digest ^ corner);
-    digests.push_back(digest);
+  std::vector<std::uint32_t> digests;
+  each([&](std::size_t, std::uint32_t first, std::uint32_t end) {
+    digests.push_back(static_cast<std::uint32_t>(digest_of(first, end) >> 32U));
   });
-  std::vector<std::uint8_t> seen(std::bit_ceil(4 * digests.size() + 1), 0);  // 0, 1, more
-  for (const std::uint64_t digest : digests) {
+  // 0, 1, more
+  std::vector<std::uint8_t> seen(
+      std::min(std::bit_ceil(4 * digests.size() + 1), std::size_t{1} << 32U), 0);
+  for (const std::uint32_t digest : digests) {
     std::uint8_t& times = seen[digest & (seen.size() - 1)];
     times = times == 0 ? 1 : 2;
   }
-  each([&](std::size_t number) {
-    if (seen[digests[number] & (seen.size() - 1)] >= 2) faces.push_back(face);
+  std::vector<Face> faces;
+  each([&](std::size_t number, std::uint32_t first, std::uint32_t end) {
+    if (seen[digests[number] & (seen.size() - 1)] < 2) return;
+    corners_from(first, end);
+    face.first = first;
+    face.count = end - first;
+    faces.push_back(face);
   });
   return faces;
 }

@@ -2,21 +2,15 @@
 #include "scenes/health/topology.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <numeric>
-#include <tuple>
 
 #include "base/numbers/random.h"
 #include "scenes/triangle_point.h"
 
 namespace earthshine::scenes {
 namespace {
-
-struct EdgeUse {
-  std::uint32_t low, high, triangle;  // the triangle counted from the object's first
-  bool rising;                        // from low to high
-  [[nodiscard]] auto edge() const { return std::tie(low, high); }
-};
 
 // Sets of triangles, each with whether it is wound against the first of its set.
 class Winding {
@@ -62,48 +56,91 @@ class Winding {
   std::vector<char> against_;
 };
 
-std::vector<EdgeUse> edge_uses(const Scene& scene, const Object& object,
-                               std::span<const std::uint32_t> ids) {
-  const auto each = [&](const auto& take) {
-    for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
-      const Triangle& triangle = scene.triangles[object.first_triangle + t];
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t a = ids[triangle.vertex[k]], b = ids[triangle.vertex[(k + 1) % 3]];
-        if (a != b) take(EdgeUse{std::min(a, b), std::max(a, b), t, a < b});
+// The edges of an object, with the triangles that use them.
+class Edges {
+ public:
+  // A triangle, counted from the object's first, and whether it runs from the edge's lower vertex
+  // to the higher one. Numbers, so that they are sorted fast: by edge and triangle.
+  class Use {
+   public:
+    Use() = default;
+    Use(std::uint32_t high, std::uint32_t triangle, bool rising)
+        : packed_(std::uint64_t{high} << 32U | std::uint64_t{triangle} << 1U | (rising ? 1U : 0U)) {
+    }
+    [[nodiscard]] std::uint32_t triangle() const {
+      return static_cast<std::uint32_t>(packed_ & 0xFFFFFFFFU) >> 1U;
+    }
+    [[nodiscard]] bool rising() const { return (packed_ & 1U) != 0; }
+    [[nodiscard]] std::uint64_t high() const { return packed_ >> 32U; }
+    bool operator<(const Use& other) const { return packed_ < other.packed_; }
+
+   private:
+    std::uint64_t packed_ = 0;
+  };
+
+  Edges(const Scene& scene, const Object& object, std::span<const std::uint32_t> ids) {
+    const auto each_use = [&](const auto& take) {
+      for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+        const auto& v = scene.triangles[object.first_triangle + t].vertex;
+        const std::array<std::uint32_t, 3> id{ids[v[0]], ids[v[1]], ids[v[2]]};
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::uint32_t a = id[k], b = id[(k + 1) % 3];
+          if (a != b) take(std::min(a, b), Use(std::max(a, b), t, a < b));
+        }
+      }
+    };
+    std::uint32_t lowest = 0xFFFFFFFFU, highest = 0;
+    std::size_t count = 0;
+    each_use([&](std::uint32_t low, const Use&) {
+      lowest = std::min(lowest, low);
+      highest = std::max(highest, low);
+      ++count;
+    });
+    if (count == 0) return;
+    std::vector<std::uint32_t> lows;  // of a small object on vertices of a large one
+    const bool sparse = std::size_t{highest} - lowest > 8 * count;
+    if (sparse) {
+      each_use([&](std::uint32_t low, const Use&) { lows.push_back(low); });
+      std::sort(lows.begin(), lows.end());
+      lows.erase(std::unique(lows.begin(), lows.end()), lows.end());
+    }
+    const auto place_of = [&](std::uint32_t low) -> std::size_t {
+      if (!sparse) return low - lowest;
+      return static_cast<std::size_t>(std::lower_bound(lows.begin(), lows.end(), low) -
+                                      lows.begin());
+    };
+    // Each goes to the place of its lower vertex; there are few at any.
+    end_.assign(place_of(highest) + 2, 0);
+    each_use([&](std::uint32_t low, const Use&) { ++end_[place_of(low) + 1]; });
+    std::partial_sum(end_.begin(), end_.end(), end_.begin());
+    uses_.resize(count);
+    each_use([&](std::uint32_t low, const Use& use) { uses_[end_[place_of(low)]++] = use; });
+    end_.pop_back();
+    std::uint32_t begin = 0;
+    for (const std::uint32_t end : end_) {
+      std::sort(uses_.begin() + begin, uses_.begin() + end);
+      begin = end;
+    }
+  }
+
+  // Calls take(uses) for each edge.
+  template <class Take>
+  void each(const Take& take) const {
+    std::uint32_t begin = 0;
+    for (const std::uint32_t end : end_) {
+      while (begin < end) {
+        std::uint32_t next = begin + 1;
+        while (next < end && uses_[next].high() == uses_[begin].high()) ++next;
+        take(std::span<const Use>(uses_.data() + begin, next - begin));
+        begin = next;
       }
     }
-  };
-  const auto in_order = [](const EdgeUse& a, const EdgeUse& b) {
-    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-  };
-  std::uint32_t lowest = 0xFFFFFFFFU, highest = 0;
-  std::size_t count = 0;
-  each([&](const EdgeUse& use) {
-    lowest = std::min(lowest, use.low);
-    highest = std::max(highest, use.low);
-    ++count;
-  });
-  if (count == 0) return {};
-  const std::size_t places = std::size_t{highest} - lowest + 1;
-  if (places > 8 * count) {  // a small object on vertices of a large one
-    std::vector<EdgeUse> uses;
-    uses.reserve(count);
-    each([&](const EdgeUse& use) { uses.push_back(use); });
-    std::sort(uses.begin(), uses.end(), in_order);
-    return uses;
   }
-  // Each goes to the place of its lower vertex; there are few at any.
-  std::vector<std::uint32_t> next(places + 1, 0);
-  each([&](const EdgeUse& use) { ++next[use.low - lowest + 1]; });
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  std::vector<EdgeUse> uses(next.back());
-  each([&](const EdgeUse& use) { uses[next[use.low - lowest]++] = use; });
-  for (auto begin = uses.begin(), end = begin; begin != uses.end(); begin = end) {
-    while (end != uses.end() && end->low == begin->low) ++end;
-    std::sort(begin, end, in_order);
-  }
-  return uses;
-}
+
+ private:
+  std::vector<std::uint32_t> end_;  // of the uses at each lower vertex
+  std::vector<Use> uses_;
+};
 
 // Turns the part's orientation to that of most of its area and measures it.
 void measure(const Scene& scene, SurfacePart& part) {
@@ -146,15 +183,15 @@ std::vector<std::uint32_t> welded(std::span<const Vec3> vertices) {
 
 std::vector<SurfacePart> surface_parts(const Scene& scene, const Object& object,
                                        std::span<const std::uint32_t> ids) {
-  const std::vector<EdgeUse> uses = edge_uses(scene, object, ids);
+  const Edges edges(scene, object, ids);
+  using Uses = std::span<const Edges::Use>;
   Winding winding(object.triangle_count);
   std::vector<std::uint32_t> torn;  // a triangle of each edge that contradicts
-  for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
-    while (end < uses.size() && uses[end].edge() == uses[begin].edge()) ++end;
-    if (end - begin != 2) continue;
-    const EdgeUse &a = uses[begin], &b = uses[begin + 1];
-    if (!winding.unite(a.triangle, b.triangle, a.rising == b.rising)) torn.push_back(a.triangle);
-  }
+  edges.each([&](Uses uses) {
+    if (uses.size() != 2) return;
+    const std::uint32_t a = uses[0].triangle(), b = uses[1].triangle();
+    if (!winding.unite(a, b, uses[0].rising() == uses[1].rising())) torn.push_back(a);
+  });
   std::vector<std::uint32_t> number(object.triangle_count);  // of the part
   std::vector<SurfacePart> parts;
   for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
@@ -169,18 +206,14 @@ std::vector<SurfacePart> surface_parts(const Scene& scene, const Object& object,
   }
   const auto part_of = [&](std::uint32_t t) -> SurfacePart& { return parts[number[t]]; };
   for (const std::uint32_t t : torn) part_of(t).orientable = false;
-  for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
-    while (end < uses.size() && uses[end].edge() == uses[begin].edge()) ++end;
-    const std::size_t count = end - begin;
-    if (count > 2) ++part_of(uses[begin].triangle).crowded_edges;
-    if (count == 1) ++part_of(uses[begin].triangle).open_edges;
-    for (std::size_t k = begin; count > 2 && k < end; ++k) {
-      part_of(uses[k].triangle).crowded = true;
-    }
-    if (count == 2 && uses[begin].rising == uses[begin + 1].rising) {
-      ++part_of(uses[begin].triangle).mixed_edges;
-    }
-  }
+  edges.each([&](Uses uses) {
+    SurfacePart& part = part_of(uses[0].triangle());
+    if (uses.size() == 1) ++part.open_edges;
+    if (uses.size() == 2 && uses[0].rising() == uses[1].rising()) ++part.mixed_edges;
+    if (uses.size() <= 2) return;
+    ++part.crowded_edges;
+    for (const Edges::Use& use : uses) part_of(use.triangle()).crowded = true;
+  });
   for (SurfacePart& part : parts) measure(scene, part);
   return parts;
 }

@@ -48,10 +48,13 @@ class Placer {
 
   void transform() {
     placed_at_.assign(mesh_.vertices.size(), no_index);
+    std::vector<char> seen(mesh_.vertices.size(), 0);
     Vec3 low(std::numeric_limits<double>::infinity());
     Vec3 high(-low);
     for (const std::size_t p : chosen_) {
       for (const std::uint32_t index : corners_of(mesh_.polygons[p])) {
+        if (seen[index] != 0) continue;
+        seen[index] = 1;
         const Vec3 v = placement_.apply(mesh_.vertices[index]);
         for (int c = 0; c < 3; ++c) {
           if (std::abs(v[c]) <= largest_length) continue;

@@ -52,7 +52,7 @@ void TextLines::read_line() {
       const std::size_t begin = i;
       while (i < end && !blank(text_[i])) ++i;
       const Word word{text_.substr(begin, i - begin), line_, static_cast<int>(begin - start) + 1};
-      if (word.text.find('\0') != std::string_view::npos) {
+      if (begin <= nul_ && nul_ < i) {
         throw base::Error(base::Blame::Input, where(word), "a NUL byte",
                           "a file of this format is plain text");
       }

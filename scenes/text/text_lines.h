@@ -25,7 +25,11 @@ class TextLines {
   // the start of a word opens a comment and a backslash before the line's end joins the next line.
   enum class Style { Plain, Wavefront };
   TextLines(std::string_view text, std::string file, Style style, int lines_before = 0)
-      : text_(text), file_(std::move(file)), style_(style), line_(lines_before) {}
+      : text_(text),
+        nul_(text.find('\0')),
+        file_(std::move(file)),
+        style_(style),
+        line_(lines_before) {}
 
   // Goes to the next line that holds words; false at the end.
   // Throws base::Error (Input) at a NUL byte: the file is not text.
@@ -48,6 +52,7 @@ class TextLines {
   void read_line();
 
   std::string_view text_;
+  std::size_t nul_;  // where the first NUL byte is
   std::string file_;
   Style style_;
   std::size_t position_ = 0;

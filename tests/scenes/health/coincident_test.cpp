@@ -261,5 +261,39 @@ TEST(BoxJoin, FindsEachPairThatMeetsOnce) {
   EXPECT_EQ(found, expected);
 }
 
+// 40 random boxes over a sheet of 90 000 that touch each other: the pairs that a comparison of each
+// of the 40 with all finds.
+TEST(BoxJoin, FindsTheFewThatMeetAmongMany) {
+  base::Rng random(base::Key(4, base::Stream::Test, 0));
+  const auto number = [&](double most) { return static_cast<float>(most * random.next()); };
+  std::vector<LabelledBox> boxes;
+  constexpr std::uint32_t edge = 300, few = 40;
+  for (std::uint32_t k = 0; k < few; ++k) {
+    const glm::vec3 low(number(1.0), number(1.0), -number(0.02));
+    boxes.push_back({low, low + glm::vec3(number(0.02), number(0.02), number(0.02)), 1 + k / 2, k});
+  }
+  for (std::uint32_t k = 0; k < edge * edge; ++k) {
+    const glm::vec3 low(static_cast<float>(k % edge) / edge, static_cast<float>(k / edge) / edge,
+                        0.0F);
+    boxes.push_back({low, low + glm::vec3(1.0F / edge, 1.0F / edge, 1e-3F), 0, few + k});
+  }
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> expected, found;
+  for (std::uint32_t a = 0; a < few; ++a) {
+    for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
+      if (boxes[a].label != boxes[b].label &&
+          glm::all(glm::lessThanEqual(boxes[a].low, boxes[b].high)) &&
+          glm::all(glm::lessThanEqual(boxes[b].low, boxes[a].high))) {
+        expected.emplace_back(a, b);
+      }
+    }
+  }
+  join_boxes(boxes, [&](std::uint32_t a, std::uint32_t b) {
+    found.emplace_back(std::min(a, b), std::max(a, b));
+  });
+  std::sort(found.begin(), found.end());
+  EXPECT_GT(expected.size(), 200U);
+  EXPECT_EQ(found, expected);
+}
+
 }  // namespace
 }  // namespace earthshine::scenes
