@@ -15,19 +15,21 @@ struct Group {
   std::string_view title;
   std::vector<std::string_view> options;
 };
-const std::array<Group, 6>& groups() {
-  static const std::array<Group, 6> all = {
+const std::array<Group, 7>& groups() {
+  static const std::array<Group, 7> all = {
       {{"What is read", {"set", "scene", "solution", "preset", "fields", "frame", "frames"}},
        {"What is looked at",
         {"camera", "size", "crop", "only-pixel", "over", "over-style", "over-alpha", "positions",
-         "at", "wanted", "iris", "lights"}},
+         "at", "wanted", "iris", "lights", "probe", "cctv", "f-number", "fov"}},
        {"How exactly",
         {"error", "no-error", "time-limit", "indirect", "distributed-lights", "distributed-over",
-         "all-effects", "paths", "noise", "raw", "reference-factor", "method"}},
+         "all-effects", "paths", "noise", "raw", "reference-factor", "method", "off"}},
+       {"In parts, on many machines", {"part", "wait", "ranks"}},
        {"Options", {}},
        {"What is written",
         {"output", "png", "range", "report", "aov", "per-light", "timings", "json", "csv", "glb",
-         "twin", "target-resels", "stages", "list", "describe", "plain", "dry-run"}},
+         "twin", "target-resels", "stages", "list", "describe", "plain", "dry-run", "exposure",
+         "curve"}},
        {"As with every command", {"threads", "seed", "max-memory", "quiet", "help", "version"}}}};
   return all;
 }

@@ -254,7 +254,8 @@ Command add_plan(CLI::App& program) {
       "As if the pictures on the CCTV monitors were asked for");
   const auto ranks = std::make_shared<int>(0);
   parser->add_option("--ranks", *ranks, "What so many ranks of earthshine-mpi take, each of them")
-      ->check(CLI::Range(1, 65536));
+      ->check(CLI::Range(1, 65536).description(""))
+      ->type_name("N");
   parser->add_flag("--json", call->json, "JSON on standard output");
   return {parser, [call, ranks](const Common& common) {
             check_aovs(*call);

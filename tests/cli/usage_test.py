@@ -25,6 +25,7 @@ class Help(program.Case):
                         ["study", "orbit"], ["study", "accuracy"], ["study", "compare"], ["study", "run"]]:
             text = self.done(*command, "--help")
             self.assertLessEqual(max(map(len, text.splitlines())), 80, command)
+            self.assertNotIn("\nOptions:", text)  # each stands in a group
             self.says(text, "Usage: earthshine " + "".join(word + " " for word in command) + "[OPTIONS]")
         # No word is cut: the lines of one entry, put together, are its sentence.
         self.says(" ".join(self.done("render", "--help").split()),
