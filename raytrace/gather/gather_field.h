@@ -99,6 +99,8 @@ class GatherField {
   [[nodiscard]] double cover_of(std::size_t point) const {
     return point < grid_ ? 1.0 : double(strays_[point - grid_].cover);
   }
+  // Whether the centres of a pixel and of those about it lie on one surface, or on none.
+  [[nodiscard]] bool is_even(int x, int y) const { return even_[window_.index(x, y)] != 0; }
   [[nodiscard]] std::size_t image_layers() const { return image_layers_; }
   [[nodiscard]] const std::vector<GatherPoint>& points() const { return points_; }
   [[nodiscard]] const Shared& shared(Gathered kind) const { return shared_[number(kind)]; }
@@ -122,20 +124,20 @@ class GatherField {
   void find_turning_lobes();
   // Of what camera rays met: true where light is gathered there.
   bool place(const scenes::Hit& hit, GatherPoint& point, Vec3& origin) const;
-  // What eight rays through these places of a pixel meet.
+  // What rays through some places of a pixel meet, eight at most.
   using Places = std::array<double, scenes::RayPacket::width>;
-  [[nodiscard]] std::array<scenes::Hit, scenes::RayPacket::width> look(std::size_t pixel,
-                                                                       const Places& x,
-                                                                       const Places& y) const;
+  [[nodiscard]] std::array<scenes::Hit, scenes::RayPacket::width> look(
+      std::size_t pixel, const Places& x, const Places& y, std::size_t first = 0,
+      std::size_t end = scenes::RayPacket::width) const;
   // Finds the points whose rays must start all over their pixel, by the length of all their rays,
   // and casts anew there as many as they had.
   void classify_origins(std::uint32_t round, const std::function<bool()>& stop);
   [[nodiscard]] std::size_t origins_at(std::size_t point) const {
     return over_pixel_[point] != 0 ? RayOrigins::most : 1;
   }
-  // Where the rays of a point start, other places for each `turn`.
+  // Where so many rays of a point start, other places for each `turn`.
   [[nodiscard]] RayOrigins draw_origins(Gathered kind, std::size_t point, std::uint32_t turn,
-                                        RayCounts& counts) const;
+                                        std::uint32_t rays, RayCounts& counts) const;
   // Of a pixel of the window, in the picture.
   [[nodiscard]] std::array<int, 2> place_of(std::size_t pixel) const;
   // All points of a tile, pixel by pixel.
@@ -170,6 +172,7 @@ class GatherField {
   std::vector<std::uint32_t> first_stray_;  // of a pixel, and behind its last
   std::vector<Vec3> origin_;                // lifted off the surface
   std::vector<RayLengths> lengths_;         // of the rays that read the solution
+  std::vector<std::uint8_t> even_;          // per pixel, 1: is_even()
   std::vector<std::uint8_t> over_pixel_;    // per point, 1: rays start all over its pixel
   std::array<Estimate, gathered_kinds> estimate_;
   std::array<Shared, gathered_kinds> shared_;

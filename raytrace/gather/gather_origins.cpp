@@ -43,7 +43,7 @@ void GatherField::classify_origins(std::uint32_t round, const std::function<bool
 }
 
 RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t turn,
-                                     RayCounts& counts) const {
+                                     std::uint32_t rays, RayCounts& counts) const {
   RayOrigins origins;
   if (origins_at(p) > 1) {
     const base::Key key = base::Key(setting_.seed, base::Stream::GatherOrigin, random_number_of(p))
@@ -55,15 +55,21 @@ RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t
       const auto u = places.point2(k);
       in_x[k] = double(u[0]), in_y[k] = double(u[1]);
     }
-    counts.camera += RayOrigins::most;
     const auto [x, y] = place_of(pixel_of(p));
-    for (const scenes::Hit& hit : look(pixel_of(p), in_x, in_y)) {
-      GatherPoint found;
-      Vec3 origin;
-      if (!place(hit, found, origin)) continue;
-      // Only where camera samples read this point: it stands for the mean over just these places.
-      if (find(x, y, found.position, found.normal) != p) continue;
-      origins.add(origin, Vec3(found.normal));
+    // No more places than rays, unless some of them show another surface.
+    std::size_t drawn = 0;
+    for (const std::size_t end : {std::min<std::size_t>(rays, RayOrigins::most), RayOrigins::most}) {
+      if (origins.count >= rays || drawn >= end) break;
+      const auto met = look(pixel_of(p), in_x, in_y, drawn, end);
+      counts.camera += end - drawn;
+      for (; drawn < end; ++drawn) {
+        GatherPoint found;
+        Vec3 origin;
+        if (!place(met[drawn], found, origin)) continue;
+        // Only where camera samples read this point: it stands for the mean over just these places.
+        if (find(x, y, found.position, found.normal) != p) continue;
+        origins.add(origin, Vec3(found.normal));
+      }
     }
   }
   if (origins.count == 0) origins.add(origin_[p], Vec3(points_[p].normal));

@@ -38,7 +38,7 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
                       random_number_of(p))
                 .with(2 * std::uint64_t{round} + half);
         const base::SobolOwen4 directions(key);
-        const RayOrigins origins = draw_origins(kind, p, 2 * round + half, counts);
+        const RayOrigins origins = draw_origins(kind, p, 2 * round + half, each, counts);
         for (std::uint32_t k = 0; k < each; ++k) {
           base::Rng rng(key.with(k));
           // Both halves together take all turns, at neighbouring points in another order.

@@ -95,17 +95,18 @@ void GatherField::find_points() {
 }
 
 std::array<scenes::Hit, packet_width> GatherField::look(std::size_t pixel, const Places& x_of,
-                                                        const Places& y_of) const {
+                                                        const Places& y_of, std::size_t first,
+                                                        std::size_t end) const {
   const auto [x, y] = place_of(pixel);
-  RayPacket packet;
+  RayPacket packet{};
   HitPacket hits;
-  for (std::size_t k = 0; k < packet_width; ++k) {
+  for (std::size_t k = first; k < end; ++k) {
     const Ray ray = camera_.ray(x + x_of[k], y + y_of[k], 0.0, 0.0);
-    world_.query.set(packet, k, ray.origin, ray.direction);
+    world_.query.set(packet, k - first, ray.origin, ray.direction);
   }
-  world_.query.closest(packet, packet_width, hits);
+  world_.query.closest(packet, end - first, hits);
   std::array<scenes::Hit, packet_width> met;
-  for (std::size_t k = 0; k < packet_width; ++k) met[k] = hit_of(hits, k);
+  for (std::size_t k = first; k < end; ++k) met[k] = hit_of(hits, k - first);
   return met;
 }
 
@@ -117,6 +118,7 @@ void GatherField::find_strays() {
     Vec3 origin;
   };
   std::vector<std::vector<Found>> found(tile_count(window_));
+  even_.assign(grid_, 0);
   std::atomic<std::uint64_t> rays{0};
   const auto alike = [](const GatherPoint& a, const GatherPoint& b) {
     return a.material == b.material && stands_for(a, b.position, b.normal);
@@ -129,6 +131,7 @@ void GatherField::find_strays() {
       even = even && gathers == (points_[own].reach_m > 0.0F) &&
              (!gathers || alike(points_[own], points_[q]));
     });
+    even_[own] = even ? 1 : 0;
     if (even) return;
     rays += packet_width;
     for (const scenes::Hit& hit : look(own, stray_columns, stray_rows)) {

@@ -119,7 +119,7 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
           TilePoints points(origins);
           for (const std::size_t p : some) {
             points.add(p, random_number_of(p),
-                       draw_origins(Gathered::Solution, p, 2 * round + half, counts[t]),
+                       draw_origins(Gathered::Solution, p, 2 * round + half, of_class, counts[t]),
                        world_.query.centre());
           }
           SolutionRays found(world_.query, incoming_, rays, layers_, points);

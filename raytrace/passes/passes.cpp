@@ -20,7 +20,7 @@ constexpr std::array<Gathered, gathered_kinds> every_kind = {Gathered::Solution,
                                                              Gathered::Lobe};
 constexpr double most_step = 2.0;  // less squared error a round
 // What planning by few samples promises is off by that much.
-constexpr double least_kept = 0.7, most_kept = 2.0;
+constexpr double kept = 1.5;
 // Near the wanted error, how much more is cast before looking again, over what samples spread as
 // so far would take: what was known by few samples is often better than it seemed.
 constexpr double last_step_share = 0.5, least_last_step = 0.05;
@@ -90,7 +90,7 @@ class Passes {
     sums_.emplace(window_, shared_.layers, shared_.splits_parts);
     expected_ =
         static_cast<double>(sampling.camera_samples) * static_cast<double>(window_.pixel_count());
-    first_round(static_cast<std::uint32_t>(sampling.camera_samples));
+    first_round(everywhere(sampling.camera_samples));
     report_.gather_rays = sampling.camera_samples * sampling.gather_rays;
   }
 
@@ -122,7 +122,7 @@ class Passes {
       report_.gather_seconds += seconds_since(start);
     }
     sums_.emplace(around, shared_.layers, shared_.splits_parts);
-    first_round(static_cast<std::uint32_t>(how.least_samples));
+    first_round(everywhere(how.least_samples));
     for (int round = 1; round < most_rounds && !ends() && per_deviation > 0.0; ++round) {
       shade(wanted_samples(*sums_, per_deviation, pilot.bright(), how.least_samples,
                            how.most_samples));
@@ -142,9 +142,8 @@ class Passes {
       share();
       report_.gather_seconds += seconds_since(start);
     }
-    first_round(static_cast<std::uint32_t>(options_.shared.least_samples));
+    first_round(fewest_by_edges());
     if (!ends()) shade(wanted_for_the_eye(*sums_));
-    double before = 0.0, promised = 0.0, kept = 1.0;  // of what the last plan promised
     for (int round = 1; round < most_error_rounds && !ends(); ++round) {
       const SampleCosts each = sample_costs(field());
       const SamplePlanner planner(*sums_, field(), each);
@@ -152,7 +151,6 @@ class Passes {
       if (options_.error > 0.0 && error <= options_.error) break;
       // Step by step: what few samples say of more of them is rough.
       const double aim = aimed_share * options_.error;
-      if (promised > 0.0) kept = std::clamp((before - now) / promised, least_kept, most_kept);
       const double step = now - (now - std::max(aim * aim, now / most_step)) / kept;
       const double so_far = spent(*sums_, field(), each);
       double most = affordable(so_far);
@@ -162,7 +160,6 @@ class Passes {
       }
       const SamplePlan plan = planner.plan(step, most);
       if (plan.cost <= 0.0) break;
-      before = now, promised = now - plan.squared_error;
       expected_ = std::max(done_ + plan.cost, done_ * error * error / std::max(aim * aim, 1e-12));
       if (field_) {
         const auto start = Clock::now();
@@ -226,14 +223,31 @@ class Passes {
     report_.gather_rays = static_cast<int>(std::lround(rays / std::max(1.0, points)));
   }
 
+  [[nodiscard]] std::vector<std::uint32_t> everywhere(int samples) const {
+    return std::vector<std::uint32_t>(sums_->samples.size(), static_cast<std::uint32_t>(samples));
+  }
+
+  // Half as many where no edge is near, two at least: only shadows and highlights vary there.
+  [[nodiscard]] std::vector<std::uint32_t> fewest_by_edges() const {
+    const int least = options_.shared.least_samples;
+    std::vector<std::uint32_t> samples = everywhere(least);
+    if (!field_) return samples;
+    const auto few = static_cast<std::uint32_t>(std::max(std::min(2, least), least / 2));
+    for (int y = window_.y; y < window_.y + window_.rows; ++y) {
+      for (int x = window_.x; x < window_.x + window_.columns; ++x) {
+        if (field_->is_even(x, y)) samples[window_.index(x, y)] = few;
+      }
+    }
+    return samples;
+  }
+
   // What was not reached when it was stopped gets a single sample all the same: a quick look.
-  void first_round(std::uint32_t samples) {
-    report_.least_camera_samples = static_cast<int>(samples);
-    const std::size_t count = sums_->samples.size();
-    shade(std::vector<std::uint32_t>(count, samples));
+  void first_round(const std::vector<std::uint32_t>& samples) {
+    report_.least_camera_samples =
+        static_cast<int>(*std::min_element(samples.begin(), samples.end()));
+    shade(samples);
     if (!ends()) return;
-    shade_samples(shared_, camera_, std::vector<std::uint32_t>(count, 1U), *sums_, report_.rays, {},
-                  {});
+    shade_samples(shared_, camera_, everywhere(1), *sums_, report_.rays, {}, {});
   }
 
   void shade(const std::vector<std::uint32_t>& wanted) {

@@ -13,9 +13,10 @@ namespace {
 
 constexpr int tile_edge_px = 16;
 constexpr std::size_t few_pixels = 64;
-// What the eye overlooks in a pixel of four samples, and how dim a surface it still looks at, over
-// the picture's mean.
-constexpr double most_scatter = 1.0 / 3.0, dimmest_share = 0.05;
+// What the eye overlooks in a pixel of four samples, and of eight, and how dim a surface it still
+// looks at, over the picture's mean.
+constexpr double most_scatter = 1.0 / 3.0, most_of_eight = 1.414 * most_scatter;
+constexpr double dimmest_share = 0.05;
 
 void shade_pixel(const ShadingScene& shared, const CameraModel& camera, int x, int y,
                  std::uint32_t first, std::uint32_t end, PixelShader& shader) {
@@ -260,7 +261,7 @@ std::vector<std::uint32_t> wanted_for_the_eye(const PixelSums& sums) {
   const std::vector<double> around = greatest_around(sums.window, scatter);
   std::vector<std::uint32_t> wanted = sums.samples;
   for (std::size_t p = 0; p < wanted.size(); ++p) {
-    if (around[p] > most_scatter) wanted[p] *= 4;
+    if (around[p] > most_scatter) wanted[p] *= around[p] > most_of_eight ? 4U : 2U;
   }
   return wanted;
 }

@@ -106,17 +106,19 @@ class Sharer {
 
   void split_halves() {
     Planes values(1 + noise_fields, std::vector<float>(points_, 0.0F)), detail;
-    for (std::size_t p = 0; p < points_; ++p) {
-      const float n = 0.5F * estimate_.samples[p];
-      if (n <= 0.0F) continue;
-      const float first = estimate_.luminance[p][0] / n, second = estimate_.luminance[p][1] / n;
-      values[0][p] = 0.5F * (first + second);
-      const std::uint64_t signs = base::mix64(p);
-      for (std::size_t k = 0; k < noise_fields; ++k) {
-        values[1 + k][p] =
-            ((signs >> k) & 1U) == 0 ? 0.5F * (first - second) : 0.5F * (second - first);
+    for_all([&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
+        const float n = 0.5F * estimate_.samples[p];
+        if (n <= 0.0F) continue;
+        const float first = estimate_.luminance[p][0] / n, second = estimate_.luminance[p][1] / n;
+        values[0][p] = 0.5F * (first + second);
+        const std::uint64_t signs = base::mix64(p);
+        for (std::size_t k = 0; k < noise_fields; ++k) {
+          values[1 + k][p] =
+              ((signs >> k) & 1U) == 0 ? 0.5F * (first - second) : 0.5F * (second - first);
+        }
       }
-    }
+    });
     Planes weight;
     neighbours_.blur(0, {estimate_.samples}, nullptr, weight);
     weight_ = std::move(weight.front());
@@ -129,18 +131,22 @@ class Sharer {
     take_squares(values);
     blur_squares(share_levels - 1);
     shared_.rest.resize(points_);
-    for (std::size_t p = 0; p < points_; ++p) shared_.rest[p] = noise_of(p).mean;
-    for (std::size_t p = 0; p < points_; ++p) {
-      shared_.squared_error[p] = static_cast<float>(shared_.squared_error_with(p, 1.0));
-    }
+    for_all([&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
+        shared_.rest[p] = noise_of(p).mean;
+        shared_.squared_error[p] = static_cast<float>(shared_.squared_error_with(p, 1.0));
+      }
+    });
   }
 
   void take_squares(const Planes& values) {
     squares_.resize(values.size());
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      squares_[k].resize(points_);
-      for (std::size_t p = 0; p < points_; ++p) squares_[k][p] = values[k][p] * values[k][p];
-    }
+    for (std::vector<float>& of : squares_) of.resize(points_);
+    for_all([&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        for (std::size_t p = begin; p < end; ++p) squares_[k][p] = values[k][p] * values[k][p];
+      }
+    });
   }
 
   struct Noise {
@@ -159,15 +165,17 @@ class Sharer {
   }
 
   void keep(std::size_t level) {
-    for (std::size_t p = 0; p < points_; ++p) {
-      const Noise noise = noise_of(p);
-      const float q = noise.mean, s = squares_[0][p] - q;
-      keep_[p][level] = kept_share(s, q);
-      shared_.signal[p][level] = s;
-      shared_.noise[p][level] = q;
-      // The mean of N normal squares has the relative variance 2 / N.
-      shared_.few[p][level] = std::min(1.0F, 0.5F * noise.variance);
-    }
+    for_all([&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
+        const Noise noise = noise_of(p);
+        const float q = noise.mean, s = squares_[0][p] - q;
+        keep_[p][level] = kept_share(s, q);
+        shared_.signal[p][level] = s;
+        shared_.noise[p][level] = q;
+        // The mean of N normal squares has the relative variance 2 / N.
+        shared_.few[p][level] = std::min(1.0F, 0.5F * noise.variance);
+      }
+    });
   }
 
   // A few layers at a time: planes of all of them would take more memory than all else.

@@ -249,6 +249,21 @@ TEST(SharedGather, AStoppedPictureKeepsWhatIsFinished) {
   EXPECT_GT(cut_short, 0);
 }
 
+TEST(SharedGather, TwoSamplesAreEnoughToBeginWithWhereNoEdgeIsNear) {
+  // A wall alone has no edge, and its pixels get half of the least samples; where two walls meet
+  // some get them all. An error of 1 is reached at once, so that none follow but for the eye's
+  // sake, which sees nothing on the wall.
+  RenderOptions options = shared_options(96, 80);
+  options.error = 1.0;
+  const auto samples = [&](const Window& crop) {
+    options.crop = crop;
+    return studio().picture(options).report.camera_samples;
+  };
+  const double least = options.shared.least_samples;
+  EXPECT_EQ(samples({60, 0, 8, 8}), least / 2.0);
+  EXPECT_GT(samples({36, 0, 8, 8}), least / 2.0);
+}
+
 TEST(SharedGather, AStopAtTheFirstQuestionCostsLittle) {
   // One of nine pixels of a triangle is sampled, with all strays that no pixel serves: less than
   // half of the rays of the first look all over the picture, which a stop at its end leaves.
