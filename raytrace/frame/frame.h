@@ -59,7 +59,7 @@ struct RenderReport {
   int gather_rays = 0;           // per pixel
   int least_camera_samples = 0;  // of a finished pixel
   double finished_share = 1.0;   // of the pixels; less than 1 if it was stopped, the others then
-                                 // show a single sample
+                                 // show one sample or two
   bool stopped = false;
 };
 

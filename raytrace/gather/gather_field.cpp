@@ -9,8 +9,9 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Pixels from one that a quick look samples to the next; sharing reaches two at its finest.
-constexpr std::size_t quick_step = 3;
+// Of a quick look's blocks of pixels, in whose middles it samples: sharing reaches two at its
+// finest.
+constexpr std::size_t quick_block = 5;
 
 }  // namespace
 
@@ -78,11 +79,16 @@ void GatherField::look_quickly(Gathered kind) {
   if (!gathers(kind)) return;
   std::vector<std::uint32_t> missing(points_.size(), 0U);
   const auto columns = static_cast<std::size_t>(window_.columns);
+  const auto rows = static_cast<std::size_t>(window_.rows);
+  const auto middle = [](std::size_t x, std::size_t count) {
+    return std::min(x - x % quick_block + quick_block / 2, count - 1);
+  };
   const auto served = [&](std::size_t p) {
     if (!setting_.shares) return false;
     if (p >= grid_) return strays_[p - grid_].base != no_base;
-    const std::size_t by = p - p % columns % quick_step - p / columns % quick_step * columns;
-    return by != p && points_[by].reach_m > 0.0F && points_[by].triangle == points_[p].triangle;
+    const std::size_t by = middle(p / columns, rows) * columns + middle(p % columns, columns);
+    return by != p && points_[by].material == points_[p].material &&
+           stands_for(points_[by], points_[p].position, points_[p].normal);
   };
   for (std::size_t p = 0; p < missing.size(); ++p) {
     if (samples(kind, p) <= 0.0F && !served(p)) missing[p] = fewest_samples(kind);

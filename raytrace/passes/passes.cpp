@@ -142,7 +142,8 @@ class Passes {
       share();
       report_.gather_seconds += seconds_since(start);
     }
-    first_round(fewest_by_edges());
+    const int least = options_.shared.least_samples;
+    first_round(by_edges(least, std::max(std::min(2, least), least / 2)));
     if (!ends()) shade(wanted_for_the_eye(*sums_));
     for (int round = 1; round < most_error_rounds && !ends(); ++round) {
       const SampleCosts each = sample_costs(field());
@@ -227,27 +228,27 @@ class Passes {
     return std::vector<std::uint32_t>(sums_->samples.size(), static_cast<std::uint32_t>(samples));
   }
 
-  // Half as many where no edge is near, two at least: only shadows and highlights vary there.
-  [[nodiscard]] std::vector<std::uint32_t> fewest_by_edges() const {
-    const int least = options_.shared.least_samples;
-    std::vector<std::uint32_t> samples = everywhere(least);
-    if (!field_) return samples;
-    const auto few = static_cast<std::uint32_t>(std::max(std::min(2, least), least / 2));
-    for (int y = window_.y; y < window_.y + window_.rows; ++y) {
-      for (int x = window_.x; x < window_.x + window_.columns; ++x) {
-        if (field_->is_even(x, y)) samples[window_.index(x, y)] = few;
+  // Fewer where no edge is near: only shadows and highlights vary there.
+  [[nodiscard]] std::vector<std::uint32_t> by_edges(int near, int elsewhere) const {
+    std::vector<std::uint32_t> samples = everywhere(near);
+    const Window& window = sums_->window;
+    for (int y = window.y; field_ && y < window.y + window.rows; ++y) {
+      for (int x = window.x; x < window.x + window.columns; ++x) {
+        if (!field_->is_even(x, y)) continue;
+        samples[window.index(x, y)] = static_cast<std::uint32_t>(elsewhere);
       }
     }
     return samples;
   }
 
-  // What was not reached when it was stopped gets a single sample all the same: a quick look.
+  // What was not reached when it was stopped gets a sample all the same, two at edges, which tell
+  // what they are off by.
   void first_round(const std::vector<std::uint32_t>& samples) {
-    report_.least_camera_samples =
-        static_cast<int>(*std::min_element(samples.begin(), samples.end()));
+    report_.least_camera_samples = static_cast<int>(*std::ranges::min_element(samples));
     shade(samples);
     if (!ends()) return;
-    shade_samples(shared_, camera_, everywhere(1), *sums_, report_.rays, {}, {});
+    shade_samples(shared_, camera_, field_ ? by_edges(2, 1) : everywhere(1), *sums_, report_.rays,
+                  {}, {});
   }
 
   void shade(const std::vector<std::uint32_t>& wanted) {
