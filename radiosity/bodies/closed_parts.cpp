@@ -110,13 +110,14 @@ class Stopper {
 
 }  // namespace
 
-ClosedParts find_closed_parts(const scenes::Scene& scene) {
+ClosedParts find_closed_parts(const scenes::Scene& scene, const std::vector<char>& left_out) {
   std::vector<std::uint32_t> id;
   std::vector<EdgeUse> uses;
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
     const scenes::Triangle& triangle = scene.triangles[t];
     const scenes::Material& material = scene.materials[triangle.material];
     if (material.two_sided || material.lets_light_through()) continue;
+    if (!left_out.empty() && left_out[triangle.object] != 0) continue;
     if (id.empty()) id = scenes::welded(scene.vertices);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = id[triangle.vertex[k]], b = id[triangle.vertex[(k + 1) % 3]];

@@ -23,7 +23,9 @@ struct ClosedParts {
   std::vector<char> closed;
   std::vector<RimEdge> rims;  // by part
 };
-[[nodiscard]] ClosedParts find_closed_parts(const scenes::Scene& scene);
+// left_out: by object, triangles that are taken as sheets are; empty: none.
+[[nodiscard]] ClosedParts find_closed_parts(const scenes::Scene& scene,
+                                            const std::vector<char>& left_out = {});
 
 // The triangles of the parts that keep(part) says yes to, part by part, each in ascending order.
 template <class Keep>

@@ -61,22 +61,54 @@ struct Wall {
   }
 };
 
+// Objects that close by themselves and have none of these points in their box: they wind around
+// none, and no surface of several objects needs them.
+std::vector<char> around_nothing(const scenes::Scene& scene, const std::vector<Vec3>& points) {
+  std::vector<char> found;
+  for (const scenes::Object& object : scene.objects) {
+    const scenes::SurfaceHealth& surface = object.surface;
+    bool alone = surface.parts > 0 && surface.open_edges == 0 && surface.non_manifold_edges == 0 &&
+                 surface.mixed_edges == 0;
+    scenes::Box box;
+    for (std::uint32_t t = object.first_triangle;
+         alone && t < object.first_triangle + object.triangle_count; ++t) {
+      const scenes::Material& material = scene.materials[scene.triangles[t].material];
+      alone = !material.two_sided && !material.lets_light_through();
+      for (const std::uint32_t v : scene.triangles[t].vertex) box.add(scene.vertices[v]);
+    }
+    found.push_back(alone && std::none_of(points.begin(), points.end(),
+                                          [&](const Vec3& p) {
+                                            return glm::all(glm::lessThanEqual(box.low, p)) &&
+                                                   glm::all(glm::lessThanEqual(p, box.high));
+                                          })
+                        ? 1
+                        : 0);
+  }
+  return found;
+}
+
 class Walls {
  public:
-  explicit Walls(const scenes::Scene& scene) {
-    base::check_room(scene.triangles.size() * bytes_per_triangle, scene.path.string());
+  // around: the middles of all balls that will be asked about.
+  Walls(const scenes::Scene& scene, const std::vector<Vec3>& around) {
+    const std::vector<char> left_out = around_nothing(scene, around);
+    std::uint64_t triangles = 0;
+    for (std::size_t k = 0; k < left_out.size(); ++k) {
+      if (left_out[k] == 0) triangles += scene.objects[k].triangle_count;
+    }
+    base::check_room(triangles * bytes_per_triangle, scene.path.string());
     margin_m_ =
         scene.vertices.empty() ? 0.0 : rounding * scenes::box_around(scene.vertices).diagonal();
-    const ClosedParts parts = find_closed_parts(scene);
+    const ClosedParts parts = find_closed_parts(scene, left_out);
     std::vector<char> holds(parts.closed);
     for (std::uint32_t t = 0; t < parts.of.size(); ++t) {
       const scenes::Material& material = scene.materials[scene.triangles[t].material];
       if (material.passes_light_on() || material.two_sided) holds[parts.of[t]] = 0;
     }
-    for (const auto& triangles :
+    for (const auto& of_part :
          triangles_by_part(parts, [&](std::uint32_t part) { return holds[part] != 0; })) {
       std::vector<Vec3> corners;
-      for (const std::uint32_t t : triangles) {
+      for (const std::uint32_t t : of_part) {
         for (const std::uint32_t v : scene.triangles[t].vertex) {
           corners.push_back(scene.vertices[v]);
         }
@@ -121,7 +153,10 @@ scenes::HiddenLights hidden_lights(const scenes::Scene& scene,
   scenes::HiddenLights hidden;
   hidden.lamps.assign(scene.lamps.size(), false);
   if (cameras.empty()) return hidden;
-  const Walls walls(scene);
+  std::vector<Vec3> around;
+  for (const scenes::Camera* camera : cameras) around.push_back(camera->position);
+  for (const scenes::Lamp& lamp : scene.lamps) around.push_back(lamp.position);
+  const Walls walls(scene, around);
   std::vector<Ball> lenses;
   for (const scenes::Camera* camera : cameras) {
     lenses.push_back(walls.ball(camera->position, 0.5 * camera->aperture_m));

@@ -61,14 +61,34 @@ CameraModel make_camera_model(const scenes::Camera& camera, int columns, int row
 }
 
 Ray CameraModel::ray(double x, double y, double lens_u, double lens_v) const {
+  const double r = lens_radius_m * std::sqrt(lens_u), phi = 2.0 * base::pi * lens_v;
+  const Vec3 on_lens =
+      lens_radius_m > 0.0 ? position + r * (std::cos(phi) * right + std::sin(phi) * up) : position;
+  return {on_lens, direction_from(on_lens, x, y)};
+}
+
+Vec3 CameraModel::direction_from(const Vec3& on_lens, double x, double y) const {
   const double sx = (2.0 * x / columns - 1.0) * half_width;
   const double sy = (1.0 - 2.0 * y / rows) * half_height;
   const Vec3 through = forward + sx * right + sy * up;
-  if (lens_radius_m <= 0.0) return {position, glm::normalize(through)};
-  const double r = lens_radius_m * std::sqrt(lens_u), phi = 2.0 * base::pi * lens_v;
-  const Vec3 on_lens = position + r * (std::cos(phi) * right + std::sin(phi) * up);
+  if (lens_radius_m <= 0.0) return glm::normalize(through);
   const Vec3 in_focus = position + focus_m * through;
-  return {on_lens, glm::normalize(in_focus - on_lens)};
+  return glm::normalize(in_focus - on_lens);
+}
+
+glm::dvec2 CameraModel::film_from(const Vec3& on_lens, const Vec3& point) const {
+  const Vec3 way = point - on_lens, off = on_lens - position;
+  const double depth = glm::dot(way, forward), focus = lens_radius_m > 0.0 ? focus_m : 1.0;
+  const double sx = glm::dot(off, right) / focus + glm::dot(way, right) / depth;
+  const double sy = glm::dot(off, up) / focus + glm::dot(way, up) / depth;
+  return {0.5 * (sx / half_width + 1.0) * columns, 0.5 * (1.0 - sy / half_height) * rows};
+}
+
+double CameraModel::film_per_m2(const Vec3& on_lens, const Vec3& point, const Vec3& normal) const {
+  // A solid angle over the cube of its cosine to the axis is its area at unit distance.
+  const Vec3 way = point - on_lens;
+  const double depth = glm::dot(way, forward), px = 0.5 * columns / half_width;
+  return px * px * std::abs(glm::dot(way, normal)) / (depth * depth * depth);
 }
 
 CameraMatrices camera_matrices(const CameraModel& camera) {

@@ -42,6 +42,14 @@ struct CameraModel {
   // (x, y) in pixels from the top left corner, so that the centre of pixel (i, j) is (i + 0.5, j +
   // 0.5); (lens_u, lens_v) in [0,1)^2 choose the point of the lens.
   [[nodiscard]] Ray ray(double x, double y, double lens_u, double lens_v) const;
+
+  // Through a point of the lens (of a pinhole the position): the direction of (x, y), of unit
+  // length; where a point in front of the camera is seen, px; and how many px^2 a square metre
+  // there is.
+  [[nodiscard]] Vec3 direction_from(const Vec3& on_lens, double x, double y) const;
+  [[nodiscard]] glm::dvec2 film_from(const Vec3& on_lens, const Vec3& point) const;
+  [[nodiscard]] double film_per_m2(const Vec3& on_lens, const Vec3& point,
+                                   const Vec3& normal) const;
 };
 
 // Square pixels; fov_deg is the vertical field whatever the size of the picture.

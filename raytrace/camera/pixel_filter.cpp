@@ -81,4 +81,19 @@ double PixelFilter::at(double u) const {
   return (u < 0.5 ? width_px_ : -width_px_) * x;
 }
 
+double PixelFilter::density_at(double x) const {
+  const double at = std::abs(x) / width_px_;
+  if (at > 0.5) return 0.0;
+  switch (shape_) {
+    case FilterShape::Box:
+      return 1.0 / width_px_;
+    case FilterShape::Triangle:
+      return 2.0 * (1.0 - 2.0 * at) / width_px_;
+    case FilterShape::Gaussian:
+    case FilterShape::BlackmanHarris:
+      break;
+  }
+  return smooth_density(shape_, at) / (-2.0 * smooth_share(shape_, -0.5) * width_px_);
+}
+
 }  // namespace earthshine::raytrace

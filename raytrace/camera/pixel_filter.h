@@ -30,9 +30,15 @@ class PixelFilter {
   // stratified. Pixels from the pixel's centre, x to the right and y down. The box of width 1 gives
   // (u - 0.5, v - 0.5) exactly.
   [[nodiscard]] std::array<double, 2> offset(double u, double v) const { return {at(u), at(v)}; }
+  // How many of these offsets are there, of all, per px^2.
+  [[nodiscard]] double density(const glm::dvec2& offset) const {
+    return density_at(offset.x) * density_at(offset.y);
+  }
+  [[nodiscard]] double width_px() const { return width_px_; }
 
  private:
   [[nodiscard]] double at(double u) const;
+  [[nodiscard]] double density_at(double x) const;
 
   scenes::FilterShape shape_;
   double width_px_;

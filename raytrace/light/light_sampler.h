@@ -58,6 +58,10 @@ class LightSampler {
   [[nodiscard]] bool may_reach(std::size_t light, const Vec3& point, const Vec3& normal) const;
   // Whether (u, v) of sample() choose anything: not of lamps without size.
   [[nodiscard]] bool has_extent(std::size_t light) const { return !one_rays_[light].is_all; }
+  // Where a lamp without size is that shines straight, or nothing.
+  [[nodiscard]] const Vec3* lamp_point(std::size_t light) const {
+    return light < lights_.size() && one_rays_[light].is_all ? &one_rays_[light].position : nullptr;
+  }
   // visit(light) for each that may reach such a surface, but for the Suns of other turns.
   template <class Visit>
   void each_that_may_reach(const Vec3& point, const Vec3& normal, std::size_t turn,

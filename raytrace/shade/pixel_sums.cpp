@@ -23,7 +23,7 @@ void shade_pixel(const ShadingScene& shared, const CameraModel& camera, int x, i
   const std::uint64_t number =
       static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(camera.columns) +
       static_cast<std::uint64_t>(x);
-  shader.begin_pixel(number, first, end - first);
+  shader.begin_pixel(camera, x, y, first, end - first);
   const PixelPoints points(shared.seed, number);
   scenes::RayPacket packet;
   scenes::HitPacket hits;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raytrace/light/footprint.h"
 #include "scenes/reflect/specular.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_cells.h"
@@ -45,15 +46,20 @@ PixelShader::PixelShader(const ShadingScene& shared)
   if (shared.world != nullptr) walker_.emplace(*shared.world);
 }
 
-void PixelShader::begin_pixel(std::uint64_t pixel, std::size_t first, std::size_t count) {
-  pixel_ = pixel;
+void PixelShader::begin_pixel(const CameraModel& camera, int x, int y, std::size_t first,
+                              std::size_t count) {
+  camera_ = &camera;
+  pixel_x_ = x;
+  pixel_y_ = y;
+  pixel_ = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(camera.columns) +
+           static_cast<std::uint64_t>(x);
   first_sample_ = first;
   source_ = {};
   terms_.clear();
   std::fill(sums_.begin(), sums_.end(), Rgb(0.0));
   sample_luminance_.assign(count, 0.0);
   std::fill(halves_differ_.begin(), halves_differ_.end(), 0.0);
-  const base::Key key(shared_.seed, base::Stream::FinalGather, pixel);
+  const base::Key key(shared_.seed, base::Stream::FinalGather, pixel_);
   gather_points_ = {base::SobolOwen4(key.with(0)), base::SobolOwen4(key.with(1))};
 }
 
@@ -164,7 +170,7 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
                depth);
   }
   if (shines) {
-    if (material.reflects()) direct(surface, weight, depth);
+    if (material.reflects()) direct(ray, surface, weight, depth);
     if (base::is_lit(material.diffuse)) {
       if (shared_.groups.ambient != no_group) {
         add(shared_.layer[shared_.groups.ambient], sample_,
@@ -178,9 +184,8 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
   if (glass || base::is_lit(material.mirror)) mirror_and_glass(ray, surface, weight, depth, seen);
 }
 
-void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
+void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weight, int depth) {
   const double offset = shared_.query.surface_offset_m();
-  const Vec3 origin = surface.position + surface.normal * offset;
   const Vec3 mirrored =
       2.0 * glm::dot(surface.view, surface.normal) * surface.normal - surface.view;
   const base::Key light_key =
@@ -194,26 +199,36 @@ void PixelShader::direct(const Surface& surface, const Rgb& weight, int depth) {
       {surface.position, surface.normal, mirrored, base::max_component(surface.diffuse),
        base::max_component(surface.material.specular), surface.material.shininess},
       double(choice[0]) + 0x1p-24 * double(choice[1]), chosen_);
-  for (const auto& [k, chance_weight] : chosen_) {
-    if (!shared_.lights.may_reach(k, surface.position, surface.normal)) continue;
+  const auto reflect = [&](std::size_t k, const Vec3& point, double share) {
+    if (share <= 0.0 || !shared_.lights.may_reach(k, point, surface.normal)) return;
     const auto u = shared_.lights.has_extent(k) ? light_point(k) : std::array<float, 2>{};
-    const scenes::LightSample light = shared_.lights.sample(k, surface.position, u[0], u[1]);
+    const scenes::LightSample light = shared_.lights.sample(k, point, u[0], u[1]);
     const double cosine = glm::dot(light.direction, surface.normal);
-    if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) continue;
+    if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) return;
     // L = (E cos / pi) (k_d + k_s cos^n alpha): the measured Phong form.
     Rgb highlight(0.0);
     const double cos_alpha = glm::dot(light.direction, mirrored);
     if (cos_alpha > 0.0 && base::is_lit(surface.material.specular)) {
       highlight = surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
     }
-    const Rgb incident = weight * light.normal_illuminance_lx * (chance_weight * cosine / pi);
+    const Rgb incident = weight * light.normal_illuminance_lx * (share * cosine / pi);
     const Rgb value = incident * (surface.diffuse + highlight);
-    if (!base::is_lit(value)) continue;
     const double reach = light.distance_m * (1.0 - 1e-5) - 2.0 * offset;
-    if (reach <= 0.0) continue;
-    queue_shadow({origin, light.direction, reach, k, value, incident * highlight,
-                  shared_.layer[shared_.lights.group(k)], sample_, depth == 0,
+    if (!base::is_lit(value) || reach <= 0.0) return;
+    queue_shadow({point + surface.normal * offset, light.direction, reach, k, value,
+                  incident * highlight, shared_.layer[shared_.lights.group(k)], sample_, depth == 0,
                   shared_.lights.kind(k), light.mirror});
+  };
+  const Footprint footprint({*camera_, shared_.filter, pixel_x_, pixel_y_}, ray, surface.position,
+                            surface.normal);
+  for (const auto& [k, chance_weight] : chosen_) {
+    Footprint::Places places;
+    const Vec3* lamp = depth == 0 ? shared_.lights.lamp_point(k) : nullptr;
+    if (lamp != nullptr && footprint.is_near(*lamp)) {
+      places = footprint.toward(*lamp, shared_.query, light_point(k), rng_);
+    }
+    reflect(k, surface.position, chance_weight * places.own_weight);
+    reflect(k, places.point, chance_weight * places.weight);
   }
 }
 

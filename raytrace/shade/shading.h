@@ -65,7 +65,7 @@ class PixelShader {
 
   // Keys all random numbers to the pixel (its number in the whole picture) and clears the sums.
   // Samples first .. first + count - 1 of the pixel follow.
-  void begin_pixel(std::uint64_t pixel, std::size_t first, std::size_t count);
+  void begin_pixel(const CameraModel& camera, int x, int y, std::size_t first, std::size_t count);
   // The pixel that the next sample falls into (a wide pixel filter puts some beside their own):
   // there the gather field is looked up.
   void look_near(int x, int y) {
@@ -110,7 +110,7 @@ class PixelShader {
   void see_source(std::size_t group, const Rgb& radiance, int depth);
   void see_sky(const Vec3& direction, const Rgb& weight, int depth, Seen seen);
   bool see_lamp(const Ray& ray, double nearer_than_m, const Rgb& weight, int depth);
-  void direct(const Surface& surface, const Rgb& weight, int depth);
+  void direct(const Ray& ray, const Surface& surface, const Rgb& weight, int depth);
   void diffuse(const Surface& surface, const scenes::Hit& hit, const Rgb& weight, int depth);
   [[nodiscard]] std::size_t find_point(const Surface& surface) const;
   bool read_field(const Surface& surface, const Rgb& weight);
@@ -165,6 +165,8 @@ class PixelShader {
   std::vector<FieldTerm> terms_;
   std::optional<PathWalker> walker_;
   int x_ = 0, y_ = 0;
+  const CameraModel* camera_ = nullptr;
+  int pixel_x_ = 0, pixel_y_ = 0;
   std::uint64_t pixel_ = 0, gathered_ = 0;
   std::array<base::SobolOwen4, 2> gather_points_;  // by half
   std::vector<scenes::LightChoice> chosen_;

@@ -58,6 +58,19 @@ TEST(Walls, ALampInAClosedBoxIsHiddenFromOutsideAndTheOtherWayRound) {
   EXPECT_TRUE(lamp_is_hidden(box, lamp_at(inside), camera_at(outside)));
 }
 
+// An object that is known to close by itself is looked at where a lamp or a camera stands in it.
+TEST(Walls, AnObjectThatClosesByItselfHidesWhatIsInIt) {
+  tests::SceneBuilder box;
+  tests::add_box(box, box.material(tests::grey(0.5)), Vec3(0.0), Vec3(1.0));
+  for (scenes::Triangle& triangle : box.scene.triangles) triangle.object = 0;
+  box.scene.objects.resize(1);
+  box.scene.objects[0].triangle_count = static_cast<std::uint32_t>(box.scene.triangles.size());
+  box.scene.objects[0].surface.parts = box.scene.objects[0].surface.closed_parts = 1;
+  EXPECT_TRUE(lamp_is_hidden(box, lamp_at(inside), camera_at(outside)));
+  EXPECT_TRUE(lamp_is_hidden(box, lamp_at(outside), camera_at(inside)));
+  EXPECT_FALSE(lamp_is_hidden(box, lamp_at({0.5, 0.5, -2}), camera_at(outside)));
+}
+
 TEST(Walls, TheSkyIsHiddenFromACameraInAClosedRoomAlone) {
   tests::SceneBuilder builder = room();
   builder.scene.cameras = {camera_at(inside)};

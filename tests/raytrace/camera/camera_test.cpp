@@ -55,6 +55,33 @@ TEST(Camera, EveryPointOfTheLensSeesTheSamePointInFocus) {
   }
 }
 
+// Points along a ray are seen where it began, through the same point of the lens; and a pixel's
+// square, carried to a plane by four rays, has the area there that film_per_m2 says.
+TEST(Camera, FilmIsWhereRaysCameFrom) {
+  for (const double aperture : {0.0, 0.2}) {
+    scenes::Camera camera;
+    camera.position = Vec3(1, -2, 3);
+    camera.look_at = Vec3(0.3, 0.1, 0.2);
+    camera.aperture_m = aperture;
+    camera.focus_m = 2.5;
+    const CameraModel model = make_camera_model(camera, 30, 20);
+    const Ray ray = model.ray(22.3, 4.1, 0.7, 0.4);
+    const Vec3 point = ray.origin + 3.7 * ray.direction;
+    const glm::dvec2 film = model.film_from(ray.origin, point);
+    EXPECT_NEAR(film.x, 22.3, 1e-9);
+    EXPECT_NEAR(film.y, 4.1, 1e-9);
+    const Vec3 normal = glm::normalize(Vec3(0.5, -0.4, 0.9));
+    const auto met = [&](double x, double y) {
+      const Vec3 way = model.direction_from(ray.origin, 22.3 + x, 4.1 + y);
+      return ray.origin + glm::dot(point - ray.origin, normal) / glm::dot(way, normal) * way;
+    };
+    const double h = 1e-4;
+    const double area =
+        glm::length(glm::cross(met(h, h) - met(-h, -h), met(-h, h) - met(h, -h))) / 2;
+    EXPECT_NEAR(model.film_per_m2(ray.origin, point, normal) * area, 4.0 * h * h, 1e-6 * h * h);
+  }
+}
+
 TEST(Camera, BlurCircleFollowsTheThinLens) {
   // A point at distance z seen through a lens of diameter A focused at s spreads over A |z - s| / z
   // at the plane z = ... in object space: the pencil through it is A |s - z| / z wide at the plane

@@ -79,6 +79,21 @@ TEST(PixelFilter, BlackmanHarrisSharesAreItsIntegral) {
   EXPECT_NEAR(PixelFilter(FilterShape::BlackmanHarris, 4.0).offset(share, 0.5)[0], 1.0, 1e-6);
 }
 
+// A share du of the offsets lies within d(offset), one axis at a time: density = du / d(offset).
+TEST(PixelFilter, DensityIsThatOfTheOffsets) {
+  for (const FilterShape shape : {FilterShape::Box, FilterShape::Triangle, FilterShape::Gaussian,
+                                  FilterShape::BlackmanHarris}) {
+    const PixelFilter filter(shape, 3.0);
+    const auto at = [&](double u) { return filter.offset(u, 0.5)[0]; };
+    for (const double u : {0.05, 0.2, 0.47, 0.8, 0.99}) {
+      const double h = 1e-4, slope = 2.0 * h / (at(u + h) - at(u - h));
+      const double along_y = 2.0 * h / (at(0.5 + h) - at(0.5 - h));
+      EXPECT_NEAR(filter.density({at(u), 0.0}) / (slope * along_y), 1.0, 1e-3);
+    }
+    EXPECT_EQ(filter.density({1.6, 0.0}), 0.0);
+  }
+}
+
 TEST(PixelFilter, BoxOfOnePixelIsThePixelExactly) {
   const PixelFilter filter((scenes::Camera()));
   for (const float u : {0.0F, 0.1F, 0.7654321F, 0.99999994F}) {
