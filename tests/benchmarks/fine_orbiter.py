@@ -3,9 +3,11 @@
 """What a scene costs when its mesh is finer than its light: the orbiter Atlantis of the Orbiter simulator with its doors
 off, each triangle cut into N x N.
 
-usage: fine_orbiter.py PROGRAM Atlantis.obj [--cuts 1,8,20] [--error E] [--camera out|fwd] [--keep FOLDER]
+usage: fine_orbiter.py PROGRAM Atlantis.obj [--cuts 1,8,20] [--error E] [--camera out|fwd] [--keep FOLDER] [--truth]
 
-For each N: seconds of `inspect`, and of `render` on one thread, with its patches, peak memory and stated error. The mesh is
+For each N: seconds of `inspect`, and of `render` on one thread, with its patches, peak memory and stated error; loading are
+its stages `read` and `build`. With --truth instead: errors of pictures against two of 1024 paths a pixel, over all pixels
+that show the orbiter and, as a bias, in the dimmest quarter of its blocks of 6 x 6 pixels. The mesh is
 orbitersim/orbiter's Src/Vessel/Atlantis/Atlantis/Meshes/Atlantis.msh (MIT licence), as OBJ.
 """
 import argparse
@@ -17,6 +19,10 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "validation"))
+import error_truth  # noqa: E402
+
+TRUTH_SIZE = 120, 90
 SCENE = """format = 1
 [[object]]
 name = "orbiter"
@@ -114,10 +120,47 @@ def measure(folder, call, n, vertices, groups):
     _, inspected = run(folder, program, "inspect", "orbiter.toml", "--json", "--threads", 1)
     done, rendered = run(folder, program, "render", "orbiter.toml", "--camera", call.camera, "--error", call.error, "--threads",
                          1, "-o", f"{n}.exr", "--json")
-    error = json.loads(done.stdout)["error"]["estimate"]
+    report = json.loads(done.stdout)
+    error, seconds = report["error"]["estimate"], report["seconds"]
+    loading = rendered * (seconds["read"] + seconds["build"]) / sum(seconds.values())
     patches = re.search(r"(\d+) patches", done.stderr).group(1)
     memory = re.search(r"peak memory (.*)", done.stderr).group(1)
-    print(f"| {count} | {patches} | {inspected:.2f} | {rendered:.1f} | {memory} | {100 * error:.1f} % |", flush=True)
+    print(f"| {count} | {patches} | {inspected:.2f} | {rendered:.1f} | {loading:.1f} | {memory} | {100 * error:.1f} % |", flush=True)
+
+
+def dim_pixels(luminances):
+    """Of the blocks that show the orbiter, the dimmest quarter."""
+    blocks = {}
+    for y in range(TRUTH_SIZE[1]):
+        for x in range(TRUTH_SIZE[0]):
+            blocks.setdefault((x // 6, y // 6), []).append(y * TRUTH_SIZE[0] + x)
+    lit = sorted((sum(luminances[k] for k in pixels), pixels) for pixels in blocks.values()
+                 if any(luminances[k] > 0 for k in pixels))
+    return [k for _, pixels in lit[:len(lit) // 4] for k in pixels]
+
+
+def truth(folder, call, vertices, groups):
+    (folder / "orbiter.toml").write_text(SCENE)
+    with open(folder / "orbiter.obj", "w") as file:
+        write_cut(file, vertices, groups, 1)
+    print("| camera | wanted | CPU s | true | stated | bias | of dim parts |\n| --- | --- | --- | --- | --- | --- | --- |")
+    for camera in ("fwd", "out"):
+        def picture(name, *words, camera=camera):
+            done, seconds = run(folder, call.program.resolve(), "render", "orbiter.toml", "--camera", camera, "--size",
+                                "{}x{}".format(*TRUTH_SIZE), "--json", "-o", name, *words)
+            return error_truth.picture(folder / name)[0], seconds, json.loads(done.stdout)
+        first, second = (picture("reference.exr", "--indirect", "paths", "--set", "quality.gather_rays=1024", "--seed",
+                                 seed)[0] for seed in (101, 102))
+        middle = [(a + b) / 2 for a, b in zip(first, second)]
+        dim = dim_pixels(middle)
+        for wanted in ("0.05", "0.02"):
+            for seed in (1, 2, 3):
+                values, seconds, report = picture("picture.exr", "--error", wanted, "--seed", seed)
+                found = error_truth.compare(values, first, second, [m > 0 for m in middle])
+                off = sum(values[k] - middle[k] for k in dim) / sum(middle[k] for k in dim)
+                stated = report["error"]["estimate"]
+                print(f"| {camera} | {wanted} | {seconds:.1f} | {100 * found.error:.1f} % | {100 * stated:.1f} % | "
+                      f"{100 * found.bias:.2f} % | {100 * off:.1f} % |", flush=True)
 
 
 def main():
@@ -128,9 +171,14 @@ def main():
     parser.add_argument("--error", default="0.05")
     parser.add_argument("--camera", default="out")
     parser.add_argument("--keep", type=pathlib.Path, help="scenes and pictures stay there")
+    parser.add_argument("--truth", action="store_true", help="errors against paths, not prices")
     call = parser.parse_args()
     vertices, groups = read(call.mesh)
-    print("| triangles | patches | inspect, CPU s | render, CPU s | memory | stated |\n| --- | --- | --- | --- | --- | --- |")
+    if call.truth:
+        with tempfile.TemporaryDirectory() as temporary:
+            return truth(pathlib.Path(temporary), call, vertices, groups)
+    print("| triangles | patches | inspect, CPU s | render, CPU s | of it loading | memory | stated |\n"
+          "| --- | --- | --- | --- | --- | --- | --- |")
     with tempfile.TemporaryDirectory() as temporary:
         for n in map(int, call.cuts.split(",")):
             folder = call.keep / str(n) if call.keep else pathlib.Path(temporary)
