@@ -58,7 +58,8 @@ RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t
     const auto [x, y] = place_of(pixel_of(p));
     // No more places than rays, unless some of them show another surface.
     std::size_t drawn = 0;
-    for (const std::size_t end : {std::min<std::size_t>(rays, RayOrigins::most), RayOrigins::most}) {
+    for (const std::size_t end :
+         {std::min<std::size_t>(rays, RayOrigins::most), RayOrigins::most}) {
       if (origins.count >= rays || drawn >= end) break;
       const auto met = look(pixel_of(p), in_x, in_y, drawn, end);
       counts.camera += end - drawn;
