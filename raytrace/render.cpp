@@ -70,18 +70,36 @@ void fold_field(Sampled& sampled, const Window& window) {
   sampled.field.reset();
 }
 
-// As far as one round of samples tells it: later ones go where the sum of all needs them.
-LayerErrors errors_by_layer(const Sampled& sampled, const StatedError& error,
-                            const RenderOptions& options) {
-  LayerErrors errors;
-  if (!sampled.field || sampled.sums.image_layers < 2 || options.error > 0.0) return errors;
-  const ErrorSums all = add_up(error);
-  errors.squared.assign(all.squared.begin(), all.squared.end());
-  for (const Gathered kind : {Gathered::Solution, Gathered::Residual, Gathered::Lobe}) {
-    errors.noise.push_back(sampled.field->layer_noise(kind));
+// With places that are pixels of the picture in place of those that `pixel_of` finds in `from`.
+template <class PixelOf>
+LayerNoise placed(const LayerNoise& noise, const Window& from, const Window& picture,
+                  PixelOf pixel_of) {
+  const std::size_t layers = noise.place.empty() ? 0 : noise.off.size() / noise.place.size();
+  LayerNoise placed;
+  for (std::size_t k = 0; k < noise.place.size(); ++k) {
+    const auto columns = static_cast<std::size_t>(from.columns);
+    const std::size_t pixel = pixel_of(std::size_t{noise.place[k]});
+    const int x = from.x + static_cast<int>(pixel % columns);
+    const int y = from.y + static_cast<int>(pixel / columns);
+    if (!picture.contains(x, y)) continue;
+    placed.add(picture.index(x, y), {&noise.off[k * layers], layers});
   }
-  errors.noise.push_back(sampled.sums.layer_noise());
-  return errors;
+  return placed;
+}
+
+// As far as one round of samples tells it: later ones go where the sum of all needs them.
+std::vector<LayerNoise> noise_by_part(const Sampled& sampled, const Window& picture,
+                                      const RenderOptions& options) {
+  std::vector<LayerNoise> noise;
+  if (!sampled.field || sampled.sums.image_layers < 2 || options.error > 0.0) return noise;
+  const GatherField& field = *sampled.field;
+  for (const Gathered kind : {Gathered::Solution, Gathered::Residual, Gathered::Lobe}) {
+    noise.push_back(placed(field.layer_noise(kind), field.window(), picture,
+                           [&](std::size_t point) { return field.pixel_of(point); }));
+  }
+  noise.push_back(placed(sampled.sums.layer_noise(), sampled.sums.window, picture,
+                         [](std::size_t pixel) { return pixel; }));
+  return noise;
 }
 
 // Once the field is folded in.
@@ -174,15 +192,17 @@ Frame render(const scenes::World& world, const radiosity::Solution& solution,
   Sampled sampled = sample_picture(shared, setup.world(), model, options, progress, frame.report);
   const PixelSums& sums = sampled.sums;
   frame.error = state_error(sums, sampled.field ? &*sampled.field : nullptr, window);
-  if (options.per_light) frame.layers = errors_by_layer(sampled, frame.error, options);
+  if (options.per_light) frame.layers.noise = noise_by_part(sampled, window, options);
   fold_field(sampled, window);
-  if (!frame.layers.noise.empty()) {
-    frame.layers.luminance = layer_luminance(sums, frame.error, window);
-  }
   // Not before: with many layers it is as large as what is sampled.
   frame.image = base::make_rgb_image(window.columns, window.rows);
   const Layout layout = with_layers(frame.image);
   fill_layers(sums, frame.error, layout, window, frame.image);
+  if (!frame.layers.noise.empty()) {
+    frame.layers.luminance = layer_luminance(sums, frame.error, window);
+    frame.layers.see(frame.image, world.groups.names);
+    frame.layers.scale_to(add_up(frame.error).squared);
+  }
   frame.report.rays.layers += fill_first_hit(world.scene, world.query, model, window, frame.image);
   frame.report.rays.layers += fill_cryptomatte(
       world.scene, world.query, model,

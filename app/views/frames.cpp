@@ -11,6 +11,7 @@
 #include "app/parts/shared_solution.h"
 #include "app/study/json_fields.h"
 #include "app/study/study.h"
+#include "app/views/kept_layers.h"
 #include "base/error.h"
 #include "radiosity/refine.h"
 #include "scenes/effects/quality.h"
@@ -19,45 +20,18 @@
 namespace earthshine::app {
 namespace {
 
-constexpr int half_digits = 10;          // of a half's mantissa, after the point
-constexpr int half_top = 15;             // the largest half is below 2^16
-constexpr int half_bottom = -14;         // exponent of the smallest half with all its digits
-constexpr const char* exact = "object";  // numbers, not light
-
-// 2^exponent bounds the channel's values; 0 for a black one.
-int exponent_of(const base::Channel& channel) {
-  float most = 0.0F;
-  for (const float value : channel.values) most = std::max(most, std::abs(value));
-  return most > 0.0F ? std::ilogb(most) + 1 : 0;
-}
-
-void round_values(base::Channel& channel, int digits) {
-  // One more than now: the largest value may be rounded up to the power of two above it.
-  const int lowest = exponent_of(channel) + 1 - half_top + half_bottom;
-  for (float& value : channel.values) {
-    if (value == 0.0F) continue;
-    const int step = std::max(std::ilogb(value), lowest) - digits;
-    value = std::ldexp(std::nearbyint(std::ldexp(value, -step)), step);
-  }
-}
-
-void scale(base::Channel& channel, int exponent) {
-  for (float& value : channel.values) value = std::ldexp(value, exponent);
+Json noise_key(Json picture_key) {
+  picture_key["what"] = "noise";
+  return picture_key;
 }
 
 }  // namespace
 
 // As it is kept beside the picture.
 template <class Fields>
-void describe(Fields& fields, Either<raytrace::LayerNoise> auto& noise) {
-  fields("products", noise.products);
-}
-
-template <class Fields>
 void describe(Fields& fields, Either<raytrace::LayerErrors> auto& errors) {
   fields("luminance", errors.luminance);
-  fields("squared", errors.squared);
-  fields("noise", errors.noise);
+  fields("per_noise", errors.per_noise);
 }
 
 template <class Fields>
@@ -201,17 +175,15 @@ StudyCost StudyFrames::cost_of(const StudyCamera& camera, const Frame& frame, bo
 
 bool StudyFrames::has(const StudyCamera& camera) const {
   std::string ignored;
-  return store_.find(cache_key(camera), ignored).has_value();
+  return find(cache_key(camera), ignored).has_value();
 }
 
 std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
                                                      std::vector<StudyCost>& costs) {
   const Json key = cache_key(camera);
   std::string said;
-  if (std::optional<CachedResult> stored = store_.find(key, said)) {
-    Frame frame = read_kept<Frame>(stored->facts);
-    frame.image = unpacked_layers(std::move(*stored));
-    costs.push_back(cost_of(camera, frame, true));
+  if (std::optional<Frame> frame = find(key, said)) {
+    costs.push_back(cost_of(camera, *frame, true));
     return frame;
   }
   if (how_.task == PartCall::Task::Merge) {
@@ -234,58 +206,41 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
               drawn.report.rays.total(),
               limits_of_balance(light),
               light.report.patches,
-              drawn.layers};
-  // Of the few layers without an orbit no digit is spared.
-  const int digits =
-      part_.basis->in_parts() ? round_layers(drawn.image, drawn.report.relative_noise) : 0;
-  CachedResult kept = packed_layers(std::move(drawn.image), digits, kept_json(frame));
-  store_.keep(key, kept);
-  frame.image = unpacked_layers(std::move(kept));
+              std::move(drawn.layers)};
+  keep(key, std::move(drawn.image), frame);
   costs.push_back(cost_of(camera, frame, false));
   return frame;
+}
+
+std::optional<StudyFrames::Frame> StudyFrames::find(const Json& cache_key,
+                                                    std::string& said) const {
+  std::optional<CachedResult> picture = store_.find(cache_key, said);
+  if (!picture) return std::nullopt;
+  std::optional<CachedResult> noise = store_.find(noise_key(cache_key), said);
+  if (!noise) return std::nullopt;
+  Frame frame = read_kept<Frame>(picture->facts);
+  frame.image = unpacked_layers(std::move(*picture));
+  take_noise(std::move(*noise), frame.errors);
+  frame.errors.see(frame.image, part_.basis->groups().names);
+  return frame;
+}
+
+void StudyFrames::keep(const Json& cache_key, base::Image image, Frame& frame) const {
+  // Of the few layers without an orbit no digit is spared.
+  const int digits = part_.basis->in_parts() ? round_layers(image, frame.relative_noise) : 0;
+  CachedResult picture = packed_layers(std::move(image), digits, kept_json(frame));
+  CachedResult noise = packed_noise(frame.errors);
+  store_.keep(noise_key(cache_key), noise);
+  store_.keep(cache_key, picture);
+  frame.image = unpacked_layers(std::move(picture));
+  take_noise(std::move(noise), frame.errors);
+  frame.errors.see(frame.image, part_.basis->groups().names);
 }
 
 std::optional<double> StudyFrames::Frame::noise_of(const studies::GroupWeights& weights) const {
   std::vector<double> luminance;
   for (const Rgb& weight : weights.weight) luminance.push_back(base::luminance(weight));
   return errors.of(luminance);
-}
-
-int round_layers(base::Image& image, double relative_noise) {
-  constexpr double mean_rounding = 0.42, of_the_noise = 0.125;
-  if (!(relative_noise > 0.0)) return 0;
-  const double digits = std::ceil(std::log2(mean_rounding / (of_the_noise * relative_noise))) - 1.0;
-  if (digits > half_digits) return 0;
-  const int kept = std::max(1, static_cast<int>(digits));
-  for (base::Channel& channel : image.channels) {
-    if (channel.name != exact) round_values(channel, kept);
-  }
-  return kept;
-}
-
-CachedResult packed_layers(base::Image image, int digits, Json facts) {
-  CachedResult kept{std::move(facts), std::move(image)};
-  kept.facts["digits"] = digits;
-  if (digits == 0) return kept;
-  Json& exponents = kept.facts["exponents"] = Json::object();
-  for (base::Channel& channel : kept.image.channels) {
-    if (channel.name == exact) continue;
-    const int exponent = exponent_of(channel) - half_top;
-    exponents[channel.name] = exponent;
-    scale(channel, -exponent);
-    kept.header.half_channels.push_back(channel.name);
-  }
-  return kept;
-}
-
-base::Image unpacked_layers(CachedResult kept) {
-  if (kept.facts.at("digits").get<int>() > 0) {
-    const Json& exponents = kept.facts.at("exponents");
-    for (base::Channel& channel : kept.image.channels) {
-      if (channel.name != exact) scale(channel, exponents.at(channel.name).get<int>());
-    }
-  }
-  return std::move(kept.image);
 }
 
 }  // namespace earthshine::app

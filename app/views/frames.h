@@ -27,7 +27,7 @@ class StudyFrames {
     std::uint64_t rays = 0;
     std::vector<std::string> limits = {};  // that the solution it was drawn from reached
     std::size_t patches = 0;               // of that solution
-    raytrace::LayerErrors errors = {};
+    raytrace::LayerErrors errors = {};     // complete where the image is
     // Relative, of the weighted sum that a condition is.
     [[nodiscard]] std::optional<double> noise_of(const studies::GroupWeights& weights) const;
   };
@@ -54,6 +54,10 @@ class StudyFrames {
 
  private:
   [[nodiscard]] StudyCost cost_of(const StudyCamera& camera, const Frame& frame, bool found) const;
+  // The frame that is kept; nothing where there is none, whole.
+  [[nodiscard]] std::optional<Frame> find(const Json& cache_key, std::string& said) const;
+  // Keeps it and takes it as it will be read.
+  void keep(const Json& cache_key, base::Image image, Frame& frame) const;
   [[nodiscard]] raytrace::RenderOptions options(const StudyCamera& camera) const;
 
   [[nodiscard]] radiosity::Solution solve(StageTimes& times) const;
@@ -71,22 +75,5 @@ class StudyFrames {
   Json scene_cache_key_;
   std::optional<radiosity::Solution> solution_;
 };
-
-// Layers of a study's picture as points/ keeps them: with as many digits as their noise leaves
-// them, in 16 bits. They are rounded before anything is judged by them, so that a study that goes
-// on from points/ comes to the same bytes.
-
-// Rounds every channel but "object" to the fewest binary digits m whose rounding, 0.42 2^-(m+1) of
-// a value on the average, is at most an eighth of the picture's relative noise: the noise's
-// variance then grows by at most a 64th. From 11 digits on, what 16 bits hold, nothing is done.
-// Returns the digits after the point, 0 for none. The smallest values, below 2^-29 of the largest
-// of their channel, keep fewer.
-int round_layers(base::Image& image, double relative_noise);
-
-// The image that was rounded to `digits` and its facts as what is kept: each channel times a power
-// of two that brings it into the range of 16 bits.
-[[nodiscard]] CachedResult packed_layers(base::Image image, int digits, Json facts);
-// Back, bit for bit. Throws Json::exception where the facts are not of such a picture.
-[[nodiscard]] base::Image unpacked_layers(CachedResult kept);
 
 }  // namespace earthshine::app

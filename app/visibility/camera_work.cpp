@@ -54,9 +54,10 @@ studies::BasisView CameraWork::view_of(StudyFrames::Frame& frame,
                                   &frames_.solution(costs));
 }
 
-Judged CameraWork::judge(const studies::BasisView& view, Share batches,
-                         std::vector<StudyCost>& costs) const {
-  return conditions_.judge(pictures_.camera, view, pictures_.frame_cache_key, batches, costs);
+Judged CameraWork::judge(const studies::BasisView& view, const StudyFrames::Frame& frame,
+                         Share batches, std::vector<StudyCost>& costs) const {
+  return conditions_.judge(pictures_.camera, view, frame, pictures_.frame_cache_key, batches,
+                           costs);
 }
 
 CameraWork::Configurations CameraWork::conclude(const studies::BasisView& view,
@@ -136,7 +137,7 @@ void StudyShares::do_share() {
     std::optional<StudyFrames::Frame> frame = frames.frame(work.pictures().camera, costs_);
     if (!frame) return;  // interrupted
     const studies::BasisView view = work.view_of(*frame, costs_);
-    (void)work.judge(view, batches, costs_);
+    (void)work.judge(view, *frame, batches, costs_);
     std::vector<FigureEntry> figures;
     if (batches.first == 0 && !Interrupt::asked()) (void)work.conclude(view, figures);
   });

@@ -37,8 +37,8 @@ class CameraWork {
   // Takes the frame's image.
   [[nodiscard]] studies::BasisView view_of(StudyFrames::Frame& frame,
                                            std::vector<StudyCost>& costs) const;
-  [[nodiscard]] Judged judge(const studies::BasisView& view, Share batches,
-                             std::vector<StudyCost>& costs) const;
+  [[nodiscard]] Judged judge(const studies::BasisView& view, const StudyFrames::Frame& frame,
+                             Share batches, std::vector<StudyCost>& costs) const;
   // The camera's pictures, and what its wishes are answered by.
   [[nodiscard]] Configurations conclude(const studies::BasisView& view,
                                         std::vector<FigureEntry>& figures) const;

@@ -144,8 +144,8 @@ bool StudyConditions::has(const StudyCamera& camera, const Json& frame_cache_key
 }
 
 Judged StudyConditions::judge(const StudyCamera& camera, const studies::BasisView& view,
-                              const Json& frame_cache_key, Share batches,
-                              std::vector<StudyCost>& costs) {
+                              const StudyFrames::Frame& frame, const Json& frame_cache_key,
+                              Share batches, std::vector<StudyCost>& costs) {
   const auto start = std::chrono::steady_clock::now();
   const raytrace::Progress progress =
       progress_of_stages(common_)(fmt::format("conditions of camera {}", camera.camera->name));
@@ -173,8 +173,11 @@ Judged StudyConditions::judge(const StudyCamera& camera, const studies::BasisVie
     Batch batch_found(last - first);
     for (std::size_t k = first; k < last; ++k) {
       const studies::Outcome& outcome = outcomes[k - first];
+      const auto [place, setting] = condition_at(part_, k);
+      const Number noise = frame.noise_of(part_.basis->weights(place, setting));
       for (std::size_t t = 0; t < outcome.targets.size(); ++t) {
         TargetFindings target = findings_of(outcome.sight.targets[t], outcome.targets[t]);
+        target.picture_noise = noise;
         if (const auto& of = outcome.targets[t].why_of) {
           target.why_of = condition_id(part_, first + *of);
         }

@@ -30,10 +30,10 @@ class StudyConditions {
   [[nodiscard]] std::size_t batches() const;
 
   // None for conditions that were not reached before an interruption or are not in `batches`.
-  // frame_cache_key: of the picture that the view was made of.
+  // frame: that the view was made of, with its cache key; its image is not looked at.
   [[nodiscard]] Judged judge(const StudyCamera& camera, const studies::BasisView& view,
-                             const Json& frame_cache_key, Share batches,
-                             std::vector<StudyCost>& costs);
+                             const StudyFrames::Frame& frame, const Json& frame_cache_key,
+                             Share batches, std::vector<StudyCost>& costs);
   // Whether a batch was done before.
   [[nodiscard]] bool has(const StudyCamera& camera, const Json& frame_cache_key,
                          std::size_t batch) const;

@@ -20,9 +20,10 @@ struct NoiseRange {
 };
 std::optional<NoiseRange> noise_range(const CameraFindings& found) {
   std::optional<NoiseRange> range;
-  for (std::size_t k = 0; k < found.noise.size(); ++k) {
-    if (!found.noise[k]) continue;
-    const double noise = *found.noise[k];
+  for (std::size_t k = 0; k < found.conditions.size(); ++k) {
+    const auto& condition = found.conditions[k];  // all of its targets have that of its picture
+    if (!condition || condition->empty() || !condition->front().picture_noise) continue;
+    const double noise = *condition->front().picture_noise;
     if (!range) range = {noise, noise, k};
     if (noise > range->most) range = {range->least, noise, k};
     range->least = std::min(range->least, noise);
@@ -163,7 +164,6 @@ void add_camera(StudyResults& results, const CameraFindings& found) {
     for (std::size_t t = 0; t < found.conditions[k]->size(); ++t) {
       ResultEntry result{(*found.conditions[k])[t], first + k, camera,
                          target_number(results, found.part.targets[t])};
-      if (k < found.noise.size()) result.picture_noise = found.noise[k];
       Number& worst = results.conditions[first + k].earth_error;
       if (result.luminance_error) {
         worst = std::max(worst.value_or(0.0), *result.luminance_error);

@@ -19,8 +19,7 @@ struct CameraFindings {
   const StudyCamera& camera;
   double relative_noise = 0.0, render_seconds = 0.0;
   Judged conditions;
-  std::vector<std::optional<double>> noise = {};  // of each condition's picture
-  std::vector<ThumbnailEntry> thumbnails = {};    // with conditions numbered as these
+  std::vector<ThumbnailEntry> thumbnails = {};  // with conditions numbered as these
 };
 
 // Scenes, targets, conditions, settings and provenance: what stands before any camera has looked.

@@ -114,10 +114,6 @@ class Runner {
   void take(const StudyFrames::Frame& frame, CameraFindings& found) {
     found.relative_noise = frame.relative_noise;
     found.render_seconds = frame.seconds;
-    for (std::size_t k = 0; k < found.part.conditions(); ++k) {
-      const auto [place, setting] = condition_at(found.part, k);
-      found.noise.push_back(frame.noise_of(found.part.basis->weights(place, setting)));
-    }
     const auto part = std::find(parts_.begin(), parts_.end(), &found.part);
     const auto scene = static_cast<std::size_t>(part - parts_.begin());
     results_.scenes[scene].patches = frame.patches;
@@ -151,7 +147,7 @@ class Runner {
   void look(const CameraWork& work, StudyFrames::Frame& frame, CameraFindings& found) {
     take(frame, found);
     const studies::BasisView view = work.view_of(frame, results_.costs);
-    found.conditions = work.judge(view, work.all_batches(), results_.costs);
+    found.conditions = work.judge(view, frame, work.all_batches(), results_.costs);
     if (Interrupt::asked()) return;
     add_all(work.conclude(view, results_.figures));
     found.thumbnails = draw_thumbnails(work, &view, found.conditions);

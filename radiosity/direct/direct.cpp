@@ -14,6 +14,10 @@
 namespace earthshine::radiosity {
 namespace {
 
+// Of an orbit, that share a patch's points: rays from one of them to neighbouring Suns go nearly
+// the same way.
+constexpr std::size_t most_suns = 8;
+
 // Where the light of a patch's samples ends: all of it on the patch, or (LightWays::kept) a share.
 struct Landing {
   std::vector<double> area_m2;
@@ -171,11 +175,11 @@ class DirectStage {
     light_.illuminance_lx.assign((own_.end - own_.begin) * light_.columns, 0.0);
   }
 
-  // A source whose flux is not known (the sky): taken as sampled.
-  void add(const Source& source) { store(sample(source), source.group, Rgb(1.0)); }
+  // Sources whose flux is not known (the sky's): taken as sampled.
+  void add(std::span<const Source> sources) { store(sample(sources), sources, Rgb(1.0)); }
 
   void add(const Source& source, SourceFlux flux, const Emit& emit) {
-    Sampled sampled = sample(source);
+    Sampled sampled = sample({&source, 1});
     Rgb scale(0.0);
     if (factors_.shares.joins()) {
       find_shares(scene_, query_, emit, source.key, options_.flux_rays, options_.seed, flux);
@@ -187,7 +191,7 @@ class DirectStage {
       light_.sources.push_back(std::move(flux));
     }
     factors_.shares.tell_all(&scale, 1);
-    store(std::move(sampled), source.group, scale);
+    store(std::move(sampled), {&source, 1}, scale);
   }
 
   // One of the `parts` values that each patch has.
@@ -199,16 +203,18 @@ class DirectStage {
   }
 
  private:
-  [[nodiscard]] Sampled sample(const Source& source) const {
-    return sample_patches(query_, patches_, factors_.open, source, options_.seed,
+  [[nodiscard]] Sampled sample(std::span<const Source> sources) const {
+    return sample_patches(query_, patches_, factors_.open, sources, options_.seed,
                           light_.shadow_rays, factors_.shares.hears());
   }
 
   // What the first rank has sampled.
-  void store(Sampled sampled, std::size_t group, const Rgb& scale) {
-    factors_.shares.tell_own(sampled.illuminance_lx.data());
+  void store(Sampled sampled, std::span<const Source> sources, const Rgb& scale) {
+    factors_.shares.tell_own(sampled.illuminance_lx.data(), sources.size());
     for (std::size_t row = 0; row < own_.end - own_.begin; ++row) {
-      add(row, group, scale * sampled.illuminance_lx[row]);
+      for (std::size_t s = 0; s < sources.size(); ++s) {
+        add(row, sources[s].group, scale * sampled.illuminance_lx[row * sources.size() + s]);
+      }
     }
   }
 
@@ -249,7 +255,10 @@ DirectLight direct_light(const scenes::World& world, const Patches& patches,
       stage.store_part(factors.sky_illuminance, parts, part, world.groups.earth + part);
     }
   }
-  for (LightSource& light_source : find_sources(world, options.points_per_patch)) {
+  std::vector<Source> suns;  // that share points
+  std::vector<LightSource> sources = find_sources(world, options.points_per_patch);
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    LightSource& light_source = sources[k];
     const auto start = std::chrono::steady_clock::now();
     const std::uint64_t before = light.shadow_rays;
     if (light_source.emit) {
@@ -258,8 +267,14 @@ DirectLight direct_light(const scenes::World& world, const Patches& patches,
       flux.group = light_source.source.group;
       flux.emitted_lm = light_source.flux_lm;
       stage.add(light_source.source, std::move(flux), light_source.emit);
+    } else if (light_source.source.disc) {
+      suns.push_back(std::move(light_source.source));
+      const bool more = k + 1 < sources.size() && sources[k + 1].source.disc;
+      if (more && suns.size() < most_suns) continue;
+      stage.add(suns);
+      suns.clear();
     } else {
-      stage.add(light_source.source);
+      stage.add({&light_source.source, 1});
     }
     SourceCost& cost = light.cost[static_cast<std::size_t>(light_source.kind)];
     cost.rays += light.shadow_rays - before;

@@ -18,13 +18,17 @@ using scenes::RayPacket;
 // longer.
 constexpr int most_draws = 64;
 
-// Adds up shadowed samples eight at a time.
+// Adds up shadowed samples of some sources eight at a time.
 class Receiver {
  public:
-  Receiver(const scenes::RayQuery& query, int points)
-      : query_(query), by_point_(static_cast<std::size_t>(points), 0.0) {}
+  Receiver(const scenes::RayQuery& query, std::size_t sources, int points)
+      : query_(query),
+        sources_(sources),
+        sum_(sources, Rgb(0.0)),
+        by_point_(static_cast<std::size_t>(points) * sources, 0.0) {}
 
-  void add(int point, const Vec3& origin, const Vec3& normal, const LightSample& sample) {
+  void add(std::size_t source, int point, const Vec3& origin, const Vec3& normal,
+           const LightSample& sample) {
     const double cosine = glm::dot(sample.direction, normal);
     if (cosine <= 0.0 || base::max_component(sample.normal_illuminance_lx) <= 0.0) return;
     // Stops short of the source, which may be a surface of the scene itself.
@@ -32,16 +36,20 @@ class Receiver {
     if (reach <= 0.0) return;
     query_.set(packet_, count_, origin, sample.direction, reach);
     mirror_[count_] = sample.mirror;
+    source_[count_] = source;
     point_[count_] = static_cast<std::size_t>(point);
     contribution_[count_++] = sample.normal_illuminance_lx * cosine;
     if (count_ == RayPacket::width) flush();
   }
 
   void finish() { flush(); }
-  [[nodiscard]] const Rgb& sum() const { return sum_; }
-  [[nodiscard]] double sum_of_squares() const {  // of the points' luminance-weighted values
+  [[nodiscard]] const Rgb& sum(std::size_t source) const { return sum_[source]; }
+  // Of the points' luminance-weighted values.
+  [[nodiscard]] double sum_of_squares(std::size_t source) const {
     double squares = 0.0;
-    for (const double y : by_point_) squares += y * y;
+    for (std::size_t k = source; k < by_point_.size(); k += sources_) {
+      squares += by_point_[k] * by_point_[k];
+    }
     return squares;
   }
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
@@ -53,21 +61,22 @@ class Receiver {
     query_.light_shares(packet_, mirror_, count_, shares.data());
     for (std::size_t k = 0; k < count_; ++k) {
       const Rgb arrives = shares[k] * contribution_[k];
-      sum_ += arrives;
-      by_point_[point_[k]] += base::luminance(arrives);
+      sum_[source_[k]] += arrives;
+      by_point_[point_[k] * sources_ + source_[k]] += base::luminance(arrives);
     }
     rays_ += count_;
     count_ = 0;
   }
 
   const scenes::RayQuery& query_;
+  std::size_t sources_;
   RayPacket packet_;
   std::uint32_t mirror_[RayPacket::width];
   Rgb contribution_[RayPacket::width];
+  std::size_t source_[RayPacket::width], point_[RayPacket::width];
   std::size_t count_ = 0;
-  Rgb sum_{0.0};
-  std::size_t point_[RayPacket::width];
-  std::vector<double> by_point_;
+  std::vector<Rgb> sum_;
+  std::vector<double> by_point_;  // point * sources + source
   std::uint64_t rays_ = 0;
 };
 
@@ -124,48 +133,61 @@ void take_samples(const Source& source, std::span<const scenes::FlatMirror> mirr
 }
 
 Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, const OpenParts& open,
-                       const Source& source, std::uint64_t seed, std::uint64_t& rays,
+                       std::span<const Source> sources, std::uint64_t seed, std::uint64_t& rays,
                        base::Hears hears) {
-  Sampled sampled{std::vector<Rgb>(patches.count(), Rgb(0.0)),
-                  std::vector<double>(patches.count(), 0.0)};
+  const std::size_t each = sources.size();
+  const std::span<const scenes::FlatMirror> mirrors = query.ways().mirrors();
+  Sampled sampled{std::vector<Rgb>(patches.count() * each, Rgb(0.0)),
+                  std::vector<double>(patches.count() * each, 0.0)};
   constexpr std::size_t chunk = 256;
   std::vector<std::uint64_t> chunk_rays((patches.count() + chunk - 1) / chunk, 0);
   const auto sample = [&](std::size_t begin, std::size_t end) {
     std::vector<LightSample> samples;
+    std::vector<std::size_t> shining;
     for (std::size_t i = begin; i < end; ++i) {
       const auto patch = static_cast<std::uint32_t>(i);
       const double share = open.share.empty() ? 1.0 : open.share[i];
       if (share <= 0.0) continue;
-      if (sees_nothing_of(source, query.ways().mirrors(), patches, patch)) continue;
+      shining.clear();
+      for (std::size_t s = 0; s < each; ++s) {
+        if (!sees_nothing_of(sources[s], mirrors, patches, patch)) shining.push_back(s);
+      }
+      if (shining.empty()) continue;
       std::vector<std::uint32_t> near;
       if (share < 1.0) near = open.bodies->near(patches, patch, 2.0 * query.surface_offset_m());
-      const base::SobolOwen4 sobol(base::Key(seed, base::Stream::DirectLight, i).with(source.key));
-      const int points = points_for(source, patches, patch);
-      Receiver receiver(query, points);
+      const base::SobolOwen4 sobol(
+          base::Key(seed, base::Stream::DirectLight, i).with(sources.front().key));
+      const int points = points_for(sources.front(), patches, patch);
+      Receiver receiver(query, each, points);
       int taken = 0;
       for (int k = 0; taken < points && k < most_draws * points; ++k) {
         const auto p = sobol.point(static_cast<std::uint32_t>(k));
         const auto [at, normal] = patches.at(patch, p[0], p[1]);
         const Vec3 lift = normal * query.surface_offset_m();
         if (!near.empty() && open.bodies->cover(at + lift - open.bodies->centre(), near)) continue;
-        take_samples(source, query.ways().mirrors(), at, normal, p[2], p[3], samples);
-        for (const LightSample& one : samples) receiver.add(taken, at + lift, normal, one);
+        for (const std::size_t s : shining) {
+          take_samples(sources[s], mirrors, at, normal, p[2], p[3], samples);
+          for (const LightSample& one : samples) receiver.add(s, taken, at + lift, normal, one);
+        }
         ++taken;
       }
       receiver.finish();
       if (taken == 0) continue;
-      const double n = taken, y = base::luminance(receiver.sum());
-      sampled.illuminance_lx[i] = receiver.sum() / n;
-      sampled.variance[i] =
-          std::max(0.0, receiver.sum_of_squares() - y * y / n) / (n * std::max(1.0, n - 1.0));
+      const double n = taken;
+      for (const std::size_t s : shining) {
+        const double y = base::luminance(receiver.sum(s));
+        sampled.illuminance_lx[i * each + s] = receiver.sum(s) / n;
+        sampled.variance[i * each + s] =
+            std::max(0.0, receiver.sum_of_squares(s) - y * y / n) / (n * std::max(1.0, n - 1.0));
+      }
       chunk_rays[begin / chunk] += receiver.rays();
     }
   };
   base::share_chunks(
       patches.count(), chunk, sample,
       [&](std::size_t begin, std::size_t end, base::Parcel& parcel) {
-        parcel.pass_range(&sampled.illuminance_lx[begin], end - begin);
-        parcel.pass_range(&sampled.variance[begin], end - begin);
+        parcel.pass_range(&sampled.illuminance_lx[begin * each], (end - begin) * each);
+        parcel.pass_range(&sampled.variance[begin * each], (end - begin) * each);
         parcel.pass(chunk_rays[begin / chunk]);
       },
       hears);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Illuminance of every patch from one source, by shadow rays from points on the patch to points on
-// the source.
+// Illuminance of every patch from a source, or from several that share the patch's points, by
+// shadow rays from points on the patch to points on the source.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +44,7 @@ struct Source {
 };
 
 struct Sampled {
-  std::vector<Rgb> illuminance_lx;  // per patch
+  std::vector<Rgb> illuminance_lx;  // patch * sources + source
   std::vector<double> variance;     // of its luminance-weighted value, as if the points were random
 };
 
@@ -54,10 +54,11 @@ void take_samples(const Source& source, std::span<const scenes::FlatMirror> mirr
                   std::vector<scenes::LightSample>& samples);
 
 // Owen-Sobol in four dimensions (point of the patch, point of the source), keyed by patch and
-// source. Points that bodies cover are left out, and the next of the sequence taken; a wholly
-// covered patch gets nothing. Adds the rays cast to `rays`. hears: the rank that has them all.
+// first source. Points that bodies cover are left out, and the next of the sequence taken; a wholly
+// covered patch gets nothing. Adds the rays cast to `rays`. sources: of several, each in the sky,
+// so that they want equally many points. hears: the rank that has them all.
 [[nodiscard]] Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches,
-                                     const OpenParts& open, const Source& source,
+                                     const OpenParts& open, std::span<const Source> sources,
                                      std::uint64_t seed, std::uint64_t& rays,
                                      base::Hears hears = base::Hears::All);
 

@@ -127,31 +127,34 @@ struct ErrorSums {
 [[nodiscard]] ErrorSums add_up(const StatedError& stated, std::span<const std::size_t> pixels);
 [[nodiscard]] ErrorSums add_up(const StatedError& stated);  // all
 
-// How the noise of layers goes together: sums of products of luminance, the lower triangle of a
-// symmetric matrix, row by row.
-class LayerNoise {
- public:
-  // off: by layer, half of what the means of two independent halves of the samples at a place
-  // differ by, as far as the camera sees it.
-  void add(std::span<const float> off);
-  // The same sum for a weighted sum of the layers.
-  [[nodiscard]] double of(std::span<const double> weights) const;
-  std::vector<double> products;
+// What layers are off by at some places of a picture, and how bright they are there.
+struct LayerNoise {
+  std::vector<std::uint32_t> place;  // its pixel in the picture
+  // place * layers: half of what the means of two independent halves of the samples there differ
+  // by, as far as the camera sees it, and the pixel's light; luminances, cd/m^2
+  std::vector<float> off, luminance;
+
+  void add(std::size_t at, std::span<const float> off_by);
 };
 
 // What the error of any weighted sum of a picture's layers follows from.
 struct LayerErrors {
   std::vector<double> luminance;  // of each layer, mean of the pixels that count, cd/m^2
-  std::vector<double> squared;    // by part, of the sum of all: mean, relative, as stated
+  std::vector<double> per_noise;  // by part: what is stated of the sum of all, over its noise
   std::vector<LayerNoise> noise;  // by part
-  // Relative error of the sum with these weights: of each part what is stated of the sum of all,
-  // by as much as its samples' noise is that of the weighted sum, before neighbours share it.
-  // None where the sum is dark or nothing is known.
+
+  // Takes each place's light from the picture. groups: its layers'.
+  void see(const base::Image& picture, std::span<const std::string> groups);
+  // squared: by part, stated of the sum of all: mean, relative.
+  void scale_to(std::span<const double> squared);
+  // Relative error of the sum with these weights, whose bright pixels count as error_weight says:
+  // of each part what is stated of the sum of all, by as much as its samples' noise is that of the
+  // weighted sum, before neighbours share it. None where the sum is dark or nothing is known.
   [[nodiscard]] std::optional<double> of(std::span<const double> weights) const;
 };
 // Every so many pixels or gather points tell the noise of the layers.
 [[nodiscard]] inline std::size_t layer_noise_step(std::size_t count) {
-  constexpr std::size_t enough = 8192;
+  constexpr std::size_t enough = 4096;
   return count / enough + 1;
 }
 

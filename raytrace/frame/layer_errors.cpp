@@ -1,47 +1,70 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <cmath>
 
 #include "raytrace/frame/frame.h"
 
 namespace earthshine::raytrace {
+namespace {
 
-void LayerNoise::add(std::span<const float> off) {
-  products.resize(off.size() * (off.size() + 1) / 2, 0.0);
-  double* product = products.data();
-  for (std::size_t i = 0; i < off.size(); ++i) {
-    const double own = double(off[i]);
-    for (std::size_t j = 0; j <= i; ++j) *product++ += own * double(off[j]);
+// Sum over the places of the squared error of the sum with these weights.
+double noise_of(const LayerNoise& noise, std::span<const double> weights, double mean) {
+  double squares = 0.0;
+  for (std::size_t k = 0; k < noise.off.size(); k += weights.size()) {
+    double off = 0.0, luminance = 0.0;
+    for (std::size_t layer = 0; layer < weights.size(); ++layer) {
+      off += weights[layer] * double(noise.off[k + layer]);
+      luminance += weights[layer] * double(noise.luminance[k + layer]);
+    }
+    const double counted = error_weight(luminance, mean) * off;
+    squares += counted * counted;
+  }
+  return squares;
+}
+
+}  // namespace
+
+void LayerNoise::add(std::size_t at, std::span<const float> off_by) {
+  place.push_back(static_cast<std::uint32_t>(at));
+  off.insert(off.end(), off_by.begin(), off_by.end());
+}
+
+void LayerErrors::see(const base::Image& picture, std::span<const std::string> groups) {
+  for (LayerNoise& part : noise) part.luminance.assign(part.off.size(), 0.0F);
+  for (std::size_t layer = 0; layer < groups.size(); ++layer) {
+    const std::string name = "light_" + groups[layer];
+    const base::Channel *red = picture.find(name + ".R"), *green = picture.find(name + ".G"),
+                        *blue = picture.find(name + ".B");
+    for (LayerNoise& part : noise) {
+      for (std::size_t k = 0; k < part.place.size(); ++k) {
+        const std::size_t pixel = part.place[k];
+        const Rgb light(red->values[pixel], green->values[pixel], blue->values[pixel]);
+        part.luminance[k * groups.size() + layer] = static_cast<float>(base::luminance(light));
+      }
+    }
   }
 }
 
-double LayerNoise::of(std::span<const double> weights) const {
-  if (products.empty()) return 0.0;
-  double sum = 0.0;
-  const double* product = products.data();
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    double row = 0.0;
-    for (std::size_t j = 0; j < i; ++j) row += weights[j] * *product++;
-    sum += weights[i] * (2.0 * row + weights[i] * *product++);
+void LayerErrors::scale_to(std::span<const double> squared) {
+  const std::vector<double> ones(luminance.size(), 1.0);
+  double mean = 0.0;
+  for (const double of_layer : luminance) mean += of_layer;
+  per_noise.assign(noise.size(), 0.0);
+  for (std::size_t part = 0; part < noise.size(); ++part) {
+    const double of_all = noise_of(noise[part], ones, mean);
+    if (of_all > 0.0) per_noise[part] = squared[part] * mean * mean / of_all;
   }
-  return std::max(0.0, sum);
 }
 
 std::optional<double> LayerErrors::of(std::span<const double> weights) const {
   if (luminance.empty() || weights.size() != luminance.size()) return std::nullopt;
-  double all = 0.0, sum = 0.0;
-  for (std::size_t k = 0; k < luminance.size(); ++k) {
-    all += luminance[k];
-    sum += weights[k] * luminance[k];
-  }
-  if (sum <= 0.0) return std::nullopt;
-  const std::vector<double> ones(luminance.size(), 1.0);
+  double mean = 0.0;
+  for (std::size_t k = 0; k < luminance.size(); ++k) mean += weights[k] * luminance[k];
+  if (mean <= 0.0) return std::nullopt;
   double squares = 0.0;
   for (std::size_t part = 0; part < noise.size(); ++part) {
-    const double of_all = noise[part].of(ones);
-    if (of_all > 0.0) squares += squared[part] * noise[part].of(weights) / of_all;
+    if (per_noise[part] > 0.0) squares += per_noise[part] * noise_of(noise[part], weights, mean);
   }
-  return std::sqrt(squares) * all / sum;
+  return std::sqrt(squares) / mean;
 }
 
 }  // namespace earthshine::raytrace

@@ -135,16 +135,18 @@ void GatherField::note_half(std::uint32_t half, std::span<const Rgb> sum, std::s
 
 // samples: of both halves.
 void GatherField::finish_note(Gathered kind, std::size_t point, double samples,
-                              std::span<float> off) const {
+                              std::span<float> off, LayerNoise& notes) const {
+  if (off.empty()) return;
   const auto factor = static_cast<float>(reflected(kind, point) / samples);
   for (float& of_layer : off) of_layer *= factor;
+  notes.add(point, off);
 }
 
-void GatherField::add_notes(Gathered kind, const std::vector<std::vector<float>>& of_tiles) {
-  for (const std::vector<float>& off : of_tiles) {
-    for (std::size_t k = 0; k < off.size(); k += image_layers_) {
-      noise_[number(kind)].add({&off[k], image_layers_});
-    }
+void GatherField::add_notes(Gathered kind, const std::vector<LayerNoise>& of_tiles) {
+  LayerNoise& all = noise_[number(kind)];
+  for (const LayerNoise& tile : of_tiles) {
+    all.place.insert(all.place.end(), tile.place.begin(), tile.place.end());
+    all.off.insert(all.off.end(), tile.off.begin(), tile.off.end());
   }
 }
 

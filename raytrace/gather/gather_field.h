@@ -111,6 +111,7 @@ class GatherField {
   [[nodiscard]] double error_of(Gathered kind, std::size_t point) const;
   // The factor from what is estimated to what the camera sees: k_d or k_s.
   [[nodiscard]] double reflected(Gathered kind, std::size_t point) const;
+  // Places: points.
   [[nodiscard]] const LayerNoise& layer_noise(Gathered kind) const { return noise_[number(kind)]; }
   [[nodiscard]] RayCounts rays() const;  // all
   [[nodiscard]] const RayCounts& rays_of(Gathered kind) const { return rays_of_[number(kind)]; }
@@ -149,8 +150,10 @@ class GatherField {
     return setting_.notes_layers && round == 0 && point % layer_noise_step(points_.size()) == 0;
   }
   static void note_half(std::uint32_t half, std::span<const Rgb> sum, std::span<float> off);
-  void finish_note(Gathered kind, std::size_t point, double samples, std::span<float> off) const;
-  void add_notes(Gathered kind, const std::vector<std::vector<float>>& of_tiles);
+  // Keeps it, of a point that tells.
+  void finish_note(Gathered kind, std::size_t point, double samples, std::span<float> off,
+                   LayerNoise& notes) const;
+  void add_notes(Gathered kind, const std::vector<LayerNoise>& of_tiles);
   void cast_solution(const std::vector<std::uint32_t>& more, std::uint32_t round,
                      const std::function<bool()>& stop);
   void cast_paths(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,

@@ -17,7 +17,7 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
   Estimate& estimate = estimate_[number(kind)];
   const bool lobe = kind == Gathered::Lobe;
   std::vector<RayCounts> counts_of(tile_count(window_));
-  std::vector<std::vector<float>> off_of(counts_of.size());
+  std::vector<LayerNoise> notes_of(counts_of.size());
   const auto cast_tile = [&](std::size_t t) {
     if (stop && stop()) return;
     PathWalker walker(world_);
@@ -60,19 +60,19 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
         estimate.luminance[p][half] += static_cast<float>(luminance_of(sum));
         note_half(half, sum, off);
       }
-      finish_note(kind, p, 2.0 * each, off);
-      off_of[t].insert(off_of[t].end(), off.begin(), off.end());
+      finish_note(kind, p, 2.0 * each, off, notes_of[t]);
       estimate.samples[p] += static_cast<float>(2 * each);
     }
     counts += walker.rays();
   };
   base::share_loop(counts_of.size(), cast_tile, [&](std::size_t t, base::Parcel& parcel) {
     parcel.pass(counts_of[t]);
-    parcel.pass(off_of[t]);
+    parcel.pass(notes_of[t].place);
+    parcel.pass(notes_of[t].off);
     for (const std::size_t p : points_of_tile(t)) estimate.pass(p, parcel);
   });
   for (const RayCounts& tile : counts_of) rays_of_[number(kind)] += tile;
-  add_notes(kind, off_of);
+  add_notes(kind, notes_of);
 }
 
 // L = integral of L_in (k_s / pi) cos^n alpha cos theta by a ray of density

@@ -107,7 +107,7 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
     if ((classes & of_class) == 0) continue;
     const GatherRays rays(of_class);
     std::vector<RayCounts> counts(tile_count(window_));
-    std::vector<std::vector<float>> off_of(counts.size());
+    std::vector<LayerNoise> notes_of(counts.size());
     const auto cast_tile = [&](std::size_t t) {
       if (stop && stop()) return;
       const auto cast = [&](std::span<const std::size_t> some, std::size_t origins) {
@@ -138,8 +138,7 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
           counts[t] += found.counts;
         }
         for (std::size_t k = 0; k < some.size(); ++k) {
-          finish_note(Gathered::Solution, some[k], 2.0 * of_class, off[k]);
-          off_of[t].insert(off_of[t].end(), off[k].begin(), off[k].end());
+          finish_note(Gathered::Solution, some[k], 2.0 * of_class, off[k], notes_of[t]);
         }
       };
       for (const std::size_t origins : {std::size_t{1}, RayOrigins::most}) {
@@ -155,14 +154,15 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
     };
     base::share_loop(counts.size(), cast_tile, [&](std::size_t t, base::Parcel& parcel) {
       parcel.pass(counts[t]);
-      parcel.pass(off_of[t]);
+      parcel.pass(notes_of[t].place);
+      parcel.pass(notes_of[t].off);
       for (const std::size_t p : points_of_tile(t)) {
         parcel.pass(lengths_[p]);
         estimate.pass(p, parcel);
       }
     });
     for (const RayCounts& tile : counts) rays_of_[number(Gathered::Solution)] += tile;
-    add_notes(Gathered::Solution, off_of);
+    add_notes(Gathered::Solution, notes_of);
   }
   for (std::size_t p = 0; p < points_.size(); ++p) {
     if (lengths_[p].count > 0.0) {

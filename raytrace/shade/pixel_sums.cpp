@@ -83,7 +83,7 @@ LayerNoise PixelSums::layer_noise() const {
     for (std::size_t layer = 0; layer < image_layers; ++layer) {
       off[layer] = layers_differ[k + layer] / static_cast<float>(samples[pixel]);
     }
-    noise.add(off);
+    noise.add(pixel, off);
   }
   return noise;
 }

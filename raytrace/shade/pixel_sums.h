@@ -30,7 +30,7 @@ struct PixelSums {
   PixelSums(const Window& of, std::size_t image_layers, bool splits_parts);
   // Of a pixel that tells the noise of the layers (layer_noise_step).
   [[nodiscard]] std::span<float> layers_of(std::size_t pixel);
-  [[nodiscard]] LayerNoise layer_noise() const;
+  [[nodiscard]] LayerNoise layer_noise() const;  // places: pixels of the window
   // Of the mean luminance, from the spread of the samples alone.
   [[nodiscard]] double sample_variance(std::size_t pixel) const;
   // Standard deviation of one sample's luminance. Pixels brighter than `bright` are wanted as exact

@@ -72,7 +72,7 @@ TEST(LightCluster, GivesPatchesTheLightOfItsLampsOneByOne) {
       std::vector<double> flux(objects, 0.0);
       for (const LightSource& source : sources) {
         const Sampled sampled =
-            sample_patches(prepared.query, patches, {}, source.source, seed, rays[which]);
+            sample_patches(prepared.query, patches, {}, {&source.source, 1}, seed, rays[which]);
         for (std::uint32_t i = 0; i < patches.count(); ++i) {
           flux[patches.object(i)] += patches.area_m2[i] * sampled.illuminance_lx[i].g;
         }

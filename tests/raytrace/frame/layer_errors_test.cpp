@@ -11,25 +11,17 @@
 namespace earthshine::raytrace {
 namespace {
 
-// The sum of products that a weighted sum has: (w . a)^2 + (w . b)^2 for differences a and b.
-TEST(LayerErrors, NoiseOfAWeightedSumIsThatOfItsDifferences) {
-  LayerNoise noise;
-  const std::array<float, 3> a = {1.0F, -2.0F, 0.5F}, b = {0.0F, 3.0F, -1.0F};
-  noise.add(a);
-  noise.add(b);
-  const std::array<double, 3> weights = {2.0, 1.0, 4.0};
-  EXPECT_DOUBLE_EQ(noise.of(weights), 2.0 * 2.0 + 1.0 * 1.0);  // 2 - 2 + 2, 3 - 4
-}
-
-// Two parts of the error, each with its noise: 0.01 of the sum of all is noise of the first layer
-// alone, 0.04 of the second alone. Weight 0 takes a layer's noise and its light away.
+// Two layers at two places whose parts of the error are 0.01 of the sum of all, by the first
+// place's noise in the first layer alone, and 0.04, by the second's in the second alone. Weight 0
+// takes a layer's noise and its light away.
 TEST(LayerErrors, EachPartIsScaledByItsOwnNoise) {
   LayerErrors errors;
   errors.luminance = {3.0, 1.0};
-  errors.squared = {0.01, 0.04};
   errors.noise.resize(2);
-  errors.noise[0].add(std::array<float, 2>{0.5F, 0.0F});
-  errors.noise[1].add(std::array<float, 2>{0.0F, 0.1F});
+  errors.noise[0].add(0, std::array<float, 2>{0.5F, 0.0F});
+  errors.noise[1].add(1, std::array<float, 2>{0.0F, 0.1F});
+  for (LayerNoise& part : errors.noise) part.luminance = {3.0F, 1.0F};
+  errors.scale_to(std::array<double, 2>{0.01, 0.04});
   const auto of = [&](double first, double second) {
     return errors.of(std::array<double, 2>{first, second});
   };
@@ -40,26 +32,52 @@ TEST(LayerErrors, EachPartIsScaledByItsOwnNoise) {
   EXPECT_FALSE(of(0.0, 0.0));
 }
 
-// A room by two lamps, one behind a plate: what is stated of each alone, and of one at three times
-// its light, is what pictures of other seeds differ by. Squares averaged over pairs of seeds,
-// within four standard errors; nothing is shared, which would take its part of the noise.
+// Noise of both layers at one place goes together: (0.5 + 2 * 0.25)^2 of 0.75^2 in all.
+TEST(LayerErrors, NoiseOfAWeightedSumIsThatOfItsDifferences) {
+  LayerErrors errors;
+  errors.luminance = {1.0, 1.0};
+  errors.noise.resize(1);
+  errors.noise[0].add(0, std::array<float, 2>{0.5F, 0.25F});
+  errors.noise[0].luminance = {1.0F, 1.0F};
+  errors.scale_to(std::array<double, 1>{0.01});
+  EXPECT_NEAR(*errors.of(std::array<double, 2>{1.0, 2.0}), 0.1 * 2.0 / 3.0 * 1.0 / 0.75, 1e-12);
+}
+
+// Of the sum of both layers the place has the mean luminance and counts whole; of the first alone
+// it has 40 times the mean, and its noise counts a tenth.
+TEST(LayerErrors, WhereASumIsBrightItsNoiseCountsInProportion) {
+  LayerErrors errors;
+  errors.luminance = {0.1, 3.9};
+  errors.noise.resize(1);
+  errors.noise[0].add(0, std::array<float, 2>{0.5F, 0.0F});
+  errors.noise[0].luminance = {4.0F, 0.0F};
+  errors.scale_to(std::array<double, 1>{0.01});
+  EXPECT_NEAR(*errors.of(std::array<double, 2>{1.0, 0.0}), 0.1 * 4.0 / 0.1 * 0.1, 1e-6);
+}
+
+// A room by two lamps, one behind a plate, and a small one beside a wall, whose spot is a hundred
+// times as bright as the rest: what is stated of each alone, and of a sum, is what pictures of
+// other seeds differ by, bright pixels in proportion. Squares averaged over pairs of seeds, within
+// four standard errors; nothing is shared, which would take its part of the noise.
 TEST(LayerErrors, StatedOfASumIsWhatOtherSeedsDifferBy) {
   tests::SceneBuilder builder;
   const std::uint32_t grey = builder.material(tests::grey(0.5));
   builder.room({grey, grey, grey, grey, grey, grey});
   builder.plate(grey, 0.3, 0.4, true);
-  const auto lamp = [&](const char* name, const Vec3& position, double exitance) {
+  const auto lamp = [&](const char* name, const Vec3& position, const Vec3& axis, double radius_m,
+                        double exitance) {
     scenes::Lamp made;
     made.name = made.group = name;
     made.kind = scenes::LampKind::Disk;
     made.position = position;
-    made.axis = Vec3(0, 0, -1);
-    made.radius_m = 0.15;
+    made.axis = axis;
+    made.radius_m = radius_m;
     made.exitance = Rgb(exitance);
     builder.scene.lamps.push_back(made);
   };
-  lamp("left", {0.3, 0.5, 0.9}, 3000.0);
-  lamp("right", {0.8, 0.7, 0.6}, 500.0);
+  lamp("left", {0.3, 0.5, 0.9}, {0, 0, -1}, 0.15, 3000.0);
+  lamp("right", {0.8, 0.7, 0.6}, {0, 0, -1}, 0.15, 500.0);
+  lamp("spot", {0.06, 0.5, 0.3}, {-1, 0, 0}, 0.02, 3000.0);
   scenes::Camera camera;
   camera.position = Vec3(0.95, 0.9, 0.5);
   camera.look_at = Vec3(0.3, 0.4, 0.1);
@@ -81,29 +99,32 @@ TEST(LayerErrors, StatedOfASumIsWhatOtherSeedsDifferBy) {
     return render(prepared, solution, camera, options);
   };
   constexpr std::uint64_t pairs = 16;
-  const std::array<std::array<double, 2>, 3> sums = {{{1.0, 0.0}, {0.0, 1.0}, {1.0, 3.0}}};
-  std::array<std::vector<double>, 3> off;  // found less stated, squared
-  std::array<double, 3> stated{};
+  constexpr std::array<const char*, 3> names = {"light_left.G", "light_right.G", "light_spot.G"};
+  const std::array<std::array<double, 3>, 4> sums = {
+      {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {1.0, 3.0, 1.0}, {0.0, 0.0, 1.0}}};
+  std::array<std::vector<double>, 4> off;  // found less stated, squared
+  std::array<double, 4> stated{};
   for (std::uint64_t k = 0; k < pairs; ++k) {
     const Frame one = drawn(2 * k + 1), other = drawn(2 * k + 2);
+    const std::size_t pixels = one.image.pixel_count();
     for (std::size_t s = 0; s < sums.size(); ++s) {
-      double squares = 0.0, mean = 0.0;
-      for (std::size_t p = 0; p < one.image.pixel_count(); ++p) {
-        double difference = 0.0;
-        for (std::size_t g = 0; g < 2; ++g) {
-          const std::string layer = g == 0 ? "light_left.G" : "light_right.G";
-          const double a = double(one.image.find(layer)->values[p]);
-          const double b = double(other.image.find(layer)->values[p]);
-          difference += sums[s][g] * (a - b);
-          mean += sums[s][g] * 0.5 * (a + b);
+      std::vector<double> difference(pixels, 0.0), both(pixels, 0.0);
+      double mean = 0.0, squares = 0.0;
+      for (std::size_t p = 0; p < pixels; ++p) {
+        for (std::size_t g = 0; g < names.size(); ++g) {
+          const double a = double(one.image.find(names[g])->values[p]);
+          const double b = double(other.image.find(names[g])->values[p]);
+          difference[p] += sums[s][g] * (a - b);
+          both[p] += sums[s][g] * 0.5 * (a + b);
         }
-        squares += 0.5 * difference * difference;
+        mean += both[p] / double(pixels);
       }
-      const auto pixels = double(one.image.pixel_count());
-      mean /= pixels;
+      for (std::size_t p = 0; p < pixels; ++p) {
+        squares += 0.5 * std::pow(error_weight(both[p], mean) * difference[p], 2);
+      }
       const double expected =
           0.5 * (std::pow(*one.layers.of(sums[s]), 2) + std::pow(*other.layers.of(sums[s]), 2));
-      off[s].push_back(squares / pixels / (mean * mean) - expected);
+      off[s].push_back(squares / double(pixels) / (mean * mean) - expected);
       stated[s] += expected / double(pairs);
     }
   }

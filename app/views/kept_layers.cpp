@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/views/kept_layers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace earthshine::app {
+namespace {
+
+constexpr int half_digits = 10;          // of a half's mantissa, after the point
+constexpr int half_top = 15;             // the largest half is below 2^16
+constexpr int half_bottom = -14;         // exponent of the smallest half with all its digits
+constexpr const char* exact = "object";  // numbers, not light
+
+// 2^exponent bounds the channel's values; 0 for a black one.
+int exponent_of(const base::Channel& channel) {
+  float most = 0.0F;
+  for (const float value : channel.values) most = std::max(most, std::abs(value));
+  return most > 0.0F ? std::ilogb(most) + 1 : 0;
+}
+
+void round_values(base::Channel& channel, int digits) {
+  // One more than now: the largest value may be rounded up to the power of two above it.
+  const int lowest = exponent_of(channel) + 1 - half_top + half_bottom;
+  for (float& value : channel.values) {
+    if (value == 0.0F) continue;
+    const int step = std::max(std::ilogb(value), lowest) - digits;
+    value = std::ldexp(std::nearbyint(std::ldexp(value, -step)), step);
+  }
+}
+
+void scale(base::Channel& channel, int exponent) {
+  for (float& value : channel.values) value = std::ldexp(value, exponent);
+}
+
+}  // namespace
+
+int round_layers(base::Image& image, double relative_noise) {
+  constexpr double mean_rounding = 0.42, of_the_noise = 0.125;
+  if (!(relative_noise > 0.0)) return 0;
+  const double digits = std::ceil(std::log2(mean_rounding / (of_the_noise * relative_noise))) - 1.0;
+  if (digits > half_digits) return 0;
+  const int kept = std::max(1, static_cast<int>(digits));
+  for (base::Channel& channel : image.channels) {
+    if (channel.name != exact) round_values(channel, kept);
+  }
+  return kept;
+}
+
+CachedResult packed_layers(base::Image image, int digits, Json facts) {
+  CachedResult kept{std::move(facts), std::move(image)};
+  kept.facts["digits"] = digits;
+  if (digits == 0) return kept;
+  Json& exponents = kept.facts["exponents"] = Json::object();
+  for (base::Channel& channel : kept.image.channels) {
+    if (channel.name == exact) continue;
+    const int exponent = exponent_of(channel) - half_top;
+    exponents[channel.name] = exponent;
+    scale(channel, -exponent);
+    kept.header.half_channels.push_back(channel.name);
+  }
+  return kept;
+}
+
+base::Image unpacked_layers(CachedResult kept) {
+  if (kept.facts.at("digits").get<int>() > 0) {
+    const Json& exponents = kept.facts.at("exponents");
+    for (base::Channel& channel : kept.image.channels) {
+      if (channel.name != exact) scale(channel, exponents.at(channel.name).get<int>());
+    }
+  }
+  return std::move(kept.image);
+}
+
+CachedResult packed_noise(const raytrace::LayerErrors& errors) {
+  const std::size_t layers = errors.luminance.size();
+  std::vector<std::size_t> places;  // of each part
+  for (const raytrace::LayerNoise& part : errors.noise) places.push_back(part.place.size());
+  const std::size_t most = places.empty() ? 0 : *std::max_element(places.begin(), places.end());
+  const std::size_t row = std::max<std::size_t>(1, most);
+  base::Image picture{
+      static_cast<int>(row), static_cast<int>(std::max<std::size_t>(1, places.size())), {}};
+  std::vector<float>& place = picture.add(exact);
+  for (std::size_t part = 0; part < places.size(); ++part) {
+    std::copy(errors.noise[part].place.begin(), errors.noise[part].place.end(),
+              place.begin() + static_cast<std::ptrdiff_t>(part * row));
+  }
+  for (std::size_t layer = 0; layer < layers; ++layer) {
+    std::vector<float>& values = picture.add(std::to_string(layer));
+    for (std::size_t part = 0; part < places.size(); ++part) {
+      for (std::size_t k = 0; k < places[part]; ++k) {
+        values[part * row + k] = errors.noise[part].off[k * layers + layer];
+      }
+    }
+    round_values(picture.channels.back(), half_digits);
+  }
+  return packed_layers(std::move(picture), half_digits, {{"places", places}});
+}
+
+void take_noise(CachedResult kept, raytrace::LayerErrors& errors) {
+  const auto places = kept.facts.at("places").get<std::vector<std::size_t>>();
+  const base::Image picture = unpacked_layers(std::move(kept));
+  const auto row = static_cast<std::size_t>(picture.width);
+  // By name: a file has its channels in the order of their names.
+  const std::vector<float>& pixel = picture.find(exact)->values;
+  std::vector<const std::vector<float>*> layers;
+  while (const base::Channel* layer = picture.find(std::to_string(layers.size()))) {
+    layers.push_back(&layer->values);
+  }
+  errors.noise.assign(places.size(), {});
+  std::vector<float> off(layers.size());
+  for (std::size_t part = 0; part < places.size(); ++part) {
+    for (std::size_t k = 0; k < places[part]; ++k) {
+      const std::size_t at = part * row + k;
+      for (std::size_t layer = 0; layer < layers.size(); ++layer) off[layer] = (*layers[layer])[at];
+      errors.noise[part].add(static_cast<std::size_t>(pixel[at]), off);
+    }
+  }
+}
+
+}  // namespace earthshine::app
