@@ -72,7 +72,7 @@ class Solution(program.Case):
             seal(self.folder / "ball.h5")
             run = self.run_program("render", "ball.toml", "-o", "a.exr", "--camera", "A", "--solution", "ball.h5")
             self.assertEqual(run.returncode, 0, run.stderr)
-            self.assertEqual("conserve energy to 1.1e-06" in run.stderr, is_told, run.stderr)
+            self.assertEqual("conserve energy" in run.stderr, is_told, run.stderr)
 
     def test_reading_skips_the_solve(self):
         self.done("solve", "ball.toml", "-o", "ball.h5")
