@@ -232,19 +232,10 @@ TEST(CoincidentFaces, AreFoundFarFromTheOrigin) {
   EXPECT_EQ(scene.objects.size(), 2U);
 }
 
-// 300 random boxes of 40 labels: the pairs that a comparison of all with all finds, once each.
-TEST(BoxJoin, FindsEachPairThatMeetsOnce) {
-  base::Rng random(base::Key(3, base::Stream::Test, 0));
-  const auto number = [&](double most) { return static_cast<float>(most * random.next()); };
-  std::vector<LabelledBox> boxes;
-  for (std::uint32_t k = 0; k < 300; ++k) {
-    const glm::vec3 low(number(1.0), number(1.0), k % 3 == 0 ? 0.5F : number(1.0));
-    const float size = k % 50 == 0 ? 1.0F : 0.1F;
-    boxes.push_back(
-        {low, low + size * glm::vec3(number(1.0), number(1.0), number(1.0)), k % 40, k});
-  }
+// The pairs that a comparison of each of the first `few` boxes with all after it finds.
+void expect_pairs_of_comparison(const std::vector<LabelledBox>& boxes, std::size_t few) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> expected, found;
-  for (std::uint32_t a = 0; a < boxes.size(); ++a) {
+  for (std::uint32_t a = 0; a < few; ++a) {
     for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
       if (boxes[a].label != boxes[b].label &&
           glm::all(glm::lessThanEqual(boxes[a].low, boxes[b].high)) &&
@@ -259,6 +250,20 @@ TEST(BoxJoin, FindsEachPairThatMeetsOnce) {
   std::sort(found.begin(), found.end());
   EXPECT_GT(expected.size(), 200U);
   EXPECT_EQ(found, expected);
+}
+
+// 300 random boxes of 40 labels: the pairs that a comparison of all with all finds, once each.
+TEST(BoxJoin, FindsEachPairThatMeetsOnce) {
+  base::Rng random(base::Key(3, base::Stream::Test, 0));
+  const auto number = [&](double most) { return static_cast<float>(most * random.next()); };
+  std::vector<LabelledBox> boxes;
+  for (std::uint32_t k = 0; k < 300; ++k) {
+    const glm::vec3 low(number(1.0), number(1.0), k % 3 == 0 ? 0.5F : number(1.0));
+    const float size = k % 50 == 0 ? 1.0F : 0.1F;
+    boxes.push_back(
+        {low, low + size * glm::vec3(number(1.0), number(1.0), number(1.0)), k % 40, k});
+  }
+  expect_pairs_of_comparison(boxes, boxes.size());
 }
 
 // 40 random boxes over a sheet of 90 000 that touch each other: the pairs that a comparison of each
@@ -277,22 +282,7 @@ TEST(BoxJoin, FindsTheFewThatMeetAmongMany) {
                         0.0F);
     boxes.push_back({low, low + glm::vec3(1.0F / edge, 1.0F / edge, 1e-3F), 0, few + k});
   }
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> expected, found;
-  for (std::uint32_t a = 0; a < few; ++a) {
-    for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
-      if (boxes[a].label != boxes[b].label &&
-          glm::all(glm::lessThanEqual(boxes[a].low, boxes[b].high)) &&
-          glm::all(glm::lessThanEqual(boxes[b].low, boxes[a].high))) {
-        expected.emplace_back(a, b);
-      }
-    }
-  }
-  join_boxes(boxes, [&](std::uint32_t a, std::uint32_t b) {
-    found.emplace_back(std::min(a, b), std::max(a, b));
-  });
-  std::sort(found.begin(), found.end());
-  EXPECT_GT(expected.size(), 200U);
-  EXPECT_EQ(found, expected);
+  expect_pairs_of_comparison(boxes, few);
 }
 
 }  // namespace
