@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <set>
 
+#include "app/build_id.h"
 #include "app/console.h"
 #include "base/error.h"
 #include "base/ranks/ranks.h"
@@ -76,8 +77,7 @@ LoadedScene load(const SceneInput& input, bool quiet, const AskEffects& ask) {
   degrade::check_range_sensors(loaded.scene);
   loaded.groups = scenes::find_light_groups(loaded.scene);
   if (base::ranks() != nullptr) {
-    Json read = Json::object(
-        {{"the program", digest_of_file("/proc/self/exe")}, {"its setting", input.overrides}});
+    Json read = Json::object({{"the program", build_id()}, {"its setting", input.overrides}});
     for (const auto& file : loaded.scene.files) read[file.string()] = digest_of_file(file);
     check_ranks_alike(read);
   }

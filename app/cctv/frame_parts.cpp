@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "app/build_id.h"
 #include "app/console.h"
-#include "app/parts/build_id.h"
 #include "app/parts/shared_solution.h"
 #include "base/error.h"
 

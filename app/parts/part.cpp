@@ -9,10 +9,10 @@
 #include <cstdlib>
 #include <map>
 
+#include "app/build_id.h"
 #include "app/console.h"
 #include "app/options.h"
 #include "app/output.h"
-#include "app/parts/build_id.h"
 #include "base/error.h"
 #include "base/files/output_file.h"
 

@@ -7,8 +7,8 @@
 #include <bit>
 #include <map>
 
+#include "app/build_id.h"
 #include "app/output.h"
-#include "app/parts/build_id.h"
 #include "base/error.h"
 #include "base/files/exr_file.h"
 #include "base/files/output_file.h"

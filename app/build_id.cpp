@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/parts/build_id.h"
+#include "app/build_id.h"
 
 #include <elf.h>
 #include <fmt/format.h>
