@@ -219,13 +219,17 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
                   incident * highlight, shared_.layer[shared_.lights.group(k)], sample_, depth == 0,
                   shared_.lights.kind(k), light.mirror});
   };
-  const Footprint footprint({*camera_, shared_.filter, pixel_x_, pixel_y_}, ray, surface.position,
-                            surface.normal);
+  std::optional<Footprint> footprint;  // that lamps without size ask for
   for (const auto& [k, chance_weight] : chosen_) {
     Footprint::Places places;
-    const Vec3* lamp = depth == 0 ? shared_.lights.lamp_point(k) : nullptr;
-    if (lamp != nullptr && footprint.is_near(*lamp)) {
-      places = footprint.toward(*lamp, shared_.query, light_point(k), rng_);
+    if (const Vec3* lamp = depth == 0 ? shared_.lights.lamp_point(k) : nullptr) {
+      if (!footprint) {
+        footprint.emplace(PixelView{*camera_, shared_.filter, pixel_x_, pixel_y_}, ray,
+                          surface.position, surface.normal);
+      }
+      if (footprint->is_near(*lamp)) {
+        places = footprint->toward(*lamp, shared_.query, light_point(k), rng_);
+      }
     }
     reflect(k, surface.position, chance_weight * places.own_weight);
     reflect(k, places.point, chance_weight * places.weight);

@@ -32,26 +32,28 @@ TEST(LayerErrors, EachPartIsScaledByItsOwnNoise) {
   EXPECT_FALSE(of(0.0, 0.0));
 }
 
+// Told by one place alone, 0.01 of the sum of all.
+LayerErrors errors_of_one_place(const std::array<double, 2>& mean, const std::array<float, 2>& off,
+                                const std::array<float, 2>& there) {
+  LayerErrors errors;
+  errors.luminance.assign(mean.begin(), mean.end());
+  errors.noise.resize(1);
+  errors.noise[0].add(0, off);
+  errors.noise[0].luminance.assign(there.begin(), there.end());
+  errors.scale_to(std::array<double, 1>{0.01});
+  return errors;
+}
+
 // Noise of both layers at one place goes together: (0.5 + 2 * 0.25)^2 of 0.75^2 in all.
 TEST(LayerErrors, NoiseOfAWeightedSumIsThatOfItsDifferences) {
-  LayerErrors errors;
-  errors.luminance = {1.0, 1.0};
-  errors.noise.resize(1);
-  errors.noise[0].add(0, std::array<float, 2>{0.5F, 0.25F});
-  errors.noise[0].luminance = {1.0F, 1.0F};
-  errors.scale_to(std::array<double, 1>{0.01});
+  const LayerErrors errors = errors_of_one_place({1.0, 1.0}, {0.5F, 0.25F}, {1.0F, 1.0F});
   EXPECT_NEAR(*errors.of(std::array<double, 2>{1.0, 2.0}), 0.1 * 2.0 / 3.0 * 1.0 / 0.75, 1e-12);
 }
 
 // Of the sum of both layers the place has the mean luminance and counts whole; of the first alone
 // it has 40 times the mean, and its noise counts a tenth.
 TEST(LayerErrors, WhereASumIsBrightItsNoiseCountsInProportion) {
-  LayerErrors errors;
-  errors.luminance = {0.1, 3.9};
-  errors.noise.resize(1);
-  errors.noise[0].add(0, std::array<float, 2>{0.5F, 0.0F});
-  errors.noise[0].luminance = {4.0F, 0.0F};
-  errors.scale_to(std::array<double, 1>{0.01});
+  const LayerErrors errors = errors_of_one_place({0.1, 3.9}, {0.5F, 0.0F}, {4.0F, 0.0F});
   EXPECT_NEAR(*errors.of(std::array<double, 2>{1.0, 0.0}), 0.1 * 4.0 / 0.1 * 0.1, 1e-6);
 }
 
