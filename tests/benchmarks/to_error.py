@@ -5,7 +5,8 @@
 
 Truth: two path-traced pictures of independent noise, of all light paths (error_truth.py); they are kept in DIR. Their
 difference tells the path tracer's own noise, by the same weights, and with it what it needs for the same error:
-its seconds times (its noise / the error)^2. Both sides are timed in the same run and on the same machine.
+its seconds times (its noise / the error)^2. Its seconds are those of a picture of a sixteenth of the paths, drawn in
+the same run as what it is compared with: references may come from another day or machine.
 """
 import argparse
 import json
@@ -21,6 +22,7 @@ import error_truth  # noqa: E402
 
 SCENES = ("night-lamps", "day-sun", "day-earthshine")
 SEEDS = (11, 12)
+TIMED = 16  # of so many paths one, for the path tracer's seconds
 
 
 def run(*words):
@@ -33,19 +35,23 @@ def run(*words):
     return out, used.ru_utime + used.ru_stime
 
 
+def trace_paths(call, scene, camera, paths, seed, picture):
+    """CPU seconds."""
+    return run(call.program, "render", TOP / "scenes/library/sts46" / f"{scene}.toml", "--camera", camera, "--size", call.size,
+               "--indirect", "paths", "--set", f"quality.gather_rays={paths}", "--seed", seed, "-q", "-o", picture)[1]
+
+
 def references(call, scene, camera):
-    """Two luminances, and the CPU seconds of one."""
-    found, seconds = [], []
+    """Two luminances."""
+    found = []
     for seed in SEEDS:
-        stem = call.cache / f"{scene}-{camera}-{call.size}-{call.paths}-{seed}"
-        if not stem.with_suffix(".json").exists():
-            _, used = run(call.program, "render", TOP / "scenes/library/sts46" / f"{scene}.toml", "--camera", camera, "--size", call.size,
-                          "--indirect", "paths", "--set", f"quality.gather_rays={call.paths}", "--seed", seed, "-q",
-                          "-o", stem.with_suffix(".exr"))
-            stem.with_suffix(".json").write_text(json.dumps(used))
-        found.append(error_truth.picture(stem.with_suffix(".exr"))[0])
-        seconds.append(json.loads(stem.with_suffix(".json").read_text()))
-    return found, sum(seconds) / len(seconds)
+        picture = call.cache / f"{scene}-{camera}-{call.size}-{call.paths}-{seed}.exr"
+        if not picture.exists():
+            unfinished = picture.with_suffix(".part.exr")
+            trace_paths(call, scene, camera, call.paths, seed, unfinished)
+            unfinished.rename(picture)
+        found.append(error_truth.picture(picture)[0])
+    return found
 
 
 def noise(first, second):
@@ -56,8 +62,10 @@ def noise(first, second):
 
 
 def rows(call, scene, camera):
-    (first, second), path_seconds = references(call, scene, camera)
+    first, second = references(call, scene, camera)
     of_paths = noise(first, second)
+    timed = max(1, call.paths // TIMED)
+    path_seconds = trace_paths(call, scene, camera, timed, SEEDS[0], call.cache / "timed.exr") * call.paths / timed
     for asked in call.errors:
         picture = call.cache / "picture.exr"
         out, seconds = run(call.program, "render", TOP / "scenes/library/sts46" / f"{scene}.toml", "--camera", camera, "--size", call.size,
