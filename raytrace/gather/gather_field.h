@@ -43,8 +43,10 @@ struct GatherRequest {
 };
 using GatherSurface = std::function<bool(const scenes::Hit&, GatherRequest&)>;
 
-// Whether the point lies on the surface that is met at a place nearby, and what is seen from it by
-// its lobe, if it has one, is alike.
+// Whether the point lies on the surface that is met at a place nearby.
+[[nodiscard]] bool lies_on_surface(const GatherPoint& point, const glm::vec3& position,
+                                   const glm::vec3& normal);
+// And what is seen from it by its lobe, if it has one, is alike.
 [[nodiscard]] bool stands_for(const GatherPoint& point, const glm::vec3& position,
                               const glm::vec3& normal);
 
@@ -84,6 +86,11 @@ class GatherField {
   // pixel's own, on the same surface and near for its surroundings; no_point if there is none.
   [[nodiscard]] std::size_t find(int x, int y, const glm::vec3& position,
                                  const glm::vec3& normal) const;
+  // For what find() has no point: slivers of a pixel, and where a glossy surface turns fast. The
+  // nearest point of the pixel and those about it on the same surface; for lobes one whose lobe
+  // sees alike, too.
+  [[nodiscard]] std::size_t find_beside(int x, int y, const glm::vec3& position,
+                                        const glm::vec3& normal, Gathered kind) const;
   // Radiance to be reflected by k_d, cd/m^2: image layers, then what came straight from the sky.
   [[nodiscard]] std::span<const glm::vec3> diffuse(std::size_t point) const {
     return {&diffuse_[point * layers_], layers_};

@@ -2,6 +2,7 @@
 // How far about it a gather point stands for its surface, and where its rays start.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/numbers/random.h"
 #include "raytrace/gather/gather_field.h"
@@ -11,6 +12,8 @@ namespace {
 
 // Of its mean ray's length: how far about a point what comes in is much the same.
 constexpr float alike_share = 0.1F;
+// A point of the next pixel, over the way from a pixel's middle to its corner.
+constexpr float beside = 3.0F;
 
 // How far the corners of a pixel's footprint on the surface are from its point.
 float footprint_radius(const GatherPoint& point) {
@@ -95,6 +98,34 @@ std::size_t GatherField::find(int x, int y, const glm::vec3& position,
     if (stands_for(points_[grid_ + k], position, normal)) return if_near(grid_ + k);
   }
   return no_point;
+}
+
+std::size_t GatherField::find_beside(int x, int y, const glm::vec3& position,
+                                     const glm::vec3& normal, Gathered kind) const {
+  std::size_t nearest = no_point;
+  float distance = std::numeric_limits<float>::max();
+  const auto consider = [&](std::size_t index) {
+    const GatherPoint& point = points_[index];
+    if (point.reach_m <= 0.0F || reflected(kind, index) <= 0.0) return;
+    const float away = glm::length(position - point.position);
+    if (away >= distance || away > beside * footprint_radius(point)) return;
+    const bool serves = kind == Gathered::Lobe ? stands_for(point, position, normal)
+                                               : lies_on_surface(point, position, normal);
+    if (!serves) return;
+    nearest = index;
+    distance = away;
+  };
+  for (int qy = y - 1; qy <= y + 1; ++qy) {
+    for (int qx = x - 1; qx <= x + 1; ++qx) {
+      if (!window_.contains(qx, qy)) continue;
+      const std::size_t pixel = window_.index(qx, qy);
+      consider(pixel);
+      for (std::size_t k = first_stray_[pixel]; k < first_stray_[pixel + 1]; ++k) {
+        consider(grid_ + k);
+      }
+    }
+  }
+  return nearest;
 }
 
 }  // namespace earthshine::raytrace

@@ -49,9 +49,13 @@ void each_neighbour(const Window& window, int x, int y, int ring, const Visit& v
 
 }  // namespace
 
-bool stands_for(const GatherPoint& point, const glm::vec3& position, const glm::vec3& normal) {
+bool lies_on_surface(const GatherPoint& point, const glm::vec3& position, const glm::vec3& normal) {
   return point.reach_m > 0.0F &&
-         same_surface(point.position, point.normal, position, normal, rounding * point.spacing_m) &&
+         same_surface(point.position, point.normal, position, normal, rounding * point.spacing_m);
+}
+
+bool stands_for(const GatherPoint& point, const glm::vec3& position, const glm::vec3& normal) {
+  return lies_on_surface(point, position, normal) &&
          (point.lobe <= 0.0F || glm::dot(point.normal, normal) >= lobe_cosine);
 }
 

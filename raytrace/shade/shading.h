@@ -112,7 +112,7 @@ class PixelShader {
   bool see_lamp(const Ray& ray, double nearer_than_m, const Rgb& weight, int depth);
   void direct(const Ray& ray, const Surface& surface, const Rgb& weight, int depth);
   void diffuse(const Surface& surface, const scenes::Hit& hit, const Rgb& weight, int depth);
-  [[nodiscard]] std::size_t find_point(const Surface& surface) const;
+  [[nodiscard]] std::size_t find_point(const Surface& surface, Gathered kind) const;
   bool read_field(const Surface& surface, const Rgb& weight);
   bool read_lobe(const Surface& surface, const Rgb& weight);
   FieldTerm& term_of(std::size_t point);

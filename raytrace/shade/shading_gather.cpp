@@ -40,9 +40,11 @@ void PixelShader::read_solution(const scenes::Hit& hit, const Rgb& weight, int d
   for (std::size_t k = 0; k < shared_.layers; ++k) add(k, sample_, part, scratch_[k]);
 }
 
-std::size_t PixelShader::find_point(const Surface& surface) const {
-  return shared_.field->find(x_, y_, glm::vec3(surface.position - shared_.camera_position),
-                             glm::vec3(surface.normal));
+std::size_t PixelShader::find_point(const Surface& surface, Gathered kind) const {
+  const GatherField& field = *shared_.field;
+  const glm::vec3 position(surface.position - shared_.camera_position), normal(surface.normal);
+  const std::size_t own = field.find(x_, y_, position, normal);
+  return own != no_point ? own : field.find_beside(x_, y_, position, normal, kind);
 }
 
 FieldTerm& PixelShader::term_of(std::size_t point) {
@@ -53,7 +55,7 @@ FieldTerm& PixelShader::term_of(std::size_t point) {
 }
 
 bool PixelShader::read_field(const Surface& surface, const Rgb& weight) {
-  const std::size_t point = find_point(surface);
+  const std::size_t point = find_point(surface, Gathered::Solution);
   if (point == no_point || shared_.field->points()[point].reflectance <= 0.0F) return false;
   term_of(point).diffuse += glm::vec3(weight);
   const std::span<const glm::vec3> radiance = shared_.field->diffuse(point);
@@ -64,7 +66,7 @@ bool PixelShader::read_field(const Surface& surface, const Rgb& weight) {
 }
 
 bool PixelShader::read_lobe(const Surface& surface, const Rgb& weight) {
-  const std::size_t point = find_point(surface);
+  const std::size_t point = find_point(surface, Gathered::Lobe);
   if (point == no_point) return false;
   const std::uint32_t material = shared_.field->points()[point].material;
   if (&shared_.scene.materials[material] != &surface.material) return false;
