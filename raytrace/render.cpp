@@ -32,11 +32,12 @@ void pixel_radiance(const Sampled& sampled, std::size_t pixel, std::vector<Rgb>&
   for (const FieldTerm& term : sums.terms[pixel]) {
     const Rgb diffuse = Rgb(term.diffuse) / n, specular = Rgb(term.lobe) / n;
     const std::span<const glm::vec3> radiance = sampled.field->diffuse(term.point);
+    const bool mirrored = sampled.field->points()[term.point].mirror != seen_straight;
     for (std::size_t k = 0; k < layers; ++k) {
       out[k] += diffuse * Rgb(radiance[k]);
-      if (by_part) part(Part::Indirect) += diffuse * Rgb(radiance[k]);
+      if (by_part) part(mirrored ? Part::Specular : Part::Indirect) += diffuse * Rgb(radiance[k]);
     }
-    if (by_part) {  // what came straight from the sky is no interreflection
+    if (by_part && !mirrored) {  // what came straight from the sky is no interreflection
       part(Part::Direct) += diffuse * Rgb(radiance[layers]);
       part(Part::Indirect) -= diffuse * Rgb(radiance[layers]);
     }

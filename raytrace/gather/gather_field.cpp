@@ -28,9 +28,9 @@ GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
       image_layers_(setting.image_layers),
       layers_(setting.image_layers + (setting.keeps_sky_apart ? 1 : 0)),
       points_(window.pixel_count()),
-      origin_(window.pixel_count(), Vec3(0.0)) {
-  find_points();
-  find_strays();
+      start_(window.pixel_count()) {
+  find_strays(find_points());
+  find_peers();
   lengths_.assign(points_.size(), {});
   over_pixel_.assign(points_.size(), 0);
   find_turning_lobes();
@@ -88,7 +88,7 @@ void GatherField::look_quickly(Gathered kind) {
     if (p >= grid_) return strays_[p - grid_].base != no_base;
     const std::size_t by = middle(p / columns, rows) * columns + middle(p % columns, columns);
     return by != p && points_[by].material == points_[p].material &&
-           stands_for(points_[by], points_[p].position, points_[p].normal);
+           stands_for(points_[by], sighting_of(points_[p]));
   };
   for (std::size_t p = 0; p < missing.size(); ++p) {
     if (samples(kind, p) <= 0.0F && !served(p)) missing[p] = fewest_samples(kind);
@@ -106,6 +106,7 @@ void GatherField::share(Gathered kind, bool last) {
   const Neighbours& neighbours = lobe ? *of_material_ : *of_surface_;
   shared = last ? share_in_place(neighbours, estimate) : raytrace::share(neighbours, estimate);
   add_strays(strays_, estimate, shared);
+  share_among_peers({strays_, first_stray_, peers_, window_.columns}, estimate, shared);
   if (lobe) return;
   std::vector<glm::vec3> radiance;
   radiance.swap(shared.radiance);

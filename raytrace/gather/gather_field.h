@@ -43,12 +43,26 @@ struct GatherRequest {
 };
 using GatherSurface = std::function<bool(const scenes::Hit&, GatherRequest&)>;
 
+// A place of a surface as the camera sees it: what is seen in a mirror is behind it.
+struct Sighting {
+  glm::vec3 position, normal;  // relative to the camera, m; unit
+  bool in_mirror = false;
+};
+[[nodiscard]] inline Sighting sighting_of(const GatherPoint& point) {
+  return {point.position, point.normal, point.mirror != seen_straight};
+}
+// The plane that a mirror is in where a ray meets it.
+struct MirrorPlane {
+  Vec3 place, normal;
+  [[nodiscard]] Vec3 image(const Vec3& position) const {
+    return position - 2.0 * glm::dot(position - place, normal) * normal;
+  }
+};
+
 // Whether the point lies on the surface that is met at a place nearby.
-[[nodiscard]] bool lies_on_surface(const GatherPoint& point, const glm::vec3& position,
-                                   const glm::vec3& normal);
+[[nodiscard]] bool lies_on_surface(const GatherPoint& point, const Sighting& place);
 // And what is seen from it by its lobe, if it has one, is alike.
-[[nodiscard]] bool stands_for(const GatherPoint& point, const glm::vec3& position,
-                              const glm::vec3& normal);
+[[nodiscard]] bool stands_for(const GatherPoint& point, const Sighting& place);
 
 enum class Gathered { Solution, Residual, Lobe };
 inline constexpr std::size_t gathered_kinds = 3;
@@ -84,13 +98,11 @@ class GatherField {
 
   // A point whose values may stand for the surface point that pixel (x, y) meets: one of the
   // pixel's own, on the same surface and near for its surroundings; no_point if there is none.
-  [[nodiscard]] std::size_t find(int x, int y, const glm::vec3& position,
-                                 const glm::vec3& normal) const;
+  [[nodiscard]] std::size_t find(int x, int y, const Sighting& place) const;
   // For what find() has no point: slivers of a pixel, and where a glossy surface turns fast. The
   // nearest point of the pixel and those about it on the same surface; for lobes one whose lobe
   // sees alike, too.
-  [[nodiscard]] std::size_t find_beside(int x, int y, const glm::vec3& position,
-                                        const glm::vec3& normal, Gathered kind) const;
+  [[nodiscard]] std::size_t find_beside(int x, int y, const Sighting& place, Gathered kind) const;
   // Radiance to be reflected by k_d, cd/m^2: image layers, then what came straight from the sky.
   [[nodiscard]] std::span<const glm::vec3> diffuse(std::size_t point) const {
     return {&diffuse_[point * layers_], layers_};
@@ -125,16 +137,31 @@ class GatherField {
 
  private:
   static std::size_t number(Gathered kind) { return static_cast<std::size_t>(kind); }
-  void find_points();
-  void find_strays();
+  struct Found {
+    Stray stray;
+    GatherPoint point;
+    RayStart start;
+  };
+  // Those behind the pixels' centres; what mirrors show there is a stray, and returned.
+  std::vector<Found> find_points();
+  void find_strays(const std::vector<Found>& mirrored);
+  // Of points that mirrors show, which others share with them.
+  void find_peers();
   // Glossy points beside which their material has another normal: their rays start all over their
   // pixel.
   void find_turning_lobes();
-  // Of what camera rays met: true where light is gathered there.
-  bool place(const scenes::Hit& hit, GatherPoint& point, Vec3& origin) const;
+  // Of what a camera ray met: true where light is gathered there.
+  bool place(const Ray& ray, const scenes::Hit& hit, GatherPoint& point, RayStart& start) const;
+  // The same of what is shown there by a flat or curved mirror that lets nothing through.
+  bool place_mirrored(const Ray& ray, const scenes::Hit& hit, GatherPoint& point,
+                      RayStart& start) const;
   // What rays through some places of a pixel meet, eight at most.
   using Places = std::array<double, scenes::RayPacket::width>;
-  [[nodiscard]] std::array<scenes::Hit, scenes::RayPacket::width> look(
+  struct Met {
+    Ray ray;
+    scenes::Hit hit;
+  };
+  [[nodiscard]] std::array<Met, scenes::RayPacket::width> look(
       std::size_t pixel, const Places& x, const Places& y, std::size_t first = 0,
       std::size_t end = scenes::RayPacket::width) const;
   // Finds the points whose rays must start all over their pixel, by the length of all their rays,
@@ -165,9 +192,9 @@ class GatherField {
                      const std::function<bool()>& stop);
   void cast_paths(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
                   const std::function<bool()>& stop);
-  void lobe_sample(std::uint32_t material, const Vec3& origin, const Vec3& normal,
-                   const std::array<float, 2>& u, PathWalker& walker, base::Rng& rng,
-                   std::vector<Rgb>& sum, RayCounts& counts) const;
+  void lobe_sample(std::uint32_t material, const RayStart& start, const std::array<float, 2>& u,
+                   PathWalker& walker, base::Rng& rng, std::vector<Rgb>& sum,
+                   RayCounts& counts) const;
 
   const PathWorld& world_;
   const IncomingLight& incoming_;
@@ -180,15 +207,16 @@ class GatherField {
   std::vector<GatherPoint> points_;
   std::vector<Stray> strays_;               // those after the grid
   std::vector<std::uint32_t> first_stray_;  // of a pixel, and behind its last
-  std::vector<Vec3> origin_;                // lifted off the surface
-  std::vector<RayLengths> lengths_;         // of the rays that read the solution
-  std::vector<std::uint8_t> even_;          // per pixel, 1: is_even()
-  std::vector<std::uint8_t> over_pixel_;    // per point, 1: rays start all over its pixel
+  std::vector<RayStart> start_;
+  std::vector<RayLengths> lengths_;       // of the rays that read the solution
+  std::vector<std::uint8_t> even_;        // per pixel, 1: is_even()
+  std::vector<std::uint8_t> over_pixel_;  // per point, 1: rays start all over its pixel
   std::array<Estimate, gathered_kinds> estimate_;
   std::array<Shared, gathered_kinds> shared_;
   std::vector<glm::vec3> diffuse_;  // point * layers
   std::array<RayCounts, gathered_kinds> rays_of_;
   std::array<LayerNoise, gathered_kinds> noise_;
+  std::vector<std::uint64_t> peers_;  // of a stray (Peers::masks)
   std::uint64_t camera_rays_ = 0;
   bool any_lobe_ = false;
   std::optional<Neighbours> of_surface_, of_material_;  // who shares diffuse light, and lobes

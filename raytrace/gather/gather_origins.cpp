@@ -68,20 +68,24 @@ RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t
       counts.camera += end - drawn;
       for (; drawn < end; ++drawn) {
         GatherPoint found;
-        Vec3 origin;
-        if (!place(met[drawn], found, origin)) continue;
+        RayStart start;
+        const bool mirrored = points_[p].mirror != seen_straight;
+        counts.mirror += mirrored ? 1 : 0;
+        const auto& [ray, hit] = met[drawn];
+        if (!(mirrored ? place_mirrored(ray, hit, found, start) : place(ray, hit, found, start))) {
+          continue;
+        }
         // Only where camera samples read this point: it stands for the mean over just these places.
-        if (find(x, y, found.position, found.normal) != p) continue;
-        origins.add(origin, Vec3(found.normal));
+        if (find(x, y, sighting_of(found)) != p) continue;
+        origins.add(start);
       }
     }
   }
-  if (origins.count == 0) origins.add(origin_[p], Vec3(points_[p].normal));
+  if (origins.count == 0) origins.add(start_[p]);
   return origins;
 }
 
-std::size_t GatherField::find(int x, int y, const glm::vec3& position,
-                              const glm::vec3& normal) const {
+std::size_t GatherField::find(int x, int y, const Sighting& place) const {
   // Further off, as a lens out of focus looks, irradiance may be another. A stray lies anywhere in
   // its pixel: if it stands for the mean over the pixel, all of the pixel has to read it.
   const auto if_near = [&](std::size_t index) {
@@ -89,28 +93,27 @@ std::size_t GatherField::find(int x, int y, const glm::vec3& position,
     const float radius = footprint_radius(point);
     const float own = index >= grid_ && origins_at(index) > 1 ? 2.0F * radius : radius;
     const float most = std::max(own, std::min(6.0F * radius, alike_share * point.reach_m));
-    return glm::length(position - point.position) <= most ? index : no_point;
+    return glm::length(place.position - point.position) <= most ? index : no_point;
   };
   if (!window_.contains(x, y)) return no_point;
   const std::size_t own = window_.index(x, y);
-  if (stands_for(points_[own], position, normal)) return if_near(own);
+  if (stands_for(points_[own], place)) return if_near(own);
   for (std::size_t k = first_stray_[own]; k < first_stray_[own + 1]; ++k) {
-    if (stands_for(points_[grid_ + k], position, normal)) return if_near(grid_ + k);
+    if (stands_for(points_[grid_ + k], place)) return if_near(grid_ + k);
   }
   return no_point;
 }
 
-std::size_t GatherField::find_beside(int x, int y, const glm::vec3& position,
-                                     const glm::vec3& normal, Gathered kind) const {
+std::size_t GatherField::find_beside(int x, int y, const Sighting& place, Gathered kind) const {
   std::size_t nearest = no_point;
   float distance = std::numeric_limits<float>::max();
   const auto consider = [&](std::size_t index) {
     const GatherPoint& point = points_[index];
     if (point.reach_m <= 0.0F || reflected(kind, index) <= 0.0) return;
-    const float away = glm::length(position - point.position);
+    const float away = glm::length(place.position - point.position);
     if (away >= distance || away > beside * footprint_radius(point)) return;
-    const bool serves = kind == Gathered::Lobe ? stands_for(point, position, normal)
-                                               : lies_on_surface(point, position, normal);
+    const bool serves =
+        kind == Gathered::Lobe ? stands_for(point, place) : lies_on_surface(point, place);
     if (!serves) return;
     nearest = index;
     distance = away;

@@ -44,14 +44,13 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
           // Both halves together take all turns, at neighbouring points in another order.
           walker.take_turn(random_number_of(p) + first + 2 * std::uint64_t{k} + half);
           const auto u = directions.point2(k);
-          const Vec3 &origin = origins.origin[k % origins.count],
-                     &normal = origins.normal[k % origins.count];
+          const RayStart& start = origins.start[k % origins.count];
           if (lobe) {
-            lobe_sample(point.material, origin, normal, u, walker, rng, sum, counts);
+            lobe_sample(point.material, start, u, walker, rng, sum, counts);
             continue;
           }
-          const auto found =
-              walker.residual_at(incoming_, origin, normal, double(u[0]), double(u[1]), rng);
+          const auto found = walker.residual_at(incoming_, start.position, Vec3(start.normal),
+                                                double(u[0]), double(u[1]), rng);
           for (std::size_t layer = 0; layer < image_layers_; ++layer) sum[layer] += found[layer];
         }
         for (std::size_t layer = 0; layer < image_layers_; ++layer) {
@@ -77,15 +76,15 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
 
 // L = integral of L_in (k_s / pi) cos^n alpha cos theta by a ray of density
 // (n + 1) / (2 pi) cos^n alpha about the mirrored view.
-void GatherField::lobe_sample(std::uint32_t material, const Vec3& origin, const Vec3& normal,
+void GatherField::lobe_sample(std::uint32_t material, const RayStart& start,
                               const std::array<float, 2>& u, PathWalker& walker, base::Rng& rng,
                               std::vector<Rgb>& sum, RayCounts& counts) const {
+  const Vec3 origin = start.position, normal(start.normal);
   const double n = world_.scene.materials[material].shininess;
   const double cos_alpha = std::pow(1.0 - double(u[0]), 1.0 / (n + 1.0));
   const double sine = std::sqrt(std::max(0.0, 1.0 - cos_alpha * cos_alpha));
   const double phi = 2.0 * pi * double(u[1]);
-  const base::Frame3 frame =
-      base::frame_around(glm::reflect(glm::normalize(origin - camera_.position), normal));
+  const base::Frame3 frame = base::frame_around(glm::reflect(Vec3(start.along), normal));
   const Vec3 direction = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cos_alpha});
   const double cosine = glm::dot(direction, normal);
   if (cosine <= 0.0) return;

@@ -49,17 +49,19 @@ void each_neighbour(const Window& window, int x, int y, int ring, const Visit& v
 
 }  // namespace
 
-bool lies_on_surface(const GatherPoint& point, const glm::vec3& position, const glm::vec3& normal) {
-  return point.reach_m > 0.0F &&
-         same_surface(point.position, point.normal, position, normal, rounding * point.spacing_m);
+bool lies_on_surface(const GatherPoint& point, const Sighting& place) {
+  return point.reach_m > 0.0F && (point.mirror != seen_straight) == place.in_mirror &&
+         same_surface(point.position, point.normal, place.position, place.normal,
+                      rounding * point.spacing_m);
 }
 
-bool stands_for(const GatherPoint& point, const glm::vec3& position, const glm::vec3& normal) {
-  return lies_on_surface(point, position, normal) &&
-         (point.lobe <= 0.0F || glm::dot(point.normal, normal) >= lobe_cosine);
+bool stands_for(const GatherPoint& point, const Sighting& place) {
+  return lies_on_surface(point, place) &&
+         (point.lobe <= 0.0F || glm::dot(point.normal, place.normal) >= lobe_cosine);
 }
 
-bool GatherField::place(const scenes::Hit& hit, GatherPoint& point, Vec3& origin) const {
+bool GatherField::place(const Ray& ray, const scenes::Hit& hit, GatherPoint& point,
+                        RayStart& start) const {
   GatherRequest wanted;
   if (hit.missed() || !surface_(hit, wanted)) return false;
   const double pixel_m = 2.0 * camera_.half_height / camera_.rows;  // at unit distance
@@ -71,61 +73,67 @@ bool GatherField::place(const scenes::Hit& hit, GatherPoint& point, Vec3& origin
   point.lobe = static_cast<float>(wanted.lobe);
   point.material = wanted.material;
   point.triangle = hit.triangle;
-  origin = wanted.position + wanted.normal * world_.query.surface_offset_m();
+  start = {wanted.position + wanted.normal * world_.query.surface_offset_m(), point.normal,
+           glm::vec3(ray.direction)};
   return true;
 }
 
-void GatherField::find_points() {
+std::vector<GatherField::Found> GatherField::find_points() {
+  std::vector<std::vector<Found>> shown(tile_count(window_));
   base::parallel_chunks(tile_count(window_), 4, [&](std::size_t begin, std::size_t end) {
     RayPacket packet;
     HitPacket hits;
+    std::array<Ray, packet_width> rays;
     for (std::size_t t = begin; t < end; ++t) {
       const Window tile = tile_of(window_, t);
       for (int y = tile.y; y < tile.y + tile.rows; ++y) {
         const auto count = static_cast<std::size_t>(tile.columns);
         for (std::size_t k = 0; k < count; ++k) {
-          const Ray ray = camera_.ray(tile.x + static_cast<double>(k) + 0.5, y + 0.5, 0.0, 0.0);
-          world_.query.set(packet, k, ray.origin, ray.direction);
+          rays[k] = camera_.ray(tile.x + static_cast<double>(k) + 0.5, y + 0.5, 0.0, 0.0);
+          world_.query.set(packet, k, rays[k].origin, rays[k].direction);
         }
         world_.query.closest(packet, count, hits);
         for (std::size_t k = 0; k < count; ++k) {
           const std::size_t index = window_.index(tile.x + static_cast<int>(k), y);
-          place(hit_of(hits, k), points_[index], origin_[index]);
+          place(rays[k], hit_of(hits, k), points_[index], start_[index]);
+          Found mirrored;
+          mirrored.stray = {static_cast<std::uint32_t>(index), no_base, 0, 1.0F};
+          if (place_mirrored(rays[k], hit_of(hits, k), mirrored.point, mirrored.start)) {
+            shown[t].push_back(mirrored);
+          }
         }
       }
     }
   });
   camera_rays_ = grid_;
+  std::vector<Found> all;
+  for (const auto& tile : shown) all.insert(all.end(), tile.begin(), tile.end());
+  return all;
 }
 
-std::array<scenes::Hit, packet_width> GatherField::look(std::size_t pixel, const Places& x_of,
-                                                        const Places& y_of, std::size_t first,
-                                                        std::size_t end) const {
+std::array<GatherField::Met, packet_width> GatherField::look(std::size_t pixel, const Places& x_of,
+                                                             const Places& y_of, std::size_t first,
+                                                             std::size_t end) const {
   const auto [x, y] = place_of(pixel);
   RayPacket packet{};
   HitPacket hits;
+  std::array<Met, packet_width> met;
   for (std::size_t k = first; k < end; ++k) {
-    const Ray ray = camera_.ray(x + x_of[k], y + y_of[k], 0.0, 0.0);
-    world_.query.set(packet, k - first, ray.origin, ray.direction);
+    met[k].ray = camera_.ray(x + x_of[k], y + y_of[k], 0.0, 0.0);
+    world_.query.set(packet, k - first, met[k].ray.origin, met[k].ray.direction);
   }
   world_.query.closest(packet, end - first, hits);
-  std::array<scenes::Hit, packet_width> met;
-  for (std::size_t k = first; k < end; ++k) met[k] = hit_of(hits, k - first);
+  for (std::size_t k = first; k < end; ++k) met[k].hit = hit_of(hits, k - first);
   return met;
 }
 
 // Looks at pixels about which not all centres lie on one surface once more, by eight rays.
-void GatherField::find_strays() {
-  struct Found {
-    Stray stray;
-    GatherPoint point;
-    Vec3 origin;
-  };
+void GatherField::find_strays(const std::vector<Found>& mirrored) {
   std::vector<std::vector<Found>> found(tile_count(window_));
   even_.assign(grid_, 0);
   std::atomic<std::uint64_t> rays{0};
   const auto alike = [](const GatherPoint& a, const GatherPoint& b) {
-    return a.material == b.material && stands_for(a, b.position, b.normal);
+    return a.material == b.material && stands_for(a, sighting_of(b));
   };
   const auto find = [&](int x, int y, std::vector<Found>& of_tile) {
     const std::size_t own = window_.index(x, y), first = of_tile.size();
@@ -138,9 +146,9 @@ void GatherField::find_strays() {
     even_[own] = even ? 1 : 0;
     if (even) return;
     rays += packet_width;
-    for (const scenes::Hit& hit : look(own, stray_columns, stray_rows)) {
+    for (const Met& met : look(own, stray_columns, stray_rows)) {
       Found more;
-      if (!place(hit, more.point, more.origin)) continue;
+      if (!place(met.ray, met.hit, more.point, more.start)) continue;
       if (points_[own].reach_m > 0.0F && alike(points_[own], more.point)) continue;
       auto same = std::find_if(of_tile.begin() + static_cast<std::ptrdiff_t>(first), of_tile.end(),
                                [&](const Found& one) { return alike(one.point, more.point); });
@@ -178,6 +186,7 @@ void GatherField::find_strays() {
     }
   });
   camera_rays_ += rays;
+  if (!mirrored.empty()) found.push_back(mirrored);
   std::vector<std::uint32_t> of_pixel(grid_ + 1, 0U);
   for (const auto& tile : found) {
     for (const Found& one : tile) ++of_pixel[one.stray.pixel + 1U];
@@ -186,13 +195,13 @@ void GatherField::find_strays() {
   first_stray_ = of_pixel;
   strays_.resize(of_pixel.back());
   points_.resize(grid_ + strays_.size());
-  origin_.resize(points_.size(), Vec3(0.0));
+  start_.resize(points_.size());
   for (const auto& tile : found) {
     for (const Found& one : tile) {
       const std::size_t at = of_pixel[one.stray.pixel]++;
       strays_[at] = one.stray;
       points_[grid_ + at] = one.point;
-      origin_[grid_ + at] = one.origin;
+      start_[grid_ + at] = one.start;
     }
   }
 }

@@ -19,12 +19,19 @@ inline constexpr int gather_tile_px = 8;
 inline constexpr std::size_t most_tile_points =
     static_cast<std::size_t>(gather_tile_px) * gather_tile_px;
 
+// On a surface: where rays leave it, lifted off, its unit normal on that side, and the way of the
+// camera's ray that met it.
+struct RayStart {
+  Vec3 position{0.0};
+  glm::vec3 normal{0.0F}, along{0.0F};
+};
+
 // Where a point's rays start: one place behind its pixel's centre, or several of its pixel.
 struct RayOrigins {
   static constexpr std::size_t most = packet_width;
   std::size_t count = 0;
-  std::array<Vec3, most> origin, normal;  // lifted off the surface; unit
-  void add(const Vec3& lifted, const Vec3& up) { origin[count] = lifted, normal[count++] = up; }
+  std::array<RayStart, most> start;
+  void add(const RayStart& one) { start[count++] = one; }
 };
 
 // Of rays that end on a surface; what misses all is far, and changes little nearby.
@@ -72,8 +79,8 @@ struct TilePoints {
     pixel[k] = of_pixel;
     for (std::size_t s = 0; s < sets.size(); ++s) {
       OriginSet& to = sets[s];
-      const Vec3 &lifted = of_point.origin[s % of_point.count],
-                 &up = of_point.normal[s % of_point.count];
+      const RayStart& start = of_point.start[s % of_point.count];
+      const Vec3 &lifted = start.position, up(start.normal);
       const base::Frame3 frame = base::frame_around(up);
       const glm::vec3 o(lifted - centre), t(frame.tangent), b(frame.bitangent), n(up);
       to.origin[k] = lifted;

@@ -238,9 +238,7 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
 
 void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
   const double n = surface.material.shininess;
-  if (depth == 0 && n < sharp_lobe && shared_.field != nullptr && read_lobe(surface, weight)) {
-    return;
-  }
+  if (n < sharp_lobe && has_points(depth) && read_lobe(surface, weight)) return;
   const Vec3 mirrored =
       2.0 * glm::dot(surface.view, surface.normal) * surface.normal - surface.view;
   const base::Frame3 frame = base::frame_around(mirrored);
@@ -290,8 +288,10 @@ void PixelShader::mirror_and_glass(const Ray& ray, const Surface& surface, const
   if (base::is_lit(through))
     trace({surface.position - lift, bent}, through, depth + 1, seen, rays_.refraction);
   if (base::is_lit(reflected)) {
+    if (depth == 0) mirror_ = MirrorPlane{surface.position, surface.normal};
     trace({surface.position + lift, glm::reflect(ray.direction, surface.normal)}, reflected,
           depth + 1, seen, rays_.mirror);
+    if (depth == 0) mirror_.reset();
   }
 }
 

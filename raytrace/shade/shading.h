@@ -112,6 +112,10 @@ class PixelShader {
   bool see_lamp(const Ray& ray, double nearer_than_m, const Rgb& weight, int depth);
   void direct(const Ray& ray, const Surface& surface, const Rgb& weight, int depth);
   void diffuse(const Surface& surface, const scenes::Hit& hit, const Rgb& weight, int depth);
+  // Whether gather points may stand for what is met after so many mirrors and panes.
+  [[nodiscard]] bool has_points(int depth) const {
+    return shared_.field != nullptr && depth == (mirror_ ? 1 : 0);
+  }
   [[nodiscard]] std::size_t find_point(const Surface& surface, Gathered kind) const;
   bool read_field(const Surface& surface, const Rgb& weight);
   bool read_lobe(const Surface& surface, const Rgb& weight);
@@ -165,6 +169,7 @@ class PixelShader {
   std::vector<FieldTerm> terms_;
   std::optional<PathWalker> walker_;
   int x_ = 0, y_ = 0;
+  std::optional<MirrorPlane> mirror_;  // of the first surface, while what it shows is shaded
   const CameraModel* camera_ = nullptr;
   int pixel_x_ = 0, pixel_y_ = 0;
   std::uint64_t pixel_ = 0, gathered_ = 0;

@@ -29,7 +29,7 @@ void PixelShader::diffuse(const Surface& surface, const scenes::Hit& hit, const 
   }
   if (!shared_.gathers) return;
   const Rgb reflected = weight * surface.diffuse;
-  if (depth == 0 && shared_.field != nullptr && read_field(surface, reflected)) return;
+  if (has_points(depth) && read_field(surface, reflected)) return;
   gather(surface, reflected, depth);
 }
 
@@ -42,9 +42,12 @@ void PixelShader::read_solution(const scenes::Hit& hit, const Rgb& weight, int d
 
 std::size_t PixelShader::find_point(const Surface& surface, Gathered kind) const {
   const GatherField& field = *shared_.field;
-  const glm::vec3 position(surface.position - shared_.camera_position), normal(surface.normal);
-  const std::size_t own = field.find(x_, y_, position, normal);
-  return own != no_point ? own : field.find_beside(x_, y_, position, normal, kind);
+  const Vec3 seen = mirror_ ? mirror_->image(surface.position) : surface.position;
+  const Vec3 normal = mirror_ ? glm::reflect(surface.normal, mirror_->normal) : surface.normal;
+  const Sighting place{glm::vec3(seen - shared_.camera_position), glm::vec3(normal),
+                       mirror_.has_value()};
+  const std::size_t own = field.find(x_, y_, place);
+  return own != no_point ? own : field.find_beside(x_, y_, place, kind);
 }
 
 FieldTerm& PixelShader::term_of(std::size_t point) {

@@ -53,7 +53,7 @@ Neighbours::Neighbours(const Window& window, const std::vector<GatherPoint>& poi
     sift(level, [&](std::size_t p, std::size_t q) {
       const GatherPoint &a = points[p], &b = points[q];
       return b.reach_m > 0.0F &&
-             (a.triangle == b.triangle ||
+             ((a.triangle == b.triangle && a.mirror == b.mirror) ||
               same_surface(a.position, a.normal, b.position, b.normal, slack(a)));
     });
   }

@@ -31,15 +31,19 @@
 
 namespace earthshine::raytrace {
 
+inline constexpr std::uint32_t seen_straight = 0xffffffffU;
+
+// What is seen in a mirror lies where the camera sees it, behind the mirror.
 struct GatherPoint {
   glm::vec3 position{0.0F};  // m, relative to the camera
   float reach_m =
       -1.0F;  // harmonic mean length of rays that end on surfaces; negative: none are cast
   glm::vec3 normal{0.0F};    // unit, on the camera's side
   float spacing_m = 0.0F;    // how far apart neighbouring pixels are there, across the view
-  float reflectance = 0.0F;  // luminance of the surface's k_d
+  float reflectance = 0.0F;  // luminance of the surface's k_d, times the mirror's
   float lobe = 0.0F;         // and of its k_s, if its lobe is gathered for
   std::uint32_t material = 0, triangle = 0;  // of the scene
+  std::uint32_t mirror = seen_straight;      // triangle of the mirror that it is seen in
 };
 
 inline constexpr std::size_t share_levels = 5;

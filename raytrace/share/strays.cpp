@@ -2,6 +2,9 @@
 #include "raytrace/share/strays.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -78,6 +81,57 @@ void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared&
       if (sampled) value += keep * (sum / estimate.samples[point] - value);
     }
     shared.squared_error[point] = static_cast<float>(shared.squared_error_with(point, 1.0));
+  }
+}
+
+void share_among_peers(const Peers& peers, const Estimate& estimate, Shared& shared) {
+  const std::size_t strays = peers.strays.size(), grid = estimate.samples.size() - strays;
+  const auto each = [&](std::size_t k, const auto& visit) {
+    peers.each(k, [&](std::size_t peer) {
+      if (estimate.samples[grid + peer] > 0.0F) visit(peer);
+    });
+  };
+  // Of a stray's own samples.
+  std::vector<float> luminance(strays, 0.0F), noise(strays, 0.0F), keep(strays, 1.0F);
+  for (std::size_t k = 0; k < strays; ++k) {
+    const float half = 0.5F * estimate.samples[grid + k];
+    if (half <= 0.0F) continue;
+    const auto& [first, second] = estimate.luminance[grid + k];
+    luminance[k] = 0.5F * (first + second) / half;
+    noise[k] = std::pow(0.5F * (first - second) / half, 2.0F);
+  }
+  base::parallel_chunks(strays, 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      float count = 0.0F, mean = 0.0F, q = 0.0F, energy = 0.0F;
+      each(k, [&](std::size_t peer) { count += 1.0F, mean += luminance[peer], q += noise[peer]; });
+      if (count < 2.0F) continue;
+      mean /= count, q /= count;
+      each(k, [&](std::size_t peer) {
+        energy += (luminance[peer] - mean) * (luminance[peer] - mean) / (count - 1.0F);
+      });
+      const std::size_t point = grid + k;
+      shared.signal[point][0] = energy - q;
+      shared.noise[point][0] = q;
+      shared.few[point][0] = 1.0F / count;
+      shared.rest[point] = q / count;
+      shared.squared_error[point] = static_cast<float>(shared.squared_error_with(point, 1.0));
+      keep[k] = estimate.samples[point] > 0.0F ? kept_share(energy - q, q) : 0.0F;
+    }
+  });
+  // A layer after the other: of all of them there may be as much as of the whole picture.
+  std::vector<glm::vec3> own(strays);
+  for (std::size_t layer = 0; layer < shared.layers; ++layer) {
+    const auto value = [&](std::size_t k) -> glm::vec3& {
+      return shared.radiance[(grid + k) * shared.layers + layer];
+    };
+    for (std::size_t k = 0; k < strays; ++k) own[k] = value(k);
+    for (std::size_t k = 0; k < strays; ++k) {
+      if (keep[k] >= 1.0F) continue;
+      glm::vec3 mean(0.0F);
+      float count = 0.0F;
+      each(k, [&](std::size_t peer) { mean += own[peer], count += 1.0F; });
+      if (count > 0.0F) value(k) = mean / count + keep[k] * (own[k] - mean / count);
+    }
   }
 }
 

@@ -7,6 +7,8 @@
 // strays of a part of the picture.
 #pragma once
 
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,8 +26,32 @@ struct Stray {
 };
 inline constexpr std::uint32_t no_base = 0xffffffffU;
 
+// Strays that lie side by side on one surface, each among its own: the last ones of some pixels.
+struct Peers {
+  static constexpr int reach = 3;  // pixels across and down
+  std::span<const Stray> strays;
+  std::span<const std::uint32_t> first;  // of a pixel, and behind the last
+  std::span<const std::uint64_t> masks;  // of a stray: bits of the pixels about it, row by row
+  std::ptrdiff_t columns = 0;            // of the window
+  template <class Visit>
+  void each(std::size_t stray, const Visit& visit) const {
+    std::uint64_t bits = masks[stray];
+    for (; bits != 0; bits &= bits - 1) {
+      constexpr int width = 2 * reach + 1;
+      const int bit = std::countr_zero(bits);
+      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(strays[stray].pixel) +
+                                (bit / width - reach) * columns + bit % width - reach;
+      visit(std::size_t{first[static_cast<std::size_t>(at) + 1]} - 1);
+    }
+  }
+};
+
 // Completes `shared`, which knows the points of the grid, by the strays: point grid + k of the
 // estimate is strays[k].
 void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared& shared);
+
+// Then strays that have peers are told apart from the mean of these in the same way; s and q are
+// means over the peers.
+void share_among_peers(const Peers& peers, const Estimate& estimate, Shared& shared);
 
 }  // namespace earthshine::raytrace

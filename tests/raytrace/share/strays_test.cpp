@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/numbers/random.h"
@@ -90,6 +91,69 @@ TEST(Strays, TheirErrorIsAsStated) {
     EXPECT_NEAR(stated, found, 4.0 * std::sqrt(2.0 / count) * error) << q;
     EXPECT_LT(found, std::min(s, q) * (1.0 + 4.0 * std::sqrt(2.0 / count))) << q;
   }
+}
+
+// A row of strays, one a pixel, each a peer of those up to three away.
+class Row {
+ public:
+  explicit Row(std::size_t count) : written(count), masks_(count, 0U) {
+    for (std::size_t k = 0; k < count; ++k) {
+      written.strays[k] = {static_cast<std::uint32_t>(k), no_base, 0, 1.0F};
+      first_.push_back(static_cast<std::uint32_t>(k));
+      for (std::size_t q = k < 3 ? 0 : k - 3; q <= std::min(count - 1, k + 3); ++q) {
+        masks_[k] |= std::uint64_t{1} << (24 + q - k);  // the middle one of 7 x 7 is the stray's
+      }
+    }
+    first_.push_back(static_cast<std::uint32_t>(count));
+  }
+  void share() {
+    add_strays(written.strays, written.estimate, written.shared);
+    share_among_peers({written.strays, first_, masks_, 1000}, written.estimate, written.shared);
+  }
+  Written written;
+
+ private:
+  std::vector<std::uint32_t> first_;
+  std::vector<std::uint64_t> masks_;
+};
+
+TEST(Peers, WhatIsNoNoiseIsKeptWhole) {
+  Row row(20);
+  for (std::size_t k = 0; k < 20; ++k) row.written.sample(k, 4.0 + double(k), 4.0 + double(k));
+  row.share();
+  for (std::size_t k = 0; k < 20; ++k) EXPECT_NEAR(row.written.value(k), 4.0 + double(k), 1e-5);
+}
+
+TEST(Peers, NoiseOfOneSurfaceIsTheirMeans) {
+  // Means of two samples of noise 2 q: seven of them leave q / 7 of q where nothing of their own is
+  // kept. What is kept by chance, where seven pairs happen to differ by little, is stated too.
+  constexpr std::size_t count = 4000;
+  constexpr double q = 0.5;
+  Row row(count);
+  base::Rng rng(base::Key(7, base::Stream::Test, 13));
+  const auto normal = [&] {
+    return std::sqrt(-2.0 * std::log(1.0 - rng.next())) * std::cos(2.0 * base::pi * rng.next());
+  };
+  for (std::size_t k = 0; k < count; ++k) {
+    row.written.sample(k, 10.0 + std::sqrt(2.0 * q) * normal(),
+                       10.0 + std::sqrt(2.0 * q) * normal());
+  }
+  row.share();
+  double left = 0.0, stated = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    left += std::pow(row.written.value(k) - 10.0, 2) / count;
+    stated += double(row.written.shared.squared_error[1 + k]) / count;
+  }
+  EXPECT_GT(left, q / 7.0);
+  EXPECT_GT(stated, left);
+  EXPECT_LT(stated, q / 2.0);
+}
+
+TEST(Peers, OneThatWasNotSampledIsTheMeanOfThoseThatWere) {
+  Row row(7);
+  for (const std::size_t k : {0U, 1U, 2U, 4U, 5U, 6U}) row.written.sample(k, 3.0, 3.0);
+  row.share();
+  EXPECT_NEAR(row.written.value(3), 3.0, 1e-6);
 }
 
 }  // namespace
