@@ -3,27 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "scenes/light/lamp_light.h"
 
 namespace earthshine::scenes {
 namespace {
-
-// The Earth's centre is at distance d along `earth.direction`; lengths in Earth radii.
-double distance_in_radii(const Earth& earth) {
-  return 1.0 / std::sin(base::radians(earth.half_angle_deg));
-}
-
-// The zenith, unit, of the point of the sphere seen in `direction`; nothing beside the disc.
-std::optional<Vec3> surface_zenith(const Earth& earth, const Vec3& direction) {
-  const double d = distance_in_radii(earth);
-  const double cos_off_centre = glm::dot(direction, earth.direction);
-  const double discriminant = 1.0 - d * d * (1.0 - cos_off_centre * cos_off_centre);
-  if (cos_off_centre <= 0.0 || discriminant < 0.0) return std::nullopt;
-  const double t = d * cos_off_centre - std::sqrt(discriminant);
-  return direction * t - earth.direction * d;
-}
 
 // Where the limb crosses the Sun's disc: its height over the limb in radii of the disc, from -1,
 // hidden, to 1, free.
@@ -56,19 +40,34 @@ double largest_albedo(const LatitudeAlbedo& law) {
   return std::max({albedo_at(law, -1.0), albedo_at(law, 1.0), albedo_at(law, top)});
 }
 
-Rgb earth_radiance(const Scene& scene, const Vec3& direction) {
-  const Earth& earth = *scene.earth;
-  if (glm::dot(direction, earth.direction) < std::cos(base::radians(earth.half_angle_deg))) {
-    return Rgb(0.0);
-  }
+EarthRadiance::EarthRadiance(const Scene& scene)
+    : scene_(scene),
+      limb_cosine_(std::cos(base::radians(scene.earth->half_angle_deg))),
+      distance_(1.0 / std::sin(base::radians(scene.earth->half_angle_deg))) {}
+
+std::optional<Vec3> EarthRadiance::surface_zenith(const Vec3& direction) const {
+  const double cos_off_centre = glm::dot(direction, scene_.earth->direction);
+  const double discriminant = 1.0 - distance_ * distance_ * (1.0 - cos_off_centre * cos_off_centre);
+  if (cos_off_centre <= 0.0 || discriminant < 0.0) return std::nullopt;
+  const double t = distance_ * cos_off_centre - std::sqrt(discriminant);
+  return direction * t - scene_.earth->direction * distance_;
+}
+
+Rgb EarthRadiance::operator()(const Vec3& direction) const {
+  const Earth& earth = *scene_.earth;
+  if (glm::dot(direction, earth.direction) < limb_cosine_) return Rgb(0.0);
   if (earth.model == EarthModel::Uniform) return earth.radiance;
-  const auto surface = surface_zenith(earth, direction);
+  const auto surface = surface_zenith(direction);
   if (!surface) return Rgb(0.0);
-  const double cos_sun = glm::dot(*surface, scene.sun->direction);
+  const double cos_sun = glm::dot(*surface, scene_.sun->direction);
   if (cos_sun <= 0.0) return Rgb(0.0);
-  const Rgb radiance = earth.albedo * scene.sun->illuminance_lx * (cos_sun / base::pi);
+  const Rgb radiance = earth.albedo * scene_.sun->illuminance_lx * (cos_sun / base::pi);
   if (!earth.by_latitude) return radiance;
   return radiance * albedo_at(*earth.by_latitude, glm::dot(*surface, earth.by_latitude->north));
+}
+
+Rgb earth_radiance(const Scene& scene, const Vec3& direction) {
+  return EarthRadiance(scene)(direction);
 }
 
 bool earth_is_lit(const Scene& scene) {

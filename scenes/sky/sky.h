@@ -2,6 +2,8 @@
 // Sun and Earth as the spacecraft sees them: radiance of a direction, the Sun behind the limb.
 #pragma once
 
+#include <optional>
+
 #include "scenes/scene.h"
 
 namespace earthshine::scenes {
@@ -15,7 +17,21 @@ namespace earthshine::scenes {
 
 // Radiance of the Earth in a unit direction, cd/m^2; 0 off its disc. Lambert: L = (a / pi) E_sun
 // max(0, cos theta_s), theta_s the Sun's zenith angle where the direction meets the sphere; a is
-// Earth::albedo, by latitude times albedo_at that place.
+// Earth::albedo, by latitude times albedo_at that place. Of a scene that has an Earth, for many
+// directions.
+class EarthRadiance {
+ public:
+  explicit EarthRadiance(const Scene& scene);
+  [[nodiscard]] Rgb operator()(const Vec3& direction) const;
+
+ private:
+  // The zenith, unit, of the point of the sphere seen in `direction`; nothing beside the disc.
+  [[nodiscard]] std::optional<Vec3> surface_zenith(const Vec3& direction) const;
+
+  const Scene& scene_;
+  double limb_cosine_, distance_;  // of the Earth's centre, in its radii
+};
+// The same in one direction.
 [[nodiscard]] Rgb earth_radiance(const Scene& scene, const Vec3& direction);
 
 // Whether any part of the disc shines.

@@ -47,37 +47,43 @@ std::size_t SkyCells::cell_of(const Vec3& direction) const {
   return first_[ring] + std::min(sector, sectors_[ring] - 1);
 }
 
-Vec3 SkyCells::direction_at(std::size_t cell, double up, double along) const {
+void SkyCells::visit_grid(std::size_t cell, const std::vector<double>& shares,
+                          const std::function<void(const Vec3&)>& visit) const {
   std::size_t ring = 0;
   while (first_[ring + 1] <= cell) ++ring;
+  const double sector = 2.0 * pi / static_cast<double>(sectors_[ring]);
+  std::vector<glm::dvec2> around;
+  for (const double along : shares) {
+    const double phi = sector * (static_cast<double>(cell - first_[ring]) + along);
+    around.emplace_back(std::cos(phi), std::sin(phi));
+  }
   // Equal steps of 1 - cos are equal solid angles; written by half angles, which keeps small ones.
   const auto one_minus_cos = [](double angle) { return 2.0 * std::pow(std::sin(angle / 2), 2); };
   const double from = ring == 0 ? 0.0 : one_minus_cos(bounds_rad_[ring - 1]);
-  const double z = from + (one_minus_cos(bounds_rad_[ring]) - from) * up;
-  const double sine = std::sqrt(std::max(0.0, z * (2.0 - z)));
-  const double sector = 2.0 * pi / static_cast<double>(sectors_[ring]);
-  const double phi = sector * (static_cast<double>(cell - first_[ring]) + along);
-  return frame_.to_world({sine * std::cos(phi), sine * std::sin(phi), 1.0 - z});
+  const double height = one_minus_cos(bounds_rad_[ring]) - from;
+  for (const double up : shares) {
+    const double z = from + height * up;
+    const double sine = std::sqrt(std::max(0.0, z * (2.0 - z)));
+    for (const glm::dvec2& phi : around)
+      visit(frame_.to_world({sine * phi.x, sine * phi.y, 1.0 - z}));
+  }
 }
 
 void SkyCells::visit(std::size_t cell, int side,
                      const std::function<void(const Vec3&)>& visit) const {
-  for (int i = 0; i < side; ++i) {
-    for (int j = 0; j < side; ++j) {
-      visit(direction_at(cell, (i + 0.5) / side, (j + 0.5) / side));
-    }
-  }
+  std::vector<double> shares;
+  for (int k = 0; k < side; ++k) shares.push_back((k + 0.5) / side);
+  visit_grid(cell, shares, visit);
 }
 
 void SkyCells::visit_lattice(std::size_t cell, int side,
                              const std::function<void(const Vec3&)>& visit) const {
   const double hair = 1e-8;
-  const auto along = [side, hair](int k) {
-    return std::clamp(static_cast<double>(k) / side, hair, 1.0 - hair);
-  };
-  for (int i = 0; i <= side; ++i) {
-    for (int j = 0; j <= side; ++j) visit(direction_at(cell, along(i), along(j)));
+  std::vector<double> shares;
+  for (int k = 0; k <= side; ++k) {
+    shares.push_back(std::clamp(static_cast<double>(k) / side, hair, 1.0 - hair));
   }
+  visit_grid(cell, shares, visit);
 }
 
 SkyCells cells_of_disc(const Vec3& direction, double half_angle_rad, std::size_t wanted) {

@@ -36,8 +36,9 @@ class SkyCells {
                      const std::function<void(const Vec3&)>& visit) const;
 
  private:
-  // The direction at shares of the cell's height, by 1 - cos, and of its width.
-  [[nodiscard]] Vec3 direction_at(std::size_t cell, double up, double along) const;
+  // Directions at all pairs of these shares of the cell's height, by 1 - cos, and of its width.
+  void visit_grid(std::size_t cell, const std::vector<double>& shares,
+                  const std::function<void(const Vec3&)>& visit) const;
 
   Vec3 axis_;
   base::Frame3 frame_;

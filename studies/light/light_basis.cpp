@@ -223,12 +223,13 @@ void LightBasis::weigh_earth(const SkyPlace& place, const Rgb& factor,
   const scenes::Scene sky = bare(place);
   if (!scenes::earth_is_lit(sky) || base::max_component(factor) <= 0.0) return;
   const scenes::SkyCells& cells = *scene_.sky_parts->cells;
+  const scenes::EarthRadiance radiance(sky);
   base::parallel_chunks(cells.count(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t cell = begin; cell < end; ++cell) {
       std::vector<Rgb> seen;
       Rgb mean(0.0);
       cells.visit(cell, cell_side, [&](const Vec3& direction) {
-        seen.push_back(factor * scenes::earth_radiance(sky, direction) / earth_unit_);
+        seen.push_back(factor * radiance(direction) / earth_unit_);
         mean += seen.back();
       });
       mean /= static_cast<double>(seen.size());
@@ -238,7 +239,7 @@ void LightBasis::weigh_earth(const SkyPlace& place, const Rgb& factor,
       }
       // The extremes stand at edges and at the limb.
       const auto look = [&](const Vec3& direction) {
-        const Rgb value = factor * scenes::earth_radiance(sky, direction) / earth_unit_;
+        const Rgb value = factor * radiance(direction) / earth_unit_;
         largest = std::max(largest, std::abs(base::luminance(value) - base::luminance(mean)));
       };
       cells.visit_lattice(cell, cell_side, [&](const Vec3& direction) {
