@@ -5,12 +5,17 @@ import unittest
 
 import exr
 import program
+from tiny_bay import SMALL_MONITOR
+
+# What most of these cases take is the monitor's.
+SMALL = '[[cctv]]\nname = "small"\npreset = "sit-monochrome"\n\n' + SMALL_MONITOR
 
 
 class Degrade(program.Case):
     def setUp(self):
         super().setUp()
-        self.write("ball.toml", program.BALL.replace('name = "above"', 'name = "above"\ncctv = "ccd-colour"'))
+        self.write("ball.toml", program.BALL.replace('name = "above"', 'name = "above"\ncctv = "ccd-colour"') + "\n" + SMALL_MONITOR)
+        self.write("small.toml", SMALL)
 
     def picture(self, name):
         return (self.folder / name).read_bytes()
@@ -27,7 +32,7 @@ class Degrade(program.Case):
         self.done("render", "ball.toml", "-o", "a.exr")
 
         def run(*options):
-            self.done("degrade", "a.exr", "-o", "c.png", "--preset", "sit-monochrome", *options)
+            self.done("degrade", "a.exr", "-o", "c.png", "--cctv", "small.toml", *options)
             return self.picture("c.png")
 
         one = run("-j", "1")
@@ -46,24 +51,24 @@ class Degrade(program.Case):
 
     def test_a_stage_left_out(self):
         self.done("render", "ball.toml", "-o", "a.exr")
-        stages = self.json("degrade", "a.exr", "-o", "c.png")["stages"]
+        stages = self.json("degrade", "a.exr", "-o", "c.png", "--cctv", "small.toml")["stages"]
         self.assertIn("spread", stages)
-        fewer = self.json("degrade", "a.exr", "-o", "c.png", "--off", "spread")["stages"]
+        fewer = self.json("degrade", "a.exr", "-o", "c.png", "--cctv", "small.toml", "--off", "spread")["stages"]
         self.assertEqual(fewer, [stage for stage in stages if stage != "spread"])
         self.refused("degrade", "a.exr", "-o", "c.png", "--off", "nothing")
 
     def test_a_still_shown_for_some_frames(self):
         self.done("render", "ball.toml", "-o", "a.exr")
-        report = self.json("degrade", "a.exr", "-o", "f-##.png", "--preset", "sit-monochrome", "--frames", 3, "--frame", 8)
+        report = self.json("degrade", "a.exr", "-o", "f-##.png", "--cctv", "small.toml", "--frames", 3, "--frame", 8)
         self.assertEqual([frame["frame"] for frame in report["frames"]], [8, 9, 10])
         frames = [self.picture(f"f-{number:02}.png") for number in (8, 9, 10)]
         self.assertEqual(len(set(frames)), 3)
         # The same sequence again, frame by frame the same bytes.
-        self.done("degrade", "a.exr", "-o", "g-#.png", "--preset", "sit-monochrome", "--frames", 3, "--frame", 8)
+        self.done("degrade", "a.exr", "-o", "g-#.png", "--cctv", "small.toml", "--frames", 3, "--frame", 8)
         self.assertEqual(frames, [self.picture(f"g-{number}.png") for number in (8, 9, 10)])
 
     def test_iris_that_needs_time_and_light_that_lags(self):
-        table = '\n[[cctv]]\nname = "slow"\niris_slew = 1.0\nlag = 0.4\n'
+        table = '\n[[cctv]]\nname = "slow"\niris_slew = 1.0\nlag = 0.4\n\n' + SMALL_MONITOR
         self.write("ball.toml", program.BALL.replace('name = "above"', 'name = "above"\ncctv = "slow"') + table)
         self.done("render", "ball.toml", "-o", "a.exr", "--camera", "above")
         self.done("render", "ball.toml", "-o", "b.exr", "--camera", "above", "--set", "sun.illuminance=1000")
@@ -75,7 +80,7 @@ class Degrade(program.Case):
         self.assertIn("lag", frames[1]["stages"])
 
     def test_fields_of_an_interlaced_camera(self):
-        table = '\n[[cctv]]\nname = "woven"\ninterlace = true\n'
+        table = '\n[[cctv]]\nname = "woven"\ninterlace = true\n\n' + SMALL_MONITOR
         self.write("ball.toml", program.BALL.replace('name = "above"', 'name = "above"\ncctv = "woven"') + table)
         self.done("render", "ball.toml", "-o", "a.exr", "--camera", "above")
         self.done("degrade", "a.exr", "-o", "one.png", "--scene", "ball.toml")
@@ -91,20 +96,20 @@ class Degrade(program.Case):
 
     def test_the_picture_after_each_stage(self):
         self.done("render", "ball.toml", "-o", "a.exr")
-        report = self.json("degrade", "a.exr", "-o", "c.png", "--stages", "steps")
+        report = self.json("degrade", "a.exr", "-o", "c.png", "--stages", "steps", "--cctv", "small.toml")
         names = sorted(path.name for path in (self.folder / "steps").iterdir())
         self.assertEqual(names, [f"{number:02}-{stage}.exr" for number, stage in enumerate(report["stages"], 1)])
 
     def test_the_analytic_twin(self):
         self.done("render", "ball.toml", "-o", "a.exr")
-        report = self.json("degrade", "a.exr", "-o", "noisy.exr", "--twin", "twin.exr")
+        report = self.json("degrade", "a.exr", "-o", "noisy.exr", "--twin", "twin.exr", "--cctv", "small.toml")
         _, width, height, twin = exr.read(self.folder / "twin.exr")
         _, _, _, noisy = exr.read(self.folder / "noisy.exr")
         self.assertEqual((width, height), (report["columns"], report["rows"]))
         self.assertEqual(sorted(twin), ["Y", "crushed.Y", "detection.probability.Y", "detection.snr.Y", "mean.Y",
                                         "saturated.Y", "snr.Y", "twin.Y", "variance.Y"])
         self.assertEqual(twin["Y"], noisy["Y"])
-        quiet = ["--off", "signal-noise", "--off", "read-noise"]
+        quiet = ["--cctv", "small.toml", "--off", "signal-noise", "--off", "read-noise"]
         self.done("degrade", "a.exr", "-o", "clean.exr", *quiet)
         self.assertEqual(twin["twin.Y"], exr.read(self.folder / "clean.exr")[3]["Y"])
         self.assertLess(report["twin"]["detectable_share"], 1)
@@ -127,7 +132,7 @@ class Degrade(program.Case):
 
     def test_what_the_viewer_sees_as_numbers(self):
         self.done("render", "ball.toml", "-o", "a.exr")
-        report = self.json("degrade", "a.exr", "-o", "c.exr")
+        report = self.json("degrade", "a.exr", "-o", "c.exr", "--cctv", "small.toml")
         _, _, _, channels = exr.read(self.folder / "c.exr")
         self.assertEqual(sorted(channels), ["Y"])
         monitor = report["monitor"]
@@ -136,7 +141,7 @@ class Degrade(program.Case):
         self.assertLessEqual(max(channels["Y"]), monitor["white_luminance"] + veil + 1e-4)
 
     def test_fall_off_needs_the_field_of_view(self):
-        table = '\n[[cctv]]\nname = "simple"\nfall_off = 4\n'
+        table = '\n[[cctv]]\nname = "simple"\nfall_off = 4\n\n' + SMALL_MONITOR
         self.write("ball.toml", program.BALL.replace('name = "above"', 'name = "above"\ncctv = "simple"') + table)
         self.done("render", "ball.toml", "-o", "a.exr", "--camera", "above", "--cctv", "whole.png")
         self.done("degrade", "a.exr", "-o", "alone.png", "--scene", "ball.toml")

@@ -30,7 +30,7 @@ import tiny_bay
 
 QUALITY = "[quality]\npatch_edge = 2\nrefine = false\nform_factor_rays = 16\ngather_rays = 4\n"
 SCENES = {name: re.sub("resolution = .*", "resolution = [16, 12]", re.sub("cctv = .*", "", text.split("[quality]")[0])) + QUALITY
-          for name, text in (("ball.toml", program.BALL), ("bay.toml", tiny_bay.BAY))}
+          for name, text in (("ball.toml", program.BALL.replace("[quality]", tiny_bay.SMALL_MONITOR + "[quality]")), ("bay.toml", tiny_bay.BAY))}
 STUDY = """format = 1
 scene = "bay.toml"
 targets = ["box"]

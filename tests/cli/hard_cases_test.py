@@ -124,7 +124,7 @@ class Edges(program.Case):
         library = program.TOP / "scenes" / "library" / "sts46"
         (self.folder / "meshes").symlink_to(library / "meshes")
         self.write("bay.toml", (library / "day-sun.toml").read_text().replace("error = 0.05", "# error"))
-        view = ("render", "bay.toml", "--camera", "B", "--size", "48x48", "-q")
+        view = ("render", "bay.toml", "--camera", "B", "--size", "32x32", "-q")
         paths = []
         for seed in (71, 72):
             self.done(*view, "--indirect", "paths", "--set", "quality.gather_rays=1024", "--seed", seed, "-o", "paths.exr")

@@ -67,7 +67,7 @@ class Output(program.Case):
 
     def test_interrupted_while_writing(self):
         """The old picture stays and nothing beside it, whenever the signal comes."""
-        call = [program.PROGRAM, "render", "ball.toml", "-o", "a.exr", "-q", "--size", "1536x1536", "--indirect",
+        call = [program.PROGRAM, "render", "ball.toml", "-o", "a.exr", "-q", "--size", "768x768", "--indirect",
                 "none", "--set", "quality.gather_rays=1", "--aov", "albedo,normal,position,depth,range"]
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             self.write("a.exr", "old")
@@ -84,7 +84,7 @@ class Output(program.Case):
 
     def test_killed_while_writing(self):
         """What a killed run leaves is taken over by the next one that writes the file."""
-        call = [program.PROGRAM, "render", "ball.toml", "-o", "a.exr", "-q", "--size", "1536x1536", "--indirect",
+        call = [program.PROGRAM, "render", "ball.toml", "-o", "a.exr", "-q", "--size", "768x768", "--indirect",
                 "none", "--set", "quality.gather_rays=1", "--aov", "albedo,normal,position,depth,range"]
         left = []
         while not left:

@@ -13,6 +13,7 @@ import unittest
 import parts_test
 import program
 import study_parts_test
+from tiny_bay import SMALL_MONITOR
 
 ORBIT = study_parts_test.ORBIT
 SEQUENCE = parts_test.Sequences.CALL
@@ -40,9 +41,9 @@ class PartFaults(study_parts_test.StudyPartsCase):
 
     def setUp(self):
         super().setUp()
-        slow = '\n[[cctv]]\nname = "slow"\niris_slew = 1.0\nlag = 0.4\n'
+        slow = '\n[[cctv]]\nname = "slow"\niris_slew = 1.0\nlag = 0.4\n\n' + SMALL_MONITOR
         self.write("ball.toml", parts_test.BALL.replace('name = "above"', 'name = "above"\ncctv = "slow"') + slow)
-        for k in range(5):
+        for k in range(parts_test.Sequences.FRAMES):
             self.done("render", "ball.toml", "-o", f"{k}.exr", "--camera", "above", "--size", "16x16", "-q", "--set",
                       f"sun.illuminance={1000 * 4 ** k}")
 

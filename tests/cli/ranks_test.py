@@ -146,7 +146,7 @@ class Results(OfRanks):
                           (2, 3) if name != "shared" else (1, 2, 3, 5, 8))
 
     def test_studies(self):
-        call = ("study", "orbit", "bay.toml", "--positions", "36", "--iris", "normal", "--wanted", "box>=0.5", "-o")
+        call = ("study", "orbit", "bay.toml", "--positions", "17", "--iris", "normal", "--wanted", "box>=0.5", "-o")
         self.done(*call, "w", "-q")
         for count in (2, 3):
             run = self.ranks(count, *call, f"o{count}", "-q", "-j", 1)
@@ -233,7 +233,7 @@ code=$?; ls -A full; cat full/v.exr; exit $code"""
 class Machines(OfRanks):
     def test_one_solution_for_parts(self):
         """Ranks work on the one solution that parts read, by --part solve or ahead of their own shares."""
-        call = ("study", "orbit", "bay.toml", "--positions", "36", "--iris", "normal", "--wanted", "box>=0.5", "-q", "-o")
+        call = ("study", "orbit", "bay.toml", "--positions", "17", "--iris", "normal", "--wanted", "box>=0.5", "-q", "-o")
         for folder, run in (("w", lambda: self.ranks(1, *call, "w", "--part", "solve")),
                             ("a", lambda: self.ranks(3, *call, "a", "--part", "solve")), ("b", lambda: self.ranks(3, *call, "b"))):
             run()
@@ -401,7 +401,7 @@ class Kills(OfRanks):
     def test_the_next_run_ends_what_a_kill_left(self):
         """Any rank, killed at EARTHSHINE_KILLS (four) moments of a run: the study is there whole or not at all, and the next is the
         one that nobody disturbed."""
-        call = ("study", "orbit", "bay.toml", "--positions", "36", "--iris", "normal", "--wanted", "box>=0.5", "-q", "-o")
+        call = ("study", "orbit", "bay.toml", "--positions", "17", "--iris", "normal", "--wanted", "box>=0.5", "-q", "-o")
         begun = time.monotonic()
         self.ranks(3, *call, "w", "-j", 1)
         whole, seconds = self.without_times(self.study("w")), time.monotonic() - begun

@@ -10,7 +10,7 @@ import unittest
 import program
 from tiny_bay import BAY, PLAIN_BAY, Case
 
-ORBIT = ("study", "orbit", "bay.toml", "--positions", "33", "--iris", "normal", "--wanted", "box>=0.5", "-o")  # 3 batches a camera
+ORBIT = ("study", "orbit", "bay.toml", "--positions", "17", "--iris", "normal", "--wanted", "box>=0.5", "-o")  # 2 batches a camera
 SEVERAL = {
     "orbit": ORBIT,
     "run": ("study", "run", "s.toml", "-o"),
@@ -119,7 +119,7 @@ class StudyParts(StudyPartsCase):
         for part in (1, 3, 4):
             self.done(*ORBIT, "o", "--part", f"{part}/4", "-q")
         message = self.refused("merge", "o", code=1)
-        self.says(message, "not complete", "--part 2/4", "'box>=0.5'", "camera A of bay.toml, batch 2 of 3")
+        self.says(message, "not complete", "--part 2/4", "'box>=0.5'", "camera A of bay.toml, batch 2 of 2")
         self.assertNotIn("--part 1/4", message)
         self.assertFalse((self.folder / "o" / "study.json").exists())
         self.done(*ORBIT, "o", "--part", "2/4", "-q")
@@ -181,7 +181,7 @@ class StudyParts(StudyPartsCase):
 
     def test_more_parts_than_work(self):
         note = self.run_program(*ORBIT, "o", "--part", "1/100").stderr
-        self.says(note, "part 1 of 100: nothing to do: the study has 6 batches")
+        self.says(note, "part 1 of 100: nothing to do: the study has 4 batches")
         note = self.run_program(*SEVERAL["accuracy"], "a", "--part", "99/100").stderr
         self.says(note, "part 99 of 100: nothing to do: the study has ")
 

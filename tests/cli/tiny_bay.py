@@ -6,6 +6,9 @@ import re
 
 import program
 
+# Most of what a study of small pictures takes is the monitor's: a ninth of the resels, each one pixel.
+SMALL_MONITOR = "[monitor]\nrows = 96\ncolumns = 128\npixels_per_resel = 1\n"
+
 # A box on a floor under two lamps, along an orbit, before two cameras of which one has a CCTV; another box
 # stands where neither looks.
 BAY = """format = 1
@@ -64,6 +67,7 @@ intensity = 500
 altitude_km = 425
 attitude = "bay-to-space"
 
+""" + SMALL_MONITOR + """
 [[camera]]
 name = "A"
 position = [3, -3, 2]
