@@ -138,6 +138,8 @@ const checkKeyboard = async (page) => {
   const failing = page.locator("table.matrix td.v4[data-p]").first();
   await failing.click();
   const panel = failing.locator("xpath=ancestor::*[@data-lamps]/following-sibling::*[1]");
+  // On a busy machine the row that was jumped to may still be scrolling under the pointer.
+  await panel.locator("p", { hasText: /Not seen\. \S/ }).first().waitFor({ timeout: 5000 }).catch(() => failing.click());
   const shown = await panel.locator("img").count();
   const told = await panel.locator("p").first().textContent();
   check(shown === 2 && /Not seen\. \S/.test(told), "a failing cell shows picture, monitor and reason", `${shown} ${told}`);
