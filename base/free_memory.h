@@ -13,7 +13,7 @@ namespace earthshine::base {
 
 // Caps what free_memory_bytes() says for as long as it lives; 0: no cap. processes: of one call, on
 // this machine, of which this is one: what is free as it begins is theirs together, as is the cap,
-// and each is told an equal part.
+// and each gets an equal part.
 class MemoryLimit {
  public:
   explicit MemoryLimit(std::uint64_t bytes, int processes = 1);

@@ -132,17 +132,17 @@ void fill_solution(const scenes::World& world, const FormFactors& factors, bool 
   tell(solution.direct_lx, copy_of(light.direct));
   base::release(light.direct);
   const std::size_t sky_parts = scenes::earth_parts(world.scene);
-  tell(solution.soft_radiosity, [&](std::size_t row, float* values) {
+  tell(solution.indirect_radiosity, [&](std::size_t row, float* values) {
     const std::size_t i = begin + row;
     const Rgb diffuse = patch_diffuse(world.scene, patches, static_cast<std::uint32_t>(i));
     for (std::size_t k = 0; k < columns; ++k) {
       const auto c = static_cast<int>(k % 3);
-      double soft = diffuse[c] * light.indirect[row * columns + k];
+      double reflected = diffuse[c] * light.indirect[row * columns + k];
       if (world.effects.earth_by_gather && k / 3 >= world.groups.earth &&
           k / 3 < world.groups.earth + sky_parts) {
-        soft += diffuse[c] * light.sky[i * sky_parts + k / 3 - world.groups.earth][c];
+        reflected += diffuse[c] * light.sky[i * sky_parts + k / 3 - world.groups.earth][c];
       }
-      values[k] = static_cast<float>(soft);
+      values[k] = static_cast<float>(reflected);
     }
   });
   tell(solution.indirect_lx, copy_of(light.indirect));

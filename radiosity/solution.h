@@ -97,9 +97,8 @@ struct Solution {
   // Per patch and column. `radiosity` leaves out the exitance of surfaces whose first bounce is
   // explicit (emitter_is_explicit), so that gather rays that meet them do not count that light
   // twice.
-  std::vector<float> radiosity;       // lm/m^2
-  std::vector<float> soft_radiosity;  // the part of it not due to explicit sources: rho (E - E0
-                                      // explicit) + M through F
+  std::vector<float> radiosity;           // lm/m^2
+  std::vector<float> indirect_radiosity;  // without explicit first bounce: rho (E - E0 explicit)
   std::vector<float> direct_lx, indirect_lx;  // E0 and F B
   SolveReport report;
 };

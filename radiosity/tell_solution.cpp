@@ -13,7 +13,7 @@ void pass(base::Parcel& parcel, GroupLedger& g) {
 }
 
 void pass(base::Parcel& parcel, SourceFlux& s) {
-  parcel.pass_all(s.name, s.group, s.emitted_lm, s.escaped_share, s.black_share, s.share_std_error,
+  parcel.pass_all(s.name, s.group, s.emitted_lm, s.escaped_share, s.back_share, s.share_std_error,
                   s.scale, s.landed_lm);
 }
 
@@ -42,7 +42,7 @@ void tell_report(const base::Shares& shares, SolveReport& report) {
 }
 
 void tell_solution(const base::Shares& shares, Solution& solution) {
-  for (std::vector<float>* const values : {&solution.radiosity, &solution.soft_radiosity,
+  for (std::vector<float>* const values : {&solution.radiosity, &solution.indirect_radiosity,
                                            &solution.direct_lx, &solution.indirect_lx}) {
     values->resize(solution.patches.count() * solution.columns);
     shares.tell_all(values->data(), values->size());

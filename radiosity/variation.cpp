@@ -7,6 +7,7 @@
 
 #include "base/numbers/random.h"
 #include "base/ranks/ranks.h"
+#include "radiosity/patches/split.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_cells.h"
 
@@ -101,15 +102,6 @@ class ShadowQueue {
   std::array<Rgb, RayPacket::width> value_{};
   std::array<std::array<std::size_t, 3>, RayPacket::width> target_{};
 };
-
-// Of one patch: a number of its own wherever it stands in the list of patches.
-std::uint64_t identity(const Patches& patches, std::uint32_t patch) {
-  const Cell& cell = patches.cell[patch];
-  const std::uint64_t place = (std::uint64_t{cell.s} << 32) | cell.t;
-  const std::uint64_t facet =
-      (std::uint64_t{patches.facet[patch]} << 16) | (std::uint64_t{cell.s_cuts} << 8) | cell.t_cuts;
-  return base::mix64(base::mix64(facet) ^ place) ^ (2U * cell.part + patches.is_back[patch]);
-}
 
 }  // namespace
 

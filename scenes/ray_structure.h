@@ -31,7 +31,7 @@ using EmbreeContext = RTCRayQueryContext;
 using EmbreeContext = RTCIntersectContext;
 #endif
 
-// Of shadow rays: what goes on from `ways` stops none of them, but is told of.
+// Of shadow rays: what goes on from `ways` stops none of them, but is reported.
 struct ShadowContext : EmbreeContext {
   const LightWays* ways = nullptr;  // null: all surfaces stop rays
   std::uint32_t met = 0;            // bit k: ray k met one that does not

@@ -63,7 +63,7 @@ void check_part(const AccuracyCall& call) {
   if (!solves && (!call.part.in_parts() || call.time_limit_s <= 0.0)) return;
   throw base::Error(base::Blame::Input, "--part",
                     solves ? "a ladder of settings has no solution that all of it reads"
-                           : "what fits in a time limit is told by one process",
+                           : "only one process can say what fits in a time limit",
                     {}, solves ? "Run the parts at once" : "Leave out --time-limit");
 }
 

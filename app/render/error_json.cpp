@@ -30,13 +30,13 @@ Parts parts_of(const studies::SolutionError& parts) {
           {"lamp_sampling", "lamps", parts.lamps}};
 }
 
-Json json_of(const ErrorEstimate& doubt) {
-  return {{"estimate", doubt.estimate}, {"bound_95", doubt.bound_95}};
+Json json_of(const ErrorEstimate& error) {
+  return {{"estimate", error.estimate}, {"bound_95", error.bound_95}};
 }
 
 // Null where nothing is seen that could be wrong.
-Json json_of(const ErrorEstimate& doubt, bool known) {
-  return known ? json_of(doubt) : Json{{"estimate", nullptr}, {"bound_95", nullptr}};
+Json json_of(const ErrorEstimate& error, bool known) {
+  return known ? json_of(error) : Json{{"estimate", nullptr}, {"bound_95", nullptr}};
 }
 
 Json json_of(const studies::TargetError& target) {

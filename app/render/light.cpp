@@ -72,7 +72,7 @@ radiosity::SolutionOrigin origin_of(const LoadedScene& loaded,
 
 radiosity::SolveOptions solver_of(const RenderCall& call, const scenes::Scene& scene,
                                   const Common& common) {
-  // A solution that is read is told by the settings that it was made with.
+  // A solution that is read keeps to the settings that it was made with.
   if (!call.solution.empty() || !steers(call, scene)) return solve_options(scene, common);
   return studies::picture_solver(scene, scene.quality, common.seed);
 }

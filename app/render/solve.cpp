@@ -70,7 +70,7 @@ Json sources_of(const radiosity::SolveReport& report, const scenes::LightGroups&
                        {"emitted_lm", to_json(source.emitted_lm)},
                        {"landed_lm", to_json(source.landed_lm)},
                        {"escaped_share", source.escaped_share},
-                       {"black_share", source.black_share},
+                       {"black_share", source.back_share},
                        {"share_std_error", source.share_std_error},
                        {"scale", source.scale}});
   }

@@ -7,14 +7,18 @@
 #include <ImfFloatAttribute.h>
 #include <ImfIntAttribute.h>
 #include <ImfMatrixAttribute.h>
+#include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <system_error>
 
 #include "base/error.h"
+#include "base/input/exr_guard.h"
+#include "base/input/input_file.h"
 
 namespace earthshine::base {
 namespace {
@@ -162,6 +166,33 @@ ExrPicture find_picture(const Names& channels) {
   if (combined.size() == 1) return in_layer(channels, combined.front());
   if (with_picture.size() == 1) return in_layer(channels, with_picture.front());
   return {ExrPicture::Kind::None, {}, with_picture};
+}
+
+void check_exr_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) refuse_file(path, "there is no such file");
+  check_input_file(path, {path.string()});
+  guard_exr(path);
+}
+
+bool is_deep(const Imf::Header& header) {
+  return header.hasType() && Imf::isDeepData(header.type());
+}
+
+void refuse_deep(const std::filesystem::path& path, const Imf::Header& header) {
+  if (!is_deep(header)) return;
+  refuse_file(path, "holds deep data", "only flat pictures can be read",
+              "Flatten it, for example with oiiotool --flatten");
+}
+
+void refuse_pixel(const std::filesystem::path& path, const std::string& channel, std::size_t i,
+                  int columns, int first, float value) {
+  const std::size_t width = static_cast<std::size_t>(columns);
+  refuse_file(path,
+              "pixel (" + std::to_string(i % width) + ", " +
+                  std::to_string(i / width + static_cast<std::size_t>(first)) + ") of channel \"" +
+                  channel + "\" is " + (std::isnan(value) ? "not a number" : "infinite"),
+              "radiance must be finite", "Render it again or repair the picture");
 }
 
 }  // namespace earthshine::base

@@ -29,6 +29,15 @@ void set_exr_attributes(Imf::Header& header, const ExrHeader& attributes);
 // Fills header.whole where the window lies within the display window and is not all of it.
 void tell_crop(ExrHeader& header, const Imath::Box2i& window, const Imath::Box2i& display);
 
+// Each throws base::Error (Input): for a file that is not there, no file on disk, or announces more
+// than it holds; one of deep data; one whose value i, in rows of `columns` from row `first` on, is
+// NaN or infinite.
+void check_exr_file(const std::filesystem::path& path);
+[[nodiscard]] bool is_deep(const Imf::Header& header);
+void refuse_deep(const std::filesystem::path& path, const Imf::Header& header);
+[[noreturn]] void refuse_pixel(const std::filesystem::path& path, const std::string& channel,
+                               std::size_t i, int columns, int first, float value);
+
 // Which of a file's channels are its picture.
 
 struct ExrPicture {

@@ -11,7 +11,6 @@
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfOutputFile.h>
-#include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 #include <half.h>
 
@@ -19,14 +18,12 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <string_view>
 #include <system_error>
 
 #include "base/error.h"
 #include "base/files/exr_attributes.h"
 #include "base/files/output_file.h"
 #include "base/free_memory.h"
-#include "base/input/exr_guard.h"
 #include "base/input/input_file.h"
 
 namespace earthshine::base {
@@ -169,10 +166,7 @@ namespace {
 
 // Before anything is allocated for the pixels.
 void check_header(const std::filesystem::path& path, const Imf::Header& header) {
-  if (header.hasType() && Imf::isDeepData(header.type())) {
-    refuse_file(path, "holds deep data", "only flat pictures can be read",
-                "Flatten it, for example with oiiotool --flatten");
-  }
+  refuse_deep(path, header);
   const Imath::Box2i& window = header.dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
@@ -196,37 +190,6 @@ void check_header(const std::filesystem::path& path, const Imf::Header& header) 
   }
 }
 
-bool ends_with_word(std::string_view layer, std::string_view word) {
-  return layer == word || (layer.size() > word.size() && layer.ends_with(word) &&
-                           layer[layer.size() - word.size() - 1] == '.');
-}
-
-// The layer whose R, G and B are the picture, or "": the only layer that has all three, or else the
-// only one called Combined, as Blender writes it.
-std::string picture_layer(const Image& image) {
-  if (image.find("R") != nullptr || image.find("Y") != nullptr) return {};
-  std::vector<std::string> layers, combined;
-  for (const Channel& channel : image.channels) {
-    if (!channel.name.ends_with(".R")) continue;
-    const std::string layer = channel.name.substr(0, channel.name.size() - 2);
-    if (image.find(layer + ".G") == nullptr || image.find(layer + ".B") == nullptr) continue;
-    layers.push_back(layer);
-    if (ends_with_word(layer, "Combined")) combined.push_back(layer);
-  }
-  if (layers.size() == 1) return layers.front();
-  return combined.size() == 1 ? combined.front() : std::string();
-}
-
-void drop_picture_layer(Image& image) {
-  const std::string layer = picture_layer(image);
-  if (layer.empty()) return;
-  for (const char* part : {"R", "G", "B", "A"}) {
-    for (Channel& channel : image.channels) {
-      if (channel.name == layer + "." + part && image.find(part) == nullptr) channel.name = part;
-    }
-  }
-}
-
 // Depth and the like may be infinite where nothing was hit; colour may not.
 void check_and_scale_colour(const std::filesystem::path& path, Image& image, float white) {
   for (Channel& channel : image.channels) {
@@ -236,12 +199,7 @@ void check_and_scale_colour(const std::filesystem::path& path, Image& image, flo
       float& value = channel.values[i];
       if (white != 1.0F) value *= white;
       if (std::isfinite(value)) continue;
-      const std::size_t width = static_cast<std::size_t>(image.width);
-      refuse_file(path,
-                  "pixel (" + std::to_string(i % width) + ", " + std::to_string(i / width) +
-                      ") of channel \"" + name + "\" is " +
-                      (std::isnan(value) ? "not a number" : "infinite"),
-                  "radiance must be finite", "Render it again or repair the picture");
+      refuse_pixel(path, name, i, image.width, 0, value);
     }
   }
 }
@@ -249,10 +207,7 @@ void check_and_scale_colour(const std::filesystem::path& path, Image& image, flo
 }  // namespace
 
 ExrFile read_exr(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) refuse_file(path, "there is no such file");
-  check_input_file(path, {path.string()});
-  guard_exr(path);
+  check_exr_file(path);
   ExrFile result;
   float white = 1.0F;
   try {
@@ -283,7 +238,6 @@ ExrFile read_exr(const std::filesystem::path& path) {
   } catch (const std::exception& e) {
     refuse_file(path, std::string("cannot be read as OpenEXR: ") + e.what());
   }
-  drop_picture_layer(result.image);
   check_and_scale_colour(path, result.image, white);
   return result;
 }

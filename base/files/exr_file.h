@@ -43,10 +43,9 @@ void write_exr(const std::filesystem::path& path, const Image& image, const ExrH
 
 // Reads every channel of a scan-line or tiled file as float (of a multi-part file the first part);
 // the data window becomes the image. A whiteLuminance attribute is applied to R, G, B and Y, so
-// that they are cd/m^2. Channel names are kept, except that a layer prefix common to all of R, G
-// and B (e.g. "Combined.R") is dropped when there is neither a plain R nor a plain Y. Throws
-// base::Error (Input) for a missing, broken, incomplete, deep or larger than 16384 x 16384 file,
-// and when R, G, B or Y has a pixel that is NaN or infinite (with the first pixel's position).
+// that they are cd/m^2. Channel names are kept. Throws base::Error (Input) for a missing, broken,
+// incomplete, deep or larger than 16384 x 16384 file, and when R, G, B or Y has a pixel that is NaN
+// or infinite (with the first pixel's position).
 [[nodiscard]] ExrFile read_exr(const std::filesystem::path& path);
 
 }  // namespace earthshine::base

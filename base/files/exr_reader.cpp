@@ -10,17 +10,14 @@
 #include <ImfHeader.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
-#include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <system_error>
 
 #include "base/error.h"
 #include "base/files/exr_attributes.h"
-#include "base/input/exr_guard.h"
 #include "base/input/input_file.h"
 
 namespace earthshine::base {
@@ -45,10 +42,6 @@ std::string joined(const std::vector<std::string>& words) {
   }
   if (words.size() > most) text += " and " + std::to_string(words.size() - most) + " more";
   return text;
-}
-
-bool is_deep(const Imf::Header& header) {
-  return header.hasType() && Imf::isDeepData(header.type());
 }
 
 int picture_part(const Imf::MultiPartInputFile& file) {
@@ -77,10 +70,7 @@ void check_size(const std::filesystem::path& path, const Imath::Box2i& window) {
 }
 
 void check_shape(const std::filesystem::path& path, const Imf::Header& header) {
-  if (is_deep(header)) {
-    refuse_file(path, "holds deep data", "only flat pictures can be read",
-                "Flatten it, for example with oiiotool --flatten");
-  }
+  refuse_deep(path, header);
   check_size(path, header.dataWindow());
   if (!(std::abs(header.pixelAspectRatio() - 1.0F) < 0.001F)) {
     refuse_file(
@@ -207,13 +197,7 @@ struct ExrReader::Open {
     for (const Channel& channel : rows.channels) {
       for (std::size_t i = 0; i < channel.values.size(); ++i) {
         if (std::isfinite(channel.values[i] * white)) continue;
-        const std::size_t columns = static_cast<std::size_t>(rows.width);
-        refuse_file(path,
-                    "pixel (" + std::to_string(i % columns) + ", " +
-                        std::to_string(i / columns + static_cast<std::size_t>(first)) +
-                        ") of channel \"" + channel.name + "\" is " +
-                        (std::isnan(channel.values[i]) ? "not a number" : "infinite"),
-                    "radiance must be finite", "Render it again or repair the picture");
+        refuse_pixel(path, channel.name, i, rows.width, first, channel.values[i]);
       }
     }
   }
@@ -240,10 +224,7 @@ struct ExrReader::Open {
 };
 
 ExrReader::ExrReader(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) refuse_file(path, "there is no such file");
-  check_input_file(path, {path.string()});
-  guard_exr(path);
+  check_exr_file(path);
   try {
     open_ = std::make_unique<Open>(path);
   } catch (const Error&) {

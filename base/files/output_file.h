@@ -26,7 +26,7 @@ class OutputFile {
   [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
   void commit();
   // The same only where the target is not there yet: false, and nothing is changed, if it is. Of
-  // several processes that write one file exactly one is told true.
+  // several processes that write one file exactly one gets true.
   [[nodiscard]] bool commit_if_new();
 
  private:

@@ -40,23 +40,6 @@ std::vector<Lag> lags_of(const Covariance& noise, int dx) {
   return lags;
 }
 
-// Without the weights that no float can tell from none.
-AxisMap without_dust(const AxisMap& map) {
-  double largest = 0.0;
-  for (const double weight : map.weight) largest = std::max(largest, std::abs(weight));
-  AxisMap kept;
-  kept.in = map.in;
-  for (std::size_t i = 0; i + 1 < map.start.size(); ++i) {
-    for (std::size_t k = map.start[i]; k < map.start[i + 1]; ++k) {
-      if (std::abs(map.weight[k]) < least_weight * largest) continue;
-      kept.source.push_back(map.source[k]);
-      kept.weight.push_back(map.weight[k]);
-    }
-    kept.start.push_back(kept.source.size());
-  }
-  return kept;
-}
-
 // bound[e] >= the largest |C'_(dx, e)|, from the largest |C| of each lag.
 std::vector<double> bounds(const AxisMap& map, const std::vector<Lag>& lags) {
   const int lines = map.in;
@@ -227,7 +210,10 @@ void add_lines(Plane& out, const Plane& in, std::size_t width, const AxisMap& ma
 }
 
 Covariance filtered_across(const Covariance& noise, const AxisMap& full) {
-  const AxisMap map = without_dust(full);
+  double largest = 0.0;
+  for (const double weight : full.weight) largest = std::max(largest, std::abs(weight));
+  // Without the weights that no float can tell from none.
+  const AxisMap map = without_taps_below(full, least_weight * largest);
   std::set<int> sides{0};
   for (const Offset& d : noise.offsets) sides.insert({d.dx, -d.dx});
   // (0, 0) comes first, and its bound is the scale of all.

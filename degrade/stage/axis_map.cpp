@@ -134,6 +134,20 @@ std::vector<double> discrete_gaussian(double sigma) {
   return kernel;
 }
 
+AxisMap without_taps_below(const AxisMap& map, double least) {
+  AxisMap kept;
+  kept.in = map.in;
+  for (std::size_t i = 0; i + 1 < map.start.size(); ++i) {
+    for (std::size_t k = map.start[i]; k < map.start[i + 1]; ++k) {
+      if (std::abs(map.weight[k]) < least) continue;
+      kept.source.push_back(map.source[k]);
+      kept.weight.push_back(map.weight[k]);
+    }
+    kept.start.push_back(kept.source.size());
+  }
+  return kept;
+}
+
 AxisMap symmetric_filter(int size, const std::vector<double>& taps) {
   AxisMap map;
   map.in = size;

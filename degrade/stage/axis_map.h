@@ -35,6 +35,8 @@ void add_output(AxisMap& map, int first, const std::vector<double>& weight);
 // are.
 [[nodiscard]] std::vector<double> discrete_gaussian(double sigma);  // symmetric, odd length
 [[nodiscard]] AxisMap gaussian_blur(int size, double sigma);
+// The same without weights of less than `least` in size; what is left is not scaled.
+[[nodiscard]] AxisMap without_taps_below(const AxisMap& map, double least);
 // The same taps at every place; their number is odd.
 [[nodiscard]] AxisMap symmetric_filter(int size, const std::vector<double>& taps);
 

@@ -52,7 +52,7 @@ double landing_scale(const Sampled& sampled, const Landing& landing, double land
     landed_variance += area * area * sampled.variance[i] * share * share;
   }
   const double all = base::luminance(flux.emitted_lm);
-  const double expected = all * (1.0 - flux.escaped_share - flux.black_share);
+  const double expected = all * (1.0 - flux.escaped_share - flux.back_share);
   if (landed <= 0.0 || expected <= 0.0) return 1.0;
   const double expected_variance = std::pow(all * flux.share_std_error, 2);
   const double both = landed_variance + expected_variance;
@@ -65,7 +65,7 @@ double landing_scale(const Sampled& sampled, const Landing& landing, double land
 // drawn by chance share one scale no more.
 Rgb channel_scales(const SourceFlux& flux, const Rgb& landed) {
   Rgb scale(flux.scale);
-  if (flux.escaped_share + flux.black_share > 0.0) return scale;
+  if (flux.escaped_share + flux.back_share > 0.0) return scale;
   for (int c = 0; c < 3; ++c) {
     if (landed[c] > 0.0) scale[c] = flux.emitted_lm[c] / landed[c];
   }
@@ -153,8 +153,8 @@ void find_shares(const scenes::Scene& scene, const scenes::RayQuery& query, cons
       });
   if (shares.all <= 0.0) return;
   flux.escaped_share = shares.escaped / shares.all;
-  flux.black_share = shares.black / shares.all;
-  const double p = std::min(1.0, flux.escaped_share + flux.black_share);
+  flux.back_share = shares.black / shares.all;
+  const double p = std::min(1.0, flux.escaped_share + flux.back_share);
   flux.share_std_error = std::sqrt(p * (1.0 - p) / rays);
 }
 
@@ -238,7 +238,7 @@ class DirectStage {
 }  // namespace
 
 Rgb SourceFlux::escaped_lm() const {
-  const double ended = escaped_share + black_share;
+  const double ended = escaped_share + back_share;
   return ended > 0.0 ? (escaped_share / ended) * (emitted_lm - landed_lm) : Rgb(0.0);
 }
 

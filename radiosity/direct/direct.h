@@ -21,7 +21,7 @@ struct SourceFlux {
   std::size_t group = 0;
   Rgb emitted_lm{0.0};
   double escaped_share = 0.0;    // by rays shot from the source
-  double black_share = 0.0;      // on black backs
+  double back_share = 0.0;       // absorbed by black back faces
   double share_std_error = 0.0;  // of escaped + black, binomial
   double scale = 1.0;            // applied to the patches' sampled illuminance
   Rgb landed_lm{0.0};            // on patches, scaled; never more luminance than emitted

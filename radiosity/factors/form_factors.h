@@ -62,7 +62,7 @@ struct FormFactors {
 
 // A patch that sees mostly black backs is buried in a body: what it sees says nothing about
 // winding.
-[[nodiscard]] constexpr bool is_exposed(double black_share) { return black_share <= 0.5; }
+[[nodiscard]] constexpr bool is_exposed(double back_share) { return back_share <= 0.5; }
 
 // Radiance of the sky in a direction; empty when the sky is dark or is sampled otherwise.
 using SkyRadiance = std::function<Rgb(const Vec3& direction)>;

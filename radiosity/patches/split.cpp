@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "base/numbers/random.h"
 #include "radiosity/patches/cluster_members.h"
 #include "radiosity/patches/parted_cell.h"
 
@@ -268,6 +269,14 @@ CellSize cell_size(const Patches& patches, std::uint32_t patch) {
   // corners() runs from s0 t0 along s first, on a back along t first.
   const double first = longest(0, 1, 3, 2), second = longest(1, 2, 0, 3);
   return patches.is_back[patch] != 0 ? CellSize{second, first} : CellSize{first, second};
+}
+
+std::uint64_t identity(const Patches& patches, std::uint32_t patch) {
+  const Cell& cell = patches.cell[patch];
+  const std::uint64_t place = (std::uint64_t{cell.s} << 32) | cell.t;
+  const std::uint64_t facet =
+      (std::uint64_t{patches.facet[patch]} << 16) | (std::uint64_t{cell.s_cuts} << 8) | cell.t_cuts;
+  return base::mix64(base::mix64(facet) ^ place) ^ (2U * cell.part + patches.is_back[patch]);
 }
 
 }  // namespace earthshine::radiosity

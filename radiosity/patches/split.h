@@ -39,4 +39,7 @@ struct CellSize {
 };
 [[nodiscard]] CellSize cell_size(const Patches& patches, std::uint32_t patch);
 
+// Of one patch: a number of its own wherever it stands in the list of patches.
+[[nodiscard]] std::uint64_t identity(const Patches& patches, std::uint32_t patch);
+
 }  // namespace earthshine::radiosity

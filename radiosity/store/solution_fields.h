@@ -38,7 +38,7 @@ void visit_light(Store& store, AnySolution& solution) {
   light("radiosity", solution.radiosity, "lm/m2",
         "per patch, light group and R, G, B: all that leaves diffusely, but the exitance of small "
         "emitting surfaces");
-  light("soft_radiosity", solution.soft_radiosity, "lm/m2",
+  light("soft_radiosity", solution.indirect_radiosity, "lm/m2",
         "the part of radiosity not due to explicitly sampled sources");
   light("illuminance_direct", solution.direct_lx, "lx",
         "from Sun, Earth, lamps and small emitting surfaces");
@@ -83,7 +83,7 @@ void visit_report(Store& store, Report& report) {
   store.rows("sources/group", sources, &SourceFlux::group, "", "number of its light group");
   store.rows("sources/emitted", sources, &SourceFlux::emitted_lm, "lm", "");
   store.rows("sources/escaped_share", sources, &SourceFlux::escaped_share, "", "");
-  store.rows("sources/black_share", sources, &SourceFlux::black_share, "", "on black backs");
+  store.rows("sources/black_share", sources, &SourceFlux::back_share, "", "on black backs");
   store.rows("sources/share_std_error", sources, &SourceFlux::share_std_error, "", "");
   store.rows("sources/landed", sources, &SourceFlux::landed_lm, "lm", "on patches");
   store.rows("sources/scale", sources, &SourceFlux::scale, "", "of the sampled illuminance");

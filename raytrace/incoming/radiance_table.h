@@ -23,8 +23,8 @@ namespace earthshine::raytrace {
 class RadianceTable {
  public:
   RadianceTable() = default;
-  // values: radiosity or soft_radiosity of the solution. `sight`, like the solution, must outlive
-  // the table.
+  // values: radiosity or indirect_radiosity of the solution. `sight`, like the solution, must
+  // outlive the table.
   RadianceTable(const radiosity::Solution& solution, std::span<const float> values, bool per_light,
                 const LeakMask& sight);
 

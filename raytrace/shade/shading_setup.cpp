@@ -42,7 +42,7 @@ ShadingSetup::ShadingSetup(const scenes::World& world, const radiosity::Solution
       soft_(solution,
             values_if(reads(solution, options) &&
                           (recursive(world.effects) || options.shared.on || aimed_at != nullptr),
-                      solution.soft_radiosity),
+                      solution.indirect_radiosity),
             options.per_light, sight_),
       lights_(world, options.indirect, options.distributed_lights, options.per_light,
               earth_area(world.scene, options.distributed_over), world.query.ways().mirrors()),

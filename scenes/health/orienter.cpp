@@ -143,6 +143,16 @@ void Orienter::keep_parallelograms(const SurfacePart& part, bool all) {
   }
 }
 
+template <class Holds>
+bool Orienter::Parts::any_beside(const SurfacePart& part, Holds holds) const {
+  const auto from = std::lower_bound(by_low_x.begin(), by_low_x.end(), part.low.x - width_m,
+                                     [&](std::uint32_t q, double x) { return all[q].low.x < x; });
+  for (auto q = from; q != by_low_x.end() && all[*q].low.x <= part.high.x; ++q) {
+    if (holds(*q)) return true;
+  }
+  return std::any_of(wide.begin(), wide.end(), holds);
+}
+
 Orienter::Inside Orienter::what_is_inside(std::size_t number, std::size_t p) {
   const SurfacePart& part = parts_of(number).all[p];
   for (const Camera& camera : scene_.cameras) {
@@ -164,14 +174,7 @@ Orienter::Inside Orienter::what_is_inside(std::size_t number, std::size_t p) {
   }
   const Parts& parts = parts_of(number);
   const auto holds = [&](std::uint32_t q) { return q != p && stands_in(part, parts.all[q]); };
-  const auto from =
-      std::lower_bound(parts.by_low_x.begin(), parts.by_low_x.end(), part.low.x - parts.width_m,
-                       [&](std::uint32_t q, double x) { return parts.all[q].low.x < x; });
-  for (auto q = from; q != parts.by_low_x.end() && parts.all[*q].low.x <= part.high.x; ++q) {
-    if (holds(*q)) return Inside::Things;
-  }
-  return std::any_of(parts.wide.begin(), parts.wide.end(), holds) ? Inside::Things
-                                                                  : Inside::Nothing;
+  return parts.any_beside(part, holds) ? Inside::Things : Inside::Nothing;
 }
 
 // Whether it stands in a body of its own object that is turned outward.
@@ -182,13 +185,7 @@ bool Orienter::is_cavity(std::size_t number, std::size_t p) {
     const SurfacePart& outer = parts.all[q];
     return q != p && outer.is_body() && outer.volume_m3 > 0.0 && stands_in(outer, part);
   };
-  const auto from =
-      std::lower_bound(parts.by_low_x.begin(), parts.by_low_x.end(), part.low.x - parts.width_m,
-                       [&](std::uint32_t q, double x) { return parts.all[q].low.x < x; });
-  for (auto q = from; q != parts.by_low_x.end() && parts.all[*q].low.x <= part.high.x; ++q) {
-    if (holds(*q)) return true;
-  }
-  return std::any_of(parts.wide.begin(), parts.wide.end(), holds);
+  return parts.any_beside(part, holds);
 }
 
 bool Orienter::stands_in(const SurfacePart& outer, const SurfacePart& inner) const {

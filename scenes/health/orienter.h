@@ -32,6 +32,10 @@ class Orienter {
     std::vector<std::uint32_t> by_low_x;  // numbers, but those of wide ones
     std::vector<std::uint32_t> wide;
     double width_m = 0.0;  // along x, of the widest of the others
+
+    // Whether holds(number) is true of any part that may overlap this one along x.
+    template <class Holds>
+    [[nodiscard]] bool any_beside(const SurfacePart& part, Holds holds) const;
   };
   struct Counts {
     std::size_t bodies = 0, triangles = 0, mixed_edges = 0, one_sided = 0;

@@ -114,10 +114,24 @@ struct Work {
   const raytrace::Progress& progress;
 };
 
-void add_picture_facts(StepCost& cost, const raytrace::RenderReport& report) {
-  cost.picture_rays = report.rays.total();
-  cost.gather_rays = report.gather_rays;
-  cost.camera_samples = report.camera_samples;
+// What a picture shows, took and states of itself; solution: that it reads, if any.
+void add_picture(StepResult& result, const Work& work, const raytrace::Frame& frame,
+                 const radiosity::SolveOptions& solver, const raytrace::RenderOptions& options,
+                 const radiosity::Solution* solution) {
+  StepCost& cost = result.cost;
+  result.luminance = base::luminance_of(frame.image);
+  cost.picture_rays = frame.report.rays.total();
+  cost.gather_rays = frame.report.gather_rays;
+  cost.camera_samples = frame.report.camera_samples;
+  if (solution != nullptr) {
+    cost.patches = solution->report.patches;
+    cost.solve_rays = solve_rays(solution->report);
+    cost.form_factor_rays = solver.form_factor_rays;
+  }
+  cost.memory_bytes = memory_of(work.asked.world, solver, options, solution);
+  const Clock statement;
+  cost.stated = error_budget(work.asked.world, {&work.view.camera, options}, frame).total;
+  cost.statement_cpu_seconds = statement.cpu();
 }
 
 // As `render` does for the step's settings.
@@ -143,21 +157,13 @@ std::optional<StepResult> run_plain(const Work& work, SolutionShelf& shelf) {
   cost.wall_seconds = clock.wall();
   cost.cpu_seconds = clock.cpu();
   if (frame.report.stopped) return std::nullopt;
-  result.luminance = base::luminance_of(frame.image);
   if (solves) {
     cost.solve_wall_seconds = shelf.wall_seconds;
     cost.solve_cpu_seconds = shelf.cpu_seconds;
     cost.wall_seconds += shelf.wall_seconds;
     cost.cpu_seconds += shelf.cpu_seconds;
-    cost.patches = solution.report.patches;
-    cost.solve_rays = solve_rays(solution.report);
-    cost.form_factor_rays = solver.form_factor_rays;
   }
-  add_picture_facts(cost, frame.report);
-  cost.memory_bytes = memory_of(asked.world, solver, options, solves ? &solution : nullptr);
-  const Clock statement;
-  cost.stated = error_budget(asked.world, {&view.camera, options}, frame).total;
-  cost.statement_cpu_seconds = statement.cpu();
+  add_picture(result, work, frame, solver, options, solves ? &solution : nullptr);
   return result;
 }
 
@@ -174,22 +180,16 @@ std::optional<StepResult> run_steered(const Work& work) {
   radiosity::Solution solution;
   if (asked.effects.solution) {
     solution = solve(asked.world, view, solver);
-    cost.solve_rays = solve_rays(solution.report);
     cost.solve_wall_seconds = clock.wall();
     cost.solve_cpu_seconds = clock.cpu();
-    cost.patches = solution.report.patches;
-    cost.form_factor_rays = solver.form_factor_rays;
   }
   const raytrace::Frame frame =
       raytrace::render(asked.world, solution, view.camera, options, progress);
   cost.wall_seconds = clock.wall();
   cost.cpu_seconds = clock.cpu();
   if (frame.report.stopped) return std::nullopt;
-  result.luminance = base::luminance_of(frame.image);
-  add_picture_facts(cost, frame.report);
-  cost.stated = error_budget(asked.world, {&view.camera, options}, frame).total;
-  cost.memory_bytes =
-      memory_of(asked.world, solver, options, asked.effects.solution ? &solution : nullptr);
+  add_picture(result, work, frame, solver, options, asked.effects.solution ? &solution : nullptr);
+  cost.statement_cpu_seconds = 0.0;  // within cpu_seconds
   return result;
 }
 

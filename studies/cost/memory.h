@@ -21,10 +21,10 @@ namespace earthshine::studies {
 // Per pixel of a picture beside its channels: what the renderer keeps until the picture is whole
 // (raytrace/shade/pixel_sums.h, gather_field.h).
 struct PixelRecordBytes {
-  double sums = 64.0;            // samples, moments of the luminance, wanted samples
-  double sums_per_entry = 12.0;  // radiance of an image layer or part
-  double gather_point = 700.0;   // with SharedGather and a stray now and then: place, halves, what
-                                 // is told of its details, fields of noise meanwhile
+  double sums = 64.0;              // samples, moments of the luminance, wanted samples
+  double sums_per_entry = 12.0;    // radiance of an image layer or part
+  double gather_point = 700.0;     // with SharedGather and a stray now and then: place, halves,
+                                   // its details, fields of noise meanwhile
   double gather_per_layer = 30.0;  // of diffuse light and of lobes, as shared
   double cast_per_layer = 55.0;    // of three kinds, as cast, where they are cast round by round
 };

@@ -19,19 +19,7 @@ using degrade::Plane;
 // Taps below this share add less than a millionth to any variance and cost most of the time.
 constexpr double least_tap = 1e-5;
 
-AxisMap without_far_taps(const AxisMap& map) {
-  AxisMap near;
-  near.in = map.in;
-  for (std::size_t i = 0; i + 1 < map.start.size(); ++i) {
-    for (std::size_t k = map.start[i]; k < map.start[i + 1]; ++k) {
-      if (std::abs(map.weight[k]) < least_tap) continue;
-      near.source.push_back(map.source[k]);
-      near.weight.push_back(map.weight[k]);
-    }
-    near.start.push_back(near.source.size());
-  }
-  return near;
-}
+AxisMap without_far_taps(const AxisMap& map) { return degrade::without_taps_below(map, least_tap); }
 
 // `first`, then `second`.
 AxisMap chained(const AxisMap& first, const AxisMap& second) {

@@ -146,6 +146,13 @@ void add_noise(MeanNoise& noise, const Seen& g, Variance v, const TimeFactors& t
   }
 }
 
+// What of the line reaches a spread target's resels, and how much of it.
+Box reach_of(const CctvSignal& line, const WeightedResels& of) {
+  const Box target = filled(box_around(of, of, line.columns), of, line.columns, -1,
+                            [](std::uint32_t) { return 1.0; });
+  return transposed_across(transposed_along(target, line.spread_along), line.spread_across);
+}
+
 }  // namespace
 
 WeightedResels weigh(const std::vector<std::uint32_t>& pixels, int picture_columns,
@@ -195,11 +202,7 @@ WeightedResels weigh(const std::vector<std::uint32_t>& pixels, int picture_colum
 }
 
 std::vector<std::uint32_t> spread_sources(const CctvSignal& line, const WeightedResels& of) {
-  const Box reach =
-      transposed_across(transposed_along(filled(box_around(of, of, line.columns), of, line.columns,
-                                                -1, [](std::uint32_t) { return 1.0; }),
-                                         line.spread_along),
-                        line.spread_across);
+  const Box reach = reach_of(line, of);
   std::vector<std::uint32_t> resels;
   for (int y = reach.y0; y < reach.y0 + reach.rows; ++y) {
     for (int x = 0; x < reach.columns; ++x) {
@@ -212,11 +215,7 @@ std::vector<std::uint32_t> spread_sources(const CctvSignal& line, const Weighted
 }
 
 double screen_mean(const CctvSignal& line, const ShownMoments& moments, const WeightedResels& of) {
-  const Box reach =
-      transposed_across(transposed_along(filled(box_around(of, of, line.columns), of, line.columns,
-                                                -1, [](std::uint32_t) { return 1.0; }),
-                                         line.spread_along),
-                        line.spread_across);
+  const Box reach = reach_of(line, of);
   double sum = 0.0;
   for (int y = reach.y0; y < reach.y0 + reach.rows; ++y) {
     for (int x = 0; x < reach.columns; ++x) {

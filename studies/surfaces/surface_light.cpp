@@ -58,7 +58,7 @@ LightOnSurfaces::LightOnSurfaces(const scenes::World& scene, radiosity::Solution
       }
     }
   }
-  base::release(coarse.soft_radiosity);
+  base::release(coarse.indirect_radiosity);
   light_.solution = std::move(coarse);
   sum_up();
   if (!factors_.shares.joins()) keep_what_samples_read();

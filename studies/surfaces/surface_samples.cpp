@@ -6,6 +6,7 @@
 
 #include "base/numbers/random.h"
 #include "radiosity/bodies/closed_bodies.h"
+#include "radiosity/patches/split.h"
 #include "scenes/reflect/energy.h"
 #include "scenes/sky/sky_cells.h"
 #include "studies/surfaces/patch_looks.h"
@@ -19,15 +20,6 @@ using scenes::RayPacket;
 constexpr int source_points = 16;  // that radiosity::find_sources() gives a small distant source
 constexpr std::size_t wide_source_samples = 4;
 constexpr std::size_t told_after = 1024;  // patches
-
-// A number of its own for a patch, wherever it stands in the list.
-std::uint64_t identity(const radiosity::Patches& patches, std::uint32_t patch) {
-  const radiosity::Cell& cell = patches.cell[patch];
-  const std::uint64_t place = (std::uint64_t{cell.s} << 32) | cell.t;
-  const std::uint64_t facet =
-      (std::uint64_t{patches.facet[patch]} << 16) | (std::uint64_t{cell.s_cuts} << 8) | cell.t_cuts;
-  return base::mix64(base::mix64(facet) ^ place) ^ (2U * cell.part + patches.is_back[patch]);
-}
 
 }  // namespace
 
@@ -141,7 +133,8 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
       residual.tried = residual.taken = work.points;
       if (base::max_component(rho) <= 0.0) continue;  // B = M, whatever falls on it
       const base::Key key =
-          base::Key(seed_, base::Stream::ErrorBudget, identity(patches, patch)).with(pass);
+          base::Key(seed_, base::Stream::ErrorBudget, radiosity::identity(patches, patch))
+              .with(pass);
       const base::SobolOwen4 where(key);
       near.clear();
       if (bodies != nullptr) {

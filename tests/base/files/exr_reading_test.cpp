@@ -83,25 +83,6 @@ TEST(ExrReading, WhiteLuminanceScalesColourOnly) {
   EXPECT_EQ(image.find("Z")->values[14], 15.0F);
 }
 
-TEST(ExrReading, PictureLayerLosesItsPrefixOnlyWhenItIsTheOneMeant) {
-  const TemporaryFolder folder;
-  const auto names_of = [&](const std::vector<std::string>& names) {
-    write_scanlines<half>(folder / "a.exr", Imf::HALF, names);
-    std::vector<std::string> found;
-    for (const Channel& c : read_exr(folder / "a.exr").image.channels) found.push_back(c.name);
-    return found;
-  };
-  using Names = std::vector<std::string>;
-  EXPECT_EQ(names_of({"Combined.R", "Combined.G", "Combined.B", "Depth.Z"}),
-            (Names{"B", "G", "R", "Depth.Z"}));
-  EXPECT_EQ(names_of({"V.Combined.R", "V.Combined.G", "V.Combined.B", "V.Diff.R", "V.Diff.G",
-                      "V.Diff.B"}),
-            (Names{"B", "G", "R", "V.Diff.B", "V.Diff.G", "V.Diff.R"}));
-  EXPECT_EQ(names_of({"a.R", "a.G", "a.B", "b.R", "b.G", "b.B"}),
-            (Names{"a.B", "a.G", "a.R", "b.B", "b.G", "b.R"}));
-  EXPECT_EQ(names_of({"Y", "a.R", "a.G", "a.B"}), (Names{"Y", "a.B", "a.G", "a.R"}));
-}
-
 TEST(ExrReading, TiledAndMipmappedFilesAreReadAtFullSize) {
   const TemporaryFolder folder;
   for (const Imf::LevelMode mode : {Imf::ONE_LEVEL, Imf::MIPMAP_LEVELS}) {

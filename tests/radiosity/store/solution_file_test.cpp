@@ -88,7 +88,7 @@ TEST(SolutionFile, WhatIsReadIsBitForBitWhatWasWritten) {
   expect_same(read.patches, stored.solution.patches);
   EXPECT_EQ(read.columns, 6U);
   EXPECT_EQ(read.radiosity, stored.solution.radiosity);
-  EXPECT_EQ(read.soft_radiosity, stored.solution.soft_radiosity);
+  EXPECT_EQ(read.indirect_radiosity, stored.solution.indirect_radiosity);
   EXPECT_EQ(read.direct_lx, stored.solution.direct_lx);
   EXPECT_EQ(read.indirect_lx, stored.solution.indirect_lx);
   const SolveReport &a = read.report, &b = stored.solution.report;

@@ -86,7 +86,7 @@ void expect_truth(const radiosity::Solution& solution, const char* what) {
 
 radiosity::Solution scaled(double factor) {
   radiosity::Solution solution = tests::small_room().solution;
-  for (auto* values : {&solution.radiosity, &solution.soft_radiosity}) {
+  for (auto* values : {&solution.radiosity, &solution.indirect_radiosity}) {
     for (float& value : *values) value *= static_cast<float>(factor);
   }
   return solution;
@@ -101,7 +101,7 @@ TEST(Residual, TwiceTheSolutionGivesTheTruth) { expect_truth(scaled(2.0), "twice
 TEST(Residual, NoiseInPlaceOfASolutionGivesTheTruth) {
   radiosity::Solution solution = scaled(1.0);
   base::Rng rng(base::Key(1, base::Stream::Test, 9));
-  for (auto* values : {&solution.radiosity, &solution.soft_radiosity}) {
+  for (auto* values : {&solution.radiosity, &solution.indirect_radiosity}) {
     double mean = 0.0;
     for (const float value : *values) mean += double(value) / static_cast<double>(values->size());
     for (float& value : *values) value = static_cast<float>(2.0 * mean * rng.next());
