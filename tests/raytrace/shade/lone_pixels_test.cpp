@@ -28,7 +28,7 @@ void expect_no_lone_pixels(const scenes::Scene& scene, const Vec3& look_at) {
   solve.patch_edge_m = 0.25;
   solve.form_factor_rays = 64;
   radiosity::Solution solution = prepared.solve(solve);
-  for (auto* values : {&solution.radiosity, &solution.soft_radiosity}) {
+  for (auto* values : {&solution.radiosity, &solution.indirect_radiosity}) {
     for (float& value : *values) value *= 0.5F;
   }
   scenes::Camera camera;
