@@ -73,32 +73,35 @@ std::optional<CoincidentFaces::Met> CoincidentFaces::first_met(std::uint32_t tri
                                                                const Vec3& direction) const {
   if (number_[triangle] == none) return std::nullopt;
   // Each step goes to a face nearer to where the light comes from.
-  std::vector<Met> way{{triangle, 0.0, 0.0, false}};
-  for (;;) {
-    const Face& now = faces_[number_[way.back().triangle]];
+  const auto step = [&](std::uint32_t from) -> std::optional<Met> {
+    const Face& now = faces_[number_[from]];
     const bool front = glm::dot(direction, now.normal) < 0.0;
-    Met met{};
-    const auto next = std::find_if(
-        others_.begin() + now.first, others_.begin() + now.end, [&](const Other& other) {
-          if (other.hides_both || other.before != front) return false;
-          const Face& face = faces_[other.face];
-          const auto [u, v] = barycentric(at, face.corner, face.edge1, face.edge2);
-          if (!holds(u, v)) return false;
-          met = {face.triangle, u, v, glm::dot(direction, face.normal) < 0.0};
-          return true;
-        });
-    if (next == others_.begin() + now.end) break;
-    const auto seen = std::find_if(
-        way.begin(), way.end(), [&](const Met& before) { return before.triangle == met.triangle; });
+    for (std::uint32_t k = now.first; k < now.end; ++k) {
+      const Other& other = others_[k];
+      if (other.hides_both || other.before != front) continue;
+      const Face& face = faces_[other.face];
+      const auto [u, v] = barycentric(at, face.corner, face.edge1, face.edge2);
+      if (!holds(u, v)) continue;
+      return Met{face.triangle, u, v, glm::dot(direction, face.normal) < 0.0};
+    }
+    return std::nullopt;
+  };
+  std::optional<Met> met = step(triangle);
+  if (!met) return std::nullopt;  // as nearly every ray: nothing is kept of its way
+  std::vector<Met> way{{triangle, 0.0, 0.0, false}};
+  for (; met; met = step(way.back().triangle)) {
+    const auto seen = std::find_if(way.begin(), way.end(), [&](const Met& before) {
+      return before.triangle == met->triangle;
+    });
     if (seen != way.end()) {
       // A ring, as two sides of a sheet have with another sheet: one of it is met, or no light
       // would be. The last of the scene, whoever asks.
-      *seen = met;
+      *seen = *met;
       way.back() = *std::max_element(
           seen, way.end(), [](const Met& a, const Met& b) { return a.triangle < b.triangle; });
       break;
     }
-    way.push_back(met);
+    way.push_back(*met);
   }
   return way.back().triangle == triangle ? std::nullopt : std::optional(way.back());
 }

@@ -61,16 +61,18 @@ double IncomingLight::kept_part(const scenes::Hit& hit, const Vec3& direction,
   return found / (found + share.aimed_rays * density);
 }
 
-void IncomingLight::add(const scenes::Hit& hit, const Vec3& direction, const RayShare& share,
-                        const Rgb& weight, std::span<Rgb> out, RayCounts& rays) const {
+double IncomingLight::add(const scenes::Hit& hit, const Vec3& direction, const RayShare& share,
+                          const Rgb& weight, std::span<Rgb> out, RayCounts& rays) const {
   const bool aimed = share.aimed_at != radiosity::no_patch;
   if (hit.missed()) {
     if (!aimed) see_sky(direction, weight, out, true);
-    return;
+    return 0.0;
   }
-  if (!table_.empty()) table_.add(hit, weight * kept_part(hit, direction, share), out);
+  const double kept = kept_part(hit, direction, share);
+  if (!table_.empty() && kept > 0.0) table_.add(hit, weight * kept, out);
   // Rays aimed at a patch are for what the patch itself sends.
   if (follows_specular_ && !aimed) follow_specular(hit, direction, weight, out, rays);
+  return kept;
 }
 
 IncomingLight::Aimed IncomingLight::aim(const Vec3& origin, const Vec3& normal, double choice,

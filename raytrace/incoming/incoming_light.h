@@ -74,9 +74,10 @@ class IncomingLight {
 
   // Adds weight * radiance along the ray to out[0 .. layers); if out is one longer, what came
   // straight from the sky is added to its last entry as well.
-  // Rays that go on from mirrors and glass are counted in `rays`.
-  void add(const scenes::Hit& hit, const Vec3& direction, const RayShare& share, const Rgb& weight,
-           std::span<Rgb> out, RayCounts& rays) const;
+  // Rays that go on from mirrors and glass are counted in `rays`. Returns the kept part of what
+  // surfaces send.
+  double add(const scenes::Hit& hit, const Vec3& direction, const RayShare& share,
+             const Rgb& weight, std::span<Rgb> out, RayCounts& rays) const;
 
   [[nodiscard]] const BrightPatches& bright() const { return bright_; }
 

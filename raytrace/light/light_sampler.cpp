@@ -21,6 +21,8 @@ constexpr std::size_t few_lamps = 32;
 constexpr double smallest_share = 1.0 / 16.0;
 
 double fraction(double x) { return x - std::floor(x); }
+// In the same order as x.
+double signed_square(double x) { return x * std::abs(x); }
 
 }  // namespace
 
@@ -73,6 +75,7 @@ LightSampler::LightSampler(const scenes::World& world, Indirect indirect, int di
     turns_ = SunTurns(world.groups.sun_parts, world.scene.sky_parts->suns.size());
   }
   gather_clusters(per_group);
+  add_images();
   find_one_rays();
   find_throws();
 }
@@ -102,7 +105,7 @@ scenes::LightTree LightSampler::tree_of(const std::vector<std::size_t>& lamps) c
 }
 
 scenes::LightKind LightSampler::kind(std::size_t index) const {
-  const Light& light = of(index);
+  const Light& light = lights_[index];
   switch (light.kind) {
     case Kind::Sun:
     case Kind::SunPart:
@@ -144,7 +147,7 @@ void LightSampler::choose(const scenes::Receiver& receiver, double u,
     image.point = mirror.image(receiver.point);
     image.normal = mirror.turned(receiver.normal);
     image.mirrored = mirror.turned(receiver.mirrored);
-    choose_thrown(throws_[m + 1], image, u, (m + 1) * lights_.size(), chosen);
+    choose_thrown(throws_[m + 1], image, u, (m + 1) * sources_, chosen);
   }
 }
 
@@ -177,68 +180,27 @@ void LightSampler::add(Light light, int copies) {
   }
 }
 
-void LightSampler::find_one_rays() {
-  one_rays_.resize(count());
-  for (std::size_t k = 0; k < count(); ++k) {
-    const scenes::FlatMirror* mirror = mirror_of(k);
-    if (of(k).kind != Kind::Lamp || scenes::is_wide(scene_.lamps[of(k).index].kind)) continue;
-    const scenes::Lamp& lamp = scene_.lamps[of(k).index];
-    OneRay& ray = one_rays_[k];
-    ray.is_all = true;
-    ray.position = mirror != nullptr ? mirror->image(lamp.position) : lamp.position;
-    ray.axis = mirror != nullptr ? mirror->turned(lamp.axis) : lamp.axis;
-    if (lamp.kind == scenes::LampKind::Spot) ray.field_cosine = scenes::field_cosine(lamp);
-    if (mirror != nullptr) ray.lamp_height_m = mirror->height_m(lamp.position);
-  }
-}
-
-void LightSampler::find_throws() {
-  throws_.resize(1 + mirrors_.size());
-  for (std::size_t m = 0; m < throws_.size(); ++m) {
-    if (m > 0) throws_[m].mirror = &mirrors_[m - 1];
-    const std::size_t first = m * lights_.size();
-    for (std::size_t k = 0; k < lights_.size(); ++k) {
-      if (m == 0 || reaches_mirror(first + k)) throws_[m].lights.push_back(first + k);
-    }
-    for (const std::size_t k : always_) {
-      if (m == 0 || reaches_mirror(first + k)) throws_[m].always.push_back(first + k);
-    }
-  }
-}
-
-// False where nothing of a light falls on its mirror's front, as far as it is known without rays.
-bool LightSampler::reaches_mirror(std::size_t index) const {
-  const scenes::FlatMirror& mirror = *mirror_of(index);
-  const OneRay& ray = one_rays_[index];
-  if (!ray.is_all) return true;
-  if (ray.lamp_height_m <= 0.0) return false;
-  if (ray.field_cosine < -1.0) return true;
-  const Vec3 way = mirror.centre - ray.position;  // from the image, whose axis is turned as well
-  const double distance = glm::length(way);
-  if (distance <= mirror.radius_m) return true;
-  const double off = std::acos(std::clamp(glm::dot(way, ray.axis) / distance, -1.0, 1.0));
-  return off <= std::acos(ray.field_cosine) + std::asin(mirror.radius_m / distance) + 1e-6;
-}
-
 bool LightSampler::may_reach(std::size_t index, const Vec3& point, const Vec3& normal) const {
   constexpr double rounding = 1e-9;
-  const scenes::FlatMirror* mirror = mirror_of(index);
+  const Light& light = lights_[index];
+  const scenes::FlatMirror* mirror = light.mirror;
   const OneRay& ray = one_rays_[index];
   const Vec3 way = ray.position - point;
-  const double distance = glm::length(way);
-  if (ray.is_all && glm::dot(way, normal) < -rounding * distance) return false;
-  if (ray.is_all && -glm::dot(way, ray.axis) < (ray.field_cosine - rounding) * distance) {
-    return false;
+  if (ray.is_all) {
+    // By squares: a picture asks this tens of millions of times, mostly of images.
+    const double distance2 = glm::dot(way, way);
+    if (signed_square(glm::dot(way, normal)) < signed_square(-rounding) * distance2) return false;
+    const double least = signed_square(ray.field_cosine - rounding);
+    if (signed_square(-glm::dot(way, ray.axis)) < least * distance2) return false;
   }
   const double height = mirror != nullptr ? mirror->height_m(point) : 0.0;
   if (mirror != nullptr && height <= 0.0) return false;
   if (ray.is_all) {
     if (mirror == nullptr) return true;
     if (ray.lamp_height_m <= 0.0) return false;
-    const Vec3 met = point + height / (height + ray.lamp_height_m) * way;
-    return glm::length(met - mirror->centre) <= mirror->radius_m * (1.0 + 1e-6);
+    const Vec3 off = point + height / (height + ray.lamp_height_m) * way - mirror->centre;
+    return glm::dot(off, off) <= mirror->radius_m * mirror->radius_m * (1.0 + 2e-6);
   }
-  const Light& light = of(index);
   if (light.kind != Kind::Sun && light.kind != Kind::SunPart) return true;
   const scenes::Sun& sun =
       light.kind == Kind::Sun ? *scene_.sun : scene_.sky_parts->suns[light.index];
@@ -248,10 +210,10 @@ bool LightSampler::may_reach(std::size_t index, const Vec3& point, const Vec3& n
 
 scenes::LightSample LightSampler::sample(std::size_t index, const Vec3& point, double u,
                                          double v) const {
-  const scenes::FlatMirror* mirror = mirror_of(index);
+  const scenes::FlatMirror* mirror = lights_[index].mirror;
   if (mirror == nullptr) return sample_straight(lights_[index], point, u, v);
   if (mirror->height_m(point) <= 0.0) return {};
-  return scenes::thrown(sample_straight(of(index), mirror->image(point), u, v), *mirror,
+  return scenes::thrown(sample_straight(lights_[index], mirror->image(point), u, v), *mirror,
                         static_cast<std::uint32_t>(mirror - mirrors_.data()), point);
 }
 

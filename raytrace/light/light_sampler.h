@@ -49,8 +49,8 @@ class LightSampler {
                                                   double nearer_than_m) const;
 
   // The lights themselves, then their images in each mirror.
-  [[nodiscard]] std::size_t count() const { return lights_.size() * (1 + mirrors_.size()); }
-  [[nodiscard]] std::size_t group(std::size_t light) const { return of(light).group; }
+  [[nodiscard]] std::size_t count() const { return lights_.size(); }
+  [[nodiscard]] std::size_t group(std::size_t light) const { return lights_[light].group; }
   [[nodiscard]] scenes::LightKind kind(std::size_t light) const;
   // False where no sample can reach a surface that faces `normal`, as far as it is known without
   // one: a Sun below the horizon, a lamp behind the surface or not turned to it, one whose image is
@@ -60,7 +60,7 @@ class LightSampler {
   [[nodiscard]] bool has_extent(std::size_t light) const { return !one_rays_[light].is_all; }
   // Where a lamp without size is that shines straight, or nothing.
   [[nodiscard]] const Vec3* lamp_point(std::size_t light) const {
-    return light < lights_.size() && one_rays_[light].is_all ? &one_rays_[light].position : nullptr;
+    return light < sources_ && one_rays_[light].is_all ? &one_rays_[light].position : nullptr;
   }
   // visit(light) for each that may reach such a surface, but for the Suns of other turns.
   template <class Visit>
@@ -69,7 +69,7 @@ class LightSampler {
     for (const Throws& throws : throws_) {
       if (throws.mirror != nullptr && throws.mirror->height_m(point) <= 0.0) continue;
       for (const std::size_t light : throws.lights) {
-        if (weight(of(light), turn) <= 0.0) continue;
+        if (weight(lights_[light], turn) <= 0.0) continue;
         if (may_reach(light, point, normal)) visit(light);
       }
     }
@@ -85,7 +85,8 @@ class LightSampler {
     std::size_t index = 0;  // of the lamp, emitter set or Sun of a sky in parts
     bool fixed = false;     // distributed: always the same (u, v)
     double u = 0.5, v = 0.5;
-    double share = 1.0;  // of the source's light
+    double share = 1.0;                          // of the source's light
+    const scenes::FlatMirror* mirror = nullptr;  // of an image
   };
   // What lamps without size, or their images, send to a point: one ray, within the lamp's cone and
   // off where the mirror is.
@@ -99,17 +100,13 @@ class LightSampler {
     scenes::LightTree tree;
     std::vector<std::size_t> lights;  // of the tree's numbers
   };
-  [[nodiscard]] const Light& of(std::size_t light) const { return lights_[light % lights_.size()]; }
-  // Its mirror; null: the light itself.
-  [[nodiscard]] const scenes::FlatMirror* mirror_of(std::size_t light) const {
-    return light < lights_.size() ? nullptr : &mirrors_[light / lights_.size() - 1];
-  }
   // What comes by one mirror, or straight.
   struct Throws {
     const scenes::FlatMirror* mirror = nullptr;
     std::vector<std::size_t> lights;  // that reach it
     std::vector<std::size_t> always;  // of these, those that are not left to chance
   };
+  void add_images();
   void find_throws();
   [[nodiscard]] bool reaches_mirror(std::size_t light) const;
   [[nodiscard]] scenes::LightSample sample_straight(const Light& light, const Vec3& point, double u,
@@ -130,8 +127,9 @@ class LightSampler {
   std::span<const scenes::FlatMirror> mirrors_;
   std::optional<scenes::Lamp> earth_area_;
   SunTurns turns_;
-  std::vector<Light> lights_;
-  std::vector<OneRay> one_rays_;     // by number of the light, images too
+  std::vector<Light> lights_;  // the sources themselves, then their images
+  std::size_t sources_ = 0;
+  std::vector<OneRay> one_rays_;     // by number of the light
   std::vector<Throws> throws_;       // straight, then by each mirror
   std::vector<std::size_t> always_;  // lights that are not left to chance
   std::vector<Cluster> clusters_;

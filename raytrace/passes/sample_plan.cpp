@@ -22,6 +22,7 @@ constexpr double greatest_price = 1e6;  // squared error per ray
 constexpr double least_gain = 0.2, least_gain_of_all = 1e-6;
 constexpr std::size_t sample_classes = 33;  // of pixels, by the powers of two of their samples
 constexpr std::size_t few_pixels = 64;
+constexpr std::size_t items_at_once = 4096;
 constexpr double unsure_samples = 4.0;  // up to there a pixel's own say nothing
 
 std::size_t class_of(std::uint32_t samples) {
@@ -91,33 +92,49 @@ SamplePlanner::SamplePlanner(const PixelSums& sums, const GatherField* field,
   look_at_pixels(stated, whole.luminance, scale);
 }
 
+template <class Look>
+void SamplePlanner::look_at(std::size_t count, const Look& look) {
+  std::vector<std::vector<Gain>> parts((count + items_at_once - 1) / items_at_once);
+  base::parallel_chunks(parts.size(), 1, [&](std::size_t part, std::size_t) {
+    look(part * items_at_once, std::min(count, (part + 1) * items_at_once), parts[part]);
+    for (Gain& gain : parts[part]) gain.find_prices();
+  });
+  for (const std::vector<Gain>& part : parts) {
+    gains_.insert(gains_.end(), part.begin(), part.end());
+  }
+}
+
 void SamplePlanner::look_at_field(const StatedError& stated, double mean, double scale) {
   const Window& window = sums_.window;
+  const auto columns = static_cast<std::size_t>(field_->window().columns);
   for (std::size_t k = 0; k < gathered_kinds; ++k) {
     const auto kind = static_cast<Gathered>(k);
     if (!field_->gathers(kind)) continue;
-    for (std::size_t p = 0; p < field_->points().size(); ++p) {
+    const Shared& shared = field_->shared(kind);
+    const auto gain_of = [&](std::size_t p, std::vector<Gain>& gains) {
       const std::size_t pixel = field_->pixel_of(p);
-      const auto columns = static_cast<std::size_t>(field_->window().columns);
       const int x = field_->window().x + static_cast<int>(pixel % columns);
       const int y = field_->window().y + static_cast<int>(pixel / columns);
-      if (!window.contains(x, y)) continue;
+      if (!window.contains(x, y)) return;
       const float samples = field_->samples(kind, p);
       const double reflected = field_->reflected(kind, p);
-      if (samples <= 0.0F || reflected <= 0.0) continue;
+      if (samples <= 0.0F || reflected <= 0.0) return;
       const double weight = error_weight(double(stated.luminance[window.index(x, y)]), mean) *
                             reflected * field_->cover_of(p);
       const double factor = weight * weight * scale;
-      const Shared& shared = field_->shared(kind);
       const double one = shared.squared_error_with(p, 1.0);
       const double two = shared.squared_error_with(p, 2.0);
       const double four = shared.squared_error_with(p, 4.0);
-      if (factor * (one - four) <= 0.0) continue;
-      gains_.push_back({static_cast<std::uint32_t>(p), static_cast<std::uint8_t>(k), samples,
-                        static_cast<float>(double(samples) * costs_.field[k]),
-                        static_cast<float>(factor * (one - two)),
-                        static_cast<float>(factor * (two - four))});
-    }
+      if (factor * (one - four) <= 0.0) return;
+      gains.push_back({static_cast<std::uint32_t>(p), static_cast<std::uint8_t>(k), samples,
+                       static_cast<float>(double(samples) * costs_.field[k]),
+                       static_cast<float>(factor * (one - two)),
+                       static_cast<float>(factor * (two - four))});
+    };
+    look_at(field_->points().size(),
+            [&](std::size_t begin, std::size_t end, std::vector<Gain>& gains) {
+              for (std::size_t p = begin; p < end; ++p) gain_of(p, gains);
+            });
   }
 }
 
@@ -137,47 +154,55 @@ void SamplePlanner::look_at_pixels(const StatedError& stated, double mean, doubl
     all.add(found, of_mean);
     of_class[class_of(sums_.samples[p])].add(found, of_mean);
   }
-  for (int y = window.y; y < window.y + window.rows; ++y) {
-    for (int x = window.x; x < window.x + window.columns; ++x) {
-      const std::size_t p = window.index(x, y);
-      double around = 0.0;
-      for (int qy = std::max(window.y, y - 1); qy <= std::min(window.y + window.rows - 1, y + 1);
-           ++qy) {
-        for (int qx = std::max(window.x, x - 1);
-             qx <= std::min(window.x + window.columns - 1, x + 1); ++qx) {
-          around = std::max(around, variance[window.index(qx, qy)]);
-        }
+  const auto gain_of = [&](std::size_t p, std::vector<Gain>& gains) {
+    const auto columns = static_cast<std::size_t>(window.columns);
+    const int x = window.x + static_cast<int>(p % columns);
+    const int y = window.y + static_cast<int>(p / columns);
+    double around = 0.0;
+    for (int qy = std::max(window.y, y - 1); qy <= std::min(window.y + window.rows - 1, y + 1);
+         ++qy) {
+      for (int qx = std::max(window.x, x - 1); qx <= std::min(window.x + window.columns - 1, x + 1);
+           ++qx) {
+        around = std::max(around, variance[window.index(qx, qy)]);
       }
-      const double samples = std::max(1U, sums_.samples[p]);
-      const double likely = std::max(variance[p], around * std::min(1.0, unsure_samples / samples));
-      const Scatter& like = of_class[class_of(sums_.samples[p])];
-      const double better = (like.pixels < few_pixels ? all : like).share();
-      const double error = likely * better * scale / samples;
-      if (error <= 0.0) continue;
-      const double cost = samples * costs_.camera + double(sums_.rays[p]) * costs_.camera_ray;
-      gains_.push_back({static_cast<std::uint32_t>(p), camera_kind, static_cast<float>(samples),
-                        static_cast<float>(cost), static_cast<float>(error / 2.0),
-                        static_cast<float>(error / 4.0), static_cast<float>(variance[p] / likely)});
     }
-  }
+    const double samples = std::max(1U, sums_.samples[p]);
+    const double likely = std::max(variance[p], around * std::min(1.0, unsure_samples / samples));
+    const Scatter& like = of_class[class_of(sums_.samples[p])];
+    const double better = (like.pixels < few_pixels ? all : like).share();
+    const double error = likely * better * scale / samples;
+    if (error <= 0.0) return;
+    const double cost = samples * costs_.camera + double(sums_.rays[p]) * costs_.camera_ray;
+    gains.push_back({static_cast<std::uint32_t>(p), camera_kind, static_cast<float>(samples),
+                     static_cast<float>(cost), static_cast<float>(error / 2.0),
+                     static_cast<float>(error / 4.0), static_cast<float>(variance[p] / likely)});
+  };
+  look_at(variance.size(), [&](std::size_t begin, std::size_t end, std::vector<Gain>& gains) {
+    for (std::size_t p = begin; p < end; ++p) gain_of(p, gains);
+  });
 }
 
-int SamplePlanner::factor(const Gain& gain, double per_cost) {
-  const double cost = double(gain.cost), first = double(gain.first), second = double(gain.second);
-  if (second >= 2.0 * cost * per_cost || first + second >= 3.0 * cost * per_cost) return 4;
-  return first >= cost * per_cost ? 2 : 1;
+void SamplePlanner::Gain::find_prices() {
+  price_of_two = first / cost;
+  price_of_four = std::max(second / (2.0F * cost), (first + second) / (3.0F * cost));
 }
 
 SamplePlanner::Outcome SamplePlanner::outcome(double per_cost) const {
-  Outcome outcome{now_, 0.0};
-  for (const Gain& gain : gains_) {
-    const int times = factor(gain, per_cost);
-    if (times == 1) continue;
-    outcome.squared_error -=
-        double(gain.found) * (double(gain.first) + (times == 4 ? double(gain.second) : 0.0));
-    outcome.cost += (times - 1) * double(gain.cost);
-  }
-  return outcome;
+  const auto price = static_cast<float>(per_cost);
+  const Outcome change = base::ordered_sum(
+      gains_.size(), items_at_once, Outcome(), [&](std::size_t begin, std::size_t end) {
+        Outcome sum;
+        for (std::size_t k = begin; k < end; ++k) {
+          const Gain& gain = gains_[k];
+          const int times = gain.factor(price);
+          if (times == 1) continue;
+          sum.squared_error -=
+              double(gain.found) * (double(gain.first) + (times == 4 ? double(gain.second) : 0.0));
+          sum.cost += (times - 1) * double(gain.cost);
+        }
+        return sum;
+      });
+  return {now_ + change.squared_error, change.cost};
 }
 
 SamplePlan SamplePlanner::plan(double wanted, double most_cost) const {
@@ -207,7 +232,7 @@ SamplePlan SamplePlanner::plan(double wanted, double most_cost) const {
   const double per_cost = std::exp(outcome(std::exp(low)).cost <= most_cost ? low : high);
   plan.squared_error = outcome(per_cost).squared_error;
   for (const Gain& gain : gains_) {
-    const int times = factor(gain, per_cost);
+    const int times = gain.factor(static_cast<float>(per_cost));
     if (times == 1) continue;
     const double cost = (times - 1) * double(gain.cost);
     plan.cost += cost;

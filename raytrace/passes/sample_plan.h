@@ -52,12 +52,25 @@ class SamplePlanner {
     float cost = 0.0F;                  // of as many again
     float first = 0.0F, second = 0.0F;  // squared error that twice, four times as many take off
     float found = 1.0F;  // of what they promise, as much as the point or pixel itself has shown
+    // Up to which price of a ray, in squared error, that many are cast.
+    float price_of_two = 0.0F, price_of_four = 0.0F;
+    void find_prices();
+    [[nodiscard]] int factor(float per_cost) const {
+      return per_cost <= price_of_four ? 4 : per_cost <= price_of_two ? 2 : 1;
+    }
   };
+  // Appends what look(begin, end, gains) finds of each part of [0, count), in order.
+  template <class Look>
+  void look_at(std::size_t count, const Look& look);
   void look_at_field(const StatedError& stated, double mean, double scale);
   void look_at_pixels(const StatedError& stated, double mean, double scale);
-  [[nodiscard]] static int factor(const Gain& gain, double per_cost);
   struct Outcome {
     double squared_error = 0.0, cost = 0.0;
+    Outcome& operator+=(const Outcome& other) {
+      squared_error += other.squared_error;
+      cost += other.cost;
+      return *this;
+    }
   };
   [[nodiscard]] Outcome outcome(double per_cost) const;
 

@@ -3,6 +3,8 @@
 
 #include <numeric>
 
+#include "base/parallel.h"
+
 namespace earthshine::raytrace {
 namespace {
 
@@ -43,7 +45,7 @@ class FieldOfPixel {
 StatedError state_error(const PixelSums& sums, const GatherField* field, const Window& window) {
   StatedError stated(window.pixel_count());
   const std::size_t layers = field != nullptr ? field->image_layers() : sums.image_layers;
-  for (int y = window.y; y < window.y + window.rows; ++y) {
+  const auto state_row = [&](int y) {
     for (int x = window.x; x < window.x + window.columns; ++x) {
       const std::size_t from = sums.window.index(x, y), to = window.index(x, y);
       const double n = sums.samples[from];
@@ -64,7 +66,13 @@ StatedError state_error(const PixelSums& sums, const GatherField* field, const W
       stated.luminance[to] = static_cast<float>(luminance / n);
       stated.counts[to] = sums.counts(from) ? 1 : 0;
     }
-  }
+  };
+  base::parallel_chunks(static_cast<std::size_t>(window.rows), 4,
+                        [&](std::size_t begin, std::size_t end) {
+                          for (std::size_t row = begin; row < end; ++row) {
+                            state_row(window.y + static_cast<int>(row));
+                          }
+                        });
   return stated;
 }
 

@@ -52,9 +52,7 @@ void PathWalker::follow(const IncomingLight& solution, scenes::Hit hit) {
     shine(surface, hit);
     if (!go_on(surface, &solution)) return;
     hit = world_.query.closest(ray_.origin, ray_.direction);
-    solution.add(hit, ray_.direction, share_, weight_, radiance_, rays_);
-    if (hit.missed()) return;
-    weight_ *= solution.kept_part(hit, ray_.direction, share_);
+    weight_ *= solution.add(hit, ray_.direction, share_, weight_, radiance_, rays_);
     if (!base::is_lit(weight_)) return;
     const double survival = std::clamp(base::max_component(weight_), least_survival, 1.0);
     if (rng_->next() >= survival) return;

@@ -171,9 +171,7 @@ void PixelShader::queue_gather(const Vec3& origin, const GatherRay& ray) {
 }
 
 // What the solution lacks where the ray ended, by a path that goes on from there.
-void PixelShader::add_lacking(const GatherRay& ray, const scenes::Hit& hit) {
-  const double kept = shared_.incoming.kept_part(hit, ray.direction, ray.share);
-  if (kept <= 0.0) return;
+void PixelShader::add_lacking(const GatherRay& ray, const scenes::Hit& hit, double kept) {
   base::Rng rng(
       base::Key(shared_.seed, base::Stream::Residual, pixel_).with(ray.sample).with(ray.number));
   walker_->take_turn(pixel_ + ray.sample + ray.number);
@@ -191,13 +189,14 @@ void PixelShader::flush_gather() {
     const GatherRay& ray = gather_rays_[k];
     std::fill(scratch_.begin(), scratch_.end(), Rgb(0.0));
     const scenes::Hit hit{hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0};
-    shared_.incoming.add(hit, ray.direction, ray.share, ray.weight, scratch_, rays_);
+    const double kept =
+        shared_.incoming.add(hit, ray.direction, ray.share, ray.weight, scratch_, rays_);
     // What came straight from the sky reached the surface directly.
     const Part part = ray.part == Part::Indirect && hit.missed() ? Part::Direct : ray.part;
     for (std::size_t layer = 0; layer < shared_.layers; ++layer) {
       add(layer, ray.sample, part, scratch_[layer]);
     }
-    if (walker_ && ray.lacking > 0.0 && !hit.missed()) add_lacking(ray, hit);
+    if (walker_ && ray.lacking > 0.0 && kept > 0.0) add_lacking(ray, hit, kept);
   }
   gather_count_ = 0;
 }
