@@ -149,9 +149,9 @@ class Passes {
       const SampleCosts each = sample_costs(field());
       const SamplePlanner planner(*sums_, field(), each);
       const double now = planner.squared_error(), error = std::sqrt(now);
-      if (options_.error > 0.0 && error <= options_.error) break;
+      if (options_.error > 0.0 && error <= (round > 1 ? sure_share : 1.0) * options_.error) break;
       // Step by step: what few samples say of more of them is rough.
-      const double aim = aimed_share * options_.error;
+      const double aim = aimed_share * sure_share * options_.error;
       const double step = now - (now - std::max(aim * aim, now / most_step)) / kept;
       const double so_far = spent(*sums_, field(), each);
       double most = affordable(so_far);

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/ranks/ranks.h"
 #include "radiosity/refine.h"
+#include "raytrace/passes/passes.h"
 #include "raytrace/paths/path_tracer.h"
 #include "studies/cost/cost_laws.h"
 
@@ -124,10 +125,11 @@ raytrace::RenderReport expect_steered(const PictureDrawer& drawer, const scenes:
   const Stopwatch watch;
   options.stop = [&watch] { return watch.cpu_seconds() > begun_cpu_s; };
   raytrace::Frame frame = timed(watch, drawer.begin(camera, options));
-  const double ratio = frame.report.relative_noise / options.error;
+  const double noise = frame.report.relative_noise;
+  const double ratio = noise > options.error ? noise / (raytrace::sure_share * options.error) : 1.0;
   const double power = frame.report.finished_share < 1.0 ? power_of_a_cut_look : 2.0;
   image = std::move(frame.image);
-  return scaled(frame.report, {1.0, std::pow(std::max(1.0, ratio), power), 0.0});
+  return scaled(frame.report, {1.0, std::pow(ratio, power), 0.0});
 }
 
 raytrace::RenderReport expect_picture(const PictureDrawer& drawer, const scenes::Camera& camera,

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where pictures of a wanted error end.
+#include <gtest/gtest.h>
+
+#include "raytrace/passes/passes.h"
+#include "raytrace/render.h"
+#include "tests/support/scene_builder.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+// What is left by samples that went where errors looked large is up to 1.06 times what they state:
+// the wanted error is reached where 0.94 of it is stated. What the first look states is more than
+// there is, so that all of it will do.
+TEST(WantedError, RoundsThatChoseWhereToSampleStateLessThanIsWanted) {
+  tests::SceneBuilder builder;
+  const std::uint32_t grey = builder.material(tests::grey(0.5));
+  const std::uint32_t bright = builder.material(tests::grey(0.5, 100.0));
+  builder.room({bright, grey, grey, grey, grey, grey});
+  builder.plate(grey, 0.3, 0.2, true);
+  const tests::Prepared prepared(builder.scene);
+  radiosity::SolveOptions solve;
+  solve.patch_edge_m = 0.25;
+  solve.form_factor_rays = 64;
+  const radiosity::Solution solution = prepared.solve(solve);
+  scenes::Camera camera;
+  camera.position = Vec3(0.95, 0.9, 0.6);
+  camera.look_at = Vec3(0.4, 0.45, 0.2);
+  camera.fov_deg = 60.0;
+  RenderOptions options;
+  options.columns = options.rows = 48;
+  options.shared.on = true;
+  const auto stated = [&](double wanted) {
+    options.error = wanted;
+    return render(prepared, solution, camera, options).report.relative_noise;
+  };
+  const double first_look = stated(1.0);
+  EXPECT_EQ(stated(1.01 * first_look), first_look);
+  for (const double wanted : {0.95, 0.85, 0.7, 0.5}) {
+    EXPECT_LE(stated(wanted * first_look), sure_share * wanted * first_look);
+  }
+}
+
+}  // namespace
+}  // namespace earthshine::raytrace
