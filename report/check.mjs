@@ -170,6 +170,9 @@ const checkFilter = async (page) => {
 const checkPage = async () => {
   const { page, context, complaints, seconds } = await open(page_file);
   check(seconds < 2, "the page opens within 2 s", seconds);
+  const undrawn = ".timeline:has(.charts):not(:has(svg[role=img]))";
+  const all = await page.waitForFunction((what) => !document.querySelector(what), undrawn, { timeout: 10000 }).catch(() => null);
+  check(all !== null, "each timeline is drawn without scrolling");
   await drawAll(page);
   const figures = await page.locator(".timeline:has(.charts)").count();
   const drawn = await page.locator(".timeline:has(.charts svg[role=img])").count();

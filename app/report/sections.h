@@ -31,7 +31,8 @@ struct ReportSection {
 [[nodiscard]] std::string setup_html(const StudyResults& study);
 [[nodiscard]] std::string provenance_html(const StudyResults& study);
 
-// "Scene, lamps all on": what a block's table is headed with, escaped.
+// "lamps: all on", with the scene's name before it where there are several scenes or no lamps: what
+// a block's table is headed with, escaped.
 [[nodiscard]] std::string block_title(const StudyResults& study, const Block& block);
 
 // "positions 20° to 160°, 200°" of a block's conditions, which are given by rising place in it;

@@ -152,10 +152,11 @@ std::vector<std::size_t> results_of(const StudyResults& study, const Block& bloc
 }
 
 std::string block_title(const StudyResults& study, const Block& block) {
+  const std::string lamps = block.lamps.empty() ? "" : "lamps: " + escaped(block.lamps);
+  if (study.scenes.size() == 1 && !lamps.empty()) return lamps;
   const std::string& name = study.scenes[block.scene].name;
-  std::string title = escaped(name.empty() ? study.scenes[block.scene].id : name);
-  if (!block.lamps.empty()) title += ", lamps: " + escaped(block.lamps);
-  return title;
+  const std::string title = escaped(name.empty() ? study.scenes[block.scene].id : name);
+  return lamps.empty() ? title : title + ", " + lamps;
 }
 
 std::string places_text(const StudyResults& study, const Block& block,

@@ -270,5 +270,16 @@ export const drawTimelines = (lines) => {
     figure.append(asTable(data, figure.querySelector("figcaption").textContent));
     watch.observe(figure);
   }
+  // The rest while nothing else is to do, so that whoever scrolls fast, or keeps the page as a
+  // picture, has them too. What is folded is drawn once it shows.
+  const idle = window.requestIdleCallback ?? ((work) => setTimeout(work, 50));
+  const waiting = figures.filter((figure) => figure.querySelector(".charts"));
+  const drawNext = () => {
+    const figure = waiting.shift();
+    if (!figure) return;
+    if (figure.offsetParent) drawOne(figure);
+    idle(drawNext);
+  };
+  idle(drawNext);
   return { drawAll: () => figures.forEach(drawOne) };
 };
