@@ -16,7 +16,7 @@ namespace {
 // The least and the most of a camera's conditions; none where they have none of their own.
 struct NoiseRange {
   double least = 0.0, most = 0.0;
-  std::size_t noisiest = 0;
+  std::size_t noisiest = 0, unknown = 0;  // unknown: conditions of more noise than light
 };
 std::optional<NoiseRange> noise_range(const CameraFindings& found) {
   std::optional<NoiseRange> range;
@@ -24,11 +24,20 @@ std::optional<NoiseRange> noise_range(const CameraFindings& found) {
     const auto& condition = found.conditions[k];  // all of its targets have that of its picture
     if (!condition || condition->empty() || !condition->front().picture_noise) continue;
     const double noise = *condition->front().picture_noise;
-    if (!range) range = {noise, noise, k};
-    if (noise > range->most) range = {range->least, noise, k};
+    if (!range) range = {noise, noise, k, 0};
+    if (noise > range->most) range->most = noise, range->noisiest = k;
     range->least = std::min(range->least, noise);
+    range->unknown += noise > 1.0 ? 1 : 0;
   }
   return range;
+}
+
+std::string noise_text(const NoiseRange& range, const std::string& noisiest) {
+  const std::string least = fmt::format("noise of {:.2g} to ", 100.0 * range.least);
+  const std::string where = " % of the mean in the conditions' pictures, most in " + noisiest;
+  if (range.unknown == 0) return least + fmt::format("{:.2g}", 100.0 * range.most) + where;
+  return least + "more than 100" + where +
+         fmt::format(" ({} conditions have so little light that it is not known)", range.unknown);
 }
 
 // conditions: of its scene.
@@ -50,14 +59,11 @@ CameraEntry camera_entry(const CameraFindings& found, std::size_t scene,
     entry.iris = degrade::word_of(cctv->chain.camera.iris);
   }
   const auto range = noise_range(found);
-  entry.error_text =
-      range ? fmt::format(
-                  "noise of {:.2g} to {:.2g} % of the mean in the conditions' pictures, most in "
-                  "{}; {:.2g} % in the picture of all lights together",
-                  100.0 * range->least, 100.0 * range->most, conditions[range->noisiest].name,
-                  100.0 * found.relative_noise)
-            : fmt::format("noise of {:.2g} % in the picture of all lights together",
-                          100.0 * found.relative_noise);
+  entry.error_text = range ? noise_text(*range, conditions[range->noisiest].name) +
+                                 fmt::format("; {:.2g} % in the picture of all lights together",
+                                             100.0 * found.relative_noise)
+                           : fmt::format("noise of {:.2g} % in the picture of all lights together",
+                                         100.0 * found.relative_noise);
   return entry;
 }
 

@@ -41,8 +41,7 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
         const RayOrigins origins = draw_origins(kind, p, 2 * round + half, each, counts);
         for (std::uint32_t k = 0; k < each; ++k) {
           base::Rng rng(key.with(k));
-          // Both halves together take all turns, at neighbouring points in another order.
-          walker.take_turn(random_number_of(p) + first + 2 * std::uint64_t{k} + half);
+          walker.take_turn(random_number_of(p), first / 2 + k, half);  // neighbours: another first
           const auto u = directions.point2(k);
           const RayStart& start = origins.start[k % origins.count];
           if (lobe) {

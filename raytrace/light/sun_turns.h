@@ -21,8 +21,11 @@ class SunTurns {
       : first_(first_layer), suns_(suns), count_(suns > most ? most : 1) {}
 
   [[nodiscard]] std::size_t count() const { return count_; }
-  // Samples with numbers that follow each other take all turns one after another.
-  [[nodiscard]] std::size_t turn_of(std::uint64_t sample) const { return sample % count_; }
+  // Of the k-th sample of a half. Each half takes all turns one after another, or the halves would
+  // not differ by chance alone; those of few samples together, as they begin with different ones.
+  [[nodiscard]] std::size_t turn_of(std::uint64_t first, std::uint64_t k, std::size_t half) const {
+    return (first + k + half * (most / 2)) % count_;
+  }
   // What the light of a layer counts in samples of that turn. Suns of one turn are spread over the
   // orbit, so that all turns are about equally bright.
   [[nodiscard]] double weight(std::size_t layer, std::size_t turn) const {

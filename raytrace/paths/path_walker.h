@@ -28,7 +28,9 @@ class PathWalker {
   explicit PathWalker(const PathWorld& world) : world_(world), radiance_(world.layers) {}
 
   // Which turn of Suns (light/sun_turns.h) the paths that follow carry.
-  void take_turn(std::uint64_t sample) { turn_of_suns_ = world_.lights.turns().turn_of(sample); }
+  void take_turn(std::uint64_t first, std::uint64_t k, std::size_t half) {
+    turn_of_suns_ = world_.lights.turns().turn_of(first, k, half);
+  }
 
   // Radiance that one path brings, cd/m^2 per layer; valid until the next call. All its random
   // numbers come from `rng`.

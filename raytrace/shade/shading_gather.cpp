@@ -174,7 +174,7 @@ void PixelShader::queue_gather(const Vec3& origin, const GatherRay& ray) {
 void PixelShader::add_lacking(const GatherRay& ray, const scenes::Hit& hit, double kept) {
   base::Rng rng(
       base::Key(shared_.seed, base::Stream::Residual, pixel_).with(ray.sample).with(ray.number));
-  walker_->take_turn(pixel_ + ray.sample + ray.number);
+  walker_->take_turn(pixel_ + ray.number, ray.sample / 2, ray.sample % 2);
   const auto lacking = walker_->residual(shared_.incoming, {Vec3(0.0), ray.direction}, hit, rng);
   for (std::size_t layer = 0; layer < shared_.layers; ++layer) {
     add(layer, ray.sample, ray.part, kept * ray.lacking * ray.weight * lacking[layer]);

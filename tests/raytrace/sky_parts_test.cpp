@@ -128,25 +128,33 @@ double mean_of(const Frame& frame, const std::string& channel) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-// Many Suns take turns at paths. What each of them gives has the mean that it
-// has in a picture of its own: over pictures of other seeds, within four standard errors of their
-// difference.
-void expect_same_means(bool shared) {
-  constexpr std::size_t count = 9;
-  constexpr std::uint64_t seeds = 12;
+constexpr std::size_t many_suns = 9;
+
+scenes::SkyParts nine_suns() {
   scenes::SkyParts all;
-  for (std::size_t k = 0; k < count; ++k) {
+  for (std::size_t k = 0; k < many_suns; ++k) {
     const double angle = base::radians(-60.0 + 15.0 * static_cast<double>(k));
     scenes::Sun sun;
     sun.direction = glm::normalize(Vec3(std::sin(angle), -0.4, std::cos(angle)));
     sun.illuminance_lx = Rgb(1000.0);
     all.suns.push_back(sun);
   }
-  const auto under = [](scenes::SkyParts parts) {
-    scenes::Scene scene = things();
-    scene.sky_parts = std::make_shared<const scenes::SkyParts>(std::move(parts));
-    return scene;
-  };
+  return all;
+}
+
+scenes::Scene under(scenes::SkyParts parts) {
+  scenes::Scene scene = things();
+  scene.sky_parts = std::make_shared<const scenes::SkyParts>(std::move(parts));
+  return scene;
+}
+
+// Many Suns take turns at paths. What each of them gives has the mean that it
+// has in a picture of its own: over pictures of other seeds, within four standard errors of their
+// difference.
+void expect_same_means(bool shared) {
+  constexpr std::size_t count = many_suns;
+  constexpr std::uint64_t seeds = 12;
+  const scenes::SkyParts all = nine_suns();
   std::array<std::vector<double>, count> taking_turns;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     const Frame together = drawn(under(all), true, shared, seed);
@@ -171,6 +179,66 @@ void expect_same_means(bool shared) {
     EXPECT_LT(std::abs(mean), 4.0 * error) << "sun " << k;
     EXPECT_LT(error, 0.02 * taking_turns[k].front()) << "sun " << k;
   }
+}
+
+// Both halves of a point's paths take all turns: what they differ by is chance, and what is stated
+// by it of one Sun is what pictures of other seeds differ by. Were a Sun in one half alone, its
+// light would count as noise. Squares averaged over pairs of seeds; nothing is shared, which would
+// take its part of the noise.
+TEST(SkyParts, NoiseStatedOfASunThatTakesTurnsIsWhatOtherSeedsDifferBy) {
+  constexpr std::uint64_t pairs = 12;
+  const scenes::Scene scene = under(nine_suns());
+  const tests::Prepared prepared(scene);
+  radiosity::SolveOptions solve;
+  solve.patch_edge_m = 0.5;
+  solve.form_factor_rays = 256;
+  radiosity::Solution solution = prepared.solve(solve);
+  // All that surfaces send on is left to paths.
+  for (auto* values : {&solution.radiosity, &solution.soft_radiosity}) {
+    for (float& value : *values) value = 0.0F;
+  }
+  RenderOptions options;
+  options.columns = options.rows = 24;
+  options.gather_rays = 16;  // and half as many paths, four in each half
+  options.shared.on = true;
+  options.shared.smooth_share = 0.0;
+  options.per_light = true;
+  constexpr std::size_t sun = 4;
+  const std::string channel = fmt::format("light_sun-{}.G", sun);
+  std::vector<double> weights;
+  for (const std::string& group : prepared.groups.names) {
+    weights.push_back(group == fmt::format("sun-{}", sun) ? 1.0 : 0.0);
+  }
+  std::vector<double> off;
+  double stated = 0.0;
+  for (std::uint64_t k = 0; k < pairs; ++k) {
+    options.seed = 2 * k + 1;
+    const Frame one = render(prepared, solution, looking_up(), options);
+    options.seed = 2 * k + 2;
+    const Frame other = render(prepared, solution, looking_up(), options);
+    const auto &a = one.image.find(channel)->values, &b = other.image.find(channel)->values;
+    double mean = 0.0, squares = 0.0, counted = 0.0;
+    for (std::size_t p = 0; p < a.size(); ++p) {
+      if (one.error.counts[p] == 0) continue;
+      mean += 0.5 * double(a[p] + b[p]), counted += 1.0;
+    }
+    mean /= counted;
+    for (std::size_t p = 0; p < a.size(); ++p) {
+      if (one.error.counts[p] == 0) continue;
+      const double weight = error_weight(0.5 * double(a[p] + b[p]), mean);
+      squares += 0.5 * std::pow(weight * double(a[p] - b[p]), 2);
+    }
+    const double expected =
+        0.5 * (std::pow(*one.layers.of(weights), 2) + std::pow(*other.layers.of(weights), 2));
+    off.push_back(squares / counted / (mean * mean) - expected);
+    stated += expected / double(pairs);
+  }
+  double sum = 0.0, squares = 0.0;
+  for (const double x : off) sum += x, squares += x * x;
+  const double mean = sum / double(pairs);
+  const double error = std::sqrt((squares / double(pairs) - mean * mean) / double(pairs - 1));
+  EXPECT_LT(std::abs(mean), 4.0 * error) << "stated " << stated;
+  EXPECT_LT(error, 0.15 * stated);
 }
 
 TEST(SkyParts, SunsThatTakeTurnsGiveWhatEachGivesAlone) { expect_same_means(true); }
