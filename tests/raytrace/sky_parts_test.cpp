@@ -194,7 +194,7 @@ TEST(SkyParts, NoiseStatedOfASunThatTakesTurnsIsWhatOtherSeedsDifferBy) {
   solve.form_factor_rays = 256;
   radiosity::Solution solution = prepared.solve(solve);
   // All that surfaces send on is left to paths.
-  for (auto* values : {&solution.radiosity, &solution.soft_radiosity}) {
+  for (auto* values : {&solution.radiosity, &solution.indirect_radiosity}) {
     for (float& value : *values) value = 0.0F;
   }
   RenderOptions options;
