@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -18,23 +17,23 @@ namespace earthshine::studies {
 namespace {
 
 constexpr int most_passes = 24;
-constexpr int coarse_rays = 64;
-constexpr double coarse_error = 0.2;  // that the first cut is meant for
 constexpr double aim = 0.85;          // of the wanted error
 constexpr double noise_share = 0.25;  // of the wanted squared error, left to the rays
-constexpr std::uint64_t many_rays = std::uint64_t{1} << 23;
-constexpr double most_times_more = 16.0;                   // the rays cast so far
-constexpr double most_growth = 4.0;                        // of the rays of a pass
-constexpr double cut_share = 0.6;                          // to what is uneven within patches
+constexpr std::uint64_t many_rays = std::uint64_t{1} << 25;
+constexpr double most_times_more = 16.0;  // the rays cast so far
+constexpr double most_growth = 4.0;       // of the rays of a pass
+constexpr double cut_share = 0.6;         // to what is uneven within patches
+// A round cuts the patches that hold this share of what is uneven: where shadow rays tell it
+// exactly, and where rays do, by which the largest are the largest by chance too.
+constexpr double shadow_cuts = 0.5, gather_cuts = 0.8;
 constexpr double shadow_share = 0.25, last_share = 0.5;    // of a time limit: no cut, no pass then
 constexpr std::size_t largest_cut = std::size_t{1} << 17;  // patches
+constexpr std::size_t largest_shadow_cut = 3 * (largest_cut / 4);  // leaves some to other light
 constexpr std::uint32_t fewest_points = 8192;
+// Over all surfaces; twice as many in each pass that cuts by them.
+constexpr double first_shadow_points = 1 << 17, most_shadow_points = 1 << 20;
 
 double squared(double x) { return x * x; }
-
-bool may_cut_cells(const scenes::Quality& given) {
-  return !given.patch_edge_m && given.refine.value_or(true);
-}
 
 class SurfaceSearch {
  public:
@@ -55,7 +54,8 @@ class SurfaceSearch {
     if (!light_) return std::move(result_);
     mean_ = light_->told_mean();
     if (mean_ > 0.0) {
-      if (may_cut()) cut_shadows();
+      std::vector<std::uint32_t> parent(light_->patches().count());
+      if (may_cut()) cut_shadows(parent);
       improve();
       if (may_cast() && is_exact()) return with_exact_form_factors();
     }
@@ -76,14 +76,16 @@ class SurfaceSearch {
     rays_ += samples.rays;
     return samples;
   }
-  [[nodiscard]] std::vector<radiosity::Cut> worst(const CutChoice& choice, double enough) {
-    const std::size_t most = most_patches();  // as all ranks have memory for
+  [[nodiscard]] std::vector<radiosity::Cut> worst(const CutChoice& choice, double enough,
+                                                  double most_of, std::size_t limit) {
+    const std::size_t most =
+        std::min(most_patches(), std::max(first_patches_, limit));  // as all ranks have memory for
     std::vector<radiosity::Cut> cuts;
-    if (joins()) cuts = choice.worst(light_->patches(), enough, most);
+    if (joins()) cuts = choice.worst(light_->patches(), enough, most_of, most);
     light_->shares().tell_all([&](base::Parcel& parcel) { parcel.pass(cuts); });
     return cuts;
   }
-  [[nodiscard]] bool may_cut() const { return may_cut_cells(given_); }
+  [[nodiscard]] bool may_cut() const { return cuts_surfaces(given_); }
   [[nodiscard]] bool may_cast() const { return !given_.form_factor_rays; }
   // What reflects was lit by shadow rays alone, and evenly.
   [[nodiscard]] bool is_exact() const {
@@ -121,32 +123,35 @@ class SurfaceSearch {
     light_.emplace(scene_, std::move(coarse), std::move(factors), result_.solver.form_factor_rays);
   }
 
-  // By shadow rays alone: the edges of shadows and the surroundings of lamps.
-  void cut_shadows() {
+  // By shadow rays alone: the edges of shadows and the surroundings of lamps, by twice as many
+  // points the next time, none where nothing is left to cut. parent: of each patch, kept up.
+  // Whether anything was cut.
+  bool cut_shadows(std::vector<std::uint32_t>& parent) {
+    const std::size_t before = light_->patches().count();
     std::vector<std::uint32_t> which(light_->patches().count());
     std::iota(which.begin(), which.end(), 0U);
     CutChoice choice(light_->patches());
     const double enough = cut_share * squared(aim * wanted_.error * mean_);
     for (int round = 0; round < most_passes && !which.empty() && time_gone() <= shadow_share;
          ++round) {
-      std::vector<Effort> effort;
-      for (const std::uint32_t i : which) {
-        const double area = light_->patches().area_m2[i];
-        const double points = 4.0 + fewest_points * area / choice.area_m2();
-        effort.push_back({static_cast<std::uint16_t>(
-                              std::bit_floor(static_cast<std::uint32_t>(std::min(points, 1024.0)))),
-                          0});
-      }
+      const std::vector<Effort> effort = shadow_effort(light_->patches(), which, shadow_points_);
       const SurfaceSamples samples =
           sample(which, effort, fmt::format("shadows, {} patches", light_->patches().count()),
                  SamplesOf::Light);
       light_->correct(samples, which, effort);
       if (joins()) choice.see(light_->patches(), samples, which);
-      const std::vector<radiosity::Cut> cuts = worst(choice, enough);
+      const std::vector<radiosity::Cut> cuts =
+          worst(choice, enough, shadow_cuts, largest_shadow_cut);
       if (cuts.empty()) break;
-      const std::vector<std::uint32_t> parent = light_->cut(cuts);
-      which = choice.follow(light_->patches(), parent);
+      const std::vector<std::uint32_t> of = light_->cut(cuts);
+      which = choice.follow(light_->patches(), of);
+      std::vector<std::uint32_t> next;
+      for (const std::uint32_t i : of) next.push_back(parent[i]);
+      parent = std::move(next);
     }
+    const bool cut = light_->patches().count() > before;
+    shadow_points_ = cut ? std::min(2.0 * shadow_points_, most_shadow_points) : 0.0;
+    return cut;
   }
 
   void improve() {
@@ -184,13 +189,18 @@ class SurfaceSearch {
       if (may_cut() && found.patches > 0.8 * cut_share * squared(aim * wanted_.error)) {
         CutChoice choice(light_->patches());
         if (joins()) choice.see(light_->patches(), samples, all, noise.rays);
-        const auto wanted = worst(choice, cut_share * enough);
+        const auto wanted = worst(choice, cut_share * enough, gather_cuts, largest_cut);
         if (!wanted.empty()) {
           parent = light_->cut(wanted);
           cuts = light_->patches().count() > patches;
         }
+        if (parent.empty()) parent = all;
+        if (shadow_points_ > 0.0 && light_->patches().count() < largest_shadow_cut &&
+            cut_shadows(parent)) {
+          cuts = true;
+        }
       }
-      if (parent.empty()) parent = all;
+      if (parent.empty()) parent = std::move(all);
       if (!cuts && pass > 4 && error > 0.97 * before) {
         return stop(full_ ? Limit::Memory : Limit::Steps);
       }
@@ -202,7 +212,7 @@ class SurfaceSearch {
 
   // Rays go with the inverse of the squared error: what is left would take many times what is done.
   [[nodiscard]] bool is_hopeless(double error) const {
-    return wanted_.seconds <= 0.0 && rays_ > many_rays &&
+    return wanted_.seconds <= 0.0 && rays_ > many_rays && result_.steps.size() > 1 &&
            squared(error / wanted_.error) > most_times_more;
   }
 
@@ -267,25 +277,13 @@ class SurfaceSearch {
   double mean_ = 0.0, solver_error_ = 0.0;
   std::uint32_t pass_ = 0;
   std::uint64_t rays_ = 0;
+  double shadow_points_ = first_shadow_points;
   double points_wanted_ = fewest_points, last_rays_ = 0.0, last_took_ = 0.0;
   std::size_t first_patches_ = 0;
   bool full_ = false;
 };
 
 }  // namespace
-
-radiosity::SolveOptions first_surface_options(const scenes::Scene& scene, double error,
-                                              std::uint64_t seed) {
-  scenes::Quality quality = scene.quality;
-  const bool cuts = may_cut_cells(quality);
-  quality.error = cuts ? std::max(coarse_error, error) : error;
-  radiosity::SolveOptions options =
-      radiosity::solve_options(scenes::resolve_quality(scene, quality), seed);
-  if (cuts) options.patch_edge_m = options.refine.start_edge_m;
-  if (!quality.form_factor_rays) options.form_factor_rays = coarse_rays;
-  options.refine.on = false;
-  return options;
-}
 
 SteeredSolution reach_surfaces(const scenes::World& scene, const Wanted& wanted, std::uint64_t seed,
                                const SolveListener& listen, const StageListener& progress) {

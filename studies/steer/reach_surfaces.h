@@ -6,6 +6,9 @@
 
 namespace earthshine::studies {
 
+// Whether the scene leaves the cut to it.
+[[nodiscard]] bool cuts_surfaces(const scenes::Quality& given);
+
 // What it begins with: a coarse cut with few rays, unless the scene names the cut or the rays.
 [[nodiscard]] radiosity::SolveOptions first_surface_options(const scenes::Scene& scene,
                                                             double error, std::uint64_t seed);

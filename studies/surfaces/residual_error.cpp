@@ -117,6 +117,19 @@ std::vector<Effort> even_effort(const radiosity::Patches& patches, double points
   return effort;
 }
 
+std::vector<Effort> shadow_effort(const radiosity::Patches& patches,
+                                  std::span<const std::uint32_t> which, double points) {
+  constexpr double most = 4096.0;
+  const double all = std::accumulate(patches.area_m2.begin(), patches.area_m2.end(), 0.0);
+  std::vector<Effort> effort;
+  for (const std::uint32_t i : which) {
+    const double wanted = std::min(4.0 + points * patches.area_m2[i] / all, most);
+    effort.push_back(
+        {static_cast<std::uint16_t>(std::bit_floor(static_cast<std::uint32_t>(wanted))), 0});
+  }
+  return effort;
+}
+
 std::vector<Effort> effort_for(const LightOnSurfaces& light, const std::vector<double>& variance,
                                const std::vector<std::uint32_t>& parent, double target, double most,
                                double points) {
@@ -185,12 +198,13 @@ void ResidualSums::set(std::size_t point, std::size_t half, const Rgb& lamps, co
   p.rgb[half] = by_lamps + p.rho * (gathered - p.gathered);
   p.by_lamps[half] = base::luminance(by_lamps);
   p.all[half] = base::luminance(p.rgb[half]);
+  p.gathered_lx[half] = base::luminance(gathered);
 }
 
 void ResidualSums::finish(double mean, PatchResidual& residual) {
   MeanSquare all, lamps, products;
   double apart = 0.0, lamps_apart = 0.0;  // sums of the variance of the two halves' mean
-  std::array<double, 2> s_step{}, t_step{}, half_count{};
+  std::array<double, 2> s_step{}, t_step{}, half_count{}, gathered{};
   for (Point& p : points_) {
     if (!p.placed) continue;
     const double weight = raytrace::error_weight(p.radiosity + 0.5 * (p.all[0] + p.all[1]), mean);
@@ -201,6 +215,7 @@ void ResidualSums::finish(double mean, PatchResidual& residual) {
     apart += 0.25 * (p.all[0] - p.all[1]) * (p.all[0] - p.all[1]);
     lamps_apart += 0.25 * (p.by_lamps[0] - p.by_lamps[1]) * (p.by_lamps[0] - p.by_lamps[1]);
     for (std::size_t half = 0; half < 2; ++half) {
+      gathered[half] += p.gathered_lx[half];
       s_step[half] += p.x < 0.5 ? -p.all[half] : p.all[half];
       t_step[half] += p.y < 0.5 ? -p.all[half] : p.all[half];
     }
@@ -214,6 +229,7 @@ void ResidualSums::finish(double mean, PatchResidual& residual) {
   const double n2 = all.count * all.count;
   residual.mean_variance = kept(apart / n2);
   residual.lamps_mean_variance = kept(lamps_apart / n2);
+  for (std::size_t h = 0; h < 2; ++h) residual.gathered[h] = kept(gathered[h] / all.count);
   residual.along_s = kept(std::max(0.0, s_step[0] * s_step[1] / n2));
   residual.along_t = kept(std::max(0.0, t_step[0] * t_step[1] / n2));
   // Every other of the points that are there.

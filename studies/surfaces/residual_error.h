@@ -31,6 +31,11 @@ struct LightNoise {
 // So many points over all patches by area, two on each at least.
 [[nodiscard]] std::vector<Effort> even_effort(const radiosity::Patches& patches, double points);
 
+// Shadow rays alone: four points on each of these patches, and `points` more over all surfaces.
+[[nodiscard]] std::vector<Effort> shadow_effort(const radiosity::Patches& patches,
+                                                std::span<const std::uint32_t> which,
+                                                double points);
+
 // Rays in proportion to the root of area times variance, so that the noise that is left in all is
 // `target`; `most` of them, and at least so many points that the error can be stated. variance: of
 // the patches before a cut, of which `parent` tells.
@@ -77,6 +82,7 @@ class ResidualSums {
     double x = 0.0, y = 0.0, radiosity = 0.0;
     Rgb rho{0.0}, lamps{0.0}, gathered{0.0};
     std::array<double, 2> all{}, by_lamps{};  // weighted luminance of r, by half
+    std::array<double, 2> gathered_lx{};      // luminance
     std::array<Rgb, 2> rgb{};                 // r
   };
   std::vector<Point> points_;

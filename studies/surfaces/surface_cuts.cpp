@@ -13,7 +13,7 @@ using radiosity::Cut;
 constexpr double thinnest = 4.0;  // a cell longer than this times its width is halved across
 constexpr double undirected_share = 0.1;
 constexpr double kept_by_halves = 0.5;  // of a patch's part: an edge of shadow crosses one of two
-constexpr double clear = 1.0;           // standard errors, above which it is no noise
+constexpr double clear = 0.9;           // standard errors, above which it is no noise
 
 std::uint32_t other_side(const radiosity::Patches& patches, std::uint32_t patch) {
   const radiosity::Facet& facet = patches.facets[patches.facet[patch]];
@@ -49,7 +49,7 @@ double CutChoice::total() const {
   return sum;
 }
 
-std::vector<Cut> CutChoice::worst(const radiosity::Patches& patches, double enough,
+std::vector<Cut> CutChoice::worst(const radiosity::Patches& patches, double enough, double most_of,
                                   std::size_t most) const {
   struct Choice {
     std::uint32_t patch;
@@ -89,8 +89,9 @@ std::vector<Cut> CutChoice::worst(const radiosity::Patches& patches, double enou
   std::vector<Cut> wanted(patches.count(), Cut::None);
   std::size_t count = patches.count();
   bool any = false;
+  const double all = left, last = all * (1.0 - (1.0 - kept_by_halves) * most_of);
   for (const Choice& choice : choices) {
-    if (left <= enough || count + 2 > most) break;
+    if (left <= std::max(enough, last) || count + 2 > most) break;
     wanted[choice.patch] = choice.cut;
     any = true;
     count += other_side(patches, choice.patch) != radiosity::no_patch ? 2 : 1;

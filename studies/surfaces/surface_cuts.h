@@ -16,10 +16,11 @@ class CutChoice {
   void see(const radiosity::Patches& patches, const SurfaceSamples& samples,
            std::span<const std::uint32_t> which, std::span<const double> noise = {});
   // The worst patches, as many as leave `enough` of the mean square over all area if halves hold
-  // half of it, and no more patches than `most`. Empty: there is nothing left to cut that is not
-  // noise, or no need.
+  // half of it, at most those that hold the share `most_of` of it (Doerfler 1996: where all are cut
+  // in every round, most cuts are of patches that hold little), and no more patches than `most`.
+  // Empty: there is nothing left to cut that is not noise, or no need.
   [[nodiscard]] std::vector<radiosity::Cut> worst(const radiosity::Patches& patches, double enough,
-                                                  std::size_t most) const;
+                                                  double most_of, std::size_t most) const;
   // After the cut: the patches that are new, which have nothing to say yet.
   std::vector<std::uint32_t> follow(const radiosity::Patches& patches,
                                     const std::vector<std::uint32_t>& parent);

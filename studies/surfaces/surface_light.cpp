@@ -8,6 +8,7 @@
 #include "base/free_memory.h"
 #include "radiosity/linear_solve.h"
 #include "scenes/reflect/energy.h"
+#include "studies/surfaces/shared_samples.h"
 
 namespace earthshine::studies {
 namespace {
@@ -157,7 +158,6 @@ std::vector<double> LightOnSurfaces::means_of(const std::vector<double>& residua
 void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std::uint32_t> which,
                               std::span<const Effort> effort) {
   const std::size_t columns = light_.columns();
-  const std::size_t parts = light_.count() > 0 ? light_.sky.size() / light_.count() : 0;
   const bool gathers =
       std::any_of(effort.begin(), effort.end(), [](const Effort& e) { return e.rays > 0; });
   const bool joins = factors_.shares.joins();
@@ -175,6 +175,9 @@ void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std
     }
     more = brought(std::move(residual), columns);
   }
+  if (joins && gathers)
+    take_gathered(samples, SharedSamples(light_, reflectances_, samples, which, effort, coarse_),
+                  which, more);
   for (std::size_t n = 0; joins && n < which.size(); ++n) {
     const std::uint32_t i = which[n];
     const PatchResidual& seen = samples.residual[i];
@@ -185,29 +188,50 @@ void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std
       if (!open_share_.empty()) open_share_[i] = 0.0;
       continue;
     }
-    const double points = seen.taken, rays = 2.0 * seen.taken * effort[n].rays;
-    const double by_lamps = points / (lamp_points_[i] + points);
-    const double by_rays = rays > 0.0 ? rays / (gather_rays_[i] + rays) : 0.0;
-    for (std::size_t k = 0; k < columns; ++k) {
-      const std::size_t at = i * columns + k;
-      light_.lamps[at] = mixed(light_.lamps[at], samples.lamps[at], by_lamps);
-      if (rays <= 0.0) continue;
-      light_.gathered[at] = mixed(light_.gathered[at],
-                                  samples.gathered[at] + more[coarse_[i] * columns + k], by_rays);
+    const double points = seen.taken, by_lamps = points / (lamp_points_[i] + points);
+    for (std::size_t k = i * columns; k < (i + 1) * columns; ++k) {
+      light_.lamps[k] = mixed(light_.lamps[k], samples.lamps[k], by_lamps);
     }
-    for (std::size_t s = i * parts; rays > 0.0 && s < (i + 1) * parts; ++s) {
-      light_.sky[s] += by_rays * (samples.sky[s] - light_.sky[s]);
-    }
-    escape_[i] += by_rays * (samples.escaped[i] - escape_[i]);
-    lost_[i] += by_rays * (samples.lost[i] - lost_[i]);
     lamp_points_[i] += points;
-    gather_rays_[i] += rays;
     if (!open_share_.empty()) open_share_[i] = double(seen.taken) / seen.tried;
   }
   if (joins) sum_up();
   for (std::vector<float>* const values :
        {&light_.lamps, &light_.gathered, &light_.solution.radiosity}) {
     factors_.shares.tell_all(values->data(), values->size());
+  }
+}
+
+// more: that bounces bring, per coarse patch and column.
+void LightOnSurfaces::take_gathered(const SurfaceSamples& samples, const SharedSamples& sharing,
+                                    std::span<const std::uint32_t> which,
+                                    const std::vector<double>& more) {
+  const std::size_t columns = light_.columns();
+  const std::size_t parts = light_.count() > 0 ? light_.sky.size() / light_.count() : 0;
+  const std::vector<double> gathered = sharing.share(columns, [&](std::uint32_t i, std::size_t k) {
+    const std::size_t at = i * columns + k;
+    return samples.gathered[at] + more[coarse_[i] * columns + k] - double(light_.gathered[at]);
+  });
+  const std::vector<double> sky = sharing.share(3 * parts, [&](std::uint32_t i, std::size_t k) {
+    const std::size_t at = i * parts + k / 3;
+    return samples.sky[at][static_cast<int>(k % 3)] - light_.sky[at][static_cast<int>(k % 3)];
+  });
+  const std::vector<double> ends = sharing.share(2, [&](std::uint32_t i, std::size_t k) {
+    return k == 0 ? samples.escaped[i] - escape_[i] : samples.lost[i] - lost_[i];
+  });
+  for (const std::uint32_t i : which) {
+    const double rays = sharing.rays(i);
+    if (rays <= 0.0) continue;
+    const double by_rays = rays / (gather_rays_[i] + rays);
+    for (std::size_t k = i * columns; k < (i + 1) * columns; ++k) {
+      light_.gathered[k] = static_cast<float>(double(light_.gathered[k]) + by_rays * gathered[k]);
+    }
+    for (std::size_t k = 3 * i * parts; k < 3 * (i + 1) * parts; ++k) {
+      light_.sky[k / 3][static_cast<int>(k % 3)] += by_rays * sky[k];
+    }
+    escape_[i] += by_rays * ends[2 * i];
+    lost_[i] += by_rays * ends[2 * i + 1];
+    gather_rays_[i] += rays;
   }
 }
 

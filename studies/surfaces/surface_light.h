@@ -13,6 +13,8 @@
 
 namespace earthshine::studies {
 
+class SharedSamples;
+
 // Of ranks that divide the factors each has the patches and their light, which samples read, and
 // the first alone the rest: all of them must call what needs the matrix or changes the light, with
 // what the first one gives.
@@ -42,7 +44,8 @@ class LightOnSurfaces {
   // The coarse patch that a patch is of; the first rank's.
   [[nodiscard]] std::uint32_t coarse(std::uint32_t patch) const { return coarse_[patch]; }
 
-  // Takes in samples, each patch by the share of its samples in all that it has seen.
+  // Takes in samples, each patch by the share of its samples in all that it has seen; what cosine
+  // rays find is shared between the patches of a coarse one (shared_samples.h).
   void correct(const SurfaceSamples& samples, std::span<const std::uint32_t> which,
                std::span<const Effort> effort);
   // Halves take what is interpolated at their middle; they have the samples of their parent for
@@ -53,6 +56,8 @@ class LightOnSurfaces {
 
  private:
   void sum_up();
+  void take_gathered(const SurfaceSamples& samples, const SharedSamples& sharing,
+                     std::span<const std::uint32_t> which, const std::vector<double>& more);
   void keep_what_samples_read();
   void fill(radiosity::Solution& solution) const;
   [[nodiscard]] std::vector<double> means_of(const std::vector<double>& residual,

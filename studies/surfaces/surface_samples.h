@@ -49,6 +49,7 @@ struct PatchResidual {
   float along_s = 0.0F, along_t = 0.0F;  // of r^2, what halving the patch takes away
   // Means of r, not weighted, of every other point.
   std::array<glm::vec3, 2> half{glm::vec3(0.0F), glm::vec3(0.0F)};
+  std::array<float, 2> gathered{};  // luminance, lx: what either half of the rays brings
 };
 
 struct SurfaceSamples {

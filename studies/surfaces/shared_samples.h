@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// What cosine rays find at the patches of one coarse patch, shared between them: what they find in
+// common is known by the rays of all, and of what each finds besides the share s / (s + q) is kept
+// (Wiener), s the mean square of what differs, q that of its noise. Two halves of the rays tell
+// both: the mean of their product has no noise.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "studies/surfaces/surface_samples.h"
+
+namespace earthshine::studies {
+
+class SharedSamples {
+ public:
+  // coarse: the coarse patch of every patch. Of `which` those count that reflect: others were not
+  // sampled.
+  SharedSamples(const SurfaceLight& light, const radiosity::PatchAlbedos& reflectances,
+                const SurfaceSamples& samples, std::span<const std::uint32_t> which,
+                std::span<const Effort> effort, std::span<const std::uint32_t> coarse);
+
+  // So many rays of its own would tell as much of the patch.
+  [[nodiscard]] double rays(std::uint32_t patch) const;
+  // change(patch, value): of each of `width` values, what the samples would change at the patch.
+  // Returns per patch and value what is changed after sharing; 0 where nothing was sampled.
+  [[nodiscard]] std::vector<double> share(
+      std::size_t width,
+      const std::function<double(std::uint32_t patch, std::size_t value)>& change) const;
+
+ private:
+  std::span<const std::uint32_t> which_, coarse_;
+  std::vector<double> own_;   // per patch: its rays
+  std::vector<double> all_;   // per coarse patch: the rays of all of its patches
+  std::vector<double> kept_;  // per patch
+};
+
+}  // namespace earthshine::studies
