@@ -13,7 +13,8 @@ using radiosity::Cut;
 constexpr double thinnest = 4.0;  // a cell longer than this times its width is halved across
 constexpr double undirected_share = 0.1;
 constexpr double kept_by_halves = 0.5;  // of a patch's part: an edge of shadow crosses one of two
-constexpr double clear = 0.9;           // standard errors, above which it is no noise
+// Standard errors, above which it is no noise. Where one of n points alone is lit, the mean is one.
+constexpr double clear = 0.9;
 
 std::uint32_t other_side(const radiosity::Patches& patches, std::uint32_t patch) {
   const radiosity::Facet& facet = patches.facets[patches.facet[patch]];

@@ -24,7 +24,6 @@ class CutChoice {
   // After the cut: the patches that are new, which have nothing to say yet.
   std::vector<std::uint32_t> follow(const radiosity::Patches& patches,
                                     const std::vector<std::uint32_t>& parent);
-  [[nodiscard]] double area_m2() const { return area_m2_; }
   // Of the mean square over all area.
   [[nodiscard]] double total() const;
 
