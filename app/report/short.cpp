@@ -72,7 +72,8 @@ std::string short_row(const StudyResults& study, const std::string& title, std::
                           escaped(study.cameras[tallies[k].camera].name), tallies[k].seen);
   }
   return fmt::format(
-      "<tr><th scope=row>{}<td class=t>{}<td class=t>{}<td class=whole>{} of {}<td class=t>{}<td class=t>{}\n",
+      "<tr><th scope=row>{}<td class=t>{}<td class=t>{}<td class=whole>{} of {}<td class=t>{}<td "
+      "class=t>{}\n",
       escaped(study.targets[target]), title,
       best.seen > 0 ? escaped(study.cameras[best.camera].name) : std::string("none"), best.seen,
       best.all, others.empty() ? dash : others, hindrances_text(best));

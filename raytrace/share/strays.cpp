@@ -9,7 +9,8 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Signal over noise of strays that no point of the grid may stand for: all of their own is kept.
+// Signal over noise of strays that no point of the grid may stand for, of whose own all is kept;
+// and noise over signal of those without samples, which have nothing of their own to keep.
 constexpr float alone = 1e6F;
 
 float luminance_at(const std::vector<glm::vec3>& radiance, std::size_t point, std::size_t layers,
@@ -22,6 +23,7 @@ float luminance_at(const std::vector<glm::vec3>& radiance, std::size_t point, st
 // Sums over the strays of a region.
 struct Region {
   double energy = 0.0, noise = 0.0, count = 0.0;
+  double of_sample = 0.0;  // noise of one sample
 };
 
 }  // namespace
@@ -54,6 +56,7 @@ void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared&
     Region& region = regions[strays[k].region];
     region.energy += double(more * more);
     region.noise += double(noise[k]);
+    region.of_sample += double(noise[k]) * double(estimate.samples[grid + k]);
     region.count += 1.0;
   }
   for (std::size_t k = 0; k < strays.size(); ++k) {
@@ -64,8 +67,9 @@ void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared&
     if (has_base) {
       const Region& region = regions[strays[k].region];
       const double count = std::max(1.0, region.count);
-      const auto q = static_cast<float>(region.noise / count);
-      const float s = static_cast<float>(region.energy / count) - q;
+      const auto s = static_cast<float>((region.energy - region.noise) / count);
+      const auto of_sample = static_cast<float>(region.of_sample / count);
+      const float q = sampled ? of_sample / estimate.samples[point] : alone * std::max(0.0F, s);
       shared.signal[point][0] = s;
       shared.noise[point][0] = q;
       shared.few[point][0] = static_cast<float>(1.0 / count);
@@ -102,20 +106,25 @@ void share_among_peers(const Peers& peers, const Estimate& estimate, Shared& sha
   }
   base::parallel_chunks(strays, 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      float count = 0.0F, mean = 0.0F, q = 0.0F, energy = 0.0F;
-      each(k, [&](std::size_t peer) { count += 1.0F, mean += luminance[peer], q += noise[peer]; });
+      float count = 0.0F, mean = 0.0F, all = 0.0F, of_sample = 0.0F, energy = 0.0F;
+      each(k, [&](std::size_t peer) {
+        count += 1.0F, mean += luminance[peer], all += noise[peer];
+        of_sample += noise[peer] * estimate.samples[grid + peer];
+      });
       if (count < 2.0F) continue;
-      mean /= count, q /= count;
+      mean /= count, all /= count, of_sample /= count;
       each(k, [&](std::size_t peer) {
         energy += (luminance[peer] - mean) * (luminance[peer] - mean) / (count - 1.0F);
       });
       const std::size_t point = grid + k;
-      shared.signal[point][0] = energy - q;
+      const float samples = estimate.samples[point], s = energy - all;
+      const float q = samples > 0.0F ? of_sample / samples : alone * std::max(0.0F, s);
+      shared.signal[point][0] = s;
       shared.noise[point][0] = q;
       shared.few[point][0] = 1.0F / count;
-      shared.rest[point] = q / count;
+      shared.rest[point] = all / count;
       shared.squared_error[point] = static_cast<float>(shared.squared_error_with(point, 1.0));
-      keep[k] = estimate.samples[point] > 0.0F ? kept_share(energy - q, q) : 0.0F;
+      keep[k] = samples > 0.0F ? kept_share(s, q) : 0.0F;
     }
   });
   // A layer after the other: of all of them there may be as much as of the whole picture.

@@ -3,8 +3,8 @@
 // its centre. What nearby points of the grid say of the same surface is told apart from what is the
 // case there by the stray's own samples, as far as these know better (Wiener, as in share.h):
 //   value = shared + c (own - shared),  c = s / (s + q)
-// s: mean square of the true difference, q: noise of the stray's own samples, both means over the
-// strays of a part of the picture.
+// s: mean square of the true difference, a mean over the strays of a part of the picture; q: noise
+// of as many samples as the stray has, each of which has the mean noise of a sample there.
 #pragma once
 
 #include <bit>

@@ -3,7 +3,8 @@
 
     to_error.py PROGRAM [--scene NAME]... [--camera C]... [--size 256x256] [--errors 0.05,0.02] [--paths 512] [--cache DIR]
 
-Truth: two path-traced pictures of independent noise, of all light paths (error_truth.py); they are kept in DIR. Their
+Truth: two path-traced pictures of independent noise, of all light paths (error_truth.py), where a pixel's centre shows a
+surface: that is what pictures state their error of, and mean luminances are over it. They are kept in DIR. Their
 difference tells the path tracer's own noise, by the same weights, and with it what it needs for the same error:
 its seconds times (its noise / the error)^2. Its seconds are those of a picture of a sixteenth of the paths, drawn in
 the same run as what it is compared with: references may come from another day or machine.
@@ -41,6 +42,15 @@ def trace_paths(call, scene, camera, paths, seed, picture):
                "--indirect", "paths", "--set", f"quality.gather_rays={paths}", "--seed", seed, "-q", "-o", picture)[1]
 
 
+def shows_surface(call, scene, camera):
+    """Of every pixel: 1 if its centre shows a surface, 0 if it shows the sky."""
+    picture = call.cache / f"{scene}-{camera}-{call.size}-objects.exr"
+    if not picture.exists():
+        run(call.program, "render", TOP / "scenes/library/sts46" / f"{scene}.toml", "--camera", camera, "--size", call.size,
+            "--indirect", "none", "--no-error", "--aov", "object", "-q", "-o", picture)
+    return [float(thing >= 0) for thing in error_truth.picture(picture, "object")[1]]
+
+
 def references(call, scene, camera):
     """Two luminances."""
     found = []
@@ -54,24 +64,26 @@ def references(call, scene, camera):
     return found
 
 
-def noise(first, second):
+def noise(first, second, counts):
     """Of one of the two, relative to their mean, with the weights of compare()."""
-    mean = sum(map(sum, zip(first, second))) / (2 * len(first))
-    square = sum((error_truth.weight((a + b) / 2, mean) * (a - b))**2 for a, b in zip(first, second)) / (2 * len(first))
+    pairs = [(a, b) for a, b, c in zip(first, second, counts) if c]
+    mean = sum(map(sum, pairs)) / (2 * len(pairs))
+    square = sum((error_truth.weight((a + b) / 2, mean) * (a - b))**2 for a, b in pairs) / (2 * len(pairs))
     return math.sqrt(square) / mean
 
 
 def rows(call, scene, camera):
     first, second = references(call, scene, camera)
-    of_paths = noise(first, second)
+    counts = shows_surface(call, scene, camera)
+    of_paths = noise(first, second, counts)
     timed = max(1, call.paths // TIMED)
     path_seconds = trace_paths(call, scene, camera, timed, SEEDS[0], call.cache / "timed.exr") * call.paths / timed
     for asked in call.errors:
         picture = call.cache / "picture.exr"
         out, seconds = run(call.program, "render", TOP / "scenes/library/sts46" / f"{scene}.toml", "--camera", camera, "--size", call.size,
-                           "--error", asked, "-q", "--json", "-o", picture)
+                           "--error", asked, "--seed", call.seed, "-q", "--json", "-o", picture)
         error = json.loads(out)["error"]
-        truth = error_truth.compare(error_truth.picture(picture)[0], first, second)
+        truth = error_truth.compare(error_truth.picture(picture)[0], first, second, counts)
         unsure = truth.doubt / (2 * truth.error) if truth.error > 0 else math.sqrt(truth.doubt)
         paths = path_seconds * (of_paths / truth.error)**2
         yield (f"| {scene} {camera} | {100 * asked:g} % | {100 * error['estimate']:.1f}, {100 * error['bound_95']:.1f} % | "
@@ -87,6 +99,7 @@ def main():
     parser.add_argument("--size", default="256x256")
     parser.add_argument("--errors", type=lambda text: [float(one) for one in text.split(",")], default=[0.05, 0.02])
     parser.add_argument("--paths", type=int, default=512, help="a pixel, of each reference")
+    parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--cache", type=pathlib.Path, default=TOP / "out" / "error-references")
     call = parser.parse_args()
     call.program = call.program.resolve()

@@ -28,10 +28,12 @@ struct Written {
     shared.rest.assign(1, 0.0F);
     shared.squared_error.assign(1, 0.0F);
   }
-  void sample(std::size_t stray, double first, double second) {
+  // Means of the halves of so many samples.
+  void sample(std::size_t stray, double first, double second, double samples = 2.0) {
+    first *= samples / 2.0, second *= samples / 2.0;
     estimate.luminance[1 + stray] = {static_cast<float>(first), static_cast<float>(second)};
     estimate.sum[1 + stray] = glm::vec3(static_cast<float>(first + second));
-    estimate.samples[1 + stray] = 2.0F;
+    estimate.samples[1 + stray] = static_cast<float>(samples);
   }
   [[nodiscard]] double value(std::size_t stray) const {
     return double(shared.radiance[1 + stray].g);
@@ -42,6 +44,15 @@ TEST(Strays, WithoutSamplesTheyTakeWhatTheirSurfaceSays) {
   Written written(1);
   add_strays(written.strays, written.estimate, written.shared);
   EXPECT_EQ(written.value(0), 10.0);
+}
+
+TEST(Strays, WithoutSamplesTheyStateWhatTheOthersAreOffBy) {
+  // The others are 2 off what their surface says, without noise: mean square 4.
+  Written written(9);
+  for (std::size_t k = 1; k < 9; ++k) written.sample(k, 12.0, 12.0);
+  add_strays(written.strays, written.estimate, written.shared);
+  EXPECT_NEAR(double(written.shared.squared_error[1]), 4.0, 1e-5);
+  for (std::size_t k = 1; k < 9; ++k) EXPECT_EQ(written.shared.squared_error[1 + k], 0.0F);
 }
 
 TEST(Strays, WithoutASurfaceBesideThemTheyKeepTheirOwn) {
@@ -90,6 +101,45 @@ TEST(Strays, TheirErrorIsAsStated) {
     const double error = left + (1.0 - c) * (1.0 - c) * (s + 2.0 * q) + c * c * q;
     EXPECT_NEAR(stated, found, 4.0 * std::sqrt(2.0 / count) * error) << q;
     EXPECT_LT(found, std::min(s, q) * (1.0 + 4.0 * std::sqrt(2.0 / count))) << q;
+  }
+}
+
+TEST(Strays, MoreSamplesAreStatedAsWhatTheyAre) {
+  // A sample has the variance v = 2 wherever it is. A tenth of the strays have 200 of them, the
+  // others 2: the noise of their means is v / 200 and v / 2, and what keeping c of a difference of
+  // variance s leaves of each kind is (1 - c)^2 s + c^2 q by its own q. Means over the strays of a
+  // kind scatter as in the law before this one; v is found from all of them.
+  constexpr std::size_t count = 8000;
+  constexpr double s = 1.0, v = 2.0;
+  Written written(count);
+  base::Rng rng(base::Key(7, base::Stream::Test, 14));
+  const auto normal = [&] {
+    return std::sqrt(-2.0 * std::log(1.0 - rng.next())) * std::cos(2.0 * base::pi * rng.next());
+  };
+  const auto samples = [](std::size_t k) { return k % 10 == 0 ? 200.0 : 2.0; };
+  std::vector<double> truth;
+  for (std::size_t k = 0; k < count; ++k) {
+    truth.push_back(10.0 + std::sqrt(s) * normal());
+    const double noise = std::sqrt(v / (samples(k) / 2.0));
+    written.sample(k, truth[k] + noise * normal(), truth[k] + noise * normal(), samples(k));
+  }
+  add_strays(written.strays, written.estimate, written.shared);
+  for (const std::size_t kind : {std::size_t{0}, std::size_t{1}}) {
+    double found = 0.0, stated = 0.0, of = 0.0;
+    for (std::size_t k = kind; k < count; k += kind == 0 ? 10 : 1) {
+      if (kind == 1 && k % 10 == 0) continue;
+      found += std::pow(written.value(k) - truth[k], 2);
+      stated += double(written.shared.squared_error[1 + k]);
+      of += 1.0;
+    }
+    const double q = v / samples(kind);
+    const double c = double(kept_share(static_cast<float>(s), static_cast<float>(q)));
+    const double left = (1.0 - c) * (1.0 - c) * s + c * c * q;
+    // q is found to sqrt(2 / count) of itself, s + q of the others likewise.
+    const double error = left * std::sqrt(2.0 / of) +
+                         ((1.0 - c) * (1.0 - c) * (s + v) + c * c * q) * std::sqrt(2.0 / count);
+    EXPECT_NEAR(stated / of, found / of, 4.0 * error) << samples(kind) << " samples";
+    EXPECT_LT(found / of, std::min(s, q) * (1.0 + 4.0 * std::sqrt(2.0 / of))) << samples(kind);
   }
 }
 
