@@ -57,8 +57,9 @@ inline constexpr std::array sight_columns = {
     FigureColumn{sight_of<&studies::Sight::weber>, "Weber", Form::Plain, true},
     FigureColumn{figure_of<&TargetFindings::luminance_error>, "error of luminance, %",
                  Form::Percent, false},
-    FigureColumn{figure_of<&TargetFindings::picture_noise>, "noise of the picture, %",
+    FigureColumn{noise_of<&studies::ConditionNoise::relative>, "noise of the picture, %",
                  Form::Percent, false},
+    FigureColumn{noise_of<&studies::ConditionNoise::cd_m2>, "the same, cd/m²", Form::Plain, false},
     FigureColumn{sight_of<&studies::Sight::saturated>, "saturated, %", Form::Percent, false},
     FigureColumn{sight_of<&studies::Sight::crushed>, "crushed, %", Form::Percent, false},
 };

@@ -45,7 +45,7 @@ constexpr CsvColumn csv_columns[] = {
     {"shown_from", cell_of<sight_of<&Sight::shown_from>>},
     {"shown_to", cell_of<sight_of<&Sight::shown_to>>},
     {"luminance_error", cell_of<figure_of<&TargetFindings::luminance_error>>},
-    {"picture_noise", cell_of<figure_of<&TargetFindings::picture_noise>>},
+    {"picture_noise", cell_of<noise_of<&studies::ConditionNoise::relative>>},
     {"black_back", cell_of<sight_of<&Sight::black_back>>},
     {"signal_mean", cell_of<signal_of<&SignalSight::mean>>},
     {"signal_weber", cell_of<signal_of<&SignalSight::weber>>},
@@ -58,6 +58,7 @@ constexpr CsvColumn csv_columns[] = {
     {"monitor_weber", cell_of<monitor_of<&MonitorSight::weber>>},
     {"eye_detect", cell_of<eye_chance_of<&Probability::detect>>},
     {"why", [](const TargetFindings& f) { return Json(f.why); }},
+    {"picture_noise_cd_m2", cell_of<noise_of<&studies::ConditionNoise::cd_m2>>},
 };
 
 // A line of the text.
@@ -245,6 +246,11 @@ std::string study_text(const StudyResults& study) {
   if (lines.empty()) text = "No object is a target: nothing was judged.\n";
   for (const AnswerEntry& answer : study.answers) {
     text += fmt::format("{}: {}\n", answer.wanted, answer.text);
+  }
+  for (const CameraEntry& camera : study.cameras) {
+    const std::string scene =
+        study.scenes.size() > 1 ? study.scenes[camera.scene].id + " " : std::string();
+    text += fmt::format("{}camera {}: {}\n", scene, camera.name, camera.error_text);
   }
   for (const std::string& note : black_back_notes(study)) text += note + "\n";
   return text;

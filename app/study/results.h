@@ -12,6 +12,7 @@
 
 #include "app/json.h"
 #include "studies/orbit/condition.h"
+#include "studies/orbit/condition_noise.h"
 #include "studies/orbit/wanted_visibility.h"
 
 namespace earthshine::app {
@@ -62,7 +63,7 @@ struct TargetFindings {
   std::vector<GroupShare> lit_by, light_by;
   std::vector<studies::LightShare> light_from;
   Number luminance_error, luminance_bound;
-  Number picture_noise;  // of the condition's picture by that camera, over its mean
+  studies::ConditionNoise noise;  // of the condition's picture by that camera
   std::string why;
   std::vector<studies::Reason> reasons;
   std::string why_of;  // the condition whose reasons these are; "": this one
@@ -145,6 +146,10 @@ template <auto Member>
 Number sight_of(const TargetFindings& found) {
   return found.sight.*Member;
 }
+template <auto Member>
+Number noise_of(const TargetFindings& found) {
+  return found.noise.*Member;
+}
 template <auto Part, auto Member>
 Number part_of_sight(const TargetFindings& found) {
   const auto& part = found.sight.*Part;
@@ -179,7 +184,8 @@ Number eye_chance_of(const TargetFindings& found) {
 // results.csv: a row per condition, camera and target.
 [[nodiscard]] std::string results_csv(const StudyResults& results);
 
-// For people: a line per camera, target and lamp setting, the answers, and black backs.
+// For people: a line per camera, target and lamp setting, the answers, the noise of each camera's
+// pictures, and black backs.
 [[nodiscard]] std::string study_text(const StudyResults& results);
 
 }  // namespace earthshine::app

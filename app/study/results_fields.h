@@ -111,7 +111,8 @@ void describe(Fields& fields, Either<TargetFindings> auto& found) {
   fields("shown_to", sight.shown_to);
   fields("luminance_error", found.luminance_error);
   fields("luminance_bound", found.luminance_bound);
-  fields("picture_noise", found.picture_noise);
+  fields("picture_noise", found.noise.relative);
+  fields("picture_noise_cd_m2", found.noise.cd_m2);
   fields("why", found.why);
   fields("reasons", found.reasons);
   fields.or_null("why_of", found.why_of);

@@ -237,10 +237,11 @@ void StudyFrames::keep(const Json& cache_key, base::Image image, Frame& frame) c
   frame.errors.see(frame.image, part_.basis->groups().names);
 }
 
-std::optional<double> StudyFrames::Frame::noise_of(const studies::GroupWeights& weights) const {
+studies::ConditionNoise StudyFrames::Frame::noise_of(const studies::GroupWeights& weights) const {
   std::vector<double> luminance;
   for (const Rgb& weight : weights.weight) luminance.push_back(base::luminance(weight));
-  return errors.of(luminance);
+  const auto noise = errors.of(luminance);
+  return noise ? studies::noise_of_condition(noise->rms, noise->mean) : studies::ConditionNoise();
 }
 
 }  // namespace earthshine::app

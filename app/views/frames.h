@@ -9,6 +9,7 @@
 #include "app/views/scene.h"
 #include "base/image.h"
 #include "radiosity/store/solution_file.h"
+#include "studies/orbit/condition_noise.h"
 #include "studies/study.h"
 
 namespace earthshine::app {
@@ -28,8 +29,8 @@ class StudyFrames {
     std::vector<std::string> limits = {};  // that the solution it was drawn from reached
     std::size_t patches = 0;               // of that solution
     raytrace::LayerErrors errors = {};     // complete where the image is
-    // Relative, of the weighted sum that a condition is.
-    [[nodiscard]] std::optional<double> noise_of(const studies::GroupWeights& weights) const;
+    // Of the weighted sum that a condition is.
+    [[nodiscard]] studies::ConditionNoise noise_of(const studies::GroupWeights& weights) const;
   };
   [[nodiscard]] std::optional<Frame> frame(const StudyCamera& camera,
                                            std::vector<StudyCost>& costs);

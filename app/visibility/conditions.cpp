@@ -174,10 +174,10 @@ Judged StudyConditions::judge(const StudyCamera& camera, const studies::BasisVie
     for (std::size_t k = first; k < last; ++k) {
       const studies::Outcome& outcome = outcomes[k - first];
       const auto [place, setting] = condition_at(part_, k);
-      const Number noise = frame.noise_of(part_.basis->weights(place, setting));
+      const studies::ConditionNoise noise = frame.noise_of(part_.basis->weights(place, setting));
       for (std::size_t t = 0; t < outcome.targets.size(); ++t) {
         TargetFindings target = findings_of(outcome.sight.targets[t], outcome.targets[t]);
-        target.picture_noise = noise;
+        target.noise = noise;
         if (const auto& of = outcome.targets[t].why_of) {
           target.why_of = condition_id(part_, first + *of);
         }

@@ -13,31 +13,18 @@
 namespace earthshine::app {
 namespace {
 
-// The least and the most of a camera's conditions; none where they have none of their own.
-struct NoiseRange {
-  double least = 0.0, most = 0.0;
-  std::size_t noisiest = 0, unknown = 0;  // unknown: conditions of more noise than light
-};
-std::optional<NoiseRange> noise_range(const CameraFindings& found) {
-  std::optional<NoiseRange> range;
+// Of a camera's conditions; all targets of one have that of its picture.
+std::string noise_of_conditions(const CameraFindings& found,
+                                std::span<const ConditionEntry> conditions) {
+  std::vector<studies::ConditionNoise> noise;
+  std::vector<std::string> names;
   for (std::size_t k = 0; k < found.conditions.size(); ++k) {
-    const auto& condition = found.conditions[k];  // all of its targets have that of its picture
-    if (!condition || condition->empty() || !condition->front().picture_noise) continue;
-    const double noise = *condition->front().picture_noise;
-    if (!range) range = {noise, noise, k, 0};
-    if (noise > range->most) range->most = noise, range->noisiest = k;
-    range->least = std::min(range->least, noise);
-    range->unknown += noise > 1.0 ? 1 : 0;
+    const auto& condition = found.conditions[k];
+    if (!condition || condition->empty()) continue;
+    noise.push_back(condition->front().noise);
+    names.push_back(conditions[k].name);
   }
-  return range;
-}
-
-std::string noise_text(const NoiseRange& range, const std::string& noisiest) {
-  const std::string least = fmt::format("noise of {:.2g} to ", 100.0 * range.least);
-  const std::string where = " % of the mean in the conditions' pictures, most in " + noisiest;
-  if (range.unknown == 0) return least + fmt::format("{:.2g}", 100.0 * range.most) + where;
-  return least + "more than 100" + where +
-         fmt::format(" ({} conditions have so little light that it is not known)", range.unknown);
+  return studies::noise_text(noise, names);
 }
 
 // conditions: of its scene.
@@ -58,12 +45,9 @@ CameraEntry camera_entry(const CameraFindings& found, std::size_t scene,
     entry.cctv = cctv->name;
     entry.iris = degrade::word_of(cctv->chain.camera.iris);
   }
-  const auto range = noise_range(found);
-  entry.error_text = range ? noise_text(*range, conditions[range->noisiest].name) +
-                                 fmt::format("; {:.2g} % in the picture of all lights together",
-                                             100.0 * found.relative_noise)
-                           : fmt::format("noise of {:.2g} % in the picture of all lights together",
-                                         100.0 * found.relative_noise);
+  const std::string own = noise_of_conditions(found, conditions);
+  entry.error_text = fmt::format("{}{}{:.2g} % in the picture of all lights together", own,
+                                 own.empty() ? "noise of " : "; ", 100.0 * found.relative_noise);
   return entry;
 }
 

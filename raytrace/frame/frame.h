@@ -147,10 +147,14 @@ struct LayerErrors {
   void see(const base::Image& picture, std::span<const std::string> groups);
   // squared: by part, stated of the sum of all: mean, relative.
   void scale_to(std::span<const double> squared);
-  // Relative error of the sum with these weights, whose bright pixels count as error_weight says:
-  // of each part what is stated of the sum of all, by as much as its samples' noise is that of the
-  // weighted sum, before neighbours share it. None where the sum is dark or nothing is known.
-  [[nodiscard]] std::optional<double> of(std::span<const double> weights) const;
+  // Error of the sum with these weights, whose bright pixels count as error_weight says: of each
+  // part what is stated of the sum of all, by as much as its samples' noise is that of the weighted
+  // sum, before neighbours share it. None where the sum is dark or nothing is known.
+  struct OfSum {
+    double rms, mean;  // over the pixels that count, cd/m^2
+    [[nodiscard]] double relative() const { return rms / mean; }
+  };
+  [[nodiscard]] std::optional<OfSum> of(std::span<const double> weights) const;
 };
 // Every so many pixels or gather points tell the noise of the layers.
 [[nodiscard]] inline std::size_t layer_noise_step(std::size_t count) {

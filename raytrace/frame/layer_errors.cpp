@@ -55,7 +55,7 @@ void LayerErrors::scale_to(std::span<const double> squared) {
   }
 }
 
-std::optional<double> LayerErrors::of(std::span<const double> weights) const {
+std::optional<LayerErrors::OfSum> LayerErrors::of(std::span<const double> weights) const {
   if (luminance.empty() || weights.size() != luminance.size()) return std::nullopt;
   double mean = 0.0;
   for (std::size_t k = 0; k < luminance.size(); ++k) mean += weights[k] * luminance[k];
@@ -64,7 +64,7 @@ std::optional<double> LayerErrors::of(std::span<const double> weights) const {
   for (std::size_t part = 0; part < noise.size(); ++part) {
     if (per_noise[part] > 0.0) squares += per_noise[part] * noise_of(noise[part], weights, mean);
   }
-  return std::sqrt(squares) / mean;
+  return OfSum{std::sqrt(squares), mean};
 }
 
 }  // namespace earthshine::raytrace

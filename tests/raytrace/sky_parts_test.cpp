@@ -228,8 +228,8 @@ TEST(SkyParts, NoiseStatedOfASunThatTakesTurnsIsWhatOtherSeedsDifferBy) {
       const double weight = error_weight(0.5 * double(a[p] + b[p]), mean);
       squares += 0.5 * std::pow(weight * double(a[p] - b[p]), 2);
     }
-    const double expected =
-        0.5 * (std::pow(*one.layers.of(weights), 2) + std::pow(*other.layers.of(weights), 2));
+    const double expected = 0.5 * (std::pow(one.layers.of(weights)->relative(), 2) +
+                                   std::pow(other.layers.of(weights)->relative(), 2));
     off.push_back(squares / counted / (mean * mean) - expected);
     stated += expected / double(pairs);
   }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "raytrace/render.h"
 #include "tests/support/scene_builder.h"
@@ -23,7 +24,8 @@ TEST(LayerErrors, EachPartIsScaledByItsOwnNoise) {
   for (LayerNoise& part : errors.noise) part.luminance = {3.0F, 1.0F};
   errors.scale_to(std::array<double, 2>{0.01, 0.04});
   const auto of = [&](double first, double second) {
-    return errors.of(std::array<double, 2>{first, second});
+    const auto found = errors.of(std::array<double, 2>{first, second});
+    return found ? std::optional(found->relative()) : std::nullopt;
   };
   EXPECT_NEAR(*of(1.0, 1.0), std::sqrt(0.05), 1e-12);
   EXPECT_NEAR(*of(7.0, 7.0), std::sqrt(0.05), 1e-12);
@@ -47,14 +49,15 @@ LayerErrors errors_of_one_place(const std::array<double, 2>& mean, const std::ar
 // Noise of both layers at one place goes together: (0.5 + 2 * 0.25)^2 of 0.75^2 in all.
 TEST(LayerErrors, NoiseOfAWeightedSumIsThatOfItsDifferences) {
   const LayerErrors errors = errors_of_one_place({1.0, 1.0}, {0.5F, 0.25F}, {1.0F, 1.0F});
-  EXPECT_NEAR(*errors.of(std::array<double, 2>{1.0, 2.0}), 0.1 * 2.0 / 3.0 * 1.0 / 0.75, 1e-12);
+  EXPECT_NEAR(errors.of(std::array<double, 2>{1.0, 2.0})->relative(), 0.1 * 2.0 / 3.0 * 1.0 / 0.75,
+              1e-12);
 }
 
 // Of the sum of both layers the place has the mean luminance and counts whole; of the first alone
 // it has 40 times the mean, and its noise counts a tenth.
 TEST(LayerErrors, WhereASumIsBrightItsNoiseCountsInProportion) {
   const LayerErrors errors = errors_of_one_place({0.1, 3.9}, {0.5F, 0.0F}, {4.0F, 0.0F});
-  EXPECT_NEAR(*errors.of(std::array<double, 2>{1.0, 0.0}), 0.1 * 4.0 / 0.1 * 0.1, 1e-6);
+  EXPECT_NEAR(errors.of(std::array<double, 2>{1.0, 0.0})->relative(), 0.1 * 4.0 / 0.1 * 0.1, 1e-6);
 }
 
 // A room by two lamps, one behind a plate, and a small one beside a wall, whose spot is a hundred
@@ -124,8 +127,8 @@ TEST(LayerErrors, StatedOfASumIsWhatOtherSeedsDifferBy) {
       for (std::size_t p = 0; p < pixels; ++p) {
         squares += 0.5 * std::pow(error_weight(both[p], mean) * difference[p], 2);
       }
-      const double expected =
-          0.5 * (std::pow(*one.layers.of(sums[s]), 2) + std::pow(*other.layers.of(sums[s]), 2));
+      const double expected = 0.5 * (std::pow(one.layers.of(sums[s])->relative(), 2) +
+                                     std::pow(other.layers.of(sums[s])->relative(), 2));
       off[s].push_back(squares / double(pixels) / (mean * mean) - expected);
       stated[s] += expected / double(pairs);
     }

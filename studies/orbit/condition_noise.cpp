@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/orbit/condition_noise.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace earthshine::studies {
+namespace {
+
+using Value = std::optional<double> ConditionNoise::*;
+
+// Numbers of those that have it, the least first.
+std::vector<std::size_t> ranked(std::span<const ConditionNoise> noise, Value value) {
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < noise.size(); ++k) {
+    if (noise[k].*value) order.push_back(k);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return *(noise[a].*value) < *(noise[b].*value);
+  });
+  return order;
+}
+
+std::string percent(double share) { return fmt::format("{:.2g}", 100.0 * share); }
+
+}  // namespace
+
+ConditionNoise noise_of_condition(double rms, double mean) {
+  ConditionNoise noise;
+  noise.cd_m2 = rms;
+  if (rms <= mean && mean > 0.0) noise.relative = rms / mean;
+  return noise;
+}
+
+std::string noise_text(std::span<const ConditionNoise> noise, std::span<const std::string> names) {
+  std::vector<ConditionNoise> dark(noise.begin(), noise.end());
+  for (ConditionNoise& one : dark) {
+    if (one.relative) one.cd_m2.reset();
+  }
+  const std::vector<std::size_t> lit = ranked(noise, &ConditionNoise::relative);
+  const std::vector<std::size_t> unlit = ranked(dark, &ConditionNoise::cd_m2);
+  std::string text;
+  if (!lit.empty()) {
+    const std::string least = percent(*noise[lit.front()].relative);
+    const std::string most = percent(*noise[lit.back()].relative);
+    text = fmt::format("noise of {}{} % of the mean in the conditions' pictures, most in {}",
+                       least == most ? "" : least + " to ", most, names[lit.back()]);
+  }
+  if (unlit.empty()) return text;
+  const std::string most = fmt::format("{:.2g} cd/m²", *dark[unlit.back()].cd_m2);
+  if (unlit.size() == 1) {
+    return text + fmt::format("{}noise of {}, more than its light, in {}", text.empty() ? "" : "; ",
+                              most, names[unlit.back()]);
+  }
+  return text +
+         fmt::format("{}noise of up to {}, more than their light, in {} dark ones, most in {}",
+                     text.empty() ? "" : "; ", most, unlit.size(), names[unlit.back()]);
+}
+
+}  // namespace earthshine::studies
