@@ -57,6 +57,9 @@ struct RenderOptions {
   std::function<bool()> stop = {};
 };
 
+// What is drawn. Throws base::Error (Input) if the crop leaves the picture.
+[[nodiscard]] Window window_of(const RenderOptions& options);
+
 // The knobs' part of the options; the size, the seed and the rest stay at their defaults.
 [[nodiscard]] RenderOptions render_options(const scenes::QualityKnobs& knobs);
 

@@ -104,7 +104,7 @@ class Passes {
         pilot.deviation > 0.0 ? wanted_error * wanted_error / pilot.deviation : 1.0;
     // Rounds look at neighbours: a crop gets the same pixels as the whole picture only if what
     // surrounds it is worked out too.
-    const Window around = widened(window_, most_rounds, camera_);
+    const Window around = widened(window_, 1 + most_rounds, camera_);
     const double samples = std::max(double(how.least_samples),
                                     per_deviation > 0.0 ? pilot.deviation / per_deviation : 0.0);
     const double gathers = shared_.gathers ? options_.gather_rays : 0;
@@ -122,7 +122,10 @@ class Passes {
       report_.gather_seconds += seconds_since(start);
     }
     sums_.emplace(around, shared_.layers, shared_.splits_parts);
+    shared_.dimmest = pilot.dimmest;
     first_round(everywhere(how.least_samples));
+    shared_.dimmest.clear();
+    if (!ends()) shade(wanted_for_the_eye(*sums_, sums_->scatter));
     for (int round = 1; round < most_rounds && !ends() && per_deviation > 0.0; ++round) {
       shade(wanted_samples(*sums_, per_deviation, pilot.bright(), how.least_samples,
                            how.most_samples));
@@ -144,7 +147,7 @@ class Passes {
     }
     const int least = options_.shared.least_samples;
     first_round(by_edges(least, std::max(std::min(2, least), least / 2)));
-    if (!ends()) shade(wanted_for_the_eye(*sums_));
+    if (!ends()) shade(wanted_for_the_eye(*sums_, scatter_of_samples(*sums_)));
     for (int round = 1; round < most_error_rounds && !ends(); ++round) {
       const SampleCosts each = sample_costs(field());
       const SamplePlanner planner(*sums_, field(), each);
@@ -278,18 +281,6 @@ class Passes {
 };
 
 }  // namespace
-
-Window window_of(const RenderOptions& options) {
-  const Window& crop = options.crop;
-  if (crop.columns == 0) return {0, 0, options.columns, options.rows};
-  const bool inside = crop.x >= 0 && crop.y >= 0 && crop.columns > 0 && crop.rows > 0 &&
-                      crop.columns <= options.columns - crop.x &&
-                      crop.rows <= options.rows - crop.y;
-  if (inside) return crop;
-  throw base::Error(base::Blame::Input, "crop", "the window leaves the picture",
-                    "a window within " + std::to_string(options.columns) + " x " +
-                        std::to_string(options.rows) + " pixels");
-}
 
 Sampled sample_picture(ShadingScene& shared, const PathWorld& world, const CameraModel& camera,
                        const RenderOptions& options, const Progress& progress,

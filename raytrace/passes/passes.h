@@ -16,9 +16,6 @@ namespace earthshine::raytrace {
 // error is stated.
 inline constexpr double sure_share = 0.94;
 
-// Throws base::Error (Input) if the crop leaves the picture.
-[[nodiscard]] Window window_of(const RenderOptions& options);
-
 // What the rays of a picture brought. The sums cover the window and perhaps some pixels around it;
 // the field, if there is one, the whole picture.
 struct Sampled {

@@ -269,12 +269,18 @@ PilotPass run_pilot_pass(ShadingScene shared, const CameraModel& camera, int sam
     pilot.rays += rays;
   });
   double pixels = 0.0;
+  pilot.dimmest.assign(shared.light_of_layer.back() + 1, 0.0);
   for (const PixelSums& look : looks) {
     if (!look.counts(0)) continue;
     pilot.luminance += look.luminance[0] / samples;
+    for (std::size_t k = 0; k < shared.layers; ++k) {
+      pilot.dimmest[shared.light_of_layer[k]] +=
+          dimmest_share * base::luminance(Rgb(look.radiance[k])) / samples;
+    }
     pixels += 1.0;
   }
   pilot.luminance /= std::max(1.0, pixels);
+  for (double& of_light : pilot.dimmest) of_light /= std::max(1.0, pixels);
   for (const PixelSums& look : looks) {
     pilot.deviation += look.deviation(0, pilot.bright()) / static_cast<double>(count);
   }

@@ -88,7 +88,8 @@ class SamplePlanner {
 // themselves are left out of the former.
 struct PilotPass {
   double luminance = 0.0, deviation = 0.0;
-  RayCounts rays;  // that it took
+  std::vector<double> dimmest;  // ShadingScene::dimmest
+  RayCounts rays;               // that it took
   // From here on pixels count as bright (PixelSums::deviation).
   [[nodiscard]] double bright() const { return 4.0 * luminance; }
 };

@@ -13,10 +13,8 @@ namespace {
 
 constexpr int tile_edge_px = 16;
 constexpr std::size_t few_pixels = 64;
-// What the eye overlooks in a pixel of four samples, and of eight, and how dim a surface it still
-// looks at, over the picture's mean.
+// What the eye overlooks in a pixel of four samples, and of eight.
 constexpr double most_scatter = 1.0 / 3.0, most_of_eight = 1.414 * most_scatter;
-constexpr double dimmest_share = 0.05;
 
 void shade_pixel(const ShadingScene& shared, const CameraModel& camera, int x, int y,
                  std::uint32_t first, std::uint32_t end, PixelShader& shader) {
@@ -62,7 +60,8 @@ PixelSums::PixelSums(const Window& of, std::size_t layers, bool splits_parts)
       luminance2(of.pixel_count(), 0.0),
       half_difference(of.pixel_count(), 0.0),
       source(of.pixel_count()),
-      rays(of.pixel_count(), 0.0F) {
+      rays(of.pixel_count(), 0.0F),
+      scatter(of.pixel_count(), 0.0F) {
   const std::size_t step = layer_noise_step(samples.size());
   if (layers > 1) layers_differ.assign((samples.size() + step - 1) / step * layers, 0.0F);
 }
@@ -107,6 +106,7 @@ void PixelSums::add(std::size_t pixel, const PixelShader& shader, std::uint32_t 
   source[pixel].luminance += shader.source().luminance;
   source[pixel].luminance2 += shader.source().luminance2;
   source[pixel].reflecting += shader.source().reflecting;
+  if (first == 0) scatter[pixel] = static_cast<float>(shader.scatter());
   samples[pixel] += count;
   std::vector<FieldTerm>& of_pixel = terms[pixel];
   for (const FieldTerm& more : shader.field_terms()) {
@@ -202,17 +202,19 @@ void PixelSums::pass(std::size_t pixel, base::Parcel& parcel) {
   parcel.pass(half_difference[pixel]);
   parcel.pass(source[pixel]);
   parcel.pass(rays[pixel]);
+  parcel.pass(scatter[pixel]);
   parcel.pass_range(layers_of(pixel).data(), layers_of(pixel).size());
 }
 
 namespace {
 
 // The greatest of a pixel's eight neighbours in the window.
-std::vector<double> greatest_around(const Window& window, const std::vector<double>& values) {
-  std::vector<double> greatest(values.size(), 0.0);
+template <class Number>
+std::vector<Number> greatest_around(const Window& window, std::span<const Number> values) {
+  std::vector<Number> greatest(values.size(), Number(0));
   for (int y = window.y; y < window.y + window.rows; ++y) {
     for (int x = window.x; x < window.x + window.columns; ++x) {
-      double& of_pixel = greatest[window.index(x, y)];
+      Number& of_pixel = greatest[window.index(x, y)];
       for (int dy = -1; dy <= 1; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) {
           if ((dx == 0 && dy == 0) || !window.contains(x + dx, y + dy)) continue;
@@ -232,7 +234,8 @@ std::vector<std::uint32_t> wanted_samples(const PixelSums& sums, double per_devi
   for (std::size_t p = 0; p < deviation.size(); ++p) {
     deviation[p] = sums.deviation(p, bright);
   }
-  const std::vector<double> noisiest = greatest_around(sums.window, deviation);
+  const std::vector<double> noisiest =
+      greatest_around(sums.window, std::span<const double>(deviation));
   std::vector<std::uint32_t> wanted(sums.samples.size());
   for (std::size_t p = 0; p < wanted.size(); ++p) {
     const double ideal = std::clamp(noisiest[p] / per_deviation, double(least), double(most));
@@ -243,25 +246,32 @@ std::vector<std::uint32_t> wanted_samples(const PixelSums& sums, double per_devi
   return wanted;
 }
 
-std::vector<std::uint32_t> wanted_for_the_eye(const PixelSums& sums) {
+std::vector<float> scatter_of_samples(const PixelSums& sums) {
+  std::vector<float> scatter(sums.samples.size(), 0.0F);
   double mean = 0.0, counted = 0.0;
   for (std::size_t p = 0; p < sums.samples.size(); ++p) {
     if (!sums.counts(p)) continue;
     mean += sums.luminance[p] / sums.samples[p];
     counted += 1.0;
   }
-  if (mean <= 0.0) return sums.samples;
+  if (mean <= 0.0) return scatter;
   const double dimmest = dimmest_share * mean / counted;
-  std::vector<double> scatter(sums.samples.size(), 0.0);
   for (std::size_t p = 0; p < scatter.size(); ++p) {
     const double n = sums.samples[p];
     if (n < 2.0) continue;
-    scatter[p] = std::sqrt(sums.sample_variance(p) * n) / std::max(sums.luminance[p] / n, dimmest);
+    scatter[p] = static_cast<float>(std::sqrt(sums.sample_variance(p) * n) /
+                                    std::max(sums.luminance[p] / n, dimmest));
   }
-  const std::vector<double> around = greatest_around(sums.window, scatter);
+  return scatter;
+}
+
+std::vector<std::uint32_t> wanted_for_the_eye(const PixelSums& sums,
+                                              std::span<const float> scatter) {
+  const std::vector<float> around = greatest_around(sums.window, scatter);
   std::vector<std::uint32_t> wanted = sums.samples;
   for (std::size_t p = 0; p < wanted.size(); ++p) {
-    if (around[p] > most_scatter) wanted[p] *= around[p] > most_of_eight ? 4U : 2U;
+    if (double(around[p]) <= most_scatter) continue;
+    wanted[p] *= double(around[p]) > most_of_eight ? 4U : 2U;
   }
   return wanted;
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "base/ranks/ranks.h"
@@ -24,6 +25,8 @@ struct PixelSums {
   std::vector<double> half_difference;  // of the sums of even and odd samples' luminance
   std::vector<SourceSeen> source;
   std::vector<float> rays;  // cast for the samples, of all kinds
+  // Of the first samples in the light of one source (PixelShader::scatter); 0: nobody asked.
+  std::vector<float> scatter;
 
   std::vector<float> layers_differ;  // the same by layer, of every so many pixels
 
@@ -61,9 +64,13 @@ void shade_samples(const ShadingScene& shared, const CameraModel& camera,
 [[nodiscard]] std::vector<std::uint32_t> wanted_samples(const PixelSums& sums, double per_deviation,
                                                         double bright, int least, int most);
 
-// Four times as many as there are where samples of a neighbour scatter by more than a third of its
-// luminance, or of a twentieth of the picture's mean: the eye sees stairs and grain on dim surfaces
-// too, which the picture's error has little of. Neighbours, as above.
-[[nodiscard]] std::vector<std::uint32_t> wanted_for_the_eye(const PixelSums& sums);
+// Up to four times as many as there are where samples of a neighbour scatter by more than a third
+// of its luminance, or of a twentieth of the picture's mean: the eye sees stairs and grain on dim
+// surfaces too, which the picture's error has little of. Neighbours, as above.
+[[nodiscard]] std::vector<std::uint32_t> wanted_for_the_eye(const PixelSums& sums,
+                                                            std::span<const float> scatter);
+inline constexpr double dimmest_share = 0.05;  // of the picture's mean
+// Of all light together.
+[[nodiscard]] std::vector<float> scatter_of_samples(const PixelSums& sums);
 
 }  // namespace earthshine::raytrace

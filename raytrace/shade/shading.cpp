@@ -59,6 +59,7 @@ void PixelShader::begin_pixel(const CameraModel& camera, int x, int y, std::size
   std::fill(sums_.begin(), sums_.end(), Rgb(0.0));
   sample_luminance_.assign(count, 0.0);
   std::fill(halves_differ_.begin(), halves_differ_.end(), 0.0);
+  by_light_.assign(shared_.dimmest.size() * count, 0.0);
   const base::Key key(shared_.seed, base::Stream::FinalGather, pixel_);
   gather_points_ = {base::SobolOwen4(key.with(0)), base::SobolOwen4(key.with(1))};
 }

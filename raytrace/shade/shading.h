@@ -31,6 +31,10 @@ struct ShadingScene : scenes::World {
   std::vector<std::size_t> layer = {};  // of a light group: its image layer
   std::size_t layers = 1;
   bool splits_parts = false;  // sums also by Part
+  // What a picture may be weighted to show alone: each lamp and Sun, the Earth with all its cells.
+  std::vector<std::size_t> light_of_layer = {};
+  // Of such a light: luminance from which on its scatter is over its own; none: nobody asks.
+  std::vector<double> dimmest = {};
   Indirect indirect = Indirect::Radiosity;
   bool gathers = false;  // cosine rays carry light in this render
   // Of paths that go on from where gather and lobe rays end, to find what the solution lacks there;
@@ -84,6 +88,9 @@ class PixelShader {
   [[nodiscard]] const SourceSeen& source() const { return source_; }
   // Of each layer, the luminance that samples of the first half brought less that of the second.
   [[nodiscard]] std::span<const double> halves_differ() const { return halves_differ_; }
+  // The most that samples scatter in the light of one source, of those that ShadingScene::dimmest
+  // has: their standard deviation over their mean, or over what is dimmest.
+  [[nodiscard]] double scatter() const;
   // What the samples read from gather points, which is in their luminance but not in sums().
   [[nodiscard]] std::span<const FieldTerm> field_terms() const { return terms_; }
   [[nodiscard]] RayCounts rays() const;  // all that were cast for samples so far
@@ -156,6 +163,9 @@ class PixelShader {
     const double luminance = base::luminance(radiance);
     sample_luminance_[sample - first_sample_] += luminance;
     halves_differ_[layer] += sample % 2 == 0 ? luminance : -luminance;
+    if (by_light_.empty()) return;
+    by_light_[shared_.light_of_layer[layer] * sample_luminance_.size() + sample - first_sample_] +=
+        luminance;
   }
 
   const ShadingScene& shared_;
@@ -163,6 +173,7 @@ class PixelShader {
   std::vector<Rgb> sums_;
   std::vector<Rgb> scratch_;  // one per layer, and what came straight from the sky
   std::vector<double> sample_luminance_, halves_differ_;
+  std::vector<double> by_light_;  // light * samples: luminance; empty: nobody asks
   std::size_t sample_ = 0, first_sample_ = 0;
   SourceSeen source_;
   double source_of_sample_ = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PixelShader's diffuse light and its ray queues, eight rays at a time.
+// PixelShader's diffuse light, its ray queues, eight rays at a time, and what its samples scatter.
 #include <algorithm>
 #include <cmath>
 
@@ -199,6 +199,20 @@ void PixelShader::flush_gather() {
     if (walker_ && ray.lacking > 0.0 && kept > 0.0) add_lacking(ray, hit, kept);
   }
   gather_count_ = 0;
+}
+
+double PixelShader::scatter() const {
+  const std::size_t count = sample_luminance_.size();
+  double most = 0.0;
+  for (std::size_t light = 0; count > 1 && light < shared_.dimmest.size(); ++light) {
+    const std::span<const double> of_light(&by_light_[light * count], count);
+    double mean = 0.0, squares = 0.0;
+    for (const double luminance : of_light) mean += luminance / double(count);
+    for (const double luminance : of_light) squares += (luminance - mean) * (luminance - mean);
+    const double over = std::max(mean, shared_.dimmest[light]);
+    if (over > 0.0) most = std::max(most, std::sqrt(squares / double(count - 1)) / over);
+  }
+  return most;
 }
 
 }  // namespace earthshine::raytrace

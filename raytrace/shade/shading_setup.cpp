@@ -2,6 +2,7 @@
 #include "raytrace/shade/shading_setup.h"
 
 #include "raytrace/light/distributed_area.h"
+#include "scenes/sky/sky_cells.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -24,6 +25,18 @@ std::size_t earth_layer(const scenes::LightGroups& groups, const RenderOptions& 
 
 bool recursive(const scenes::Effects& effects) {
   return effects.mirror || effects.refraction || effects.phong;
+}
+
+std::vector<std::size_t> light_of_layer(const scenes::World& world, const RenderOptions& options) {
+  std::vector<std::size_t> light(image_layers(world.groups, options), 0);
+  if (!options.per_light) return light;
+  const std::size_t cells =
+      world.groups.earth == scenes::no_group ? 0 : scenes::earth_parts(world.scene);
+  for (std::size_t k = 1; k < light.size(); ++k) {
+    const bool same = k > world.groups.earth && k < world.groups.earth + cells;
+    light[k] = light[k - 1] + (same ? 0 : 1);
+  }
+  return light;
 }
 
 BrightPatches bright_of(const radiosity::Solution& solution, const RenderOptions& options) {
@@ -57,6 +70,7 @@ ShadingSetup::ShadingSetup(const scenes::World& world, const radiosity::Solution
   for (std::size_t g = 0; g < world.groups.count(); ++g) {
     shared_.layer.push_back(options.per_light ? g : 0);
   }
+  shared_.light_of_layer = light_of_layer(world, options);
   shared_.gathers = options.indirect != Indirect::Distributed &&
                     (reads(solution, options) || world.effects.earth_by_gather);
   shared_.sampled_emitter.assign(world.scene.materials.size(), true);

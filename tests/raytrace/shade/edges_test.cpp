@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// Edges in pictures drawn by settings: a pixel has the share of itself that is covered.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "raytrace/render.h"
+#include "scenes/sky/sky_cells.h"
+#include "tests/support/scene_builder.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+// The line of points with normal . (x, y) = at; what lies beyond it is covered.
+struct HalfPlane {
+  double normal_x, normal_y, at;
+  [[nodiscard]] double beyond(double x, double y) const { return normal_x * x + normal_y * y - at; }
+};
+
+// The share of the unit square at (x, y) that a half plane covers: its corners clipped by the line,
+// and the area of the polygon that is left.
+double covered(const HalfPlane& half, double x, double y) {
+  const std::array<std::array<double, 2>, 4> corner = {
+      {{x, y}, {x + 1, y}, {x + 1, y + 1}, {x, y + 1}}};
+  std::vector<std::array<double, 2>> kept;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto &a = corner[k], &b = corner[(k + 1) % 4];
+    const double at_a = half.beyond(a[0], a[1]), at_b = half.beyond(b[0], b[1]);
+    if (at_a >= 0.0) kept.push_back(a);
+    if ((at_a >= 0.0) == (at_b >= 0.0)) continue;
+    const double t = at_a / (at_a - at_b);
+    kept.push_back({a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])});
+  }
+  double twice = 0.0;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    const auto &a = kept[k], &b = kept[(k + 1) % kept.size()];
+    twice += (a[0] - x) * (b[1] - y) - (b[0] - x) * (a[1] - y);
+  }
+  return 0.5 * twice;
+}
+
+// 96 x 96 pixels, one a unit of the scene wide and high, of the plane z = 0 seen from straight
+// above; x to the right and y down in the picture.
+constexpr int edge_px = 96;
+
+RenderOptions by_settings() {
+  RenderOptions options;
+  options.columns = options.rows = edge_px;
+  options.gather_rays = 8;
+  options.shared.on = true;
+  options.shared.noise = 1.0;  // as far as the picture's error goes four camera samples are enough
+  return options;
+}
+
+scenes::Camera from_above() {
+  scenes::Camera camera;
+  camera.position = Vec3(0.5 * edge_px, -0.5 * edge_px, 1000.0);
+  camera.look_at = Vec3(0.5 * edge_px, -0.5 * edge_px, 0.0);
+  camera.up = Vec3(0, 1, 0);
+  camera.fov_deg = 2.0 * std::atan(0.5 * edge_px / 1000.0) * 180.0 / base::pi;
+  return camera;
+}
+
+scenes::Sun point_sun(const Vec3& direction) {
+  scenes::Sun sun;
+  sun.direction = glm::normalize(direction);
+  sun.illuminance_lx = Rgb(1000.0);
+  sun.angular_radius_deg = 1e-5;
+  return sun;
+}
+
+// What a picture may be off by at an edge. 16 samples of a pixel fall one into each of 4 x 4 equal
+// squares, anywhere in it. A straight line meets at most 7 of them, and which side of it the sample
+// there falls on is off by c (1 - c) squared, 1/6 in the mean over places of the line: root mean
+// square sqrt(7 / 6) / 16 over all pixels, and with 1/4 in each four times sqrt(7 / 4) / 16 in any.
+// Of 4 samples it would be sqrt(3 / 6) / 4, where the line meets at most 3 of 2 x 2.
+const double most_rms = std::sqrt(7.0 / 6.0) / 16.0, most_anywhere = std::sqrt(7.0 / 4.0) / 4.0;
+
+// values: over that of what is covered whole. Pixels at the picture's rim lack neighbours that
+// would tell them of an edge, and are left out.
+void expect_coverage(const std::vector<float>& values, double whole, const HalfPlane& half) {
+  double squares = 0.0;
+  int pixels = 0;
+  for (int y = 1; y < edge_px - 1; ++y) {
+    for (int x = 1; x < edge_px - 1; ++x) {
+      const double exact = covered(half, x, y);
+      const double shown = double(values[static_cast<std::size_t>(y * edge_px + x)]) / whole;
+      if (exact <= 0.0 || exact >= 1.0) {
+        EXPECT_NEAR(shown, exact, 1e-4) << x << ' ' << y;
+        continue;
+      }
+      EXPECT_NEAR(shown, exact, most_anywhere) << x << ' ' << y;
+      squares += (shown - exact) * (shown - exact);
+      ++pixels;
+    }
+  }
+  ASSERT_GT(pixels, edge_px);
+  EXPECT_LT(std::sqrt(squares / pixels), most_rms);
+}
+
+HalfPlane through_the_middle(double angle_deg) {
+  const double angle = base::radians(angle_deg);
+  const double x = std::cos(angle), y = std::sin(angle), middle = 0.5 * edge_px + 0.3;
+  return {x, y, (x + y) * middle};
+}
+
+// A big rectangle of the plane z = height, front up, whose near edge is the half plane's line. In
+// the scene y is up, in the picture down.
+void add_beyond(tests::SceneBuilder& builder, std::uint32_t material, const HalfPlane& half,
+                double height) {
+  const Vec3 normal(half.normal_x, -half.normal_y, 0.0), along(half.normal_y, half.normal_x, 0.0);
+  const Vec3 foot = normal * half.at + Vec3(0.0, 0.0, height);
+  constexpr double far = 1000.0;
+  builder.quad(material, foot - along * far, foot + normal * far - along * far,
+               foot + normal * far + along * far, foot + along * far);
+}
+
+TEST(Edges, OfASilhouette) {
+  for (const double angle : {7.0, 33.0, 101.0}) {
+    const HalfPlane half = through_the_middle(angle);
+    tests::SceneBuilder builder;
+    add_beyond(builder, builder.material(tests::grey(0.5)), half, 0.0);
+    builder.scene.sun = point_sun(Vec3(0.3, 0.2, 1.0));
+    const tests::Prepared prepared(builder.scene);
+    radiosity::SolveOptions solve;
+    solve.patch_edge_m = 100.0;
+    const Frame frame = render(prepared, prepared.solve(solve), from_above(), by_settings());
+    const double whole = 1000.0 * builder.scene.sun->direction.z * 0.5 / base::pi;
+    expect_coverage(frame.image.find("G")->values, whole, half);
+  }
+}
+
+// Nine Suns, each of which throws the shadow of one edge, out of the picture above the camera, to
+// another place: of all light together that edge is a ninth, in the Sun's own layer it is all.
+TEST(Edges, OfTheShadowOfOneSunOfMany) {
+  constexpr double height = 2000.0, apart = 8.0;
+  constexpr int suns = 9;
+  const HalfPlane half = through_the_middle(33.0);
+  tests::SceneBuilder builder;
+  const std::uint32_t grey = builder.material(tests::grey(0.5));
+  builder.plate(grey, 1000.0, 0.0, true);
+  add_beyond(builder, grey, half, height);
+  scenes::SkyParts parts;
+  for (int k = 0; k < suns; ++k) {
+    parts.suns.push_back(point_sun(Vec3(apart * (k - suns / 2) / height, 0.0, 1.0)));
+  }
+  builder.scene.sky_parts = std::make_shared<const scenes::SkyParts>(parts);
+  const tests::Prepared prepared(builder.scene);
+  radiosity::SolveOptions solve;
+  solve.patch_edge_m = 100.0;
+  RenderOptions options = by_settings();
+  options.per_light = true;
+  const Frame frame = render(prepared, prepared.solve(solve), from_above(), options);
+  for (int k = 0; k < suns; ++k) {
+    const Vec3& sun = parts.suns[static_cast<std::size_t>(k)].direction;
+    const double line = half.at - half.normal_x * height * sun.x / sun.z;
+    const base::Channel* layer = frame.image.find("light_sun-" + std::to_string(k) + ".G");
+    ASSERT_NE(layer, nullptr);
+    expect_coverage(layer->values, 1000.0 * sun.z * 0.5 / base::pi,
+                    {-half.normal_x, -half.normal_y, -line});
+  }
+}
+
+}  // namespace
+}  // namespace earthshine::raytrace
