@@ -64,6 +64,13 @@ scenes::Scene scene_to_cut(const scenes::Scene& basis) {
 
 }  // namespace
 
+radiosity::SolveOptions study_solver(const scenes::Scene& scene, const Common& common) {
+  constexpr double enough = 1e-4;
+  radiosity::SolveOptions solver = solve_options(scene, common);
+  if (!scene.quality.solver_tolerance) solver.tolerance = enough;
+  return solver;
+}
+
 StudyFrames::StudyFrames(const StudyPart& part, const std::filesystem::path& folder,
                          const Common& common, const PartCall& how)
     : part_(part),
@@ -71,7 +78,7 @@ StudyFrames::StudyFrames(const StudyPart& part, const std::filesystem::path& fol
       how_(how),
       folder_(folder),
       store_(folder),
-      solver_(solve_options(part.basis_scene.scene, common)) {
+      solver_(study_solver(part.basis_scene.scene, common)) {
   scene_cache_key_ = scene_cache_key(part.basis_scene);
   scene_cache_key_["solver"] = solver_cache_key(solver_);
 }

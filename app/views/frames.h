@@ -14,6 +14,12 @@
 
 namespace earthshine::app {
 
+// Of a study's solution. Its pictures add what the solution lacks and are noisier than per cents,
+// so that a solver_tolerance of 1e-4 is enough where the scene has none of its own: of some 100
+// light groups at once each product of the solver takes its time.
+[[nodiscard]] radiosity::SolveOptions study_solver(const scenes::Scene& scene,
+                                                   const Common& common);
+
 class StudyFrames {
  public:
   // how: in parts, all of them read one solution.

@@ -64,7 +64,7 @@ Json plan_of(const StudyPart& part, const std::filesystem::path& folder, const C
   }
   double solve = 0.0, memory_mib = 0.0;
   if (!cameras.empty()) {
-    const radiosity::SolveOptions solver = solve_options(basis.scene, common);
+    const radiosity::SolveOptions solver = study_solver(basis.scene, common);
     studies::MemoryCase sizes =
         studies::memory_case(basis.scene, basis.groups, basis.effects, solver);
     studies::expect_rows(sizes, basis.scene, *part.query, solver);
