@@ -167,6 +167,22 @@ const checkFilter = async (page) => {
   check(some > 0 && some < all && (await rows()) === all, "a filter hides rows, Show all brings them back");
 };
 
+const pagesOf = (pdf) => pdf.toString("latin1").match(/\/Type\s*\/Page\b/g).length;
+
+// What a manager reads: without what follows the summary's first table there is one page.
+const checkFirstPage = async () => {
+  const { page, context } = await open(page_file);
+  await page.evaluate(() => {
+    const sections = [...document.querySelectorAll("main > section")];
+    for (const section of sections.slice(sections.findIndex(({ id }) => id === "summary") + 1)) section.remove();
+    const first = document.querySelector("#summary .scroll");
+    while (first.nextElementSibling) first.nextElementSibling.remove();
+  });
+  const pages = pagesOf(await page.pdf({ preferCSSPageSize: true }));
+  check(pages === 1, "all up to the summary's first table prints on page one", pages);
+  await context.close();
+};
+
 const checkPage = async () => {
   const { page, context, complaints, seconds } = await open(page_file);
   check(seconds < 2, "the page opens within 2 s", seconds);
@@ -187,8 +203,12 @@ const checkPage = async () => {
   await checkFilter(page);
   const pdf = await page.pdf({ path: kept("report.pdf"), preferCSSPageSize: true });
   check(pdf.length > 20000, "it prints");
-  const pages = pdf.toString("latin1").match(/\/Type\s*\/Page\b/g).length;
-  check(pages <= 12, "on at most 12 pages", pages);
+  check(pagesOf(pdf) <= 12, "on at most 12 pages", pagesOf(pdf));
+  const rows = await page.evaluate(() => {
+    for (const details of document.querySelectorAll("#figures details")) details.open = true;
+    return Math.max(...[...document.querySelectorAll("#figures tbody tr")].map((row) => row.offsetHeight));
+  });
+  check(rows <= 150, "no row of all figures is higher than 150 px", rows);
   await page.emulateMedia({ media: "print" });
   await drawAll(page);
   await wholePage(page, "report-print.png");
@@ -248,6 +268,7 @@ const checkHostile = async () => {
 };
 
 await checkPage();
+await checkFirstPage();
 await checkLooks("narrow", { viewport: { width: 400, height: 800 } });
 await checkLooks("dark", { colorScheme: "dark" });
 await checkPhone();

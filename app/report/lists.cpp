@@ -4,6 +4,7 @@
 
 #include "app/report/sections.h"
 #include "app/report/text.h"
+#include "studies/orbit/condition_noise.h"
 
 namespace earthshine::app {
 namespace {
@@ -139,7 +140,8 @@ std::string answers_html(const StudyResults& study) {
       fact("camera", escaped(answer.camera));
       fact("iris", escaped(answer.iris));
       fact("lamps", escaped(answer.lamps));
-      fact("least lamp factor", answer.least_factor ? figure(answer.least_factor) : "");
+      fact("needs of these lamps",
+           answer.least_factor ? studies::two_digits(100.0 * *answer.least_factor) + " %" : "");
       fact("where", arcs);
     }
     if (!facts.empty()) html += "<dl>" + facts + "</dl>";

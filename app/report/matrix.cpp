@@ -103,7 +103,8 @@ std::string table(const StudyResults& study, const Block& block) {
   std::string html = fmt::format(
       "<div class=\"scroll\" role=\"region\" aria-label=\"Summary: {}\" tabindex=\"0\" "
       "data-lamps=\"{}\">\n<table class=\"matrix{}\">\n<caption>{}</caption>\n"
-      "<colgroup><col class=\"name\" span=\"2\"><col class=\"seen\"><col span=\"{}\"></colgroup>\n"
+      "<colgroup><col class=\"name\"><col class=\"name\"><col class=\"seen\"><col "
+      "span=\"{}\"></colgroup>\n"
       "<thead>\n",
       title, escaped(block.lamps), block.conditions.size() > 8 ? " many" : "", title,
       block.conditions.size());

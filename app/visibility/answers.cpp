@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "app/study/study.h"
 #include "base/parallel.h"
+#include "studies/orbit/condition_noise.h"
 #include "studies/orbit/wanted_visibility.h"
 
 namespace earthshine::app {
@@ -71,12 +71,6 @@ Rated rate(const ViewingConfiguration& way, double wanted, bool closed) {
   return rated;
 }
 
-// Two digits, without a power of ten: 0.0013.
-std::string in_digits(double value) {
-  const int places = value < 10.0 ? 1 - static_cast<int>(std::floor(std::log10(value))) : 0;
-  return fmt::format("{:.{}f}", value, std::max(0, places));
-}
-
 std::string lamp_text(const std::vector<ViewingConfiguration>& ways, double wanted) {
   const ViewingConfiguration* best = nullptr;
   const ViewingConfiguration* tried = nullptr;
@@ -100,7 +94,7 @@ std::string lamp_text(const std::vector<ViewingConfiguration>& ways, double want
   const std::string how =
       factor < 1.0 ? fmt::format("could be dimmed to {}{} %",
                                  factor <= studies::least_lamp_factor ? "less than " : "",
-                                 in_digits(100.0 * factor))
+                                 studies::two_digits(100.0 * factor))
                    : fmt::format("must be {:.2g} times as bright", factor);
   return fmt::format(" {}lamps {} {}; camera {} then still sees it so.", where, best->lamps, how,
                      best->camera);

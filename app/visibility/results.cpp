@@ -200,11 +200,12 @@ std::vector<std::string> notes_of(const StudyResults& results,
     add_notes_of_scene(*parts[k], scene, limits[k], notes);
   }
   for (const CameraEntry& camera : results.cameras) {
-    notes.push_back(fmt::format("Pictures of camera {}: {}.", camera.name, camera.error_text));
     const auto wanted = parts[camera.scene]->loaded.scene.quality.error;
-    if (wanted && *camera.relative_noise > *wanted) {
-      notes.push_back(fmt::format("Limit reached: the scene wants {:.2g} %.", 100.0 * *wanted));
-    }
+    const std::string limit = wanted && *camera.relative_noise > *wanted
+                                  ? fmt::format(", where the scene wants {:.2g} %", 100.0 * *wanted)
+                                  : std::string();
+    notes.push_back(
+        fmt::format("Pictures of camera {}: {}{}.", camera.name, camera.error_text, limit));
   }
   if (!results.complete)
     notes.push_back("The study was stopped before its end; run it again to go on.");

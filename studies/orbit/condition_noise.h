@@ -22,4 +22,7 @@ struct ConditionNoise {
 [[nodiscard]] std::string noise_text(std::span<const ConditionNoise> noise,
                                      std::span<const std::string> names);
 
+// Two significant digits without a power of ten: 0.0013, 2000. value: 0 or more.
+[[nodiscard]] std::string two_digits(double value);
+
 }  // namespace earthshine::studies

@@ -12,6 +12,7 @@ import sys
 
 LAMPS = {"off": 0.0, "bay lamps on": 1.0, "dimmed": 0.3}
 CAMERAS = ["B", "C", "A", "D"]
+WAYS = ["liner", "eureca-arrays", "forward-bulkhead", "aft-bulkhead", "eureca-deck", "tss-deployer", "sills", "arm"]
 TARGETS = ["tss", "eureca", "grapple-fixture", "keel-trunnion", "door-edge"]
 PERIOD_S = 5530.0
 ECLIPSE = (121.0, 239.0)  # degrees of the orbit without the Sun
@@ -101,6 +102,8 @@ def result(condition, position, lamps, camera, target):
             "cut_by_frame": t == 1, "lit_fraction": rounded(0.7 if any(lit.values()) else 0.0),
             "lit_by": [{"group": name, "share": 0.6 if name == "sun" else 0.5} for name, on in lit.items() if on],
             "light_by": [{"group": name, "luminance": rounded(value)} for name, value in by.items() if value > 0],
+            "light_from": [{"from": "earth", "reflected": False, "share": 0.5}] + [
+                {"from": name, "reflected": True, "share": 0.04} for name in WAYS],
             "angle_deg": rounded(cycles / 4), "tv_lines": rounded(2 * cycles), "luminance": rounded(luminance),
             "surround": rounded(luminance / (1 + weber)), "weber": rounded(weber),
             "signal": {"mean": rounded(min(1, luminance / 400)), "surround": rounded(min(1, luminance / 700)),

@@ -23,6 +23,15 @@ TEST(NoiseText, MoreNoiseThanLightHasNoShareOfIt) {
   EXPECT_FALSE(noise_of_condition(0.0, 0.0).relative);
 }
 
+TEST(NoiseText, FiguresHaveTwoDigitsAndNoPowerOfTen) {
+  EXPECT_EQ(two_digits(0.0), "0");
+  EXPECT_EQ(two_digits(0.00001349), "0.000013");
+  EXPECT_EQ(two_digits(0.71), "0.71");
+  EXPECT_EQ(two_digits(7.06), "7.1");
+  EXPECT_EQ(two_digits(99.6), "100");
+  EXPECT_EQ(two_digits(2041.0), "2000");
+}
+
 TEST(NoiseText, DarkConditionsAreStatedInLuminance) {
   const std::array lit = {noise_of_condition(0.2, 4.0), noise_of_condition(0.9, 10.0),
                           noise_of_condition(3.0, 100.0)};
@@ -38,10 +47,10 @@ TEST(NoiseText, DarkConditionsAreStatedInLuminance) {
             "noise of 9 % of the mean in the conditions' pictures, most in 60 deg, on; noise of 3 "
             "cd/m², more than its light, in 90 deg, on");
   std::array dark = some;
-  dark[0] = noise_of_condition(0.04, 0.001);
+  dark[0] = noise_of_condition(2040.0, 0.001);
   dark[1] = ConditionNoise();
   EXPECT_EQ(noise_text(dark, names),
-            "noise of up to 3 cd/m², more than their light, in 2 dark ones, most in 90 deg, on");
+            "noise of up to 2000 cd/m², more than their light, in 2 dark ones, most in 0 deg, on");
   EXPECT_EQ(noise_text(std::array<ConditionNoise, 3>{}, names), "");
 }
 

@@ -1,0 +1,13 @@
+import { pathToFileURL } from "node:url";
+const { chromium } = await import("playwright-core");
+const [folder, out] = process.argv.slice(2);
+const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox"] });
+const context = await browser.newContext({ viewport: { width: 1032, height: 703 }, deviceScaleFactor: 1 });
+const page = await context.newPage();
+await page.goto(pathToFileURL(folder + "/report.html").href);
+await page.waitForTimeout(1000);
+await page.emulateMedia({ media: "print" });
+await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+await page.waitForTimeout(500);
+await page.screenshot({ path: out + "/page1.png", clip: { x: 0, y: 0, width: 1032, height: 1500 }, fullPage: true });
+await browser.close();

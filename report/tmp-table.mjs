@@ -1,0 +1,15 @@
+import { pathToFileURL } from "node:url";
+const { chromium } = await import("playwright-core");
+const [folder, out] = process.argv.slice(2);
+const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox"] });
+const context = await browser.newContext({ viewport: { width: 1280, height: 900 } });
+const page = await context.newPage();
+await page.goto(pathToFileURL(folder + "/report.html").href);
+await page.waitForTimeout(1000);
+await page.evaluate(() => { for (const d of document.querySelectorAll("#figures details")) d.open = true; });
+console.log(await page.evaluate(() => { const r = document.querySelector("tr#r10"); return [...r.cells].map((c) => [c.offsetWidth, c.offsetHeight, c.textContent.slice(0, 80)]); }));
+const r = page.locator("tr#r10"); await r.scrollIntoViewIfNeeded();
+await page.evaluate(() => { const s = document.querySelector("tr#r10").closest(".scroll"); s.scrollLeft = 700; });
+await page.waitForTimeout(300);
+await page.screenshot({ path: out + "/table.png" });
+await browser.close();
