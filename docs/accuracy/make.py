@@ -12,10 +12,14 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 PAGE = ROOT / "docs/accuracy.md"
 BEGIN, END = "<!-- docs/accuracy/make.py writes this: begin -->", "<!-- docs/accuracy/make.py writes this: end -->"
-# Name of the plots, scene, camera, size.
+# Name of the plots, scene, camera, size. Not the closed box and the furnace: all of their surfaces are sources.
 VIEWS = [
     ("cornell", "cornell-box/scene", None, "96x96"),
-    ("day", "sts46/day-earthshine", "B", "96x96"),
+    ("still-life", "still-life/scene", None, "96x72"),
+    ("day", "sts46/day-earthshine", "B", "64x64"),
+    ("sun", "sts46/day-sun", "B", "64x64"),
+    ("night", "sts46/night-lamps", "B", "64x64"),
+    ("lamp-failed", "sts46/night-lamp-failed", "B", "64x64"),
 ]
 
 
@@ -32,7 +36,7 @@ def count(value):
 
 
 def study(program, scene, camera, size, folder):
-    call = ["study", "accuracy", f"scenes/library/{scene}.toml", "--size", size, "--lights", "4,16,64", "--time-limit", "300", "-o",
+    call = ["study", "accuracy", f"scenes/library/{scene}.toml", "--size", size, "--lights", "4,16,64", "--time-limit", "360", "-o",
             str(folder.relative_to(ROOT))]
     call += ["--camera", camera] if camera else []
     subprocess.run([program, *call], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
