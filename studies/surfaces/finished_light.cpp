@@ -73,6 +73,7 @@ void LightOnSurfaces::fill(radiosity::Solution& solution) const {
   close_energy(found);
   found.sky = light_.sky;
   radiosity::FormFactors ends;  // where light ends, of each patch as of its coarse one
+  ends.sky.assign(count, 0.0);  // as many rows, whose entries are not read
   for (const std::uint32_t j : coarse_) {
     ends.kept.push_back(factors_.kept[j]);
     if (!factors_.kept_direct.empty()) ends.kept_direct.push_back(factors_.kept_direct[j]);

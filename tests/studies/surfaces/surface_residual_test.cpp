@@ -181,6 +181,9 @@ TEST(ReachSurfaces, EnergyIsClosedAfterCorrection) {
   EXPECT_LE(found.surface.parts.total().estimate, 0.05);
   for (const radiosity::GroupLedger& group : found.solution.report.groups) {
     EXPECT_LT(group.imbalance, 1e-9) << group.name;
+    const double there = base::luminance(group.emitted_lm + group.landed_lm);
+    EXPECT_GT(there, 0.0) << group.name;
+    EXPECT_NEAR(base::luminance(group.absorbed_lm + group.escaped_lm), there, 1e-9 * there);
   }
 }
 
