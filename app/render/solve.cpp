@@ -162,7 +162,9 @@ std::string solve_text(const Json& json) {
                         rounds.back()["error"].get<double>());
   }
   text += ledger_text(json["groups"]);
-  text += "\nAll by luminance, 0.2126 R + 0.7152 G + 0.0722 B; by channel: --json\n";
+  text +=
+      "\nAll by luminance, 0.2126 R + 0.7152 G + 0.0722 B; by channel: --json\n"
+      "Of objects, means over what no body covers\n";
   text += fmt::format("{:<24} {:>12} {:>14} {:>16}\n", "object", "area m2", "illuminance lx",
                       "radiosity lm/m2");
   for (const Json& o : json["objects"]) {

@@ -229,7 +229,10 @@ std::string covered(const Found& found) {
 }
 
 std::string text_of(const Found& found) {
-  std::string text = found.names.size() <= widest_table ? matrix(found) : largest_entries(found);
+  std::string text =
+      "F, no unit: of diffuse light from the first, even over its open area, the share\n"
+      "that lands on the other, leaves for the sky or meets black backs\n\n";
+  text += found.names.size() <= widest_table ? matrix(found) : largest_entries(found);
   text += covered(found);
   double worst_error = 0.0;
   for (const auto& row : found.between.std_error) {
