@@ -59,7 +59,8 @@ inline constexpr std::array sight_columns = {
                  Form::Percent, false},
     FigureColumn{noise_of<&studies::ConditionNoise::relative>, "noise of the picture, %",
                  Form::Percent, false},
-    FigureColumn{noise_of<&studies::ConditionNoise::cd_m2>, "the same, cd/m²", Form::Plain, false},
+    FigureColumn{noise_of<&studies::ConditionNoise::cd_m2>, "noise of the picture, cd/m²",
+                 Form::Plain, false},
     FigureColumn{sight_of<&studies::Sight::saturated>, "saturated, %", Form::Percent, false},
     FigureColumn{sight_of<&studies::Sight::crushed>, "crushed, %", Form::Percent, false},
 };

@@ -180,10 +180,37 @@ void LightSampler::add(Light light, int copies) {
   }
 }
 
+namespace {
+
+// Light from d, within the angle a of the disc's middle s, meets the mirror's plane at h d / (d n)
+// from the image of a point at the height h: no more than 2 a h / ((s n) (s n - a)) from where that
+// of the middle does.
+bool sun_may_reach(const scenes::Sun& sun, const scenes::FlatMirror* mirror, const Vec3& point,
+                   const Vec3& normal) {
+  constexpr double rounding = 1e-9;
+  const double angle = base::radians(sun.angular_radius_deg) + rounding;
+  if (mirror == nullptr) return glm::dot(sun.direction, normal) >= -angle;
+  const double height = mirror->height_m(point), rise = glm::dot(sun.direction, mirror->normal);
+  if (height <= 0.0 || rise <= -angle) return false;
+  if (glm::dot(sun.direction, mirror->turned(normal)) < -angle) return false;
+  if (rise <= 2.0 * angle) return true;
+  const Vec3 off = mirror->image(point) + height / rise * sun.direction - mirror->centre;
+  const double margin = 2.0 * angle * height / (rise * (rise - angle));
+  const double farthest = (mirror->radius_m + margin) * (1.0 + 1e-6);
+  return glm::dot(off, off) <= farthest * farthest;
+}
+
+}  // namespace
+
 bool LightSampler::may_reach(std::size_t index, const Vec3& point, const Vec3& normal) const {
   constexpr double rounding = 1e-9;
   const Light& light = lights_[index];
   const scenes::FlatMirror* mirror = light.mirror;
+  if (light.kind == Kind::Sun || light.kind == Kind::SunPart) {
+    const scenes::Sun& sun =
+        light.kind == Kind::Sun ? *scene_.sun : scene_.sky_parts->suns[light.index];
+    return sun_may_reach(sun, mirror, point, normal);
+  }
   const OneRay& ray = one_rays_[index];
   const Vec3 way = ray.position - point;
   if (ray.is_all) {
@@ -195,17 +222,10 @@ bool LightSampler::may_reach(std::size_t index, const Vec3& point, const Vec3& n
   }
   const double height = mirror != nullptr ? mirror->height_m(point) : 0.0;
   if (mirror != nullptr && height <= 0.0) return false;
-  if (ray.is_all) {
-    if (mirror == nullptr) return true;
-    if (ray.lamp_height_m <= 0.0) return false;
-    const Vec3 off = point + height / (height + ray.lamp_height_m) * way - mirror->centre;
-    return glm::dot(off, off) <= mirror->radius_m * mirror->radius_m * (1.0 + 2e-6);
-  }
-  if (light.kind != Kind::Sun && light.kind != Kind::SunPart) return true;
-  const scenes::Sun& sun =
-      light.kind == Kind::Sun ? *scene_.sun : scene_.sky_parts->suns[light.index];
-  const Vec3 facing = mirror != nullptr ? mirror->turned(normal) : normal;
-  return glm::dot(sun.direction, facing) >= -base::radians(sun.angular_radius_deg) - rounding;
+  if (!ray.is_all || mirror == nullptr) return true;
+  if (ray.lamp_height_m <= 0.0) return false;
+  const Vec3 off = point + height / (height + ray.lamp_height_m) * way - mirror->centre;
+  return glm::dot(off, off) <= mirror->radius_m * mirror->radius_m * (1.0 + 2e-6);
 }
 
 scenes::LightSample LightSampler::sample(std::size_t index, const Vec3& point, double u,

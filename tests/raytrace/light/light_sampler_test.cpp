@@ -151,5 +151,46 @@ TEST(LightSampler, NearestLampOnARayIsSeen) {
   EXPECT_GT(seen_count, 50);
 }
 
+// Of a Sun of 5 degrees and a small mirror, what any sample throws on a surface may reach it, from
+// the mirror's rim and at grazing incidence too; most surfaces are told without a sample.
+TEST(LightSampler, NoSunIsLeftOutThatAMirrorThrows) {
+  tests::SceneBuilder builder;
+  scenes::Material silver = tests::grey(0.0);
+  silver.mirror = Rgb(0.9);
+  builder.plate(builder.material(silver), 1.0, 0.0, true);
+  base::Rng rng(base::Key(1, base::Stream::Test, 81));
+  std::size_t thrown_count = 0, may_count = 0, all_count = 0;
+  for (const double height_deg : {2.0, 10.0, 40.0, 85.0}) {
+    scenes::Sun sun;
+    const double angle = base::radians(height_deg);
+    sun.direction = Vec3(std::cos(angle), 0, std::sin(angle));
+    sun.illuminance_lx = Rgb(1000.0);
+    sun.angular_radius_deg = 5.0;
+    builder.scene.sun = sun;
+    const tests::Prepared prepared(builder.scene);
+    const LightSampler lights(prepared, Indirect::None, 1, false, std::nullopt,
+                              prepared.query.ways().mirrors());
+    ASSERT_EQ(lights.count(), 2U);  // it and its image
+    for (int n = 0; n < 20000; ++n) {
+      const double x = rng.next(), y = rng.next(), z = rng.next();
+      const Vec3 point(6.0 * x - 5.0, 3.0 * y - 1.5, 2.0 * z);
+      const double cosine = 2.0 * rng.next() - 1.0, phi = 2.0 * base::pi * rng.next();
+      const double sine = std::sqrt(1.0 - cosine * cosine);
+      const Vec3 normal(sine * std::cos(phi), sine * std::sin(phi), cosine);
+      const double u = rng.next(), v = rng.next();
+      const bool may = lights.may_reach(1, point, normal);
+      const scenes::LightSample sample = lights.sample(1, point, u, v);
+      const bool lit =
+          base::is_lit(sample.normal_illuminance_lx) && glm::dot(sample.direction, normal) > 0.0;
+      EXPECT_TRUE(may || !lit) << height_deg << ' ' << n;
+      thrown_count += lit ? 1 : 0;
+      may_count += may ? 1 : 0;
+      ++all_count;
+    }
+  }
+  EXPECT_GT(thrown_count, 1000U);
+  EXPECT_LT(may_count, all_count / 2);
+}
+
 }  // namespace
 }  // namespace earthshine::raytrace
