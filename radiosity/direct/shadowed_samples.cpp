@@ -122,6 +122,10 @@ void take_samples(const Source& source, std::span<const scenes::FlatMirror> mirr
     if (mirror.height_m(point) <= 0.0) continue;
     const Vec3 turned = mirror.turned(normal);
     if (source.is_below_horizon(turned)) continue;
+    const auto& disc = source.disc;
+    if (disc && !scenes::disc_may_be_thrown(disc->direction, disc->angle_rad, mirror, point)) {
+      continue;
+    }
     std::size_t kept = samples.size();
     add_samples(source, mirror.image(point), turned, u, v, samples);
     for (std::size_t k = kept; k < samples.size(); ++k) {

@@ -16,11 +16,11 @@
 
 namespace earthshine::radiosity {
 
-// A disc of the sky, and the cosine between its middle and a normal below which none of it is above
-// the horizon.
+// A disc of the sky; the cosine between its middle and a normal below which none of it is above the
+// horizon.
 struct Disc {
   Vec3 direction;
-  double lowest_cosine;
+  double angle_rad, lowest_cosine;
 };
 
 // A source as the patches see it.

@@ -42,7 +42,7 @@ LightSource free_sun_source(const scenes::Sun& sun, std::uint64_t key, std::size
   const double radius = base::radians(sun.angular_radius_deg);
   const Rgb illuminance = scenes::sun_sample_illuminance(sun);
   Source source;
-  source.disc = Disc{sun.direction, -std::sin(radius) - rounding};
+  source.disc = Disc{sun.direction, radius + rounding, -std::sin(radius) - rounding};
   source.key = key;
   source.group = group;
   source.points = points;

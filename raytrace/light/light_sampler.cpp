@@ -182,22 +182,13 @@ void LightSampler::add(Light light, int copies) {
 
 namespace {
 
-// Light from d, within the angle a of the disc's middle s, meets the mirror's plane at h d / (d n)
-// from the image of a point at the height h: no more than 2 a h / ((s n) (s n - a)) from where that
-// of the middle does.
 bool sun_may_reach(const scenes::Sun& sun, const scenes::FlatMirror* mirror, const Vec3& point,
                    const Vec3& normal) {
   constexpr double rounding = 1e-9;
   const double angle = base::radians(sun.angular_radius_deg) + rounding;
-  if (mirror == nullptr) return glm::dot(sun.direction, normal) >= -angle;
-  const double height = mirror->height_m(point), rise = glm::dot(sun.direction, mirror->normal);
-  if (height <= 0.0 || rise <= -angle) return false;
-  if (glm::dot(sun.direction, mirror->turned(normal)) < -angle) return false;
-  if (rise <= 2.0 * angle) return true;
-  const Vec3 off = mirror->image(point) + height / rise * sun.direction - mirror->centre;
-  const double margin = 2.0 * angle * height / (rise * (rise - angle));
-  const double farthest = (mirror->radius_m + margin) * (1.0 + 1e-6);
-  return glm::dot(off, off) <= farthest * farthest;
+  const Vec3 facing = mirror != nullptr ? mirror->turned(normal) : normal;
+  if (glm::dot(sun.direction, facing) < -angle) return false;
+  return mirror == nullptr || scenes::disc_may_be_thrown(sun.direction, angle, *mirror, point);
 }
 
 }  // namespace

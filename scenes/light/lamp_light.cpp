@@ -214,4 +214,18 @@ LightSample thrown(const LightSample& sample, const FlatMirror& mirror, std::uin
   return {mirror.turned(sample.direction), sample.distance_m, sample.normal_illuminance_lx, number};
 }
 
+// Light from d, within the angle a of the disc's middle s, meets the mirror's plane at h d / (d n)
+// from the image of a point at the height h: no more than 2 a h / ((s n) (s n - a)) from where that
+// of the middle does.
+bool disc_may_be_thrown(const Vec3& direction, double angle, const FlatMirror& mirror,
+                        const Vec3& point) {
+  const double height = mirror.height_m(point), rise = glm::dot(direction, mirror.normal);
+  if (height <= 0.0 || rise <= -angle) return false;
+  if (rise <= 2.0 * angle) return true;
+  const Vec3 off = mirror.image(point) + height / rise * direction - mirror.centre;
+  const double margin = 2.0 * angle * height / (rise * (rise - angle));
+  const double farthest = (mirror.radius_m + margin) * (1.0 + 1e-6);
+  return glm::dot(off, off) <= farthest * farthest;
+}
+
 }  // namespace earthshine::scenes

@@ -90,6 +90,11 @@ class Cone {
 [[nodiscard]] LightSample thrown(const LightSample& sample, const FlatMirror& mirror,
                                  std::uint32_t number, const Vec3& point);
 
+// False where the mirror lies elsewhere for all of a distant disc of that angle, in radians: told
+// without a sample.
+[[nodiscard]] bool disc_may_be_thrown(const Vec3& direction, double angle, const FlatMirror& mirror,
+                                      const Vec3& point);
+
 // What tells the kinds of lamps apart, a row each; their light is in lamp_light.h, their keys in
 // scenes/read/lamp.cpp.
 
