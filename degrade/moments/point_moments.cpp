@@ -85,7 +85,8 @@ constexpr int before = 2, after = 3;  // nodes of the fifth-degree polynomial ar
 struct Row {
   double sigma = 0.0;
   std::int64_t first = 0, last = -1;
-  std::vector<PointMoments> at;
+  using Node = std::array<double, 4>;  // mean, variance, slope, curvature
+  std::vector<Node> at;
 
   void cover(double low, double high) {
     const std::int64_t from =
@@ -101,8 +102,9 @@ struct Row {
 using Weights = std::array<double, before + 1 + after>;
 Weights lagrange(double t) {
   const double a = t + 2.0, b = t + 1.0, c = t, d = t - 1.0, e = t - 2.0, f = t - 3.0;
-  return {-b * c * d * e * f / 120.0, a * c * d * e * f / 24.0,  -a * b * d * e * f / 12.0,
-          a * b * c * e * f / 12.0,   -a * b * c * d * f / 24.0, a * b * c * d * e / 120.0};
+  const double ab = a * b, cd = c * d, ef = e * f;
+  return {(-1.0 / 120.0) * b * cd * ef, (1.0 / 24.0) * a * cd * ef,  (-1.0 / 12.0) * ab * d * ef,
+          (1.0 / 12.0) * ab * c * ef,   (-1.0 / 24.0) * ab * cd * f, (1.0 / 120.0) * ab * cd * e};
 }
 
 double row_sigma(int level) { return std::exp(level * log_spacing); }
@@ -141,32 +143,33 @@ class Table {
       base::parallel_chunks(row.at.size(), 64, [&, r = &row](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           const double node = static_cast<double>(r->first + static_cast<std::int64_t>(i));
-          r->at[i] = through(map, node * spacing * r->sigma, r->sigma);
+          const PointMoments m = through(map, node * spacing * r->sigma, r->sigma);
+          r->at[i] = {m.mean, m.variance, m.slope, m.curvature};
         }
       });
     }
   }
 
   [[nodiscard]] std::optional<PointMoments> operator()(double mean, double sigma) const {
-    const int level = level_of(sigma);
+    const double log_sigma = std::log(sigma) / log_spacing, below = std::floor(log_sigma);
+    const int level = static_cast<int>(below);
     if (!std::binary_search(tabulated_.begin(), tabulated_.end(), level)) return {};
-    const Weights across = lagrange(std::log(sigma) / log_spacing - level);
-    PointMoments sum;
+    const Weights across = lagrange(log_sigma - below);
+    Row::Node all{};
     auto row = rows_.find(level - before);
     for (std::size_t j = 0; j < across.size(); ++j, ++row) {
       const Row& r = row->second;
       const double place = mean / (spacing * r.sigma), node = std::floor(place);
       const Weights along = lagrange(place - node);
-      const PointMoments* at =
+      const Row::Node* at =
           &r.at[static_cast<std::size_t>(static_cast<std::int64_t>(node) - before - r.first)];
+      Row::Node of_row{};
       for (std::size_t k = 0; k < along.size(); ++k) {
-        const double weight = across[j] * along[k];
-        sum.mean += weight * at[k].mean;
-        sum.variance += weight * at[k].variance;
-        sum.slope += weight * at[k].slope;
-        sum.curvature += weight * at[k].curvature;
+        for (std::size_t m = 0; m < of_row.size(); ++m) of_row[m] += along[k] * at[k][m];
       }
+      for (std::size_t m = 0; m < all.size(); ++m) all[m] += across[j] * of_row[m];
     }
+    PointMoments sum{all[0], all[1], all[2], all[3]};
     // A polynomial may overshoot where the variance dies away.
     sum.slope = std::max(sum.slope, 0.0);
     const double first = sum.slope * sigma, second = sum.curvature * sigma * sigma;
