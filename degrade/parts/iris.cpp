@@ -45,11 +45,11 @@ double power_mean(const Plane& luminance, int columns, int rows, double p, doubl
     const double u = (2.0 * i + 1.0) / n - 1.0;
     return 1.0 - u * u;
   };
+  // The fourth power, which is the usual one, without std::pow().
   const auto raised = [p](double value) {
     const double squared = value * value;
-    return p == 1.0 ? value : p == normal_power ? squared * squared : std::pow(value, p);
+    return p == 1.0 ? value : p == 4.0 ? squared * squared : std::pow(value, p);
   };
-  static_assert(normal_power == 4.0);
   double sum = 0.0, weights = 0.0;
   for (int y = 0; y < rows; ++y) {
     const double bell_y = bell(y, rows);
