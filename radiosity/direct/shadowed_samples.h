@@ -16,8 +16,8 @@
 
 namespace earthshine::radiosity {
 
-// A disc of the sky; the cosine between its middle and a normal below which none of it is above the
-// horizon.
+// A disc of the sky and its angular radius; the cosine between its middle and a normal below which
+// none of it is above the horizon.
 struct Disc {
   Vec3 direction;
   double angle_rad, lowest_cosine;

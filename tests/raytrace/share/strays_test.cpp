@@ -199,6 +199,32 @@ TEST(Peers, NoiseOfOneSurfaceIsTheirMeans) {
   EXPECT_LT(stated, q / 2.0);
 }
 
+TEST(Peers, MoreSamplesAreStatedAsWhatTheyAre) {
+  // A sample has the variance v = 2; every tenth stray has 200, its six peers 2 each. They differ
+  // by far more than that, so that all of their own is kept: what is stated is v / 200, and the
+  // noise of the mean of all seven, (6 v / 2 + v / 200) / 7^2. Both are found from the squares of
+  // six normal numbers at each of 400 places.
+  constexpr std::size_t count = 4000;
+  constexpr double v = 2.0;
+  Row row(count);
+  base::Rng rng(base::Key(7, base::Stream::Test, 15));
+  const auto normal = [&] {
+    return std::sqrt(-2.0 * std::log(1.0 - rng.next())) * std::cos(2.0 * base::pi * rng.next());
+  };
+  for (std::size_t k = 0; k < count; ++k) {
+    const double samples = k % 10 == 5 ? 200.0 : 2.0, noise = std::sqrt(v / (samples / 2.0));
+    const double truth = 100.0 + 10.0 * normal();
+    row.written.sample(k, truth + noise * normal(), truth + noise * normal(), samples);
+  }
+  row.share();
+  double stated = 0.0;
+  for (std::size_t k = 5; k < count; k += 10) {
+    stated += double(row.written.shared.squared_error[1 + k]) / (count / 10.0);
+  }
+  const double expected = v / 200.0 + (6.0 * v / 2.0 + v / 200.0) / 49.0;
+  EXPECT_NEAR(stated, expected, 4.0 * expected * std::sqrt(2.0 / (6.0 * count / 10.0)));
+}
+
 TEST(Peers, OneThatWasNotSampledIsTheMeanOfThoseThatWere) {
   Row row(7);
   for (const std::size_t k : {0U, 1U, 2U, 4U, 5U, 6U}) row.written.sample(k, 3.0, 3.0);
