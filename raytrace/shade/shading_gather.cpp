@@ -14,6 +14,9 @@ namespace {
 // Gather rays of a camera sample that finds no gather point for its surface: a lens out of focus, a
 // wire thinner than a pixel.
 constexpr int rays_without_point = 2;
+// Of a pixel, the samples that read a point beside it instead: rays of a few would show as a lone
+// dark or coloured pixel. What that is off by goes to nothing with more samples.
+constexpr std::size_t samples_beside = 16;
 // And of one that was met by mirrors or glass.
 constexpr int rays_behind_mirror = 2;
 constexpr std::size_t most_shadow_rays = 256;  // that wait to be traced together
@@ -47,7 +50,8 @@ std::size_t PixelShader::find_point(const Surface& surface, Gathered kind) const
   const Sighting place{glm::vec3(seen - shared_.camera_position), glm::vec3(normal),
                        mirror_.has_value()};
   const std::size_t own = field.find(x_, y_, place);
-  return own != no_point ? own : field.find_beside(x_, y_, place, kind);
+  return own != no_point || sample_ >= samples_beside ? own
+                                                      : field.find_beside(x_, y_, place, kind);
 }
 
 FieldTerm& PixelShader::term_of(std::size_t point) {

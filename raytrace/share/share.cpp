@@ -13,6 +13,8 @@ namespace {
 // counts when details are kept.
 constexpr float doubt = 1.5F;
 constexpr std::size_t noise_fields = 4;
+// Noise over signal of what has no samples: nothing of it is kept.
+constexpr float unsampled = 1e6F;
 constexpr std::size_t layers_at_once = 4;
 constexpr std::size_t points_at_once = 1024;
 
@@ -46,7 +48,9 @@ double Shared::squared_error_with(std::size_t point, double factor) const {
   const auto more = static_cast<float>(factor);
   Left left{rest[point] / more, 0.0F};
   for (std::size_t level = 0; level < share_levels; ++level) {
-    left.add(signal[point][level], noise[point][level] / more, few[point][level]);
+    const float least = level == 0 && !doubt.empty() ? doubt[point] / more : 0.0F;
+    const float s = least > 0.0F ? std::max(signal[point][level], least) : signal[point][level];
+    left.add(s, noise[point][level] / more, few[point][level]);
   }
   return double(left.all());
 }
@@ -124,6 +128,7 @@ class Sharer {
     weight_ = std::move(weight.front());
     for (std::size_t level = 0; level < share_levels; ++level) {
       step(level, values, detail);
+      expect(level);
       take_squares(detail);
       blur_squares(level);
       keep(level);
@@ -133,18 +138,48 @@ class Sharer {
     shared_.rest.resize(points_);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
-        shared_.rest[p] = noise_of(p).mean;
+        shared_.rest[p] = expected_[p] * noise_of(p).mean;
         shared_.squared_error[p] = static_cast<float>(shared_.squared_error_with(p, 1.0));
       }
     });
   }
 
+  // Squares over what noise is expected of the samples there, and, last, the weights that this is.
   void take_squares(const Planes& values) {
-    squares_.resize(values.size());
+    squares_.resize(values.size() + 1);
     for (std::vector<float>& of : squares_) of.resize(points_);
     for_all([&](std::size_t begin, std::size_t end) {
+      std::vector<float>& weight = squares_.back();
+      for (std::size_t p = begin; p < end; ++p) {
+        weight[p] = expected_[p] > 0.0F ? 1.0F / expected_[p] : 0.0F;
+      }
       for (std::size_t k = 0; k < values.size(); ++k) {
-        for (std::size_t p = begin; p < end; ++p) squares_[k][p] = values[k][p] * values[k][p];
+        for (std::size_t p = begin; p < end; ++p) {
+          squares_[k][p] = weight[p] * values[k][p] * values[k][p];
+        }
+      }
+    });
+  }
+
+  // Relative mean squares of the details' noise, by the samples there and around. Of a
+  // sample-weighted mean over B-spline weights k: own weight w = k0 n / N, N = sum k n; noise of
+  // the own value (1 - w)^2 / n, of the others' about (K / N - w^2 / n), K = sum k^2.
+  void expect(std::size_t level) {
+    constexpr float own = 9.0F / 64.0F, squares = 0.0748F;
+    expected_.resize(points_);
+    for_all([&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
+        const float n = estimate_.samples[p], around = weight_[p];
+        if (around <= 0.0F) {
+          expected_[p] = 0.0F;
+        } else if (level > 0) {
+          expected_[p] = 1.0F / around;
+        } else if (n <= 0.0F) {
+          expected_[p] = 0.0F;
+        } else {
+          const float w = own * n / around;
+          expected_[p] = (1.0F - w) * (1.0F - w) / n + std::max(0.0F, squares / around - w * w / n);
+        }
       }
     });
   }
@@ -168,7 +203,10 @@ class Sharer {
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
         const Noise noise = noise_of(p);
-        const float q = noise.mean, s = squares_[0][p] - q;
+        const float weight = squares_.back()[p];
+        const float s = weight > 0.0F ? (squares_[0][p] - noise.mean) / weight : 0.0F;
+        const float q =
+            expected_[p] > 0.0F ? expected_[p] * noise.mean : unsampled * std::max(0.0F, s);
         keep_[p][level] = kept_share(s, q);
         shared_.signal[p][level] = s;
         shared_.noise[p][level] = q;
@@ -233,6 +271,7 @@ class Sharer {
   Shared shared_;
   std::vector<std::array<float, share_levels>> keep_;
   std::vector<float> weight_;
+  std::vector<float> expected_;
   Planes coarse_, squares_;
 };
 

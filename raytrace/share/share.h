@@ -7,8 +7,10 @@
 // halves of independent samples, a and b. (a - b) / 2 has the noise of their mean, and has it still
 // where each point's sign is drawn anew: so many fields of noise as are wanted, whose means over
 // small surfaces are known better than one (the wild bootstrap; Wu 1986). Of a detail d, means over
-// its surroundings are
-//   noise  q = <n^2> over these fields' details n     energy  D = <d^2>, signal s = D - q
+// its surroundings are, with e the noise that is expected of the samples that a detail is made of,
+// relative to others,
+//   noise  q = e <n^2 / e> over these fields' details n
+//   signal s = (<d^2 / e> - <n^2 / e>) / <1 / e>,     energy D = s + q
 // and the detail is kept by c = s / (s + q) or less (Wiener), which leaves, in the mean and with
 // what choosing c by the same d makes it look better (Stein 1981; N: how many details the means
 // are over),
@@ -113,6 +115,8 @@ struct Shared {
   // noise, and 1 / N, by level; noise of the rest.
   std::vector<std::array<float, share_levels>> signal, noise, few;
   std::vector<float> rest;
+  // Of strays, below which their signal cannot be told from none; empty without strays.
+  std::vector<float> doubt;
   std::vector<float> squared_error;  // stated
 
   // What the squared error would be with `factor` times the samples here and around.

@@ -20,10 +20,57 @@ float luminance_at(const std::vector<glm::vec3>& radiance, std::size_t point, st
   return static_cast<float>(base::luminance(Rgb(sum)));
 }
 
-// Sums over the strays of a region.
-struct Region {
-  double energy = 0.0, noise = 0.0, count = 0.0;
-  double of_sample = 0.0;  // noise of one sample
+// What strays that are held to be alike say of how far they are off what stands for them: the
+// squares found, less the noise of these. Those whose noise is small against the signal count the
+// more (weights 1 / (s + q)^2, which are best for normal numbers; found in a few rounds).
+class Differences {
+ public:
+  void add(float squared, float noise, float samples) {
+    squared_.push_back(squared);
+    samples_.push_back(samples);
+    of_sample_ += double(noise) * double(samples);
+  }
+  void find() {
+    if (squared_.empty()) return;
+    of_sample_ /= static_cast<double>(squared_.size());
+    double sum = 0.0;
+    for (std::size_t k = 0; k < squared_.size(); ++k) sum += double(squared_[k]) - noise_of(k);
+    signal_ = sum / static_cast<double>(squared_.size());
+    for (int round = 0; round < rounds; ++round) weigh();
+  }
+  [[nodiscard]] float noise(float samples) const {
+    return static_cast<float>(of_sample_ / double(samples));
+  }
+  [[nodiscard]] float signal() const { return static_cast<float>(signal_); }
+  // Standard error of the signal, by noise alone.
+  [[nodiscard]] float doubt() const { return static_cast<float>(doubt_); }
+  // 1 / N, for Stein's term.
+  [[nodiscard]] float few(float noise) const {
+    const double all = std::max(0.0, signal_) + double(noise);
+    return known_ > 0.0 ? static_cast<float>(std::min(1.0, 1.0 / (known_ * all * all))) : 1.0F;
+  }
+
+ private:
+  static constexpr int rounds = 4;
+  [[nodiscard]] double noise_of(std::size_t k) const { return of_sample_ / double(samples_[k]); }
+  void weigh() {
+    double sum = 0.0, of_noise = 0.0;
+    known_ = 0.0;
+    for (std::size_t k = 0; k < squared_.size(); ++k) {
+      const double q = noise_of(k), all = std::max(0.0, signal_) + q;
+      if (all <= 0.0) continue;
+      const double weight = 1.0 / (all * all);
+      known_ += weight;
+      sum += weight * (double(squared_[k]) - q);
+      of_noise += weight * weight * q * q;
+    }
+    if (known_ <= 0.0) return;
+    signal_ = sum / known_;
+    doubt_ = std::sqrt(2.0 * of_noise) / known_;
+  }
+
+  std::vector<float> squared_, samples_;
+  double of_sample_ = 0.0, signal_ = 0.0, known_ = 0.0, doubt_ = 0.0;
 };
 
 }  // namespace
@@ -38,11 +85,12 @@ void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared&
   shared.noise.resize(all);
   shared.few.resize(all);
   shared.rest.resize(all, 0.0F);
+  shared.doubt.assign(all, 0.0F);
   shared.squared_error.resize(all, 0.0F);
 
   std::uint32_t last = 0;
   for (const Stray& stray : strays) last = std::max(last, stray.region);
-  std::vector<Region> regions(last + 1U);
+  std::vector<Differences> regions(last + 1U);
   std::vector<float> noise(strays.size(), 0.0F);
   for (std::size_t k = 0; k < strays.size(); ++k) {
     const float half = 0.5F * estimate.samples[grid + k];
@@ -53,26 +101,22 @@ void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared&
     if (strays[k].base == no_base) continue;
     const float more = 0.5F * (first + second) / half -
                        luminance_at(shared.radiance, strays[k].base, layers, estimate.image_layers);
-    Region& region = regions[strays[k].region];
-    region.energy += double(more * more);
-    region.noise += double(noise[k]);
-    region.of_sample += double(noise[k]) * double(estimate.samples[grid + k]);
-    region.count += 1.0;
+    regions[strays[k].region].add(more * more, noise[k], estimate.samples[grid + k]);
   }
+  for (Differences& region : regions) region.find();
   for (std::size_t k = 0; k < strays.size(); ++k) {
     const std::size_t point = grid + k;
     const bool sampled = estimate.samples[point] > 0.0F, has_base = strays[k].base != no_base;
     float keep = sampled ? 1.0F : 0.0F;
     shared.signal[point] = shared.noise[point] = shared.few[point] = {};
     if (has_base) {
-      const Region& region = regions[strays[k].region];
-      const double count = std::max(1.0, region.count);
-      const auto s = static_cast<float>((region.energy - region.noise) / count);
-      const auto of_sample = static_cast<float>(region.of_sample / count);
-      const float q = sampled ? of_sample / estimate.samples[point] : alone * std::max(0.0F, s);
-      shared.signal[point][0] = s;
+      const Differences& region = regions[strays[k].region];
+      const float s = std::max(region.signal(), region.doubt());
+      const float q = sampled ? region.noise(estimate.samples[point]) : alone * s;
+      shared.signal[point][0] = region.signal();
+      shared.doubt[point] = region.doubt();
       shared.noise[point][0] = q;
-      shared.few[point][0] = static_cast<float>(1.0 / count);
+      shared.few[point][0] = region.few(q);
       if (sampled) keep = kept_share(s, q);
     } else {
       shared.signal[point][0] = alone * noise[k];
