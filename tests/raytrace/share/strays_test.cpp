@@ -71,6 +71,22 @@ TEST(Strays, WhatIsNoNoiseIsKeptWhole) {
   for (std::size_t k = 0; k < 8; ++k) EXPECT_NEAR(written.value(k), 4.0 + double(k), 1e-5);
 }
 
+TEST(Strays, WhatNoiseHidesIsNotStatedAsNone) {
+  // Halves of 10 - 3 and 10 + 3, whose mean is what the surface says: the squares found, 0, less
+  // the noise q = 9 are below zero. Nothing of their own is kept; the signal may be as much as the
+  // standard error of a mean of nine squares, q sqrt(2 / 9). Four times the samples have a quarter
+  // of that.
+  Written written(9);
+  for (std::size_t k = 0; k < 9; ++k) written.sample(k, 7.0, 13.0);
+  add_strays(written.strays, written.estimate, written.shared);
+  const double hidden = 9.0 * std::sqrt(2.0 / 9.0);
+  for (std::size_t k = 0; k < 9; ++k) {
+    EXPECT_EQ(written.value(k), 10.0);
+    EXPECT_NEAR(double(written.shared.squared_error[1 + k]), hidden, 1e-5);
+    EXPECT_NEAR(written.shared.squared_error_with(1 + k, 4.0), hidden / 4.0, 1e-5);
+  }
+}
+
 TEST(Strays, TheirErrorIsAsStated) {
   // True differences of variance s from what the surface says, means of two samples of noise q:
   // keeping c of what is found leaves (1 - c)^2 s + c^2 q in the mean. Means of squares of normal
