@@ -160,6 +160,12 @@ SolveOptions solve_options(const scenes::QualityKnobs& knobs, std::uint64_t seed
            knobs.refine_error}};
 }
 
+Solution unsolved(const scenes::LightGroups& groups) {
+  Solution solution;
+  solution.columns = 3 * groups.count();
+  return solution;
+}
+
 bool is_lit(const scenes::Effects& effects) {
   return effects.sun || effects.sun_parts || effects.earth || effects.lamps || effects.emitters;
 }

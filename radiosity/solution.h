@@ -121,6 +121,10 @@ struct SolveVariant {
 [[nodiscard]] Solution solve(const scenes::World& world, const SolveOptions& options,
                              Patches patches, const SolveVariant& variant = {});
 
+// What there is of a solution that was not come to: no light. Pictures that read it find all light
+// by the paths that look for what a solution lacks.
+[[nodiscard]] Solution unsolved(const scenes::LightGroups& groups);
+
 // Whether there is any light to solve for. The ambient term is no source: it lights what the camera
 // sees and bounces nowhere.
 [[nodiscard]] bool is_lit(const scenes::Effects& effects);

@@ -218,6 +218,7 @@ class Passes {
   }
 
   void count_gather_rays() {
+    if (!field_->gathers(Gathered::Solution)) return;
     double rays = 0.0, points = 0.0;
     for (std::size_t p = 0; p < field_->points().size(); ++p) {
       const float samples = field_->samples(Gathered::Solution, p);
