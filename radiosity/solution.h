@@ -34,6 +34,7 @@ struct SolveOptions {
   double tolerance = 1e-8;      // of B, relative to each right-hand side's largest (linear_solve.h)
   std::uint64_t seed = 1;
   RefineOptions refine = {};
+  int flux_rays = 1 << 16;  // shot from each lamp (DirectOptions); at most
 };
 
 // The solver's part of the accuracy knobs.
