@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <ctime>
+#include <utility>
 
 #ifdef __SANITIZE_THREAD__
 #include <exception>
@@ -16,6 +17,12 @@
 #endif
 
 namespace earthshine::base {
+
+namespace {
+
+std::atomic<const std::function<bool()>*> stop_in_force{nullptr};
+
+}  // namespace
 
 #ifdef __SANITIZE_THREAD__
 namespace {
@@ -57,6 +64,12 @@ ThreadLimit::ThreadLimit(int threads)
 
 ThreadLimit::~ThreadLimit() { delete static_cast<tbb::global_control*>(control_); }
 
+StopInForce::StopInForce(std::function<bool()> asked) : asked_(std::move(asked)) {
+  stop_in_force = &asked_;
+}
+
+StopInForce::~StopInForce() { stop_in_force = nullptr; }
+
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 // No more than cores, and than the ThreadLimit in force allows.
@@ -70,7 +83,11 @@ void parallel_chunks(std::size_t count, std::size_t chunk,
                      const std::function<void(std::size_t, std::size_t)>& body) {
   if (count == 0) return;
   const std::size_t chunks = (count + chunk - 1) / chunk;
-  const auto run = [&](std::size_t k) { body(k * chunk, std::min(count, (k + 1) * chunk)); };
+  const std::function<bool()>* const stops = stop_in_force;
+  const auto run = [&](std::size_t k) {
+    if (stops != nullptr && *stops && (*stops)()) throw Stopped();
+    body(k * chunk, std::min(count, (k + 1) * chunk));
+  };
 #ifdef __SANITIZE_THREAD__
   run_on_plain_threads(chunks, run);
 #else

@@ -28,6 +28,20 @@ class ThreadLimit {
 // in it.
 [[nodiscard]] double cpu_seconds();
 
+// While it lives, parallel loops end by throwing Stopped once `asked` says true. It is asked from
+// many threads, between chunks. One at a time.
+struct Stopped {};
+class StopInForce {
+ public:
+  explicit StopInForce(std::function<bool()> asked);
+  ~StopInForce();
+  StopInForce(const StopInForce&) = delete;
+  StopInForce& operator=(const StopInForce&) = delete;
+
+ private:
+  std::function<bool()> asked_;
+};
+
 // Calls body(begin, end) over [0, count) in chunks of at most `chunk` items. body may write only to
 // the slots it owns. The first exception is rethrown on the calling thread.
 void parallel_chunks(std::size_t count, std::size_t chunk,

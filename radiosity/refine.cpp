@@ -12,7 +12,6 @@
 namespace earthshine::radiosity {
 namespace {
 
-constexpr int most_rounds = 24;
 constexpr double share_per_round = 0.5;   // of the squared error, held by the patches that are cut
 constexpr double thinnest = 4.0;          // a cell longer than this times its width is halved
 constexpr double undirected_share = 0.1;  // of the error, counted toward the longer side
@@ -126,7 +125,7 @@ class Refinement {
     double error = find_errors();
     for (int round = 0;; ++round) {
       refined_.rounds.push_back({refined_.patches.count(), error});
-      if (round == most_rounds || error <= options_.refine.error) break;
+      if (round == most_refine_rounds || error <= options_.refine.error) break;
       if (!cut_worst(max_patches_)) break;
       error = find_errors();
     }

@@ -11,6 +11,8 @@ namespace earthshine::radiosity {
 [[nodiscard]] std::size_t most_refined_patches(const scenes::Scene& scene,
                                                const SolveOptions& options);
 
+inline constexpr int most_refine_rounds = 24;
+
 struct Refined {
   Patches patches;
   std::vector<RefineRound> rounds;
@@ -19,8 +21,8 @@ struct Refined {
 
 // subdivide(scene, options.patch_edge_m) where options.refine is off or nothing gives light. Else
 // starts from cells of start_edge_m and cuts, round by round, the patches that hold half of the
-// squared error, until options.refine is met or no error is left that is not noise. What is cut
-// depends on the scene, the options and the seed alone.
+// squared error, until options.refine is met, no error is left that is not noise or the rounds are
+// over. What is cut depends on the scene, the options and the seed alone.
 [[nodiscard]] Refined refine(const scenes::World& world, const SolveOptions& options);
 
 }  // namespace earthshine::radiosity

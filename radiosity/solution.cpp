@@ -157,7 +157,14 @@ SolveOptions solve_options(const scenes::QualityKnobs& knobs, std::uint64_t seed
           knobs.solver_tolerance,
           seed,
           {knobs.refine, knobs.start_edge_m, static_cast<std::size_t>(knobs.max_patches),
-           knobs.refine_error}};
+           knobs.refine_error},
+          1 << 16};
+}
+
+Solution unsolved(const scenes::LightGroups& groups) {
+  Solution solution;
+  solution.columns = 3 * groups.count();
+  return solution;
 }
 
 bool is_lit(const scenes::Effects& effects) {
@@ -229,6 +236,7 @@ Solution solve_keeping(const scenes::World& world, const SolveOptions& options, 
 
   DirectOptions direct_options = variant.direct;
   if (direct_options.seed == 0) direct_options.seed = options.seed;
+  direct_options.flux_rays = std::min(direct_options.flux_rays, options.flux_rays);
   DirectLight light = direct_light(world, patches, factors, direct_options);
   report.shadow_rays = light.shadow_rays;
   report.sources_cost = light.cost;

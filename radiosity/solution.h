@@ -34,6 +34,7 @@ struct SolveOptions {
   double tolerance = 1e-8;      // of B, relative to each right-hand side's largest (linear_solve.h)
   std::uint64_t seed = 1;
   RefineOptions refine = {};
+  int flux_rays = 1 << 16;  // shot from each lamp (DirectOptions); at most
 };
 
 // The solver's part of the accuracy knobs.
@@ -120,6 +121,10 @@ struct SolveVariant {
 // On patches that are cut already; options.patch_edge_m and options.refine are not looked at.
 [[nodiscard]] Solution solve(const scenes::World& world, const SolveOptions& options,
                              Patches patches, const SolveVariant& variant = {});
+
+// What there is of a solution that was not come to: no light. Pictures that read it find all light
+// by the paths that look for what a solution lacks.
+[[nodiscard]] Solution unsolved(const scenes::LightGroups& groups);
 
 // Whether there is any light to solve for. The ambient term is no source: it lights what the camera
 // sees and bounces nowhere.

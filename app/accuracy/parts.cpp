@@ -260,21 +260,27 @@ std::string AccuracyStages::nothing_to_measure() {
   }
   const raytrace::CameraModel camera =
       raytrace::make_camera_model(task_.view.camera, task_.view.columns, task_.view.rows);
-  counted_ = studies::surface_pixels(scene_, camera);
-  result_.pixels = std::size_t(std::count(counted_.begin(), counted_.end(), true));
+  pixels_ = studies::counted_pixels(scene_, camera);
+  result_.pixels = std::size_t(std::count(pixels_.counted.begin(), pixels_.counted.end(), true));
   if (result_.pixels > 0) return "";
-  return "no pixel shows a surface that is no source: there is nothing to compare";
+  return "no pixel shows a surface that reflects, edges of sources apart";
+}
+
+ReferencePair AccuracyStages::reflected(const PathReference& reference) const {
+  ReferencePair pair = reference.pair();
+  studies::take_source_off(pixels_, pair);
+  return pair;
 }
 
 bool AccuracyStages::trace_first(std::vector<PathReference>& references) {
   trace_round(references, 0, first_paths);
-  full_ = references.front().pair();
-  return studies::mean_luminance(full_, counted_) > 0.0;
+  full_ = reflected(references.front());
+  return studies::mean_luminance(full_, pixels_.counted) > 0.0;
 }
 
 std::vector<int> AccuracyStages::further_rounds() {
   result_.wanted_resolution = finest() / task_.call.reference_factor;
-  return studies::further_batches(first_paths, studies::resolution(full_, counted_),
+  return studies::further_batches(first_paths, studies::resolution(full_, pixels_.counted),
                                   result_.wanted_resolution, most_paths);
 }
 

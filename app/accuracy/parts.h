@@ -85,6 +85,8 @@ class AccuracyStages {
   [[nodiscard]] std::vector<PathReference> new_references() const;
   // One batch on both sides of every reference, so that a time limit leaves them alike.
   void trace_round(std::vector<PathReference>& references, int index, int paths);
+  // Without light straight from the sources.
+  [[nodiscard]] studies::ReferencePair reflected(const PathReference& reference) const;
   // False if all is black.
   bool trace_first(std::vector<PathReference>& references);
   // Paths of the rounds after the first.
@@ -98,8 +100,8 @@ class AccuracyStages {
   scenes::World scene_;
   AccuracyParts parts_;
   AccuracyResult result_;
-  std::vector<bool> counted_;
-  studies::ReferencePair full_;
+  studies::CountedPixels pixels_;
+  studies::ReferencePair full_;  // without light straight from the sources
 };
 
 }  // namespace earthshine::app

@@ -75,11 +75,11 @@ class Study : AccuracyStages {
                   expected * static_cast<double>(further.size() - k), "");
       trace_round(references, static_cast<int>(k) + 1, further[k]);
     }
-    full_ = references.front().pair();
-    gathered_ = references.back().pair();
+    full_ = reflected(references.front());
+    gathered_ = reflected(references.back());
     differs_ = references.size() > 1;
-    result_.resolution = studies::resolution(full_, counted_);
-    result_.mean_luminance = studies::mean_luminance(full_, counted_);
+    result_.resolution = studies::resolution(full_, pixels_.counted);
+    result_.mean_luminance = studies::mean_luminance(full_, pixels_.counted);
     return true;
   }
 
@@ -91,17 +91,19 @@ class Study : AccuracyStages {
       const std::vector<float>& values = part.image.find("Y")->values;
       sides[side]->luminance.assign(values.begin(), values.end());
     }
+    studies::take_source_off(pixels_, straight_);
   }
 
   void find_limits() {
     result_.limits.push_back(
         {"radiosity",
-         differs_ ? studies::limit_error(gathered_, full_, counted_) : studies::PictureError{},
+         differs_ ? studies::limit_error(gathered_, full_, pixels_.counted)
+                  : studies::PictureError{},
          differs_ ? "behind a diffuse bounce lobes reflect as if they were diffuse, and mirrors "
                     "and glass "
                     "throw no caustics"
                   : "none: without lobes, mirrors and glass it comes to what paths come to"});
-    const studies::PictureError straight = studies::limit_error(straight_, full_, counted_);
+    const studies::PictureError straight = studies::limit_error(straight_, full_, pixels_.counted);
     result_.limits.push_back({"direct", straight, "leaves out the light between surfaces"});
     result_.limits.push_back({"distributed", straight, "leaves out the light between surfaces"});
     result_.limits.push_back({"paths", {}, "none: its only error is noise"});
@@ -140,9 +142,11 @@ class Study : AccuracyStages {
       }
       const CachedResult part = parts_.point(step, task_.view.seed);
       const studies::StepCost cost = parts_.cost_of(part.facts);
-      const std::vector<float>& luminance = part.image.find("Y")->values;
-      result_.points.push_back({step, cost, studies::picture_error(luminance, full_, counted_),
-                                studies::picture_error(luminance, limit_of(step), counted_)});
+      std::vector<float> luminance = part.image.find("Y")->values;
+      studies::take_source_off(pixels_, luminance);
+      result_.points.push_back(
+          {step, cost, studies::picture_error(luminance, full_, pixels_.counted),
+           studies::picture_error(luminance, limit_of(step), pixels_.counted)});
       taken.push_back({step, cost.cpu_seconds});
       double left = 0.0;
       for (std::size_t j = k + 1; j < ladder.size(); ++j) {

@@ -35,7 +35,7 @@ struct NotRun {
 struct AccuracyResult {
   std::string nothing;  // why there is nothing to measure; "": there is
   std::size_t pixels = 0;
-  double mean_luminance = 0.0;  // cd/m^2
+  double mean_luminance = 0.0;  // without light straight from the sources, cd/m^2
   double resolution = 0.0;      // of the reference, relative
   double wanted_resolution = 0.0;
   int reference_paths = 0;             // per pixel, of each of the two pictures

@@ -109,6 +109,7 @@ struct Solved {
   radiosity::Solution solution;
   radiosity::SolveOptions solver;
   bool solved = false;
+  bool broken_off = false;        // by a stop or the time limit: there is no solution
   studies::SurfaceError surface;  // where the solution is what is asked for
   // Where an error was asked for: how it was reached.
   bool steered = false;

@@ -122,7 +122,7 @@ Json probe_json(const Studio& studio, const scenes::Camera& camera,
   const std::vector<studies::SeenPoint> points = studies::seen_points(
       scene, studio.query, camera, options.columns, options.rows, {&pixel, 1}, 1);
   double rest = 1.0, others = 0.0;
-  if (luminance > 0.0 && !points.empty()) {
+  if (luminance > 0.0 && !points.empty() && !studio.light.broken_off) {
     for (const studies::LightShare& share : studies::light_shares(
              studio.scene(), studio.light.solution, points, luminance, probe_rays)) {
       rest -= share.share;

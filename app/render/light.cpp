@@ -2,18 +2,43 @@
 #include "app/render/light.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "app/console.h"
 #include "app/memory.h"
 #include "app/options.h"
 #include "base/files/output_file.h"
+#include "base/parallel.h"
 #include "radiosity/store/solution_mesh.h"
 #include "studies/steer/reach_surfaces.h"
 #include "studies/steer/wanted_error.h"
 
 namespace earthshine::app {
 namespace {
+
+// Broken off where the call's time limit, of the whole command, or a stop comes first.
+Solved solve_in_time(const LightCall& wanted, const radiosity::SolveOptions& solver,
+                     StageTimes& times) {
+  const double before = times.total(), limit = wanted.call.time_limit_s;
+  const auto start = std::chrono::steady_clock::now();
+  const auto gone = [start] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  Solved light;
+  light.solver = solver;
+  try {
+    const base::StopInForce stop(
+        [&] { return (wanted.stop && wanted.stop()) || (limit > 0.0 && before + gone() > limit); });
+    light.solution = solve_or_read(wanted.loaded, wanted.query, solver, "", times);
+    light.solved = true;
+  } catch (const base::Stopped&) {
+    times.add({{"solve, broken off", gone()}});
+    light.solution = radiosity::unsolved(wanted.loaded.groups);
+    light.broken_off = true;
+  }
+  return light;
+}
 
 // Within a time limit the solve gets about a fifth of the time: a coarse one tells how fast the
 // machine and the scene are. Patches and rays each grow as one over the error that they serve.
@@ -23,17 +48,16 @@ Solved solve_within(const LightCall& wanted, double seconds, StageTimes& times) 
   const double finest = quality.error.value_or(scenes::default_error);
   const auto solve = [&](double error) {
     quality.error = error;
-    Solved light;
-    light.solver = studies::picture_solver(wanted.loaded.scene, quality, wanted.common.seed);
-    light.solution = solve_or_read(wanted.loaded, wanted.query, light.solver, "", times);
-    light.solved = true;
-    return light;
+    return solve_in_time(
+        wanted, studies::picture_solver(wanted.loaded.scene, quality, wanted.common.seed), times);
   };
   const double before = times.total();
   Solved light = solve(std::max(coarse, finest));
   const double taken = std::max(1e-3, times.total() - before);
   const double error = std::max(finest, coarse * std::sqrt(taken / (share * seconds)));
-  return error < worthwhile * coarse ? solve(error) : std::move(light);
+  if (light.broken_off || error >= worthwhile * coarse) return light;
+  Solved finer = solve(error);
+  return finer.broken_off ? std::move(light) : std::move(finer);
 }
 
 bool says_how_to_solve(const scenes::Quality& quality) {
@@ -57,8 +81,8 @@ Solved solve_or_take(const LightCall& wanted, StageTimes& times) {
   const auto solve = [&] {
     return solve_or_read(loaded, wanted.query, light.solver, call.solution, times);
   };
-  const bool shares = wanted.share && call.solution.empty();
-  light.solution = shares ? wanted.share(solve) : solve();
+  if (!wanted.share && call.solution.empty()) return solve_in_time(wanted, light.solver, times);
+  light.solution = wanted.share && call.solution.empty() ? wanted.share(solve) : solve();
   light.solved = true;
   return light;
 }
@@ -131,6 +155,9 @@ studies::Wanted wanted_error(const LoadedScene& loaded, const Common& common, do
 Solved find_light(const LightCall& wanted, StageTimes& times) {
   Solved light = solve_or_take(wanted, times);
   if (light.solved && !wanted.common.quiet) note_backs(light.solution.report);
+  if (light.broken_off && !wanted.common.quiet) {
+    note("note: the solve was broken off: the picture finds light between surfaces by paths alone");
+  }
   return light;
 }
 

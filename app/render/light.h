@@ -20,6 +20,8 @@ struct LightCall {
   const scenes::RayQuery& query;
   // Where others read the same solution: called with the way to solve, where one is needed.
   std::function<radiosity::Solution(const std::function<radiosity::Solution()>&)> share = {};
+  // Once it says true a solve is broken off, and there is no solution.
+  std::function<bool()> stop = {};
 };
 // With what settings the call's light is solved.
 [[nodiscard]] radiosity::SolveOptions solver_of(const RenderCall& call, const scenes::Scene& scene,

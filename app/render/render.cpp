@@ -201,14 +201,16 @@ void run(RenderCall call, const Common& common) {
   if (call.part.in_parts()) {
     parts.emplace(LightCall{call, common, loaded, query}, call.part, cameras_of(pictures));
   }
-  const Solved light =
-      parts ? parts->light(times) : find_light({call, common, loaded, query}, times);
+  // Of a solution that several parts read nothing could be kept.
+  std::optional<Interrupt> interrupt;
+  if (!parts) interrupt.emplace();
+  const Solved light = parts
+                           ? parts->light(times)
+                           : find_light({call, common, loaded, query, {}, Interrupt::asked}, times);
   Studio studio{call, common, loaded, query, light};
   if (call.part.task == Task::Solve) return;
-  if (call.part.task == Task::Share) {
-    const Interrupt interrupt;
-    return parts->draw_share(studio);
-  }
+  if (!interrupt) interrupt.emplace();
+  if (call.part.task == Task::Share) return parts->draw_share(studio);
   if (call.part.task == Task::Merge) {
     parts->check_complete();
     studio.parts = &*parts;
@@ -216,23 +218,21 @@ void run(RenderCall call, const Common& common) {
   Json reports = Json::array();
   std::vector<Picture> taken;
   bool whole = true;
-  {
-    const Interrupt interrupt;
-    for (std::size_t k = 0; k < pictures.size() && whole; ++k) {
-      if (call.time_limit_s > 0.0) {
-        const double left = call.time_limit_s - times.total();
-        studio.time_limit_s = std::max(1e-3, left / static_cast<double>(pictures.size() - k));
-      }
-      studio.number = k;
-      if (k > 0) studio.white_cd_per_m2 = taken.front().white_cd_per_m2;
-      Picture picture = take_picture(studio, *pictures[k].camera, pictures[k].files, times);
-      times.add({{"pictures", picture.report["seconds"]["render"].get<double>()}});
-      whole = picture.whole;
-      if (!call.range.empty()) picture.report["range"] = ranges[k]["range"];
-      reports.push_back(picture.report);
-      taken.push_back(std::move(picture));
+  for (std::size_t k = 0; k < pictures.size() && whole; ++k) {
+    if (call.time_limit_s > 0.0) {
+      const double left = call.time_limit_s - times.total();
+      studio.time_limit_s = std::max(1e-3, left / static_cast<double>(pictures.size() - k));
     }
+    studio.number = k;
+    if (k > 0) studio.white_cd_per_m2 = taken.front().white_cd_per_m2;
+    Picture picture = take_picture(studio, *pictures[k].camera, pictures[k].files, times);
+    times.add({{"pictures", picture.report["seconds"]["render"].get<double>()}});
+    whole = picture.whole;
+    if (!call.range.empty()) picture.report["range"] = ranges[k]["range"];
+    reports.push_back(picture.report);
+    taken.push_back(std::move(picture));
   }
+  interrupt.reset();
   if (expected) {
     base::write_text(call.report,
                      dump(report_json(loaded, call, *expected, light.solution.report, taken, times,

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Measures what accuracy costs on the shipped scenes: runs `study accuracy` on each (or goes on with what is kept in
-out/accuracy), copies the plots to docs/images and writes the tables of docs/accuracy.md between its markers.
-Usage: docs/accuracy/make.py PROGRAM"""
+out/accuracy), copies the plots to docs/images and writes the tables of docs/accuracy.md between its markers. With names
+of plots it does so for these alone and leaves the other chapters as they are.
+Usage: docs/accuracy/make.py PROGRAM [NAME ...]"""
 import json
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -12,8 +14,10 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 PAGE = ROOT / "docs/accuracy.md"
 BEGIN, END = "<!-- docs/accuracy/make.py writes this: begin -->", "<!-- docs/accuracy/make.py writes this: end -->"
-# Name of the plots, scene, camera, size. Not the closed box and the furnace: all of their surfaces are sources.
+# Name of the plots, scene, camera, size.
 VIEWS = [
+    ("closed-box", "closed-box/scene", None, "64x64"),
+    ("furnace", "furnace/scene", None, "64x64"),
     ("cornell", "cornell-box/scene", None, "96x96"),
     ("still-life", "still-life/scene", None, "96x72"),
     ("day", "sts46/day-earthshine", "B", "64x64"),
@@ -100,19 +104,30 @@ def chapter(name, result, command):
     return "\n".join(text) + "\n\n" + wanted_of(result) + "\n" + laws_of(result) + "\n" + points_of(result)
 
 
+def chapters_of(page):
+    """The chapters that stand between the markers, by the name of their plots."""
+    chapters = page.split(BEGIN)[1].split(END)[0].strip().split("\n### ")
+    chapters = ["### " + chapter.removeprefix("### ").strip() + "\n" for chapter in chapters if chapter]
+    return {re.search(r"images/accuracy-(.*)-seconds.svg", chapter)[1]: chapter for chapter in chapters}
+
+
 def main():
     program = str(pathlib.Path(sys.argv[1]).resolve())
-    chapters = []
+    wanted = sys.argv[2:] or [name for name, *_ in VIEWS]
+    page = PAGE.read_text()
+    chapters = chapters_of(page)
     for name, scene, camera, size in VIEWS:
+        if name not in wanted:
+            continue
         folder = ROOT / "out/accuracy" / name
         folder.parent.mkdir(parents=True, exist_ok=True)
         result, command = study(program, scene, camera, size, folder)
         for plot in ("seconds", "settings"):
             shutil.copy(folder / f"error-{plot}.svg", ROOT / f"docs/images/accuracy-{name}-{plot}.svg")
-        chapters.append(chapter(name, result, command))
-    page = PAGE.read_text()
+        chapters[name] = chapter(name, result, command)
     before, after = page.split(BEGIN)[0], page.split(END)[1]
-    PAGE.write_text(before + BEGIN + "\n\n" + "\n".join(chapters) + "\n" + END + after)
+    text = "\n".join(chapters[name] for name, *_ in VIEWS if name in chapters)
+    PAGE.write_text(before + BEGIN + "\n\n" + text + "\n" + END + after)
 
 
 if __name__ == "__main__":

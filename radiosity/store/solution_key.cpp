@@ -151,7 +151,7 @@ std::vector<ScenePart> scene_parts(const Scene& scene, const scenes::LightGroups
 }
 
 std::vector<SolveKnob> solve_knobs(const SolveOptions& options) {
-  const auto& [patch_edge_m, form_factor_rays, tolerance, seed, refine] = options;
+  const auto& [patch_edge_m, form_factor_rays, tolerance, seed, refine, flux_rays] = options;
   const auto& [on, start_edge_m, max_patches, error] = refine;
   return {{"patch_edge_m", "quality.patch_edge in m", patch_edge_m},
           {"form_factor_rays", "quality.form_factor_rays",
@@ -162,7 +162,9 @@ std::vector<SolveKnob> solve_knobs(const SolveOptions& options) {
           {"refine_start_edge_m",
            "the edge that refinement starts from, by quality.patch_edge, in m", start_edge_m},
           {"max_patches", "quality.max_patches", std::uint64_t{max_patches}},
-          {"refine_error", "quality.error of the patches", error}};
+          {"refine_error", "quality.error of the patches", error},
+          {"flux_rays", "the rays from each lamp, by quality.error",
+           static_cast<std::uint64_t>(flux_rays)}};
 }
 
 }  // namespace earthshine::radiosity

@@ -7,14 +7,6 @@
 #include "raytrace/gather/gather_tiles.h"
 
 namespace earthshine::raytrace {
-namespace {
-
-// Of a quick look's blocks of pixels, in whose middles it samples: sharing reaches two at its
-// finest.
-constexpr std::size_t quick_block = 5;
-
-}  // namespace
-
 GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
                          const GatherSurface& surface, const CameraModel& camera,
                          const Window& window, const Setting& setting)
@@ -42,7 +34,7 @@ GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
     estimate.luminance.assign(count, {0.0F, 0.0F});
     estimate.samples.assign(count, 0.0F);
   };
-  begin(Gathered::Solution, layers_);
+  if (!incoming.is_dark()) begin(Gathered::Solution, layers_);
   if (setting.gathers_residual) begin(Gathered::Residual, image_layers_);
   any_lobe_ = std::any_of(points_.begin(), points_.end(),
                           [](const GatherPoint& point) { return point.lobe > 0.0F; });
@@ -75,27 +67,6 @@ void GatherField::cast(Gathered kind, const std::vector<std::uint32_t>& more, st
   }
 }
 
-void GatherField::look_quickly(Gathered kind) {
-  if (!gathers(kind)) return;
-  std::vector<std::uint32_t> missing(points_.size(), 0U);
-  const auto columns = static_cast<std::size_t>(window_.columns);
-  const auto rows = static_cast<std::size_t>(window_.rows);
-  const auto middle = [](std::size_t x, std::size_t count) {
-    return std::min(x - x % quick_block + quick_block / 2, count - 1);
-  };
-  const auto served = [&](std::size_t p) {
-    if (!setting_.shares) return false;
-    if (p >= grid_) return strays_[p - grid_].base != no_base;
-    const std::size_t by = middle(p / columns, rows) * columns + middle(p % columns, columns);
-    return by != p && points_[by].material == points_[p].material &&
-           stands_for(points_[by], sighting_of(points_[p]));
-  };
-  for (std::size_t p = 0; p < missing.size(); ++p) {
-    if (samples(kind, p) <= 0.0F && !served(p)) missing[p] = fewest_samples(kind);
-  }
-  cast(kind, missing, 0, {});
-}
-
 void GatherField::share(Gathered kind, bool last) {
   if (!gathers(kind)) return;
   if (!of_surface_) of_surface_.emplace(window_, points_, setting_.shares);
@@ -114,6 +85,7 @@ void GatherField::share(Gathered kind, bool last) {
     diffuse_ = std::move(radiance);
     return;
   }
+  if (!gathers(Gathered::Solution)) diffuse_.assign(points_.size() * layers_, glm::vec3(0.0F));
   for (std::size_t p = 0; p < points_.size(); ++p) {
     for (std::size_t layer = 0; layer < image_layers_; ++layer) {
       diffuse_[p * layers_ + layer] += radiance[p * image_layers_ + layer];

@@ -87,7 +87,8 @@ class GatherField {
   void cast(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
             const std::function<bool()>& stop);
   // Where a stop or the time limit left no samples of a kind: the fewest. Where neighbours share,
-  // the middle one of 25 pixels serves those about it that show the same surface.
+  // the middle one of 25 pixels serves those about it that show the same surface, and where none
+  // does a point as far on as it may be.
   void look_quickly(Gathered kind);
   // The least that can be asked for at once: two halves of the fewest.
   [[nodiscard]] static std::uint32_t fewest_samples(Gathered kind);

@@ -71,7 +71,7 @@ double IncomingLight::add(const scenes::Hit& hit, const Vec3& direction, const R
   const double kept = kept_part(hit, direction, share);
   if (!table_.empty() && kept > 0.0) table_.add(hit, weight * kept, out);
   // Rays aimed at a patch are for what the patch itself sends.
-  if (follows_specular_ && !aimed) follow_specular(hit, direction, weight, out, rays);
+  if (follows_specular_ && !aimed && !is_dark()) follow_specular(hit, direction, weight, out, rays);
   return kept;
 }
 

@@ -79,6 +79,9 @@ class IncomingLight {
   double add(const scenes::Hit& hit, const Vec3& direction, const RayShare& share,
              const Rgb& weight, std::span<Rgb> out, RayCounts& rays) const;
 
+  // Whether no ray brings anything: there is no solution, and the sky is no part of it.
+  [[nodiscard]] bool is_dark() const { return table_.empty() && !sees_earth_; }
+
   [[nodiscard]] const BrightPatches& bright() const { return bright_; }
 
   // The weight of the ray's end, of all rays that may find it, from `share`.

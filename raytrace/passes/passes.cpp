@@ -26,6 +26,9 @@ constexpr double kept = 1.5;
 constexpr double last_step_share = 0.5, least_last_step = 0.05;
 // Of the wanted error, what samples are planned for: the next statement may turn out larger.
 constexpr double aimed_share = 0.97;
+// What must follow a gather field's first samples, over the time that finding its points takes
+// (payload bay: 6 by day, 8 by night); and what must follow sharing.
+constexpr double after_gathering = 6.0, after_sharing = 2.5;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -78,7 +81,8 @@ class Passes {
 
  private:
   [[nodiscard]] bool out_of_time() const {
-    return options_.time_limit_s > 0.0 && seconds_since(start_) > options_.time_limit_s;
+    return options_.time_limit_s > 0.0 &&
+           seconds_since(start_) > options_.time_limit_s - reserve_s_;
   }
   [[nodiscard]] bool stops() const { return options_.stop && options_.stop(); }
   [[nodiscard]] bool ends() const { return stops() || out_of_time(); }
@@ -139,14 +143,17 @@ class Passes {
     if (shared_.gathers) {
       const auto start = Clock::now();
       begin_field();
+      reserve_s_ = after_gathering * seconds_since(start);
       cast_evenly(Gathered::Solution, GatherField::fewest_samples(Gathered::Solution));
       cast_evenly(Gathered::Residual, 4U);
       cast_evenly(Gathered::Lobe, 2U);
       share();
       report_.gather_seconds += seconds_since(start);
+      reserve_s_ *= after_sharing / after_gathering;
     }
     const int least = options_.shared.least_samples;
     first_round(by_edges(least, std::max(std::min(2, least), least / 2)));
+    reserve_s_ = 0.0;
     if (!ends()) shade(wanted_for_the_eye(*sums_, scatter_of_samples(*sums_)));
     for (int round = 1; round < most_error_rounds && !ends(); ++round) {
       const SampleCosts each = sample_costs(field());
@@ -218,6 +225,7 @@ class Passes {
   }
 
   void count_gather_rays() {
+    if (!field_->gathers(Gathered::Solution)) return;
     double rays = 0.0, points = 0.0;
     for (std::size_t p = 0; p < field_->points().size(); ++p) {
       const float samples = field_->samples(Gathered::Solution, p);
@@ -277,6 +285,7 @@ class Passes {
   std::optional<GatherField> field_;
   std::optional<PixelSums> sums_;
   Clock::time_point start_ = Clock::now();
+  double reserve_s_ = 0.0;  // of the time limit, for what has to follow
   double done_ = 0.0, expected_ = 1.0;
 };
 

@@ -70,11 +70,6 @@ void PixelShader::add_sample(std::size_t sample, const Ray& ray, const scenes::H
   source_of_sample_ = 0.0;
   rng_ = base::Rng(base::Key(shared_.lamp_seed, base::Stream::Roulette, pixel_).with(sample));
   ++rays_.camera;
-  if (!hit.missed()) {
-    const auto& material = shared_.scene.materials[shared_.scene.triangles[hit.triangle].material];
-    const bool shines = hit.front || material.two_sided;
-    if ((shines && material.reflects()) || material.passes_light_on()) source_.reflecting += 1.0;
-  }
   shade(ray, hit, Rgb(1.0), 0, Seen::ByCamera);
   source_.add(source_of_sample_);
 }
@@ -164,6 +159,9 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
       outward,        hit.front ? outward : -outward,
       -ray.direction, scenes::diffuse_at(scene, material, hit, hit.t * shared_.texture_rad)};
   const bool shines = hit.front || material.two_sided;
+  if (depth == 0 && ((shines && material.reflects()) || material.passes_light_on())) {
+    source_.reflecting += 1.0;
+  }
   const bool shows_emission = seen == Seen::ByCamera || !shared_.sampled_emitter[triangle.material];
   if (shines && shows_emission && shared_.groups.material[triangle.material] != no_group) {
     see_source(shared_.groups.material[triangle.material],

@@ -11,6 +11,12 @@ bool reads(const radiosity::Solution& solution, const RenderOptions& options) {
   return options.indirect == Indirect::Radiosity && solution.columns > 0;
 }
 
+LeakMask leak_mask(const scenes::World& world, const radiosity::Solution& solution,
+                   const RenderOptions& options) {
+  const bool shows = reads(solution, options) && !solution.radiosity.empty();
+  return shows ? LeakMask(world.query, solution.patches) : LeakMask();
+}
+
 std::span<const float> values_if(bool read, const std::vector<float>& values) {
   return read ? std::span<const float>(values) : std::span<const float>();
 }
@@ -49,7 +55,7 @@ ShadingSetup::ShadingSetup(const scenes::World& world, const radiosity::Solution
                            const scenes::Camera& camera, const RenderOptions& options,
                            const radiosity::Solution* aimed_at)
     : camera_(make_camera_model(camera, options.columns, options.rows)),
-      sight_(reads(solution, options) ? LeakMask(world.query, solution.patches) : LeakMask()),
+      sight_(leak_mask(world, solution, options)),
       all_(solution, values_if(reads(solution, options), solution.radiosity), options.per_light,
            sight_),
       soft_(solution,

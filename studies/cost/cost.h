@@ -26,10 +26,9 @@ struct PilotCall : scenes::World {
 // What the run will take. The scene is solved on coarse patches, or those that refinement starts
 // from, with fewer rays. A picture of a wanted error is begun as it will be drawn and left after a
 // CPU second: its rays and seconds are scaled by the squared error that is left over the wanted
-// one's. Others are drawn with a thousand pixels or, where these are cheap, four; rays and seconds
-// are scaled to the patches, rows and pixels of the run (cost_laws.h). Camera samples beyond the
-// least are spent on edges, whose share of the pixels falls with the picture's size; the small one
-// is drawn to as much more noise. Seconds are those of a machine that does nothing else: CPU
+// one's. Others are drawn with a thousand pixels and, unless that took long, four, each to as much
+// more noise as it has fewer pixels; rays and seconds are scaled to the patches, rows and pixels of
+// the run (cost_laws.h). Seconds are those of a machine that does nothing else: CPU
 // seconds over threads. Of paths a few per pixel are traced. pictures: of the wanted size.
 struct Pilot {
   Bill bill;

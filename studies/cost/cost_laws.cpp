@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "radiosity/refine.h"
 
 namespace earthshine::studies {
 namespace {
@@ -11,6 +14,18 @@ constexpr double least_power = 0.25, most_power = 1.0;  // of patches, by which 
 
 std::uint64_t times(std::uint64_t count, double by) {
   return static_cast<std::uint64_t>(std::llround(double(count) * by));
+}
+
+// What the rounds that are left may make of the last one's patches.
+double most_by_rounds(const std::vector<radiosity::RefineRound>& rounds) {
+  constexpr std::size_t looked_at = 4;
+  if (rounds.size() <= looked_at) return std::numeric_limits<double>::infinity();
+  double growth = 1.0;  // the last may have been held back by the pilot's own budget
+  for (std::size_t k = rounds.size() - looked_at; k < rounds.size(); ++k) {
+    growth = std::max(growth, double(rounds[k].patches) / double(rounds[k - 1].patches));
+  }
+  const double left = std::max(0.0, radiosity::most_refine_rounds + 1.0 - double(rounds.size()));
+  return double(rounds.back().patches) * std::pow(growth, left);
 }
 
 }  // namespace
@@ -25,8 +40,9 @@ double expected_patches(const std::vector<radiosity::RefineRound>& rounds, doubl
   const double growth = std::log(double(last.patches) / double(first.patches));
   const double fall = std::log(first.error / last.error);
   const double power = std::clamp(growth > 0.0 ? fall / growth : 0.0, least_power, most_power);
-  return std::min(most, double(last.patches) *
-                            std::pow(last.error / std::max(wanted_error, 1e-9), 1.0 / power));
+  const double wanted =
+      double(last.patches) * std::pow(last.error / std::max(wanted_error, 1e-9), 1.0 / power);
+  return std::min({most, wanted, most_by_rounds(rounds)});
 }
 
 radiosity::SolveReport scaled(const radiosity::SolveReport& small, const SolveScale& scale) {
@@ -52,6 +68,40 @@ radiosity::SolveReport scaled(const radiosity::SolveReport& small, const SolveSc
     cost.rays = times(cost.rays, more);
     cost.seconds *= more;
     report.shadow_rays += cost.rays;
+  }
+  return report;
+}
+
+raytrace::RenderReport as_part_of(double whole_pixels, const SmallPicture& coarse,
+                                  const SmallPicture& fine) {
+  const double wide = 1.0 / std::sqrt(whole_pixels), less = 1.0 / std::sqrt(coarse.pixels),
+               more = 1.0 / std::sqrt(fine.pixels);
+  // The whole's cost over the fine one's, from what both cost.
+  const auto change = [&](double of_coarse, double of_fine) {
+    const double first = of_coarse / coarse.pixels, second = of_fine / fine.pixels;
+    if (first <= second || less <= more) return 1.0;
+    const double whole = second - (first - second) * (more - wide) / (less - more);
+    return std::clamp(whole / second, 1.0 / 3.0, 1.0);
+  };
+  raytrace::RenderReport report = fine.report;
+  using Counts = raytrace::RayCounts;
+  for (std::uint64_t Counts::*count : {&Counts::camera, &Counts::shadow, &Counts::gather,
+                                       &Counts::lobe, &Counts::mirror, &Counts::refraction}) {
+    const std::uint64_t found = fine.report.rays.*count;
+    if (found == 0) continue;
+    report.rays.*count = times(found, change(double(coarse.report.rays.*count), double(found)));
+  }
+  const double of_shadow =
+      double(report.rays.shadow) / std::max(1.0, double(fine.report.rays.shadow));
+  for (std::uint64_t& count : report.rays.to_light) count = times(count, of_shadow);
+  if (fine.report.gather_seconds > 0.0) {
+    report.gather_seconds *= change(coarse.report.gather_seconds, fine.report.gather_seconds);
+  }
+  // Gather and all else by laws of their own, so that neither becomes more than the whole.
+  const double others = fine.report.seconds - fine.report.gather_seconds;
+  if (others > 0.0) {
+    const double of_coarse = coarse.report.seconds - coarse.report.gather_seconds;
+    report.seconds = report.gather_seconds + others * change(of_coarse, others);
   }
   return report;
 }

@@ -12,7 +12,7 @@ namespace earthshine::studies {
 // Patches until refinement ends, at most `most`: a power law through the errors of the first and
 // the last round, error ~ patches^-p, with p held between 0.25 and 1 (noise of the first rounds
 // gives anything; piecewise constant light converges as patches^-1/2, around shadows' edges
-// slower).
+// slower). In the rounds that are left they grow by no more a round than in the last four.
 [[nodiscard]] double expected_patches(const std::vector<radiosity::RefineRound>& rounds,
                                       double wanted_error, double most);
 
@@ -33,6 +33,17 @@ struct PictureScale {
   double small_pixels = 1.0, pixels = 1.0;
   double paths = 0.0;  // per pixel of the whole; 0: not traced by paths
 };
+// Of two small pictures of one view, the finer one with what its pixels would cost as part of the
+// whole. A pixel on an edge costs more, and edges' share of the pixels falls as one over the
+// picture's width: a pixel's cost is a + b / sqrt(pixels). Never less than a third of the finer
+// one's; where it was not the less for being fine, as it is.
+struct SmallPicture {
+  raytrace::RenderReport report;
+  double pixels = 1.0;
+};
+[[nodiscard]] raytrace::RenderReport as_part_of(double whole_pixels, const SmallPicture& coarse,
+                                                const SmallPicture& fine);
+
 // Rays and seconds as pixels; of paths as pixels times paths.
 [[nodiscard]] raytrace::RenderReport scaled(const raytrace::RenderReport& small,
                                             const PictureScale& scale);

@@ -61,10 +61,20 @@ struct PictureError {
 
 [[nodiscard]] double mean_luminance(const ReferencePair& truth, const std::vector<bool>& counted);
 
-// The pixels that show a surface at their centre and, at 4 x 4 places, no source itself: no lit
-// sky, no shining side of a lamp, no surface that emits. What a source's own pixels are off by is
-// no matter of the settings here, and would drown the rest.
-[[nodiscard]] std::vector<bool> surface_pixels(const scenes::World& study,
-                                               const raytrace::CameraModel& camera);
+// The pixels that pictures state an error of, as 4 x 4 places tell: they show a surface at their
+// centre, one that reflects, and no edge of a source itself (lit sky, a lamp, a surface that
+// emits). How exact an edge is depends on no setting here, and the source's light would drown the
+// rest; within it what the surface emits is the same in every picture.
+struct CountedPixels {
+  std::vector<bool> counted;
+  std::vector<double> source;  // luminance of sources that the camera sees itself, cd/m^2; 0
+                               // where the pixel does not count
+};
+[[nodiscard]] CountedPixels counted_pixels(const scenes::World& study,
+                                           const raytrace::CameraModel& camera);
+
+// Leaves the light that surfaces reflect, which errors are relative to.
+void take_source_off(const CountedPixels& pixels, std::vector<float>& luminance);
+void take_source_off(const CountedPixels& pixels, ReferencePair& pair);
 
 }  // namespace earthshine::studies

@@ -12,6 +12,8 @@ namespace {
 // diagonal and 64 rays each take a fifth of the picture's time.
 constexpr double measured_error = 0.05;
 constexpr double rays_there = 64.0;
+// Of each lamp: where the solution is off, pictures find it.
+constexpr int flux_rays = 1 << 12;
 constexpr double smallest_edge = 0.25, largest_edge = 2.0;  // over that of the measured error
 
 }  // namespace
@@ -50,7 +52,9 @@ radiosity::SolveOptions picture_solver(const scenes::Scene& scene, const scenes:
         std::clamp(rays_there * measured_error / *quality.error, rays_there, 1024.0);
     knobs.form_factor_rays = static_cast<int>(std::bit_ceil(static_cast<std::uint32_t>(rays)));
   }
-  return radiosity::solve_options(knobs, seed);
+  radiosity::SolveOptions options = radiosity::solve_options(knobs, seed);
+  options.flux_rays = flux_rays;
+  return options;
 }
 
 }  // namespace earthshine::studies

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -26,6 +27,21 @@ TEST(Parallel, ExceptionReachesTheCaller) {
                                  if (begin == 50) throw std::runtime_error("fifty");
                                }),
                std::runtime_error);
+}
+
+// Of 1000 chunks those after the tenth are not begun but for the one that each thread has in hand.
+TEST(Parallel, AStopEndsLoopsWhileItIsInForce) {
+  std::atomic<int> done{0};
+  const auto loop = [&] { parallel_chunks(1000, 1, [&](std::size_t, std::size_t) { ++done; }); };
+  {
+    const StopInForce stop([&] { return done >= 10; });
+    EXPECT_THROW(loop(), Stopped);
+    EXPECT_LE(done, 10 + available_threads());
+    EXPECT_THROW(loop(), Stopped);
+  }
+  done = 0;
+  loop();
+  EXPECT_EQ(done, 1000);
 }
 
 TEST(Parallel, OrderedSumHasTheSameBitsForOneAndMoreThreads) {

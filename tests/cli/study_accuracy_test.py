@@ -2,6 +2,7 @@
 """study accuracy: its folder, going on after a kill, what is refused, and what has nothing to measure."""
 import csv
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -207,11 +208,11 @@ class Nothing(Accuracy):
         scene = (self.folder / "ball.toml").read_text()
         dark = scene[:scene.index("[[light]]")] + scene[scene.index("[[camera]]"):]
         self.write("dark.toml", dark)
-        self.write("box.toml", program.CLOSED_BOX)
+        self.write("box.toml", program.CLOSED_BOX.replace("diffuse = 0.5", "diffuse = 0"))
         self.write("away.toml", scene.replace("look_at = [0, 0, 0.4]", "look_at = [3, -3, 9]\n").replace("up = [0, 0, 1]", "up = [0, 1, 0]"))
         hidden = scene.replace('direction = [-0.3, 0.2, 1]', 'direction = [-0.3, 0.2, -1]').replace("[900, 800, 700]", "[0, 0, 0]")
         self.write("hidden.toml", hidden)
-        for name, word in (("dark", "gives light"), ("box", "no source"), ("away", "no pixel"), ("hidden", "light")):
+        for name, word in (("dark", "gives light"), ("box", "reflects"), ("away", "no pixel"), ("hidden", "light")):
             folder = "out-" + name
             call = ["study", "accuracy", name + ".toml", "-o", folder, *CALL]
             text = self.done(*call)
@@ -220,6 +221,24 @@ class Nothing(Accuracy):
             self.says(result["nothing_to_measure"], word)
             self.assertEqual(result["points"], [])
             self.assertEqual((self.folder / folder / "accuracy.csv").read_text(), "")
+
+
+class SourcesThatReflect(Accuracy):
+    def test_a_room_that_glows_is_measured_by_what_its_walls_reflect(self):
+        # Every wall emits M = 10 lm/m2 and reflects half: B = M / (1 - 0.5) = 20, of which 10 / pi cd/m2 is reflected light.
+        # Light straight from the sources, once reflected, is half of that: direct pictures are off by 50 %, and the
+        # solution, which is exact here, by nothing.
+        self.write("room.toml", program.CLOSED_BOX)
+        self.done("study", "accuracy", "room.toml", "-o", "d", *CALL)
+        result = self.result()
+        self.assertIsNone(result["nothing_to_measure"])
+        self.assertEqual(result["pixels_compared"], 12 * 9)
+        self.assertAlmostEqual(result["mean_luminance_cd_m2"], 10 / math.pi, delta=0.05 * 10 / math.pi)
+        limit = {entry["method"]: entry["error"] for entry in result["limits"]}
+        self.assertAlmostEqual(limit["direct"], 0.5, delta=0.05)
+        for point in result["points"]:
+            if point["method"] == "radiosity":
+                self.assertTrue(point["below_resolution"], point["command"])
 
 
 class Refused(Accuracy):

@@ -53,6 +53,22 @@ TEST(Ledger, LampOverAPlateGivesWhatLandsAndWhatEscapesAtOnce) {
   expect_closed(line);
 }
 
+// With 4096 rays, as for pictures, the standard error is four times that, and the balance as exact.
+// The lamp casts 61 440 rays fewer, and nothing else does.
+TEST(Ledger, FewerRaysFromALampAreRougherAndCloseAsWell) {
+  tests::SceneBuilder builder;
+  builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
+  builder.scene.lamps.push_back(point_lamp("lamp", {0, 0, 0.5}, Rgb(100.0)));
+  SolveOptions few;
+  few.patch_edge_m = 0.25;
+  few.flux_rays = 4096;
+  const SolveReport report = tests::Prepared(builder.scene).solve(few).report;
+  EXPECT_EQ(solve_at(builder.scene, 0.25).report.shadow_rays - report.shadow_rays, 61440U);
+  const GroupLedger& line = report.groups.at(0);
+  EXPECT_NEAR(line.escaped_at_once_lm.g, flux_lm * 5 / 6, 4 * sixth_error_lm);
+  expect_closed(line);
+}
+
 TEST(Ledger, LampUnderABlackBackLosesASixthThere) {
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);

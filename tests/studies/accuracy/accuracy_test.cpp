@@ -148,33 +148,6 @@ TEST(PictureError, BlackOrNoPixelsHaveNoError) {
   EXPECT_EQ(resolution({black, black}, std::vector<bool>(4)), 0.0);
 }
 
-// A plate of 1 m seen from straight above, 2 m of the ground plane in 16 pixels: 8 x 8 of them.
-TEST(SurfacePixels, SurfacesCountAndSourcesDoNot) {
-  tests::SceneBuilder builder;
-  builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
-  builder.scene.sun = tests::overhead_sun(1000.0);
-  const raytrace::CameraModel camera = raytrace::make_camera_model(tests::above(10.0, 2.0), 16, 16);
-  const auto count = [&] {
-    const tests::Prepared prepared(builder.scene);
-    const std::vector<bool> counted = surface_pixels(prepared, camera);
-    return std::count(counted.begin(), counted.end(), true);
-  };
-  EXPECT_EQ(count(), 64);
-  // A disk lamp of 0.2 m above it, shining up, hides its middle.
-  scenes::Lamp lamp;
-  lamp.name = lamp.group = "disk";
-  lamp.kind = scenes::LampKind::Disk;
-  lamp.position = Vec3(0, 0, 0.1);
-  lamp.axis = Vec3(0, 0, 1);
-  lamp.radius_m = 0.2;
-  lamp.exitance = Rgb(1000.0);
-  builder.scene.lamps.push_back(lamp);
-  EXPECT_LT(count(), 64);
-  EXPECT_GT(count(), 32);
-  builder.scene.materials[0].emit = Rgb(1.0);
-  EXPECT_EQ(count(), 0);
-}
-
 // First round: 16 paths leave 4 times what is wanted, so 16 times the paths are needed in all.
 TEST(Reference, BatchesBringTheNoiseDownByTheRootOfThePaths) {
   const std::vector<int> batches = further_batches(16, 0.04, 0.01, 1 << 14);
@@ -226,7 +199,8 @@ TEST(Accuracy, PathsErrorFallsWithTheirRoot) {
   const scenes::World study = prepared;
   AccuracyView view = accuracy_view(tests::above(10.0, 2.0), 24, 24, 1);
   const std::vector<bool> counted =
-      surface_pixels(study, raytrace::make_camera_model(view.camera, view.columns, view.rows));
+      counted_pixels(study, raytrace::make_camera_model(view.camera, view.columns, view.rows))
+          .counted;
   const auto side = [&](int k) {
     const Batch batch{raytrace::PathSet::All, k, 0, 256};
     return mean_of_batches({batch}, {*trace_batch(study, view, batch)});

@@ -101,6 +101,19 @@ TEST(CostLaws, PatchesFollowTheFallOfTheError) {
   EXPECT_EQ(expected_patches({}, 0.02, 777.0), 777.0);
 }
 
+// 24 rounds, each with a tenth more patches than the one before and hardly less error, leave one of
+// 25: a tenth more. What the last four rounds grew by most counts, not what they did before.
+TEST(CostLaws, PatchesGrowNoFasterThanTheRoundsThatAreLeft) {
+  std::vector<radiosity::RefineRound> rounds = {{100, 0.2}, {400, 0.2}};
+  while (rounds.size() < 24) rounds.push_back({rounds.back().patches * 11 / 10, 0.19});
+  const auto last = double(rounds.back().patches);
+  EXPECT_NEAR(expected_patches(rounds, 0.02, 1e9), 1.1 * last, 0.001 * last);
+  rounds.back().patches = rounds[22].patches;  // held back
+  EXPECT_NEAR(expected_patches(rounds, 0.02, 1e9), last, 0.001 * last);
+  rounds.push_back(rounds.back());  // no round is left
+  EXPECT_EQ(expected_patches(rounds, 0.02, 1e9), double(rounds.back().patches));
+}
+
 raytrace::RenderReport small_picture() {
   raytrace::RenderReport report;
   report.rays.camera = 1000;
@@ -133,6 +146,27 @@ TEST(CostLaws, APictureGrowsWithItsPixels) {
   EXPECT_DOUBLE_EQ(whole.seconds, 48.0);
   EXPECT_DOUBLE_EQ(whole.gather_seconds, 32.0);
   EXPECT_DOUBLE_EQ(whole.camera_samples, 8.0);
+}
+
+// A pixel's cost is 10 + 320 / sqrt(pixels): 20 in 1024 pixels, 15 in 4096, 11.25 in 65 536.
+// Seconds in the same way, gather and all else each for itself; what costs the same in both stays
+// so.
+TEST(CostLaws, APixelCostsLessWhereFewerAreOnEdges) {
+  SmallPicture coarse{small_picture(), 1024.0}, fine{small_picture(), 4096.0};
+  coarse.report.rays.gather = 20 * 1024, fine.report.rays.gather = 15 * 4096;
+  coarse.report.rays.camera = 3 * 1024, fine.report.rays.camera = 3 * 4096;
+  coarse.report.gather_seconds = 20 * 1024, fine.report.gather_seconds = 15 * 4096;
+  coarse.report.seconds = 22 * 1024, fine.report.seconds = 17 * 4096;
+  const raytrace::RenderReport report = as_part_of(65536.0, coarse, fine);
+  EXPECT_EQ(report.rays.gather, 46080U);  // 11.25 * 4096
+  EXPECT_EQ(report.rays.camera, 12288U);
+  EXPECT_NEAR(report.gather_seconds, 11.25 * 4096, 1e-6);
+  EXPECT_NEAR(report.seconds, 13.25 * 4096, 1e-6);
+  // Noise makes no picture free, nor one that costs more than the finer one.
+  coarse.report.rays.gather = 1000 * 1024;
+  EXPECT_EQ(as_part_of(65536.0, coarse, fine).rays.gather, 20480U);
+  coarse.report.rays.gather = 1024;
+  EXPECT_EQ(as_part_of(65536.0, coarse, fine).rays.gather, 61440U);
 }
 
 TEST(CostLaws, PathsGrowWithPixelsAndPaths) {

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which gather points are sampled where a stop or a time limit leaves no time for all of them.
+#include <algorithm>
+
+#include "raytrace/gather/gather_field.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+// Sharing at its finest reaches so many pixels across and down: of every block as wide as that the
+// middle is sampled.
+constexpr int reach = 2;
+
+}  // namespace
+
+void GatherField::look_quickly(Gathered kind) {
+  if (!gathers(kind)) return;
+  const auto wants = [&](std::size_t p) {
+    return points_[p].reach_m > 0.0F && reflected(kind, p) > 0.0;
+  };
+  std::vector<std::uint8_t> sampled(points_.size(), 0);
+  for (std::size_t p = 0; p < points_.size(); ++p) sampled[p] = samples(kind, p) > 0.0F ? 1 : 0;
+  std::vector<std::uint32_t> missing(points_.size(), 0U);
+  const auto sample = [&](std::size_t p) {
+    missing[p] = sampled[p] != 0 ? 0 : fewest_samples(kind);
+    sampled[p] = 1;
+  };
+  const auto serves = [&](std::size_t q, std::size_t p) {
+    return wants(q) && points_[q].material == points_[p].material &&
+           stands_for(points_[q], sighting_of(points_[p]));
+  };
+  const int columns = window_.columns, rows = window_.rows;
+  const auto at = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(x);
+  };
+  const auto is_served = [&](int x, int y) {
+    for (int qy = std::max(0, y - reach); qy <= std::min(rows - 1, y + reach); ++qy) {
+      for (int qx = std::max(0, x - reach); qx <= std::min(columns - 1, x + reach); ++qx) {
+        if (sampled[at(qx, qy)] != 0 && serves(at(qx, qy), at(x, y))) return true;
+      }
+    }
+    return false;
+  };
+  // The one that serves most of those which come later: they lie to the right and below.
+  const auto best_for = [&](int x, int y) {
+    for (int away = 2 * reach; away > 0; --away) {
+      for (int dy = std::max(0, away - reach); dy <= std::min(away, reach); ++dy) {
+        const int qx = x + away - dy, qy = y + dy;
+        if (qx < columns && qy < rows && serves(at(qx, qy), at(x, y))) return at(qx, qy);
+      }
+    }
+    return at(x, y);
+  };
+  if (!setting_.shares) {
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+      if (wants(p)) sample(p);
+    }
+  }
+  constexpr int block = 2 * reach + 1;
+  for (int y = reach; y < rows; y += block) {
+    for (int x = reach; x < columns; x += block) {
+      if (wants(at(x, y))) sample(at(x, y));
+    }
+  }
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      if (wants(at(x, y)) && !is_served(x, y)) sample(best_for(x, y));
+    }
+  }
+  for (std::size_t p = grid_; p < points_.size(); ++p) {
+    if (wants(p) && strays_[p - grid_].base == no_base) sample(p);
+  }
+  cast(kind, missing, 0, {});
+}
+
+}  // namespace earthshine::raytrace
