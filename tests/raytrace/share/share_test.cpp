@@ -148,20 +148,20 @@ TEST(Share, MoreSamplesAreExpectedToHelp) {
 }
 
 TEST(Share, ManySamplesKeepTheirOwnAmongFew) {
-  // Light of its own at every point, of variance 1, and samples of variance v = 2: 200 at one of 16
-  // points, 2 at the others. Keeping all of its own leaves a point of many v / 200; sharing that
-  // knows its noise leaves no more (Wiener: s q / (s + q) < q), in the mean of N squares of normal
-  // numbers within sqrt(2 / N) of itself.
-  constexpr double v = 2.0, many = 200.0;
+  // Light of its own at every point, of variance s = 0.2, and samples of variance v = 2: 200 in
+  // blocks of 3 x 3, 2 elsewhere. Keeping all of its own leaves a point of many v / 200; sharing
+  // that knows its noise leaves no more (Wiener: s q / (s + q) < q), in the mean of N squares of
+  // normal numbers within sqrt(2 / N) of itself.
+  constexpr double s = 0.2, v = 2.0, many = 200.0;
   base::Rng rng(base::Key(5, base::Stream::Test, 31));
   const auto normal = [&] {
     return std::sqrt(-2.0 * std::log(1.0 - rng.next())) * std::cos(2.0 * base::pi * rng.next());
   };
-  const auto has_many = [](std::size_t p) { return p % edge_px % 4 == 0 && p / edge_px % 4 == 0; };
+  const auto has_many = [](std::size_t p) { return p % edge_px % 8 < 3 && p / edge_px % 8 < 3; };
   Estimate estimate(count, 1, 1);
   std::vector<double> truth;
   for (std::size_t p = 0; p < count; ++p) {
-    truth.push_back(10.0 + normal());
+    truth.push_back(10.0 + std::sqrt(s) * normal());
     const double samples = has_many(p) ? many : 2.0, half = samples / 2.0;
     double sum = 0.0;
     for (float& of_half : estimate.luminance[p]) {
