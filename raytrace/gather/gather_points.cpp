@@ -23,7 +23,7 @@ constexpr std::array<double, packet_width> stray_columns = {0.0625, 0.1875, 0.31
 constexpr std::array<double, packet_width> stray_rows = {0.0625, 0.5625, 0.3125, 0.8125,
                                                          0.1875, 0.6875, 0.4375, 0.9375};
 constexpr float least_cover = 0.2F;  // of a pixel
-constexpr int region_px = 8;        // over which strays are held to be alike
+constexpr int region_px = 8;         // over which strays are held to be alike
 // What a lobe reflects turns twice as far as the surface does.
 constexpr float lobe_cosine = 0.985F;  // 10 degrees
 constexpr float rounding = 0.02F;      // of positions, over the points' spacing
