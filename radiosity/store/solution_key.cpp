@@ -153,18 +153,23 @@ std::vector<ScenePart> scene_parts(const Scene& scene, const scenes::LightGroups
 std::vector<SolveKnob> solve_knobs(const SolveOptions& options) {
   const auto& [patch_edge_m, form_factor_rays, tolerance, seed, refine, flux_rays] = options;
   const auto& [on, start_edge_m, max_patches, error] = refine;
-  return {{"patch_edge_m", "quality.patch_edge in m", patch_edge_m},
-          {"form_factor_rays", "quality.form_factor_rays",
-           static_cast<std::uint64_t>(form_factor_rays)},
-          {"solver_tolerance", "quality.solver_tolerance", tolerance},
-          {"seed", "--seed", seed},
-          {"refine", "quality.refine", std::uint64_t{on ? 1U : 0U}},
-          {"refine_start_edge_m",
-           "the edge that refinement starts from, by quality.patch_edge, in m", start_edge_m},
-          {"max_patches", "quality.max_patches", std::uint64_t{max_patches}},
-          {"refine_error", "quality.error of the patches", error},
-          {"flux_rays", "the rays from each lamp, by quality.error",
-           static_cast<std::uint64_t>(flux_rays)}};
+  std::vector<SolveKnob> knobs = {
+      {"patch_edge_m", "quality.patch_edge in m", patch_edge_m},
+      {"form_factor_rays", "quality.form_factor_rays",
+       static_cast<std::uint64_t>(form_factor_rays)},
+      {"solver_tolerance", "quality.solver_tolerance", tolerance},
+      {"seed", "--seed", seed},
+      {"refine", "quality.refine", std::uint64_t{on ? 1U : 0U}},
+      {"refine_start_edge_m", "the edge that refinement starts from, by quality.patch_edge, in m",
+       start_edge_m},
+      {"max_patches", "quality.max_patches", std::uint64_t{max_patches}},
+      {"refine_error", "quality.error of the patches", error}};
+  // Files that keep none are of the whole number.
+  if (flux_rays != SolveOptions().flux_rays) {
+    knobs.push_back({"flux_rays", "the rays from each lamp, by quality.error",
+                     static_cast<std::uint64_t>(flux_rays)});
+  }
+  return knobs;
 }
 
 }  // namespace earthshine::radiosity

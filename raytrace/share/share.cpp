@@ -48,7 +48,7 @@ double Shared::squared_error_with(std::size_t point, double factor) const {
   const auto more = static_cast<float>(factor);
   Left left{rest[point] / more, 0.0F};
   for (std::size_t level = 0; level < share_levels; ++level) {
-    const float least = level == 0 && !doubt.empty() ? doubt[point] / more : 0.0F;
+    const float least = level == 0 && !hidden.empty() ? hidden[point] / more : 0.0F;
     const float s = least > 0.0F ? std::max(signal[point][level], least) : signal[point][level];
     left.add(s, noise[point][level] / more, few[point][level]);
   }

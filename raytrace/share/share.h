@@ -115,8 +115,8 @@ struct Shared {
   // noise, and 1 / N, by level; noise of the rest.
   std::vector<std::array<float, share_levels>> signal, noise, few;
   std::vector<float> rest;
-  // Of strays, below which their signal cannot be told from none; empty without strays.
-  std::vector<float> doubt;
+  // Of strays, the signal that noise may hide: less cannot be told from none. Empty without strays.
+  std::vector<float> hidden;
   std::vector<float> squared_error;  // stated
 
   // What the squared error would be with `factor` times the samples here and around.

@@ -42,8 +42,8 @@ class Differences {
     return static_cast<float>(of_sample_ / double(samples));
   }
   [[nodiscard]] float signal() const { return static_cast<float>(signal_); }
-  // Standard error of the signal, by noise alone.
-  [[nodiscard]] float doubt() const { return static_cast<float>(doubt_); }
+  // Signal that noise may hide: the standard error of what is found of none.
+  [[nodiscard]] float hidden() const { return static_cast<float>(hidden_); }
   // 1 / N, for Stein's term.
   [[nodiscard]] float few(float noise) const {
     const double all = std::max(0.0, signal_) + double(noise);
@@ -66,11 +66,11 @@ class Differences {
     }
     if (known_ <= 0.0) return;
     signal_ = sum / known_;
-    doubt_ = std::sqrt(2.0 * of_noise) / known_;
+    hidden_ = std::sqrt(2.0 * of_noise) / known_;
   }
 
   std::vector<float> squared_, samples_;
-  double of_sample_ = 0.0, signal_ = 0.0, known_ = 0.0, doubt_ = 0.0;
+  double of_sample_ = 0.0, signal_ = 0.0, known_ = 0.0, hidden_ = 0.0;
 };
 
 }  // namespace
@@ -85,7 +85,7 @@ void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared&
   shared.noise.resize(all);
   shared.few.resize(all);
   shared.rest.resize(all, 0.0F);
-  shared.doubt.assign(all, 0.0F);
+  shared.hidden.assign(all, 0.0F);
   shared.squared_error.resize(all, 0.0F);
 
   std::uint32_t last = 0;
@@ -111,10 +111,10 @@ void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared&
     shared.signal[point] = shared.noise[point] = shared.few[point] = {};
     if (has_base) {
       const Differences& region = regions[strays[k].region];
-      const float s = std::max(region.signal(), region.doubt());
+      const float s = std::max(region.signal(), region.hidden());
       const float q = sampled ? region.noise(estimate.samples[point]) : alone * s;
       shared.signal[point][0] = region.signal();
-      shared.doubt[point] = region.doubt();
+      shared.hidden[point] = region.hidden();
       shared.noise[point][0] = q;
       shared.few[point][0] = region.few(q);
       if (sampled) keep = kept_share(s, q);

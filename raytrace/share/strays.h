@@ -3,8 +3,9 @@
 // its centre. What nearby points of the grid say of the same surface is told apart from what is the
 // case there by the stray's own samples, as far as these know better (Wiener, as in share.h):
 //   value = shared + c (own - shared),  c = s / (s + q)
-// s: mean square of the true difference, a mean over the strays of a part of the picture; q: noise
-// of as many samples as the stray has, each of which has the mean noise of a sample there.
+// s: mean square of the true difference, a mean over the strays of a part of the picture, no less
+// than the noise there may hide; q: noise of as many samples as the stray has, each of which has
+// the mean noise of a sample there.
 #pragma once
 
 #include <bit>

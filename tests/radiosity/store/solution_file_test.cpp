@@ -221,6 +221,19 @@ TEST(SolutionFile, AChangedOptionIsNamedWithBothValues) {
             stored.refusal(stored.scene, stored.options, "1.1"));
 }
 
+TEST(SolutionFile, FewerRaysOfALampAreNamedAndTheWholeNumberIsNot) {
+  // Files of before there was a choice have no such number, and stay good.
+  const auto named = [](const SolveOptions& options) {
+    const std::vector<SolveKnob> knobs = solve_knobs(options);
+    return std::any_of(knobs.begin(), knobs.end(),
+                       [](const SolveKnob& knob) { return knob.key == "flux_rays"; });
+  };
+  SolveOptions options;
+  EXPECT_FALSE(named(options));
+  options.flux_rays /= 16;
+  EXPECT_TRUE(named(options));
+}
+
 TEST(SolutionFile, WhatRadiosityDoesNotReadDoesNotMakeItStale) {
   const Stored stored;
   scenes::Scene scene = stored.scene;
