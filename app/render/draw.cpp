@@ -29,11 +29,15 @@ studies::Limit limit_of(const Drawn& drawn, double wanted) {
     return studies::Limit::None;
   }
   if (drawn.frame.report.stopped) return studies::Limit::Stopped;
-  return drawn.options.time_limit_s > 0.0 ? studies::Limit::Time : studies::Limit::Steps;
+  const bool endless = drawn.options.time_limit_s <= 0.0 || drawn.frame.report.gave_up;
+  return endless ? studies::Limit::Steps : studies::Limit::Time;
 }
 
-// The squared error of samples falls as one over their number.
+// By where more samples would go, or where that cannot be told as the squared error falls as one
+// over their number.
 double seconds_to_go(const Drawn& drawn, double wanted) {
+  const double growth = drawn.frame.report.growth;
+  if (growth > 1.0) return drawn.frame.report.seconds * (growth - 1.0);
   const double ratio = drawn.errors.total.estimate / wanted;
   return drawn.frame.report.seconds * (ratio * ratio - 1.0);
 }

@@ -61,6 +61,10 @@ struct RenderReport {
   double finished_share = 1.0;   // of the pixels; less than 1 if it was stopped, the others then
                                  // show one sample or two
   bool stopped = false;
+  // Samples in all that the wanted error is expected to take, over those that were cast; 0 where
+  // it was not stopped, or before there were some all over the picture.
+  double growth = 0.0;
+  bool gave_up = false;  // far more samples than should do have not reached the wanted error
 };
 
 // How light reached the camera, by the last surface before it.

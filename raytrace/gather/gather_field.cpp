@@ -69,13 +69,15 @@ void GatherField::cast(Gathered kind, const std::vector<std::uint32_t>& more, st
 
 void GatherField::share(Gathered kind, bool last) {
   if (!gathers(kind)) return;
-  if (!of_surface_) of_surface_.emplace(window_, points_, setting_.shares);
+  if (!of_surface_) of_surface_.emplace(window_, points_);
   const bool lobe = kind == Gathered::Lobe;
   if (lobe && !of_material_) of_material_ = of_surface_->of_like_material(points_);
   Estimate& estimate = estimate_[number(kind)];
   Shared& shared = shared_[number(kind)];
   const Neighbours& neighbours = lobe ? *of_material_ : *of_surface_;
-  shared = last ? share_in_place(neighbours, estimate) : raytrace::share(neighbours, estimate);
+  const Keep keep = setting_.shares ? Keep::AsTold : Keep::All;
+  shared = last ? share_in_place(neighbours, estimate, keep)
+                : raytrace::share(neighbours, estimate, keep);
   add_strays(strays_, estimate, shared);
   share_among_peers({strays_, first_stray_, peers_, window_.columns}, estimate, shared);
   if (lobe) return;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "raytrace/passes/sample_plan.h"
+#include "raytrace/passes/rounds.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -15,17 +15,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int most_rounds = 6;  // of camera samples, each at most four times the one before
-constexpr int most_error_rounds = 24;
 constexpr std::array<Gathered, gathered_kinds> every_kind = {Gathered::Solution, Gathered::Residual,
                                                              Gathered::Lobe};
-constexpr double most_step = 2.0;  // less squared error a round
-// What planning by few samples promises is off by that much.
-constexpr double kept = 1.5;
-// Near the wanted error, how much more is cast before looking again, over what samples spread as
-// so far would take: what was known by few samples is often better than it seemed.
-constexpr double last_step_share = 0.5, least_last_step = 0.05;
-// Of the wanted error, what samples are planned for: the next statement may turn out larger.
-constexpr double aimed_share = 0.97;
 // What must follow a gather field's first samples, over the time that finding its points takes
 // (payload bay: 6 by day, 8 by night); and what must follow sharing.
 constexpr double after_gathering = 6.0, after_sharing = 2.5;
@@ -155,35 +146,31 @@ class Passes {
     first_round(by_edges(least, std::max(std::min(2, least), least / 2)));
     reserve_s_ = 0.0;
     if (!ends()) shade(wanted_for_the_eye(*sums_, scatter_of_samples(*sums_)));
-    for (int round = 1; round < most_error_rounds && !ends(); ++round) {
+    const bool covered = !ends();
+    Rounds rounds(options_.error);
+    for (std::uint32_t round = 1; !ends(); ++round) {
       const SampleCosts each = sample_costs(field());
       const SamplePlanner planner(*sums_, field(), each);
-      const double now = planner.squared_error(), error = std::sqrt(now);
-      if (options_.error > 0.0 && error <= (round > 1 ? sure_share : 1.0) * options_.error) break;
-      // Step by step: what few samples say of more of them is rough.
-      const double aim = aimed_share * sure_share * options_.error;
-      const double step = now - (now - std::max(aim * aim, now / most_step)) / kept;
       const double so_far = spent(*sums_, field(), each);
-      double most = affordable(so_far);
-      if (now < most_step * aim * aim) {
-        const double missing = last_step_share * (now / (aim * aim) - 1.0);
-        most = std::min(most, std::max(least_last_step, missing) * so_far);
-      }
-      const SamplePlan plan = planner.plan(step, most);
-      if (plan.cost <= 0.0) break;
-      expected_ = std::max(done_ + plan.cost, done_ * error * error / std::max(aim * aim, 1e-12));
+      const std::optional<SamplePlan> plan = rounds.next(planner, so_far, affordable(so_far));
+      if (!plan) break;
+      expected_ = done_ + std::max(plan->cost, done_ * (rounds.growth() - 1.0));
       if (field_) {
         const auto start = Clock::now();
         for (std::size_t k = 0; k < gathered_kinds && !ends(); ++k) {
-          field_->cast(static_cast<Gathered>(k), plan.field[k], static_cast<std::uint32_t>(round),
-                       [this] { return ends(); });
+          field_->cast(static_cast<Gathered>(k), plan->field[k], round, [this] { return ends(); });
         }
-        tell(plan.field_cost);
+        tell(plan->field_cost);
         share();
         report_.gather_seconds += seconds_since(start);
       }
-      shade(plan.camera);
+      shade(plan->camera);
     }
+    report_.gave_up = rounds.gave_up();
+    if (!covered || !ends() || options_.error <= 0.0) return;
+    const SampleCosts each = sample_costs(field());
+    report_.growth =
+        rounds.growth(SamplePlanner(*sums_, field(), each), spent(*sums_, field(), each));
   }
 
   // What the time that is left buys; infinite without a limit.

@@ -9,13 +9,6 @@
 
 namespace earthshine::raytrace {
 
-// Where the first look all over a picture is not enough, samples follow where errors look largest,
-// and what looked too small stays so: what is stated then is some per cent less than true. On the
-// payload bay by night, Sun and Earthshine the true error is 0.8 to 0.9 of what the first look
-// states and 1.00 to 1.06 of what is stated at 5 %. Rounds go on until this share of the wanted
-// error is stated.
-inline constexpr double sure_share = 0.94;
-
 // What the rays of a picture brought. The sums cover the window and perhaps some pixels around it;
 // the field, if there is one, the whole picture.
 struct Sampled {

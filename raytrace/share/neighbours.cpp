@@ -43,12 +43,12 @@ void Neighbours::sift(std::size_t level, const Keep& keep) {
       });
 }
 
-Neighbours::Neighbours(const Window& window, const std::vector<GatherPoint>& points, bool any)
+Neighbours::Neighbours(const Window& window, const std::vector<GatherPoint>& points)
     : columns_(window.columns), rows_(window.rows), masks_(mask_levels) {
   for (std::size_t level = 0; level < mask_levels; ++level) {
     masks_[level].resize(window.pixel_count());
     for (std::size_t p = 0; p < masks_[level].size(); ++p) {
-      masks_[level][p] = points[p].reach_m <= 0.0F ? 0U : any ? all_bits : centre_bit;
+      masks_[level][p] = points[p].reach_m <= 0.0F ? 0U : all_bits;
     }
     sift(level, [&](std::size_t p, std::size_t q) {
       const GatherPoint &a = points[p], &b = points[q];

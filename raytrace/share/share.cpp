@@ -13,8 +13,8 @@ namespace {
 // counts when details are kept.
 constexpr float doubt = 1.5F;
 constexpr std::size_t noise_fields = 4;
-// Noise over signal of what has no samples: nothing of it is kept.
-constexpr float unsampled = 1e6F;
+// Noise over signal of what has no samples, and signal over noise where all is kept.
+constexpr float certain = 1e6F;
 constexpr std::size_t layers_at_once = 4;
 constexpr std::size_t points_at_once = 1024;
 
@@ -60,9 +60,11 @@ namespace {
 class Sharer {
  public:
   // own: sums of the estimate, whose place the shared means take.
-  Sharer(const Neighbours& neighbours, const Estimate& estimate, std::vector<glm::vec3> own)
+  Sharer(const Neighbours& neighbours, const Estimate& estimate, std::vector<glm::vec3> own,
+         Keep how)
       : neighbours_(neighbours),
         estimate_(estimate),
+        all_(how == Keep::All),
         points_(neighbours.count()),
         in_place_(!own.empty()) {
     shared_.radiance = std::move(own);
@@ -138,7 +140,7 @@ class Sharer {
     shared_.rest.resize(points_);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
-        shared_.rest[p] = expected_[p] * noise_of(p).mean;
+        shared_.rest[p] = keeps_all(p) ? 0.0F : expected_[p] * noise_of(p).mean;
         shared_.squared_error[p] = static_cast<float>(shared_.squared_error_with(p, 1.0));
       }
     });
@@ -199,14 +201,23 @@ class Sharer {
     return noise;
   }
 
+  [[nodiscard]] bool keeps_all(std::size_t p) const { return all_ && estimate_.samples[p] > 0.0F; }
+
   void keep(std::size_t level) {
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
         const Noise noise = noise_of(p);
+        if (keeps_all(p)) {  // the finest level tells the noise of a sample, and states all of it
+          const float q = level == 0 ? noise.mean / estimate_.samples[p] : 0.0F;
+          keep_[p][level] = 1.0F;
+          shared_.signal[p][level] = certain * q;
+          shared_.noise[p][level] = q;
+          continue;
+        }
         const float weight = squares_.back()[p];
         const float s = weight > 0.0F ? (squares_[0][p] - noise.mean) / weight : 0.0F;
         const float q =
-            expected_[p] > 0.0F ? expected_[p] * noise.mean : unsampled * std::max(0.0F, s);
+            expected_[p] > 0.0F ? expected_[p] * noise.mean : certain * std::max(0.0F, s);
         keep_[p][level] = kept_share(s, q);
         shared_.signal[p][level] = s;
         shared_.noise[p][level] = q;
@@ -266,6 +277,7 @@ class Sharer {
 
   const Neighbours& neighbours_;
   const Estimate& estimate_;
+  bool all_;
   std::size_t points_;
   bool in_place_;
   Shared shared_;
@@ -277,12 +289,12 @@ class Sharer {
 
 }  // namespace
 
-Shared share(const Neighbours& neighbours, const Estimate& estimate) {
-  return Sharer(neighbours, estimate, {}).run();
+Shared share(const Neighbours& neighbours, const Estimate& estimate, Keep keep) {
+  return Sharer(neighbours, estimate, {}, keep).run();
 }
 
-Shared share_in_place(const Neighbours& neighbours, Estimate& estimate) {
-  return Sharer(neighbours, estimate, std::exchange(estimate.sum, {})).run();
+Shared share_in_place(const Neighbours& neighbours, Estimate& estimate, Keep keep) {
+  return Sharer(neighbours, estimate, std::exchange(estimate.sum, {}), keep).run();
 }
 
 }  // namespace earthshine::raytrace

@@ -84,8 +84,8 @@ struct Estimate {
 // Which points share: those on the same surface, 2 steps of 1, 2, 4 ... pixels away.
 class Neighbours {
  public:
-  // any: false if every point stays alone. The points lie row by row in the window.
-  Neighbours(const Window& window, const std::vector<GatherPoint>& points, bool any);
+  // The points lie row by row in the window.
+  Neighbours(const Window& window, const std::vector<GatherPoint>& points);
   // The same of those that have like material.
   [[nodiscard]] Neighbours of_like_material(const std::vector<GatherPoint>& points) const;
 
@@ -123,11 +123,17 @@ struct Shared {
   [[nodiscard]] double squared_error_with(std::size_t point, double factor) const;
 };
 
+// What is kept of details: as told above, or all of them, whose noise is still told by all around
+// (a point's own two halves agree by chance, and then nothing would tell that it needs more).
+enum class Keep { AsTold, All };
+
 // The points of the grid, which come first in the estimate.
-[[nodiscard]] Shared share(const Neighbours& neighbours, const Estimate& estimate);
+[[nodiscard]] Shared share(const Neighbours& neighbours, const Estimate& estimate,
+                           Keep keep = Keep::AsTold);
 // The same where the estimate's sums are: it is left without, and those of strays stay in
 // Shared::radiance until add_strays() has them.
-[[nodiscard]] Shared share_in_place(const Neighbours& neighbours, Estimate& estimate);
+[[nodiscard]] Shared share_in_place(const Neighbours& neighbours, Estimate& estimate,
+                                    Keep keep = Keep::AsTold);
 
 // The share of a detail of signal s and noise q that is kept, mean squares.
 [[nodiscard]] float kept_share(float s, float q);

@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "base/ranks/ranks.h"
 #include "radiosity/refine.h"
-#include "raytrace/passes/passes.h"
+#include "raytrace/passes/rounds.h"
 #include "raytrace/paths/path_tracer.h"
 #include "studies/cost/cost_laws.h"
 
@@ -118,8 +118,6 @@ raytrace::Frame timed(const Stopwatch& watch, raytrace::Frame frame) {
   return frame;
 }
 
-// The squared error of samples falls as one over their number; faster as long as the first look is
-// not over, since what follows goes where it helps most.
 raytrace::RenderReport expect_steered(const PictureDrawer& drawer, const scenes::Camera& camera,
                                       raytrace::RenderOptions options, base::Image& image) {
   const Stopwatch watch;
@@ -127,9 +125,10 @@ raytrace::RenderReport expect_steered(const PictureDrawer& drawer, const scenes:
   raytrace::Frame frame = timed(watch, drawer.begin(camera, options));
   const double noise = frame.report.relative_noise;
   const double ratio = noise > options.error ? noise / (raytrace::sure_share * options.error) : 1.0;
-  const double power = frame.report.finished_share < 1.0 ? power_of_a_cut_look : 2.0;
+  const double growth = frame.report.growth;
   image = std::move(frame.image);
-  return scaled(frame.report, {1.0, std::pow(ratio, power), 0.0});
+  return scaled(frame.report,
+                {1.0, growth > 0.0 ? growth : std::pow(ratio, power_of_a_cut_look), 0.0});
 }
 
 raytrace::RenderReport expect_picture(const PictureDrawer& drawer, const scenes::Camera& camera,

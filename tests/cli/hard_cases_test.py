@@ -57,6 +57,13 @@ class HardCases(program.Case):
         # What leaks along walls and floors into the dark room was 30 times what comes through the hole.
         self.assertLess(abs(truth.bias), 0.25 + 4 * math.sqrt(truth.doubt))
 
+    def test_a_room_lit_through_a_pinhole_reaches_its_error(self):
+        """Most samples find no light, so that what is stated rises again and again: some fifty rounds. Ends within a limit,
+        should there be no end."""
+        self.write("hard.toml", hard_scenes.pinhole().text)
+        report = self.json("render", "hard.toml", "--error", "0.05", "--size", "12x12", "--time-limit", 300, "-o", "out.exr")
+        self.assertLessEqual(report["error"]["estimate"], 0.05)
+
     def test_all_light_is_indirect(self):
         self.holds(hard_scenes.baffle(), 1024)
 

@@ -2,7 +2,7 @@
 // Where pictures of a wanted error end.
 #include <gtest/gtest.h>
 
-#include "raytrace/passes/passes.h"
+#include "raytrace/passes/rounds.h"
 #include "raytrace/render.h"
 #include "tests/support/scene_builder.h"
 

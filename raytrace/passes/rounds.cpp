@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/passes/rounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace earthshine::raytrace {
+namespace {
+
+constexpr double most_step = 2.0;  // less squared error a round
+// Off the squared error, rounds take so many times what plans promise.
+constexpr double kept = 1.5;
+// Near the wanted error, how much more is cast before looking again, over what samples spread as
+// so far would take: what was known by few samples is often better than it seemed.
+constexpr double last_step_share = 0.5;
+// No round costs less of all before, if it can help: each takes a sharing and a look, too.
+constexpr double least_step = 0.05;
+// Of the wanted error, what samples are planned for: the next statement may turn out larger.
+constexpr double aimed_share = 0.97;
+constexpr double hopeless_growth = 1024.0, hopeless_share = 0.5;
+
+}  // namespace
+
+double Rounds::aim() const { return aimed_share * sure_share * wanted_; }
+
+std::optional<SamplePlan> Rounds::next(const SamplePlanner& planner, double so_far,
+                                       double affordable) {
+  const double now = planner.squared_error(), error = std::sqrt(now), aimed = aim() * aim();
+  const bool first = looks_.empty();
+  looks_.push_back({so_far, error});
+  if (wanted_ > 0.0 && error <= (first ? 1.0 : sure_share) * wanted_) return {};
+  if (wanted_ > 0.0 && is_hopeless(looks_)) {
+    gave_up_ = true;
+    return {};
+  }
+  // Step by step: what few samples say of more of them is rough.
+  const double step = now - (now - std::max(aimed, now / most_step)) / kept;
+  double most = affordable;
+  if (now < most_step * aimed) {
+    const double missing = last_step_share * (now / aimed - 1.0);
+    most = std::min(most, std::max(least_step, missing) * so_far);
+  }
+  SamplePlan plan = planner.plan(step, most);
+  // A few points that turned out bad cost next to nothing: what is worst beside them goes along.
+  const double fewest = std::min(most, least_step * so_far);
+  if (plan.cost < 0.5 * fewest) plan = planner.plan(aimed, fewest);
+  if (plan.cost <= 0.0) return {};
+  return plan;
+}
+
+double Rounds::growth() const {
+  const double error = looks_.empty() ? 0.0 : looks_.back().error;
+  return error * error / std::max(aim() * aim(), 1e-12);
+}
+
+double Rounds::growth(const SamplePlanner& planner, double so_far) const {
+  const double now = planner.squared_error(), aimed = aim() * aim();
+  if (now <= aimed || so_far <= 0.0) return 1.0;
+  const SamplePlan plan =
+      planner.plan(now - (now - aimed) / kept, std::numeric_limits<double>::infinity());
+  // A plan gives a point four times its samples at most: beyond, as the square of the error.
+  const double left = now - kept * (now - plan.squared_error);
+  return (1.0 + plan.cost / so_far) * std::max(1.0, left / aimed);
+}
+
+bool Rounds::is_hopeless(const std::vector<Look>& looks) {
+  const auto before = std::find_if(looks.rbegin(), looks.rend(), [&](const Look& look) {
+    return look.cost <= looks.back().cost / hopeless_growth;
+  });
+  return before != looks.rend() && looks.back().error > hopeless_share * before->error;
+}
+
+}  // namespace earthshine::raytrace

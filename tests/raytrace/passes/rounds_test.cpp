@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// How rounds of samples go on towards a wanted error, told by sums that are made up.
+#include "raytrace/passes/rounds.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace earthshine::raytrace {
+namespace {
+
+constexpr double no_limit = std::numeric_limits<double>::infinity();
+
+// A grey picture of mean luminance 1, every pixel with 1024 samples of variance 1 to 3.5 and of one
+// ray; one more pixel, with 4 samples of variance 3.
+PixelSums surprised() {
+  constexpr double few = 4.0, many = 1024.0, bad = 3.0;
+  PixelSums sums(Window{0, 0, 16, 16}, 1, false);
+  for (std::size_t p = 0; p < sums.samples.size(); ++p) {
+    const double n = p == 0 ? few : many, variance = p == 0 ? bad : 1.0 + 0.01 * double(p);
+    sums.samples[p] = static_cast<std::uint32_t>(n);
+    sums.rays[p] = static_cast<float>(n);
+    sums.radiance[p] = glm::vec3(float(n));
+    sums.luminance[p] = n;
+    sums.luminance2[p] = n + variance * (n - 1.0);
+    sums.half_difference[p] = std::sqrt(variance * n);
+    sums.source[p].reflecting = n;
+  }
+  return sums;
+}
+
+// The pixel that stands out is half of the squared error, and twelve more samples of it, a 20 000th
+// of all, are all that a round would ask for: at that pace it would take a hundred rounds to double
+// the samples.
+TEST(Rounds, NoneCostsNextToNothing) {
+  const PixelSums sums = surprised();
+  const SamplePlanner planner(sums, nullptr, {});
+  const double so_far = spent(sums, nullptr, {});
+  EXPECT_LT(planner.plan(0.7 * planner.squared_error(), no_limit).cost, 1e-3 * so_far);
+  Rounds rounds(0.001);
+  const auto plan = rounds.next(planner, so_far, no_limit);
+  ASSERT_TRUE(plan.has_value());
+  EXPECT_GT(plan->cost, 0.01 * so_far);
+}
+
+TEST(Rounds, NoneCostsMoreThanCanBeAfforded) {
+  const PixelSums sums = surprised();
+  const SamplePlanner planner(sums, nullptr, {});
+  const double so_far = spent(sums, nullptr, {});
+  Rounds rounds(0.001);
+  const auto plan = rounds.next(planner, so_far, 1e-3 * so_far);
+  ASSERT_TRUE(plan.has_value());
+  EXPECT_LE(plan->cost, 1e-3 * so_far);
+  EXPECT_FALSE(rounds.gave_up());
+}
+
+// Of samples that know all noise, 1024 times as many leave 1/32 of it.
+TEST(Rounds, AnErrorThatWillNotFallIsHopeless) {
+  EXPECT_FALSE(Rounds::is_hopeless({{1.0, 0.1}}));
+  EXPECT_TRUE(Rounds::is_hopeless({{1.0, 0.1}, {1024.0, 0.06}}));
+  EXPECT_FALSE(Rounds::is_hopeless({{1.0, 0.1}, {1000.0, 0.1}}));
+  EXPECT_FALSE(Rounds::is_hopeless({{1.0, 0.1}, {1024.0, 0.05}}));
+}
+
+// What the first look missed counts from where it was found.
+TEST(Rounds, ASurpriseIsNotHopeless) {
+  EXPECT_FALSE(Rounds::is_hopeless({{1.0, 0.1}, {4.0, 0.8}, {4096.0, 0.3}}));
+}
+
+}  // namespace
+}  // namespace earthshine::raytrace
