@@ -55,6 +55,29 @@ TEST(Rounds, NoneCostsMoreThanCanBeAfforded) {
   EXPECT_FALSE(rounds.gave_up());
 }
 
+// All pixels alike but for a little: halving the squared error takes twice the samples of all, by 1
+// / N. That is two thirds of the way to a quarter, and rounds go 1.5 times as far as they plan.
+TEST(Rounds, GrowthIsWhatThePlanCosts) {
+  PixelSums sums = surprised();
+  sums.samples[0] = 1024;
+  sums.rays[0] = 1024.0F;
+  sums.radiance[0] = glm::vec3(1024.0F);
+  sums.luminance[0] = sums.source[0].reflecting = 1024.0;
+  sums.luminance2[0] = 1024.0 + 1023.0;
+  sums.half_difference[0] = std::sqrt(1024.0);
+  for (std::size_t p = 1; p < sums.samples.size(); ++p) {
+    const double alike = 1.0 + 1e-4 * double(p);
+    sums.luminance2[p] = 1024.0 + alike * 1023.0;
+    sums.half_difference[p] = std::sqrt(alike * 1024.0);
+  }
+  const SamplePlanner planner(sums, nullptr, {});
+  const double so_far = spent(sums, nullptr, {});
+  const double quarter = 0.5 * std::sqrt(planner.squared_error());
+  // 0.97 of 0.94 of the wanted error is aimed at.
+  EXPECT_NEAR(Rounds(quarter / (0.97 * sure_share)).growth(planner, so_far), 2.0, 0.02);
+  EXPECT_EQ(Rounds(4.0 * quarter).growth(planner, so_far), 1.0);
+}
+
 // Of samples that know all noise, 1024 times as many leave 1/32 of it.
 TEST(Rounds, AnErrorThatWillNotFallIsHopeless) {
   EXPECT_FALSE(Rounds::is_hopeless({{1.0, 0.1}}));
