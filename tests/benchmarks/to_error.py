@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """CPU seconds to a true error, beside those of the program's own path tracer. Prints a table as Markdown.
 
-    to_error.py PROGRAM [--scene NAME]... [--camera C]... [--size 256x256] [--errors 0.05,0.02] [--paths 512] [--cache DIR]
+    to_error.py PROGRAM [--scene NAME]... [--camera C]... [--size 256x256] [--errors 0.05,0.02] [--paths 512]
+                        [--references 2] [--cache DIR]
 
-Truth: two path-traced pictures of independent noise, of all light paths (error_truth.py), where a pixel's centre shows a
+Truth: path-traced pictures of independent noise (two, or more for small errors of noisy scenes), of all light paths (error_truth.py), where a pixel's centre shows a
 surface: that is what pictures state their error of, and mean luminances are over it. They are kept in DIR. Their
 difference tells the path tracer's own noise, by the same weights, and with it what it needs for the same error:
 its seconds times (its noise / the error)^2. Its seconds are those of a picture of a sixteenth of the paths, drawn in
@@ -22,7 +23,7 @@ sys.path.insert(0, str(TOP / "tests" / "validation"))
 import error_truth  # noqa: E402
 
 SCENES = ("night-lamps", "day-sun", "day-earthshine")
-SEEDS = (11, 12)
+FIRST_SEED = 11  # of the references
 TIMED = 16  # of so many paths one, for the path tracer's seconds
 
 
@@ -52,9 +53,9 @@ def shows_surface(call, scene, camera):
 
 
 def references(call, scene, camera):
-    """Two luminances."""
+    """Luminances of each."""
     found = []
-    for seed in SEEDS:
+    for seed in range(FIRST_SEED, FIRST_SEED + call.references):
         picture = call.cache / f"{scene}-{camera}-{call.size}-{call.paths}-{seed}.exr"
         if not picture.exists():
             unfinished = picture.with_suffix(".part.exr")
@@ -73,17 +74,17 @@ def noise(first, second, counts):
 
 
 def rows(call, scene, camera):
-    first, second = references(call, scene, camera)
+    first, second, *more = references(call, scene, camera)
     counts = shows_surface(call, scene, camera)
     of_paths = noise(first, second, counts)
     timed = max(1, call.paths // TIMED)
-    path_seconds = trace_paths(call, scene, camera, timed, SEEDS[0], call.cache / "timed.exr") * call.paths / timed
+    path_seconds = trace_paths(call, scene, camera, timed, FIRST_SEED, call.cache / "timed.exr") * call.paths / timed
     for asked in call.errors:
         picture = call.cache / "picture.exr"
         out, seconds = run(call.program, "render", TOP / "scenes/library/sts46" / f"{scene}.toml", "--camera", camera, "--size", call.size,
                            "--error", asked, "--seed", call.seed, "-q", "--json", "-o", picture)
         error = json.loads(out)["error"]
-        truth = error_truth.compare(error_truth.picture(picture)[0], first, second, counts)
+        truth = error_truth.compare(error_truth.picture(picture)[0], first, second, counts, more)
         unsure = truth.doubt / (2 * truth.error) if truth.error > 0 else math.sqrt(truth.doubt)
         paths = path_seconds * (of_paths / truth.error)**2
         yield (f"| {scene} {camera} | {100 * asked:g} % | {100 * error['estimate']:.1f}, {100 * error['bound_95']:.1f} % | "
@@ -99,6 +100,7 @@ def main():
     parser.add_argument("--size", default="256x256")
     parser.add_argument("--errors", type=lambda text: [float(one) for one in text.split(",")], default=[0.05, 0.02])
     parser.add_argument("--paths", type=int, default=512, help="a pixel, of each reference")
+    parser.add_argument("--references", type=int, default=2)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--cache", type=pathlib.Path, default=TOP / "out" / "error-references")
     call = parser.parse_args()

@@ -38,20 +38,23 @@ class Truth:
 BRIGHT = 4.0  # times the mean: above, an error counts in proportion (raytrace/frame/frame.h, error_weight)
 
 
-def compare(values, first, second, counts=None):
-    """The error of values, where first and second are two references of the same, over those that count, relative to their
-    mean, with the program's weights: a value L brighter than 4 times the mean counts with w = 4 mean / L, in both factors.
-    L is the references' mean, so that what is judged has no say in it."""
+def compare(values, first, second, counts=None, more=()):
+    """The error of values, where first, second and perhaps more are references of the same, over those that count, relative to
+    their mean, with the program's weights: a value L brighter than 4 times the mean counts with w = 4 mean / L, in both
+    factors. L is the references' mean, so that what is judged has no say in it. Of more than two, the mean over all pairs:
+    of k differences d, ((sum d)^2 - sum d^2) / (k (k - 1))."""
     if counts is None:
         counts = [1.0] * len(values)
-    rows = [(v, a, b) for v, a, b, c in zip(values, first, second, counts) if c]
-    mean = sum(a + b for _, a, b in rows) / (2 * len(rows)) if rows else 0.0
+    k = 2 + len(more)
+    rows = [(v, sum(all_of) / k, all_of) for v, c, *all_of in zip(values, counts, first, second, *more) if c]
+    mean = sum(middle for _, middle, _ in rows) / len(rows) if rows else 0.0
     if mean <= 0:
         return Truth(0.0, 0.0, 0.0, 0.0)
-    products = [weight((a + b) / 2, mean)**2 * (v - a) * (v - b) / mean**2 for v, a, b in rows]
+    products = [weight(middle, mean)**2 * ((k * (v - middle))**2 - sum((v - one)**2 for one in all_of)) / (k * (k - 1) * mean**2)
+                for v, middle, all_of in rows]
     square = sum(products) / len(rows)
     spread = sum((p - square)**2 for p in products) / len(rows)**2
-    bias = sum(v - (a + b) / 2 for v, a, b in rows) / len(rows) / mean
+    bias = sum(v - middle for v, middle, _ in rows) / len(rows) / mean
     return Truth(math.sqrt(max(0.0, square)), math.sqrt(spread), bias, mean)
 
 
