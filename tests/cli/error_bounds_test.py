@@ -30,6 +30,15 @@ class Truth(unittest.TestCase):
         self.assertAlmostEqual(found.doubt, spread, delta=0.05 * spread)
         self.assertAlmostEqual(found.bias, off, delta=4 * sigma / math.sqrt(2 * number))
 
+    def test_more_references_tell_it_better(self):
+        # Of k, the mean over all pairs of (off + e)(off + e') has the variance 4 off^2 sigma^2 / k + 2 sigma^4 / (k (k - 1)).
+        number, sigma, off, k = 10000, 0.1, 0.05, 6
+        first, second, *more = (noisy([1.0] * number, sigma, seed) for seed in range(k))
+        found = error_truth.compare([1.0 + off] * number, first, second, None, more)
+        spread = math.sqrt((4 * off**2 * sigma**2 / k + 2 * sigma**4 / (k * (k - 1))) / number)
+        self.assertLess(abs(found.error**2 - off**2), 4 * spread)
+        self.assertAlmostEqual(found.doubt, spread, delta=0.05 * spread)
+
     def test_only_pixels_that_count(self):
         found = error_truth.compare([3.0, 9.0], [2.0, 1.0], [2.0, 1.0], [1.0, 0.0])
         self.assertEqual((found.error, found.bias, found.mean), (0.5, 0.5, 2.0))
