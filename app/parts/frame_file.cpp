@@ -52,7 +52,8 @@ CachedResult kept_frame(const Frame& frame, const raytrace::Window& picture) {
                 {"most_camera_samples", report.most_camera_samples},
                 {"gather_rays", report.gather_rays},
                 {"least_camera_samples", report.least_camera_samples},
-                {"finished_share", report.finished_share}};
+                {"finished_share", report.finished_share},
+                {"gave_up", report.gave_up}};
   const raytrace::StatedError& stated = frame.error;
   kept.image.add(stated_luminance) = stated.luminance;
   std::vector<float>& counts = kept.image.add(stated_counts);
@@ -80,6 +81,7 @@ Frame frame_of(CachedResult kept) {
   facts.at("gather_rays").get_to(report.gather_rays);
   facts.at("least_camera_samples").get_to(report.least_camera_samples);
   facts.at("finished_share").get_to(report.finished_share);
+  report.gave_up = facts.value("gave_up", false);
   raytrace::StatedError& stated = frame.error;
   stated.luminance = take(kept.image, stated_luminance);
   const std::vector<float> counts = take(kept.image, stated_counts);

@@ -33,11 +33,8 @@ studies::Limit limit_of(const Drawn& drawn, double wanted) {
   return endless ? studies::Limit::Steps : studies::Limit::Time;
 }
 
-// By where more samples would go, or where that cannot be told as the squared error falls as one
-// over their number.
+// The squared error of samples falls as one over their number.
 double seconds_to_go(const Drawn& drawn, double wanted) {
-  const double growth = drawn.frame.report.growth;
-  if (growth > 1.0) return drawn.frame.report.seconds * (growth - 1.0);
   const double ratio = drawn.errors.total.estimate / wanted;
   return drawn.frame.report.seconds * (ratio * ratio - 1.0);
 }

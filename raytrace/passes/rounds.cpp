@@ -45,6 +45,8 @@ std::optional<SamplePlan> Rounds::next(const SamplePlanner& planner, double so_f
   // A few points that turned out bad cost next to nothing: what is worst beside them goes along.
   const double fewest = std::min(most, least_step * so_far);
   if (plan.cost < 0.5 * fewest) plan = planner.plan(aimed, fewest);
+  // A single point's next step may be larger than that.
+  if (plan.cost <= 0.0) plan = planner.plan(aimed, affordable);
   if (plan.cost <= 0.0) return {};
   return plan;
 }

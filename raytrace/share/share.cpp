@@ -9,53 +9,11 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Noise that is found by chance looks like signal half of the time: only what is well above it
-// counts when details are kept.
-constexpr float doubt = 1.5F;
 constexpr std::size_t noise_fields = 4;
 // Noise over signal of what has no samples, and signal over noise where all is kept.
 constexpr float certain = 1e6F;
 constexpr std::size_t layers_at_once = 4;
 constexpr std::size_t points_at_once = 1024;
-
-}  // namespace
-
-float kept_share(float s, float q) {
-  const float sure = s - (doubt - 1.0F) * q;
-  return sure > 0.0F ? sure / (sure + q) : 0.0F;
-}
-
-namespace {
-
-// What that leaves: what is kept of the noise, and what is not kept of the signal. few: 1 / N.
-struct Left {
-  float noise = 0.0F, blur = 0.0F;
-  void add(float s, float q, float few) {
-    const float share = kept_share(s, q);
-    noise += share * share * q;
-    blur += (1.0F - share) * (1.0F - share) * s;
-    if (share <= 0.0F) return;
-    const float ratio = 1.0F - share;  // c = 1 - q / (D - k q), so c' = (1 - c)^2 / q
-    noise += 4.0F * (s + q) * ratio * ratio * few;
-  }
-  // Signals that are not there come out as often below zero as above; noise is never undone so.
-  [[nodiscard]] float all() const { return noise + std::max(0.0F, blur); }
-};
-
-}  // namespace
-
-double Shared::squared_error_with(std::size_t point, double factor) const {
-  const auto more = static_cast<float>(factor);
-  Left left{rest[point] / more, 0.0F};
-  for (std::size_t level = 0; level < share_levels; ++level) {
-    const float least = level == 0 && !hidden.empty() ? hidden[point] / more : 0.0F;
-    const float s = least > 0.0F ? std::max(signal[point][level], least) : signal[point][level];
-    left.add(s, noise[point][level] / more, few[point][level]);
-  }
-  return double(left.all());
-}
-
-namespace {
 
 class Sharer {
  public:
@@ -77,7 +35,17 @@ class Sharer {
     shared_.few.assign(points_, {});
     shared_.squared_error.assign(points_, 0.0F);
     keep_.assign(points_, {});
-    split_halves();
+    shared_.rest.assign(points_, 0.0F);
+    if (all_) {
+      tell_noise();
+    } else {
+      split_halves();
+    }
+    for_all([&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
+        shared_.squared_error[p] = static_cast<float>(shared_.squared_error_with(p, 1.0));
+      }
+    });
     take_layers();
     return std::move(shared_);
   }
@@ -110,8 +78,9 @@ class Sharer {
     }
   }
 
-  void split_halves() {
-    Planes values(1 + noise_fields, std::vector<float>(points_, 0.0F)), detail;
+  // Means of both halves, and fields of their noise.
+  [[nodiscard]] Planes means_and_noise() const {
+    Planes values(1 + noise_fields, std::vector<float>(points_, 0.0F));
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
         const float n = 0.5F * estimate_.samples[p];
@@ -125,6 +94,25 @@ class Sharer {
         }
       }
     });
+    return values;
+  }
+
+  // Where all is kept: the noise of the points themselves.
+  void tell_noise() {
+    expected_.resize(points_);
+    for (std::size_t p = 0; p < points_; ++p) {
+      expected_[p] = estimate_.samples[p] > 0.0F ? 1.0F / estimate_.samples[p] : 0.0F;
+    }
+    take_squares(means_and_noise());
+    blur_squares(0);
+    for (std::size_t p = 0; p < points_; ++p) {
+      shared_.noise[p][0] = expected_[p] * noise_of(p).mean;
+      shared_.signal[p][0] = certain * shared_.noise[p][0];
+    }
+  }
+
+  void split_halves() {
+    Planes values = means_and_noise(), detail;
     Planes weight;
     neighbours_.blur(0, {estimate_.samples}, nullptr, weight);
     weight_ = std::move(weight.front());
@@ -137,11 +125,9 @@ class Sharer {
     }
     take_squares(values);
     blur_squares(share_levels - 1);
-    shared_.rest.resize(points_);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
-        shared_.rest[p] = keeps_all(p) ? 0.0F : expected_[p] * noise_of(p).mean;
-        shared_.squared_error[p] = static_cast<float>(shared_.squared_error_with(p, 1.0));
+        shared_.rest[p] = expected_[p] * noise_of(p).mean;
       }
     });
   }
@@ -201,19 +187,10 @@ class Sharer {
     return noise;
   }
 
-  [[nodiscard]] bool keeps_all(std::size_t p) const { return all_ && estimate_.samples[p] > 0.0F; }
-
   void keep(std::size_t level) {
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
         const Noise noise = noise_of(p);
-        if (keeps_all(p)) {  // the finest level tells the noise of a sample, and states all of it
-          const float q = level == 0 ? noise.mean / estimate_.samples[p] : 0.0F;
-          keep_[p][level] = 1.0F;
-          shared_.signal[p][level] = certain * q;
-          shared_.noise[p][level] = q;
-          continue;
-        }
         const float weight = squares_.back()[p];
         const float s = weight > 0.0F ? (squares_[0][p] - noise.mean) / weight : 0.0F;
         const float q =
@@ -253,7 +230,7 @@ class Sharer {
         }
       }
     });
-    for (std::size_t level = 0; level < share_levels; ++level) {
+    for (std::size_t level = 0; !all_ && level < share_levels; ++level) {
       step(level, values, detail);
       for_all([&](std::size_t begin, std::size_t end) {
         for (std::size_t k = 0; k < values.size(); ++k) {

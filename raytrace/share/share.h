@@ -123,8 +123,9 @@ struct Shared {
   [[nodiscard]] double squared_error_with(std::size_t point, double factor) const;
 };
 
-// What is kept of details: as told above, or all of them, whose noise is still told by all around
-// (a point's own two halves agree by chance, and then nothing would tell that it needs more).
+// What is kept of details: as told above, or all of them: values stay as they are, and their noise
+// is that of a sample around, over the samples there (a point's own two halves may agree by
+// chance).
 enum class Keep { AsTold, All };
 
 // The points of the grid, which come first in the estimate.

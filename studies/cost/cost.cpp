@@ -17,7 +17,7 @@ namespace {
 
 // Pictures of a wanted error are begun with so many pixels at most, and left after so much. Those
 // of the whole cost less each, as fewer lie at edges: on the payload bay and the still life 4 times
-// the pixels cost 2.5 to 3.5 times as much.
+// the pixels cost 2.4 to 3.3 times as much.
 constexpr double begun_pixels = 128.0 * 128.0, begun_cpu_s = 2.0;
 constexpr double power_of_pixels = 0.75;
 // Seconds grow with error over wanted error by that power, if even the first look was cut short:

@@ -142,6 +142,17 @@ TEST(Share, WhatKeepsAllOfItsOwnStillTellsNoiseByOthers) {
   EXPECT_NEAR(mean, 1.0 / 24.0, 4.0 * std::sqrt(7.0 / 2880.0 / count));
 }
 
+// A point without neighbours has its own two halves alone: 0 and 1 are off by a variance of (0 -
+// 1)^2 / 4.
+TEST(Share, WhatIsAloneTellsItsNoiseByItsHalves) {
+  std::vector<GatherPoint> points = flat();
+  for (std::size_t p = 1; p < count; ++p) points[p].reach_m = -1.0F;
+  const Estimate estimate = estimate_of([](int, int, std::size_t half) { return double(half); });
+  const Shared shared = share(Neighbours(window, points), estimate, Keep::All);
+  EXPECT_NEAR(double(shared.squared_error[0]), 0.25, 1e-5);
+  EXPECT_NEAR(double(shared.radiance[0].g), 0.5, 1e-6);
+}
+
 TEST(Share, MoreSamplesAreExpectedToHelp) {
   base::Rng rng(base::Key(5, base::Stream::Test, 4));
   const Shared shared =
