@@ -16,7 +16,7 @@
 namespace earthshine::studies {
 namespace {
 
-constexpr int most_passes = 24;
+constexpr int most_rounds = 24;       // of cuts by shadow rays, from one pass to the next
 constexpr double aim = 0.85;          // of the wanted error
 constexpr double noise_share = 0.25;  // of the wanted squared error, left to the rays
 constexpr std::uint64_t many_rays = std::uint64_t{1} << 25;
@@ -27,7 +27,7 @@ constexpr double cut_share = 0.6;         // to what is uneven within patches
 // exactly, and where rays do, by which the largest are the largest by chance too.
 constexpr double shadow_cuts = 0.5, gather_cuts = 0.8;
 constexpr double shadow_share = 0.25, last_share = 0.5;    // of a time limit: no cut, no pass then
-constexpr std::size_t largest_cut = std::size_t{1} << 17;  // patches
+constexpr std::size_t largest_cut = std::size_t{1} << 21;  // patches
 constexpr std::size_t largest_shadow_cut = 3 * (largest_cut / 4);  // leaves some to other light
 constexpr std::uint32_t fewest_points = 8192;
 // Over all surfaces; twice as many in each pass that cuts by them.
@@ -132,7 +132,7 @@ class SurfaceSearch {
     std::iota(which.begin(), which.end(), 0U);
     CutChoice choice(light_->patches());
     const double enough = cut_share * squared(aim * wanted_.error * mean_);
-    for (int round = 0; round < most_passes && !which.empty() && time_gone() <= shadow_share;
+    for (int round = 0; round < most_rounds && !which.empty() && time_gone() <= shadow_share;
          ++round) {
       const std::vector<Effort> effort = shadow_effort(light_->patches(), which, shadow_points_);
       const SurfaceSamples samples =
@@ -156,6 +156,7 @@ class SurfaceSearch {
 
   void improve() {
     double before = 0.0;
+    bool cuts = true;
     std::vector<Effort> effort = even_effort(light_->patches(), points_wanted_);
     for (int pass = 0;; ++pass) {
       std::vector<std::uint32_t> all(light_->patches().count());
@@ -176,14 +177,13 @@ class SurfaceSearch {
       const double error = found.parts.total().estimate;
       if (error <= wanted_.error) return;
       if (!may_cut() && !may_cast()) return stop(Limit::Settings);
-      if (pass + 1 == most_passes) return stop(Limit::Steps);
-      if (is_hopeless(error)) return stop(Limit::Steps);
+      if (!cuts && is_hopeless(error)) return stop(Limit::Steps);
       if (time_gone() > last_share) return stop(Limit::Time);
       mean_ = found.mean;
       if (may_cast()) light_->correct(samples, all, effort);
       if (found.doubt > 0.3 * squared(wanted_.error)) points_wanted_ *= 2.0;
       const double enough = squared(aim * wanted_.error * mean_);
-      bool cuts = false;
+      cuts = false;
       std::vector<std::uint32_t> parent;
       const std::size_t patches = light_->patches().count();
       if (may_cut() && found.patches > 0.8 * cut_share * squared(aim * wanted_.error)) {
@@ -210,7 +210,8 @@ class SurfaceSearch {
     }
   }
 
-  // Rays go with the inverse of the squared error: what is left would take many times what is done.
+  // Where nothing is cut, rays go with the inverse of the squared error: what is left would take
+  // many times what is done.
   [[nodiscard]] bool is_hopeless(double error) const {
     return wanted_.seconds <= 0.0 && rays_ > many_rays && result_.steps.size() > 1 &&
            squared(error / wanted_.error) > most_times_more;
@@ -245,9 +246,11 @@ class SurfaceSearch {
     std::size_t most = std::max<std::size_t>(first_patches_, largest_cut);
     if (given_.max_patches)
       most = std::min<std::size_t>(most, static_cast<std::size_t>(*given_.max_patches));
-    if (wanted_.fits && !wanted_.fits(static_cast<double>(most), 16)) {
+    const std::size_t now = light_->patches().count();
+    full_ = false;
+    while (most > now && wanted_.fits && !wanted_.fits(static_cast<double>(most), 16)) {
       full_ = true;
-      most = light_->patches().count();
+      most = now + (most - now) / 2;
     }
     return most;
   }

@@ -23,7 +23,8 @@ void LightOnSurfaces::close_energy(radiosity::PatchLight& found) const {
     return found.emitted[at] + reflected(at) * found.direct[at];
   };
   for (std::size_t i = 0; i < light_.count(); ++i) {
-    const double area = patches().area_m2[i] * (open_share_.empty() ? 1.0 : open_share_[i]);
+    const double area =
+        patches().area_m2[i] * (light_.open_share.empty() ? 1.0 : light_.open_share[i]);
     const double gone = escape_[i] + lost_[i], kept = factors_.kept[coarse_[i]];
     for (std::size_t k = 0; k < columns; ++k) {
       const std::size_t at = i * columns + k;
@@ -80,7 +81,7 @@ void LightOnSurfaces::fill(radiosity::Solution& solution) const {
   }
   ends.escape = escape_;
   ends.lost = lost_;
-  ends.open = {open_share_, factors_.open.bodies};
+  ends.open = {light_.open_share, factors_.open.bodies};
   std::vector<double> backs;
   for (const auto& object : solution.report.objects) backs.push_back(object.back_share);
   radiosity::fill_solution(scene_, ends, solution.report.balance.balanced, std::move(found),

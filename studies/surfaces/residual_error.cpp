@@ -62,7 +62,7 @@ ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& s
     const PatchResidual& r = samples.residual[i];
     if (r.taken == 0) continue;
     const std::array<Rgb, 2> half = {Rgb(r.half[0]), Rgb(r.half[1])};
-    const double part = patches.area_m2[i] * r.taken / r.tried;  // what no body covers
+    const double part = patches.area_m2[i] * double(r.open);  // what no body covers
     area += part;
     const Rgb rho = reflectances.of(patches, i);
     Rgb b(0.0);

@@ -36,10 +36,10 @@ void CutChoice::see(const radiosity::Patches& patches, const SurfaceSamples& sam
     const PatchResidual& r = samples.residual[i];
     Uneven& u = uneven_[i];
     u = {};
-    if (r.taken < 2) continue;
+    if (r.taken == 0) continue;
     const double within = double(r.square) - (noise.empty() ? 0.0 : noise[i]);
     if (within <= clear * double(r.square_error)) continue;
-    const double part = patches.area_m2[i] / area_m2_;
+    const double part = double(r.open) * patches.area_m2[i] / area_m2_;
     u = {part * within, part * double(r.along_s), part * double(r.along_t)};
   }
 }

@@ -42,7 +42,7 @@ LightOnSurfaces::LightOnSurfaces(const scenes::World& scene, radiosity::Solution
   }
   lamp_points_.assign(count, radiosity::DirectOptions{}.points_per_patch);
   gather_rays_.assign(count, 0.5 * rays);
-  open_share_ = factors_.open.share;
+  light_.open_share = factors_.open.share;
   escape_ = factors_.escape;
   lost_ = factors_.lost;
   light_.lamps = std::move(coarse.direct_lx);
@@ -70,8 +70,8 @@ void LightOnSurfaces::keep_what_samples_read() {
     base::release(*unread);
   }
   for (std::vector<double>* const unread :
-       {&lamp_points_, &gather_rays_, &open_share_, &escape_, &lost_, &factors_.open.share,
-        &factors_.kept, &factors_.black, &factors_.escape, &factors_.lost}) {
+       {&lamp_points_, &gather_rays_, &escape_, &lost_, &factors_.open.share, &factors_.kept,
+        &factors_.black, &factors_.escape, &factors_.lost}) {
     base::release(*unread);
   }
   base::release(coarse_);
@@ -104,7 +104,8 @@ double LightOnSurfaces::mean_radiosity() const {
     for (std::size_t k = 0; k < columns; ++k) {
       b[static_cast<int>(k % 3)] += double(light_.solution.radiosity[i * columns + k]);
     }
-    const double part = patches().area_m2[i] * (open_share_.empty() ? 1.0 : open_share_[i]);
+    const double part =
+        patches().area_m2[i] * (light_.open_share.empty() ? 1.0 : light_.open_share[i]);
     sum += part * base::luminance(b);
     area += part;
   }
@@ -141,7 +142,8 @@ std::vector<double> LightOnSurfaces::means_of(const std::vector<double>& residua
   const std::size_t coarse = factors_.count();
   std::vector<double> area(coarse, 0.0), mean(coarse * columns, 0.0);
   for (std::size_t i = 0; i < light_.count(); ++i) {
-    const double part = patches().area_m2[i] * (open_share_.empty() ? 1.0 : open_share_[i]);
+    const double part =
+        patches().area_m2[i] * (light_.open_share.empty() ? 1.0 : light_.open_share[i]);
     area[coarse_[i]] += part;
     for (std::size_t k = 0; k < columns; ++k) {
       mean[coarse_[i] * columns + k] += part * residual[i * columns + k];
@@ -185,7 +187,7 @@ void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std
     if (seen.taken == 0) {  // wholly covered: no light reaches it
       std::fill_n(&light_.lamps[i * columns], columns, 0.0F);
       std::fill_n(&light_.gathered[i * columns], columns, 0.0F);
-      if (!open_share_.empty()) open_share_[i] = 0.0;
+      if (!light_.open_share.empty()) light_.open_share[i] = 0.0;
       continue;
     }
     const double points = seen.taken, by_lamps = points / (lamp_points_[i] + points);
@@ -193,13 +195,14 @@ void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std
       light_.lamps[k] = mixed(light_.lamps[k], samples.lamps[k], by_lamps);
     }
     lamp_points_[i] += points;
-    if (!open_share_.empty()) open_share_[i] = double(seen.taken) / seen.tried;
+    if (!light_.open_share.empty()) light_.open_share[i] = double(seen.open);
   }
   if (joins) sum_up();
   for (std::vector<float>* const values :
        {&light_.lamps, &light_.gathered, &light_.solution.radiosity}) {
     factors_.shares.tell_all(values->data(), values->size());
   }
+  factors_.shares.tell_all(light_.open_share.data(), light_.open_share.size());
 }
 
 // more: that bounces bring, per coarse patch and column.
@@ -246,11 +249,11 @@ std::vector<std::uint32_t> LightOnSurfaces::cut(const std::vector<radiosity::Cut
   finer.lamps.resize(count * columns);
   finer.gathered.resize(count * columns);
   finer.sky.resize(count * parts);
+  finer.open_share.resize(light_.open_share.empty() ? 0 : count);
   const bool joins = factors_.shares.joins();
   const std::size_t kept = joins ? count : 0;
   std::vector<std::uint32_t> coarse(kept);
-  std::vector<double> points(kept), rays(kept), escape(kept), lost(kept),
-      open(open_share_.empty() ? 0 : count);
+  std::vector<double> points(kept), rays(kept), escape(kept), lost(kept);
   std::vector<Rgb> between(groups);
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t parent = made.parent[i];
@@ -262,7 +265,7 @@ std::vector<std::uint32_t> LightOnSurfaces::cut(const std::vector<radiosity::Cut
       escape[i] = escape_[parent];
       lost[i] = lost_[parent];
     }
-    if (!open.empty()) open[i] = open_share_[parent];
+    if (!finer.open_share.empty()) finer.open_share[i] = light_.open_share[parent];
     std::copy_n(&light_.lamps[parent * columns], columns, &finer.lamps[i * columns]);
     std::copy_n(&light_.gathered[parent * columns], columns, &finer.gathered[i * columns]);
     std::copy_n(light_.sky.begin() + static_cast<std::ptrdiff_t>(parent * parts), parts,
@@ -281,7 +284,6 @@ std::vector<std::uint32_t> LightOnSurfaces::cut(const std::vector<radiosity::Cut
   coarse_ = std::move(coarse);
   lamp_points_ = std::move(points);
   gather_rays_ = std::move(rays);
-  open_share_ = std::move(open);
   escape_ = std::move(escape);
   lost_ = std::move(lost);
   if (joins) sum_up();

@@ -71,8 +71,8 @@ class LightOnSurfaces {
   std::vector<Rgb> emitted_;                // per coarse patch, through form factors; empty: none
   std::vector<std::uint32_t> coarse_;       // per patch
   std::vector<double> coarse_reflectance_;  // per own coarse row and colour
-  std::vector<double> lamp_points_, gather_rays_, open_share_;  // per patch
-  std::vector<double> escape_, lost_;  // per patch: shares of what leaves it
+  std::vector<double> lamp_points_, gather_rays_;  // per patch
+  std::vector<double> escape_, lost_;              // per patch: shares of what leaves it
 };
 
 }  // namespace earthshine::studies

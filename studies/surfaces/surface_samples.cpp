@@ -20,6 +20,9 @@ using scenes::RayPacket;
 constexpr int source_points = 16;  // that radiosity::find_sources() gives a small distant source
 constexpr std::size_t wide_source_samples = 4;
 constexpr std::size_t told_after = 1024;  // patches
+// Points that are tried for one that is sampled, where a body is known to cover some: what a sliver
+// of a patch says that looks out of the body counts by the sliver's area.
+constexpr std::uint32_t tried_points = 16;
 
 }  // namespace
 
@@ -130,7 +133,7 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
                               ? Rgb(0.0)
                               : radiosity::patch_emit(scene_.scene, patches, patch);
       PatchResidual& residual = seen[n % batch];
-      residual.tried = residual.taken = work.points;
+      residual.taken = work.points;
       if (base::max_component(rho) <= 0.0) continue;  // B = M, whatever falls on it
       const base::Key key =
           base::Key(seed_, base::Stream::ErrorBudget, radiosity::identity(patches, patch))
@@ -143,13 +146,18 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
       looks.start(work.points);
       sums.start(work.points);
       residual.taken = 0;
-      for (std::size_t point = 0; point < work.points; ++point) {
-        const auto p = where.point2(static_cast<std::uint32_t>(point));
+      const double known = light.open_share.empty() ? 1.0 : light.open_share[patch];
+      const std::uint32_t tries = (known > 0.0 && known < 1.0 ? tried_points : 1) * work.points;
+      std::uint32_t open = 0;
+      for (std::uint32_t n_try = 0; n_try < tries; ++n_try) {
+        const auto p = where.point2(n_try);
         const auto [at, normal] = patches.at(patch, double(p[0]), double(p[1]));
         const base::Frame3 frame = base::frame_around(normal);
         const Vec3 lift = frame.normal * scene_.query.surface_offset_m();
         if (!near.empty() && bodies->cover(at + lift - bodies->centre(), near)) continue;
-        ++residual.taken;
+        ++open;
+        if (residual.taken == work.points) continue;
+        const std::size_t point = residual.taken++;
         for (std::size_t k = 0; k < sources_.size(); ++k) {
           const radiosity::Source& source = sources_[k].source;
           const std::size_t samples = source.points > source_points ? wide_source_samples : 1;
@@ -194,14 +202,14 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
                    lamps[0], work.rays > 0 ? gathered[0] : Rgb(0.0));
       }
       looks.finish_shadows();
+      residual.open = static_cast<float>(open) / static_cast<float>(tries);
       if (residual.taken == 0) continue;
       const double share = 0.5 / residual.taken;
       if (of_light) {
         found.escaped[patch] = share * looks.escaped();
         found.lost[patch] = share * looks.lost();
       }
-      for (std::size_t point = 0; point < work.points; ++point) {
-        if (!sums.is_placed(point)) continue;
+      for (std::size_t point = 0; point < residual.taken; ++point) {
         for (std::size_t half = 0; half < 2; ++half) {
           const std::size_t look = 2 * point + half;
           Rgb lamps(0.0), gathered(0.0);

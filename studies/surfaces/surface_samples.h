@@ -28,6 +28,7 @@ struct SurfaceLight {
   radiosity::Solution solution;        // patches, columns, radiosity = M + rho (lamps + gathered)
   std::vector<float> lamps, gathered;  // lx: by shadow rays; by cosine rays, the sky with it
   std::vector<Rgb> sky;                // per patch and part of the sky, within `gathered`
+  std::vector<double> open_share;      // per patch, what no body covers; empty: nothing is covered
   [[nodiscard]] std::size_t columns() const { return solution.columns; }
   [[nodiscard]] std::size_t count() const { return solution.patches.count(); }
 };
@@ -41,7 +42,8 @@ struct Effort {
 
 // Of one patch. r as luminance of the radiosity, lm/m^2, times error_weight() at the point.
 struct PatchResidual {
-  std::uint16_t tried = 0, taken = 0;        // points; some may be covered
+  std::uint16_t taken = 0;                   // points that nothing covers
+  float open = 1.0F;                         // share of the patch that nothing covers
   float square = 0.0F, square_error = 0.0F;  // mean of r^2 over the patch, and its standard error
   float mean_square = 0.0F;                  // of r's mean, without its noise
   float mean_variance = 0.0F;                // of the mean of the taken points, due to rays

@@ -36,7 +36,7 @@ class Walls {
   [[nodiscard]] std::size_t count() const { return light.solution.patches.count(); }
   void find(std::uint32_t patch, double first_half_lx, double other_half_lx) {
     PatchResidual& r = samples.residual[patch];
-    r.tried = r.taken = 2;
+    r.taken = 2;
     r.gathered = {static_cast<float>(first_half_lx), static_cast<float>(other_half_lx)};
   }
   // A mean of variance 1.
@@ -115,7 +115,7 @@ TEST(SurfaceCuts, ThePatchesThatHoldTheShareAskedForAreCutAndNoOther) {
   CutChoice choice(patches);
   for (const std::uint32_t i : walls.which) {
     PatchResidual& r = walls.samples.residual[i];
-    r.tried = r.taken = 4;
+    r.taken = 4;
     r.square = i == 20 ? 100.0F : 0.1F;
   }
   choice.see(patches, walls.samples, walls.which);
@@ -126,6 +126,20 @@ TEST(SurfaceCuts, ThePatchesThatHoldTheShareAskedForAreCutAndNoOther) {
   };
   EXPECT_EQ(number(0.5), 1);
   EXPECT_EQ(number(1.0), 96);
+}
+
+// Of a patch that looks out of a body by a sliver, one point may be all that is sampled.
+TEST(SurfaceCuts, APatchOfWhichOnePointIsOpenIsCutByIt) {
+  Walls walls;
+  const radiosity::Patches& patches = walls.light.solution.patches;
+  CutChoice choice(patches);
+  PatchResidual& r = walls.samples.residual[20];
+  r.taken = 1;
+  r.open = 0.05F;
+  r.square = r.square_error = 100.0F;
+  choice.see(patches, walls.samples, walls.which);
+  EXPECT_NE(choice.worst(patches, 0.0, 1.0, 100000).at(20), radiosity::Cut::None);
+  EXPECT_DOUBLE_EQ(choice.total(), double(0.05F) * 100.0 / double(patches.count()));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "studies/steer/reach_surfaces.h"
 #include "studies/surfaces/residual_error.h"
 #include "tests/studies/room.h"
+#include "tests/support/fine_meshes.h"
 
 namespace earthshine::studies {
 namespace {
@@ -31,12 +32,13 @@ scenes::Scene closed_room(double reflectance, double emission, bool lamp) {
 }
 
 struct Solved {
-  explicit Solved(scenes::Scene made, double edge_m = 0.25, int rays = 256)
+  explicit Solved(scenes::Scene made, double edge_m = 0.25, int rays = 256,
+                  double cluster_edge_m = 0.0)
       : scene(std::move(made)) {
     options.patch_edge_m = edge_m;
     options.form_factor_rays = rays;
-    solution = radiosity::solve_keeping(prepared, options, radiosity::subdivide(scene, edge_m), {},
-                                        factors);
+    solution = radiosity::solve_keeping(
+        prepared, options, radiosity::subdivide(scene, edge_m, cluster_edge_m), {}, factors);
   }
   [[nodiscard]] scenes::World study() const { return prepared; }
   // With all illuminances times a factor.
@@ -161,6 +163,43 @@ TEST(SurfaceResidual, OfAnAllButBlackBoxIsThatOfDirectLight) {
   }
   EXPECT_GT(lamps, 0.0);
   EXPECT_NEAR(all / lamps, 1.0, 0.1);
+}
+
+// A cap of height h of a sphere of radius R that looks out of a box has the area 2 pi R h
+// (Archimedes), however few points of its patches are sampled.
+TEST(SurfaceResidual, OfASliverThatLooksOutOfABodyTheAreaIsTold) {
+  constexpr double h = 0.05;
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  tests::fine_sphere(builder, m, {0.0, 0.0, 0.0}, 1.0, 48);
+  builder.room({m, m, m, m, m, m});
+  // The room turned outward: a body from -2 to 2, and up to 1 - h.
+  for (std::size_t k = builder.scene.triangles.size() - 12; k < builder.scene.triangles.size(); ++k)
+    std::swap(builder.scene.triangles[k].vertex[1], builder.scene.triangles[k].vertex[2]);
+  for (std::size_t k = builder.scene.vertices.size() - 24; k < builder.scene.vertices.size(); ++k) {
+    Vec3& p = builder.scene.vertices[k];
+    p = Vec3(4.0 * p.x - 2.0, 4.0 * p.y - 2.0, p.z > 0.5 ? 1.0 - h : -2.0);
+  }
+  scenes::Lamp lamp;
+  lamp.name = lamp.group = "lamp";
+  lamp.position = Vec3(0.5, 0.0, 3.0);
+  lamp.intensity_cd = Rgb(100.0);
+  builder.scene.lamps.push_back(lamp);
+  const Solved solved(builder.scene, 0.5, 32, 0.5);
+  const LightOnSurfaces light = solved.light();
+  const SurfaceSamples samples = sampled(solved, light, 64.0);
+  const radiosity::Patches& patches = light.patches();
+  double found = 0.0, variance = 0.0;
+  for (std::uint32_t i = 0; i < patches.count(); ++i) {
+    if (!patches.facets[patches.facet[i]].is_cluster()) continue;
+    const double open = double(samples.residual[i].open), area = patches.area_m2[i];
+    found += area * open;
+    // Of at least 32 points, 16 tried for each of two.
+    variance += area * area * open * (1.0 - open) / 32.0;
+  }
+  ASSERT_GT(variance, 0.0);
+  EXPECT_NEAR(found, 2.0 * base::pi * h, 4.0 * std::sqrt(variance));
+  EXPECT_LT(4.0 * std::sqrt(variance), 0.5 * found);
 }
 
 TEST(ReachSurfaces, OfABlackBoxThereIsNothingToReach) {
