@@ -180,6 +180,9 @@ std::string error_text(const Drawn& drawn, std::optional<double> wanted) {
 
 std::string error_text(const Solved& light, std::optional<double> wanted) {
   const studies::SurfaceError& error = light.surface;
+  if (!error.known && light.limit == studies::Limit::Stopped) {
+    return "no error is known: it was stopped before one was looked for";
+  }
   return text_of(error.parts.total(), error.known, parts_of(error.parts), error.not_captured) +
          (error.known ? choice_text(light.limit, light.steps, wanted, 0.0) : "");
 }

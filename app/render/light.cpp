@@ -106,7 +106,9 @@ Solved solve_as_exactly(const ExactCall& call, StageTimes& times) {
   const scenes::World scene = loaded.world(call.query);
   const auto start = std::chrono::steady_clock::now();
   double in_stages = 0.0;
-  const studies::Wanted wanted = wanted_error(loaded, call.common, call.time_limit_s, times);
+  studies::Wanted wanted = wanted_error(loaded, call.common, call.time_limit_s, times);
+  const Interrupt interrupt;
+  wanted.stop = Interrupt::asked;
   const studies::SolveListener listen = [&](const radiosity::SolveReport& report) {
     times.add(report.seconds);
     for (const auto& [stage, seconds] : report.seconds) in_stages += seconds;

@@ -251,6 +251,10 @@ void run(const SolveCall& call, const Common& common) {
   if (!call.json && !writes_report)
     print(solve_text(json) + "\n" + error_text(light, loaded.scene.quality.error) +
           price_text(light, loaded.scene.quality.error, times.total()) + "\n");
+  if (light.limit == studies::Limit::Stopped) {
+    throw base::Error(base::Blame::Work, "solve", "interrupted", {},
+                      call.output.empty() ? "" : "What it had come to is in " + call.output);
+  }
   if (light.surface.known) check_reached(call.scene, light.limit, error.value_or(0.0));
 }
 

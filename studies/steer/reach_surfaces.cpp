@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/parallel.h"
 #include "radiosity/fill_solution.h"
 #include "radiosity/near_lamps.h"
 #include "studies/error/error_budget.h"
@@ -54,9 +55,13 @@ class SurfaceSearch {
     if (!light_) return std::move(result_);
     mean_ = light_->told_mean();
     if (mean_ > 0.0) {
-      std::vector<std::uint32_t> parent(light_->patches().count());
-      if (may_cut()) cut_shadows(parent);
-      improve();
+      try {
+        std::vector<std::uint32_t> parent(light_->patches().count());
+        if (may_cut()) cut_shadows(parent);
+        improve();
+      } catch (const base::Stopped&) {
+        stop(Limit::Stopped);
+      }
       if (may_cast() && is_exact()) return with_exact_form_factors();
     }
     result_.solution = light_->finished();
@@ -70,6 +75,8 @@ class SurfaceSearch {
   [[nodiscard]] SurfaceSamples sample(std::span<const std::uint32_t> which,
                                       std::span<const Effort> effort, const std::string& name,
                                       SamplesOf of) {
+    // What is broken off here has changed nothing yet.
+    const base::StopInForce stop(wanted_.stop);
     SurfaceSamples samples =
         sampler_.sample(light_->light(), which, effort, ++pass_, mean_, light_->bodies(),
                         stage(name), of, light_->shares().hears());

@@ -18,6 +18,8 @@ struct Wanted {
   double seconds = 0.0;              // since `now` was 0; 0: no limit
   std::function<double()> now = {};  // seconds so far
   std::function<bool(double patches, int rays)> fits = {};  // into memory; empty: anything does
+  // Whether to end with what there is, asked from many threads; empty: never. Not with ranks.
+  std::function<bool()> stop = {};
 };
 
 // What stopped it before the wanted error.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ctrl-C and time limits that come while `render` still solves: a picture all the same."""
+"""Ctrl-C and time limits that come while `render` still solves: a picture all the same; and of `solve` what it had come to."""
 import json
 import signal
 import subprocess
@@ -75,6 +75,18 @@ class BrokenOff(program.Case):
         code, _, _, _ = self.stopped(*self.call, "--part", "1/2")
         self.assertEqual(code, -signal.SIGINT)
         self.assertFalse((self.folder / "a.exr").exists())
+
+    def test_a_solve_keeps_what_it_had_come_to(self):
+        code, out, err, seconds = self.stopped("solve", "ball.toml", "--error", "0.0005", "-o", "a.h5", "--json")
+        self.assertEqual(code, 1, err)
+        self.says(err, "interrupted", "What it had come to is in a.h5")
+        report = json.loads(out)
+        self.assertEqual(report["error"]["limit"], "stopped")
+        self.assertGreater(report["error"]["estimate"], 0.0005)
+        self.assertLess(seconds, 10)  # the error would take minutes
+        self.done("render", "ball.toml", "-o", "a.exr", "--camera", "A", "--size", "96x72", "--error", "0.0005", "--time-limit", "3",
+                  "--solution", "a.h5")
+        self.is_the_picture(0.03)
 
     def test_a_time_limit_in_the_solve(self):
         limited = ("render", "ball.toml", "-o", "a.exr", "--camera", "A", "--size", "96x72", "--time-limit", "0.001", "--json")

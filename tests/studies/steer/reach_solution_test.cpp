@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <string>
 #include <utility>
 
@@ -35,6 +36,33 @@ TEST(ReachSolution, OfSurfacesALimitIsNamedWhereTheErrorIsNotReachedAndThereAlon
   }
   EXPECT_GT(reached_it, 2);
   EXPECT_GT(missed_it, 0);
+}
+
+// Whenever it is stopped, at the first time it asks or later, all that was found so far is kept:
+// light that is whole, and at the first the patches of the first solve.
+TEST(ReachSolution, OfSurfacesAStopKeepsWhatThereIs) {
+  const tests::Prepared prepared(tests::small_room().scene);
+  std::size_t first = 0, most = 0;
+  for (const int asks : {0, 30, 600}) {
+    std::atomic<int> asked{0};
+    Wanted wanted;
+    wanted.error = 0.003;
+    wanted.stop = [&] { return asked++ >= asks; };
+    const SteeredSolution found =
+        reach_surfaces(prepared, wanted, 1, [&](const auto& report) { first = report.patches; });
+    EXPECT_EQ(found.limit, Limit::Stopped) << asks;
+    EXPECT_EQ(found.surface.known, !found.steps.empty()) << asks;
+    EXPECT_EQ(found.solution.radiosity.size(),
+              found.solution.patches.count() * found.solution.columns);
+    for (const radiosity::GroupLedger& group : found.solution.report.groups) {
+      EXPECT_LT(group.imbalance, 1e-12) << asks;
+    }
+    if (asks == 0) {
+      EXPECT_EQ(found.solution.patches.count(), first);
+    }
+    most = std::max(most, found.solution.patches.count());
+  }
+  EXPECT_GT(most, first);
 }
 
 // By a clock that goes on by `pass_s` in each pass over all patches and not otherwise; a limit of 0
