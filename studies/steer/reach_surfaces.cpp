@@ -139,8 +139,7 @@ class SurfaceSearch {
     std::iota(which.begin(), which.end(), 0U);
     CutChoice choice(light_->patches());
     const double enough = cut_share * squared(aim * wanted_.error * mean_);
-    for (int round = 0; round < most_rounds && !which.empty() && time_gone() <= shadow_share;
-         ++round) {
+    for (int k = 0; k < most_rounds && !which.empty() && time_gone() <= shadow_share; ++k) {
       const std::vector<Effort> effort = shadow_effort(light_->patches(), which, shadow_points_);
       const SurfaceSamples samples =
           sample(which, effort, fmt::format("shadows, {} patches", light_->patches().count()),
@@ -181,7 +180,7 @@ class SurfaceSearch {
       const ResidualError found =
           residual_error(*light_, samples, noise, sampler_.reflectances(), mean_, solver_error_);
       state(found, samples, effort);
-      const double error = found.parts.total().estimate;
+      const double error = result_.steps.back().estimate;
       if (error <= wanted_.error) return;
       if (!may_cut() && !may_cast()) return stop(Limit::Settings);
       if (!cuts && is_hopeless(error)) return stop(Limit::Steps);
@@ -240,25 +239,20 @@ class SurfaceSearch {
     result_.surface.rays += samples.rays;
     last_rays_ = 0.0;
     for (const Effort& e : effort) last_rays_ += e.all_rays();
-    Step step;
-    step.stage = "solve";
-    step.patches = light_->patches().count();
-    step.form_factor_rays = static_cast<int>(last_rays_ / static_cast<double>(effort.size()));
-    step.asked = wanted_.error;
-    step.estimate = found.parts.total().estimate;
-    result_.steps.push_back(step);
+    result_.steps.push_back({"solve", light_->patches().count(),
+                             static_cast<int>(last_rays_ / static_cast<double>(effort.size())), 0,
+                             wanted_.error, found.parts.total().estimate});
   }
 
   std::size_t most_patches() {
     std::size_t most = std::max<std::size_t>(first_patches_, largest_cut);
     if (given_.max_patches)
       most = std::min<std::size_t>(most, static_cast<std::size_t>(*given_.max_patches));
-    const std::size_t now = light_->patches().count();
-    full_ = false;
+    const std::size_t now = light_->patches().count(), wished = most;
     while (most > now && wanted_.fits && !wanted_.fits(static_cast<double>(most), 16)) {
-      full_ = true;
       most = now + (most - now) / 2;
     }
+    full_ = most < wished;
     return most;
   }
 
