@@ -29,7 +29,7 @@ constexpr double cut_share = 0.6;         // to what is uneven within patches
 constexpr double shadow_cuts = 0.5, gather_cuts = 0.8;
 constexpr double shadow_share = 0.25, last_share = 0.5;    // of a time limit: no cut, no pass then
 constexpr std::size_t largest_cut = std::size_t{1} << 21;  // patches
-constexpr std::size_t largest_shadow_cut = 3 * (largest_cut / 4);  // leaves some to other light
+constexpr std::size_t first_shadow_cut = 3 << 15;  // then twice as many as there are, by each pass
 constexpr std::uint32_t fewest_points = 8192;
 // Over all surfaces; twice as many in each pass that cuts by them.
 constexpr double first_shadow_points = 1 << 17, most_shadow_points = 1 << 20;
@@ -87,8 +87,9 @@ class SurfaceSearch {
                                                   double most_of, std::size_t limit) {
     const std::size_t most =
         std::min(most_patches(), std::max(first_patches_, limit));  // as all ranks have memory for
-    std::vector<radiosity::Cut> cuts;
-    if (joins()) cuts = choice.worst(light_->patches(), enough, most_of, most);
+    std::vector<radiosity::Cut> cuts = joins()
+                                           ? choice.worst(light_->patches(), enough, most_of, most)
+                                           : std::vector<radiosity::Cut>();
     light_->shares().tell_all([&](base::Parcel& parcel) { parcel.pass(cuts); });
     return cuts;
   }
@@ -102,8 +103,7 @@ class SurfaceSearch {
   // Light that lands where nothing reflects is still only as exact as the form factors: as many
   // rays as the error wants of any scene.
   SteeredSolution with_exact_form_factors() {
-    const raytrace::Progress progress = stage("solve");
-    if (progress) progress(0, 1);
+    if (const raytrace::Progress progress = stage("solve")) progress(0, 1);
     result_.solver.form_factor_rays = scenes::resolve_quality(scene_.scene).form_factor_rays;
     result_.steps.back().form_factor_rays = result_.solver.form_factor_rays;
     result_.solution = radiosity::solve(scene_, result_.solver);
@@ -139,6 +139,7 @@ class SurfaceSearch {
     std::iota(which.begin(), which.end(), 0U);
     CutChoice choice(light_->patches());
     const double enough = cut_share * squared(aim * wanted_.error * mean_);
+    const std::size_t limit = std::max(first_shadow_cut, 2 * before);
     for (int k = 0; k < most_rounds && !which.empty() && time_gone() <= shadow_share; ++k) {
       const std::vector<Effort> effort = shadow_effort(light_->patches(), which, shadow_points_);
       const SurfaceSamples samples =
@@ -146,14 +147,12 @@ class SurfaceSearch {
                  SamplesOf::Light);
       light_->correct(samples, which, effort);
       if (joins()) choice.see(light_->patches(), samples, which);
-      const std::vector<radiosity::Cut> cuts =
-          worst(choice, enough, shadow_cuts, largest_shadow_cut);
+      const std::vector<radiosity::Cut> cuts = worst(choice, enough, shadow_cuts, limit);
       if (cuts.empty()) break;
-      const std::vector<std::uint32_t> of = light_->cut(cuts);
+      std::vector<std::uint32_t> of = light_->cut(cuts);
       which = choice.follow(light_->patches(), of);
-      std::vector<std::uint32_t> next;
-      for (const std::uint32_t i : of) next.push_back(parent[i]);
-      parent = std::move(next);
+      for (std::uint32_t& i : of) i = parent[i];
+      parent = std::move(of);
     }
     const bool cut = light_->patches().count() > before;
     shadow_points_ = cut ? std::min(2.0 * shadow_points_, most_shadow_points) : 0.0;
@@ -162,7 +161,6 @@ class SurfaceSearch {
 
   void improve() {
     double before = 0.0;
-    bool cuts = true;
     std::vector<Effort> effort = even_effort(light_->patches(), points_wanted_);
     for (int pass = 0;; ++pass) {
       std::vector<std::uint32_t> all(light_->patches().count());
@@ -183,13 +181,14 @@ class SurfaceSearch {
       const double error = result_.steps.back().estimate;
       if (error <= wanted_.error) return;
       if (!may_cut() && !may_cast()) return stop(Limit::Settings);
-      if (!cuts && is_hopeless(error)) return stop(Limit::Steps);
+      if (is_hopeless(error)) return stop(Limit::Steps);
+      spent_.push_back(rays_);
       if (time_gone() > last_share) return stop(Limit::Time);
       mean_ = found.mean;
       if (may_cast()) light_->correct(samples, all, effort);
       if (found.doubt > 0.3 * squared(wanted_.error)) points_wanted_ *= 2.0;
       const double enough = squared(aim * wanted_.error * mean_);
-      cuts = false;
+      bool cuts = false;
       std::vector<std::uint32_t> parent;
       const std::size_t patches = light_->patches().count();
       if (may_cut() && found.patches > 0.8 * cut_share * squared(aim * wanted_.error)) {
@@ -201,10 +200,7 @@ class SurfaceSearch {
           cuts = light_->patches().count() > patches;
         }
         if (parent.empty()) parent = all;
-        if (shadow_points_ > 0.0 && light_->patches().count() < largest_shadow_cut &&
-            cut_shadows(parent)) {
-          cuts = true;
-        }
+        if (shadow_points_ > 0.0 && cut_shadows(parent)) cuts = true;
       }
       if (parent.empty()) parent = std::move(all);
       if (!cuts && pass > 4 && error > 0.97 * before) {
@@ -216,11 +212,16 @@ class SurfaceSearch {
     }
   }
 
-  // Where nothing is cut, rays go with the inverse of the squared error: what is left would take
-  // many times what is done.
+  // By the power of all rays with which the error fell since half of them were cast: noise goes
+  // with -1/2, patches along an edge of shadow too, and what no cut shows with none.
   [[nodiscard]] bool is_hopeless(double error) const {
-    return wanted_.seconds <= 0.0 && rays_ > many_rays && result_.steps.size() > 1 &&
-           squared(error / wanted_.error) > most_times_more;
+    if (wanted_.seconds > 0.0 || rays_ <= many_rays) return false;
+    std::size_t half = spent_.size();
+    while (half > 0 && 2 * spent_[half - 1] > rays_) --half;
+    if (half == 0) return false;
+    const double power = std::log(result_.steps[half - 1].estimate / error) /
+                         std::log(double(rays_) / double(spent_[half - 1]));
+    return std::log(error / wanted_.error) > std::log(most_times_more) * power;
   }
 
   // At most four times as many rays as before, or as many as the time that is left pays for.
@@ -246,12 +247,10 @@ class SurfaceSearch {
 
   std::size_t most_patches() {
     std::size_t most = std::max<std::size_t>(first_patches_, largest_cut);
-    if (given_.max_patches)
-      most = std::min<std::size_t>(most, static_cast<std::size_t>(*given_.max_patches));
+    if (given_.max_patches) most = std::min(most, static_cast<std::size_t>(*given_.max_patches));
     const std::size_t now = light_->patches().count(), wished = most;
-    while (most > now && wanted_.fits && !wanted_.fits(static_cast<double>(most), 16)) {
+    while (most > now && wanted_.fits && !wanted_.fits(double(most), 16))
       most = now + (most - now) / 2;
-    }
     full_ = most < wished;
     return most;
   }
@@ -281,6 +280,7 @@ class SurfaceSearch {
   double mean_ = 0.0, solver_error_ = 0.0;
   std::uint32_t pass_ = 0;
   std::uint64_t rays_ = 0;
+  std::vector<std::uint64_t> spent_;  // of them by the end of each pass
   double shadow_points_ = first_shadow_points;
   double points_wanted_ = fewest_points, last_rays_ = 0.0, last_took_ = 0.0;
   std::size_t first_patches_ = 0;
