@@ -22,6 +22,7 @@ constexpr double aim = 0.85;          // of the wanted error
 constexpr double noise_share = 0.25;  // of the wanted squared error, left to the rays
 constexpr std::uint64_t many_rays = std::uint64_t{1} << 25;
 constexpr double most_times_more = 16.0;  // the rays cast so far
+constexpr double least_power = 0.05;      // of the rays: an error may seem to rise by chance
 constexpr double most_growth = 4.0;       // of the rays of a pass
 constexpr double cut_share = 0.6;         // to what is uneven within patches
 // A round cuts the patches that hold this share of what is uneven: where shadow rays tell it
@@ -87,9 +88,8 @@ class SurfaceSearch {
                                                   double most_of, std::size_t limit) {
     const std::size_t most =
         std::min(most_patches(), std::max(first_patches_, limit));  // as all ranks have memory for
-    std::vector<radiosity::Cut> cuts = joins()
-                                           ? choice.worst(light_->patches(), enough, most_of, most)
-                                           : std::vector<radiosity::Cut>();
+    std::vector<radiosity::Cut> cuts;
+    if (joins()) cuts = choice.worst(light_->patches(), enough, most_of, most);
     light_->shares().tell_all([&](base::Parcel& parcel) { parcel.pass(cuts); });
     return cuts;
   }
@@ -212,8 +212,7 @@ class SurfaceSearch {
     }
   }
 
-  // By the power of all rays with which the error fell since half of them were cast: noise goes
-  // with -1/2, patches along an edge of shadow too, and what no cut shows with none.
+  // By the power of all rays with which the error fell since half of them were cast.
   [[nodiscard]] bool is_hopeless(double error) const {
     if (wanted_.seconds > 0.0 || rays_ <= many_rays) return false;
     std::size_t half = spent_.size();
@@ -221,7 +220,7 @@ class SurfaceSearch {
     if (half == 0) return false;
     const double power = std::log(result_.steps[half - 1].estimate / error) /
                          std::log(double(rays_) / double(spent_[half - 1]));
-    return std::log(error / wanted_.error) > std::log(most_times_more) * power;
+    return error > wanted_.error * std::pow(most_times_more, std::max(power, least_power));
   }
 
   // At most four times as many rays as before, or as many as the time that is left pays for.
