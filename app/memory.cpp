@@ -92,9 +92,10 @@ void check_patch_memory(const LoadedScene& loaded, const scenes::RayQuery& query
 }
 
 bool patches_fit(const LoadedScene& loaded, const radiosity::SolveOptions& solver,
-                 std::size_t patches) {
+                 std::size_t patches, bool states_error) {
   studies::MemoryCase sizes =
       studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver, patches);
+  sizes.states_error = states_error;
   const auto free_bytes = base::free_memory_bytes();
   // Machines differ, and ranks must decide alike.
   return base::holds_on_all_ranks(!free_bytes ||

@@ -23,9 +23,10 @@ void check_memory(const LoadedScene& loaded, const scenes::RayQuery& query,
 // The same for the solution alone, once the patches are cut.
 void check_patch_memory(const LoadedScene& loaded, const scenes::RayQuery& query,
                         const radiosity::SolveOptions& solver, std::size_t patches);
-// Whether they would fit, rows as full as they can be.
+// Whether they would fit, rows as full as they can be. states_error: of the solution, over all
+// surfaces.
 [[nodiscard]] bool patches_fit(const LoadedScene& loaded, const radiosity::SolveOptions& solver,
-                               std::size_t patches);
+                               std::size_t patches, bool states_error);
 // The same for rows cast one after another, `rays_per_patch` at a time, and not solved.
 void check_row_memory(const LoadedScene& loaded, const scenes::RayQuery& query, double patch_edge_m,
                       int rays_per_patch);

@@ -97,7 +97,7 @@ void run(const AccuracyCall& call, const Common& common) {
   view.fits = [&](double patches, int rays) {
     radiosity::SolveOptions solver = solve_options(loaded.scene, common);
     solver.form_factor_rays = rays;
-    return patches_fit(loaded, solver, static_cast<std::size_t>(patches));
+    return patches_fit(loaded, solver, static_cast<std::size_t>(patches), false);
   };
   const AccuracyTask task{call, common, loaded, query, view, store};
   if (call.part.in_parts()) {

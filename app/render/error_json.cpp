@@ -82,8 +82,9 @@ const char* words_of(studies::Limit limit) {
     case studies::Limit::Memory:
       return "memory came first (--max-memory, or what is free)";
     case studies::Limit::Settings:
-      return "quality.form_factor_rays and quality.patch_edge (or refine = false) are given, which "
-             "win over it; leave one of them out";
+      return "quality.max_patches, or form_factor_rays with patch_edge (or refine = false), is "
+             "given, "
+             "which wins over it; leave it out";
     case studies::Limit::Steps:
       return "no end in sight after several tries";
     case studies::Limit::Stopped:

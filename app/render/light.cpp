@@ -107,9 +107,10 @@ Solved solve_as_exactly(const ExactCall& call, StageTimes& times) {
   const auto start = std::chrono::steady_clock::now();
   double in_stages = 0.0;
   studies::Wanted wanted = wanted_error(loaded, call.common, call.time_limit_s, times);
-  const Interrupt interrupt;
   wanted.stop = Interrupt::asked;
+  std::optional<Interrupt> interrupt;  // before the first solve is done nothing could be kept
   const studies::SolveListener listen = [&](const radiosity::SolveReport& report) {
+    if (!interrupt) interrupt.emplace();
     times.add(report.seconds);
     for (const auto& [stage, seconds] : report.seconds) in_stages += seconds;
   };
@@ -149,7 +150,7 @@ studies::Wanted wanted_error(const LoadedScene& loaded, const Common& common, do
   wanted.fits = [&loaded, &common](double patches, int rays) {
     radiosity::SolveOptions options = solve_options(loaded.scene, common);
     options.form_factor_rays = rays;
-    return patches_fit(loaded, options, static_cast<std::size_t>(patches));
+    return patches_fit(loaded, options, static_cast<std::size_t>(patches), true);
   };
   return wanted;
 }

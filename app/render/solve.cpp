@@ -252,8 +252,9 @@ void run(const SolveCall& call, const Common& common) {
     print(solve_text(json) + "\n" + error_text(light, loaded.scene.quality.error) +
           price_text(light, loaded.scene.quality.error, times.total()) + "\n");
   if (light.limit == studies::Limit::Stopped) {
+    const std::string& file = call.output.empty() ? call.mesh : call.output;
     throw base::Error(base::Blame::Work, "solve", "interrupted", {},
-                      call.output.empty() ? "" : "What it had come to is in " + call.output);
+                      file.empty() ? "" : "What it had come to is in " + file);
   }
   if (light.surface.known) check_reached(call.scene, light.limit, error.value_or(0.0));
 }

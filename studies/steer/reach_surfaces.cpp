@@ -11,6 +11,7 @@
 #include "radiosity/fill_solution.h"
 #include "radiosity/near_lamps.h"
 #include "studies/error/error_budget.h"
+#include "studies/steer/patch_bound.h"
 #include "studies/surfaces/residual_error.h"
 #include "studies/surfaces/surface_cuts.h"
 
@@ -60,10 +61,10 @@ class SurfaceSearch {
         std::vector<std::uint32_t> parent(light_->patches().count());
         if (may_cut()) cut_shadows(parent);
         improve();
+        if (may_cast() && is_exact()) return with_exact_form_factors();
       } catch (const base::Stopped&) {
         stop(Limit::Stopped);
       }
-      if (may_cast() && is_exact()) return with_exact_form_factors();
     }
     result_.solution = light_->finished();
     result_.solution.report.shadow_rays += rays_;
@@ -86,8 +87,7 @@ class SurfaceSearch {
   }
   [[nodiscard]] std::vector<radiosity::Cut> worst(const CutChoice& choice, double enough,
                                                   double most_of, std::size_t limit) {
-    const std::size_t most =
-        std::min(most_patches(), std::max(first_patches_, limit));  // as all ranks have memory for
+    const std::size_t most = std::min(bound_.most, std::max(first_patches_, limit));
     std::vector<radiosity::Cut> cuts;
     if (joins()) cuts = choice.worst(light_->patches(), enough, most_of, most);
     light_->shares().tell_all([&](base::Parcel& parcel) { parcel.pass(cuts); });
@@ -104,9 +104,12 @@ class SurfaceSearch {
   // rays as the error wants of any scene.
   SteeredSolution with_exact_form_factors() {
     if (const raytrace::Progress progress = stage("solve")) progress(0, 1);
-    result_.solver.form_factor_rays = scenes::resolve_quality(scene_.scene).form_factor_rays;
-    result_.steps.back().form_factor_rays = result_.solver.form_factor_rays;
-    result_.solution = radiosity::solve(scene_, result_.solver);
+    radiosity::SolveOptions solver = result_.solver;
+    solver.form_factor_rays = scenes::resolve_quality(scene_.scene).form_factor_rays;
+    const base::StopInForce stop(wanted_.stop);
+    result_.solution = radiosity::solve(scene_, solver);
+    result_.solver = solver;
+    result_.steps.back().form_factor_rays = solver.form_factor_rays;
     if (listen_) listen_(result_.solution.report);
     result_.solution.report.shadow_rays += rays_;
     return std::move(result_);
@@ -126,6 +129,7 @@ class SurfaceSearch {
       return;
     }
     first_patches_ = coarse.patches.count();
+    bound_ = patch_bound(wanted_, given_, first_patches_, largest_cut);
     solver_error_ = coarse.report.solver_error;
     light_.emplace(scene_, std::move(coarse), std::move(factors), result_.solver.form_factor_rays);
   }
@@ -181,7 +185,7 @@ class SurfaceSearch {
       const double error = result_.steps.back().estimate;
       if (error <= wanted_.error) return;
       if (!may_cut() && !may_cast()) return stop(Limit::Settings);
-      if (is_hopeless(error)) return stop(Limit::Steps);
+      if (is_hopeless(error)) return stop(why_no_more());
       spent_.push_back(rays_);
       if (time_gone() > last_share) return stop(Limit::Time);
       mean_ = found.mean;
@@ -204,7 +208,7 @@ class SurfaceSearch {
       }
       if (parent.empty()) parent = std::move(all);
       if (!cuts && pass > 4 && error > 0.97 * before) {
-        return stop(full_ ? Limit::Memory : Limit::Steps);
+        return stop(why_no_more());
       }
       before = error;
       if (joins()) effort = next_effort(variance, parent, noise_share * enough);
@@ -244,14 +248,8 @@ class SurfaceSearch {
                              wanted_.error, found.parts.total().estimate});
   }
 
-  std::size_t most_patches() {
-    std::size_t most = std::max<std::size_t>(first_patches_, largest_cut);
-    if (given_.max_patches) most = std::min(most, static_cast<std::size_t>(*given_.max_patches));
-    const std::size_t now = light_->patches().count(), wished = most;
-    while (most > now && wanted_.fits && !wanted_.fits(double(most), 16))
-      most = now + (most - now) / 2;
-    full_ = most < wished;
-    return most;
+  [[nodiscard]] Limit why_no_more() const {
+    return light_->patches().count() + 2 > bound_.most ? bound_.of : Limit::Steps;
   }
 
   void stop(Limit limit) { result_.limit = limit; }
@@ -283,7 +281,7 @@ class SurfaceSearch {
   double shadow_points_ = first_shadow_points;
   double points_wanted_ = fewest_points, last_rays_ = 0.0, last_took_ = 0.0;
   std::size_t first_patches_ = 0;
-  bool full_ = false;
+  PatchBound bound_;
 };
 
 }  // namespace

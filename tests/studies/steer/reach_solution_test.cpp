@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "radiosity/near_lamps.h"
+#include "studies/steer/patch_bound.h"
 #include "studies/steer/reach_surfaces.h"
 #include "tests/studies/room.h"
 
@@ -36,6 +37,42 @@ TEST(ReachSolution, OfSurfacesALimitIsNamedWhereTheErrorIsNotReachedAndThereAlon
   }
   EXPECT_GT(reached_it, 2);
   EXPECT_GT(missed_it, 0);
+}
+
+// The most that fits is found to a 64th, from below, and what sets it is told.
+TEST(PatchBound, IsTheLeastOfWhatIsAllowedAndNamesIt) {
+  scenes::Quality given;
+  Wanted wanted;
+  const auto bound = [&] { return patch_bound(wanted, given, 1000, 1 << 20); };
+  EXPECT_EQ(bound().most, std::size_t{1} << 20);
+  EXPECT_EQ(bound().of, Limit::Steps);
+  wanted.fits = [](double patches, int) { return patches <= 70000; };
+  EXPECT_LE(bound().most, 70000U);
+  EXPECT_GE(bound().most, 70000U - 70000U / 64 - 1);
+  EXPECT_EQ(bound().of, Limit::Memory);
+  given.max_patches = 5000;
+  EXPECT_EQ(bound().most, 5000U);
+  EXPECT_EQ(bound().of, Limit::Settings);
+  wanted.fits = [](double, int) { return false; };
+  EXPECT_EQ(bound().most, 1000U);  // they are there
+}
+
+// Where memory would not hold the most of all, and what fits is not reached either, memory is not
+// what came first; where it holds no more than there are, it is.
+TEST(ReachSolution, OfSurfacesMemoryIsNamedWhereItIsWhatCameFirst) {
+  const tests::Prepared prepared(tests::small_room().scene);
+  for (const bool tight : {false, true}) {
+    Wanted wanted;
+    wanted.error = 0.02;
+    wanted.fits = [&](double patches, int) { return patches < (tight ? 200.0 : 1e6); };
+    std::size_t first = 0;
+    const SteeredSolution found =
+        reach_surfaces(prepared, wanted, 1, [&](const auto& report) { first = report.patches; });
+    EXPECT_EQ(found.limit, tight ? Limit::Memory : Limit::None);
+    if (tight) {
+      EXPECT_EQ(found.solution.patches.count(), first);
+    }
+  }
 }
 
 // Whenever it is stopped, at the first time it asks or later, all that was found so far is kept:
