@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "radiosity/direct/sources.h"
-#include "radiosity/patches/patches.h"
+#include "radiosity/patches/worst_cuts.h"
 #include "radiosity/solution.h"
 
 namespace earthshine::radiosity {
@@ -29,13 +29,6 @@ struct RelativeLight {
   double area_m2 = 0.0;           // of all patches
 };
 [[nodiscard]] RelativeLight relative_light(const Solution& solution);
-
-// A patch's part in the squared relative error of the radiosity, and how much of it goes away when
-// the patch is halved along s or along t.
-struct Unevenness {
-  double error = 0.0;
-  double along_s = 0.0, along_t = 0.0;
-};
 
 struct VariationOptions {
   // Of direct light, a patch gets 16 look-ups and one more for every square of this edge, so that a

@@ -248,8 +248,9 @@ class SurfaceSearch {
                              wanted_.error, found.parts.total().estimate});
   }
 
+  // One cut makes a few others needed: the last few patches may be out of reach.
   [[nodiscard]] Limit why_no_more() const {
-    return light_->patches().count() + 2 > bound_.most ? bound_.of : Limit::Steps;
+    return 64 * light_->patches().count() >= 63 * bound_.most ? bound_.of : Limit::Steps;
   }
 
   void stop(Limit limit) { result_.limit = limit; }

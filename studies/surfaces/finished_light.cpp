@@ -23,8 +23,7 @@ void LightOnSurfaces::close_energy(radiosity::PatchLight& found) const {
     return found.emitted[at] + reflected(at) * found.direct[at];
   };
   for (std::size_t i = 0; i < light_.count(); ++i) {
-    const double area =
-        patches().area_m2[i] * (light_.open_share.empty() ? 1.0 : light_.open_share[i]);
+    const double area = light_.open_m2(i);
     const double gone = escape_[i] + lost_[i], kept = factors_.kept[coarse_[i]];
     for (std::size_t k = 0; k < columns; ++k) {
       const std::size_t at = i * columns + k;

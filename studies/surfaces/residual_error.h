@@ -70,7 +70,6 @@ class ResidualSums {
              const Rgb& lamps, const Rgb& gathered) {
     points_[point] = {true, x, y, base::luminance(radiosity), rho, lamps, gathered, {}, {}, {}};
   }
-  [[nodiscard]] bool is_placed(std::size_t point) const { return points_[point].placed; }
   // What one half of the rays found.
   void set(std::size_t point, std::size_t half, const Rgb& lamps, const Rgb& gathered);
   // Weighs each point by the radiosity that it should have over `mean`.

@@ -2,7 +2,7 @@
 // Which patches are halved: those that hold most of what is uneven within them.
 #pragma once
 
-#include "radiosity/patches/split.h"
+#include "radiosity/patches/worst_cuts.h"
 #include "studies/surfaces/surface_samples.h"
 
 namespace earthshine::studies {
@@ -28,11 +28,8 @@ class CutChoice {
   [[nodiscard]] double total() const;
 
  private:
-  struct Uneven {
-    double error = 0.0, along_s = 0.0, along_t = 0.0;  // times area over all area
-  };
-  std::vector<Uneven> uneven_;    // per patch
-  std::vector<double> patch_m2_;  // area per patch
+  std::vector<radiosity::Unevenness> uneven_;  // per patch, times area over all area
+  std::vector<double> patch_m2_;               // area per patch
   double area_m2_ = 0.0;
 };
 

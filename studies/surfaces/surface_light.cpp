@@ -104,8 +104,7 @@ double LightOnSurfaces::mean_radiosity() const {
     for (std::size_t k = 0; k < columns; ++k) {
       b[static_cast<int>(k % 3)] += double(light_.solution.radiosity[i * columns + k]);
     }
-    const double part =
-        patches().area_m2[i] * (light_.open_share.empty() ? 1.0 : light_.open_share[i]);
+    const double part = light_.open_m2(i);
     sum += part * base::luminance(b);
     area += part;
   }
@@ -142,8 +141,7 @@ std::vector<double> LightOnSurfaces::means_of(const std::vector<double>& residua
   const std::size_t coarse = factors_.count();
   std::vector<double> area(coarse, 0.0), mean(coarse * columns, 0.0);
   for (std::size_t i = 0; i < light_.count(); ++i) {
-    const double part =
-        patches().area_m2[i] * (light_.open_share.empty() ? 1.0 : light_.open_share[i]);
+    const double part = light_.open_m2(i);
     area[coarse_[i]] += part;
     for (std::size_t k = 0; k < columns; ++k) {
       mean[coarse_[i] * columns + k] += part * residual[i * columns + k];

@@ -31,6 +31,9 @@ struct SurfaceLight {
   std::vector<double> open_share;      // per patch, what no body covers; empty: nothing is covered
   [[nodiscard]] std::size_t columns() const { return solution.columns; }
   [[nodiscard]] std::size_t count() const { return solution.patches.count(); }
+  [[nodiscard]] double open_m2(std::size_t patch) const {
+    return solution.patches.area_m2[patch] * (open_share.empty() ? 1.0 : open_share[patch]);
+  }
 };
 
 // How much is sampled on a patch.

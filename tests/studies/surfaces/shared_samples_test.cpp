@@ -128,6 +128,24 @@ TEST(SurfaceCuts, ThePatchesThatHoldTheShareAskedForAreCutAndNoOther) {
   EXPECT_EQ(number(1.0), 96);
 }
 
+// What one cut makes needed beside it counts, too: no more patches than allowed, and one less only
+// where the last one does not fit.
+TEST(SurfaceCuts, NoMorePatchesThanAllowed) {
+  Walls walls;
+  const radiosity::Patches& patches = walls.light.solution.patches;
+  std::vector<radiosity::Unevenness> uneven(patches.count());
+  for (std::size_t i = 0; i < uneven.size(); ++i) uneven[i] = {1.0 + double(i), 0.0, 0.0};
+  const auto candidates = radiosity::worst_first(patches, uneven);
+  ASSERT_EQ(candidates.size(), patches.count());
+  for (const std::size_t most :
+       {std::size_t{96}, std::size_t{97}, std::size_t{123}, std::size_t{500}}) {
+    const auto cuts = radiosity::cuts_within(patches, candidates, candidates.size(), most);
+    const std::size_t count = radiosity::split(patches, cuts).patches.count();
+    EXPECT_LE(count, most);
+    EXPECT_GE(count, std::min<std::size_t>(most, 192) - 1);
+  }
+}
+
 // Of a patch that looks out of a body by a sliver, one point may be all that is sampled.
 TEST(SurfaceCuts, APatchOfWhichOnePointIsOpenIsCutByIt) {
   Walls walls;
