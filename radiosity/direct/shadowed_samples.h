@@ -29,6 +29,7 @@ struct Source {
   std::size_t group = 0;
   int points = 16;       // receiver points per patch
   int near_factor = 64;  // how many times as many near the source
+  bool has_size = true;  // else all of its samples at a point are the same
   std::function<scenes::LightSample(const Vec3& point, double u, double v)> sample;
   // In place of `sample`: many lamps as one. Adds those that get a shadow ray from a surface.
   std::function<void(const Vec3& point, const Vec3& normal, double u, double v,

@@ -42,6 +42,7 @@ LightSource free_sun_source(const scenes::Sun& sun, std::uint64_t key, std::size
   const double radius = base::radians(sun.angular_radius_deg);
   const Rgb illuminance = scenes::sun_sample_illuminance(sun);
   Source source;
+  source.has_size = radius > 0.0;
   source.disc = Disc{sun.direction, radius + rounding, -std::sin(radius) - rounding};
   source.key = key;
   source.group = group;
@@ -73,7 +74,8 @@ LightSource lamp_source(const scenes::Lamp& lamp, std::uint64_t key, std::size_t
   Source source;
   source.key = key;
   source.group = group;
-  source.points = points * (scenes::is_wide(lamp.kind) ? 4 : 1);
+  source.has_size = scenes::is_wide(lamp.kind);
+  source.points = points * (source.has_size ? 4 : 1);
   source.sample = [&lamp](const Vec3& point, double u, double v) {
     return scenes::sample_lamp(lamp, point, u, v);
   };

@@ -11,30 +11,25 @@
 #include "radiosity/fill_solution.h"
 #include "radiosity/near_lamps.h"
 #include "studies/error/error_budget.h"
-#include "studies/steer/patch_bound.h"
+#include "studies/steer/surface_turns.h"
 #include "studies/surfaces/residual_error.h"
-#include "studies/surfaces/surface_cuts.h"
 
 namespace earthshine::studies {
 namespace {
 
-constexpr int most_rounds = 24;       // of cuts by shadow rays, from one pass to the next
-constexpr double aim = 0.85;          // of the wanted error
+constexpr double aim = 0.85;  // of the wanted error
+// Supposed at first, and of what is left: that a pass cuts for.
+constexpr double first_error = 0.3, next_error = 0.4;
 constexpr double noise_share = 0.25;  // of the wanted squared error, left to the rays
 constexpr std::uint64_t many_rays = std::uint64_t{1} << 25;
 constexpr double most_times_more = 16.0;  // the rays cast so far
 constexpr double least_power = 0.05;      // of the rays: an error may seem to rise by chance
 constexpr double most_growth = 4.0;       // of the rays of a pass
 constexpr double cut_share = 0.6;         // to what is uneven within patches
-// A round cuts the patches that hold this share of what is uneven: where shadow rays tell it
-// exactly, and where rays do, by which the largest are the largest by chance too.
-constexpr double shadow_cuts = 0.5, gather_cuts = 0.8;
-constexpr double shadow_share = 0.25, last_share = 0.5;    // of a time limit: no cut, no pass then
 constexpr std::size_t largest_cut = std::size_t{1} << 21;  // patches
-constexpr std::size_t first_shadow_cut = 3 << 15;  // then twice as many as there are, by each pass
-constexpr std::uint32_t fewest_points = 8192;
-// Over all surfaces; twice as many in each pass that cuts by them.
-constexpr double first_shadow_points = 1 << 17, most_shadow_points = 1 << 20;
+constexpr double last_share = 0.5;                         // of a time limit: no pass then
+constexpr double fewest_points = 8192.0, most_points = 1 << 20;
+constexpr double most_doubt = 0.3;  // of the wanted squared error, as a standard error
 
 double squared(double x) { return x * x; }
 
@@ -45,21 +40,20 @@ class SurfaceSearch {
       : scene_(scene),
         wanted_(wanted),
         given_(scene.scene.quality),
-        sampler_(scene, seed),
         listen_(listen),
         progress_(progress) {
     result_.solver = first_surface_options(scene.scene, wanted.error, seed);
     result_.surface.known = false;
-    solve();
+    solve(seed);
   }
 
   SteeredSolution run() {
     if (!light_) return std::move(result_);
-    mean_ = light_->told_mean();
-    if (mean_ > 0.0) {
+    turns_->set_mean(light_->told_mean());
+    if (turns_->mean() > 0.0) {
       try {
         std::vector<std::uint32_t> parent(light_->patches().count());
-        if (may_cut()) cut_shadows(parent);
+        if (may_cut()) turns_->cut_shadows(cut_share * enough(), parent);
         improve();
         if (may_cast() && is_exact()) return with_exact_form_factors();
       } catch (const base::Stopped&) {
@@ -67,32 +61,13 @@ class SurfaceSearch {
       }
     }
     result_.solution = light_->finished();
-    result_.solution.report.shadow_rays += rays_;
+    result_.solution.report.shadow_rays += turns_->rays();
     return std::move(result_);
   }
 
  private:
   // Of ranks that divide the form factors the first decides, and the others sample with it.
   [[nodiscard]] bool joins() const { return light_->shares().joins(); }
-  [[nodiscard]] SurfaceSamples sample(std::span<const std::uint32_t> which,
-                                      std::span<const Effort> effort, const std::string& name,
-                                      SamplesOf of) {
-    // What is broken off here has changed nothing yet.
-    const base::StopInForce stop(wanted_.stop);
-    SurfaceSamples samples =
-        sampler_.sample(light_->light(), which, effort, ++pass_, mean_, light_->bodies(),
-                        stage(name), of, light_->shares().hears());
-    rays_ += samples.rays;
-    return samples;
-  }
-  [[nodiscard]] std::vector<radiosity::Cut> worst(const CutChoice& choice, double enough,
-                                                  double most_of, std::size_t limit) {
-    const std::size_t most = std::min(bound_.most, std::max(first_patches_, limit));
-    std::vector<radiosity::Cut> cuts;
-    if (joins()) cuts = choice.worst(light_->patches(), enough, most_of, most);
-    light_->shares().tell_all([&](base::Parcel& parcel) { parcel.pass(cuts); });
-    return cuts;
-  }
   [[nodiscard]] bool may_cut() const { return cuts_surfaces(given_); }
   [[nodiscard]] bool may_cast() const { return !given_.form_factor_rays; }
   // What reflects was lit by shadow rays alone, and evenly.
@@ -111,11 +86,11 @@ class SurfaceSearch {
     result_.solver = solver;
     result_.steps.back().form_factor_rays = solver.form_factor_rays;
     if (listen_) listen_(result_.solution.report);
-    result_.solution.report.shadow_rays += rays_;
+    result_.solution.report.shadow_rays += turns_->rays();
     return std::move(result_);
   }
 
-  void solve() {
+  void solve(std::uint64_t seed) {
     const raytrace::Progress progress = stage("solve");
     if (progress) progress(0, 1);
     radiosity::Patches patches =
@@ -132,98 +107,78 @@ class SurfaceSearch {
     bound_ = patch_bound(wanted_, given_, first_patches_, largest_cut);
     solver_error_ = coarse.report.solver_error;
     light_.emplace(scene_, std::move(coarse), std::move(factors), result_.solver.form_factor_rays);
-  }
-
-  // By shadow rays alone: the edges of shadows and the surroundings of lamps, by twice as many
-  // points the next time, none where nothing is left to cut. parent: of each patch, kept up.
-  // Whether anything was cut.
-  bool cut_shadows(std::vector<std::uint32_t>& parent) {
-    const std::size_t before = light_->patches().count();
-    std::vector<std::uint32_t> which(light_->patches().count());
-    std::iota(which.begin(), which.end(), 0U);
-    CutChoice choice(light_->patches());
-    const double enough = cut_share * squared(aim * wanted_.error * mean_);
-    const std::size_t limit = std::max(first_shadow_cut, 2 * before);
-    for (int k = 0; k < most_rounds && !which.empty() && time_gone() <= shadow_share; ++k) {
-      const std::vector<Effort> effort = shadow_effort(light_->patches(), which, shadow_points_);
-      const SurfaceSamples samples =
-          sample(which, effort, fmt::format("shadows, {} patches", light_->patches().count()),
-                 SamplesOf::Light);
-      light_->correct(samples, which, effort);
-      if (joins()) choice.see(light_->patches(), samples, which);
-      const std::vector<radiosity::Cut> cuts = worst(choice, enough, shadow_cuts, limit);
-      if (cuts.empty()) break;
-      std::vector<std::uint32_t> of = light_->cut(cuts);
-      which = choice.follow(light_->patches(), of);
-      for (std::uint32_t& i : of) i = parent[i];
-      parent = std::move(of);
-    }
-    const bool cut = light_->patches().count() > before;
-    shadow_points_ = cut ? std::min(2.0 * shadow_points_, most_shadow_points) : 0.0;
-    return cut;
+    turns_.emplace(scene_, wanted_, seed, *light_, bound_.most, progress_);
   }
 
   void improve() {
     double before = 0.0;
+    CutChoice choice(light_->patches());
     std::vector<Effort> effort = even_effort(light_->patches(), points_wanted_);
     for (int pass = 0;; ++pass) {
       std::vector<std::uint32_t> all(light_->patches().count());
       std::iota(all.begin(), all.end(), 0U);
       const double begun = time_gone();
-      const SurfaceSamples samples =
-          sample(all, effort, under_way(), may_cast() ? SamplesOf::Light : SamplesOf::Residual);
+      const SurfaceSamples samples = turns_->sample(
+          all, effort, under_way(), may_cast() ? SamplesOf::Light : SamplesOf::Residual);
       last_took_ = time_gone() - begun;
       std::vector<double> variance;
       LightNoise noise;
       if (joins()) {
-        variance = ray_variance(light_->patches(), samples, effort);
+        variance = ray_variance(light_->patches(), samples, all, effort);
         noise = noise_of(*light_, variance, samples);
       }
       const ResidualError found =
-          residual_error(*light_, samples, noise, sampler_.reflectances(), mean_, solver_error_);
+          residual_error(*light_, samples, noise, turns_->reflectances(), solver_error_);
       state(found, samples, effort);
       const double error = result_.steps.back().estimate;
-      if (error <= wanted_.error) return;
+      if (error <= wanted_.error && is_sure(found)) return;
       if (!may_cut() && !may_cast()) return stop(Limit::Settings);
       if (is_hopeless(error)) return stop(why_no_more());
-      spent_.push_back(rays_);
+      spent_.push_back(turns_->rays());
       if (time_gone() > last_share) return stop(Limit::Time);
-      mean_ = found.mean;
+      turns_->set_mean(found.mean);
+      if (joins()) choice.see(light_->patches(), samples, all, noise.all());
       if (may_cast()) light_->correct(samples, all, effort);
-      if (found.doubt > 0.3 * squared(wanted_.error)) points_wanted_ *= 2.0;
-      const double enough = squared(aim * wanted_.error * mean_);
+      if (found.doubt > most_doubt * squared(wanted_.error)) points_wanted_ *= 2.0;
       bool cuts = false;
-      std::vector<std::uint32_t> parent;
-      const std::size_t patches = light_->patches().count();
+      std::vector<std::uint32_t> parent = std::move(all);
       if (may_cut() && found.patches > 0.8 * cut_share * squared(aim * wanted_.error)) {
-        CutChoice choice(light_->patches());
-        if (joins()) choice.see(light_->patches(), samples, all, noise.rays);
-        const auto wanted = worst(choice, cut_share * enough, gather_cuts, largest_cut);
-        if (!wanted.empty()) {
-          parent = light_->cut(wanted);
-          cuts = light_->patches().count() > patches;
-        }
-        if (parent.empty()) parent = all;
-        if (shadow_points_ > 0.0 && cut_shadows(parent)) cuts = true;
+        cuts = turns_->cut_gathered(choice, cut_share * enough(), points_wanted_, parent);
+        if (turns_->cut_shadows(cut_share * enough(), parent, &choice)) cuts = true;
       }
-      if (parent.empty()) parent = std::move(all);
-      if (!cuts && pass > 4 && error > 0.97 * before) {
+      if (!cuts && pass > 4 && error > std::max(wanted_.error, 0.97 * before)) {
         return stop(why_no_more());
       }
       before = error;
-      if (joins()) effort = next_effort(variance, parent, noise_share * enough);
+      const double target = noise_share * squared(aim * wanted_.error * turns_->mean());
+      if (joins()) effort = next_effort(variance, parent, target);
       light_->shares().tell_all([&](base::Parcel& parcel) { parcel.pass(effort); });
     }
   }
 
+  // Few points may miss all of an error that is left in a few places: more are looked at, while
+  // there is time and up to a million.
+  [[nodiscard]] bool is_sure(const ResidualError& found) const {
+    return found.doubt <= most_doubt * squared(wanted_.error) || points_wanted_ >= most_points ||
+           time_gone() > last_share || !(may_cut() || may_cast());
+  }
+
+  // What may be left of the mean square by the next pass: no more is cut at once than halves the
+  // error, since what is cut for shadows alone costs rays of all other light.
+  [[nodiscard]] double enough() const {
+    const double now = result_.steps.empty() ? first_error : result_.steps.back().estimate;
+    return squared(std::max(aim * wanted_.error, next_error * now) * turns_->mean());
+  }
+
   // By the power of all rays with which the error fell since half of them were cast.
   [[nodiscard]] bool is_hopeless(double error) const {
-    if (wanted_.seconds > 0.0 || rays_ <= many_rays) return false;
+    const std::uint64_t rays = turns_->rays();
+    if (wanted_.seconds > 0.0 || rays <= many_rays) return false;
     std::size_t half = spent_.size();
-    while (half > 0 && 2 * spent_[half - 1] > rays_) --half;
+    while (half > 0 && 2 * spent_[half - 1] > rays) --half;
     if (half == 0) return false;
     const double power = std::log(result_.steps[half - 1].estimate / error) /
-                         std::log(double(rays_) / double(spent_[half - 1]));
+                         std::log(double(rays) / double(spent_[half - 1]));
     return error > wanted_.error * std::pow(most_times_more, std::max(power, least_power));
   }
 
@@ -270,16 +225,13 @@ class SurfaceSearch {
   const scenes::World scene_;
   const Wanted& wanted_;
   const scenes::Quality& given_;
-  SurfaceSampler sampler_;
   const SolveListener& listen_;
   const StageListener& progress_;
   SteeredSolution result_;
   std::optional<LightOnSurfaces> light_;
-  double mean_ = 0.0, solver_error_ = 0.0;
-  std::uint32_t pass_ = 0;
-  std::uint64_t rays_ = 0;
-  std::vector<std::uint64_t> spent_;  // of them by the end of each pass
-  double shadow_points_ = first_shadow_points;
+  std::optional<SurfaceTurns> turns_;  // of the light, and with it
+  double solver_error_ = 0.0;
+  std::vector<std::uint64_t> spent_;  // rays by the end of each pass
   double points_wanted_ = fewest_points, last_rays_ = 0.0, last_took_ = 0.0;
   std::size_t first_patches_ = 0;
   PatchBound bound_;

@@ -21,6 +21,21 @@ void PatchLooks::start(std::size_t points) {
   escaped_ = lost_ = 0.0;
 }
 
+void PatchLooks::look_at(const radiosity::Source& source, const LookingPoint& from,
+                         const base::SobolOwen4& sequence, std::size_t first, std::size_t rays,
+                         std::size_t look, bool twice) {
+  for (std::size_t m = first; m < first + rays; ++m) {
+    const auto u = sequence.point2(static_cast<std::uint32_t>(m));
+    radiosity::take_samples(source, scene_.query.ways().mirrors(), from.at, from.normal,
+                            double(u[0]), double(u[1]), taken_);
+    for (const scenes::LightSample& sample : taken_) {
+      const double share = glm::dot(sample.direction, from.normal) / static_cast<double>(rays);
+      add_shadow_ray(from.at + from.lift, sample, share * sample.normal_illuminance_lx, look,
+                     source.group, twice);
+    }
+  }
+}
+
 void PatchLooks::add_shadow_ray(const Vec3& origin, const scenes::LightSample& sample,
                                 const Rgb& lx, std::size_t look, std::size_t group, bool twice) {
   const double reach = sample.distance_m * (1.0 - 1e-5) - 2.0 * scene_.query.surface_offset_m();

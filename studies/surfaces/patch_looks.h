@@ -6,11 +6,18 @@
 #include <span>
 #include <vector>
 
+#include "base/numbers/random.h"
+#include "radiosity/direct/sources.h"
 #include "raytrace/incoming/radiance_table.h"
 #include "scenes/light/lamp_light.h"
 #include "studies/study.h"
 
 namespace earthshine::studies {
+
+// Where rays start: `lift` above the surface.
+struct LookingPoint {
+  Vec3 at, normal, lift;
+};
 
 // Rays of one patch, and what they bring to its points: per point, half and group.
 class PatchLooks {
@@ -29,9 +36,11 @@ class PatchLooks {
   [[nodiscard]] double lost() const { return lost_; }
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
-  // twice: the next look's ray is the same.
-  void add_shadow_ray(const Vec3& origin, const scenes::LightSample& sample, const Rgb& lx,
-                      std::size_t look, std::size_t group, bool twice);
+  // Shadow rays to the source, straight and by mirrors, by so many points of a sequence from the
+  // first on. twice: the next look's are the same.
+  void look_at(const radiosity::Source& source, const LookingPoint& from,
+               const base::SobolOwen4& sequence, std::size_t first, std::size_t rays,
+               std::size_t look, bool twice);
   void finish_shadows();
 
   // A packet of cosine rays, each of `weight` of the look's.
@@ -39,6 +48,8 @@ class PatchLooks {
               double weight, std::size_t look);
 
  private:
+  void add_shadow_ray(const Vec3& origin, const scenes::LightSample& sample, const Rgb& lx,
+                      std::size_t look, std::size_t group, bool twice);
   void follow(scenes::Hit hit, Vec3 way, double weight, std::size_t look);
   void escape(const Vec3& way, double weight, std::size_t look);
 
@@ -47,6 +58,7 @@ class PatchLooks {
   const raytrace::RadianceTable& table_;
   std::size_t groups_, sky_parts_;
   std::vector<Rgb> lamps_, gathered_, sky_;
+  std::vector<scenes::LightSample> taken_;
   scenes::RayPacket packet_;
   std::size_t count_ = 0;
   double escaped_ = 0.0, lost_ = 0.0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "raytrace/frame/frame.h"
@@ -14,6 +15,7 @@ namespace {
 // Few patches hold much of the error: its mean is nearer to a lognormal than to a normal quantity.
 constexpr double sure = 1.5 * 1.645;
 constexpr std::size_t residual_columns = 6;  // three for either half of the samples
+constexpr double far_apart = 0.1;            // of the mean, that halves of shadow rays are
 constexpr double darkest = 0.02;             // of the mean that a solution has, that it should have
 
 double squared(double x) { return x * x; }
@@ -45,10 +47,10 @@ struct MeanSquare {
 
 ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& samples,
                            const LightNoise& noise, const radiosity::PatchAlbedos& reflectances,
-                           double mean, double solver_error) {
+                           double solver_error) {
   ResidualError error;
   const radiosity::Patches& patches = light.patches();
-  const std::size_t count = patches.count(), groups = light.light().columns() / 3;
+  const std::size_t count = patches.count();
   std::vector<double> residual(count * residual_columns, 0.0);
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t k = 0; k < residual_columns; ++k) {
@@ -57,7 +59,8 @@ ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& s
     }
   }
   const std::vector<double> brought = light.brought(std::move(residual), residual_columns);
-  double area = 0.0, square = 0.0, rays = 0.0, lamps = 0.0, variance = 0.0, excess = 0.0;
+  double area = 0.0, square = 0.0, rays = 0.0, lamps = 0.0, variance = 0.0, excess = 0.0,
+         whole = 0.0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const PatchResidual& r = samples.residual[i];
     if (r.taken == 0) continue;
@@ -65,18 +68,13 @@ ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& s
     const double part = patches.area_m2[i] * double(r.open);  // what no body covers
     area += part;
     const Rgb rho = reflectances.of(patches, i);
-    Rgb b(0.0);
-    for (std::size_t g = 0; g < groups; ++g) {
-      const float* own = &light.light().solution.radiosity[(i * groups + g) * 3];
-      b += Rgb(own[0], own[1], own[2]);
-    }
-    const double weight =
-        raytrace::error_weight(base::luminance(b + 0.5 * (half[0] + half[1])), mean);
+    const double weight = double(r.weight);
     const std::size_t j = light.coarse(i) * residual_columns;
     const double ga = weight * base::luminance(rho * at(brought, j)),
                  gb = weight * base::luminance(rho * at(brought, j + 3));
     const double ra = weight * base::luminance(half[0]), rb = weight * base::luminance(half[1]);
     square += part * (double(r.square) + ra * gb + rb * ga + ga * gb);
+    whole += part * double(r.mean_square);
     rays += part * noise.rays[i];
     lamps += part * noise.lamps[i];
     variance += squared(part * double(r.square_error));
@@ -88,9 +86,11 @@ ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& s
   const double unit = area * error.mean * error.mean;
   error.square = std::max(0.0, square / unit);
   error.doubt = std::sqrt(variance) / unit;
-  // Where noise is less than expected, all of the error is noise.
-  const double by_rays = std::min(error.square, rays / unit);
-  const double by_lamps = std::min(error.square - by_rays, lamps / unit);
+  // Noise is no more than what patches are off by as a whole: points that lie in strata have less
+  // of it than is expected of them.
+  const double by_noise = std::clamp(whole / unit, 0.0, error.square);
+  const double by_rays = std::min(by_noise, rays / unit);
+  const double by_lamps = std::min(by_noise - by_rays, lamps / unit);
   error.patches = error.square - by_rays - by_lamps;
   error.parts.form_factors = doubt_of(by_rays, 0.5 * by_rays);
   error.parts.lamps = doubt_of(by_lamps, 0.5 * by_lamps);
@@ -113,6 +113,19 @@ std::vector<Effort> even_effort(const radiosity::Patches& patches, double points
   std::vector<Effort> effort;
   for (const double area : patches.area_m2) {
     effort.push_back(effort_of(16.0 * (2.0 + points * area / all)));
+  }
+  return effort;
+}
+
+std::vector<Effort> effort_where_uneven(const radiosity::Patches& patches,
+                                        std::span<const std::uint32_t> which,
+                                        const CutChoice& choice, double points) {
+  const double area = std::accumulate(patches.area_m2.begin(), patches.area_m2.end(), 0.0);
+  const double uneven = std::max(1e-300, choice.total());
+  std::vector<Effort> effort;
+  for (const std::uint32_t i : which) {
+    const double share = patches.area_m2[i] / area + choice.held_by(i) / uneven;
+    effort.push_back(effort_of(16.0 * (2.0 + points * share)));
   }
   return effort;
 }
@@ -154,17 +167,25 @@ std::vector<Effort> effort_for(const LightOnSurfaces& light, const std::vector<d
 }
 
 std::vector<double> ray_variance(const radiosity::Patches& patches, const SurfaceSamples& samples,
-                                 const std::vector<Effort>& effort) {
-  std::vector<double> variance(effort.size(), 0.0);
+                                 std::span<const std::uint32_t> which,
+                                 std::span<const Effort> effort) {
+  std::vector<double> variance(patches.count(), 0.0);
   double mean = 0.0, area = 0.0;
-  for (std::size_t i = 0; i < variance.size(); ++i) {
+  for (std::size_t n = 0; n < which.size(); ++n) {
+    const std::uint32_t i = which[n];
     const PatchResidual& r = samples.residual[i];
-    variance[i] = double(r.mean_variance) * 2.0 * r.taken * effort[i].rays;
+    variance[i] = double(r.mean_variance) * 2.0 * r.taken * effort[n].rays;
     mean += patches.area_m2[i] * variance[i];
     area += patches.area_m2[i];
   }
-  for (double& v : variance) v = 0.5 * (v + mean / area);
+  for (const std::uint32_t i : which) variance[i] = 0.5 * (variance[i] + mean / area);
   return variance;
+}
+
+std::vector<double> LightNoise::all() const {
+  std::vector<double> sum(rays.size());
+  std::transform(rays.begin(), rays.end(), lamps.begin(), sum.begin(), std::plus<>());
+  return sum;
 }
 
 LightNoise noise_of(const LightOnSurfaces& light, const std::vector<double>& ray_variance,
@@ -173,18 +194,21 @@ LightNoise noise_of(const LightOnSurfaces& light, const std::vector<double>& ray
   for (std::uint32_t i = 0; i < ray_variance.size(); ++i) {
     const PatchResidual& r = samples.residual[i];
     noise.rays.push_back(ray_variance[i] / std::max(1.0, light.gather_rays(i)));
-    noise.lamps.push_back(double(r.lamps_mean_variance) * r.taken /
-                          std::max(1.0, light.lamp_points(i)));
+    // A piece still has the lamps' light of its patch: by how much that is off is what is known.
+    noise.lamps.push_back(light.lamp_rays(i) > 0.0
+                              ? double(r.lamps_mean_variance) * r.taken *
+                                    light.light().shadow_rays[i] / light.lamp_rays(i)
+                              : std::max(0.0, double(r.lamps_mean_square)));
   }
   return noise;
 }
 
 ResidualError residual_error(const LightOnSurfaces& light, const SurfaceSamples& samples,
                              const LightNoise& noise, const radiosity::PatchAlbedos& reflectances,
-                             double mean, double solver_error) {
+                             double solver_error) {
   ResidualError error;
   if (light.shares().joins()) {
-    error = error_of_all(light, samples, noise, reflectances, mean, solver_error);
+    error = error_of_all(light, samples, noise, reflectances, solver_error);
   } else {
     (void)light.brought({}, residual_columns);
   }
@@ -201,13 +225,31 @@ void ResidualSums::set(std::size_t point, std::size_t half, const Rgb& lamps, co
   p.gathered_lx[half] = base::luminance(gathered);
 }
 
+bool ResidualSums::is_unsure(std::size_t point, double mean) const {
+  constexpr double another = 1.5;
+  const Point& p = points_[point];
+  const auto [least, most] = std::minmax({0.0, p.by_lamps[0], p.by_lamps[1]});
+  return raytrace::error_weight(p.radiosity + least, mean) >
+         another * raytrace::error_weight(p.radiosity + most, mean);
+}
+
+void ResidualSums::weigh_by(std::size_t point, const Rgb& lamps) {
+  Point& p = points_[point];
+  p.weighed_by = base::luminance(p.rho * (lamps - p.lamps));
+}
+
 void ResidualSums::finish(double mean, PatchResidual& residual) {
   MeanSquare all, lamps, products;
+  double weights = 0.0;
   double apart = 0.0, lamps_apart = 0.0;  // sums of the variance of the two halves' mean
   std::array<double, 2> s_step{}, t_step{}, half_count{}, gathered{};
   for (Point& p : points_) {
     if (!p.placed) continue;
-    const double weight = raytrace::error_weight(p.radiosity + 0.5 * (p.all[0] + p.all[1]), mean);
+    const double mine = 0.5 * (p.by_lamps[0] + p.by_lamps[1]);
+    const double should_be =
+        p.radiosity + 0.5 * (p.all[0] + p.all[1]) - mine + p.weighed_by.value_or(mine);
+    const double weight = raytrace::error_weight(should_be, mean);
+    weights += weight;
     for (double* value : {&p.all[0], &p.all[1], &p.by_lamps[0], &p.by_lamps[1]}) *value *= weight;
     all.add(0.5 * (p.all[0] + p.all[1]));
     lamps.add(0.5 * (p.by_lamps[0] + p.by_lamps[1]));
@@ -222,6 +264,7 @@ void ResidualSums::finish(double mean, PatchResidual& residual) {
   }
   if (all.count == 0.0) return;
   const auto kept = [](double value) { return static_cast<float>(value); };
+  residual.weight = kept(weights / all.count);
   residual.square = kept(products.sum / all.count);
   residual.square_error = kept(std::sqrt(products.variance()));
   residual.mean_square = kept(all.unbiased());
@@ -229,6 +272,7 @@ void ResidualSums::finish(double mean, PatchResidual& residual) {
   const double n2 = all.count * all.count;
   residual.mean_variance = kept(apart / n2);
   residual.lamps_mean_variance = kept(lamps_apart / n2);
+  residual.wants_shadow_rays = lamps_apart / all.count > squared(far_apart * mean);
   for (std::size_t h = 0; h < 2; ++h) residual.gathered[h] = kept(gathered[h] / all.count);
   residual.along_s = kept(std::max(0.0, s_step[0] * s_step[1] / n2));
   residual.along_t = kept(std::max(0.0, t_step[0] * t_step[1] / n2));

@@ -6,6 +6,9 @@
 // each square as a product of two halves of the samples that share no chance.
 #pragma once
 
+#include <optional>
+
+#include "studies/surfaces/surface_cuts.h"
 #include "studies/surfaces/surface_error.h"
 #include "studies/surfaces/surface_light.h"
 #include "studies/surfaces/surface_samples.h"
@@ -23,6 +26,7 @@ struct ResidualError {
 // Of the light itself, expected of the samples it was made from: mean squares over a patch, lm/m^2.
 struct LightNoise {
   std::vector<double> rays, lamps;  // per patch
+  [[nodiscard]] std::vector<double> all() const;
 };
 
 // Points and rays of a patch for so many cosine rays, at least 32: two points with ever more rays
@@ -30,6 +34,10 @@ struct LightNoise {
 [[nodiscard]] Effort effort_of(double rays);
 // So many points over all patches by area, two on each at least.
 [[nodiscard]] std::vector<Effort> even_effort(const radiosity::Patches& patches, double points);
+// The same of some patches, and `points` more by the share of all that is uneven.
+[[nodiscard]] std::vector<Effort> effort_where_uneven(const radiosity::Patches& patches,
+                                                      std::span<const std::uint32_t> which,
+                                                      const CutChoice& choice, double points);
 
 // Shadow rays alone: four points on each of these patches, and `points` more over all surfaces.
 [[nodiscard]] std::vector<Effort> shadow_effort(const radiosity::Patches& patches,
@@ -44,23 +52,24 @@ struct LightNoise {
                                              const std::vector<std::uint32_t>& parent,
                                              double target, double most, double points);
 
-// The variance of r as one ray finds it, per patch: half its own guess, half the mean of all.
+// The variance of r as one ray finds it, per patch: half its own guess, half the mean of all that
+// `which` names, of which effort is; 0 of others.
 [[nodiscard]] std::vector<double> ray_variance(const radiosity::Patches& patches,
                                                const SurfaceSamples& samples,
-                                               const std::vector<Effort>& effort);
+                                               std::span<const std::uint32_t> which,
+                                               std::span<const Effort> effort);
 [[nodiscard]] LightNoise noise_of(const LightOnSurfaces& light,
                                   const std::vector<double>& ray_variance,
                                   const SurfaceSamples& samples);
 
 // samples: of all patches, and noise, both the first rank's; of ranks that divide the factors of
-// the light each must ask, and gets it. mean: that they were weighed by.
+// the light each must ask, and gets it.
 [[nodiscard]] ResidualError residual_error(const LightOnSurfaces& light,
                                            const SurfaceSamples& samples, const LightNoise& noise,
-                                           const radiosity::PatchAlbedos& reflectances, double mean,
+                                           const radiosity::PatchAlbedos& reflectances,
                                            double solver_error);
 
 // The sums over one patch's points that PatchResidual (surface_samples.h) is made of.
-
 class ResidualSums {
  public:
   void start(std::size_t points) { points_.assign(points, {}); }
@@ -68,10 +77,15 @@ class ResidualSums {
   // solution has there, and the two parts of the illuminance.
   void place(std::size_t point, double x, double y, const Rgb& rho, const Rgb& radiosity,
              const Rgb& lamps, const Rgb& gathered) {
-    points_[point] = {true, x, y, base::luminance(radiosity), rho, lamps, gathered, {}, {}, {}};
+    points_[point] = {true, x,  y, base::luminance(radiosity), rho, lamps, gathered, {}, {},
+                      {},   {}, {}};
   }
   // What one half of the rays found.
   void set(std::size_t point, std::size_t half, const Rgb& lamps, const Rgb& gathered);
+  // Whether the point's weight is another by either half, or by the solution.
+  [[nodiscard]] bool is_unsure(std::size_t point, double mean) const;
+  // Weighs the point by what further rays say of the lamps there, in place of the halves.
+  void weigh_by(std::size_t point, const Rgb& lamps);
   // Weighs each point by the radiosity that it should have over `mean`.
   void finish(double mean, PatchResidual& residual);
 
@@ -80,9 +94,10 @@ class ResidualSums {
     bool placed = false;
     double x = 0.0, y = 0.0, radiosity = 0.0;
     Rgb rho{0.0}, lamps{0.0}, gathered{0.0};
-    std::array<double, 2> all{}, by_lamps{};  // weighted luminance of r, by half
+    std::array<double, 2> all{}, by_lamps{};  // luminance of r, by half; weighted by finish()
     std::array<double, 2> gathered_lx{};      // luminance
     std::array<Rgb, 2> rgb{};                 // r
+    std::optional<double> weighed_by;         // luminance of r by lamps
   };
   std::vector<Point> points_;
 };

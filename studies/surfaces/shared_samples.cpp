@@ -62,15 +62,20 @@ SharedSamples::SharedSamples(const SurfaceLight& light, const radiosity::PatchAl
   const double signal = every.area > 0.0 ? std::max(0.0, every.signal / every.area) : 0.0;
   const double noise = every.area > 0.0 ? every.noise / every.area : 0.0;
   kept_.assign(own_.size(), 1.0);
+  noise_.assign(own_.size(), 0.0);
+  off_.assign(own_.size(), 0.0);
   for (const std::uint32_t i : which) {
     const std::uint32_t j = coarse[i];
-    if (own_[i] <= 0.0 || sums[j].patches < 2.0) continue;
+    if (own_[i] <= 0.0) continue;
     const double prior = like_others * sums[j].area / sums[j].patches;
     const double all = sums[j].area + prior;
     const auto c = change(i);
     const double own_noise = squared(0.5 * (c[0] - c[1]));
+    noise_[i] = std::max((sums[j].noise + prior * noise) / all, own_noise);
+    off_[i] = c[0] * c[1];
+    if (sums[j].patches < 2.0) continue;
     const double own_signal = (c[0] - common[j][0] / all_[j]) * (c[1] - common[j][1] / all_[j]);
-    const double q = std::max((sums[j].noise + prior * noise) / all, own_noise);
+    const double q = noise_[i];
     const double s =
         std::max({0.0, (sums[j].signal + prior * signal) / all, own_signal - doubt * q});
     kept_[i] = s + q > 0.0 ? s / (s + q) : 0.0;
@@ -81,6 +86,13 @@ double SharedSamples::rays(std::uint32_t patch) const {
   if (own_[patch] <= 0.0) return 0.0;
   const double kept = kept_[patch];
   return 1.0 / (squared(kept) / own_[patch] + (1.0 - squared(kept)) / all_[coarse_[patch]]);
+}
+
+double SharedSamples::still_counting(std::uint32_t patch, double before) const {
+  if (before <= 0.0) return 0.0;
+  const double own = own_[patch], expected = noise_[patch] * (1.0 + own / before);
+  return off_[patch] > doubt * expected ? std::min(before, own * noise_[patch] / off_[patch])
+                                        : before;
 }
 
 std::vector<double> SharedSamples::share(

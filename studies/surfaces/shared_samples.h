@@ -24,6 +24,9 @@ class SharedSamples {
 
   // So many rays of its own would tell as much of the patch.
   [[nodiscard]] double rays(std::uint32_t patch) const;
+  // Of the rays that the light of a patch is known by, how many count where it is off by more than
+  // its noise and that of the samples: the light about it has changed since.
+  [[nodiscard]] double still_counting(std::uint32_t patch, double before) const;
   // change(patch, value): of each of `width` values, what the samples would change at the patch.
   // Returns per patch and value what is changed after sharing; 0 where nothing was sampled.
   [[nodiscard]] std::vector<double> share(
@@ -32,9 +35,10 @@ class SharedSamples {
 
  private:
   std::span<const std::uint32_t> which_, coarse_;
-  std::vector<double> own_;   // per patch: its rays
-  std::vector<double> all_;   // per coarse patch: the rays of all of its patches
-  std::vector<double> kept_;  // per patch
+  std::vector<double> own_;          // per patch: its rays
+  std::vector<double> all_;          // per coarse patch: the rays of all of its patches
+  std::vector<double> kept_;         // per patch
+  std::vector<double> noise_, off_;  // per patch, lx^2: of what was found; how far the light is off
 };
 
 }  // namespace earthshine::studies

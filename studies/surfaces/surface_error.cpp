@@ -61,11 +61,11 @@ SurfaceError surface_error(const scenes::World& scene, const radiosity::Solution
                                                 {}, SamplesOf::Residual, light.shares().hears());
   LightNoise noise;
   if (light.shares().joins()) {
-    noise = noise_of(light, ray_variance(light.patches(), samples, effort), samples);
+    noise = noise_of(light, ray_variance(light.patches(), samples, all, effort), samples);
   }
-  error.parts = residual_error(light, samples, noise, sampler.reflectances(), mean,
-                               solution.report.solver_error)
-                    .parts;
+  error.parts =
+      residual_error(light, samples, noise, sampler.reflectances(), solution.report.solver_error)
+          .parts;
   error.rays += samples.rays;
   error.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return error;

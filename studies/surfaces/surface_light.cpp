@@ -13,9 +13,8 @@
 namespace earthshine::studies {
 namespace {
 
+constexpr std::uint8_t more_shadow_rays = 8;
 constexpr double of_the_error = 1e-3;  // to which the error's own equation is solved
-// Halves of a cell share what their parent gathered, which is not all that they need.
-constexpr double inherited_rays = 0.5;
 
 float mixed(float old, double found, double share) {
   return static_cast<float>(double(old) + share * (found - double(old)));
@@ -40,8 +39,9 @@ LightOnSurfaces::LightOnSurfaces(const scenes::World& scene, radiosity::Solution
   if (std::all_of(emitted_.begin(), emitted_.end(), [](const Rgb& m) { return m == Rgb(0.0); })) {
     base::release(emitted_);
   }
-  lamp_points_.assign(count, radiosity::DirectOptions{}.points_per_patch);
+  lamp_rays_.assign(count, radiosity::DirectOptions{}.points_per_patch);
   gather_rays_.assign(count, 0.5 * rays);
+  light_.shadow_rays.assign(count, 1);
   light_.open_share = factors_.open.share;
   escape_ = factors_.escape;
   lost_ = factors_.lost;
@@ -70,7 +70,7 @@ void LightOnSurfaces::keep_what_samples_read() {
     base::release(*unread);
   }
   for (std::vector<double>* const unread :
-       {&lamp_points_, &gather_rays_, &escape_, &lost_, &factors_.open.share, &factors_.kept,
+       {&lamp_rays_, &gather_rays_, &escape_, &lost_, &factors_.open.share, &factors_.kept,
         &factors_.black, &factors_.escape, &factors_.lost}) {
     base::release(*unread);
   }
@@ -188,11 +188,13 @@ void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std
       if (!light_.open_share.empty()) light_.open_share[i] = 0.0;
       continue;
     }
-    const double points = seen.taken, by_lamps = points / (lamp_points_[i] + points);
+    const double rays = double(seen.taken) * light_.shadow_rays[i];
+    const double by_lamps = rays / (lamp_rays_[i] + rays);
     for (std::size_t k = i * columns; k < (i + 1) * columns; ++k) {
       light_.lamps[k] = mixed(light_.lamps[k], samples.lamps[k], by_lamps);
     }
-    lamp_points_[i] += points;
+    lamp_rays_[i] += rays;
+    if (seen.wants_shadow_rays) light_.shadow_rays[i] = more_shadow_rays;
     if (!light_.open_share.empty()) light_.open_share[i] = double(seen.open);
   }
   if (joins) sum_up();
@@ -201,6 +203,7 @@ void LightOnSurfaces::correct(const SurfaceSamples& samples, std::span<const std
     factors_.shares.tell_all(values->data(), values->size());
   }
   factors_.shares.tell_all(light_.open_share.data(), light_.open_share.size());
+  factors_.shares.tell_all(light_.shadow_rays.data(), light_.shadow_rays.size());
 }
 
 // more: that bounces bring, per coarse patch and column.
@@ -223,6 +226,7 @@ void LightOnSurfaces::take_gathered(const SurfaceSamples& samples, const SharedS
   for (const std::uint32_t i : which) {
     const double rays = sharing.rays(i);
     if (rays <= 0.0) continue;
+    gather_rays_[i] = sharing.still_counting(i, gather_rays_[i]);
     const double by_rays = rays / (gather_rays_[i] + rays);
     for (std::size_t k = i * columns; k < (i + 1) * columns; ++k) {
       light_.gathered[k] = static_cast<float>(double(light_.gathered[k]) + by_rays * gathered[k]);
@@ -236,7 +240,8 @@ void LightOnSurfaces::take_gathered(const SurfaceSamples& samples, const SharedS
   }
 }
 
-std::vector<std::uint32_t> LightOnSurfaces::cut(const std::vector<radiosity::Cut>& wanted) {
+std::vector<std::uint32_t> LightOnSurfaces::cut(const std::vector<radiosity::Cut>& wanted,
+                                                std::span<const float> kept_rays) {
   const std::size_t columns = light_.columns(), groups = columns / 3;
   const std::size_t parts = light_.count() > 0 ? light_.sky.size() / light_.count() : 0;
   radiosity::Split made = radiosity::split(patches(), wanted);
@@ -248,6 +253,7 @@ std::vector<std::uint32_t> LightOnSurfaces::cut(const std::vector<radiosity::Cut
   finer.gathered.resize(count * columns);
   finer.sky.resize(count * parts);
   finer.open_share.resize(light_.open_share.empty() ? 0 : count);
+  finer.shadow_rays.resize(count);
   const bool joins = factors_.shares.joins();
   const std::size_t kept = joins ? count : 0;
   std::vector<std::uint32_t> coarse(kept);
@@ -258,11 +264,12 @@ std::vector<std::uint32_t> LightOnSurfaces::cut(const std::vector<radiosity::Cut
     const bool whole = made.patches.area_m2[i] >= patches().area_m2[parent];
     if (joins) {
       coarse[i] = coarse_[parent];
-      points[i] = whole ? lamp_points_[parent] : 0.0;
-      rays[i] = (whole ? 1.0 : inherited_rays) * gather_rays_[parent];
+      points[i] = whole ? lamp_rays_[parent] : 0.0;
+      rays[i] = (whole ? 1.0 : double(kept_rays[parent])) * gather_rays_[parent];
       escape[i] = escape_[parent];
       lost[i] = lost_[parent];
     }
+    finer.shadow_rays[i] = light_.shadow_rays[parent];
     if (!finer.open_share.empty()) finer.open_share[i] = light_.open_share[parent];
     std::copy_n(&light_.lamps[parent * columns], columns, &finer.lamps[i * columns]);
     std::copy_n(&light_.gathered[parent * columns], columns, &finer.gathered[i * columns]);
@@ -280,7 +287,7 @@ std::vector<std::uint32_t> LightOnSurfaces::cut(const std::vector<radiosity::Cut
   finer.solution.patches = std::move(made.patches);
   light_ = std::move(finer);
   coarse_ = std::move(coarse);
-  lamp_points_ = std::move(points);
+  lamp_rays_ = std::move(points);
   gather_rays_ = std::move(rays);
   escape_ = std::move(escape);
   lost_ = std::move(lost);

@@ -34,7 +34,7 @@ class LightOnSurfaces {
   [[nodiscard]] double mean_radiosity() const;
   [[nodiscard]] double told_mean() const;  // the same, by all ranks and to all
   // Samples that are in the light of a patch already.
-  [[nodiscard]] double lamp_points(std::uint32_t patch) const { return lamp_points_[patch]; }
+  [[nodiscard]] double lamp_rays(std::uint32_t patch) const { return lamp_rays_[patch]; }
   [[nodiscard]] double gather_rays(std::uint32_t patch) const { return gather_rays_[patch]; }
 
   // The illuminance, per coarse patch and column, that a residual of the radiosity (per patch and
@@ -49,8 +49,10 @@ class LightOnSurfaces {
   void correct(const SurfaceSamples& samples, std::span<const std::uint32_t> which,
                std::span<const Effort> effort);
   // Halves take what is interpolated at their middle; they have the samples of their parent for
-  // what gathers, none for shadows. Returns the parent of each patch.
-  std::vector<std::uint32_t> cut(const std::vector<radiosity::Cut>& wanted);
+  // what gathers, which count by the share kept_rays (per patch), none for shadows. Returns the
+  // parent of each patch.
+  std::vector<std::uint32_t> cut(const std::vector<radiosity::Cut>& wanted,
+                                 std::span<const float> kept_rays);
 
   [[nodiscard]] radiosity::Solution finished() const;
 
@@ -71,8 +73,8 @@ class LightOnSurfaces {
   std::vector<Rgb> emitted_;                // per coarse patch, through form factors; empty: none
   std::vector<std::uint32_t> coarse_;       // per patch
   std::vector<double> coarse_reflectance_;  // per own coarse row and colour
-  std::vector<double> lamp_points_, gather_rays_;  // per patch
-  std::vector<double> escape_, lost_;              // per patch: shares of what leaves it
+  std::vector<double> lamp_rays_, gather_rays_;  // per patch
+  std::vector<double> escape_, lost_;            // per patch: shares of what leaves it
 };
 
 }  // namespace earthshine::studies

@@ -23,6 +23,9 @@ constexpr std::size_t told_after = 1024;  // patches
 // Points that are tried for one that is sampled, where a body is known to cover some: what a sliver
 // of a patch says that looks out of the body counts by the sliver's area.
 constexpr std::uint32_t tried_points = 16;
+// Further shadow rays of a point, to each source, that say how bright it is where its halves do
+// not.
+constexpr std::uint32_t weighing_rays = 16;
 
 }  // namespace
 
@@ -57,16 +60,6 @@ scenes::Hit hit_at(const radiosity::Patches& patches, std::uint32_t patch, doubl
   return hit;
 }
 
-namespace {
-
-// Of a source without size, both halves see the same.
-bool same(const std::vector<scenes::LightSample>& a, const std::vector<scenes::LightSample>& b) {
-  return a.size() == 1 && b.size() == 1 && a[0].direction == b[0].direction &&
-         a[0].normal_illuminance_lx == b[0].normal_illuminance_lx;
-}
-
-}  // namespace
-
 SurfaceSampler::SurfaceSampler(const scenes::World& scene, std::uint64_t seed)
     : scene_(scene),
       seed_(seed),
@@ -77,6 +70,24 @@ SurfaceSampler::SurfaceSampler(const scenes::World& scene, std::uint64_t seed)
     kept_.push_back(m.passes_light_on()
                         ? std::clamp(1.0 - base::luminance(m.mirror + m.transmit), 0.0, 1.0)
                         : 1.0);
+  }
+}
+
+void SurfaceSampler::weigh(PatchLooks& looks, std::span<const LookingPoint> places, base::Key key,
+                           double mean, ResidualSums& sums, std::size_t points) const {
+  for (std::size_t point = 0; point < points; ++point) {
+    if (!sums.is_unsure(point, mean)) continue;
+    looks.start(1);
+    for (std::size_t k = 0; k < sources_.size(); ++k) {
+      const radiosity::Source& source = sources_[k].source;
+      const std::size_t rays = source.has_size ? weighing_rays : 1;
+      looks.look_at(source, places[point], base::SobolOwen4(key.with(4 + 2 * sources_.size() + k)),
+                    point * rays, rays, 0, false);
+    }
+    looks.finish_shadows();
+    Rgb lamps(0.0);
+    for (const Rgb& l : looks.lamps(0)) lamps += l;
+    sums.weigh_by(point, lamps);
   }
 }
 
@@ -121,8 +132,8 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
   std::vector<PatchResidual> seen(std::min(batch, which.size()));  // of a batch
   const auto look_at = [&](std::size_t begin, std::size_t end) {
     PatchLooks looks(scene_, kept_, table, groups, sky_parts);
-    std::array<std::vector<scenes::LightSample>, 2> taken;
     std::vector<std::uint32_t> near;
+    std::vector<LookingPoint> places;
     ResidualSums sums;
     for (std::size_t n = begin; n < end; ++n) {
       const std::uint32_t patch = which[n];
@@ -145,6 +156,7 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
       }
       looks.start(work.points);
       sums.start(work.points);
+      places.resize(work.points);
       residual.taken = 0;
       const double known = light.open_share.empty() ? 1.0 : light.open_share[patch];
       const std::uint32_t tries = (known > 0.0 && known < 1.0 ? tried_points : 1) * work.points;
@@ -158,26 +170,15 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
         ++open;
         if (residual.taken == work.points) continue;
         const std::size_t point = residual.taken++;
+        places[point] = {at, frame.normal, lift};
         for (std::size_t k = 0; k < sources_.size(); ++k) {
           const radiosity::Source& source = sources_[k].source;
-          const std::size_t samples = source.points > source_points ? wide_source_samples : 1;
-          const base::SobolOwen4 toward[2] = {base::SobolOwen4(key.with(4 + 2 * k)),
-                                              base::SobolOwen4(key.with(5 + 2 * k))};
-          for (std::size_t m = 0; m < samples; ++m) {
-            for (std::size_t half = 0; half < 2; ++half) {
-              const auto u = toward[half].point2(static_cast<std::uint32_t>(point * samples + m));
-              radiosity::take_samples(source, scene_.query.ways().mirrors(), at, frame.normal,
-                                      double(u[0]), double(u[1]), taken[half]);
-            }
-            const bool twice = same(taken[0], taken[1]);
-            for (std::size_t half = 0; half < (twice ? 1U : 2U); ++half) {
-              for (const scenes::LightSample& sample : taken[half]) {
-                const double cosine =
-                    glm::dot(sample.direction, frame.normal) / static_cast<double>(samples);
-                looks.add_shadow_ray(at + lift, sample, cosine * sample.normal_illuminance_lx,
-                                     2 * point + half, source.group, twice);
-              }
-            }
+          const std::size_t wide = source.points > source_points ? wide_source_samples : 1;
+          const std::size_t samples =
+              source.has_size ? std::max<std::size_t>(light.shadow_rays[patch], wide) : 1;
+          for (std::size_t half = 0; half < (source.has_size ? 2U : 1U); ++half) {
+            looks.look_at(source, places[point], base::SobolOwen4(key.with(4 + 2 * k + half)),
+                          point * samples, samples, 2 * point + half, !source.has_size);
           }
         }
         for (std::size_t half = 0; half < 2; ++half) {
@@ -229,6 +230,7 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
           sums.set(point, half, lamps, gathered);
         }
       }
+      weigh(looks, places, key, mean, sums, residual.taken);
       sums.finish(mean, residual);
     }
     rays_of[begin / chunk] += looks.rays();

@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "base/numbers/random.h"
 #include "base/ranks/ranks.h"
 #include "radiosity/direct/sources.h"
 #include "radiosity/factors/form_factors.h"
@@ -29,6 +30,8 @@ struct SurfaceLight {
   std::vector<float> lamps, gathered;  // lx: by shadow rays; by cosine rays, the sky with it
   std::vector<Rgb> sky;                // per patch and part of the sky, within `gathered`
   std::vector<double> open_share;      // per patch, what no body covers; empty: nothing is covered
+  // Per patch, of each half at a point, to each source that has a size; to wide ones four at least.
+  std::vector<std::uint8_t> shadow_rays;
   [[nodiscard]] std::size_t columns() const { return solution.columns; }
   [[nodiscard]] std::size_t count() const { return solution.patches.count(); }
   [[nodiscard]] double open_m2(std::size_t patch) const {
@@ -48,6 +51,8 @@ struct PatchResidual {
   std::uint16_t taken = 0;                   // points that nothing covers
   float open = 1.0F;                         // share of the patch that nothing covers
   float square = 0.0F, square_error = 0.0F;  // mean of r^2 over the patch, and its standard error
+  float weight = 1.0F;                       // mean error_weight()
+  bool wants_shadow_rays = false;            // more of them at a point: its halves are far apart
   float mean_square = 0.0F;                  // of r's mean, without its noise
   float mean_variance = 0.0F;                // of the mean of the taken points, due to rays
   float lamps_mean_square = 0.0F, lamps_mean_variance = 0.0F;  // of S's part of r
@@ -67,6 +72,10 @@ struct SurfaceSamples {
 
 // What of it is wanted: all, or the residual and `rays` alone.
 enum class SamplesOf { Light, Residual };
+
+class PatchLooks;
+class ResidualSums;
+struct LookingPoint;
 
 // The hit of a ray that meets the patch at (x, y), as Patches::point() has it.
 [[nodiscard]] scenes::Hit hit_at(const radiosity::Patches& patches, std::uint32_t patch, double x,
@@ -93,6 +102,11 @@ class SurfaceSampler {
   [[nodiscard]] const std::vector<bool>& is_explicit() const { return is_explicit_; }
 
  private:
+  // Independent shadow rays tell the weight of points whose halves do not agree how bright they
+  // are: by their own values those that miss the light by chance would count most.
+  void weigh(PatchLooks& looks, std::span<const LookingPoint> places, base::Key key, double mean,
+             ResidualSums& sums, std::size_t points) const;
+
   scenes::World scene_;
   std::uint64_t seed_;
   std::vector<radiosity::LightSource> sources_;

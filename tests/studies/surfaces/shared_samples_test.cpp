@@ -108,6 +108,21 @@ TEST(SharedSamples, ABrightPatchAmongDarkOnesStaysBright) {
   EXPECT_LT(bright, 5.0 + 4.0 / 8.0);
 }
 
+// The light of a patch, known by 1000 rays, is 0; 32 rays of noise 1 find it to be 10 lx. It is as
+// noise of 100 would be, that of 32 * 1 / 100 rays. Within their noise all rays count.
+TEST(SharedSamples, RaysOfALightThatHasChangedCountNoMore) {
+  Walls walls;
+  std::mt19937 random(3);
+  for (const std::uint32_t i : walls.which) walls.find(i, 0.0, random);
+  walls.find(20, 9.0, 11.0);
+  walls.find(21, -1.0, 1.0);
+  const SharedSamples sharing = walls.sharing();
+  EXPECT_LT(sharing.still_counting(20, 1000.0), 32.0 * 2.0 / 99.0);
+  EXPECT_GT(sharing.still_counting(20, 1000.0), 32.0 * 0.9 / 99.0);
+  EXPECT_EQ(sharing.still_counting(21, 1000.0), 1000.0);
+  EXPECT_EQ(sharing.still_counting(20, 0.1), 0.1);  // no more than there are
+}
+
 // A patch that holds more than half of the error is cut alone; all are where all of it counts.
 TEST(SurfaceCuts, ThePatchesThatHoldTheShareAskedForAreCutAndNoOther) {
   Walls walls;
@@ -158,6 +173,29 @@ TEST(SurfaceCuts, APatchOfWhichOnePointIsOpenIsCutByIt) {
   choice.see(patches, walls.samples, walls.which);
   EXPECT_NE(choice.worst(patches, 0.0, 1.0, 100000).at(20), radiosity::Cut::None);
   EXPECT_DOUBLE_EQ(choice.total(), double(0.05F) * 100.0 / double(patches.count()));
+}
+
+// A half holds half of its area's part of what its patch held. Two points that find nothing there
+// may have missed it: a third of that is still expected, and of its rays half count.
+TEST(SurfaceCuts, WhatIsExpectedOfAPieceCountsAsAPoint) {
+  Walls walls;
+  const radiosity::Patches& patches = walls.light.solution.patches;
+  CutChoice choice(patches);
+  walls.samples.residual[20].taken = 2;
+  walls.samples.residual[20].square = 96.0F;
+  const std::vector<double> noise(patches.count(), 24.0);
+  choice.see(patches, walls.samples, walls.which, noise);
+  EXPECT_DOUBLE_EQ(choice.total(), 72.0 / 96.0);
+  EXPECT_FLOAT_EQ(choice.kept_rays()[20], 24.0F / 96.0F);
+  EXPECT_FLOAT_EQ(choice.kept_rays()[21], 0.5F);
+  const radiosity::Split made = radiosity::split(patches, choice.worst(patches, 0.0, 1.0, 100000));
+  const std::vector<std::uint32_t> fresh = choice.follow(made.patches, made.parent);
+  ASSERT_EQ(fresh.size(), 2U);
+  EXPECT_DOUBLE_EQ(choice.held_by(fresh[0]), 0.25 * 72.0 / 96.0);
+  walls.samples.residual.assign(made.patches.count(), {});
+  for (const std::uint32_t i : fresh) walls.samples.residual[i].taken = 2;
+  choice.see(made.patches, walls.samples, fresh);
+  EXPECT_DOUBLE_EQ(choice.held_by(fresh[0]), 0.25 * 72.0 / 96.0 / 3.0);
 }
 
 }  // namespace

@@ -72,6 +72,46 @@ double luminous(const std::vector<double>& values, std::size_t patch, std::size_
   return base::luminance(sum);
 }
 
+// A disk of radius r shines M onto a point d below its plane and x off its axis, which looks at it:
+// E = M / 2 (1 - (x^2 + d^2 - r^2) / sqrt((x^2 + d^2 + r^2)^2 - 4 r^2 x^2)) (Hamilton and Morgan
+// 1952). So near a disk samples come by its solid angle, and some show nothing: however many a half
+// has, all count.
+TEST(SurfaceResidual, OfANearLampAllSamplesCount) {
+  tests::SceneBuilder builder;
+  builder.plate(builder.material(tests::grey(0.5)), 0.002, 0.0, true);
+  scenes::Lamp lamp;
+  lamp.name = lamp.group = "disk";
+  lamp.kind = scenes::LampKind::Disk;
+  constexpr double x = 0.1, d = 0.05, r = 0.15;
+  const double all = x * x + d * d + r * r;
+  const double exact =
+      500.0 * (1.0 - (all - 2.0 * r * r) / std::sqrt(all * all - 4.0 * r * r * x * x));
+  lamp.position = Vec3(x, 0.0, d);
+  lamp.axis = Vec3(0, 0, -1);
+  lamp.radius_m = r;
+  lamp.exitance = Rgb(1000.0);
+  builder.scene.lamps.push_back(lamp);
+  const Solved plate(builder.scene, 0.002);
+  for (const std::uint8_t rays : {std::uint8_t{1}, std::uint8_t{8}}) {
+    SurfaceLight light = plate.light().light();
+    light.shadow_rays.assign(light.count(), rays);
+    double sum = 0.0, squares = 0.0;
+    constexpr std::uint32_t passes = 64;
+    for (std::uint32_t pass = 1; pass <= passes; ++pass) {
+      const std::vector<std::uint32_t> which = {0};
+      const std::vector<Effort> effort = {{16, 0}};
+      const double lx = luminous(
+          SurfaceSampler(plate.study(), 1).sample(light, which, effort, pass, 1.0, nullptr).lamps,
+          0, light.columns());
+      sum += lx / passes;
+      squares += lx * lx / passes;
+    }
+    const double error = std::sqrt((squares - sum * sum) / (passes - 1));
+    EXPECT_NEAR(sum, exact, 4.0 * error) << int(rays);
+    EXPECT_LT(error, 0.02 * exact);
+  }
+}
+
 TEST(SurfaceResidual, OfAFurnaceIsZeroToRounding) {
   const Solved furnace(closed_room(0.5, 10.0, false));
   const LightOnSurfaces light = furnace.light();
