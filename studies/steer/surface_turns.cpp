@@ -22,6 +22,8 @@ constexpr double shadow_cuts = 0.5, gather_cuts = 0.8;
 constexpr double shadow_share = 0.25, gather_share = 0.5;  // of a time limit
 // Patches, of those there are: what rays have said of few points is said anew before more are cut.
 constexpr double most_gather_growth = 1.5, most_shadow_growth = 2.0;
+// Few are looked at soon.
+constexpr double few_patches = 1 << 16, few_growth = 8.0;
 constexpr std::size_t first_shadow_cut = 3 << 15;
 // Over all surfaces.
 constexpr double first_shadow_points = 1 << 17, most_shadow_points = 1 << 20;
@@ -111,7 +113,9 @@ bool SurfaceTurns::cut(CutChoice& choice, const How& how, std::vector<std::uint3
 
 bool SurfaceTurns::cut_gathered(CutChoice& choice, double enough, double points,
                                 std::vector<std::uint32_t>& parent) {
-  const auto limit = most_gather_growth * static_cast<double>(light_.patches().count());
+  const auto count = static_cast<double>(light_.patches().count());
+  const double limit =
+      std::max(most_gather_growth * count, std::min(few_growth * count, few_patches));
   const How how{enough,
                 gather_cuts,
                 static_cast<std::size_t>(limit),
