@@ -18,7 +18,7 @@ namespace earthshine::studies {
 namespace {
 
 constexpr double aim = 0.85;  // of the wanted error
-// Supposed at first, and of what is left: that a pass cuts for.
+// The error supposed at first; the share of the stated one that a pass cuts for.
 constexpr double first_error = 0.3, next_error = 0.4;
 constexpr double noise_share = 0.25;  // of the wanted squared error, left to the rays
 constexpr std::uint64_t many_rays = std::uint64_t{1} << 25;

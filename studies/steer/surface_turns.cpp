@@ -22,7 +22,7 @@ constexpr double shadow_cuts = 0.5, gather_cuts = 0.8;
 constexpr double shadow_share = 0.25, gather_share = 0.5;  // of a time limit
 // Patches, of those there are: what rays have said of few points is said anew before more are cut.
 constexpr double most_gather_growth = 1.5, most_shadow_growth = 2.0;
-// Few are looked at soon.
+// Few patches cost little to look at again.
 constexpr double few_patches = 1 << 16, few_growth = 8.0;
 constexpr std::size_t first_shadow_cut = 3 << 15;
 // Over all surfaces.
