@@ -89,6 +89,10 @@ const char* words_of(studies::Limit limit) {
       return "no end in sight after several tries";
     case studies::Limit::Stopped:
       return "it was stopped";
+    case studies::Limit::Ledger:
+      return "light that lands beside a lamp, on a spot as small as no ray finds again, is "
+             "missing; "
+             "move the lamp off the surface";
   }
   return "";
 }

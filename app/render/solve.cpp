@@ -183,7 +183,10 @@ std::string solve_text(const Json& json) {
 std::string price_text(const Solved& light, std::optional<double> wanted, double seconds) {
   if (!wanted || light.limit == studies::Limit::None || light.steps.empty()) return "";
   const double over = light.steps.back().estimate / *wanted;
-  if (over <= 1.0 || light.limit == studies::Limit::Settings) return "";
+  if (over <= 1.0 || light.limit == studies::Limit::Settings ||
+      light.limit == studies::Limit::Ledger) {
+    return "";
+  }
   return fmt::format("\n  {:.2g} % needs about {} more, or more", 100.0 * *wanted,
                      duration(seconds * (over * over - 1.0)));
 }

@@ -12,6 +12,13 @@ namespace {
 constexpr std::size_t noise_fields = 4;
 // Noise over signal of what has no samples, and signal over noise where all is kept.
 constexpr float certain = 1e6F;
+// Independent fields of what squares are off by.
+constexpr std::size_t scatter_fields = 3;
+// Sums of squared correlations of a level's details as many pixels apart as sharing steps over, of
+// independent values on an endless plane: squares of normal details are correlated so.
+constexpr std::array<float, share_levels> alike = {1.15F, 1.33F, 1.49F, 1.53F, 1.54F};
+// Planes of squares; scatter_fields from the last on.
+enum Square : std::size_t { Energy, NoiseSquare, Weight, Scatter };
 constexpr std::size_t layers_at_once = 4;
 constexpr std::size_t points_at_once = 1024;
 
@@ -103,10 +110,10 @@ class Sharer {
     for (std::size_t p = 0; p < points_; ++p) {
       expected_[p] = estimate_.samples[p] > 0.0F ? 1.0F / estimate_.samples[p] : 0.0F;
     }
-    take_squares(means_and_noise());
+    take_squares(means_and_noise(), 0);
     blur_squares(0);
     for (std::size_t p = 0; p < points_; ++p) {
-      shared_.noise[p][0] = expected_[p] * noise_of(p).mean;
+      shared_.noise[p][0] = expected_[p] * squares_[NoiseSquare][p];
       shared_.signal[p][0] = certain * shared_.noise[p][0];
     }
   }
@@ -119,31 +126,40 @@ class Sharer {
     for (std::size_t level = 0; level < share_levels; ++level) {
       step(level, values, detail);
       expect(level);
-      take_squares(detail);
+      take_squares(detail, level);
       blur_squares(level);
       keep(level);
     }
-    take_squares(values);
+    take_squares(values, share_levels - 1);
     blur_squares(share_levels - 1);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
-        shared_.rest[p] = expected_[p] * noise_of(p).mean;
+        shared_.rest[p] = expected_[p] * squares_[NoiseSquare][p];
       }
     });
   }
 
-  // Squares over what noise is expected of the samples there, and, last, the weights that this is.
-  void take_squares(const Planes& values) {
-    squares_.resize(values.size() + 1);
+  // Squares over what noise is expected of the samples there: of the values, the mean of those of
+  // the fields of noise, what weight this gives each, and, with random signs, what the first two
+  // differ by: the square of that one's mean over a window is the variance of s there. It holds the
+  // chance of the product of a point's halves, which all fields of noise share, and how unevenly
+  // the signal lies.
+  void take_squares(const Planes& values, std::size_t level) {
+    squares_.resize(Scatter + scatter_fields);
     for (std::vector<float>& of : squares_) of.resize(points_);
+    const float root = std::sqrt(alike[level]);
     for_all([&](std::size_t begin, std::size_t end) {
-      std::vector<float>& weight = squares_.back();
       for (std::size_t p = begin; p < end; ++p) {
-        weight[p] = expected_[p] > 0.0F ? 1.0F / expected_[p] : 0.0F;
-      }
-      for (std::size_t k = 0; k < values.size(); ++k) {
-        for (std::size_t p = begin; p < end; ++p) {
-          squares_[k][p] = weight[p] * values[k][p] * values[k][p];
+        const float weight = expected_[p] > 0.0F ? 1.0F / expected_[p] : 0.0F;
+        float noise = 0.0F;
+        for (std::size_t k = 1; k <= noise_fields; ++k) noise += values[k][p] * values[k][p];
+        squares_[Weight][p] = weight;
+        squares_[Energy][p] = weight * values[0][p] * values[0][p];
+        squares_[NoiseSquare][p] = weight * noise / float(noise_fields);
+        const float off = root * (squares_[Energy][p] - squares_[NoiseSquare][p]);
+        const std::uint64_t signs = base::mix64(~std::uint64_t{p});
+        for (std::size_t k = 0; k < scatter_fields; ++k) {
+          squares_[Scatter + k][p] = ((signs >> k) & 1U) == 0 ? off : -off;
         }
       }
     });
@@ -172,34 +188,22 @@ class Sharer {
     });
   }
 
-  struct Noise {
-    float mean = 0.0F, variance = 0.0F;  // of the fields' mean squares; relative
-  };
-  [[nodiscard]] Noise noise_of(std::size_t p) const {
-    Noise noise;
-    for (std::size_t k = 0; k < noise_fields; ++k) noise.mean += squares_[1 + k][p];
-    noise.mean /= float(noise_fields);
-    for (std::size_t k = 0; k < noise_fields; ++k) {
-      const float off = noise.mean > 0.0F ? squares_[1 + k][p] / noise.mean - 1.0F : 0.0F;
-      noise.variance += off * off;
-    }
-    noise.variance /= float(noise_fields - 1);
-    return noise;
-  }
-
   void keep(std::size_t level) {
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
-        const Noise noise = noise_of(p);
-        const float weight = squares_.back()[p];
-        const float s = weight > 0.0F ? (squares_[0][p] - noise.mean) / weight : 0.0F;
-        const float q =
-            expected_[p] > 0.0F ? expected_[p] * noise.mean : certain * std::max(0.0F, s);
+        const float noise = squares_[NoiseSquare][p], weight = squares_[Weight][p];
+        const float s = weight > 0.0F ? (squares_[Energy][p] - noise) / weight : 0.0F;
+        const float q = expected_[p] > 0.0F ? expected_[p] * noise : certain * std::max(0.0F, s);
         keep_[p][level] = kept_share(s, q);
         shared_.signal[p][level] = s;
         shared_.noise[p][level] = q;
+        float variance = 0.0F;
+        for (std::size_t k = 0; k < scatter_fields; ++k) {
+          const float off = weight * q > 0.0F ? squares_[Scatter + k][p] / (weight * q) : 0.0F;
+          variance += off * off / float(scatter_fields);
+        }
         // The mean of N normal squares has the relative variance 2 / N.
-        shared_.few[p][level] = std::min(1.0F, 0.5F * noise.variance);
+        shared_.few[p][level] = std::min(1.0F, 0.5F * variance);
       }
     });
   }

@@ -12,9 +12,11 @@
 //   noise  q = e <n^2 / e> over these fields' details n
 //   signal s = (<d^2 / e> - <n^2 / e>) / <1 / e>,     energy D = s + q
 // and the detail is kept by c = s / (s + q) or less (Wiener), which leaves, in the mean and with
-// what choosing c by the same d makes it look better (Stein 1981; N: how many details the means
-// are over),
-//   (1 - c)^2 s + c^2 q + 4 q D c'(D) / N.
+// what choosing c by the same d makes it look better (Stein 1981; N: how many normal details the
+// means are over),
+//   (1 - c)^2 s + c^2 q + 4 q D c'(D) / N,   no more than D together.
+// N is not told by how far the fields of noise are apart, since all are made of the same halves: s
+// is off by chance as a mean of (d^2 - n^2) / e with random signs is, whose square is 2 / N of q^2.
 // That sum over the levels, and the noise of the rest, is the squared error that is stated. It goes
 // to nothing with more samples, and with it what sharing blurs.
 #pragma once

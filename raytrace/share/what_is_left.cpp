@@ -23,11 +23,12 @@ struct Left {
   float noise = 0.0F, blur = 0.0F;
   void add(float s, float q, float few) {
     const float share = kept_share(s, q);
-    noise += share * share * q;
-    blur += (1.0F - share) * (1.0F - share) * s;
+    const float ratio = 1.0F - share, kept = share * share * q, lost = ratio * ratio * s;
+    noise += kept;
+    blur += lost;
     if (share <= 0.0F) return;
-    const float ratio = 1.0F - share;  // c = 1 - q / (D - k q), so c' = (1 - c)^2 / q
-    noise += 4.0F * (s + q) * ratio * ratio * few;
+    // c = 1 - q / (D - k q), so c' = (1 - c)^2 / q. No choice is off by more than the detail.
+    noise += std::min(4.0F * (s + q) * ratio * ratio * few, s + q - kept - lost);
   }
   // Signals that are not there come out as often below zero as above; noise is never undone so.
   [[nodiscard]] float all() const { return noise + std::max(0.0F, blur); }

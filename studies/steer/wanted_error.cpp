@@ -32,6 +32,8 @@ std::string limit_name(Limit limit) {
       return "steps";
     case Limit::Stopped:
       return "stopped";
+    case Limit::Ledger:
+      return "ledger";
   }
   return "";
 }

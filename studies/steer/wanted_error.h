@@ -23,7 +23,7 @@ struct Wanted {
 };
 
 // What stopped it before the wanted error.
-enum class Limit { None, Time, Memory, Settings, Steps, Stopped };
+enum class Limit { None, Time, Memory, Settings, Steps, Stopped, Ledger };
 [[nodiscard]] std::string limit_name(Limit limit);
 
 // One try: what was chosen and what came of it.

@@ -12,7 +12,8 @@ namespace earthshine::studies {
 //   sum A ((a - rho) k I + B (escape + lost)) = sum A (M + rho E0)
 // What samples leave of that sum is their noise and no light. Where rows were not balanced there is
 // no such k to be known.
-void LightOnSurfaces::close_energy(radiosity::PatchLight& found) const {
+// Gives what k adds to the mean radiosity, by luminance, as a share of it.
+double LightOnSurfaces::close_energy(radiosity::PatchLight& found) const {
   constexpr double most = 0.2;  // off 1
   const std::size_t columns = light_.columns();
   std::vector<double> lit(columns, 0.0), ended(columns, 0.0);
@@ -33,28 +34,36 @@ void LightOnSurfaces::close_energy(radiosity::PatchLight& found) const {
     }
   }
   found.radiosity.resize(found.direct.size());
+  const bool balanced = light_.solution.report.balance.balanced;
+  Rgb added(0.0), all(0.0);
   for (std::size_t at = 0; at < found.radiosity.size(); ++at) {
     const std::size_t k = at % columns;
     const double scale = ended[k] > 0.0 ? lit[k] / ended[k] : 1.0;
-    if (light_.solution.report.balance.balanced && std::abs(scale - 1.0) < most) {
-      found.indirect[at] *= scale;
-    }
+    const double area = light_.open_m2(at / columns);
+    const double flux = area * reflected(at) * found.indirect[at];
+    added[static_cast<int>(k % 3)] += flux * (scale - 1.0);
+    all[static_cast<int>(k % 3)] += flux * scale + area * known(at);
+    if (balanced && std::abs(scale - 1.0) < most) found.indirect[at] *= scale;
     found.radiosity[at] = known(at) + reflected(at) * found.indirect[at];
   }
+  const double mean = base::luminance(all);
+  return balanced && mean > 0.0 ? std::abs(base::luminance(added)) / mean : 0.0;
 }
 
-radiosity::Solution LightOnSurfaces::finished() const {
-  radiosity::Solution solution;
+LightOnSurfaces::Finished LightOnSurfaces::finished() const {
+  Finished finished;
+  radiosity::Solution& solution = finished.solution;
   solution.patches = patches();
   solution.columns = light_.columns();
   solution.report = light_.solution.report;
   solution.report.patches = light_.count();
-  if (factors_.shares.joins()) fill(solution);
+  if (factors_.shares.joins()) finished.lacks = fill(solution);
+  factors_.shares.tell_all(&finished.lacks, 1);
   radiosity::tell_solution(factors_.shares, solution);
-  return solution;
+  return finished;
 }
 
-void LightOnSurfaces::fill(radiosity::Solution& solution) const {
+double LightOnSurfaces::fill(radiosity::Solution& solution) const {
   const std::size_t columns = light_.columns(), count = light_.count();
   const std::size_t parts = count > 0 ? light_.sky.size() / count : 0;
   radiosity::PatchLight found;
@@ -70,7 +79,7 @@ void LightOnSurfaces::fill(radiosity::Solution& solution) const {
           std::max(0.0, found.indirect[at + c] - light_.sky[i][static_cast<int>(c)]);
     }
   }
-  close_energy(found);
+  const double lacks = close_energy(found);
   found.sky = light_.sky;
   radiosity::FormFactors ends;  // where light ends, of each patch as of its coarse one
   ends.sky.assign(count, 0.0);  // as many rows, whose entries are not read
@@ -86,6 +95,7 @@ void LightOnSurfaces::fill(radiosity::Solution& solution) const {
   radiosity::fill_solution(scene_, ends, solution.report.balance.balanced, std::move(found),
                            solution);
   for (std::size_t o = 0; o < backs.size(); ++o) solution.report.objects[o].back_share = backs[o];
+  return lacks;
 }
 
 }  // namespace earthshine::studies

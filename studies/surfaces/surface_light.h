@@ -54,17 +54,21 @@ class LightOnSurfaces {
   std::vector<std::uint32_t> cut(const std::vector<radiosity::Cut>& wanted,
                                  std::span<const float> kept_rays);
 
-  [[nodiscard]] radiosity::Solution finished() const;
+  struct Finished {
+    radiosity::Solution solution;
+    double lacks = 0.0;  // of the mean radiosity, luminance, before the ledger was closed
+  };
+  [[nodiscard]] Finished finished() const;
 
  private:
   void sum_up();
   void take_gathered(const SurfaceSamples& samples, const SharedSamples& sharing,
                      std::span<const std::uint32_t> which, const std::vector<double>& more);
   void keep_what_samples_read();
-  void fill(radiosity::Solution& solution) const;
+  [[nodiscard]] double fill(radiosity::Solution& solution) const;
   [[nodiscard]] std::vector<double> means_of(const std::vector<double>& residual,
                                              std::size_t columns) const;
-  void close_energy(radiosity::PatchLight& found) const;
+  [[nodiscard]] double close_energy(radiosity::PatchLight& found) const;
 
   scenes::World scene_;
   SurfaceLight light_;

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "base/numbers/random.h"
 #include "base/parallel.h"
@@ -85,6 +87,31 @@ TEST(Share, NoiseFallsAndNoLessIsStated) {
   }
   EXPECT_LT(found / stated, 1.0 + 4.0 * std::sqrt(2.0 / fields));
   EXPECT_LT(stated, 0.5 / 8.0);
+}
+
+TEST(Share, HowFarOffASignalIsByChanceIsStated) {
+  // One sample of ten brings all the light: there is no signal, and what is found, the difference
+  // of two chance squares over a window, has the variance q^2 2 / N, of details of 1 to 8 pixels.
+  // In the mean over 400 fields, by the scatter between them.
+  constexpr int fields = 400;
+  const Neighbours neighbours(window, flat());
+  std::array<std::vector<double>, 4> more;
+  for (std::uint64_t seed = 1; seed <= fields; ++seed) {
+    base::Rng rng(base::Key(seed, base::Stream::Test, 32));
+    const Shared shared =
+        share(neighbours,
+              estimate_of([&](int, int, std::size_t) { return rng.next() < 0.1 ? 10.0 : 0.0; }));
+    const std::size_t p = pixel(24, 24);
+    for (std::size_t level = 0; level < more.size(); ++level) {
+      const double noise = double(shared.noise[p][level]), found = double(shared.signal[p][level]);
+      more[level].push_back(found * found - noise * noise * 2.0 * double(shared.few[p][level]));
+    }
+  }
+  for (const std::vector<double>& of_level : more) {
+    double mean = 0.0, square = 0.0;
+    for (const double m : of_level) mean += m / fields, square += m * m / fields;
+    EXPECT_NEAR(mean, 0.0, 4.0 * std::sqrt((square - mean * mean) / (fields - 1.0)));
+  }
 }
 
 TEST(Share, NothingIsSharedAcrossAnEdgeOrAStep) {

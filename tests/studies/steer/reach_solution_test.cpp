@@ -39,6 +39,26 @@ TEST(ReachSolution, OfSurfacesALimitIsNamedWhereTheErrorIsNotReachedAndThereAlon
   EXPECT_GT(missed_it, 0);
 }
 
+// A bare lamp on the floor is taken to be 0.1 mm above it: half of its light lands on so small a
+// spot that no ray finds it again. A closed room has to keep all light: what is missing there is
+// the least that the solution may be off by.
+TEST(ReachSolution, OfSurfacesTheErrorIsNoLessThanWhatTheLedgerLacks) {
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  builder.room({m, m, m, m, m, m});
+  scenes::Lamp lamp;
+  lamp.name = lamp.group = "lamp";
+  lamp.kind = scenes::LampKind::Point;
+  lamp.position = Vec3(0.4, 0.6, 0.0001);
+  lamp.intensity_cd = Rgb(100.0);
+  builder.scene.lamps.push_back(lamp);
+  const SteeredSolution found = reached(builder.scene, 0.1);
+  const radiosity::GroupLedger& all = found.solution.report.groups.front();
+  ASSERT_GT(all.imbalance, 0.1);
+  EXPECT_GE(found.surface.parts.total().estimate, all.imbalance * (1.0 - 1e-9));
+  EXPECT_NE(found.limit, Limit::None);
+}
+
 // The most that fits is found to a 64th, from below, and what sets it is told.
 TEST(PatchBound, IsTheLeastOfWhatIsAllowedAndNamesIt) {
   scenes::Quality given;
