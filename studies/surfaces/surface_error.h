@@ -16,7 +16,7 @@ namespace earthshine::studies {
 
 // Relative to the mean radiosity of the surfaces.
 struct SolutionError {
-  ErrorEstimate form_factors;  // noise of the form factors' rays
+  ErrorEstimate form_factors;  // noise of rays, and what none of them finds
   ErrorEstimate patches;       // one radiosity for a whole patch
   ErrorEstimate lamps;   // noise of the shadow rays by which patches see lamps, Sun and emitters
   ErrorEstimate solver;  // what the iteration left

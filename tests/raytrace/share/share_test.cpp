@@ -114,6 +114,39 @@ TEST(Share, HowFarOffASignalIsByChanceIsStated) {
   }
 }
 
+TEST(Share, HowFarOffASignalIsByChanceGoesByTheSamplesThere) {
+  // Noise of variance 1 a sample, 64 of them in each half of blocks of 2 x 2, one block of four,
+  // and one in the halves elsewhere: s and q of a point are those of as many samples as it has. As
+  // above, for a point of many and one of few.
+  constexpr int fields = 400;
+  const Neighbours neighbours(window, flat());
+  std::array<std::vector<double>, 2> more;
+  for (std::uint64_t seed = 1; seed <= fields; ++seed) {
+    base::Rng rng(base::Key(seed, base::Stream::Test, 33));
+    Estimate estimate(count, 1, 1);
+    for (std::size_t p = 0; p < count; ++p) {
+      const bool many = p % edge_px / 2 % 2 == 0 && p / edge_px / 2 % 2 == 0;
+      const double half = many ? 64.0 : 1.0;
+      for (float& of_half : estimate.luminance[p]) {
+        of_half = static_cast<float>(half * (10.0 + std::sqrt(12.0 / half) * (rng.next() - 0.5)));
+      }
+      estimate.sum[p] = glm::vec3(estimate.luminance[p][0] + estimate.luminance[p][1]);
+      estimate.samples[p] = static_cast<float>(2.0 * half);
+    }
+    const Shared shared = share(neighbours, estimate);
+    for (std::size_t few = 0; few < more.size(); ++few) {
+      const std::size_t p = few == 0 ? pixel(24, 24) : pixel(26, 26);
+      const double noise = double(shared.noise[p][0]), found = double(shared.signal[p][0]);
+      more[few].push_back(found * found - noise * noise * 2.0 * double(shared.few[p][0]));
+    }
+  }
+  for (const std::vector<double>& of_point : more) {
+    double mean = 0.0, square = 0.0;
+    for (const double m : of_point) mean += m / fields, square += m * m / fields;
+    EXPECT_NEAR(mean, 0.0, 4.0 * std::sqrt((square - mean * mean) / (fields - 1.0)));
+  }
+}
+
 TEST(Share, NothingIsSharedAcrossAnEdgeOrAStep) {
   // Two planes that meet at x = 20, turned by 90 degrees or half a metre apart, of unlike light and
   // as much noise: the means of each stay its own.
