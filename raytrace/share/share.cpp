@@ -110,7 +110,7 @@ class Sharer {
     for (std::size_t p = 0; p < points_; ++p) {
       expected_[p] = estimate_.samples[p] > 0.0F ? 1.0F / estimate_.samples[p] : 0.0F;
     }
-    take_squares(means_and_noise(), 0);
+    take_squares(means_and_noise());
     blur_squares(0);
     for (std::size_t p = 0; p < points_; ++p) {
       shared_.noise[p][0] = expected_[p] * squares_[NoiseSquare][p];
@@ -126,11 +126,12 @@ class Sharer {
     for (std::size_t level = 0; level < share_levels; ++level) {
       step(level, values, detail);
       expect(level);
-      take_squares(detail, level);
+      take_squares(detail);
+      take_scatter(level);
       blur_squares(level);
       keep(level);
     }
-    take_squares(values, share_levels - 1);
+    take_squares(values);
     blur_squares(share_levels - 1);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
@@ -140,14 +141,10 @@ class Sharer {
   }
 
   // Squares over what noise is expected of the samples there: of the values, the mean of those of
-  // the fields of noise, what weight this gives each, and, with random signs, what the first two
-  // differ by: the square of that one's mean over a window is the variance of s there. It holds the
-  // chance of the product of a point's halves, which all fields of noise share, and how unevenly
-  // the signal lies.
-  void take_squares(const Planes& values, std::size_t level) {
-    squares_.resize(Scatter + scatter_fields);
+  // the fields of noise, and what weight this gives each.
+  void take_squares(const Planes& values) {
+    squares_.resize(Scatter);
     for (std::vector<float>& of : squares_) of.resize(points_);
-    const float root = std::sqrt(alike[level]);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
         const float weight = expected_[p] > 0.0F ? 1.0F / expected_[p] : 0.0F;
@@ -156,6 +153,19 @@ class Sharer {
         squares_[Weight][p] = weight;
         squares_[Energy][p] = weight * values[0][p] * values[0][p];
         squares_[NoiseSquare][p] = weight * noise / float(noise_fields);
+      }
+    });
+  }
+
+  // What both squares differ by, with random signs: the square of its mean over a window is the
+  // variance of s there. It holds the chance of the product of a point's halves, which all fields
+  // of noise share, and how unevenly the signal lies.
+  void take_scatter(std::size_t level) {
+    squares_.resize(Scatter + scatter_fields);
+    for (std::size_t k = 0; k < scatter_fields; ++k) squares_[Scatter + k].resize(points_);
+    const float root = std::sqrt(alike[level]);
+    for_all([&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
         const float off = root * (squares_[Energy][p] - squares_[NoiseSquare][p]);
         const std::uint64_t signs = base::mix64(~std::uint64_t{p});
         for (std::size_t k = 0; k < scatter_fields; ++k) {
