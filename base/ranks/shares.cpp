@@ -85,7 +85,7 @@ std::vector<double> Shares::ordered_sums(std::size_t count, std::size_t chunk, s
   std::vector<double> parts(chunks(count) * each, 0.0), sums(each, 0.0);
   parallel_chunks(last - first, chunks_at_once, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = first + begin; k < first + end; ++k) {
-      add(k * chunk, std::min(count, (k + 1) * chunk), &parts[k * each]);
+      add(k * chunk, std::min(count, (k + 1) * chunk), parts.data() + k * each);
     }
   });
   if (divided() && each > 0) {
