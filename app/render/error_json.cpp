@@ -90,9 +90,9 @@ const char* words_of(studies::Limit limit) {
     case studies::Limit::Stopped:
       return "it was stopped";
     case studies::Limit::Ledger:
-      return "light that lands beside a lamp, on a spot as small as no ray finds again, is "
-             "missing; "
-             "move the lamp off the surface";
+      return "the ledger lacks light that no ray finds again, as on a spot beside a lamp; move "
+             "such "
+             "a lamp off the surface";
   }
   return "";
 }

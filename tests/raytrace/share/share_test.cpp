@@ -55,6 +55,20 @@ Estimate estimate_of(const Value& value) {
   return estimate;
 }
 
+// Of a signal that is not there: its square, less the variance that is stated.
+double more_than_stated(const Shared& shared, std::size_t p, std::size_t level) {
+  const double noise = double(shared.noise[p][level]), found = double(shared.signal[p][level]);
+  return found * found - noise * noise * 2.0 * double(shared.few[p][level]);
+}
+
+// A mean of zero, by the scatter between the values.
+void expect_none(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  double mean = 0.0, square = 0.0;
+  for (const double value : values) mean += value / n, square += value * value / n;
+  EXPECT_NEAR(mean, 0.0, 4.0 * std::sqrt((square - mean * mean) / (n - 1.0)));
+}
+
 TEST(Share, WhatBothHalvesAgreeOnIsKept) {
   // No noise: every detail is signal, however fine, and nothing is off.
   const auto fine = [](int x, int y, std::size_t) {
@@ -103,15 +117,10 @@ TEST(Share, HowFarOffASignalIsByChanceIsStated) {
               estimate_of([&](int, int, std::size_t) { return rng.next() < 0.1 ? 10.0 : 0.0; }));
     const std::size_t p = pixel(24, 24);
     for (std::size_t level = 0; level < more.size(); ++level) {
-      const double noise = double(shared.noise[p][level]), found = double(shared.signal[p][level]);
-      more[level].push_back(found * found - noise * noise * 2.0 * double(shared.few[p][level]));
+      more[level].push_back(more_than_stated(shared, p, level));
     }
   }
-  for (const std::vector<double>& of_level : more) {
-    double mean = 0.0, square = 0.0;
-    for (const double m : of_level) mean += m / fields, square += m * m / fields;
-    EXPECT_NEAR(mean, 0.0, 4.0 * std::sqrt((square - mean * mean) / (fields - 1.0)));
-  }
+  for (const std::vector<double>& of_level : more) expect_none(of_level);
 }
 
 TEST(Share, HowFarOffASignalIsByChanceGoesByTheSamplesThere) {
@@ -136,15 +145,10 @@ TEST(Share, HowFarOffASignalIsByChanceGoesByTheSamplesThere) {
     const Shared shared = share(neighbours, estimate);
     for (std::size_t few = 0; few < more.size(); ++few) {
       const std::size_t p = few == 0 ? pixel(24, 24) : pixel(26, 26);
-      const double noise = double(shared.noise[p][0]), found = double(shared.signal[p][0]);
-      more[few].push_back(found * found - noise * noise * 2.0 * double(shared.few[p][0]));
+      more[few].push_back(more_than_stated(shared, p, 0));
     }
   }
-  for (const std::vector<double>& of_point : more) {
-    double mean = 0.0, square = 0.0;
-    for (const double m : of_point) mean += m / fields, square += m * m / fields;
-    EXPECT_NEAR(mean, 0.0, 4.0 * std::sqrt((square - mean * mean) / (fields - 1.0)));
-  }
+  for (const std::vector<double>& of_point : more) expect_none(of_point);
 }
 
 TEST(Share, NothingIsSharedAcrossAnEdgeOrAStep) {
