@@ -9,34 +9,57 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr std::size_t mask_levels = share_levels + window_blurs - 1;
-constexpr std::array<float, 5> spline = {1.0F / 16, 1.0F / 4, 3.0F / 8, 1.0F / 4, 1.0F / 16};
-constexpr std::uint32_t centre_bit = 1U << 12U, all_bits = (1U << 25U) - 1U;
+constexpr std::size_t taps = 5;
+constexpr std::array<float, taps> spline = {1.0F / 16, 1.0F / 4, 3.0F / 8, 1.0F / 4, 1.0F / 16};
+// The five of a point's row, then those of its column.
+constexpr std::uint16_t all_bits = (1U << (2U * taps)) - 1U;
 
 // Rounding of single-precision positions.
 float slack(const GatherPoint& point) { return 0.02F * point.spacing_m; }
 
 constexpr std::size_t rows_at_once = 4;
+// Of those that are as far apart as neighbours.
+constexpr std::size_t longest_chain = 64;
+
+// Weights of those of five neighbours whose bits are set, for the points of a row:
+// share[tap * width + x].
+void find_shares(const std::uint16_t* mask, std::size_t first_bit, std::size_t width,
+                 float* share) {
+  for (std::size_t k = 0; k < taps; ++k, share += width) {
+    for (std::size_t x = 0; x < width; ++x) {
+      share[x] = spline[k] * static_cast<float>((std::int32_t{mask[x]} >> (first_bit + k)) & 1);
+    }
+  }
+}
+
+// The sum of five rows by their shares.
+void add_up(const float* share, const std::array<const float*, taps>& rows, std::size_t width,
+            float* sum) {
+  const float *s0 = share, *s1 = s0 + width, *s2 = s1 + width, *s3 = s2 + width, *s4 = s3 + width;
+  const auto [r0, r1, r2, r3, r4] = rows;
+  for (std::size_t x = 0; x < width; ++x) {
+    sum[x] = (((s0[x] * r0[x] + s1[x] * r1[x]) + s2[x] * r2[x]) + s3[x] * r3[x]) + s4[x] * r4[x];
+  }
+}
 
 }  // namespace
 
 template <class Keep>
 void Neighbours::sift(std::size_t level, const Keep& keep) {
-  std::vector<std::uint32_t>& mask = masks_[level];
+  std::vector<std::uint16_t>& mask = masks_[level];
   const int step = 1 << level;
   base::parallel_chunks(
       static_cast<std::size_t>(rows_), rows_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin * static_cast<std::size_t>(columns_);
              p < end * static_cast<std::size_t>(columns_); ++p) {
           const int x = static_cast<int>(p) % columns_, y = static_cast<int>(p) / columns_;
-          std::uint32_t bit = 1U;
-          for (int dy = -2; dy <= 2; ++dy) {
-            for (int dx = -2; dx <= 2; ++dx, bit <<= 1U) {
-              if ((mask[p] & bit) == 0 || bit == centre_bit) continue;
-              const int qx = x + dx * step, qy = y + dy * step, q = qy * columns_ + qx;
-              const bool inside = qx >= 0 && qy >= 0 && qx < columns_ && qy < rows_;
-              if (!inside || !keep(p, static_cast<std::size_t>(q))) {
-                mask[p] &= ~bit;
-              }
+          for (std::size_t bit = 0; bit < 2 * taps; ++bit) {
+            const int away = (static_cast<int>(bit % taps) - 2) * step;
+            if (away == 0 || ((mask[p] >> bit) & 1U) == 0) continue;
+            const int qx = bit < taps ? x + away : x, qy = bit < taps ? y : y + away;
+            const bool inside = qx >= 0 && qy >= 0 && qx < columns_ && qy < rows_;
+            if (!inside || !keep(p, static_cast<std::size_t>(qy * columns_ + qx))) {
+              mask[p] = static_cast<std::uint16_t>(mask[p] & ~(1U << bit));
             }
           }
         }
@@ -48,7 +71,7 @@ Neighbours::Neighbours(const Window& window, const std::vector<GatherPoint>& poi
   for (std::size_t level = 0; level < mask_levels; ++level) {
     masks_[level].resize(window.pixel_count());
     for (std::size_t p = 0; p < masks_[level].size(); ++p) {
-      masks_[level][p] = points[p].reach_m <= 0.0F ? 0U : all_bits;
+      masks_[level][p] = points[p].reach_m <= 0.0F ? std::uint16_t{0} : all_bits;
     }
     sift(level, [&](std::size_t p, std::size_t q) {
       const GatherPoint &a = points[p], &b = points[q];
@@ -73,74 +96,84 @@ void Neighbours::blur(std::size_t level, const Planes& values, const std::vector
                       Planes& means) const {
   means.resize(values.size());
   for (std::size_t k = 0; k < values.size(); ++k) means[k].resize(values[k].size());
-  base::parallel_chunks(static_cast<std::size_t>(rows_), rows_at_once,
-                        [&](std::size_t begin, std::size_t end) {
-                          for (std::size_t y = begin; y < end; ++y) {
-                            blur_row(level, y, values, weight, means);
-                          }
-                        });
+  const auto rows = static_cast<std::size_t>(rows_);
+  const std::size_t step = std::size_t{1} << level, chains = std::min(step, rows);
+  const std::size_t pieces = (rows + longest_chain * step - 1) / (longest_chain * step);
+  base::parallel_chunks(chains * pieces, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      blur_chain(level, k % chains + k / chains * longest_chain * step, values, weight, means);
+    }
+  });
 }
 
-// The points of a row go side by side, by the five neighbours of one row after another.
-void Neighbours::blur_row(std::size_t level, std::size_t y, const Planes& values,
-                          const std::vector<float>* weight, Planes& means) const {
-  const auto columns = static_cast<std::ptrdiff_t>(columns_);
-  const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(y) * columns;
-  const std::ptrdiff_t step = std::ptrdiff_t{1} << level;
-  const std::uint32_t* mask = &masks_[level][static_cast<std::size_t>(first)];
-  const auto width = static_cast<std::size_t>(columns_);
-  std::vector<float> sum(width, 0.0F);
-  // Shares of the five, and values: those of points beside the row are 0.
-  std::vector<float> share(spline.size() * width);
-  const std::ptrdiff_t margin = 2 * step;
-  std::vector<float> from(width + static_cast<std::size_t>(2 * margin), 0.0F);
-  for (std::vector<float>& mean : means) std::fill_n(mean.begin() + first, columns, 0.0F);
-  std::uint32_t bit = 0;
-  for (std::ptrdiff_t dy = -2; dy <= 2; ++dy, bit += 5) {
-    const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(y) + dy * step;
-    if (row < 0 || row >= rows_) continue;
-    for (std::size_t k = 0; k < spline.size(); ++k) {
-      const float kernel = spline[static_cast<std::size_t>(dy + 2)] * spline[k];
-      float* of = &share[k * width];
-      for (std::size_t x = 0; x < width; ++x) {
-        of[x] = kernel * static_cast<float>(static_cast<std::int32_t>((mask[x] >> (bit + k)) & 1U));
-      }
+// Rows as far apart as neighbours, from `first` on: each is blurred along itself once, and five of
+// these, one above the other, make one of the means.
+void Neighbours::blur_chain(std::size_t level, std::size_t first, const Planes& values,
+                            const std::vector<float>* weight, Planes& means) const {
+  const auto width = static_cast<std::size_t>(columns_), rows = static_cast<std::size_t>(rows_);
+  const std::size_t step = std::size_t{1} << level;
+  // Of each of the last five rows: its planes, and the sum of the weights.
+  const std::size_t planes = values.size() + 1;
+  std::vector<float> along(taps * planes * width), share(taps * width), sum(width);
+  const auto row_of = [&](std::size_t y) { return &along[y / step % taps * planes * width]; };
+  std::size_t next = first < 2 * step ? first % step : first - 2 * step;
+  for (std::size_t y = first; y < std::min(rows, first + longest_chain * step); y += step) {
+    for (; next < rows && next <= y + 2 * step; next += step) {
+      blur_along(level, next, values, weight, row_of(next));
     }
-    // What lies beside the row in memory has no share: only the first and last rows need margins.
-    const std::ptrdiff_t begin = row * columns - margin;
-    const bool inside = begin >= 0 && begin + columns + 2 * margin <= columns * rows_;
-    const auto load = [&](const std::vector<float>& plane) -> const float* {
-      if (inside) return plane.data() + begin;
-      std::copy_n(plane.begin() + row * columns, columns, from.begin() + margin);
-      return from.data();
+    std::array<const float*, taps> from;
+    for (std::size_t k = 0; k < taps; ++k) {
+      // Beyond the picture any row will do: it has no share.
+      const std::size_t at = y + k * step;
+      from[k] = row_of(at < 2 * step || at - 2 * step >= rows ? y : at - 2 * step);
+    }
+    find_shares(&masks_[level][y * width], taps, width, share.data());
+    const auto plane = [&](std::size_t k) {
+      std::array<const float*, taps> of = from;
+      for (const float*& row : of) row += k * width;
+      return of;
     };
-    const float *w0 = share.data(), *w1 = w0 + width, *w2 = w1 + width, *w3 = w2 + width,
-                *w4 = w3 + width;
-    if (weight != nullptr) {
-      const float* at = load(*weight);
-      for (std::size_t k = 0; k < spline.size(); ++k) {
-        float* of = &share[k * width];
-        const float* by = at + static_cast<std::ptrdiff_t>(k) * step;
-        for (std::size_t x = 0; x < width; ++x) of[x] *= by[x];
-      }
-    }
-    for (std::size_t x = 0; x < width; ++x) {
-      sum[x] = ((((sum[x] + w0[x]) + w1[x]) + w2[x]) + w3[x]) + w4[x];
-    }
+    add_up(share.data(), plane(values.size()), width, sum.data());
+    for (float& of : sum) of = of > 0.0F ? 1.0F / of : 0.0F;
     for (std::size_t k = 0; k < values.size(); ++k) {
-      const float* v0 = load(values[k]);
-      const float *v1 = v0 + step, *v2 = v1 + step, *v3 = v2 + step, *v4 = v3 + step;
-      float* mean = means[k].data() + first;
-      for (std::size_t x = 0; x < width; ++x) {
-        mean[x] = ((((mean[x] + w0[x] * v0[x]) + w1[x] * v1[x]) + w2[x] * v2[x]) + w3[x] * v3[x]) +
-                  w4[x] * v4[x];
-      }
+      float* mean = &means[k][y * width];
+      add_up(share.data(), plane(k), width, mean);
+      for (std::size_t x = 0; x < width; ++x) mean[x] *= sum[x];
     }
   }
-  for (float& of : sum) of = of > 0.0F ? 1.0F / of : 0.0F;
-  for (std::vector<float>& mean : means) {
-    float* of = mean.data() + first;
-    for (std::size_t x = 0; x < width; ++x) of[x] *= sum[x];
+}
+
+// Sums over the five of every point's row, plane after plane, and last those of their weights.
+void Neighbours::blur_along(std::size_t level, std::size_t y, const Planes& values,
+                            const std::vector<float>* weight, float* sums) const {
+  const auto width = static_cast<std::size_t>(columns_), rows = static_cast<std::size_t>(rows_);
+  const std::size_t step = std::size_t{1} << level, margin = 2 * step, begin = y * width;
+  std::vector<float> share(taps * width), copy;
+  find_shares(&masks_[level][begin], 0, width, share.data());
+  // What lies beside the row in memory has no share: only the first and last rows need margins.
+  const bool inside = begin >= margin && begin + width + margin <= width * rows;
+  if (!inside) copy.resize(width + 2 * margin);
+  const auto load = [&](const std::vector<float>& plane) -> const float* {
+    if (inside) return &plane[begin - margin];
+    std::copy_n(&plane[begin], width, &copy[margin]);
+    return copy.data();
+  };
+  if (weight != nullptr) {
+    const float* by = load(*weight);
+    for (std::size_t k = 0; k < taps; ++k, by += step) {
+      float* of = &share[k * width];
+      for (std::size_t x = 0; x < width; ++x) of[x] *= by[x];
+    }
+  }
+  for (const std::vector<float>& plane : values) {
+    const float* from = load(plane);
+    add_up(share.data(), {from, from + step, from + 2 * step, from + 3 * step, from + 4 * step},
+           width, sums);
+    sums += width;
+  }
+  std::fill_n(sums, width, 0.0F);
+  for (std::size_t k = 0; k < taps; ++k) {
+    for (std::size_t x = 0; x < width; ++x) sums[x] += share[k * width + x];
   }
 }
 

@@ -83,7 +83,8 @@ struct Estimate {
   }
 };
 
-// Which points share: those on the same surface, 2 steps of 1, 2, 4 ... pixels away.
+// Which points share: those on the same surface, up to 2 steps of 1, 2, 4 ... pixels away in their
+// row and, of these, in their columns.
 class Neighbours {
  public:
   // The points lie row by row in the window.
@@ -100,14 +101,16 @@ class Neighbours {
             Planes& means) const;
 
  private:
-  void blur_row(std::size_t level, std::size_t y, const Planes& values,
-                const std::vector<float>* weight, Planes& means) const;
+  void blur_chain(std::size_t level, std::size_t first, const Planes& values,
+                  const std::vector<float>* weight, Planes& means) const;
+  void blur_along(std::size_t level, std::size_t y, const Planes& values,
+                  const std::vector<float>* weight, float* sums) const;
   // Tells every point's neighbours apart: keep(p, q) of those of `mask`.
   template <class Keep>
   void sift(std::size_t level, const Keep& keep);
 
   int columns_, rows_;
-  std::vector<std::vector<std::uint32_t>> masks_;  // per level and point: bit 5 dy + dx
+  std::vector<std::vector<std::uint16_t>> masks_;  // per level and point
 };
 
 struct Shared {
