@@ -4,9 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "raytrace/gather/gather_tiles.h"
 
 namespace earthshine::raytrace {
+namespace {
+
+constexpr std::size_t points_at_once = 4096;
+
+}  // namespace
+
 GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
                          const GatherSurface& surface, const CameraModel& camera,
                          const Window& window, const Setting& setting)
@@ -88,11 +95,13 @@ void GatherField::share(Gathered kind, bool last) {
     return;
   }
   if (!gathers(Gathered::Solution)) diffuse_.assign(points_.size() * layers_, glm::vec3(0.0F));
-  for (std::size_t p = 0; p < points_.size(); ++p) {
-    for (std::size_t layer = 0; layer < image_layers_; ++layer) {
-      diffuse_[p * layers_ + layer] += radiance[p * image_layers_ + layer];
+  base::parallel_chunks(points_.size(), points_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      for (std::size_t layer = 0; layer < image_layers_; ++layer) {
+        diffuse_[p * layers_ + layer] += radiance[p * image_layers_ + layer];
+      }
     }
-  }
+  });
 }
 
 std::span<const glm::vec3> GatherField::lobe(std::size_t point) const {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <mutex>
 
 #include "base/parallel.h"
@@ -122,7 +123,7 @@ void SamplePlanner::look_at_field(const StatedError& stated, double mean, double
       const double weight = error_weight(double(stated.luminance[window.index(x, y)]), mean) *
                             reflected * field_->cover_of(p);
       const double factor = weight * weight * scale;
-      const double one = shared.squared_error_with(p, 1.0);
+      const auto one = double(shared.squared_error[p]);
       const double two = shared.squared_error_with(p, 2.0);
       const double four = shared.squared_error_with(p, 4.0);
       if (factor * (one - four) <= 0.0) return;
@@ -187,13 +188,13 @@ void SamplePlanner::Gain::find_prices() {
   price_of_four = std::max(second / (2.0F * cost), (first + second) / (3.0F * cost));
 }
 
-SamplePlanner::Outcome SamplePlanner::outcome(double per_cost) const {
+SamplePlanner::Outcome SamplePlanner::outcome(std::span<const Gain> gains, double per_cost) const {
   const auto price = static_cast<float>(per_cost);
   const Outcome change = base::ordered_sum(
-      gains_.size(), items_at_once, Outcome(), [&](std::size_t begin, std::size_t end) {
+      gains.size(), items_at_once, Outcome(), [&](std::size_t begin, std::size_t end) {
         Outcome sum;
         for (std::size_t k = begin; k < end; ++k) {
-          const Gain& gain = gains_[k];
+          const Gain& gain = gains[k];
           const int times = gain.factor(price);
           if (times == 1) continue;
           sum.squared_error -=
@@ -220,18 +221,22 @@ SamplePlan SamplePlanner::plan(double wanted, double most_cost) const {
     return plan;
   }
   const double mean_gain = now_ / all;
-  const bool any = outcome(least_gain * mean_gain).cost > 0.0;
+  const bool any = outcome(gains_, least_gain * mean_gain).cost > 0.0;
   double low = std::log((any ? least_gain : least_gain_of_all) * mean_gain);
   double high = std::log(greatest_price);
+  std::vector<Gain> worth;  // at the least price; most are not
+  std::ranges::copy_if(gains_, std::back_inserter(worth), [&](const Gain& gain) {
+    return gain.factor(static_cast<float>(std::exp(low))) > 1;
+  });
   for (int k = 0; k < bisections; ++k) {
     const double middle = 0.5 * (low + high);
-    const Outcome found = outcome(std::exp(middle));
+    const Outcome found = outcome(worth, std::exp(middle));
     const bool dearer = found.squared_error <= wanted || found.cost > most_cost;
     (dearer ? low : high) = middle;
   }
-  const double per_cost = std::exp(outcome(std::exp(low)).cost <= most_cost ? low : high);
-  plan.squared_error = outcome(per_cost).squared_error;
-  for (const Gain& gain : gains_) {
+  const double per_cost = std::exp(outcome(worth, std::exp(low)).cost <= most_cost ? low : high);
+  plan.squared_error = outcome(worth, per_cost).squared_error;
+  for (const Gain& gain : worth) {
     const int times = gain.factor(static_cast<float>(per_cost));
     if (times == 1) continue;
     const double cost = (times - 1) * double(gain.cost);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "raytrace/passes/stated_error.h"
@@ -72,7 +73,8 @@ class SamplePlanner {
       return *this;
     }
   };
-  [[nodiscard]] Outcome outcome(double per_cost) const;
+  // Of those of `gains` that are worth that price.
+  [[nodiscard]] Outcome outcome(std::span<const Gain> gains, double per_cost) const;
 
   const PixelSums& sums_;
   const GatherField* field_;

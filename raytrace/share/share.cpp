@@ -43,6 +43,7 @@ class Sharer {
     shared_.squared_error.assign(points_, 0.0F);
     keep_.assign(points_, {});
     shared_.rest.assign(points_, 0.0F);
+    draw_signs();
     if (all_) {
       tell_noise();
     } else {
@@ -85,6 +86,19 @@ class Sharer {
     }
   }
 
+  void draw_signs() {
+    signs_.assign(points_, 0);
+    for_all([&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
+        signs_[p] = static_cast<std::uint8_t>(base::mix64(p));
+      }
+    });
+  }
+  // 1 or -1, of a point in one of the fields of noise, and behind them of scatter.
+  [[nodiscard]] float sign(std::size_t p, std::size_t field) const {
+    return 1.0F - 2.0F * static_cast<float>((std::int32_t{signs_[p]} >> field) & 1);
+  }
+
   // Means of both halves, and fields of their noise.
   [[nodiscard]] Planes means_and_noise() const {
     Planes values(1 + noise_fields, std::vector<float>(points_, 0.0F));
@@ -94,10 +108,8 @@ class Sharer {
         if (n <= 0.0F) continue;
         const float first = estimate_.luminance[p][0] / n, second = estimate_.luminance[p][1] / n;
         values[0][p] = 0.5F * (first + second);
-        const std::uint64_t signs = base::mix64(p);
         for (std::size_t k = 0; k < noise_fields; ++k) {
-          values[1 + k][p] =
-              ((signs >> k) & 1U) == 0 ? 0.5F * (first - second) : 0.5F * (second - first);
+          values[1 + k][p] = 0.5F * sign(p, k) * (first - second);
         }
       }
     });
@@ -165,11 +177,11 @@ class Sharer {
     for (std::size_t k = 0; k < scatter_fields; ++k) squares_[Scatter + k].resize(points_);
     const float root = std::sqrt(alike[level]);
     for_all([&](std::size_t begin, std::size_t end) {
-      for (std::size_t p = begin; p < end; ++p) {
-        const float off = root * (squares_[Energy][p] - squares_[NoiseSquare][p]);
-        const std::uint64_t signs = base::mix64(~std::uint64_t{p});
-        for (std::size_t k = 0; k < scatter_fields; ++k) {
-          squares_[Scatter + k][p] = ((signs >> k) & 1U) == 0 ? off : -off;
+      for (std::size_t k = 0; k < scatter_fields; ++k) {
+        float* scatter = squares_[Scatter + k].data();
+        for (std::size_t p = begin; p < end; ++p) {
+          const float off = squares_[Energy][p] - squares_[NoiseSquare][p];
+          scatter[p] = root * sign(p, noise_fields + k) * off;
         }
       }
     });
@@ -273,6 +285,7 @@ class Sharer {
   bool in_place_;
   Shared shared_;
   std::vector<std::array<float, share_levels>> keep_;
+  std::vector<std::uint8_t> signs_;
   std::vector<float> weight_;
   std::vector<float> expected_;
   Planes coarse_, squares_;
