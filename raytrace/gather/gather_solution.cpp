@@ -59,7 +59,11 @@ class SolutionRays {
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t p = first + offset + k;
       const Vec3 direction(rays.direction_x[k], rays.direction_y[k], rays.direction_z[k]);
-      if (aimed > 0.0) share.cosine = double(cosine[k]);
+      if (aimed > 0.0) {
+        const TilePoints::OriginSet& from = points_.set_of(j);
+        share.cosine = double(cosine[k]);
+        share.from = {from.origin[p], from.normal[p]};
+      }
       const scenes::Hit hit{hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0};
       const std::span<Rgb> sum(&sums[p * layers_], layers_);
       const double before = luminance_of(sum);
@@ -75,7 +79,7 @@ class SolutionRays {
     for (std::size_t j = 0; j < count; ++j) {
       const double choice = rng.next(), x = rng.next(), y = rng.next();
       const TilePoints::OriginSet& from = points_.set_of(j);
-      const auto aimed = incoming_.aim(from.origin[k], from.normal[k], choice, x, y, found,
+      const auto aimed = incoming_.aim({from.origin[k], from.normal[k]}, choice, x, y, found,
                                        static_cast<double>(count));
       if (aimed.weight <= 0.0) continue;
       incoming_.add(query_.closest(from.origin[k], aimed.direction), aimed.direction, aimed.share,

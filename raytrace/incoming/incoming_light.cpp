@@ -15,8 +15,6 @@ using base::pi;
 
 constexpr int most_specular_steps = 64;  // as many as rays of the form factors take
 
-constexpr double bright_ratio = 16.0;
-
 }  // namespace
 
 void IncomingLight::see_sky(const Vec3& direction, const Rgb& weight, std::span<Rgb> out,
@@ -56,7 +54,7 @@ double IncomingLight::kept_part(const scenes::Hit& hit, const Vec3& direction,
   }
   if (patch == radiosity::no_patch || !bright_.holds(patch)) return 1.0;
   const double density = bright_.density_per_sr(
-      patch, hit.t, glm::dot(direction, patches.normal_at(hit.triangle, hit.front)));
+      share.from, patch, hit.t, glm::dot(direction, patches.normal_at(hit.triangle, hit.front)));
   const double found = share.found_rays * share.cosine / pi;
   return found / (found + share.aimed_rays * density);
 }
@@ -75,66 +73,22 @@ double IncomingLight::add(const scenes::Hit& hit, const Vec3& direction, const R
   return kept;
 }
 
-IncomingLight::Aimed IncomingLight::aim(const Vec3& origin, const Vec3& normal, double choice,
-                                        double x, double y, double found_rays,
-                                        double aimed_rays) const {
+IncomingLight::Aimed IncomingLight::aim(const BrightPatches::Place& from, double choice, double x,
+                                        double y, double found_rays, double aimed_rays) const {
   Aimed aimed;
-  const BrightPatches::Aim target = bright_.aim(choice, x, y);
-  const Vec3 way = target.point - origin;
+  const std::optional<BrightPatches::Aim> target = bright_.aim(from, choice, x, y);
+  if (!target) return aimed;
+  const Vec3 way = target->point - from.position;
   const double distance = glm::length(way);
   if (distance <= 0.0) return aimed;
   aimed.direction = way / distance;
-  const double cosine = glm::dot(aimed.direction, normal);
-  const double at_patch = -glm::dot(aimed.direction, target.normal);
+  const double cosine = glm::dot(aimed.direction, from.normal);
+  const double at_patch = -glm::dot(aimed.direction, target->normal);
   if (cosine <= 0.0 || at_patch <= 0.0) return aimed;
-  const double density = bright_.density_per_sr(target.patch, distance, at_patch);
+  const double density = bright_.density_per_sr(from, target->patch, distance, at_patch);
   aimed.weight = (cosine / pi) / (found_rays * cosine / pi + aimed_rays * density);
-  aimed.share = {cosine, target.patch, target.triangle, found_rays, aimed_rays};
+  aimed.share = {cosine, from, target->patch, target->triangle, found_rays, aimed_rays};
   return aimed;
-}
-
-BrightPatches::BrightPatches(const radiosity::Solution& solution) : source_(&solution.patches) {
-  const std::size_t count = solution.patches.count();
-  if (solution.radiosity.empty()) return;
-  std::vector<double> luminance(count, 0.0);
-  double flux = 0.0, area = 0.0;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t k = 0; k < solution.columns; k += 3) {
-      const float* b = &solution.radiosity[i * solution.columns + k];
-      luminance[i] += base::luminance({b[0], b[1], b[2]});
-    }
-    flux += luminance[i] * solution.patches.area_m2[i];
-    area += solution.patches.area_m2[i];
-  }
-  double sum = 0.0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if (luminance[i] * area <= bright_ratio * flux) continue;
-    patches_.push_back(i);
-    sum += luminance[i] * solution.patches.area_m2[i];
-    cumulative_.push_back(sum);
-  }
-  if (patches_.empty()) return;
-  density_per_m2_.assign(count, 0.0F);
-  for (double& c : cumulative_) c /= sum;
-  for (const std::uint32_t i : patches_) {
-    density_per_m2_[i] = static_cast<float>(luminance[i] / sum);
-  }
-}
-
-BrightPatches::Aim BrightPatches::aim(double choice, double x, double y) const {
-  const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, choice);
-  const std::uint32_t patch = patches_[static_cast<std::size_t>(found - cumulative_.begin())];
-  const radiosity::SurfacePoint at = source_->at(patch, x, y);
-  const std::uint32_t triangle =
-      source_->is_several(patch) ? source_->on_triangle(patch, x, y).triangle : scenes::no_triangle;
-  return {patch, triangle, at.position, at.normal};
-}
-
-double BrightPatches::density_per_sr(std::uint32_t patch, double distance_m,
-                                     double cosine_at_patch) const {
-  const double per_m2 = density_per_m2_[patch];
-  if (per_m2 == 0.0) return 0.0;
-  return per_m2 * distance_m * distance_m / std::max(std::abs(cosine_at_patch), 1e-9);
 }
 
 }  // namespace earthshine::raytrace

@@ -9,50 +9,17 @@
 
 #include "radiosity/solution.h"
 #include "raytrace/frame/frame.h"
+#include "raytrace/incoming/bright_patches.h"
 #include "raytrace/incoming/radiance_table.h"
 #include "scenes/effects/world.h"
 
 namespace earthshine::raytrace {
 
-// Patches so bright that gather rays, which find them by chance, would leave specks: a wall at
-// hand's width from a lamp, a sunlit spot in a dark bay. They get rays aimed at them, and both ways
-// of finding them are combined by multiple importance sampling (Veach 1997, balance heuristic), so
-// that nothing is counted twice or lost.
-
-class BrightPatches {
- public:
-  BrightPatches() = default;
-  // Those whose luminance exceeds 16 times the area mean; none in an evenly lit scene.
-  explicit BrightPatches(const radiosity::Solution& solution);
-
-  [[nodiscard]] bool empty() const { return patches_.empty(); }
-  [[nodiscard]] bool holds(std::uint32_t patch) const { return density_per_m2_[patch] > 0.0F; }
-
-  struct Aim {
-    std::uint32_t patch;
-    std::uint32_t triangle;  // of a patch of several triangles; else scenes::no_triangle
-    Vec3 point, normal;      // on the patch's side
-  };
-  // A point on one of them, chosen in proportion to its flux.
-  [[nodiscard]] Aim aim(double choice, double x, double y) const;
-
-  // Density of aim() per unit of solid angle in a direction that meets `patch` at distance_m under
-  // the given cosine at the patch; 0 for patches that are not bright.
-  [[nodiscard]] double density_per_sr(std::uint32_t patch, double distance_m,
-                                      double cosine_at_patch) const;
-  [[nodiscard]] const radiosity::Patches& patches() const { return *source_; }
-
- private:
-  const radiosity::Patches* source_ = nullptr;
-  std::vector<std::uint32_t> patches_;
-  std::vector<double> cumulative_;     // running sum of flux, ends at 1
-  std::vector<float> density_per_m2_;  // per patch of the scene: probability / area
-};
-
 // How a ray shares its work with rays aimed at bright patches (multiple importance sampling,
 // balance heuristic).
 struct RayShare {
   double cosine = 0.0;  // at the surface it left; 0: it shares with no other ray
+  BrightPatches::Place from;
   std::uint32_t aimed_at = radiosity::no_patch;  // the patch that an aimed ray must meet to count
   std::uint32_t triangle = scenes::no_triangle;  // and of a cluster the triangle
   double found_rays = 1.0, aimed_rays = 1.0;     // cast from that surface point each way
@@ -96,7 +63,7 @@ class IncomingLight {
     double weight = 0.0;
     RayShare share;
   };
-  [[nodiscard]] Aimed aim(const Vec3& origin, const Vec3& normal, double choice, double x, double y,
+  [[nodiscard]] Aimed aim(const BrightPatches::Place& from, double choice, double x, double y,
                           double found_rays, double aimed_rays) const;
 
  private:

@@ -70,7 +70,7 @@ bool PathWalker::turn_diffusely(const IncomingLight& solution, const Vec3& origi
   const bool aims = !solution.bright().empty();
   if (aims && rng_->next() < aimed_share) {
     const IncomingLight::Aimed aimed =
-        solution.aim(origin, normal, rng_->next(), u, v, 1.0 - aimed_share, aimed_share);
+        solution.aim({origin, normal}, rng_->next(), u, v, 1.0 - aimed_share, aimed_share);
     weight_ *= aimed.weight;
     ray_ = {origin, aimed.direction};
     share_ = aimed.share;
@@ -83,6 +83,7 @@ bool PathWalker::turn_diffusely(const IncomingLight& solution, const Vec3& origi
   if (!aims) return true;
   weight_ /= 1.0 - aimed_share;
   share_.cosine = cosine;
+  share_.from = {origin, normal};
   share_.found_rays = 1.0 - aimed_share;
   share_.aimed_rays = aimed_share;
   return true;

@@ -98,6 +98,7 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   ray.sample = sample_;
   ray.part = depth == 0 ? Part::Indirect : Part::Specular;
   ray.share.found_rays = count;
+  ray.share.from = {origin, surface.normal};
   // Cosine-distributed rays: L = (k_d / pi) integral L_in cos = k_d mean(L_in).
   ray.weight = weight / static_cast<double>(count);
   rays_.gather += static_cast<std::uint64_t>(count);
@@ -121,7 +122,7 @@ void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   if (!shares) return;
   const double choice = rng_.next(), x = rng_.next(), y = rng_.next();
   const IncomingLight::Aimed aimed =
-      shared_.incoming.aim(origin, surface.normal, choice, x, y, count, 1.0);
+      shared_.incoming.aim({origin, surface.normal}, choice, x, y, count, 1.0);
   if (aimed.weight <= 0.0) return;
   ++rays_.gather;
   ray.direction = aimed.direction;

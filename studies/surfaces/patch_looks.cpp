@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studies/surfaces/patch_looks.h"
 
+#include <cmath>
+
 #include "scenes/reflect/specular.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_cells.h"
@@ -11,6 +13,7 @@ namespace {
 using scenes::RayPacket;
 
 constexpr int most_specular_steps = 64;
+constexpr std::size_t cosine_rays_each = 8;  // of those that are aimed at bright patches
 
 }  // namespace
 
@@ -61,30 +64,68 @@ void PatchLooks::finish_shadows() {
   count_ = 0;
 }
 
-void PatchLooks::gather(const Vec3& origin, const std::array<Vec3, RayPacket::width>& directions,
-                        double weight, std::size_t look) {
+void PatchLooks::gather(const LookingPoint& from, const base::SobolOwen4& sequence,
+                        const base::SobolOwen4& aims, std::size_t point, std::size_t rays,
+                        std::size_t look) {
+  const bool is_even = incoming_.bright().empty();
+  const std::size_t aimed = is_even ? 0 : rays / cosine_rays_each;
+  raytrace::RayShare share;
+  share.found_rays = static_cast<double>(rays);
+  share.aimed_rays = static_cast<double>(aimed);
+  share.from = {from.at + from.lift, from.normal};
+  const base::Frame3 frame = base::frame_around(from.normal);
   RayPacket packet;
   scenes::HitPacket hits;
-  for (std::size_t k = 0; k < RayPacket::width; ++k) {
-    scene_.query.set(packet, k, origin, directions[k]);
+  std::array<Vec3, RayPacket::width> directions;
+  std::array<double, RayPacket::width> cosine{};
+  for (std::size_t first = point * rays; first < (point + 1) * rays; first += RayPacket::width) {
+    for (std::size_t k = 0; k < RayPacket::width; ++k) {
+      const auto u = sequence.point2(static_cast<std::uint32_t>(first + k));
+      const double r = std::sqrt(double(u[0])), phi = 2.0 * base::pi * double(u[1]);
+      cosine[k] = std::sqrt(1.0 - double(u[0]));
+      directions[k] = frame.to_world({r * std::cos(phi), r * std::sin(phi), cosine[k]});
+      scene_.query.set(packet, k, from.at + from.lift, directions[k]);
+    }
+    scene_.query.closest(packet, RayPacket::width, hits);
+    rays_ += RayPacket::width;
+    for (std::size_t k = 0; k < RayPacket::width; ++k) {
+      const scenes::Hit hit{hits.triangle[k], double(hits.u[k]), double(hits.v[k]),
+                            double(hits.t[k]), hits.front[k] != 0};
+      share.cosine = is_even ? 0.0 : cosine[k];
+      const double kept = hit.missed() ? 1.0 : incoming_.kept_part(hit, directions[k], share);
+      follow(hit, directions[k], 1.0 / share.found_rays, kept, look);
+    }
   }
-  scene_.query.closest(packet, RayPacket::width, hits);
-  rays_ += RayPacket::width;
-  for (std::size_t k = 0; k < RayPacket::width; ++k) {
-    follow({hits.triangle[k], double(hits.u[k]), double(hits.v[k]), double(hits.t[k]),
-            hits.front[k] != 0},
-           directions[k], weight, look);
+  for (std::size_t k = point * aimed; k < (point + 1) * aimed; ++k) {
+    aim(from, aims.point(static_cast<std::uint32_t>(k)), share, look);
   }
+}
+
+// Of what such a ray meets only what the patch itself sends counts.
+void PatchLooks::aim(const LookingPoint& from, const std::array<float, 4>& u,
+                     const raytrace::RayShare& all, std::size_t look) {
+  const Vec3 origin = from.at + from.lift;
+  const raytrace::IncomingLight::Aimed aimed =
+      incoming_.aim({origin, from.normal}, double(u[0]), double(u[1]), double(u[2]), all.found_rays,
+                    all.aimed_rays);
+  if (aimed.weight <= 0.0) return;
+  const scenes::Hit hit = scene_.query.closest(origin, aimed.direction);
+  ++rays_;
+  if (hit.missed()) return;
+  const double kept = incoming_.kept_part(hit, aimed.direction, aimed.share);
+  if (kept > 0.0) table_.add(hit, Rgb(base::pi * aimed.weight * kept), gathered(look));
 }
 
 // Reads the surface, and those that mirrors and glass lead on to, as the form factors have it
 // (radiosity/factors/row_caster.cpp).
-void PatchLooks::follow(scenes::Hit hit, Vec3 way, double weight, std::size_t look) {
+// kept: of what the first of them sends.
+void PatchLooks::follow(scenes::Hit hit, Vec3 way, double weight, double kept, std::size_t look) {
   for (int step = 0; step <= most_specular_steps; ++step) {
     if (hit.missed()) return escape(way, weight, look);
     const std::uint32_t m = scene_.scene.triangles[hit.triangle].material;
     const bool front = hit.front || scene_.scene.materials[m].two_sided;
-    if (front) table_.add(hit, Rgb(base::pi * weight), gathered(look));
+    if (front) table_.add(hit, Rgb(base::pi * weight * kept), gathered(look));
+    kept = 1.0;
     const bool glass = base::max_component(scene_.scene.materials[m].transmit) > 0.0;
     if (!front && !glass) {
       lost_ += weight;

@@ -8,7 +8,7 @@
 
 #include "base/numbers/random.h"
 #include "radiosity/direct/sources.h"
-#include "raytrace/incoming/radiance_table.h"
+#include "raytrace/incoming/incoming_light.h"
 #include "scenes/light/lamp_light.h"
 #include "studies/study.h"
 
@@ -22,10 +22,17 @@ struct LookingPoint {
 // Rays of one patch, and what they bring to its points: per point, half and group.
 class PatchLooks {
  public:
-  // All must outlive it. kept: per material, 1 - mirror - transmit; table: what cosine rays read.
+  // All must outlive it. kept: per material, 1 - mirror - transmit; table: what rays read, some of
+  // which are aimed at the bright patches.
   PatchLooks(const scenes::World& scene, const std::vector<double>& kept,
-             const raytrace::RadianceTable& table, std::size_t groups, std::size_t sky_parts)
-      : scene_(scene), kept_(kept), table_(table), groups_(groups), sky_parts_(sky_parts) {}
+             const raytrace::RadianceTable& table, const raytrace::BrightPatches& bright,
+             std::size_t groups, std::size_t sky_parts)
+      : scene_(scene),
+        kept_(kept),
+        table_(table),
+        incoming_(scene, table, bright, groups, 0, false),
+        groups_(groups),
+        sky_parts_(sky_parts) {}
 
   void start(std::size_t points);
   std::span<Rgb> lamps(std::size_t look) { return {&lamps_[look * groups_], groups_}; }
@@ -43,19 +50,24 @@ class PatchLooks {
                std::size_t look, bool twice);
   void finish_shadows();
 
-  // A packet of cosine rays, each of `weight` of the look's.
-  void gather(const Vec3& origin, const std::array<Vec3, scenes::RayPacket::width>& directions,
-              double weight, std::size_t look);
+  // So many cosine rays by points of a sequence from the `point`-th time as many on, a multiple of
+  // the packet's width, and fewer aimed at bright patches by another sequence. Both ways of finding
+  // these are combined as IncomingLight does.
+  void gather(const LookingPoint& from, const base::SobolOwen4& sequence,
+              const base::SobolOwen4& aims, std::size_t point, std::size_t rays, std::size_t look);
 
  private:
   void add_shadow_ray(const Vec3& origin, const scenes::LightSample& sample, const Rgb& lx,
                       std::size_t look, std::size_t group, bool twice);
-  void follow(scenes::Hit hit, Vec3 way, double weight, std::size_t look);
+  void aim(const LookingPoint& from, const std::array<float, 4>& u, const raytrace::RayShare& all,
+           std::size_t look);
+  void follow(scenes::Hit hit, Vec3 way, double weight, double kept, std::size_t look);
   void escape(const Vec3& way, double weight, std::size_t look);
 
   const scenes::World& scene_;
   const std::vector<double>& kept_;
   const raytrace::RadianceTable& table_;
+  raytrace::IncomingLight incoming_;
   std::size_t groups_, sky_parts_;
   std::vector<Rgb> lamps_, gathered_, sky_;
   std::vector<scenes::LightSample> taken_;

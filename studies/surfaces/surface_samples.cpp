@@ -15,8 +15,6 @@
 namespace earthshine::studies {
 namespace {
 
-using scenes::RayPacket;
-
 constexpr int source_points = 16;  // that radiosity::find_sources() gives a small distant source
 constexpr std::size_t wide_source_samples = 4;
 constexpr std::size_t told_after = 1024;  // patches
@@ -105,11 +103,16 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
       std::any_of(effort.begin(), effort.end(), [](const Effort& e) { return e.rays > 0; });
   const raytrace::LeakMask sight(scene_.query, patches);
   raytrace::RadianceTable table;
-  if (gathers) table = {light.solution, light.solution.radiosity, true, sight};
+  raytrace::BrightPatches bright;
+  if (gathers) {
+    table = {light.solution, light.solution.radiosity, true, sight};
+    bright = raytrace::BrightPatches(light.solution);
+  }
   // Alone, joined: what each part of L~ is at a point.
   const raytrace::RadianceTable lamps_table(light.solution, light.lamps, false, sight),
       gathered_table(light.solution, light.gathered, false, sight);
 
+  const std::size_t aims_key = 4 + 3 * sources_.size();  // behind those of weigh()
   const bool of_light = of == SamplesOf::Light;
   const bool joins =
       hears == base::Hears::All || base::ranks() == nullptr || base::ranks()->number() == 0;
@@ -131,7 +134,7 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
                                 : std::max(told_after, which.size() / (8 * chunk) * chunk);
   std::vector<PatchResidual> seen(std::min(batch, which.size()));  // of a batch
   const auto look_at = [&](std::size_t begin, std::size_t end) {
-    PatchLooks looks(scene_, kept_, table, groups, sky_parts);
+    PatchLooks looks(scene_, kept_, table, bright, groups, sky_parts);
     std::vector<std::uint32_t> near;
     std::vector<LookingPoint> places;
     ResidualSums sums;
@@ -164,13 +167,12 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
       for (std::uint32_t n_try = 0; n_try < tries; ++n_try) {
         const auto p = where.point2(n_try);
         const auto [at, normal] = patches.at(patch, double(p[0]), double(p[1]));
-        const base::Frame3 frame = base::frame_around(normal);
-        const Vec3 lift = frame.normal * scene_.query.surface_offset_m();
+        const Vec3 lift = normal * scene_.query.surface_offset_m();
         if (!near.empty() && bodies->cover(at + lift - bodies->centre(), near)) continue;
         ++open;
         if (residual.taken == work.points) continue;
         const std::size_t point = residual.taken++;
-        places[point] = {at, frame.normal, lift};
+        places[point] = {at, normal, lift};
         for (std::size_t k = 0; k < sources_.size(); ++k) {
           const radiosity::Source& source = sources_[k].source;
           const std::size_t wide = source.points > source_points ? wide_source_samples : 1;
@@ -182,18 +184,10 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
           }
         }
         for (std::size_t half = 0; half < 2; ++half) {
-          const std::size_t look = 2 * point + half;
-          const base::SobolOwen4 out(key.with(2 + half));
-          std::array<Vec3, RayPacket::width> directions;
-          for (std::size_t first = 0; first < work.rays; first += RayPacket::width) {
-            for (std::size_t k = 0; k < RayPacket::width; ++k) {
-              const auto u = out.point2(static_cast<std::uint32_t>(point * work.rays + first + k));
-              const double r = std::sqrt(double(u[0])), phi = 2.0 * base::pi * double(u[1]);
-              directions[k] = frame.to_world(
-                  {r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0 - double(u[0]))});
-            }
-            looks.gather(at + lift, directions, 1.0 / work.rays, look);
-          }
+          if (work.rays == 0) break;
+          looks.gather(places[point], base::SobolOwen4(key.with(2 + half)),
+                       base::SobolOwen4(key.with(aims_key + half)), point, work.rays,
+                       2 * point + half);
         }
         std::array<Rgb, 1> lamps{Rgb(0.0)}, gathered{Rgb(0.0)};
         const scenes::Hit here = hit_at(patches, patch, double(p[0]), double(p[1]));
