@@ -80,8 +80,9 @@ TEST(StoppedPicture, WithoutASolutionItHasTheSameLight) {
 
 // Stopped before its first sample, a picture has one sample of each kind for 25 pixels of a
 // surface. Every pixel has light by those that serve it, the mean is that of the truth, and what is
-// stated is what it is off by, but for what lies between samples, which they cannot tell: 16
-// pictures of either kind, the root of the mean square.
+// stated is what it is off by, from 0.8 to 1.5 times as pictures promise: 16 pictures of either
+// kind, the root of the mean square. (Of 128 it is 0.88 with a solution, since samples cannot tell
+// what lies between them, and 1.47 without.)
 TEST(StoppedPicture, AtOnceItStatesWhatItIsOffBy) {
   const scenes::World world = small_room().study();
   for (const bool solved : {true, false}) {
@@ -98,8 +99,8 @@ TEST(StoppedPicture, AtOnceItStatesWhatItIsOffBy) {
       bias += found.true_error.bias / pictures;
     }
     EXPECT_GT(stated_square, 0.05 * 0.05) << solved;  // it was stopped
-    EXPECT_LT(std::sqrt(true_square / stated_square), 1.4) << solved;
-    EXPECT_GT(std::sqrt(true_square / stated_square), 0.7) << solved;
+    EXPECT_GT(std::sqrt(stated_square / true_square), 0.8) << solved;
+    EXPECT_LT(std::sqrt(stated_square / true_square), 1.5) << solved;
     EXPECT_NEAR(bias, 0.0, 0.02) << solved;
   }
 }
