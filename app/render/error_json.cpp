@@ -90,9 +90,9 @@ const char* words_of(studies::Limit limit) {
     case studies::Limit::Stopped:
       return "it was stopped";
     case studies::Limit::Ledger:
-      return "the ledger lacks light that no ray finds again, as on a spot beside a lamp; move "
-             "such "
-             "a lamp off the surface";
+      return "the ledger lacks light that no ray finds again, as on a spot beside a lamp that "
+             "mirrors "
+             "alone show; move such a lamp off the surface";
   }
   return "";
 }

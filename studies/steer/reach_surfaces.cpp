@@ -68,8 +68,8 @@ class SurfaceSearch {
   }
 
  private:
-  // Light that lands on a spot as small as no ray finds again, beside a lamp, is missing from all
-  // samples alike: the mean is off by what it `lacks`, and the error is no less.
+  // Light that no ray finds again, as of a small spot beside a lamp that mirrors alone show, is
+  // missing from all samples alike: the mean is off by what it `lacks`, and the error is no less.
   void hold_to_ledger(double lacks) {
     const double stated = result_.surface.parts.total().estimate;
     if (result_.steps.empty() || lacks <= stated) return;

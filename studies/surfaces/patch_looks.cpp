@@ -92,8 +92,7 @@ void PatchLooks::gather(const LookingPoint& from, const base::SobolOwen4& sequen
       const scenes::Hit hit{hits.triangle[k], double(hits.u[k]), double(hits.v[k]),
                             double(hits.t[k]), hits.front[k] != 0};
       share.cosine = is_even ? 0.0 : cosine[k];
-      const double kept = hit.missed() ? 1.0 : incoming_.kept_part(hit, directions[k], share);
-      follow(hit, directions[k], 1.0 / share.found_rays, kept, look);
+      follow(hit, directions[k], share, look);
     }
   }
   for (std::size_t k = point * aimed; k < (point + 1) * aimed; ++k) {
@@ -101,31 +100,49 @@ void PatchLooks::gather(const LookingPoint& from, const base::SobolOwen4& sequen
   }
 }
 
-// Of what such a ray meets only what the patch itself sends counts.
+// Of what such a ray meets only what the patch itself sends counts, straight or through glass that
+// does not bend it.
 void PatchLooks::aim(const LookingPoint& from, const std::array<float, 4>& u,
                      const raytrace::RayShare& all, std::size_t look) {
-  const Vec3 origin = from.at + from.lift;
+  Vec3 origin = from.at + from.lift;
   const raytrace::IncomingLight::Aimed aimed =
       incoming_.aim({origin, from.normal}, double(u[0]), double(u[1]), double(u[2]), all.found_rays,
                     all.aimed_rays);
-  if (aimed.weight <= 0.0) return;
-  const scenes::Hit hit = scene_.query.closest(origin, aimed.direction);
-  ++rays_;
-  if (hit.missed()) return;
-  const double kept = incoming_.kept_part(hit, aimed.direction, aimed.share);
-  if (kept > 0.0) table_.add(hit, Rgb(base::pi * aimed.weight * kept), gathered(look));
+  double weight = aimed.weight;
+  for (int step = 0; step <= most_specular_steps && weight > 0.0; ++step) {
+    const scenes::Hit hit = scene_.query.closest(origin, aimed.direction);
+    ++rays_;
+    if (hit.missed()) return;
+    if (incoming_.kept_part(hit, aimed.direction, aimed.share) > 0.0) {
+      return table_.add(hit, Rgb(base::pi * weight), gathered(look));
+    }
+    const std::uint32_t m = scene_.scene.triangles[hit.triangle].material;
+    const scenes::Material& material = scene_.scene.materials[m];
+    if (!scenes::is_straight_glass(material)) return;
+    if (hit.front || material.two_sided) weight *= 1.0 - kept_[m];
+    origin =
+        scenes::specular_step(scene_.scene, hit, aimed.direction, scene_.query.surface_offset_m())
+            .origin;
+  }
 }
 
 // Reads the surface, and those that mirrors and glass lead on to, as the form factors have it
 // (radiosity/factors/row_caster.cpp).
-// kept: of what the first of them sends.
-void PatchLooks::follow(scenes::Hit hit, Vec3 way, double weight, double kept, std::size_t look) {
+void PatchLooks::follow(scenes::Hit hit, Vec3 way, const raytrace::RayShare& share,
+                        std::size_t look) {
+  double weight = 1.0 / share.found_rays, length_m = 0.0;
+  bool aimed_come = true;  // to what is met, too
   for (int step = 0; step <= most_specular_steps; ++step) {
     if (hit.missed()) return escape(way, weight, look);
     const std::uint32_t m = scene_.scene.triangles[hit.triangle].material;
     const bool front = hit.front || scene_.scene.materials[m].two_sided;
-    if (front) table_.add(hit, Rgb(base::pi * weight * kept), gathered(look));
-    kept = 1.0;
+    hit.t += length_m;
+    length_m = hit.t;
+    if (front) {
+      const double kept = aimed_come ? incoming_.kept_part(hit, way, share) : 1.0;
+      table_.add(hit, Rgb(base::pi * weight * kept), gathered(look));
+    }
+    aimed_come = aimed_come && scenes::is_straight_glass(scene_.scene.materials[m]);
     const bool glass = base::max_component(scene_.scene.materials[m].transmit) > 0.0;
     if (!front && !glass) {
       lost_ += weight;
