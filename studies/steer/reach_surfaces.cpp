@@ -50,15 +50,16 @@ class SurfaceSearch {
   SteeredSolution run() {
     if (!light_) return std::move(result_);
     turns_->set_mean(light_->told_mean());
-    if (turns_->mean() > 0.0) {
-      try {
+    try {
+      if (turns_->mean() <= 0.0) turns_->look_for_light();
+      if (turns_->mean() > 0.0) {
         std::vector<std::uint32_t> parent(light_->patches().count());
         if (may_cut()) turns_->cut_shadows(cut_share * enough(), parent);
         improve();
         if (may_cast() && is_exact()) return with_exact_form_factors();
-      } catch (const base::Stopped&) {
-        stop(Limit::Stopped);
       }
+    } catch (const base::Stopped&) {
+      stop(Limit::Stopped);
     }
     auto [solution, lacks] = light_->finished();
     result_.solution = std::move(solution);

@@ -127,21 +127,33 @@ bool SurfaceTurns::cut_gathered(CutChoice& choice, double enough, double points,
   return cut(choice, how, parent, nullptr);
 }
 
-bool SurfaceTurns::cut_shadows(double enough, std::vector<std::uint32_t>& parent, CutChoice* also) {
-  if (shadow_points_ <= 0.0 || time_gone() > shadow_share) return false;
-  const std::size_t count = light_.patches().count();
-  const auto limit = static_cast<std::size_t>(most_shadow_growth * static_cast<double>(count));
-  std::vector<std::uint32_t> all(count);
+SurfaceTurns::How SurfaceTurns::for_shadows(double enough) const {
+  const auto limit =
+      static_cast<std::size_t>(most_shadow_growth * static_cast<double>(light_.patches().count()));
+  return {enough,
+          shadow_cuts,
+          std::max(first_shadow_cut, limit),
+          shadow_share,
+          [&](std::span<const std::uint32_t> which) {
+            return shadow_effort(light_.patches(), which, shadow_points_);
+          },
+          "shadows"};
+}
+
+void SurfaceTurns::look_for_light() {
+  std::vector<std::uint32_t> all(light_.patches().count());
   std::iota(all.begin(), all.end(), 0U);
   CutChoice choice(light_.patches());
-  const How how{enough,
-                shadow_cuts,
-                std::max(first_shadow_cut, limit),
-                shadow_share,
-                [&](std::span<const std::uint32_t> which) {
-                  return shadow_effort(light_.patches(), which, shadow_points_);
-                },
-                "shadows"};
+  look(choice, all, for_shadows(0.0));
+  mean_ = light_.told_mean();
+}
+
+bool SurfaceTurns::cut_shadows(double enough, std::vector<std::uint32_t>& parent, CutChoice* also) {
+  if (shadow_points_ <= 0.0 || time_gone() > shadow_share) return false;
+  std::vector<std::uint32_t> all(light_.patches().count());
+  std::iota(all.begin(), all.end(), 0U);
+  CutChoice choice(light_.patches());
+  const How how = for_shadows(enough);
   look(choice, all, how);
   const bool is_cut = cut(choice, how, parent, also);
   shadow_points_ = is_cut ? std::min(2.0 * shadow_points_, most_shadow_points) : 0.0;

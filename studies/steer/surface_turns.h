@@ -25,6 +25,9 @@ class SurfaceTurns {
     return sampler_.reflectances();
   }
 
+  // By shadow rays all over, where the first solve has found none: a spot of sunlight that its few
+  // points missed. Sets the mean.
+  void look_for_light();
   // A set of samples of its own. name: of the stage.
   [[nodiscard]] SurfaceSamples sample(std::span<const std::uint32_t> which,
                                       std::span<const Effort> effort, const std::string& name,
@@ -55,6 +58,8 @@ class SurfaceTurns {
   [[nodiscard]] std::vector<radiosity::Cut> worst(const CutChoice& choice, const How& how);
   // What is sampled on some patches, seen and put into the light.
   void look(CutChoice& choice, std::span<const std::uint32_t> which, const How& how);
+  // By shadow rays alone, until `enough` is left.
+  [[nodiscard]] How for_shadows(double enough) const;
   bool cut(CutChoice& choice, const How& how, std::vector<std::uint32_t>& parent, CutChoice* also);
 
   const Wanted& wanted_;
