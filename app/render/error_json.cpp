@@ -91,8 +91,7 @@ const char* words_of(studies::Limit limit) {
       return "it was stopped";
     case studies::Limit::Ledger:
       return "the ledger lacks light that no ray finds again, as on a spot beside a lamp that "
-             "mirrors "
-             "alone show; move such a lamp off the surface";
+             "mirrors alone show; move such a lamp off the surface";
   }
   return "";
 }

@@ -40,7 +40,12 @@ struct RayLengths {
   double light_inverse = 0.0, light = 0.0;  // the same, each ray by its luminance, cd/m^2
   void add(double length_m, double luminance) {
     const double near = 1.0 / std::max(length_m, 1e-6);
-    inverse += near, count += 1.0, light_inverse += luminance * near, light += luminance;
+    inverse += near, count += 1.0;
+    add_light(length_m, luminance);
+  }
+  // Of a ray aimed at what is bright: how far that is.
+  void add_light(double length_m, double luminance) {
+    light_inverse += luminance / std::max(length_m, 1e-6), light += luminance;
   }
   void operator+=(const RayLengths& more) {
     inverse += more.inverse, count += more.count;

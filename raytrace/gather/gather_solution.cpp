@@ -82,8 +82,11 @@ class SolutionRays {
       const auto aimed = incoming_.aim({from.origin[k], from.normal[k]}, choice, x, y, found,
                                        static_cast<double>(count));
       if (aimed.weight <= 0.0) continue;
-      incoming_.add(query_.closest(from.origin[k], aimed.direction), aimed.direction, aimed.share,
-                    Rgb(aimed.weight * found), {&sums[k * layers_], layers_}, counts);
+      const std::span<Rgb> sum(&sums[k * layers_], layers_);
+      const double before = luminance_of(sum);
+      const scenes::Hit hit = query_.closest(from.origin[k], aimed.direction);
+      incoming_.add(hit, aimed.direction, aimed.share, Rgb(aimed.weight * found), sum, counts);
+      if (!hit.missed()) lengths[k].add_light(hit.t, luminance_of(sum) - before);
     }
   }
 

@@ -9,6 +9,8 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr double bright_ratio = 16.0;
+// The greatest number below 1: a child of probability 0 is never chosen.
+constexpr double below_one = 1.0 - 0x1p-53;
 
 }  // namespace
 
@@ -86,7 +88,7 @@ std::optional<BrightPatches::Aim> BrightPatches::aim(const Place& from, double c
     const double share = first_share(span, from);
     if (share < 0.0) return {};
     const bool to_first = choice < share;
-    choice = to_first ? choice / share : std::min((choice - share) / (1.0 - share), 1.0);
+    choice = to_first ? choice / share : std::min((choice - share) / (1.0 - share), below_one);
     span = to_first ? span.first() : span.second();
   }
   const std::uint32_t patch = patches_[span.begin];

@@ -37,7 +37,8 @@ class BrightPatches {
   [[nodiscard]] bool empty() const { return nodes_.empty(); }
   [[nodiscard]] bool holds(std::uint32_t patch) const { return number_[patch] != none; }
 
-  // A point on one of them; none where all are behind the surface, as far as their boxes tell.
+  // A point on one of them, by numbers in [0, 1); none where all boxes are behind the surface. Not
+  // to be asked, nor the two around it, where there are none.
   [[nodiscard]] std::optional<Aim> aim(const Place& from, double choice, double x, double y) const;
   // Density of aim() per unit of solid angle in a direction that meets `patch` at distance_m under
   // the given cosine at the patch; 0 for patches that are not bright.

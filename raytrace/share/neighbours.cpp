@@ -19,7 +19,7 @@ float slack(const GatherPoint& point) { return 0.02F * point.spacing_m; }
 
 constexpr std::size_t rows_at_once = 4;
 // Of those that are as far apart as neighbours.
-constexpr std::size_t longest_chain = 64;
+constexpr std::size_t longest_chain = 16;
 
 // Weights of those of five neighbours whose bits are set, for the points of a row:
 // share[tap * width + x].

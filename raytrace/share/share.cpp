@@ -43,7 +43,8 @@ class Sharer {
     shared_.squared_error.assign(points_, 0.0F);
     keep_.assign(points_, {});
     shared_.rest.assign(points_, 0.0F);
-    draw_signs();
+    signs_.resize(points_);
+    for (std::size_t p = 0; p < points_; ++p) signs_[p] = static_cast<std::uint8_t>(base::mix64(p));
     if (all_) {
       tell_noise();
     } else {
@@ -86,14 +87,6 @@ class Sharer {
     }
   }
 
-  void draw_signs() {
-    signs_.assign(points_, 0);
-    for_all([&](std::size_t begin, std::size_t end) {
-      for (std::size_t p = begin; p < end; ++p) {
-        signs_[p] = static_cast<std::uint8_t>(base::mix64(p));
-      }
-    });
-  }
   // 1 or -1, of a point in one of the fields of noise, and behind them of scatter.
   [[nodiscard]] float sign(std::size_t p, std::size_t field) const {
     return 1.0F - 2.0F * static_cast<float>((std::int32_t{signs_[p]} >> field) & 1);
@@ -178,10 +171,9 @@ class Sharer {
     const float root = std::sqrt(alike[level]);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t k = 0; k < scatter_fields; ++k) {
-        float* scatter = squares_[Scatter + k].data();
         for (std::size_t p = begin; p < end; ++p) {
           const float off = squares_[Energy][p] - squares_[NoiseSquare][p];
-          scatter[p] = root * sign(p, noise_fields + k) * off;
+          squares_[Scatter + k][p] = root * sign(p, noise_fields + k) * off;
         }
       }
     });

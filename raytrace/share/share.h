@@ -84,7 +84,7 @@ struct Estimate {
 };
 
 // Which points share: those on the same surface, up to 2 steps of 1, 2, 4 ... pixels away in their
-// row and, of these, in their columns.
+// column, and up to 2 away in the rows of these.
 class Neighbours {
  public:
   // The points lie row by row in the window.

@@ -15,6 +15,11 @@ using scenes::RayPacket;
 constexpr int most_specular_steps = 64;
 constexpr std::size_t cosine_rays_each = 8;  // of those that are aimed at bright patches
 
+// By glass that does not bend it; what is more of a mirror turns it back.
+bool goes_straight_on(const scenes::Material& material, const Vec3& way, const Vec3& onward) {
+  return scenes::is_straight_glass(material) && glm::dot(way, onward) > 0.5;
+}
+
 }  // namespace
 
 void PatchLooks::start(std::size_t points) {
@@ -118,11 +123,11 @@ void PatchLooks::aim(const LookingPoint& from, const std::array<float, 4>& u,
     }
     const std::uint32_t m = scene_.scene.triangles[hit.triangle].material;
     const scenes::Material& material = scene_.scene.materials[m];
-    if (!scenes::is_straight_glass(material)) return;
+    const scenes::SpecularStep on =
+        scenes::specular_step(scene_.scene, hit, aimed.direction, scene_.query.surface_offset_m());
+    if (!goes_straight_on(material, aimed.direction, on.direction)) return;
     if (hit.front || material.two_sided) weight *= 1.0 - kept_[m];
-    origin =
-        scenes::specular_step(scene_.scene, hit, aimed.direction, scene_.query.surface_offset_m())
-            .origin;
+    origin = on.origin;
   }
 }
 
@@ -142,7 +147,6 @@ void PatchLooks::follow(scenes::Hit hit, Vec3 way, const raytrace::RayShare& sha
       const double kept = aimed_come ? incoming_.kept_part(hit, way, share) : 1.0;
       table_.add(hit, Rgb(base::pi * weight * kept), gathered(look));
     }
-    aimed_come = aimed_come && scenes::is_straight_glass(scene_.scene.materials[m]);
     const bool glass = base::max_component(scene_.scene.materials[m].transmit) > 0.0;
     if (!front && !glass) {
       lost_ += weight;
@@ -152,6 +156,7 @@ void PatchLooks::follow(scenes::Hit hit, Vec3 way, const raytrace::RayShare& sha
     if (weight <= 0.0) return;
     const scenes::SpecularStep on =
         scenes::specular_step(scene_.scene, hit, way, scene_.query.surface_offset_m());
+    aimed_come = aimed_come && goes_straight_on(scene_.scene.materials[m], way, on.direction);
     way = on.direction;
     hit = scene_.query.closest(on.origin, way);
     ++rays_;

@@ -127,6 +127,35 @@ TEST(BrightPatches, WhatIsBehindTheSurfaceIsNotAimedAt) {
   }
 }
 
+// Whatever the place, in the boxes of the tree or beside a square: what has no share is aimed at
+// nothing, where a box has a corner above the surface and neither of its halves has.
+TEST(BrightPatches, WhatProbabilitiesLackIsAimedAtNothing) {
+  const Squares squares(several);
+  const BrightPatches bright(squares.solution);
+  base::Rng rng(base::Key(2, base::Stream::LightSample, 0));
+  for (const Vec3& at : {Vec3(0.1, 0.1, 0.6), Vec3(-0.2, -0.3, 0.199), Vec3(0.0, 0.0, -0.6)}) {
+    for (const Vec3& normal : {Vec3(0, 0, 1), glm::normalize(Vec3(1, -2, 0.3))}) {
+      const BrightPatches::Place from = {at, normal};
+      double all = 0.0;
+      for (std::uint32_t k = 1; k <= several.size(); ++k) {
+        all += bright.density_per_sr(from, k, 1.0, 1.0) * edge_m * edge_m;  // probability / area
+      }
+      EXPECT_LE(all, 1.0 + 1e-12);
+      constexpr int tries = 4000;
+      int aimed_at = 0;
+      for (int k = 0; k < tries; ++k) {
+        const double choice = k == 0 ? 0.0 : k == 1 ? 1.0 - 0x1p-53 : rng.next();
+        const auto aimed = bright.aim(from, choice, 0.5, 0.5);
+        if (!aimed) continue;
+        ++aimed_at;
+        EXPECT_GT(bright.density_per_sr(from, aimed->patch, 1.0, 1.0), 0.0);
+      }
+      EXPECT_NEAR(aimed_at, tries * all,
+                  4.0 * std::sqrt(tries * std::max(0.0, all * (1.0 - all))) + 2.0);
+    }
+  }
+}
+
 TEST(BrightPatches, AnEvenlyLitSceneHasNone) {
   Squares squares({{{0.0, 0.0, 1.0}, 1.0}});
   squares.solution.radiosity.assign(squares.solution.radiosity.size(), 1.0F);

@@ -100,6 +100,7 @@ TEST(ReachSolution, OfALampOnTheFloorAllLightIsFoundThroughASheetOfGlassToo) {
   for (const Pane pane : {Pane::None, Pane::Glass}) {
     const SteeredSolution found = reached(lamp_on_the_floor(pane), 0.1);
     EXPECT_EQ(found.limit, Limit::None);
+    EXPECT_LT(found.solution.report.groups.front().imbalance, 1e-9);
     double sum = 0.0;
     for (std::uint32_t i = 0; i < found.solution.patches.count(); ++i) {
       sum += found.solution.patches.area_m2[i] * double(found.solution.radiosity[3 * i]);

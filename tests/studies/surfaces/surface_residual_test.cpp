@@ -112,41 +112,6 @@ TEST(SurfaceResidual, OfANearLampAllSamplesCount) {
   }
 }
 
-// A square of area A, h above a floor, brings B A / (pi h^2) to the place beneath it, which one of
-// 1257 cosine rays would find: the one in eight that is aimed there brings all but the share
-// 8 A / (pi h^2) that is left to the eight, and (h^2 / (h^2 + x^2))^2 of it from x aside.
-TEST(SurfaceResidual, WhatASmallBrightPatchSendsIsFoundByRaysAimedAtIt) {
-  constexpr double h = 1.0, edge = 0.05, r = 0.02;
-  tests::SceneBuilder builder;
-  const std::uint32_t m = builder.material(tests::grey(0.5));
-  builder.plate(m, 2.0 * r, 0.0, true);
-  builder.plate(m, edge, h, false);
-  builder.plate(m, 2.0, -1.0, true);  // dark
-  scenes::Lamp lamp;                  // whose light is put in the solution below
-  lamp.name = lamp.group = "lamp";
-  lamp.position = Vec3(0.0, 0.0, 0.5);
-  lamp.intensity_cd = Rgb(1.0);
-  builder.scene.lamps.push_back(lamp);
-  const Solved scene(builder.scene, 2.0, 64);
-  SurfaceLight light = scene.light().light();
-  ASSERT_EQ(light.count(), 3U);
-  std::fill(light.solution.radiosity.begin(), light.solution.radiosity.end(), 0.0F);
-  for (std::size_t c = 0; c < 3; ++c) light.solution.radiosity[light.columns() + c] = 1000.0F;
-  const std::vector<std::uint32_t> which = {0};
-  const std::vector<Effort> effort = {{2, 8}};
-  const double exact = 1000.0 * edge * edge / (base::pi * h * h);
-  const double aside = 2.0 * std::pow(r + edge / 2.0, 2.0);
-  const double least =
-      std::pow(h * h / (h * h + aside), 2.0) / (1.0 + 8.0 * edge * edge / (base::pi * h * h));
-  for (std::uint32_t pass = 1; pass <= 8; ++pass) {
-    const SurfaceSamples samples =
-        SurfaceSampler(scene.study(), 1).sample(light, which, effort, pass, 1.0, nullptr);
-    const double lx = luminous(samples.gathered, 0, light.columns());
-    EXPECT_LE(lx, exact * (1.0 + 1e-6));
-    EXPECT_GE(lx, exact * least);
-  }
-}
-
 TEST(SurfaceResidual, OfAFurnaceIsZeroToRounding) {
   const Solved furnace(closed_room(0.5, 10.0, false));
   const LightOnSurfaces light = furnace.light();
