@@ -83,6 +83,15 @@ bool is_straight_glass(const Material& material) {
          (material.two_sided || material.ior == 1.0);
 }
 
+Vec3 straight_through(const Vec3& position, const Vec3& normal, const Vec3& direction,
+                      double offset_m) {
+  constexpr double least_cosine = 0.01;
+  const double cosine = glm::dot(direction, normal);
+  const double along_m = offset_m / std::max(std::abs(cosine), least_cosine);
+  const double lacking_m = offset_m - along_m * std::abs(cosine);
+  return position + along_m * direction + normal * std::copysign(lacking_m, cosine);
+}
+
 LightWays::LightWays(const Scene& scene) {
   const auto sends_on = [](const Material& material) {
     return is_straight_glass(material) || base::max_component(material.mirror) > 0.0;

@@ -28,6 +28,17 @@ struct FlatMirror {
 
 // Glass lets light straight on if it is a sheet (two_sided) or does not bend it (ior = 1).
 [[nodiscard]] bool is_straight_glass(const Material& material);
+// Whether a ray that such a face passes on goes straight through: what is more of a mirror turns it
+// back.
+[[nodiscard]] inline bool goes_straight_on(const Material& material, const Vec3& way,
+                                           const Vec3& onward) {
+  return is_straight_glass(material) && glm::dot(way, onward) > 0.5;
+}
+
+// Where a ray sets out again that a surface lets straight through: offset_m behind it, on the ray's
+// own line unless it all but grazes the surface, so that it still meets what it was aimed at.
+[[nodiscard]] Vec3 straight_through(const Vec3& position, const Vec3& normal, const Vec3& direction,
+                                    double offset_m);
 
 // Each mirror costs every source a shadow ray more at points before it: of all that reflects (area
 // times share, by side) those planes are taken that have a fiftieth or more, and 32 at most. What

@@ -92,7 +92,7 @@ void GatherField::lobe_sample(std::uint32_t material, const RayStart& start,
   const scenes::Hit hit = world_.query.closest(origin, direction);
   incoming_.add(hit, direction, {}, weight, sum, counts);
   if (!setting_.gathers_residual || hit.missed()) return;
-  const auto lacking = walker.residual(incoming_, {origin, direction}, hit, rng);
+  const auto lacking = walker.residual(incoming_, {origin, direction}, hit, {}, rng);
   for (std::size_t layer = 0; layer < image_layers_; ++layer) sum[layer] += weight * lacking[layer];
 }
 

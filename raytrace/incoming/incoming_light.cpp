@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/light_ways.h"
 #include "scenes/reflect/specular.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_cells.h"
@@ -25,8 +26,12 @@ void IncomingLight::see_sky(const Vec3& direction, const Rgb& weight, std::span<
   if (straight && out.size() > layers_) out.back() += light;
 }
 
-void IncomingLight::follow_specular(scenes::Hit hit, Vec3 direction, Rgb weight, std::span<Rgb> out,
-                                    RayCounts& rays) const {
+// Through glass that does not bend them aimed rays come to bright patches, too; all else that
+// mirrors and glass show is left to the others.
+void IncomingLight::follow_specular(scenes::Hit hit, Vec3 direction, const RayShare& share,
+                                    Rgb weight, std::span<Rgb> out, RayCounts& rays) const {
+  const bool aimed = share.aimed_at != radiosity::no_patch;
+  bool straight = true;
   for (int step = 0; step < most_specular_steps; ++step) {
     const scenes::Material& material = scene_.materials[scene_.triangles[hit.triangle].material];
     const bool glass = base::max_component(material.transmit) > 0.0;
@@ -34,11 +39,15 @@ void IncomingLight::follow_specular(scenes::Hit hit, Vec3 direction, Rgb weight,
     weight *= material.mirror + material.transmit;
     const scenes::SpecularStep on =
         scenes::specular_step(scene_, hit, direction, query_.surface_offset_m());
+    straight = straight && scenes::goes_straight_on(material, direction, on.direction);
+    if (aimed && !straight) return;
     direction = on.direction;
     hit = query_.closest(on.origin, direction);
     ++(glass ? rays.refraction : rays.mirror);
-    if (hit.missed()) return see_sky(direction, weight, out, false);
-    if (!table_.empty()) table_.add(hit, weight, out);
+    if (hit.missed()) return aimed ? void() : see_sky(direction, weight, out, false);
+    const double kept = straight ? kept_part(hit, direction, share) : 1.0;
+    if (!table_.empty() && kept > 0.0) table_.add(hit, weight * kept, out);
+    if (aimed && kept > 0.0) return;
   }
 }
 
@@ -53,8 +62,11 @@ double IncomingLight::kept_part(const scenes::Hit& hit, const Vec3& direction,
     return patch == share.aimed_at && there ? 1.0 : 0.0;
   }
   if (patch == radiosity::no_patch || !bright_.holds(patch)) return 1.0;
-  const double density = bright_.density_per_sr(
-      share.from, patch, hit.t, glm::dot(direction, patches.normal_at(hit.triangle, hit.front)));
+  // Glass may lie between, so that hit.t is a part of the way.
+  const double distance_m = glm::distance(scenes::hit_position(scene_, hit), share.from.position);
+  const double density =
+      bright_.density_per_sr(share.from, patch, distance_m,
+                             glm::dot(direction, patches.normal_at(hit.triangle, hit.front)));
   const double found = share.found_rays * share.cosine / pi;
   return found / (found + share.aimed_rays * density);
 }
@@ -68,8 +80,9 @@ double IncomingLight::add(const scenes::Hit& hit, const Vec3& direction, const R
   }
   const double kept = kept_part(hit, direction, share);
   if (!table_.empty() && kept > 0.0) table_.add(hit, weight * kept, out);
-  // Rays aimed at a patch are for what the patch itself sends.
-  if (follows_specular_ && !aimed && !is_dark()) follow_specular(hit, direction, weight, out, rays);
+  if (follows_specular_ && !(aimed && kept > 0.0) && !is_dark()) {
+    follow_specular(hit, direction, share, weight, out, rays);
+  }
   return kept;
 }
 

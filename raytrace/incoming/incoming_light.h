@@ -51,7 +51,8 @@ class IncomingLight {
 
   [[nodiscard]] const BrightPatches& bright() const { return bright_; }
 
-  // The weight of the ray's end, of all rays that may find it, from `share`.
+  // The weight of the ray's end, of all rays that may find it, from `share`; there may be glass
+  // before it that does not bend the ray.
   [[nodiscard]] double kept_part(const scenes::Hit& hit, const Vec3& direction,
                                  const RayShare& share) const;
 
@@ -68,8 +69,8 @@ class IncomingLight {
 
  private:
   void see_sky(const Vec3& direction, const Rgb& weight, std::span<Rgb> out, bool straight) const;
-  void follow_specular(scenes::Hit hit, Vec3 direction, Rgb weight, std::span<Rgb> out,
-                       RayCounts& rays) const;
+  void follow_specular(scenes::Hit hit, Vec3 direction, const RayShare& share, Rgb weight,
+                       std::span<Rgb> out, RayCounts& rays) const;
   const scenes::Scene& scene_;
   const scenes::RayQuery& query_;
   const RadianceTable& table_;

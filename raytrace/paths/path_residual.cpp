@@ -20,10 +20,13 @@ constexpr double least_survival = 0.05;
 }  // namespace
 
 std::span<const Rgb> PathWalker::residual(const IncomingLight& solution, const Ray& ray,
-                                          const scenes::Hit& first, base::Rng& rng) {
+                                          const scenes::Hit& first, const RayShare& share,
+                                          base::Rng& rng) {
   begin(ray, rng);
   sees_sampled_ = from_camera_ = false;
   turn();
+  share_ = share;
+  kept_ = solution.kept_part(first, ray.direction, share);
   follow(solution, first);
   return finished();
 }
@@ -37,24 +40,30 @@ std::span<const Rgb> PathWalker::residual_at(const IncomingLight& solution, cons
   if (!turn_diffusely(solution, origin, normal, u, v)) return finished();
   const scenes::Hit hit = world_.query.closest(ray_.origin, ray_.direction);
   if (hit.missed()) return finished();
-  weight_ *= solution.kept_part(hit, ray_.direction, share_);
-  if (base::is_lit(weight_)) follow(solution, hit);
+  kept_ = solution.kept_part(hit, ray_.direction, share_);
+  follow(solution, hit);
   return finished();
 }
 
 // From a hit on: (S + T L~ - L~) of the surface that was met, T by one ray; what the next surface
-// lacks itself follows in its turn.
+// lacks itself follows in its turn. Glass that does not bend light hands on what the surfaces
+// behind it send, each with its own part.
 void PathWalker::follow(const IncomingLight& solution, scenes::Hit hit) {
   while (!hit.missed()) {
-    solution.add(hit, ray_.direction, {}, -weight_, radiance_, rays_);
     const Surface surface = surface_at(hit);
+    if (kept_ <= 0.0 && !scenes::is_straight_glass(surface.material)) return;
+    solution.add(hit, ray_.direction, share_, -weight_, radiance_, rays_);
     if (is_black(surface)) return;
-    shine(surface, hit);
+    const Rgb arriving = weight_;
+    weight_ *= kept_;
+    if (kept_ > 0.0) shine(surface, hit);
+    weight_ = arriving;
     if (!go_on(surface, &solution)) return;
     hit = world_.query.closest(ray_.origin, ray_.direction);
-    weight_ *= solution.add(hit, ray_.direction, share_, weight_, radiance_, rays_);
-    if (!base::is_lit(weight_)) return;
-    const double survival = std::clamp(base::max_component(weight_), least_survival, 1.0);
+    kept_ = solution.add(hit, ray_.direction, share_, weight_, radiance_, rays_);
+    if (goes_straight_on_) continue;
+    const double carried = base::max_component(weight_) * (kept_ > 0.0 ? kept_ : 1.0);
+    const double survival = std::clamp(carried, least_survival, 1.0);
     if (rng_->next() >= survival) return;
     weight_ /= survival;
   }

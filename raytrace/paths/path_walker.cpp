@@ -32,6 +32,7 @@ void PathWalker::begin(const Ray& start, base::Rng& rng) {
   ray_ = start;
   weight_ = Rgb(1.0);
   share_ = {};
+  kept_ = 1.0;
   at_first_ = met_surface_ = false;
   source_luminance_ = 0.0;
 }
@@ -196,10 +197,12 @@ bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
   const scenes::Material& material = surface.material;
   const double n = material.shininess;
   enum : std::size_t { Diffuse, Lobe, Mirror, Glass };
+  const bool straight = scenes::is_straight_glass(material);
   const std::array<double, 4> share = {
-      surface.shines ? base::max_component(surface.diffuse) : 0.0,
-      surface.shines ? base::max_component(material.specular) * 2.0 / (n + 2.0) : 0.0,
-      base::max_component(material.mirror), base::max_component(material.transmit)};
+      surface.shines ? kept_ * base::max_component(surface.diffuse) : 0.0,
+      surface.shines ? kept_ * base::max_component(material.specular) * 2.0 / (n + 2.0) : 0.0,
+      kept_ * base::max_component(material.mirror),
+      (straight ? 1.0 : kept_) * base::max_component(material.transmit)};
   const double all = share[Diffuse] + share[Lobe] + share[Mirror] + share[Glass];
   if (all <= 0.0) return false;
   double choice = rng_->next() * all;
@@ -207,7 +210,11 @@ bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
   while (way < Glass && (choice -= share[way]) >= 0.0) ++way;
   while (share[way] <= 0.0) --way;  // rounding took the choice past the last that has a share
   weight_ *= all / share[way];
-  share_ = {};
+  goes_straight_on_ = way == Glass && straight;
+  if (!goes_straight_on_) {
+    weight_ *= kept_;
+    share_ = {};
+  }
 
   if (way == Diffuse && solution != nullptr) {
     const Vec3 origin = surface.position + surface.normal * world_.query.surface_offset_m();
@@ -233,7 +240,8 @@ bool PathWalker::shadow_rays_follow(const Surface& surface, bool through) {
 
 void PathWalker::pass_on(const Surface& surface, bool through) {
   weight_ *= through ? surface.material.transmit : surface.material.mirror;
-  Vec3 lift = surface.normal * world_.query.surface_offset_m();
+  const double offset_m = world_.query.surface_offset_m();
+  Vec3 lift = surface.normal * offset_m;
   Vec3 direction = surface.mirrored;
   if (through) {
     const scenes::Refraction refraction =
@@ -241,7 +249,10 @@ void PathWalker::pass_on(const Surface& surface, bool through) {
     direction = refraction.direction;
     if (!refraction.total) lift = -lift;
   }
-  ray_ = {surface.position + lift, direction};
+  ray_ = goes_straight_on_
+             ? Ray{scenes::straight_through(surface.position, surface.normal, direction, offset_m),
+                   direction}
+             : Ray{surface.position + lift, direction};
   straight_ = straight_ && shadow_rays_follow(surface, through);
   if (world_.paths == PathSet::All && !straight_) sees_sampled_ = true;
   ++(through ? rays_.refraction : rays_.mirror);

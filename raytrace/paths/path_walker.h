@@ -40,9 +40,10 @@ class PathWalker {
   [[nodiscard]] double source_luminance() const { return source_luminance_; }
   [[nodiscard]] bool met_surface() const { return met_surface_; }
   // An unbiased estimate of L - L~ along a ray that left a diffuse or glossy surface and met
-  // `first`; L~ is what `solution` reads there.
+  // `first`; L~ is what `solution` reads there. Of rays that share with others, its part.
   [[nodiscard]] std::span<const Rgb> residual(const IncomingLight& solution, const Ray& ray,
-                                              const scenes::Hit& first, base::Rng& rng);
+                                              const scenes::Hit& first, const RayShare& share,
+                                              base::Rng& rng);
   // The mean over the cosine-weighted hemisphere of L - L~ that arrives at a surface point, by one
   // ray; (u, v) in [0, 1)^2 choose its direction, if it is not aimed at a bright patch.
   [[nodiscard]] std::span<const Rgb> residual_at(const IncomingLight& solution, const Vec3& origin,
@@ -101,7 +102,9 @@ class PathWalker {
   bool met_surface_ = false;
   double source_luminance_ = 0.0;
   std::size_t turn_of_suns_ = 0;
-  RayShare share_;  // of the last ray, with those aimed at bright patches
+  RayShare share_;                 // of the last ray, with those aimed at bright patches
+  double kept_ = 1.0;              // its part of what the surface sends that it met
+  bool goes_straight_on_ = false;  // as before that surface: through glass
 };
 
 }  // namespace earthshine::raytrace

@@ -156,7 +156,7 @@ class PixelShader {
   };
   void queue_gather(const Vec3& origin, const GatherRay& ray);
   void trace_shadows();
-  void add_lacking(const GatherRay& ray, const scenes::Hit& hit, double kept);
+  void add_lacking(const GatherRay& ray, const scenes::Hit& hit);
   void flush_gather();
   void add(std::size_t layer, std::size_t sample, Part part, const Rgb& radiance);
   void count_luminance(std::size_t layer, std::size_t sample, const Rgb& radiance) {

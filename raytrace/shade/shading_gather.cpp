@@ -176,13 +176,14 @@ void PixelShader::queue_gather(const Vec3& origin, const GatherRay& ray) {
 }
 
 // What the solution lacks where the ray ended, by a path that goes on from there.
-void PixelShader::add_lacking(const GatherRay& ray, const scenes::Hit& hit, double kept) {
+void PixelShader::add_lacking(const GatherRay& ray, const scenes::Hit& hit) {
   base::Rng rng(
       base::Key(shared_.seed, base::Stream::Residual, pixel_).with(ray.sample).with(ray.number));
   walker_->take_turn(pixel_ + ray.number, ray.sample / 2, ray.sample % 2);
-  const auto lacking = walker_->residual(shared_.incoming, {Vec3(0.0), ray.direction}, hit, rng);
+  const auto lacking =
+      walker_->residual(shared_.incoming, {Vec3(0.0), ray.direction}, hit, ray.share, rng);
   for (std::size_t layer = 0; layer < shared_.layers; ++layer) {
-    add(layer, ray.sample, ray.part, kept * ray.lacking * ray.weight * lacking[layer]);
+    add(layer, ray.sample, ray.part, ray.lacking * ray.weight * lacking[layer]);
   }
 }
 
@@ -194,14 +195,13 @@ void PixelShader::flush_gather() {
     const GatherRay& ray = gather_rays_[k];
     std::fill(scratch_.begin(), scratch_.end(), Rgb(0.0));
     const scenes::Hit hit{hits.triangle[k], hits.u[k], hits.v[k], hits.t[k], hits.front[k] != 0};
-    const double kept =
-        shared_.incoming.add(hit, ray.direction, ray.share, ray.weight, scratch_, rays_);
+    shared_.incoming.add(hit, ray.direction, ray.share, ray.weight, scratch_, rays_);
     // What came straight from the sky reached the surface directly.
     const Part part = ray.part == Part::Indirect && hit.missed() ? Part::Direct : ray.part;
     for (std::size_t layer = 0; layer < shared_.layers; ++layer) {
       add(layer, ray.sample, part, scratch_[layer]);
     }
-    if (walker_ && ray.lacking > 0.0 && kept > 0.0) add_lacking(ray, hit, kept);
+    if (walker_ && ray.lacking > 0.0 && !hit.missed()) add_lacking(ray, hit);
   }
   gather_count_ = 0;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "scenes/light_ways.h"
 
 namespace earthshine::scenes {
 namespace {
@@ -20,7 +21,7 @@ bool any_passes_light_on(const Scene& scene) {
 }
 
 Refraction refract(const Material& material, const Vec3& normal, const Vec3& direction) {
-  if (material.two_sided) return {direction, false};
+  if (is_straight_glass(material)) return {direction, false};
   const bool entering = glm::dot(direction, normal) < 0.0;
   const Vec3 facing = entering ? normal : -normal;
   const double ratio = entering ? 1.0 / material.ior : material.ior;
@@ -44,6 +45,9 @@ SpecularStep specular_step(const Scene& scene, const Hit& hit, const Vec3& direc
   const Triangle& triangle = scene.triangles[hit.triangle];
   const Vec3 normal = triangle_normal(scene, hit.triangle);
   const Vec3 way = specular_direction(scene.materials[triangle.material], normal, direction);
+  if (way == direction) {
+    return {straight_through(hit_position(scene, hit), normal, way, offset_m), way};
+  }
   const double side = glm::dot(way, normal) > 0.0 ? 1.0 : -1.0;
   Hit inner = hit;
   inner.u = (1.0 - drawn_in) * hit.u + drawn_in / 3.0;

@@ -27,9 +27,9 @@ struct Refraction {
                                  const Vec3& direction);
 
 // The ray that goes on along specular_direction() from a hit on a mirror or glass: its origin lies
-// offset_m off the surface on the side it goes to, and is drawn a hundred-thousandth of the way to
-// the triangle's middle, off its edges, where rounding could put it behind a neighbour and let
-// light leak from a closed room.
+// offset_m off the surface on the side it goes to. Where it turns, it is drawn a hundred-thousandth
+// of the way to the triangle's middle, off its edges, where rounding could put it behind a
+// neighbour and let light leak from a closed room.
 struct SpecularStep {
   Vec3 origin, direction;
 };

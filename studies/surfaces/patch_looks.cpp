@@ -15,11 +15,6 @@ using scenes::RayPacket;
 constexpr int most_specular_steps = 64;
 constexpr std::size_t cosine_rays_each = 8;  // of those that are aimed at bright patches
 
-// By glass that does not bend it; what is more of a mirror turns it back.
-bool goes_straight_on(const scenes::Material& material, const Vec3& way, const Vec3& onward) {
-  return scenes::is_straight_glass(material) && glm::dot(way, onward) > 0.5;
-}
-
 }  // namespace
 
 void PatchLooks::start(std::size_t points) {
@@ -125,7 +120,7 @@ void PatchLooks::aim(const LookingPoint& from, const std::array<float, 4>& u,
     const scenes::Material& material = scene_.scene.materials[m];
     const scenes::SpecularStep on =
         scenes::specular_step(scene_.scene, hit, aimed.direction, scene_.query.surface_offset_m());
-    if (!goes_straight_on(material, aimed.direction, on.direction)) return;
+    if (!scenes::goes_straight_on(material, aimed.direction, on.direction)) return;
     if (hit.front || material.two_sided) weight *= 1.0 - kept_[m];
     origin = on.origin;
   }
@@ -135,14 +130,12 @@ void PatchLooks::aim(const LookingPoint& from, const std::array<float, 4>& u,
 // (radiosity/factors/row_caster.cpp).
 void PatchLooks::follow(scenes::Hit hit, Vec3 way, const raytrace::RayShare& share,
                         std::size_t look) {
-  double weight = 1.0 / share.found_rays, length_m = 0.0;
+  double weight = 1.0 / share.found_rays;
   bool aimed_come = true;  // to what is met, too
   for (int step = 0; step <= most_specular_steps; ++step) {
     if (hit.missed()) return escape(way, weight, look);
     const std::uint32_t m = scene_.scene.triangles[hit.triangle].material;
     const bool front = hit.front || scene_.scene.materials[m].two_sided;
-    hit.t += length_m;
-    length_m = hit.t;
     if (front) {
       const double kept = aimed_come ? incoming_.kept_part(hit, way, share) : 1.0;
       table_.add(hit, Rgb(base::pi * weight * kept), gathered(look));
@@ -156,7 +149,8 @@ void PatchLooks::follow(scenes::Hit hit, Vec3 way, const raytrace::RayShare& sha
     if (weight <= 0.0) return;
     const scenes::SpecularStep on =
         scenes::specular_step(scene_.scene, hit, way, scene_.query.surface_offset_m());
-    aimed_come = aimed_come && goes_straight_on(scene_.scene.materials[m], way, on.direction);
+    aimed_come =
+        aimed_come && scenes::goes_straight_on(scene_.scene.materials[m], way, on.direction);
     way = on.direction;
     hit = scene_.query.closest(on.origin, way);
     ++rays_;
