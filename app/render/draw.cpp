@@ -9,6 +9,7 @@
 #include "app/render/light.h"
 #include "app/render/render_parts.h"
 #include "raytrace/paths/path_tracer.h"
+#include "studies/cost/cost.h"
 #include "studies/why/last_bounce.h"
 
 namespace earthshine::app {
@@ -31,12 +32,6 @@ studies::Limit limit_of(const Drawn& drawn, double wanted) {
   if (drawn.frame.report.stopped) return studies::Limit::Stopped;
   const bool endless = drawn.options.time_limit_s <= 0.0 || drawn.frame.report.gave_up;
   return endless ? studies::Limit::Steps : studies::Limit::Time;
-}
-
-// The squared error of samples falls as one over their number.
-double seconds_to_go(const Drawn& drawn, double wanted) {
-  const double ratio = drawn.errors.total.estimate / wanted;
-  return drawn.frame.report.seconds * (ratio * ratio - 1.0);
 }
 
 constexpr int probe_rays = 16384;
@@ -74,7 +69,10 @@ Drawn draw_picture(const Studio& studio, const scenes::Camera& camera, StageTime
   if (!steers(studio.call, loaded.scene)) return drawn;
   const double wanted = *loaded.scene.quality.error;
   drawn.limit = limit_of(drawn, wanted);
-  if (drawn.limit != studies::Limit::None) drawn.seconds_to_go = seconds_to_go(drawn, wanted);
+  if (drawn.limit != studies::Limit::None) {
+    drawn.seconds_to_go =
+        drawn.frame.report.seconds * (studies::samples_growth(drawn.frame.report, wanted) - 1.0);
+  }
   if (studio.light.solved) {
     studies::Step solve;
     solve.stage = "solve";

@@ -62,7 +62,7 @@ struct RenderReport {
                                  // show one sample or two
   bool stopped = false;
   // Samples in all that the wanted error is expected to take, over those that were cast; 0 where
-  // it was not stopped, or before there were some all over the picture.
+  // neither a limit nor a stop came first, or before there were some all over the picture.
   double growth = 0.0;
   bool gave_up = false;  // far more samples than should do have not reached the wanted error
 };

@@ -131,6 +131,7 @@ class Passes {
   void run_to_error() {
     sums_.emplace(window_, shared_.layers, shared_.splits_parts);
     expected_ = 1.0;
+    bool covered = true;  // all over the picture there are as many samples as a first look takes
     if (shared_.gathers) {
       const auto start = Clock::now();
       begin_field();
@@ -138,6 +139,7 @@ class Passes {
       cast_evenly(Gathered::Solution, GatherField::fewest_samples(Gathered::Solution));
       cast_evenly(Gathered::Residual, 4U);
       cast_evenly(Gathered::Lobe, 2U);
+      covered = !ends();
       share();
       report_.gather_seconds += seconds_since(start);
       reserve_s_ *= after_sharing / after_gathering;
@@ -146,7 +148,7 @@ class Passes {
     first_round(by_edges(least, std::max(std::min(2, least), least / 2)));
     reserve_s_ = 0.0;
     if (!ends()) shade(wanted_for_the_eye(*sums_, scatter_of_samples(*sums_)));
-    const bool covered = !ends();
+    covered = covered && !ends();
     Rounds rounds(options_.error);
     for (std::uint32_t round = 1; !ends(); ++round) {
       const SampleCosts each = sample_costs(field());
@@ -167,7 +169,7 @@ class Passes {
       shade(plan->camera);
     }
     report_.gave_up = rounds.gave_up();
-    if (!covered || !ends() || options_.error <= 0.0) return;
+    if (!covered || options_.error <= 0.0 || !(ends() || report_.gave_up)) return;
     const SampleCosts each = sample_costs(field());
     report_.growth =
         rounds.growth(SamplePlanner(*sums_, field(), each), spent(*sums_, field(), each));

@@ -122,10 +122,7 @@ raytrace::RenderReport expect_steered(const PictureDrawer& drawer, const scenes:
   const Stopwatch watch;
   options.stop = [&watch] { return watch.cpu_seconds() > begun_cpu_s; };
   raytrace::Frame frame = timed(watch, drawer.draw(camera, options, begun_pixels));
-  const double noise = frame.report.relative_noise;
-  const double ratio = noise > options.error ? noise / (raytrace::sure_share * options.error) : 1.0;
-  const double growth =
-      frame.report.growth > 0.0 ? frame.report.growth : std::pow(ratio, power_of_a_cut_look);
+  const double growth = samples_growth(frame.report, options.error);
   const double pixels = std::pow(
       double(options.columns) * options.rows / static_cast<double>(frame.image.pixel_count()),
       power_of_pixels);
@@ -170,6 +167,12 @@ double solve_seconds(const radiosity::SolveReport& report) {
 }
 
 }  // namespace
+
+double samples_growth(const raytrace::RenderReport& report, double wanted) {
+  if (report.growth > 0.0) return report.growth;
+  const double ratio = report.relative_noise / wanted;
+  return ratio > 1.0 ? std::pow(ratio / raytrace::sure_share, power_of_a_cut_look) : 1.0;
+}
 
 Pilot expect_costs(const PilotCall& call, const std::vector<const scenes::Camera*>& cameras,
                    const std::vector<raytrace::RenderOptions>& pictures) {

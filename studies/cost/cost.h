@@ -39,6 +39,9 @@ struct Pilot {
                                  const std::vector<const scenes::Camera*>& cameras,
                                  const std::vector<raytrace::RenderOptions>& pictures);
 
+// What a picture takes in all until the wanted error, over what its report tells of.
+[[nodiscard]] double samples_growth(const raytrace::RenderReport& report, double wanted);
+
 // An effect's part of the bill: the rays that were cast for it, and the seconds of its stages. The
 // seconds of shading are shared out by rays.
 struct EffectCost {

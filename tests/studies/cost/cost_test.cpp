@@ -194,6 +194,21 @@ Bill bill_of_two() {
   return bill;
 }
 
+// What a look all over the picture tells goes before what its error alone does: of few samples it
+// looks larger than it is, so that time grows as it, not as its square.
+TEST(CostLaws, ACutPictureGrowsAsItsErrorUnlessItKnowsMore) {
+  raytrace::RenderReport report;
+  report.relative_noise = 0.4;
+  const double eight_times = samples_growth(report, 0.05);
+  report.relative_noise = 0.2;
+  EXPECT_NEAR(eight_times / samples_growth(report, 0.05), std::pow(2.0, 1.05), 1e-9);
+  report.growth = 3.0;
+  EXPECT_EQ(samples_growth(report, 0.05), 3.0);
+  report.growth = 0.0;
+  report.relative_noise = 0.05;
+  EXPECT_EQ(samples_growth(report, 0.05), 1.0);
+}
+
 // It ends by the clock, and ranks that ended at different times would wait for each other for ever.
 TEST(Pilot, RanksDoItWithoutAWord) {
   tests::SceneBuilder builder;
