@@ -54,10 +54,11 @@ double network_radiosity(const Case& of, const radiosity::ObjectFormFactors& fac
 double solved_radiosity(const Prepared& prepared, const Case& of, std::uint64_t seed,
                         CaseResult& result) {
   radiosity::SolveOptions options;
-  options.patch_edge_m = uncut_m;
   options.form_factor_rays = of.rays;
   options.seed = seed;
-  const radiosity::Solution solution = prepared.solve(options);
+  // Patches as the case has them: no small ones joined to clusters.
+  const radiosity::Solution solution =
+      radiosity::solve(prepared, options, radiosity::subdivide(prepared.scene, uncut_m));
   result.rays += double(solution.report.form_factor_rays);
   return solution.report.objects[of.from].radiosity_lm_m2.g;
 }
