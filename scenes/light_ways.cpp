@@ -83,13 +83,23 @@ bool is_straight_glass(const Material& material) {
          (material.two_sided || material.ior == 1.0);
 }
 
-Vec3 straight_through(const Vec3& position, const Vec3& normal, const Vec3& direction,
-                      double offset_m) {
+std::optional<Vec3> straight_through(const Scene& scene, std::uint32_t triangle,
+                                     const Vec3& position, const Vec3& direction, double offset_m) {
   constexpr double least_cosine = 0.01;
-  const double cosine = glm::dot(direction, normal);
-  const double along_m = offset_m / std::max(std::abs(cosine), least_cosine);
-  const double lacking_m = offset_m - along_m * std::abs(cosine);
-  return position + along_m * direction + normal * std::copysign(lacking_m, cosine);
+  const Corners corners = corners_of(scene, triangle);
+  const Vec3 normal = corners.normal();  // as long as twice the area
+  const double area2 = glm::length(normal);
+  const double cosine = std::abs(glm::dot(direction, normal)) / area2;
+  if (!(cosine > least_cosine)) return std::nullopt;
+  const Vec3 behind = position + (offset_m / cosine) * direction;
+  const std::array<Vec3, 3> corner = {corners.a, corners.b, corners.c};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3& from = corner[k];
+    if (glm::dot(glm::cross(corner[(k + 1) % 3] - from, behind - from), normal) <= 0.0) {
+      return std::nullopt;
+    }
+  }
+  return behind;
 }
 
 LightWays::LightWays(const Scene& scene) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,17 +29,17 @@ struct FlatMirror {
 
 // Glass lets light straight on if it is a sheet (two_sided) or does not bend it (ior = 1).
 [[nodiscard]] bool is_straight_glass(const Material& material);
-// Whether a ray that such a face passes on goes straight through: what is more of a mirror turns it
-// back.
-[[nodiscard]] inline bool goes_straight_on(const Material& material, const Vec3& way,
-                                           const Vec3& onward) {
-  return is_straight_glass(material) && glm::dot(way, onward) > 0.5;
+// Whether a ray goes straight on: what is more of a mirror than glass turns it back.
+[[nodiscard]] inline bool goes_straight_on(const Vec3& way, const Vec3& onward) {
+  return way == onward;
 }
 
-// Where a ray sets out again that a surface lets straight through: offset_m behind it, on the ray's
-// own line unless it all but grazes the surface, so that it still meets what it was aimed at.
-[[nodiscard]] Vec3 straight_through(const Vec3& position, const Vec3& normal, const Vec3& direction,
-                                    double offset_m);
+// Where a ray sets out again on its own line, offset_m behind a triangle that lets it straight
+// through, so that it meets what it was aimed at. None where that is past the triangle's edge,
+// where a wall may stand, or the ray all but grazes it.
+[[nodiscard]] std::optional<Vec3> straight_through(const Scene& scene, std::uint32_t triangle,
+                                                   const Vec3& position, const Vec3& direction,
+                                                   double offset_m);
 
 // Each mirror costs every source a shadow ray more at points before it: of all that reflects (area
 // times share, by side) those planes are taken that have a fiftieth or more, and 32 at most. What

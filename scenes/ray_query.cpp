@@ -102,14 +102,12 @@ class Way {
       if (face == nullptr) return Rgb(0.0);
       if (mirror_ != no_mirror && face->mirror[hit.front ? 0 : 1] == mirror_) {
         share_ *= face->reflected;
-        move(hit.t);
-        origin_ += query_.surface_offset_m() * (hit.front ? face->normal : -face->normal);
+        leave(hit.t, hit.front ? face->normal : -face->normal);
         direction_ = query_.ways().mirrors()[mirror_].turned(direction_);
         mirror_ = no_mirror;
       } else {
         share_ *= face->through;
-        move(hit.t);
-        origin_ = straight_through(origin_, face->normal, direction_, query_.surface_offset_m());
+        leave(hit.t, hit.front ? -face->normal : face->normal);
       }
       if (base::max_component(share_) <= 0.0) return Rgb(0.0);
       hit = query_.closest(origin_, direction_);
@@ -118,8 +116,9 @@ class Way {
   }
 
  private:
-  void move(double t) {
-    origin_ += t * direction_;
+  // Off the surface that was met at the distance t, to the side that the normal shows.
+  void leave(double t, const Vec3& normal) {
+    origin_ += t * direction_ + query_.surface_offset_m() * normal;
     left_m_ -= t;
   }
 

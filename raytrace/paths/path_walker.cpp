@@ -249,10 +249,12 @@ void PathWalker::pass_on(const Surface& surface, bool through) {
     direction = refraction.direction;
     if (!refraction.total) lift = -lift;
   }
-  ray_ = goes_straight_on_
-             ? Ray{scenes::straight_through(surface.position, surface.normal, direction, offset_m),
-                   direction}
-             : Ray{surface.position + lift, direction};
+  ray_ = {surface.position + lift, direction};
+  if (goes_straight_on_ && share_.aimed_at != radiosity::no_patch) {
+    ray_.origin = scenes::straight_through(world_.scene, surface.triangle, surface.position,
+                                           direction, offset_m)
+                      .value_or(ray_.origin);
+  }
   straight_ = straight_ && shadow_rays_follow(surface, through);
   if (world_.paths == PathSet::All && !straight_) sees_sampled_ = true;
   ++(through ? rays_.refraction : rays_.mirror);

@@ -40,13 +40,15 @@ Vec3 specular_direction(const Material& material, const Vec3& normal, const Vec3
 }
 
 SpecularStep specular_step(const Scene& scene, const Hit& hit, const Vec3& direction,
-                           double offset_m) {
+                           double offset_m, bool aimed) {
   constexpr double drawn_in = 1e-5;
   const Triangle& triangle = scene.triangles[hit.triangle];
   const Vec3 normal = triangle_normal(scene, hit.triangle);
   const Vec3 way = specular_direction(scene.materials[triangle.material], normal, direction);
-  if (way == direction) {
-    return {straight_through(hit_position(scene, hit), normal, way, offset_m), way};
+  if (aimed && goes_straight_on(direction, way)) {
+    const auto behind =
+        straight_through(scene, hit.triangle, hit_position(scene, hit), way, offset_m);
+    if (behind) return {*behind, way};
   }
   const double side = glm::dot(way, normal) > 0.0 ? 1.0 : -1.0;
   Hit inner = hit;

@@ -27,14 +27,14 @@ struct Refraction {
                                  const Vec3& direction);
 
 // The ray that goes on along specular_direction() from a hit on a mirror or glass: its origin lies
-// offset_m off the surface on the side it goes to. Where it turns, it is drawn a hundred-thousandth
-// of the way to the triangle's middle, off its edges, where rounding could put it behind a
-// neighbour and let light leak from a closed room.
+// offset_m off the surface on the side it goes to, and is drawn a hundred-thousandth of the way to
+// the triangle's middle, off its edges, where rounding could put it behind a neighbour and let
+// light leak from a closed room. aimed: where it goes straight on, it is straight_through().
 struct SpecularStep {
   Vec3 origin, direction;
 };
 [[nodiscard]] SpecularStep specular_step(const Scene& scene, const Hit& hit, const Vec3& direction,
-                                         double offset_m);
+                                         double offset_m, bool aimed = false);
 
 // Phong lobes for the microfacet highlights of other programs' materials.
 

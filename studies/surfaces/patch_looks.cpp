@@ -118,9 +118,9 @@ void PatchLooks::aim(const LookingPoint& from, const std::array<float, 4>& u,
     }
     const std::uint32_t m = scene_.scene.triangles[hit.triangle].material;
     const scenes::Material& material = scene_.scene.materials[m];
-    const scenes::SpecularStep on =
-        scenes::specular_step(scene_.scene, hit, aimed.direction, scene_.query.surface_offset_m());
-    if (!scenes::goes_straight_on(material, aimed.direction, on.direction)) return;
+    const scenes::SpecularStep on = scenes::specular_step(scene_.scene, hit, aimed.direction,
+                                                          scene_.query.surface_offset_m(), true);
+    if (!scenes::goes_straight_on(aimed.direction, on.direction)) return;
     if (hit.front || material.two_sided) weight *= 1.0 - kept_[m];
     origin = on.origin;
   }
@@ -149,8 +149,7 @@ void PatchLooks::follow(scenes::Hit hit, Vec3 way, const raytrace::RayShare& sha
     if (weight <= 0.0) return;
     const scenes::SpecularStep on =
         scenes::specular_step(scene_.scene, hit, way, scene_.query.surface_offset_m());
-    aimed_come =
-        aimed_come && scenes::goes_straight_on(scene_.scene.materials[m], way, on.direction);
+    aimed_come = aimed_come && scenes::goes_straight_on(way, on.direction);
     way = on.direction;
     hit = scene_.query.closest(on.origin, way);
     ++rays_;

@@ -136,5 +136,59 @@ TEST(BehindGlass, APaneThatDoesAllIsDrawnAsByAllPaths) {
                       }));
 }
 
+// A dark closed room whose pane reaches from wall to wall, in a bright box: rays that go on at the
+// pane's edge do not set out behind the wall.
+TEST(BehindGlass, AtItsEdgeNothingLeaksIntoAClosedRoom) {
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  builder.room({m, m, m, m, m, m});
+  const std::uint32_t glass = builder.material(sheet(0.0, 0.0, 1.0));
+  builder.quad(glass, {0, 0, .5}, {1, 0, .5}, {1, 1, .5}, {0, 1, .5});
+  const std::uint32_t bright = builder.material(tests::grey(0.5, 1e6));
+  const double a = -0.5, b = 1.5;
+  builder.quad(bright, {a, a, a}, {a, b, a}, {a, b, b}, {a, a, b});
+  builder.quad(bright, {b, a, a}, {b, a, b}, {b, b, b}, {b, b, a});
+  builder.quad(bright, {a, a, a}, {a, a, b}, {b, a, b}, {b, a, a});
+  builder.quad(bright, {a, b, a}, {b, b, a}, {b, b, b}, {a, b, b});
+  const Solved solved(builder.scene);
+  for (const bool shares : {false, true}) EXPECT_EQ(solved.gathered(1.0, shares).mean, 0.0);
+}
+
+// An upright panel that shines over a floor: panes that let all through, however slantwise it is
+// seen, leave what falls there as it is.
+TEST(BehindGlass, PanesBeforeAnEmitterChangeNoDirectLight) {
+  const auto mean = [](int panes) {
+    tests::SceneBuilder builder;
+    builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
+    const std::uint32_t lit = builder.material(tests::grey(0.0, 100.0));
+    builder.quad(lit, {.6, -.1, .1}, {.6, -.1, .3}, {.6, .1, .3}, {.6, .1, .1});
+    const std::uint32_t glass = builder.material(sheet(0.0, 0.0, 1.0));
+    for (int k = 0; k < panes; ++k) {
+      const double z = 0.02 + 0.01 * k;
+      builder.quad(glass, {-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z});
+    }
+    const scenes::Scene scene = builder.scene;
+    const tests::Prepared prepared(scene);
+    scenes::Camera camera;
+    camera.position = Vec3(0, 0, 1);
+    camera.look_at = Vec3(0.0);
+    camera.up = Vec3(0, 1, 0);
+    camera.fov_deg = 40.0;
+    return mean_of([&](std::uint64_t seed) {
+      PathOptions options;
+      options.columns = options.rows = edge_px;
+      options.paths_per_pixel = 64;
+      options.seed = seed;
+      return trace_paths(prepared, camera, options).image;
+    });
+  };
+  const Mean bare = mean(0);
+  EXPECT_GT(bare.mean, 0.0);
+  for (const int panes : {1, 3}) {
+    const Mean found = mean(panes);
+    EXPECT_NEAR(found.mean, bare.mean, 4.0 * std::hypot(found.standard_error, bare.standard_error));
+  }
+}
+
 }  // namespace
 }  // namespace earthshine::raytrace

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "scenes/light_ways.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::scenes {
@@ -28,6 +29,38 @@ TEST(Specular, StepFromACornerStartsInsideTheMirrorOnTheReflectedSide) {
   EXPECT_NEAR(step.origin.y, 1e-5 / 3.0, 1e-15);
   EXPECT_NEAR(step.origin.z, 1e-6, 1e-18);
   EXPECT_NEAR(glm::length(step.direction - glm::normalize(Vec3(1, 0, 1))), 0.0, 1e-15);
+}
+
+// Aimed rays stay on their line, so that they come to what they were aimed at, unless that leads
+// past the triangle's edge, where a wall may stand.
+TEST(Specular, AimedStepsThroughASheetStayOnTheirLine) {
+  Material glass = tests::grey(0.0);
+  glass.transmit = Rgb(0.9);
+  glass.two_sided = true;
+  const Scene scene = square(glass);
+  const Vec3 down = glm::normalize(Vec3(5, 0, -1));
+  constexpr double offset = 1e-3;
+  const Hit inside{0, 0.2, 0.3, 1.0, true}, at_edge{0, 0.3, 0.6995, 1.0, true};
+  const SpecularStep aimed = specular_step(scene, inside, down, offset, true);
+  EXPECT_NEAR(glm::length(aimed.origin - (hit_position(scene, inside) + offset * Vec3(5, 0, -1))),
+              0.0, 1e-15);
+  EXPECT_EQ(aimed.direction, down);
+  const SpecularStep safe = specular_step(scene, at_edge, down, offset, true),
+                     found = specular_step(scene, at_edge, down, offset);
+  EXPECT_EQ(safe.origin, found.origin);
+  EXPECT_NEAR(found.origin.z, -offset, 1e-15);
+}
+
+// A mirror's reflection of a grazing ray is all but its own way.
+TEST(Specular, WhatIsMoreOfAMirrorThanGlassLetsNothingStraightOn) {
+  Material pane = tests::grey(0.0);
+  pane.two_sided = true;
+  pane.mirror = Rgb(0.6);
+  pane.transmit = Rgb(0.3);
+  const Vec3 grazing = glm::normalize(Vec3(10, 0, -1)), up(0, 0, 1);
+  EXPECT_FALSE(goes_straight_on(grazing, specular_direction(pane, up, grazing)));
+  pane.transmit = Rgb(0.61);
+  EXPECT_TRUE(goes_straight_on(grazing, specular_direction(pane, up, grazing)));
 }
 
 TEST(Specular, StepThroughGlassGoesOnBelow) {
