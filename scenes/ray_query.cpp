@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -102,12 +103,17 @@ class Way {
       if (face == nullptr) return Rgb(0.0);
       if (mirror_ != no_mirror && face->mirror[hit.front ? 0 : 1] == mirror_) {
         share_ *= face->reflected;
-        leave(hit.t, hit.front ? face->normal : -face->normal);
+        move(hit.t);
+        origin_ += query_.surface_offset_m() * (hit.front ? face->normal : -face->normal);
         direction_ = query_.ways().mirrors()[mirror_].turned(direction_);
         mirror_ = no_mirror;
       } else {
         share_ *= face->through;
-        leave(hit.t, hit.front ? -face->normal : face->normal);
+        // On the same line, or the source would be met before it is reached. Nothing stands behind
+        // the glass's edge: whatever is opaque on the way ends the ray before.
+        constexpr double least_cosine = 0.01;
+        const double cosine = std::abs(glm::dot(direction_, face->normal));
+        move(hit.t + query_.surface_offset_m() / std::max(cosine, least_cosine));
       }
       if (base::max_component(share_) <= 0.0) return Rgb(0.0);
       hit = query_.closest(origin_, direction_);
@@ -116,9 +122,8 @@ class Way {
   }
 
  private:
-  // Off the surface that was met at the distance t, to the side that the normal shows.
-  void leave(double t, const Vec3& normal) {
-    origin_ += t * direction_ + query_.surface_offset_m() * normal;
+  void move(double t) {
+    origin_ += t * direction_;
     left_m_ -= t;
   }
 

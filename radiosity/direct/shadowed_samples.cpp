@@ -170,7 +170,7 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
         const Vec3 lift = normal * query.surface_offset_m();
         if (!near.empty() && open.bodies->cover(at + lift - open.bodies->centre(), near)) continue;
         for (const std::size_t s : shining) {
-          take_samples(sources[s], mirrors, at, normal, p[2], p[3], samples);
+          take_samples(sources[s], mirrors, at + lift, normal, p[2], p[3], samples);
           for (const LightSample& one : samples) receiver.add(s, taken, at + lift, normal, one);
         }
         ++taken;

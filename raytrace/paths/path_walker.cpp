@@ -169,7 +169,7 @@ void PathWalker::light_directly(const Surface& surface) {
         const bool chooses = world_.lights.has_extent(k);
         const double u = chooses ? base::uniform(key.with(k), 0) : 0.0;
         const double v = chooses ? base::uniform(key.with(k), 1) : 0.0;
-        const scenes::LightSample light = world_.lights.sample(k, surface.position, u, v);
+        const scenes::LightSample light = world_.lights.sample(k, origin, u, v);
         const double cosine = glm::dot(light.direction, surface.normal);
         if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) return;
         Rgb reflectance = surface.diffuse;

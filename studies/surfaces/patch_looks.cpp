@@ -29,7 +29,7 @@ void PatchLooks::look_at(const radiosity::Source& source, const LookingPoint& fr
                          std::size_t look, bool twice) {
   for (std::size_t m = first; m < first + rays; ++m) {
     const auto u = sequence.point2(static_cast<std::uint32_t>(m));
-    radiosity::take_samples(source, scene_.query.ways().mirrors(), from.at, from.normal,
+    radiosity::take_samples(source, scene_.query.ways().mirrors(), from.at + from.lift, from.normal,
                             double(u[0]), double(u[1]), taken_);
     for (const scenes::LightSample& sample : taken_) {
       const double share = glm::dot(sample.direction, from.normal) / static_cast<double>(rays);
