@@ -69,11 +69,11 @@ class Looks {
 class ShadowQueue {
  public:
   ShadowQueue(const scenes::RayQuery& query, Looks& looks) : query_(query), looks_(looks) {}
-  void add(const Vec3& origin, const scenes::LightSample& sample, const Rgb& value,
+  void add(const Vec3& at, const Vec3& origin, const scenes::LightSample& sample, const Rgb& value,
            std::size_t point, std::size_t set, std::size_t group) {
-    const double reach = sample.distance_m * (1.0 - 1e-5) - 2.0 * query_.surface_offset_m();
-    if (base::luminance(value) <= 0.0 || reach <= 0.0) return;
-    query_.set(packet_, count_, origin, sample.direction, reach);
+    const scenes::ShadowWay way = scenes::shadow_way(sample, at, origin, query_.surface_offset_m());
+    if (base::luminance(value) <= 0.0 || way.reach_m <= 0.0) return;
+    query_.set(packet_, count_, origin, way.direction, way.reach_m);
     mirror_[count_] = sample.mirror;
     value_[count_] = value;
     target_[count_] = {point, set, group};
@@ -172,8 +172,8 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
               const double cosine = glm::dot(sample.direction, normal);
               const double weight =
                   cosine * light.scale[source.group] / static_cast<double>(samples);
-              queue.add(at + lift, sample, weight * rho * sample.normal_illuminance_lx, point, set,
-                        source.group);
+              queue.add(at, at + lift, sample, weight * rho * sample.normal_illuminance_lx, point,
+                        set, source.group);
             }
           }
         }

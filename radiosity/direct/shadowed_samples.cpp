@@ -27,14 +27,14 @@ class Receiver {
         sum_(sources, Rgb(0.0)),
         by_point_(static_cast<std::size_t>(points) * sources, 0.0) {}
 
-  void add(std::size_t source, int point, const Vec3& origin, const Vec3& normal,
+  void add(std::size_t source, int point, const Vec3& at, const Vec3& normal,
            const LightSample& sample) {
     const double cosine = glm::dot(sample.direction, normal);
     if (cosine <= 0.0 || base::max_component(sample.normal_illuminance_lx) <= 0.0) return;
-    // Stops short of the source, which may be a surface of the scene itself.
-    const double reach = sample.distance_m * (1.0 - 1e-5) - 2.0 * query_.surface_offset_m();
-    if (reach <= 0.0) return;
-    query_.set(packet_, count_, origin, sample.direction, reach);
+    const Vec3 origin = at + normal * query_.surface_offset_m();
+    const scenes::ShadowWay way = scenes::shadow_way(sample, at, origin, query_.surface_offset_m());
+    if (way.reach_m <= 0.0) return;
+    query_.set(packet_, count_, origin, way.direction, way.reach_m);
     mirror_[count_] = sample.mirror;
     source_[count_] = source;
     point_[count_] = static_cast<std::size_t>(point);
@@ -170,8 +170,8 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
         const Vec3 lift = normal * query.surface_offset_m();
         if (!near.empty() && open.bodies->cover(at + lift - open.bodies->centre(), near)) continue;
         for (const std::size_t s : shining) {
-          take_samples(sources[s], mirrors, at + lift, normal, p[2], p[3], samples);
-          for (const LightSample& one : samples) receiver.add(s, taken, at + lift, normal, one);
+          take_samples(sources[s], mirrors, at, normal, p[2], p[3], samples);
+          for (const LightSample& one : samples) receiver.add(s, taken, at, normal, one);
         }
         ++taken;
       }

@@ -169,7 +169,7 @@ void PathWalker::light_directly(const Surface& surface) {
         const bool chooses = world_.lights.has_extent(k);
         const double u = chooses ? base::uniform(key.with(k), 0) : 0.0;
         const double v = chooses ? base::uniform(key.with(k), 1) : 0.0;
-        const scenes::LightSample light = world_.lights.sample(k, origin, u, v);
+        const scenes::LightSample light = world_.lights.sample(k, surface.position, u, v);
         const double cosine = glm::dot(light.direction, surface.normal);
         if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) return;
         Rgb reflectance = surface.diffuse;
@@ -178,14 +178,13 @@ void PathWalker::light_directly(const Surface& surface) {
           reflectance +=
               surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
         }
-        // Short of the source, which may be a surface of the scene.
-        const double reach = light.distance_m * (1.0 - 1e-5) - 2.0 * offset;
-        if (reach <= 0.0) return;
+        const scenes::ShadowWay way = scenes::shadow_way(light, surface.position, origin, offset);
+        if (way.reach_m <= 0.0) return;
         value[count] = reflectance * light.normal_illuminance_lx * (cosine / pi);
         group[count] = world_.lights.group(k);
         kind[count] = world_.lights.kind(k);
         mirror[count] = light.mirror;
-        world_.query.set(packet, count, origin, light.direction, reach);
+        world_.query.set(packet, count, origin, way.direction, way.reach_m);
         if (++count == width) trace();
       });
   trace();

@@ -201,9 +201,7 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
   const auto reflect = [&](std::size_t k, const Vec3& point, double share) {
     if (share <= 0.0 || !shared_.lights.may_reach(k, point, surface.normal)) return;
     const auto u = shared_.lights.has_extent(k) ? light_point(k) : std::array<float, 2>{};
-    // From where the shadow ray starts, so that it ends where it is aimed.
-    const Vec3 start = point + surface.normal * offset;
-    const scenes::LightSample light = shared_.lights.sample(k, start, u[0], u[1]);
+    const scenes::LightSample light = shared_.lights.sample(k, point, u[0], u[1]);
     const double cosine = glm::dot(light.direction, surface.normal);
     if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) return;
     // L = (E cos / pi) (k_d + k_s cos^n alpha): the measured Phong form.
@@ -214,9 +212,10 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
     }
     const Rgb incident = weight * light.normal_illuminance_lx * (share * cosine / pi);
     const Rgb value = incident * (surface.diffuse + highlight);
-    const double reach = light.distance_m * (1.0 - 1e-5) - 2.0 * offset;
-    if (!base::is_lit(value) || reach <= 0.0) return;
-    queue_shadow({start, light.direction, reach, k, value, incident * highlight,
+    const Vec3 start = point + surface.normal * offset;
+    const scenes::ShadowWay way = scenes::shadow_way(light, point, start, offset);
+    if (!base::is_lit(value) || way.reach_m <= 0.0) return;
+    queue_shadow({start, way.direction, way.reach_m, k, value, incident * highlight,
                   shared_.layer[shared_.lights.group(k)], sample_, depth == 0,
                   shared_.lights.kind(k), light.mirror});
   };

@@ -73,6 +73,16 @@ double relative_intensity(const Lamp& lamp, const Vec3& direction) {
 
 }  // namespace
 
+ShadowWay shadow_way(const LightSample& sample, const Vec3& point, const Vec3& origin,
+                     double offset_m) {
+  constexpr double short_of_it = 1e-5;
+  if (!std::isfinite(sample.distance_m)) return {sample.direction, sample.distance_m};
+  const Vec3 way = point + sample.distance_m * sample.direction - origin;
+  const double length_m = glm::length(way);
+  if (length_m <= 0.0) return {sample.direction, -1.0};
+  return {way / length_m, length_m * (1.0 - short_of_it) - 2.0 * offset_m};
+}
+
 double field_cosine(const Lamp& lamp) { return std::cos(base::radians(lamp.field_deg / 2)); }
 
 SpotCone spot_cone(const Lamp& lamp) { return {beam_cosine(lamp), field_cosine(lamp)}; }

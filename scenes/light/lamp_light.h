@@ -20,6 +20,16 @@ struct LightSample {
   std::uint32_t mirror = no_mirror;  // that throws it; the distance is that of the whole way
 };
 
+// The shadow ray of a point's sample that starts at `origin`, offset_m off the surface: it goes to
+// the same place of the source, or its image in a mirror, and stops short of it, which may be a
+// surface of the scene. reach_m may be below 0: the source is at the point.
+struct ShadowWay {
+  Vec3 direction{0.0};
+  double reach_m = 0.0;
+};
+[[nodiscard]] ShadowWay shadow_way(const LightSample& sample, const Vec3& point, const Vec3& origin,
+                                   double offset_m);
+
 // The cosine of half the field, beyond which a spot lamp sends nothing.
 [[nodiscard]] double field_cosine(const Lamp& lamp);
 // Shape of a spot's intensity against the angle from its axis: 1 inside beam_deg, smoothstep in the

@@ -139,14 +139,14 @@ class Finder {
       if (!is_asked(light)) continue;
       const base::Key own = key.with(light);
       const scenes::LightSample sample =
-          lights_.sample(light, origin, base::uniform(own, 0), base::uniform(own, 1));
+          lights_.sample(light, at, base::uniform(own, 0), base::uniform(own, 1));
       const double cosine = glm::dot(sample.direction, normal);
-      const double reach = sample.distance_m * (1.0 - 1e-5) - 2.0 * offset;
-      if (cosine <= 0.0 || reach <= 0.0) continue;
+      const scenes::ShadowWay way = scenes::shadow_way(sample, at, origin, offset);
+      if (cosine <= 0.0 || way.reach_m <= 0.0) continue;
       RayPacket packet;
       std::array<std::uint32_t, RayPacket::width> mirror{sample.mirror};
       std::array<Rgb, RayPacket::width> share;
-      study_.query.set(packet, 0, origin, sample.direction, reach);
+      study_.query.set(packet, 0, origin, way.direction, way.reach_m);
       study_.query.light_shares(packet, mirror.data(), 1, share.data());
       const double lx = weight * cosine * base::luminance(share[0] * sample.normal_illuminance_lx);
       (sample.mirror == scenes::no_mirror ? found.straight : found.thrown) += lx;

@@ -29,21 +29,22 @@ void PatchLooks::look_at(const radiosity::Source& source, const LookingPoint& fr
                          std::size_t look, bool twice) {
   for (std::size_t m = first; m < first + rays; ++m) {
     const auto u = sequence.point2(static_cast<std::uint32_t>(m));
-    radiosity::take_samples(source, scene_.query.ways().mirrors(), from.at + from.lift, from.normal,
+    radiosity::take_samples(source, scene_.query.ways().mirrors(), from.at, from.normal,
                             double(u[0]), double(u[1]), taken_);
     for (const scenes::LightSample& sample : taken_) {
       const double share = glm::dot(sample.direction, from.normal) / static_cast<double>(rays);
-      add_shadow_ray(from.at + from.lift, sample, share * sample.normal_illuminance_lx, look,
-                     source.group, twice);
+      add_shadow_ray(from, sample, share * sample.normal_illuminance_lx, look, source.group, twice);
     }
   }
 }
 
-void PatchLooks::add_shadow_ray(const Vec3& origin, const scenes::LightSample& sample,
+void PatchLooks::add_shadow_ray(const LookingPoint& from, const scenes::LightSample& sample,
                                 const Rgb& lx, std::size_t look, std::size_t group, bool twice) {
-  const double reach = sample.distance_m * (1.0 - 1e-5) - 2.0 * scene_.query.surface_offset_m();
-  if (base::max_component(lx) <= 0.0 || reach <= 0.0) return;
-  scene_.query.set(packet_, count_, origin, sample.direction, reach);
+  const Vec3 origin = from.at + from.lift;
+  const scenes::ShadowWay way =
+      scenes::shadow_way(sample, from.at, origin, scene_.query.surface_offset_m());
+  if (base::max_component(lx) <= 0.0 || way.reach_m <= 0.0) return;
+  scene_.query.set(packet_, count_, origin, way.direction, way.reach_m);
   mirror_[count_] = sample.mirror;
   lx_[count_] = lx;
   to_[count_] = look * groups_ + group;

@@ -57,7 +57,7 @@ class PatchLooks {
               const base::SobolOwen4& aims, std::size_t point, std::size_t rays, std::size_t look);
 
  private:
-  void add_shadow_ray(const Vec3& origin, const scenes::LightSample& sample, const Rgb& lx,
+  void add_shadow_ray(const LookingPoint& from, const scenes::LightSample& sample, const Rgb& lx,
                       std::size_t look, std::size_t group, bool twice);
   void aim(const LookingPoint& from, const std::array<float, 4>& u, const raytrace::RayShare& all,
            std::size_t look);

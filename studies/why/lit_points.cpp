@@ -32,9 +32,8 @@ Reach reach_of(const scenes::Scene& scene, const scenes::RayQuery& query,
   reach.facing.assign(points.size(), 0);
   std::map<std::uint32_t, std::size_t> between;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    SeenPoint point =
-        points[i];  // from where its rays start, so that they end where they are aimed
-    point.position += query.surface_offset_m() * point.normal;
+    const SeenPoint& point = points[i];
+    const Vec3 origin = point.position + query.surface_offset_m() * point.normal;
     for (int k = 0; k < count; ++k) {
       const Beam light = beam(point, k);
       const double cosine = glm::dot(light.direction, point.normal);
@@ -42,7 +41,7 @@ Reach reach_of(const scenes::Scene& scene, const scenes::RayQuery& query,
       const double luminance = point.reflectance * light.illuminance_lx * cosine / base::pi;
       reach.facing[i] = 1;
       reach.unshadowed += luminance;
-      const scenes::Hit hit = query.closest(point.position, light.direction);
+      const scenes::Hit hit = query.closest(origin, light.direction);
       // A lamp's own surface, at the end of the way, is not in it.
       if (!hit.missed() && hit.t < light.distance_m * (1.0 - 1e-4) - query.surface_offset_m()) {
         ++between[scene.triangles[hit.triangle].object];
