@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <string>
 #include <utility>
 
 #include "base/free_memory.h"
 #include "scenes/ray_structure.h"
+#include "scenes/source_way.h"
 #include "scenes/triangle_point.h"
 
 namespace earthshine::scenes {
@@ -86,53 +86,6 @@ std::uint32_t hidden_bits(const RTCRay8& rays, std::size_t count) {
   }
   return bits;
 }
-
-// RayQuery's shadow rays: through glass that does not bend light, off flat mirrors.
-
-// Goes on along one ray from its first hit, toward the source.
-class Way {
- public:
-  Way(const RayQuery& query, const Vec3& origin, const Vec3& direction, double reach_m,
-      std::uint32_t mirror)
-      : query_(query), origin_(origin), direction_(direction), left_m_(reach_m), mirror_(mirror) {}
-
-  Rgb follow(Hit hit) {
-    for (int pane = 0; pane < most_panes; ++pane) {
-      if (hit.missed() || hit.t >= left_m_) return mirror_ == no_mirror ? share_ : Rgb(0.0);
-      const LightWays::Face* face = query_.ways().face(hit.triangle);
-      if (face == nullptr) return Rgb(0.0);
-      if (mirror_ != no_mirror && face->mirror[hit.front ? 0 : 1] == mirror_) {
-        share_ *= face->reflected;
-        move(hit.t);
-        origin_ += query_.surface_offset_m() * (hit.front ? face->normal : -face->normal);
-        direction_ = query_.ways().mirrors()[mirror_].turned(direction_);
-        mirror_ = no_mirror;
-      } else {
-        share_ *= face->through;
-        // On the same line, or the source would be met before it is reached. Nothing stands behind
-        // the glass's edge: whatever is opaque on the way ends the ray before.
-        constexpr double least_cosine = 0.01;
-        const double cosine = std::abs(glm::dot(direction_, face->normal));
-        move(hit.t + query_.surface_offset_m() / std::max(cosine, least_cosine));
-      }
-      if (base::max_component(share_) <= 0.0) return Rgb(0.0);
-      hit = query_.closest(origin_, direction_);
-    }
-    return Rgb(0.0);
-  }
-
- private:
-  void move(double t) {
-    origin_ += t * direction_;
-    left_m_ -= t;
-  }
-
-  const RayQuery& query_;
-  Vec3 origin_, direction_;
-  double left_m_;
-  std::uint32_t mirror_;
-  Rgb share_{1.0};
-};
 
 }  // namespace
 
@@ -290,7 +243,7 @@ void RayQuery::light_shares(const RayPacket& rays, const std::uint32_t* mirrors,
     } else if (!turns && ((context.met >> k) & 1U) == 0) {
       shares[k] = Rgb(1.0);
     } else {
-      shares[k] = Way(*this, origin[k], direction[k], double(rays.t_max[k]), mirrors[k])
+      shares[k] = SourceWay(*this, origin[k], direction[k], double(rays.t_max[k]), mirrors[k])
                       .follow(closest(origin[k], direction[k]));
     }
   }

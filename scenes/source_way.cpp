@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/source_way.h"
+
+#include <cmath>
+
+#include "scenes/light_ways.h"
+
+namespace earthshine::scenes {
+
+Rgb SourceWay::follow(Hit hit) {
+  for (int pane = 0; pane < most_panes; ++pane) {
+    if (hit.missed() || hit.t >= left_m_) return mirror_ == no_mirror ? share_ : Rgb(0.0);
+    const LightWays::Face* face = query_.ways().face(hit.triangle);
+    if (face == nullptr) return Rgb(0.0);
+    if (mirror_ != no_mirror && face->mirror[hit.front ? 0 : 1] == mirror_) {
+      share_ *= face->reflected;
+      leave(hit.t, hit.front ? face->normal : -face->normal);
+      const FlatMirror& mirror = query_.ways().mirrors()[mirror_];
+      direction_ = mirror.turned(direction_);
+      end_ = mirror.image(end_);
+      mirror_ = no_mirror;
+    } else {
+      share_ *= face->through;
+      leave(hit.t, hit.front ? -face->normal : face->normal);
+    }
+    if (base::max_component(share_) <= 0.0) return Rgb(0.0);
+    aim_again();
+    hit = query_.closest(origin_, direction_);
+  }
+  return Rgb(0.0);
+}
+
+// Off the surface that was met at the distance t, to the side that the normal shows.
+void SourceWay::leave(double t, const Vec3& normal) {
+  origin_ += t * direction_ + query_.surface_offset_m() * normal;
+  left_m_ -= t;
+}
+
+// Beside its line a ray would meet a slanted source before it has gone all of its way.
+void SourceWay::aim_again() {
+  if (!std::isfinite(left_m_)) return;
+  const Vec3 way = end_ - origin_;
+  left_m_ = glm::dot(way, direction_) > 0.0 ? glm::length(way) : 0.0;
+  if (left_m_ > 0.0) direction_ = way / left_m_;
+}
+
+}  // namespace earthshine::scenes
