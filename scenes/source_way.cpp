@@ -33,10 +33,9 @@ Rgb SourceWay::follow(Hit hit) {
 // Off the surface that was met at the distance t, to the side that the normal shows.
 void SourceWay::leave(double t, const Vec3& normal) {
   origin_ += t * direction_ + query_.surface_offset_m() * normal;
-  left_m_ -= t;
 }
 
-// Beside its line a ray would meet a slanted source before it has gone all of its way.
+// At the end of the way: beside its line a ray would meet a slanted source before it is there.
 void SourceWay::aim_again() {
   if (!std::isfinite(left_m_)) return;
   const Vec3 way = end_ - origin_;

@@ -61,8 +61,8 @@ struct RenderReport {
   double finished_share = 1.0;   // of the pixels; less than 1 if it was stopped, the others then
                                  // show one sample or two
   bool stopped = false;
-  // Samples in all that the wanted error is expected to take, over those that were cast; 0 where
-  // neither a limit nor a stop came first, or before there were some all over the picture.
+  // Samples in all that the wanted error is expected to take, over those that were cast; 0 where it
+  // was reached, or before there were some all over the picture.
   double growth = 0.0;
   bool gave_up = false;  // far more samples than should do have not reached the wanted error
 };

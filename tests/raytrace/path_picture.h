@@ -89,4 +89,13 @@ inline scenes::Lamp panel(double edge_m, double height_m) {
   return lamp;
 }
 
+// Of glass that does not bend light.
+inline scenes::Material sheet(double diffuse, double mirror, double transmit) {
+  scenes::Material pane = tests::grey(diffuse);
+  pane.two_sided = true;
+  pane.mirror = Rgb(mirror);
+  pane.transmit = Rgb(transmit);
+  return pane;
+}
+
 }  // namespace earthshine::raytrace

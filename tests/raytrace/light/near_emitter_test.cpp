@@ -6,9 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "raytrace/paths/path_tracer.h"
 #include "raytrace/render.h"
-#include "tests/support/scene_builder.h"
+#include "tests/raytrace/path_picture.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -25,11 +24,8 @@ struct Hall {
     const std::uint32_t lit = builder.material(tests::grey(0.0, 100.0));
     builder.plate(lit, 0.2, 0.1, false);
     builder.plate(builder.material(tests::grey(0.0)), width_m, -0.1, true);
-    scenes::Material glass = tests::grey(0.0);
-    glass.two_sided = true;
-    glass.transmit = Rgb(1.0);
     for (int k = 0; k < panes; ++k) {
-      builder.plate(builder.material(glass), 1.0, 0.02 + 0.01 * k, true);
+      builder.plate(builder.material(sheet(0.0, 0.0, 1.0)), 1.0, 0.02 + 0.01 * k, true);
     }
     scene = builder.scene;
   }

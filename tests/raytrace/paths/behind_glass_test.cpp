@@ -4,9 +4,8 @@
 
 #include <cmath>
 
-#include "raytrace/paths/path_tracer.h"
 #include "raytrace/render.h"
-#include "tests/support/scene_builder.h"
+#include "tests/raytrace/path_picture.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -31,14 +30,6 @@ scenes::Scene lit_floor(double lamp_m, const scenes::Material& pane, int panes) 
   lamp.intensity_cd = Rgb(100.0);
   builder.scene.lamps.push_back(lamp);
   return builder.scene;
-}
-
-scenes::Material sheet(double diffuse, double mirror, double transmit) {
-  scenes::Material pane = tests::grey(diffuse);
-  pane.two_sided = true;
-  pane.mirror = Rgb(mirror);
-  pane.transmit = Rgb(transmit);
-  return pane;
 }
 
 // Above the panes; sees neither them nor the floor.
