@@ -37,6 +37,7 @@ class Sharer {
 
   Shared run() {
     shared_.layers = estimate_.layers;
+    shared_.on_grid = points_;
     shared_.signal.assign(points_, {});
     shared_.noise.assign(points_, {});
     shared_.few.assign(points_, {});
@@ -208,7 +209,6 @@ class Sharer {
         const float noise = squares_[NoiseSquare][p], weight = squares_[Weight][p];
         const float s = weight > 0.0F ? (squares_[Energy][p] - noise) / weight : 0.0F;
         const float q = expected_[p] > 0.0F ? expected_[p] * noise : certain * std::max(0.0F, s);
-        keep_[p][level] = kept_share(s, q);
         shared_.signal[p][level] = s;
         shared_.noise[p][level] = q;
         float variance = 0.0F;
@@ -220,6 +220,41 @@ class Sharer {
         shared_.few[p][level] = std::min(1.0F, 0.5F * variance);
       }
     });
+    shared_.spread[level] = spread_of(level);
+    for_all([&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
+        const float q = shared_.noise[p][level];
+        keep_[p][level] = kept_share(shared_.spread[level].likely(shared_.signal[p][level], q), q);
+      }
+    });
+  }
+
+  struct Sums {
+    double count = 0.0, signal = 0.0, noise = 0.0;
+    double ratio = 0.0, square = 0.0, chance = 0.0;  // of signal over noise
+    Sums& operator+=(const Sums& other) {
+      count += other.count, signal += other.signal, noise += other.noise;
+      ratio += other.ratio, square += other.square, chance += other.chance;
+      return *this;
+    }
+  };
+
+  [[nodiscard]] SignalSpread spread_of(std::size_t level) const {
+    const Sums sums =
+        base::ordered_sum(points_, points_at_once, Sums(), [&](std::size_t begin, std::size_t end) {
+          Sums part;
+          for (std::size_t p = begin; p < end; ++p) {
+            if (expected_[p] <= 0.0F || shared_.noise[p][level] <= 0.0F) continue;
+            const double s = double(shared_.signal[p][level]), q = double(shared_.noise[p][level]);
+            part += {1.0, s, q, s / q, s / q * (s / q), 2.0 * double(shared_.few[p][level])};
+          }
+          return part;
+        });
+    if (sums.count < 2.0) return {};
+    const double mean = sums.ratio / sums.count, all = sums.square / sums.count - mean * mean;
+    const double own = all > 0.0 ? std::max(0.0, 1.0 - sums.chance / sums.count / all) : 0.0;
+    // Not the mean of ratios: of noise that is known by few windows it is too large.
+    return {static_cast<float>(sums.signal / sums.noise), static_cast<float>(own)};
   }
 
   // A few layers at a time: planes of all of them would take more memory than all else.

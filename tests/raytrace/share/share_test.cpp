@@ -103,6 +103,53 @@ TEST(Share, NoiseFallsAndNoLessIsStated) {
   EXPECT_LT(stated, 0.5 / 8.0);
 }
 
+// Mean squares over the picture: what the shared values are off 10, what is stated, and what would
+// be stated if every window's signal stood for itself; and how much of the finest signals does.
+struct NoiseStated {
+  double found = 0.0, stated = 0.0, alone = 0.0, own = 0.0;
+};
+NoiseStated state_noise(const Neighbours& neighbours, std::uint64_t seed, double signal) {
+  base::Rng rng(base::Key(seed, base::Stream::Test, 34));
+  const auto value = [&](int x, int y, std::size_t) {
+    const double fine = x < edge_px / 2 && (x + y) % 2 == 0 ? signal : 0.0;
+    return 10.0 + fine + std::sqrt(12.0) * (rng.next() - 0.5);
+  };
+  Shared shared = share(neighbours, estimate_of(value));
+  NoiseStated sums;
+  for (std::size_t p = 0; p < count; ++p) {
+    const double off = double(shared.radiance[p].g) - 10.0;
+    sums.found += off * off / static_cast<double>(count);
+    sums.stated += shared.squared_error_with(p, 1.0) / static_cast<double>(count);
+  }
+  sums.own = double(shared.spread[0].own);
+  shared.spread = {};
+  for (std::size_t p = 0; p < count; ++p) {
+    sums.alone += shared.squared_error_with(p, 1.0) / static_cast<double>(count);
+  }
+  return sums;
+}
+
+TEST(Share, ASmoothPictureStatesLittleThatNoiseMayHide) {
+  // Noise alone. Each window's signal is off by chance by sigma = q sqrt(2 / N), N = 100 details,
+  // and what is above zero of it is stated, sigma / sqrt(2 pi). The mean of the plane's 48^2 / 100
+  // windows is off by a fifth of sigma, and so is the share that is left to each.
+  constexpr int fields = 50;
+  const Neighbours neighbours(window, flat());
+  NoiseStated all;
+  for (std::uint64_t seed = 1; seed <= fields; ++seed) {
+    const NoiseStated one = state_noise(neighbours, seed, 0.0);
+    all.found += one.found, all.stated += one.stated, all.alone += one.alone;
+  }
+  EXPECT_LT(all.found, all.stated);
+  EXPECT_LT(all.stated - all.found, 0.5 * (all.alone - all.found));
+}
+
+TEST(Share, WhereSignalsDifferEachIsStatedAsItIsFound) {
+  // The same with a pattern of 5 on and off its mean on half of the plane: s / q is 25 / 0.5 there
+  // and none elsewhere, which varies by 25^2, and chance is held to explain no more than 2 of it.
+  EXPECT_GT(state_noise(Neighbours(window, flat()), 1, 10.0).own, 1.0 - 2.0 / (25.0 * 25.0));
+}
+
 TEST(Share, HowFarOffASignalIsByChanceIsStated) {
   // One sample of ten brings all the light: there is no signal, and what is found, the difference
   // of two chance squares over a window, has the variance q^2 2 / N, of details of 1 to 8 pixels.
