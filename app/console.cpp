@@ -7,7 +7,6 @@
 #include <atomic>
 #include <cerrno>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <system_error>
 
@@ -101,15 +100,15 @@ void Progress::operator()(std::size_t done, std::size_t total) {
 Interrupt::Interrupt() : active_(base::ranks() == nullptr) {
   interrupted = false;
   if (!active_) return;
-  int_before_ = take_over(SIGINT);
-  term_before_ = take_over(SIGTERM);
-  if (int_before_ != SIG_IGN) at_once = int_before_;
+  for (std::size_t k = 0; k < before_.size(); ++k) {
+    before_[k] = take_over(ending_signals[k]);
+    if (before_[k] != SIG_IGN) at_once = before_[k];
+  }
 }
 
 Interrupt::~Interrupt() {
   if (!active_) return;
-  std::signal(SIGINT, int_before_);
-  std::signal(SIGTERM, term_before_);
+  for (std::size_t k = 0; k < before_.size(); ++k) std::signal(ending_signals[k], before_[k]);
 }
 
 bool Interrupt::asked() { return interrupted; }
@@ -120,7 +119,7 @@ namespace {
 // whether any was.
 bool handle_otherwise(void (*from)(int), void (*to)(int)) {
   bool changed = false;
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : ending_signals) {
     struct sigaction action {};
     ::sigaction(signal, nullptr, &action);
     if (action.sa_handler != from) continue;

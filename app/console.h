@@ -3,7 +3,9 @@
 // names of files and things could do to a terminal is taken out here (base/error.h), once for all.
 #pragma once
 
+#include <array>
 #include <chrono>
+#include <csignal>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -47,9 +49,12 @@ class Progress {
   Clock::time_point start_ = Clock::now(), last_{};
 };
 
+// Of Ctrl-C, of a queue that wants its machine back, and of a terminal that closes.
+inline constexpr std::array ending_signals{SIGINT, SIGTERM, SIGHUP};
+
 // Ctrl-C while a picture is worked out: the first asks for an end with what is finished, the second
-// ends the program at once. Takes SIGINT and SIGTERM over for as long as it lives. One at a time.
-// Of several ranks it does nothing: they would not stop at the same place, so a signal ends them
+// ends the program at once. Takes ending_signals over for as long as it lives. One at a time. Of
+// several ranks it does nothing: they would not stop at the same place, so a signal ends them
 // all.
 class Interrupt {
  public:
@@ -64,7 +69,7 @@ class Interrupt {
  private:
   using Handler = void (*)(int);
   bool active_;
-  Handler int_before_, term_before_;
+  std::array<Handler, ending_signals.size()> before_{};
 };
 
 // While an Interrupt lives, for work of which nothing could be kept, as a solve: the first signal

@@ -220,7 +220,7 @@ void take_signals() {
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported where it is written to,
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows beyond `ulimit -f` likewise
   std::set_terminate(end_by_exception);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int signal : ending_signals) {
     // Whoever started the program may have it ignore a signal, as nohup does.
     if (std::signal(signal, end_by_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
   }

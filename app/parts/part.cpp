@@ -233,15 +233,15 @@ void refuse_to_merge(const fs::path& folder, const std::vector<MissingWork>& mis
   for (const MissingWork& one : missing) by_part[one.part].push_back(one.what);
   std::vector<std::string> words;
   for (const std::string& word : record.arguments) words.push_back(shell_word(word));
-  std::string list;
   for (const auto& [part, what] : by_part) {
-    list += fmt::format("\n  part {}: {}{}\n    earthshine {} --part {}/{}", part, what.front(),
-                        what.size() > 1 ? fmt::format(" and {} more", what.size() - 1) : "",
-                        fmt::join(words, " "), part, std::max<std::size_t>(1, record.parts));
+    note(fmt::format("missing: part {}: {}{}", part, what.front(),
+                     what.size() > 1 ? fmt::format(" and {} more", what.size() - 1) : ""));
+    note(fmt::format("  earthshine {} --part {}/{}", fmt::join(words, " "), part,
+                     std::max<std::size_t>(1, record.parts)));
   }
   throw Error(Blame::Work, folder.string(), "is not complete", {},
-              fmt::format("Run what is missing in {}, then merge again:{}",
-                          shell_word(record.folder.string()), list));
+              fmt::format("Run what is missing in {}, then merge again",
+                          shell_word(record.folder.string())));
 }
 
 }  // namespace earthshine::app

@@ -71,7 +71,7 @@ struct MissingWork {
   std::string what;
   std::size_t part = 0;  // that makes it
 };
-// Throws base::Error (Work) that lists it, with the command that makes each part.
+// Notes it with the command that makes each part, and throws base::Error (Work).
 [[noreturn]] void refuse_to_merge(const std::filesystem::path& folder,
                                   const std::vector<MissingWork>& missing);
 

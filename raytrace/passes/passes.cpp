@@ -14,6 +14,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr int hasty_share = 4;  // a sample's gather rays over those where time is up
 constexpr int most_rounds = 6;  // of camera samples, each at most four times the one before
 constexpr std::array<Gathered, gathered_kinds> every_kind = {Gathered::Solution, Gathered::Residual,
                                                              Gathered::Lobe};
@@ -241,13 +242,14 @@ class Passes {
     return samples;
   }
 
-  // What was not reached when it was stopped gets a sample all the same, two at edges, which tell
-  // what they are off by.
+  // What was not reached when it was stopped gets a sample all the same, two where they alone tell
+  // what they are off by: at edges, and everywhere if they gather for themselves.
   void first_round(const std::vector<std::uint32_t>& samples) {
     report_.least_camera_samples = static_cast<int>(*std::ranges::min_element(samples));
     shade(samples);
     if (!ends()) return;
-    shade_samples(shared_, camera_, field_ ? by_edges(2, 1) : everywhere(1), *sums_, report_.rays,
+    if (!field_) shared_.gather_rays = std::max(1, shared_.gather_rays / hasty_share);
+    shade_samples(shared_, camera_, field_ ? by_edges(2, 1) : everywhere(2), *sums_, report_.rays,
                   {}, {});
   }
 

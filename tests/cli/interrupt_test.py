@@ -46,7 +46,7 @@ class BrokenOff(program.Case):
         return header
 
     def test_ctrl_c_in_the_solve_gives_a_picture(self):
-        for number in (signal.SIGINT, signal.SIGTERM):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             code, out, err, seconds = self.stopped(*self.call, "--json", signal_number=number)
             self.assertEqual(code, 1, err)
             self.says(err, "interrupted", "a.exr, which says it is partial")
