@@ -75,8 +75,8 @@ std::optional<Vec3> lifted(const Scene& scene, const Vec3& start, double extent)
   return std::nullopt;
 }
 
-// Lamps with a front are often mounted flush: those that shine away from what they stand on are
-// left there.
+// Lamps with a front are often mounted flush: of those that shine away from what they stand on no
+// light is lost, but rays from the camera must meet them first.
 bool shines_at(const Scene& scene, const Lamp& lamp, const Nearest& found, bool on_it) {
   const Vec3 toward = on_it ? -triangle_normal(scene, found.triangle) : found.point - lamp.position;
   return glm::dot(toward, lamp.axis) > 0.0;
@@ -114,7 +114,11 @@ void lift_lamps(Scene& scene) {
     const Nearest first = nearest_surface(scene, lamp.position, reach);
     if (first.distance_m >= reach) continue;
     const bool on_it = first.distance_m < rounding_share * extent;
-    if (is_wide(lamp.kind) && !shines_at(scene, lamp, first, on_it)) continue;
+    if (is_wide(lamp.kind) && !shines_at(scene, lamp, first, on_it)) {
+      const Vec3 free = lamp.position + (reach - first.distance_m) * lamp.axis;
+      if (!goes_through(scene, lamp.position, free, reach)) lamp.position = free;
+      continue;
+    }
     const std::string name = in_quotes(lamp.name),
                       object =
                           in_quotes(scene.objects[scene.triangles[first.triangle].object].name);

@@ -29,8 +29,8 @@ FaceParts mend_surfaces(Scene& scene);
 // Moves each lamp that rays in single precision would not find in front of a surface (1.6e-5 of the
 // surfaces' extent) to where they do, with a warning: half of its light lands there all the same. A
 // lamp on a surface is taken to be in front of it, in a corner in front of all that meet there; one
-// between sheets that are nearer still stays, and is named. Of lamps with a size the centre counts,
-// and those that shine away from the surface stay.
+// between sheets that are nearer still stays, and is named. Of lamps with a size the centre counts;
+// those that shine away from the surface, as flush ones do, come forward by as much without a word.
 void lift_lamps(Scene& scene);
 
 }  // namespace earthshine::scenes

@@ -5,23 +5,29 @@
 #include <cmath>
 
 #include "scenes/light/lamp_light.h"
+#include "scenes/sky/two_discs.h"
 
 namespace earthshine::scenes {
 namespace {
 
-// Where the limb crosses the Sun's disc: its height over the limb in radii of the disc, from -1,
-// hidden, to 1, free.
-double sun_over_limb(const Scene& scene) {
-  const double radius = base::radians(scene.sun->angular_radius_deg);
-  const double separation =
-      std::acos(std::clamp(glm::dot(scene.sun->direction, scene.earth->direction), -1.0, 1.0));
-  const double over_limb = separation - base::radians(scene.earth->half_angle_deg);
-  if (radius <= 0.0) return over_limb > 0.0 ? 1.0 : -1.0;
-  return std::clamp(over_limb / radius, -1.0, 1.0);
-}
+// The Sun's disc and the Earth's before it, radians.
+struct SunAndEarth {
+  double radius, limb, separation;
+  // Solid angle of what the Earth leaves of the disc, as far as `rim` from its middle.
+  [[nodiscard]] double left(double rim) const {
+    const double half = std::sin(0.5 * rim);
+    return 4.0 * base::pi * half * half - shared_solid_angle(rim, limb, separation);
+  }
+  [[nodiscard]] bool touch() const {
+    return separation < radius + limb && separation + radius > limb;
+  }
+};
 
-// Share of a disc on one side of a chord at distance x radii from its centre.
-double disc_share(double x) { return 0.5 + (x * std::sqrt(1.0 - x * x) + std::asin(x)) / base::pi; }
+SunAndEarth sun_and_earth(const Scene& scene) {
+  const Vec3 &sun = scene.sun->direction, &earth = scene.earth->direction;
+  return {base::radians(scene.sun->angular_radius_deg), base::radians(scene.earth->half_angle_deg),
+          2.0 * std::atan2(glm::length(sun - earth), glm::length(sun + earth))};
+}
 
 }  // namespace
 
@@ -88,32 +94,36 @@ bool earth_is_lit(const Scene& scene) {
 
 double visible_sun_share(const Scene& scene) {
   if (!scene.sun) return 0.0;
-  return scene.earth ? disc_share(sun_over_limb(scene)) : 1.0;
+  if (!scene.earth) return 1.0;
+  const SunAndEarth discs = sun_and_earth(scene);
+  if (!discs.touch()) return discs.separation < discs.limb ? 0.0 : 1.0;
+  const double half = std::sin(0.5 * discs.radius);
+  return std::clamp(discs.left(discs.radius) / (4.0 * base::pi * half * half), 0.0, 1.0);
 }
 
 Vec3 sample_sun(const Scene& scene, double u, double v) {
   const Vec3& sun = scene.sun->direction;
   const double radius = base::radians(scene.sun->angular_radius_deg);
-  const double over = scene.earth ? sun_over_limb(scene) : 1.0;
-  if (over >= 1.0 || over <= -1.0) return sample_cone(sun, radius, u, v);
-  // Across the limb the place has the density of the chords' lengths, whose integral is inverted by
-  // halving; along the chord it is uniform. In radii of the disc, x away from the Earth.
-  const double wanted = u * disc_share(over);
-  double low = -1.0, high = over;  // of -x
-  for (int step = 0; step < 50; ++step) {
+  if (!scene.earth) return sample_cone(sun, radius, u, v);
+  const SunAndEarth discs = sun_and_earth(scene);
+  if (!discs.touch()) return sample_cone(sun, radius, u, v);
+  // How far from the Sun's middle, by halving: what is left within grows with it; then along what
+  // is left of that rim.
+  const double wanted = u * discs.left(radius);
+  double low = 0.0, high = radius;
+  for (int step = 0; step < 40; ++step) {
     const double middle = 0.5 * (low + high);
-    (disc_share(middle) > wanted ? high : low) = middle;
+    (discs.left(middle) > wanted ? high : low) = middle;
   }
-  const double x = -0.5 * (low + high);
-  const double y = (2.0 * v - 1.0) * std::sqrt(std::max(0.0, 1.0 - x * x));
-  const Vec3 away =
-      glm::normalize(glm::dot(sun, scene.earth->direction) * sun - scene.earth->direction);
-  // Equal areas of the disc are equal solid angles: 1 - cos = r^2 (1 - cos radius).
-  const double half_sine = std::sin(radius / 2);
-  const double r2 = x * x + y * y, one_minus_cos = r2 * 2.0 * half_sine * half_sine;
-  const double per_radius = std::sqrt(one_minus_cos * (2.0 - one_minus_cos) / std::max(r2, 1e-300));
-  return glm::normalize((1.0 - one_minus_cos) * sun +
-                        per_radius * (x * away + y * glm::cross(sun, away)));
+  const double off = 0.5 * (low + high);
+  const double covered = covered_half_arc(off, discs.limb, discs.separation);
+  const double turn = covered + 2.0 * v * (base::pi - covered);
+  const Vec3 across = scene.earth->direction - glm::dot(sun, scene.earth->direction) * sun;
+  const double length = glm::length(across);
+  const Vec3 toward = length > 0.0 ? across / length : base::frame_around(sun).tangent;
+  return glm::normalize(std::cos(off) * sun +
+                        std::sin(off) *
+                            (std::cos(turn) * toward + std::sin(turn) * glm::cross(sun, toward)));
 }
 
 Rgb sun_sample_illuminance(const Scene& scene) {

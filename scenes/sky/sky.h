@@ -37,13 +37,11 @@ class EarthRadiance {
 // Whether any part of the disc shines.
 [[nodiscard]] bool earth_is_lit(const Scene& scene);
 
-// Share of the Sun's disc that the Earth does not cover, 0 to 1: area of one circle outside the
-// other on the sphere of directions (the limb taken as straight across the Sun's disc, error below
-// 1e-4 of the disc).
+// Share of the Sun's disc that the Earth does not cover, 0 to 1, by solid angle (two_discs.h).
 [[nodiscard]] double visible_sun_share(const Scene& scene);
 
-// A direction spread uniformly, for u and v in [0, 1), over what the Earth leaves of the Sun's disc
-// (the limb taken as straight, as above).
+// A direction spread uniformly, for u and v in [0, 1), over what the Earth leaves of the Sun's
+// disc.
 [[nodiscard]] Vec3 sample_sun(const Scene& scene, double u, double v);
 
 // What directions spread so must each carry so that a plate that faces

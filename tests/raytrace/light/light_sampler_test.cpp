@@ -7,6 +7,8 @@
 
 #include "base/numbers/random.h"
 #include "raytrace/render.h"
+#include "scenes/health/mend.h"
+#include "tests/raytrace/path_picture.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::raytrace {
@@ -153,6 +155,38 @@ TEST(LightSampler, NearestLampOnARayIsSeen) {
 
 // Of a Sun of 5 degrees and a small mirror, what any sample throws on a surface may reach it, from
 // the mirror's rim and at grazing incidence too; most surfaces are told without a sample.
+TEST(LightSampler, ALampFlushWithItsCeilingIsSeenWhole) {
+  // Seen slantwise and filling the picture, every pixel is its radiance M / pi by both tracers; ray
+  // and ceiling meet where ray and lamp do.
+  for (const double height_m : {0.3, 2.0, 7.1}) {
+    tests::SceneBuilder builder;
+    builder.plate(builder.material(tests::grey(0.5)), 4.0, height_m, false);
+    scenes::Lamp lamp;
+    lamp.kind = scenes::LampKind::Rectangle;
+    lamp.position = Vec3(0.0, 0.0, height_m);
+    lamp.edge_u = Vec3(0.0, 1.0, 0.0);
+    lamp.edge_v = Vec3(1.0, 0.0, 0.0);
+    lamp.axis = Vec3(0.0, 0.0, -1.0);
+    lamp.exitance = Rgb(base::pi);
+    builder.scene.lamps.push_back(lamp);
+    scenes::lift_lamps(builder.scene);
+    scenes::Camera camera;
+    camera.position = Vec3(0.3, 0.1, 0.3 * height_m);
+    camera.look_at = Vec3(0.1, 0.05, height_m);
+    camera.fov_deg = 5.0;
+    const tests::Prepared prepared(builder.scene);
+    PathOptions paths;
+    RenderOptions direct;
+    paths.columns = paths.rows = direct.columns = direct.rows = 16;
+    direct.indirect = Indirect::None;
+    const radiosity::Solution solution = prepared.solve({});
+    for (const base::Image& image : {trace_paths(prepared, camera, paths).image,
+                                     render(prepared, solution, camera, direct).image}) {
+      for (const float seen : image.find("G")->values) ASSERT_NEAR(seen, 1.0, 1e-6) << height_m;
+    }
+  }
+}
+
 TEST(LightSampler, NoSunIsLeftOutThatAMirrorThrows) {
   tests::SceneBuilder builder;
   scenes::Material silver = tests::grey(0.0);

@@ -64,14 +64,17 @@ TEST(LiftLamps, NamesWhatStandsBetweenSheets) {
   EXPECT_TRUE(test::holds(scene.warnings.back(), {"\"lamp\"", "between", "move it"}));
 }
 
-// Flush with the floor a flat lamp may shine up; one that shines down is lifted.
-TEST(LiftLamps, OfAFlatLampOnlyWhereItShines) {
+// Flush with the floor a flat lamp may shine up: nothing is said, but rays meet it first, and not
+// the floor, where it is. One that shines down is lifted with a warning.
+TEST(LiftLamps, FlatLampsStandInFrontOfWhatTheyAreFlushWith) {
   for (const std::string kind : {"disk", "rectangle"}) {
     for (const std::string height : {"0", "1e-5"}) {
       const Scene down = with_lamp_at(height, kind, "[0, 0, -1]");
       EXPECT_NEAR(down.lamps[0].position.z, 1.6e-4, 1e-12);
       EXPECT_EQ(down.warnings.size(), 1U);
-      EXPECT_TRUE(with_lamp_at(height, kind).warnings.empty());
+      const Scene up = with_lamp_at(height, kind);
+      EXPECT_NEAR(up.lamps[0].position.z, 1.6e-4, 1e-12);
+      EXPECT_TRUE(up.warnings.empty());
     }
   }
 }

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two discs on the sphere of directions, as the Sun's and the Earth's, one before the other. Angles
+// in radians, of discs up to a half sphere.
+#pragma once
+
+namespace earthshine::scenes {
+
+// Of the rim of a disc of radius `rim` that the other, of radius `other` about a centre at
+// `separation`, covers: half of the arc about the rim's own centre, 0 to pi.
+[[nodiscard]] double covered_half_arc(double rim, double other, double separation);
+
+// Solid angle of what both cover, sr: two sectors less the kite of both centres and the points
+// where the rims cross (Tovchigrechko and Vakser 2001 give the same sum; here the angles are by
+// half-angle formulas and the kite by L'Huilier's, so that discs of a thousandth of a degree keep
+// nine digits).
+[[nodiscard]] double shared_solid_angle(double a, double b, double separation);
+
+}  // namespace earthshine::scenes
