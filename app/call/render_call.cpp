@@ -108,7 +108,7 @@ void add_window_options(CLI::App& parser, RenderCall& call) {
             }
             call.crop = raytrace::Window{(*n)[0], (*n)[1], (*n)[2], (*n)[3]};
           },
-          "Only this part of the picture, as it is in the whole one")
+          "Only this part of the picture; with --no-error as it is in the whole one")
       ->type_name("X,Y,CxR");
   const auto pixel_option = [&](const std::string& name, bool probe, const char* help) {
     return parser

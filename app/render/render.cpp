@@ -52,7 +52,8 @@ void check_call(const RenderCall& call) {
   const bool range_alone = !call.range.empty() && call.png.empty() && call.cctv.empty();
   if (call.output.empty() && !call.only_pixel && !call.over.asked() && !range_alone) {
     throw Error(Blame::Input, "--output", "is missing", {},
-                "Name the picture: -o FILE.exr; only --range does without");
+                "Name the picture: -o FILE.exr; only --range, --over, --probe and --only-pixel "
+                "do without");
   }
   if (call.crop && !call.cctv.empty()) {
     throw Error(Blame::Input, "--cctv", "the CCTV stage needs the whole picture", {},

@@ -154,13 +154,16 @@ RangeView sense_range(const base::Image& layers, const Vec3& position, const Ran
   return view;
 }
 
-RangeSensor resolve_range_sensor(const scenes::Scene& scene, const std::string& name) {
+RangeSensor resolve_range_sensor(const scenes::Scene& scene, const std::string& name,
+                                 const std::string& of) {
   std::vector<std::string> names;
   for (const SettingTable& table : scene.range_sensors) {
     if (table.name == name) return read_sensor(table);
     names.push_back(table.name);
   }
-  throw Error(Blame::Input, scene.path.string(), "there is no range sensor " + in_quotes(name),
+  throw Error(Blame::Input, scene.path.string(),
+              (of.empty() ? "" : "camera " + in_quotes(of) + ": ") + "there is no range sensor " +
+                  in_quotes(name),
               names.empty() ? "the scene has no [[range_sensor]]" : "known are " + listed(names),
               did_you_mean(name, names));
 }
@@ -169,7 +172,7 @@ void check_range_sensors(const scenes::Scene& scene) {
   for (const SettingTable& table : scene.range_sensors) static_cast<void>(read_sensor(table));
   for (const scenes::Camera& camera : scene.cameras) {
     if (camera.range_sensor.empty()) continue;
-    static_cast<void>(resolve_range_sensor(scene, camera.range_sensor));
+    static_cast<void>(resolve_range_sensor(scene, camera.range_sensor, camera.name));
   }
 }
 

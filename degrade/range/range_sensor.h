@@ -78,7 +78,9 @@ struct RangeView {
 
 // The [[range_sensor]] of that name. Throws base::Error (Input) for an unknown name or key (with
 // the nearest), a value of the wrong kind or out of range, and limits that contradict each other.
-[[nodiscard]] RangeSensor resolve_range_sensor(const scenes::Scene& scene, const std::string& name);
+// of: the camera that names it, for the message.
+[[nodiscard]] RangeSensor resolve_range_sensor(const scenes::Scene& scene, const std::string& name,
+                                               const std::string& of = {});
 
 // Everything that resolve_range_sensor would refuse, for all tables and all cameras of the scene.
 void check_range_sensors(const scenes::Scene& scene);

@@ -171,7 +171,7 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
   if (shines) {
     if (material.reflects()) direct(ray, surface, weight, depth);
     if (base::is_lit(material.diffuse)) {
-      if (shared_.groups.ambient != no_group) {
+      if (seen == Seen::ByCamera && shared_.groups.ambient != no_group) {
         add(shared_.layer[shared_.groups.ambient], sample_,
             depth == 0 ? Part::Indirect : Part::Specular,
             weight * surface.diffuse * scene.ambient_radiance);

@@ -5,20 +5,15 @@
 
 #include "base/numbers/random.h"
 #include "base/parallel.h"
+#include "raytrace/share/signals.h"
 
 namespace earthshine::raytrace {
 namespace {
 
 constexpr std::size_t noise_fields = 4;
-// Noise over signal of what has no samples, and signal over noise where all is kept.
-constexpr float certain = 1e6F;
-// Independent fields of what squares are off by.
-constexpr std::size_t scatter_fields = 3;
 // Sums of squared correlations of a level's details as many pixels apart as sharing steps over, of
 // independent values on an endless plane: squares of normal details are correlated so.
 constexpr std::array<float, share_levels> alike = {1.15F, 1.33F, 1.49F, 1.53F, 1.54F};
-// Planes of squares; scatter_fields from the last on.
-enum Square : std::size_t { Energy, NoiseSquare, Weight, Scatter };
 constexpr std::size_t layers_at_once = 4;
 constexpr std::size_t points_at_once = 1024;
 
@@ -37,7 +32,6 @@ class Sharer {
 
   Shared run() {
     shared_.layers = estimate_.layers;
-    shared_.on_grid = points_;
     shared_.signal.assign(points_, {});
     shared_.noise.assign(points_, {});
     shared_.few.assign(points_, {});
@@ -204,57 +198,12 @@ class Sharer {
   }
 
   void keep(std::size_t level) {
+    find_signals(level, squares_, expected_, shared_);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
-        const float noise = squares_[NoiseSquare][p], weight = squares_[Weight][p];
-        const float s = weight > 0.0F ? (squares_[Energy][p] - noise) / weight : 0.0F;
-        const float q = expected_[p] > 0.0F ? expected_[p] * noise : certain * std::max(0.0F, s);
-        shared_.signal[p][level] = s;
-        shared_.noise[p][level] = q;
-        float variance = 0.0F;
-        for (std::size_t k = 0; k < scatter_fields; ++k) {
-          const float off = weight * q > 0.0F ? squares_[Scatter + k][p] / (weight * q) : 0.0F;
-          variance += off * off / float(scatter_fields);
-        }
-        // The mean of N normal squares has the relative variance 2 / N.
-        shared_.few[p][level] = std::min(1.0F, 0.5F * variance);
+        keep_[p][level] = kept_share(shared_.signal[p][level], shared_.noise[p][level]);
       }
     });
-    shared_.spread[level] = spread_of(level);
-    for_all([&](std::size_t begin, std::size_t end) {
-      for (std::size_t p = begin; p < end; ++p) {
-        const float q = shared_.noise[p][level];
-        keep_[p][level] = kept_share(shared_.spread[level].likely(shared_.signal[p][level], q), q);
-      }
-    });
-  }
-
-  struct Sums {
-    double count = 0.0, signal = 0.0, noise = 0.0;
-    double ratio = 0.0, square = 0.0, chance = 0.0;  // of signal over noise
-    Sums& operator+=(const Sums& other) {
-      count += other.count, signal += other.signal, noise += other.noise;
-      ratio += other.ratio, square += other.square, chance += other.chance;
-      return *this;
-    }
-  };
-
-  [[nodiscard]] SignalSpread spread_of(std::size_t level) const {
-    const Sums sums =
-        base::ordered_sum(points_, points_at_once, Sums(), [&](std::size_t begin, std::size_t end) {
-          Sums part;
-          for (std::size_t p = begin; p < end; ++p) {
-            if (expected_[p] <= 0.0F || shared_.noise[p][level] <= 0.0F) continue;
-            const double s = double(shared_.signal[p][level]), q = double(shared_.noise[p][level]);
-            part += {1.0, s, q, s / q, s / q * (s / q), 2.0 * double(shared_.few[p][level])};
-          }
-          return part;
-        });
-    if (sums.count < 2.0) return {};
-    const double mean = sums.ratio / sums.count, all = sums.square / sums.count - mean * mean;
-    const double own = all > 0.0 ? std::max(0.0, 1.0 - sums.chance / sums.count / all) : 0.0;
-    // Not the mean of ratios: of noise that is known by few windows it is too large.
-    return {static_cast<float>(sums.signal / sums.noise), static_cast<float>(own)};
   }
 
   // A few layers at a time: planes of all of them would take more memory than all else.

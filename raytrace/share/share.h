@@ -18,7 +18,7 @@
 // N is not told by how far the fields of noise are apart, since all are made of the same halves: s
 // is off by chance as a mean of (d^2 - n^2) / e with random signs is, whose square is 2 / N of q^2.
 // Where the s / q of a level differ by no more than that all over the picture, as where all is
-// smooth, what each is off their mean says nothing and is left out of s (Efron and Morris 1975).
+// smooth, what each is off their mean says nothing and is left out of s (signals.h).
 // That sum over the levels, and the noise of the rest, is the squared error that is stated. It goes
 // to nothing with more samples, and with it what sharing blurs.
 #pragma once
@@ -115,16 +115,6 @@ class Neighbours {
   std::vector<std::vector<std::uint16_t>> masks_;  // per level and point
 };
 
-// Of the signals found at a level, each over its noise, all over the picture: the mean, and how
-// much of what they are off it is their own and no chance.
-struct SignalSpread {
-  float mean = 0.0F, own = 1.0F;
-  [[nodiscard]] float likely(float found, float noise) const {
-    const float middle = mean * noise;
-    return middle + own * (found - middle);
-  }
-};
-
 struct Shared {
   std::size_t layers = 0;
   std::vector<glm::vec3> radiance;  // as Estimate::sum, the shared means
@@ -132,8 +122,6 @@ struct Shared {
   // noise, and 1 / N, by level; noise of the rest.
   std::vector<std::array<float, share_levels>> signal, noise, few;
   std::vector<float> rest;
-  std::size_t on_grid = 0;  // points that the spreads are of; strays follow
-  std::array<SignalSpread, share_levels> spread;
   // Of strays, the signal that noise may hide: less cannot be told from none. Empty without strays.
   std::vector<float> hidden;
   std::vector<float> squared_error;  // stated

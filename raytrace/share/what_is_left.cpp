@@ -40,13 +40,9 @@ double Shared::squared_error_with(std::size_t point, double factor) const {
   const auto more = static_cast<float>(factor);
   Left left{rest[point] / more, 0.0F};
   for (std::size_t level = 0; level < share_levels; ++level) {
-    const float q = noise[point][level];
     const float least = level == 0 && !hidden.empty() ? hidden[point] / more : 0.0F;
-    const float found = signal[point][level];
-    const float s = point < on_grid ? spread[level].likely(found, q)
-                    : least > 0.0F  ? std::max(found, least)
-                                    : found;
-    left.add(s, q / more, few[point][level]);
+    const float s = least > 0.0F ? std::max(signal[point][level], least) : signal[point][level];
+    left.add(s, noise[point][level] / more, few[point][level]);
   }
   return double(left.all());
 }

@@ -13,7 +13,7 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr const char* title = "[[object]] with instance_of";
+constexpr const char* title = "[[object]]";
 constexpr std::string_view instance_keys[] = {"name",  "instance_of", "translate", "rotate",
                                               "scale", "material",    "target",    "velocity"};
 
@@ -146,13 +146,16 @@ void InstanceReader::finish(Scene& scene, double unit_m, std::size_t own_materia
   std::vector<Instance> instances;
   std::size_t triangles = scene.triangles.size(), vertices = scene.vertices.size();
   for (const TomlNode* node : waiting_) {
-    const TableReader table(*node, title, instance_keys);
+    TableReader table(*node, title, instance_keys);
+    (void)table.read_name();
     const std::string named = *table.name("instance_of");
     std::uint32_t object = 0;
     while (object < originals && scene.objects[object].name != named) ++object;
     if (object == originals) {
+      std::vector<std::string> names;
+      for (const Object& other : scene.objects) names.push_back(other.name);
       table.fail("instance_of", fmt::format("is {}", in_quotes(named)),
-                 "it names an [[object]] with a mesh or a shape");
+                 "it names an [[object]] with a mesh or a shape", did_you_mean(named, names));
     }
     const Placement placement = read_placement(table, unit_m);
     instances.push_back(relation(object, placed_.at(named), placement));
@@ -169,7 +172,8 @@ void InstanceReader::finish(Scene& scene, double unit_m, std::size_t own_materia
   scene.triangles.reserve(triangles);
   scene.vertices.reserve(vertices);
   for (std::size_t k = 0; k < waiting_.size(); ++k) {
-    const TableReader table(*waiting_[k], title, instance_keys);
+    TableReader table(*waiting_[k], title, instance_keys);
+    (void)table.read_name();
     add(scene, table, instances[k], own_material_count);
   }
 }

@@ -175,7 +175,7 @@ Placement read_placement(const TableReader& table, double unit_m) {
   // Of meshes too: glTF means metres by its specification, but here the scene's unit rules whatever
   // the format, so that one key says what every number of the scene means.
   placement.unit_m = unit_m;
-  if (table.has("scale")) placement.scale = *table.colour("scale", {0.0, 1e6, true});
+  if (table.has("scale")) placement.scale = *table.scale("scale", {0.0, 1e6, true});
   if (const auto degrees = table.vector("rotate", {-1e6, 1e6})) {
     placement.rotation = rotation_xyz(*degrees);
   }

@@ -181,13 +181,21 @@ std::optional<std::string> TableReader::choice(std::string_view key, KeyList cho
 }
 
 std::optional<Rgb> TableReader::colour(std::string_view key, Range range) const {
+  return one_or_three(key, range, "a number or [r, g, b]");
+}
+
+std::optional<Vec3> TableReader::scale(std::string_view key, Range range) const {
+  return one_or_three(key, range, "a number or [x, y, z]");
+}
+
+std::optional<Vec3> TableReader::one_or_three(std::string_view key, Range range,
+                                              std::string_view wanted) const {
   const TomlEntry* entry = find(key);
   if (entry == nullptr) return std::nullopt;
-  constexpr std::string_view wanted = "a number or [r, g, b]";
   if (std::holds_alternative<TomlArray>(entry->node.value)) {
     return three(*entry, entry->node, range, wanted);
   }
-  return Rgb(checked(*entry, entry->node, range, wanted));
+  return Vec3(checked(*entry, entry->node, range, wanted));
 }
 
 std::optional<Vec3> TableReader::vector(std::string_view key, Range range) const {

@@ -71,6 +71,8 @@ class TableReader {
   [[nodiscard]] std::optional<std::string> choice(std::string_view key, KeyList choices) const;
   // A number (grey) or [r, g, b].
   [[nodiscard]] std::optional<Rgb> colour(std::string_view key, Range range = light_strength) const;
+  // A number, of all three axes, or [x, y, z].
+  [[nodiscard]] std::optional<Vec3> scale(std::string_view key, Range range) const;
   [[nodiscard]] std::optional<Vec3> vector(std::string_view key, Range range = any_number) const;
   // Of unit length; zero is refused.
   [[nodiscard]] std::optional<Vec3> direction(std::string_view key) const;
@@ -94,6 +96,8 @@ class TableReader {
                          std::string_view allowed = {}, std::string_view remedy = {}) const;
 
  private:
+  [[nodiscard]] std::optional<Vec3> one_or_three(std::string_view key, Range range,
+                                                 std::string_view wanted) const;
   [[nodiscard]] Vec3 three(const TomlEntry& entry, const TomlNode& node, Range range,
                            std::string_view wanted) const;
   [[nodiscard]] double checked(const TomlEntry& entry, const TomlNode& node, Range range,

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // What neighbouring gather points share, on estimates written down by hand.
-#include "raytrace/share/share.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -10,64 +8,10 @@
 
 #include "base/numbers/random.h"
 #include "base/parallel.h"
+#include "tests/raytrace/share/flat_estimate.h"
 
-namespace earthshine::raytrace {
+namespace earthshine::raytrace::flat_estimate {
 namespace {
-
-constexpr int edge_px = 48;
-constexpr std::size_t count = static_cast<std::size_t>(edge_px) * edge_px;
-constexpr Window window{0, 0, edge_px, edge_px};
-
-std::size_t pixel(int x, int y) { return static_cast<std::size_t>(y * edge_px + x); }
-
-// Points on a plane 2 m in front of the camera, facing it, one per pixel.
-std::vector<GatherPoint> flat() {
-  std::vector<GatherPoint> points(count);
-  for (int y = 0; y < edge_px; ++y) {
-    for (int x = 0; x < edge_px; ++x) {
-      GatherPoint& point = points[pixel(x, y)];
-      point.position =
-          glm::vec3(0.01F * static_cast<float>(x), 0.01F * static_cast<float>(y), -2.0F);
-      point.normal = glm::vec3(0.0F, 0.0F, 1.0F);
-      point.reach_m = 1.0F;
-      point.triangle = static_cast<std::uint32_t>(pixel(x, y));
-      point.spacing_m = 0.01F;
-    }
-  }
-  return points;
-}
-
-// Two samples a point, one in each half: value(x, y, half).
-template <class Value>
-Estimate estimate_of(const Value& value) {
-  Estimate estimate(count, 1, 1);
-  for (int y = 0; y < edge_px; ++y) {
-    for (int x = 0; x < edge_px; ++x) {
-      const std::size_t p = pixel(x, y);
-      for (std::size_t half = 0; half < 2; ++half) {
-        const auto v = static_cast<float>(value(x, y, half));
-        estimate.sum[p] += glm::vec3(v);
-        estimate.luminance[p][half] = v;
-      }
-      estimate.samples[p] = 2.0F;
-    }
-  }
-  return estimate;
-}
-
-// Of a signal that is not there: its square, less the variance that is stated.
-double more_than_stated(const Shared& shared, std::size_t p, std::size_t level) {
-  const double noise = double(shared.noise[p][level]), found = double(shared.signal[p][level]);
-  return found * found - noise * noise * 2.0 * double(shared.few[p][level]);
-}
-
-// A mean of zero, by the scatter between the values.
-void expect_none(const std::vector<double>& values) {
-  const auto n = static_cast<double>(values.size());
-  double mean = 0.0, square = 0.0;
-  for (const double value : values) mean += value / n, square += value * value / n;
-  EXPECT_NEAR(mean, 0.0, 4.0 * std::sqrt((square - mean * mean) / (n - 1.0)));
-}
 
 TEST(Share, WhatBothHalvesAgreeOnIsKept) {
   // No noise: every detail is signal, however fine, and nothing is off.
@@ -101,101 +45,6 @@ TEST(Share, NoiseFallsAndNoLessIsStated) {
   }
   EXPECT_LT(found / stated, 1.0 + 4.0 * std::sqrt(2.0 / fields));
   EXPECT_LT(stated, 0.5 / 8.0);
-}
-
-// Mean squares over the picture: what the shared values are off 10, what is stated, and what would
-// be stated if every window's signal stood for itself; and how much of the finest signals does.
-struct NoiseStated {
-  double found = 0.0, stated = 0.0, alone = 0.0, own = 0.0;
-};
-NoiseStated state_noise(const Neighbours& neighbours, std::uint64_t seed, double signal) {
-  base::Rng rng(base::Key(seed, base::Stream::Test, 34));
-  const auto value = [&](int x, int y, std::size_t) {
-    const double fine = x < edge_px / 2 && (x + y) % 2 == 0 ? signal : 0.0;
-    return 10.0 + fine + std::sqrt(12.0) * (rng.next() - 0.5);
-  };
-  Shared shared = share(neighbours, estimate_of(value));
-  NoiseStated sums;
-  for (std::size_t p = 0; p < count; ++p) {
-    const double off = double(shared.radiance[p].g) - 10.0;
-    sums.found += off * off / static_cast<double>(count);
-    sums.stated += shared.squared_error_with(p, 1.0) / static_cast<double>(count);
-  }
-  sums.own = double(shared.spread[0].own);
-  shared.spread = {};
-  for (std::size_t p = 0; p < count; ++p) {
-    sums.alone += shared.squared_error_with(p, 1.0) / static_cast<double>(count);
-  }
-  return sums;
-}
-
-TEST(Share, ASmoothPictureStatesLittleThatNoiseMayHide) {
-  // Noise alone. Each window's signal is off by chance by sigma = q sqrt(2 / N), N = 100 details,
-  // and what is above zero of it is stated, sigma / sqrt(2 pi). The mean of the plane's 48^2 / 100
-  // windows is off by a fifth of sigma, and so is the share that is left to each.
-  constexpr int fields = 50;
-  const Neighbours neighbours(window, flat());
-  NoiseStated all;
-  for (std::uint64_t seed = 1; seed <= fields; ++seed) {
-    const NoiseStated one = state_noise(neighbours, seed, 0.0);
-    all.found += one.found, all.stated += one.stated, all.alone += one.alone;
-  }
-  EXPECT_LT(all.found, all.stated);
-  EXPECT_LT(all.stated - all.found, 0.5 * (all.alone - all.found));
-}
-
-TEST(Share, WhereSignalsDifferEachIsStatedAsItIsFound) {
-  // The same with a pattern of 5 on and off its mean on half of the plane: s / q is 25 / 0.5 there
-  // and none elsewhere, which varies by 25^2, and chance is held to explain no more than 2 of it.
-  EXPECT_GT(state_noise(Neighbours(window, flat()), 1, 10.0).own, 1.0 - 2.0 / (25.0 * 25.0));
-}
-
-TEST(Share, HowFarOffASignalIsByChanceIsStated) {
-  // One sample of ten brings all the light: there is no signal, and what is found, the difference
-  // of two chance squares over a window, has the variance q^2 2 / N, of details of 1 to 8 pixels.
-  // In the mean over 400 fields, by the scatter between them.
-  constexpr int fields = 400;
-  const Neighbours neighbours(window, flat());
-  std::array<std::vector<double>, 4> more;
-  for (std::uint64_t seed = 1; seed <= fields; ++seed) {
-    base::Rng rng(base::Key(seed, base::Stream::Test, 32));
-    const Shared shared =
-        share(neighbours,
-              estimate_of([&](int, int, std::size_t) { return rng.next() < 0.1 ? 10.0 : 0.0; }));
-    const std::size_t p = pixel(24, 24);
-    for (std::size_t level = 0; level < more.size(); ++level) {
-      more[level].push_back(more_than_stated(shared, p, level));
-    }
-  }
-  for (const std::vector<double>& of_level : more) expect_none(of_level);
-}
-
-TEST(Share, HowFarOffASignalIsByChanceGoesByTheSamplesThere) {
-  // Noise of variance 1 a sample, 64 of them in each half of blocks of 2 x 2, one block of four,
-  // and one in the halves elsewhere: s and q of a point are those of as many samples as it has. As
-  // above, for a point of many and one of few.
-  constexpr int fields = 400;
-  const Neighbours neighbours(window, flat());
-  std::array<std::vector<double>, 2> more;
-  for (std::uint64_t seed = 1; seed <= fields; ++seed) {
-    base::Rng rng(base::Key(seed, base::Stream::Test, 33));
-    Estimate estimate(count, 1, 1);
-    for (std::size_t p = 0; p < count; ++p) {
-      const bool many = p % edge_px / 2 % 2 == 0 && p / edge_px / 2 % 2 == 0;
-      const double half = many ? 64.0 : 1.0;
-      for (float& of_half : estimate.luminance[p]) {
-        of_half = static_cast<float>(half * (10.0 + std::sqrt(12.0 / half) * (rng.next() - 0.5)));
-      }
-      estimate.sum[p] = glm::vec3(estimate.luminance[p][0] + estimate.luminance[p][1]);
-      estimate.samples[p] = static_cast<float>(2.0 * half);
-    }
-    const Shared shared = share(neighbours, estimate);
-    for (std::size_t few = 0; few < more.size(); ++few) {
-      const std::size_t p = few == 0 ? pixel(24, 24) : pixel(26, 26);
-      more[few].push_back(more_than_stated(shared, p, 0));
-    }
-  }
-  for (const std::vector<double>& of_point : more) expect_none(of_point);
 }
 
 TEST(Share, NothingIsSharedAcrossAnEdgeOrAStep) {
@@ -322,4 +171,4 @@ TEST(Share, SameBytesOnOneAndTwoThreads) {
 }
 
 }  // namespace
-}  // namespace earthshine::raytrace
+}  // namespace earthshine::raytrace::flat_estimate

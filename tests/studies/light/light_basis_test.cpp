@@ -169,7 +169,8 @@ TEST(LightBasis, InTheUmbraSunAndEarthWeighNothing) {
 }
 
 // Weight times the group's own Sun is the Sun of the place, and half of it where the limb stands
-// before its middle. Another brightness is no other Sun.
+// before its middle, with what the limb bends away from a straight one, r cot(h) / (3 pi) of the
+// disc. Another brightness is no other Sun.
 TEST(LightBasis, APartlyHiddenSunWeighsItsShare) {
   auto places = tests::orbit_places({0, 60, 60}, EarthModel::Lambert, "bay-to-earth", 0.2666);
   places[2].sun->illuminance_lx = Rgb(100, 200, 0);
@@ -182,7 +183,8 @@ TEST(LightBasis, APartlyHiddenSunWeighsItsShare) {
   const LightBasis basis(tests::open_room(), places, {{"on", false, {}}});
   ASSERT_EQ(basis.sun_parts(), 3U);
   const std::size_t part[] = {0, 1, 1, 2};
-  const double share[] = {1.0, 1.0, 1.0, 0.5};
+  const double bend = base::radians(0.2666) / std::tan(h) / (3.0 * base::pi);
+  const double share[] = {1.0, 1.0, 1.0, 0.5 + bend};
   for (std::size_t k = 0; k < places.size(); ++k) {
     const GroupWeights found = basis.weights(k, 0);
     for (std::size_t s = 0; s < 3; ++s) {

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// What chance makes of a signal, and what is stated of it.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "base/numbers/random.h"
+#include "tests/raytrace/share/flat_estimate.h"
+
+namespace earthshine::raytrace::flat_estimate {
+namespace {
+
+// Of a signal that is not there: its square, less the variance that is stated.
+double more_than_stated(const Shared& shared, std::size_t p, std::size_t level) {
+  const double noise = double(shared.noise[p][level]), found = double(shared.signal[p][level]);
+  return found * found - noise * noise * 2.0 * double(shared.few[p][level]);
+}
+
+// The left columns are another surface, whose signals, alike in both halves, differ by so much more
+// than chance that every window of the picture is taken at its word.
+constexpr int strip_px = 8;
+std::vector<GatherPoint> with_a_strip() {
+  std::vector<GatherPoint> points = flat();
+  for (std::size_t p = 0; p < count; ++p) {
+    if (p % edge_px < strip_px) points[p].position.z = -3.0F;
+  }
+  return points;
+}
+double strip_signal(std::size_t p) {
+  return p % edge_px < strip_px ? 1e4 * base::uniform(base::Key(1, base::Stream::Test, p), 0) : 0.0;
+}
+
+// A mean of zero, by the scatter between the values.
+void expect_none(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  double mean = 0.0, square = 0.0;
+  for (const double value : values) mean += value / n, square += value * value / n;
+  EXPECT_NEAR(mean, 0.0, 4.0 * std::sqrt((square - mean * mean) / (n - 1.0)));
+}
+
+TEST(Signals, ASmoothPictureStatesLittleThatNoiseMayHide) {
+  // Noise alone. Each window's signal is off by chance by sigma = q sqrt(2 / N), 100 details, and
+  // of what is above zero sigma / sqrt(2 pi) would be stated in the mean. The mean of the plane's
+  // 48^2 / 100 windows is off by a fifth of that, and so is the share that is left to each.
+  constexpr int fields = 50;
+  const Neighbours neighbours(window, flat());
+  double found = 0.0, stated = 0.0, alone = 0.0;
+  for (std::uint64_t seed = 1; seed <= fields; ++seed) {
+    base::Rng rng(base::Key(seed, base::Stream::Test, 34));
+    const Shared shared = share(neighbours, estimate_of([&](int, int, std::size_t) {
+                                  return 10.0 + std::sqrt(12.0) * (rng.next() - 0.5);
+                                }));
+    for (std::size_t p = 0; p < count; ++p) {
+      const double off = double(shared.radiance[p].g) - 10.0;
+      found += off * off;
+      stated += double(shared.squared_error[p]);
+      const double sigma = double(shared.noise[p][0]) * std::sqrt(2.0 * double(shared.few[p][0]));
+      alone += sigma / std::sqrt(2.0 * base::pi);
+    }
+  }
+  EXPECT_LT(found, stated);
+  EXPECT_LT(stated - found, 0.5 * alone);
+}
+
+TEST(Signals, HowFarOffASignalIsByChanceIsStated) {
+  // One sample of ten brings all the light: there is no signal, and what is found, the difference
+  // of two chance squares over a window, has the variance q^2 2 / N, of details of 1 to 8 pixels.
+  // In the mean over 400 fields, by the scatter between them.
+  constexpr int fields = 400;
+  const Neighbours neighbours(window, with_a_strip());
+  std::array<std::vector<double>, 4> more;
+  for (std::uint64_t seed = 1; seed <= fields; ++seed) {
+    base::Rng rng(base::Key(seed, base::Stream::Test, 32));
+    const Shared shared =
+        share(neighbours, estimate_of([&](int x, int y, std::size_t) {
+                return strip_signal(pixel(x, y)) + (rng.next() < 0.1 ? 10.0 : 0.0);
+              }));
+    const std::size_t p = pixel(24, 24);
+    for (std::size_t level = 0; level < more.size(); ++level) {
+      more[level].push_back(more_than_stated(shared, p, level));
+    }
+  }
+  for (const std::vector<double>& of_level : more) expect_none(of_level);
+}
+
+TEST(Signals, HowFarOffASignalIsByChanceGoesByTheSamplesThere) {
+  // Noise of variance 1 a sample, 64 of them in each half of blocks of 2 x 2, one block of four,
+  // and one in the halves elsewhere: s and q of a point are those of as many samples as it has. As
+  // above, for a point of many and one of few.
+  constexpr int fields = 400;
+  const Neighbours neighbours(window, with_a_strip());
+  std::array<std::vector<double>, 2> more;
+  for (std::uint64_t seed = 1; seed <= fields; ++seed) {
+    base::Rng rng(base::Key(seed, base::Stream::Test, 33));
+    Estimate estimate(count, 1, 1);
+    for (std::size_t p = 0; p < count; ++p) {
+      const bool many = p % edge_px / 2 % 2 == 0 && p / edge_px / 2 % 2 == 0;
+      const double half = many ? 64.0 : 1.0;
+      for (float& of_half : estimate.luminance[p]) {
+        const double noise = std::sqrt(12.0 / half) * (rng.next() - 0.5);
+        of_half = static_cast<float>(half * (10.0 + strip_signal(p) + noise));
+      }
+      estimate.sum[p] = glm::vec3(estimate.luminance[p][0] + estimate.luminance[p][1]);
+      estimate.samples[p] = static_cast<float>(2.0 * half);
+    }
+    const Shared shared = share(neighbours, estimate);
+    for (std::size_t few = 0; few < more.size(); ++few) {
+      const std::size_t p = few == 0 ? pixel(24, 24) : pixel(26, 26);
+      more[few].push_back(more_than_stated(shared, p, 0));
+    }
+  }
+  for (const std::vector<double>& of_point : more) expect_none(of_point);
+}
+
+}  // namespace
+}  // namespace earthshine::raytrace::flat_estimate
