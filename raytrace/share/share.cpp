@@ -57,11 +57,15 @@ class Sharer {
  private:
   using Planes = Neighbours::Planes;
 
+  // That a value of that level is the mean of, about.
+  [[nodiscard]] const std::vector<float>& samples_at(std::size_t level) const {
+    return level == 0 ? estimate_.samples : samples_around_[level - 1];
+  }
+
   // Values of one level become those of the next; the difference is the detail. Where nothing was
-  // sampled there is none. Neighbours count by their samples; at coarser levels by the mean of
-  // those around them.
+  // sampled there is none. Neighbours count by the samples that they are the mean of.
   void step(std::size_t level, Planes& values, Planes& detail) {
-    neighbours_.blur(level, values, level == 0 ? &estimate_.samples : &weight_, coarse_);
+    neighbours_.blur(level, values, &samples_at(level), coarse_);
     detail.resize(values.size());
     for (std::vector<float>& of : detail) of.resize(points_);
     for_all([&](std::size_t begin, std::size_t end) {
@@ -120,9 +124,11 @@ class Sharer {
 
   void split_halves() {
     Planes values = means_and_noise(), detail;
-    Planes weight;
-    neighbours_.blur(0, {estimate_.samples}, nullptr, weight);
-    weight_ = std::move(weight.front());
+    for (std::size_t level = 0; level < share_levels; ++level) {
+      Planes around;
+      neighbours_.blur(level, {samples_at(level)}, nullptr, around);
+      samples_around_[level] = std::move(around.front());
+    }
     for (std::size_t level = 0; level < share_levels; ++level) {
       step(level, values, detail);
       expect(level);
@@ -182,7 +188,8 @@ class Sharer {
     expected_.resize(points_);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
-        const float n = estimate_.samples[p], around = weight_[p];
+        const float n = estimate_.samples[p];
+        const float around = level > 0 ? samples_at(level)[p] : samples_around_[0][p];
         if (around <= 0.0F) {
           expected_[p] = 0.0F;
         } else if (level > 0) {
@@ -262,7 +269,7 @@ class Sharer {
   Shared shared_;
   std::vector<std::array<float, share_levels>> keep_;
   std::vector<std::uint8_t> signs_;
-  std::vector<float> weight_;
+  std::array<std::vector<float>, share_levels> samples_around_;  // means of a level's
   std::vector<float> expected_;
   Planes coarse_, squares_;
 };

@@ -86,6 +86,32 @@ TEST(Share, PointsThatHaveNoSamplesTakeThoseAround) {
 // Two samples, uniform over [0, 1), are off in the mean by a variance of 1 / 24. A point whose two
 // happen to agree is told so by the others: by 4 fields of noise over windows of some 60 points
 // each, within a factor of two.
+TEST(Share, WhatFewPointsSayLeavesNoLattice) {
+  // One point of 25 is sampled, and its samples are noise. Coarser levels step over pixels, so that
+  // neighbours read other points; yet they should differ no more than what leads from one point to
+  // the next, five pixels on: a fifth of the difference of two independent values, 2 / 25 of their
+  // mean square each, or twice that with what is kept of details.
+  const Neighbours neighbours(window, flat());
+  double off = 0.0, apart = 0.0;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    base::Rng rng(base::Key(seed, base::Stream::Test, 35));
+    Estimate estimate =
+        estimate_of([&](int, int, std::size_t) { return rng.next() < 0.1 ? 10.0 : 0.0; });
+    for (std::size_t p = 0; p < count; ++p) {
+      if (p % edge_px % 5 != 2 || p / edge_px % 5 != 2) estimate.clear(p);
+    }
+    const Shared shared = share(neighbours, estimate);
+    for (int y = 8; y < edge_px - 8; ++y) {
+      for (int x = 8; x < edge_px - 8; ++x) {
+        const double value = double(shared.radiance[pixel(x, y)].g);
+        off += (value - 1.0) * (value - 1.0);
+        apart += std::pow(double(shared.radiance[pixel(x + 1, y)].g) - value, 2);
+      }
+    }
+  }
+  EXPECT_LT(apart, 4.0 / 25.0 * off);
+}
+
 TEST(Share, WhatKeepsAllOfItsOwnStillTellsNoiseByOthers) {
   base::Rng rng(base::Key(3, base::Stream::Test, 4));
   const Estimate estimate = estimate_of([&](int, int, std::size_t) { return rng.next(); });
