@@ -242,15 +242,20 @@ class Passes {
     return samples;
   }
 
-  // What was not reached when it was stopped gets a sample all the same, two where they alone tell
-  // what they are off by: at edges, and everywhere if they gather for themselves.
+  // What was not reached when it was stopped gets two samples all the same, which tell what they
+  // are off by: by twice as much as is true of two that are spread evenly (a room of 64 x 64
+  // pixels), so that where no edge is near every second pixel, with one, is left to them.
   void first_round(const std::vector<std::uint32_t>& samples) {
     report_.least_camera_samples = static_cast<int>(*std::ranges::min_element(samples));
     shade(samples);
     if (!ends()) return;
     if (!field_) shared_.gather_rays = std::max(1, shared_.gather_rays / hasty_share);
-    shade_samples(shared_, camera_, field_ ? by_edges(2, 1) : everywhere(2), *sums_, report_.rays,
-                  {}, {});
+    std::vector<std::uint32_t> least = field_ ? by_edges(2, 1) : everywhere(2);
+    const auto columns = static_cast<std::size_t>(sums_->window.columns);
+    for (std::size_t p = 0; p < least.size(); ++p) {
+      if ((p % columns + p / columns) % 2 == 0) least[p] = 2;
+    }
+    shade_samples(shared_, camera_, least, *sums_, report_.rays, {}, {});
   }
 
   void shade(const std::vector<std::uint32_t>& wanted) {

@@ -10,7 +10,6 @@
 namespace earthshine::raytrace {
 namespace {
 
-constexpr std::size_t noise_fields = 4;
 // Sums of squared correlations of a level's details as many pixels apart as sharing steps over, of
 // independent values on an endless plane: squares of normal details are correlated so.
 constexpr std::array<float, share_levels> alike = {1.15F, 1.33F, 1.49F, 1.53F, 1.54F};
@@ -38,8 +37,7 @@ class Sharer {
     shared_.squared_error.assign(points_, 0.0F);
     keep_.assign(points_, {});
     shared_.rest.assign(points_, 0.0F);
-    signs_.resize(points_);
-    for (std::size_t p = 0; p < points_; ++p) signs_[p] = static_cast<std::uint8_t>(base::mix64(p));
+    signs_ = draw_signs(neighbours_, estimate_.samples);
     if (all_) {
       tell_noise();
     } else {
@@ -86,9 +84,8 @@ class Sharer {
     }
   }
 
-  // 1 or -1, of a point in one of the fields of noise, and behind them of scatter.
   [[nodiscard]] float sign(std::size_t p, std::size_t field) const {
-    return 1.0F - 2.0F * static_cast<float>((std::int32_t{signs_[p]} >> field) & 1);
+    return sign_of(signs_[p], field);
   }
 
   // Means of both halves, and fields of their noise.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "raytrace/share/signals.h"
 
+#include "base/numbers/random.h"
 #include "base/parallel.h"
 
 namespace earthshine::raytrace {
@@ -51,6 +52,29 @@ struct Spread {
 };
 
 }  // namespace
+
+std::vector<std::uint8_t> draw_signs(const Neighbours& neighbours,
+                                     const std::vector<float>& samples) {
+  const std::size_t points = neighbours.count();
+  std::vector<std::uint8_t> signs(points);
+  for (std::size_t p = 0; p < points; ++p) signs[p] = static_cast<std::uint8_t>(base::mix64(p));
+  const auto sampled = [](float n) { return n > 0.0F; };
+  if (std::all_of(samples.begin(), samples.begin() + std::ptrdiff_t(points), sampled)) return signs;
+  constexpr std::size_t fields = noise_fields + scatter_fields;
+  Neighbours::Planes own(fields, std::vector<float>(points)), around;
+  for (std::size_t k = 0; k < fields; ++k) {
+    for (std::size_t p = 0; p < points; ++p) own[k][p] = sign_of(signs[p], k);
+  }
+  neighbours.blur(0, own, &samples, around);
+  for (std::size_t p = 0; p < points; ++p) {
+    if (sampled(samples[p])) continue;
+    signs[p] = 0;
+    for (std::size_t k = 0; k < fields; ++k) {
+      if (around[k][p] < 0.0F) signs[p] |= static_cast<std::uint8_t>(1U << k);
+    }
+  }
+  return signs;
+}
 
 void find_signals(std::size_t level, const Neighbours::Planes& squares,
                   const std::vector<float>& expected, Shared& shared) {

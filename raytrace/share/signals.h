@@ -8,12 +8,23 @@
 
 namespace earthshine::raytrace {
 
+// Independent fields of noise, and of what squares are off by.
+inline constexpr std::size_t noise_fields = 4, scatter_fields = 3;
+
 // Planes of means over each point's window: <d^2 / e>, <n^2 / e>, <1 / e>, and from the last on the
 // first less the second with random signs.
 enum Square : std::size_t { Energy, NoiseSquare, Weight, Scatter };
-inline constexpr std::size_t scatter_fields = 3;
 // Noise over signal of what has no samples, and signal over noise where all is kept.
 inline constexpr float certain = 1e6F;
+
+// A bit for every field of noise, and behind them of scatter, of each point. Points without samples
+// say what those around them do, and have the signs of these. samples: of the grid's points, and
+// any more.
+[[nodiscard]] std::vector<std::uint8_t> draw_signs(const Neighbours& neighbours,
+                                                   const std::vector<float>& samples);
+[[nodiscard]] inline float sign_of(std::uint8_t signs, std::size_t field) {
+  return 1.0F - 2.0F * static_cast<float>((std::int32_t{signs} >> field) & 1);
+}
 
 // Fills signal, noise and few of that level. expected: e, 0 without samples.
 //
