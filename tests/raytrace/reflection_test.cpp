@@ -90,5 +90,31 @@ TEST(Reflection, SharpLobeReflectsItsAlbedoOfAUniformSurrounding) {
   expect_glossy_albedo(400.0, 120.0);
 }
 
+TEST(Reflection, TheAmbientTermIsInMirrorsAndInNoLobe) {
+  // A floor that only reflects, under a ceiling of k_d 0.5 that the ambient term of 10 cd/m2 alone
+  // lights: a mirror of 0.4 shows 0.4 x 5, a lobe of any exponent nothing.
+  for (const double shininess : {0.0, 50.0, 200.0}) {
+    tests::SceneBuilder builder;
+    scenes::Material floor = tests::grey(0.0);
+    floor.mirror = Rgb(shininess > 0.0 ? 0.0 : 0.4);
+    floor.specular = Rgb(shininess > 0.0 ? 0.4 : 0.0);
+    floor.shininess = shininess;
+    builder.plate(builder.material(floor), 1.0, 0.0, true);
+    builder.plate(builder.material(tests::grey(0.5)), 4.0, 1.0, false);
+    builder.scene.ambient_radiance = Rgb(10.0);
+    scenes::Lamp lamp;  // over the ceiling, so that rays are cast at all
+    lamp.name = lamp.group = "lamp";
+    lamp.position = Vec3(0.0, 0.0, 1.5);
+    lamp.intensity_cd = Rgb(1.0);
+    builder.scene.lamps.push_back(lamp);
+    scenes::Camera camera;
+    camera.position = Vec3(0.0, 0.4, 0.5);
+    camera.look_at = Vec3(0.0);
+    camera.fov_deg = 10.0;
+    EXPECT_NEAR(mean_green(builder.scene, camera, 1.0), shininess > 0.0 ? 0.0 : 2.0, 1e-6)
+        << shininess;
+  }
+}
+
 }  // namespace
 }  // namespace earthshine::raytrace

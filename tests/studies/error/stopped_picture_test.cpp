@@ -104,5 +104,23 @@ TEST(StoppedPicture, AtOnceItStatesWhatItIsOffBy) {
   }
 }
 
+// Where every camera sample gathers for itself a single one would tell of no noise at all: all have
+// two, and what is stated is true as above.
+TEST(StoppedPicture, WithoutSharingItStatesItsNoiseToo) {
+  double true_square = 0.0, stated_square = 0.0;
+  constexpr int pictures = 16;
+  for (std::uint64_t seed = 1; seed <= pictures; ++seed) {
+    raytrace::RenderOptions options = small_picture(seed);
+    options.shared.on = false;
+    options.gather_rays = 64;
+    options.stop = [] { return true; };
+    const Found found = draw(small_room().solution, options);
+    true_square += std::pow(found.true_error.error, 2) / pictures;
+    stated_square += std::pow(found.stated.estimate, 2) / pictures;
+  }
+  EXPECT_GT(std::sqrt(stated_square / true_square), 0.8);
+  EXPECT_LT(std::sqrt(stated_square / true_square), 1.5);
+}
+
 }  // namespace
 }  // namespace earthshine::studies
