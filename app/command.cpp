@@ -16,6 +16,7 @@
 #include "radiosity/bodies/walls.h"
 #include "scenes/effects/quality.h"
 #include "scenes/read/scene_file.h"
+#include "scenes/text/message_text.h"
 
 namespace earthshine::app {
 
@@ -102,7 +103,8 @@ bool SceneInput::wants_error() const {
   });
 }
 
-const scenes::Camera& choose_camera(const scenes::Scene& scene, const std::string& name) {
+const scenes::Camera& choose_camera(const scenes::Scene& scene, const std::string& name,
+                                    const std::optional<base::Location>& named_at) {
   if (scene.cameras.empty()) {
     throw Error(Blame::Input, scene.path.string(), "has no camera", {}, "Add a [[camera]]");
   }
@@ -112,8 +114,11 @@ const scenes::Camera& choose_camera(const scenes::Scene& scene, const std::strin
     if (camera.name == name) return camera;
     names.push_back(camera.name);
   }
-  throw Error(Blame::Input, scene.path.string(), "has no camera \"" + name + "\"",
-              fmt::format("its cameras are {}", fmt::join(names, ", ")));
+  const std::string path = scene.path.string();
+  throw Error(Blame::Input, named_at.value_or(base::Location{path}),
+              (named_at ? path + " " : "") + "has no camera \"" + name + "\"",
+              fmt::format("its cameras are {}", fmt::join(names, ", ")),
+              scenes::did_you_mean(name, names));
 }
 
 double StageTimes::total() const {

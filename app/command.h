@@ -107,9 +107,11 @@ using AskEffects = std::function<WantedEffects(const scenes::Scene&)>;
 // Warnings go to standard error unless `quiet`. The only place where a call's effects are decided.
 [[nodiscard]] LoadedScene load(const SceneInput& input, bool quiet, const AskEffects& ask = {});
 
-// The camera of that name, or the first one when the name is empty. Throws base::Error (Input).
-[[nodiscard]] const scenes::Camera& choose_camera(const scenes::Scene& scene,
-                                                  const std::string& name);
+// The camera of that name, or the first one when the name is empty. named_at: where a file or an
+// option names it. Throws base::Error (Input).
+[[nodiscard]] const scenes::Camera& choose_camera(
+    const scenes::Scene& scene, const std::string& name,
+    const std::optional<base::Location>& named_at = {});
 
 // A line on stderr where the form factors could not be balanced, with how near they came and which
 // object is furthest off; and one where that took more than a thousandth of the light.

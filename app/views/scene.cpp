@@ -73,17 +73,8 @@ void find_cameras(const studies::StudyFile& study, const Common& common, StudyPa
   const scenes::Scene& scene = part.loaded.scene;
   std::vector<const scenes::Camera*> chosen;
   for (const std::string& name : study.cameras) {
-    const auto named = std::ranges::find(scene.cameras, name, &scenes::Camera::name);
-    if (named == scene.cameras.end()) {
-      std::vector<std::string> names;
-      for (const scenes::Camera& other : scene.cameras) names.push_back(other.name);
-      throw Error(Blame::Input,
-                  study.place(study.where.contains("cameras") ? "cameras" : "--camera"),
-                  fmt::format("{} has no camera {}", scene.path.string(), scenes::in_quotes(name)),
-                  names.empty() ? "it has no cameras" : "it has " + scenes::listed(names),
-                  scenes::did_you_mean(name, names));
-    }
-    const scenes::Camera* camera = &*named;
+    const std::string key = study.where.contains("cameras") ? "cameras" : "--camera";
+    const scenes::Camera* camera = &choose_camera(scene, name, study.place(key));
     if (std::find(chosen.begin(), chosen.end(), camera) == chosen.end()) chosen.push_back(camera);
   }
   if (study.cameras.empty()) {

@@ -121,7 +121,7 @@ class Sharer {
 
   void split_halves() {
     Planes values = means_and_noise(), detail;
-    for (std::size_t level = 0; level < share_levels; ++level) {
+    for (std::size_t level = 0; level < samples_around_.size(); ++level) {
       Planes around;
       neighbours_.blur(level, {samples_at(level)}, nullptr, around);
       samples_around_[level] = std::move(around.front());
@@ -266,7 +266,7 @@ class Sharer {
   Shared shared_;
   std::vector<std::array<float, share_levels>> keep_;
   std::vector<std::uint8_t> signs_;
-  std::array<std::vector<float>, share_levels> samples_around_;  // means of a level's
+  std::array<std::vector<float>, share_levels - 1> samples_around_;  // means of a level's
   std::vector<float> expected_;
   Planes coarse_, squares_;
 };

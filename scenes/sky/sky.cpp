@@ -15,8 +15,7 @@ struct SunAndEarth {
   double radius, limb, separation;
   // Solid angle of what the Earth leaves of the disc, as far as `rim` from its middle.
   [[nodiscard]] double left(double rim) const {
-    const double half = std::sin(0.5 * rim);
-    return 4.0 * base::pi * half * half - shared_solid_angle(rim, limb, separation);
+    return disc_solid_angle(rim) - shared_solid_angle(rim, limb, separation);
   }
   [[nodiscard]] bool touch() const {
     return separation < radius + limb && separation + radius > limb;
@@ -97,8 +96,7 @@ double visible_sun_share(const Scene& scene) {
   if (!scene.earth) return 1.0;
   const SunAndEarth discs = sun_and_earth(scene);
   if (!discs.touch()) return discs.separation < discs.limb ? 0.0 : 1.0;
-  const double half = std::sin(0.5 * discs.radius);
-  return std::clamp(discs.left(discs.radius) / (4.0 * base::pi * half * half), 0.0, 1.0);
+  return std::clamp(discs.left(discs.radius) / disc_solid_angle(discs.radius), 0.0, 1.0);
 }
 
 Vec3 sample_sun(const Scene& scene, double u, double v) {

@@ -35,6 +35,8 @@ struct Triangle {
 
 }  // namespace
 
+double disc_solid_angle(double radius) { return 2.0 * base::pi * versine(radius); }
+
 double covered_half_arc(double rim, double other, double separation) {
   const Triangle triangle(rim, other, separation);
   if (triangle.is_one()) return triangle.angle(rim, other);
@@ -44,7 +46,7 @@ double covered_half_arc(double rim, double other, double separation) {
 double shared_solid_angle(double a, double b, double separation) {
   const Triangle triangle(a, b, separation);
   if (!triangle.is_one()) {
-    return separation < std::max(a, b) ? 2.0 * base::pi * versine(std::min(a, b)) : 0.0;
+    return separation < std::max(a, b) ? disc_solid_angle(std::min(a, b)) : 0.0;
   }
   return 2.0 *
          (triangle.angle(a, b) * versine(a) + triangle.angle(b, a) * versine(b) - triangle.area());

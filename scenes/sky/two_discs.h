@@ -5,6 +5,9 @@
 
 namespace earthshine::scenes {
 
+// Of one disc, sr.
+[[nodiscard]] double disc_solid_angle(double radius);
+
 // Of the rim of a disc of radius `rim` that the other, of radius `other` about a centre at
 // `separation`, covers: half of the arc about the rim's own centre, 0 to pi.
 [[nodiscard]] double covered_half_arc(double rim, double other, double separation);
