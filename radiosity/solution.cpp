@@ -210,9 +210,7 @@ Solution solve_keeping(const scenes::World& world, const SolveOptions& options, 
 
   SkyRadiance sky;
   if (world.effects.earth_by_gather) {
-    sky = [&world](const Vec3& direction) {
-      return scenes::earth_radiance(world.scene, direction);
-    };
+    sky = scenes::EarthRadiance(world.scene);
   }
   FormFactorOptions rays{options.form_factor_rays, options.seed, variant.replicate};
   const std::vector<bool> is_explicit = emitter_is_explicit(world.scene);

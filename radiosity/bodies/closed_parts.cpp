@@ -7,7 +7,6 @@
 #include <limits>
 #include <numeric>
 #include <span>
-#include <tuple>
 
 #include "scenes/health/topology.h"
 #include "scenes/triangle_point.h"
@@ -20,8 +19,8 @@ constexpr std::uint32_t no_triangle = 0xFFFFFFFFU;
 struct EdgeUse {
   std::uint32_t low, high, object, triangle;
   int way;
-  [[nodiscard]] auto edge() const { return std::tie(low, high); }
-  [[nodiscard]] auto key() const { return std::tie(low, high, object, triangle); }
+  [[nodiscard]] std::uint64_t edge() const { return (std::uint64_t{low} << 32U) | high; }
+  [[nodiscard]] std::uint64_t face() const { return (std::uint64_t{object} << 32U) | triangle; }
 };
 
 constexpr double touch_share = 1e-6;  // of the scene's diagonal
@@ -125,8 +124,9 @@ ClosedParts find_closed_parts(const scenes::Scene& scene, const std::vector<char
         uses.push_back({std::min(a, b), std::max(a, b), triangle.object, t, a < b ? 1 : -1});
     }
   }
-  std::sort(uses.begin(), uses.end(),
-            [](const EdgeUse& a, const EdgeUse& b) { return a.key() < b.key(); });
+  std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
+    return a.edge() != b.edge() ? a.edge() < b.edge() : a.face() < b.face();
+  });
 
   ClosedParts parts;
   parts.of.resize(scene.triangles.size());
@@ -158,7 +158,7 @@ ClosedParts find_closed_parts(const scenes::Scene& scene, const std::vector<char
       if (loose != no_triangle) unite(loose, uses[first].triangle);
       loose = uses[first].triangle;
     }
-    const auto [low, high] = uses[begin].edge();
+    const auto& [low, high, object, triangle, way] = uses[begin];
     for (int k = 0; k < std::abs(net); ++k) {
       parts.rims.push_back({loose, net > 0 ? low : high, net > 0 ? high : low});
     }

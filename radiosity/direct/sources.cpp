@@ -29,9 +29,9 @@ LightSource sun_source(const scenes::Scene& scene, std::size_t group, int points
   source.key = 1;
   source.group = group;
   source.points = points;
-  source.sample = [&scene, illuminance](const Vec3&, double u, double v) {
-    return LightSample{scenes::sample_sun(scene, u, v), std::numeric_limits<double>::infinity(),
-                       illuminance};
+  source.sample = [sun = scenes::SunDirections(scene), illuminance](const Vec3&, double u,
+                                                                    double v) {
+    return LightSample{sun(u, v), std::numeric_limits<double>::infinity(), illuminance};
   };
   return {{}, std::move(source), Rgb(0.0), {}};
 }
@@ -61,10 +61,12 @@ LightSource earth_source(const scenes::Scene& scene, std::size_t group, int poin
   source.key = 2;
   source.group = group;
   source.points = 4 * points;
-  source.sample = [&scene, half_angle, solid_angle](const Vec3&, double u, double v) {
-    const Vec3 direction = scenes::sample_cone(scene.earth->direction, half_angle, u, v);
+  source.sample = [disc = scenes::Cone(scene.earth->direction, half_angle),
+                   radiance = scenes::EarthRadiance(scene),
+                   solid_angle](const Vec3&, double u, double v) {
+    const Vec3 direction = disc.sample(u, v);
     return LightSample{direction, std::numeric_limits<double>::infinity(),
-                       scenes::earth_radiance(scene, direction) * solid_angle};
+                       radiance(direction) * solid_angle};
   };
   return {{}, std::move(source), Rgb(0.0), {}};
 }

@@ -16,14 +16,15 @@
 
 namespace earthshine::radiosity {
 
-// Per column j: sum_i weight(i) F_ij. Rows are split in a fixed number of bands with sums of their
-// own, added in order: the same bits on any number of threads and ranks. Where a band's rows are
-// with several ranks, each goes on from the sums of the one before.
+// Per column j: sum_i weight(i) F_ij. Rows are split in bands, as many as the factors ask for, with
+// sums of their own, added in order: the same bits on any number of threads and ranks. Where a
+// band's rows are with several ranks, each goes on from the sums of the one before.
 template <class Weight>
 class ColumnSums {
  public:
   ColumnSums(const FormFactors& f, Weight weight)
       : f_(f), weight_(weight), count_(f.count()), own_(f.shares.own(count_)) {
+    last_ = bands_;
     while (first_ < last_ && begin(first_ + 1) <= own_.begin) ++first_;
     while (first_ < last_ && (begin(last_ - 1) >= own_.end || own_.begin == own_.end)) --last_;
     if (first_ == last_) return;
@@ -47,9 +48,7 @@ class ColumnSums {
   }
 
  private:
-  static constexpr std::size_t bands = 16;
-
-  [[nodiscard]] std::size_t begin(std::size_t band) const { return band * count_ / bands; }
+  [[nodiscard]] std::size_t begin(std::size_t band) const { return band * count_ / bands_; }
   [[nodiscard]] double* sums_of(std::size_t band) { return &partial_[(band - first_) * count_]; }
 
   void add_rows(std::size_t band) {
@@ -126,7 +125,9 @@ class ColumnSums {
   Weight weight_;
   std::size_t count_;
   base::Shares::Range own_;
-  std::size_t first_ = 0, last_ = bands;     // bands with rows here: [first_, last_)
+  // Every band has a sum of every column: where rows are short, bands cost more than entries.
+  std::size_t bands_ = std::clamp<std::size_t>(std::size_t(f_.rays_per_patch) / 4, 4, 16);
+  std::size_t first_ = 0, last_ = 0;         // bands with rows here: [first_, last_)
   bool is_begun_ = false, goes_on_ = false;  // the first one by, the last one with another rank
   std::vector<double> partial_;              // of each
 };

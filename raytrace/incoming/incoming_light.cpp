@@ -20,8 +20,8 @@ constexpr int most_specular_steps = 64;  // as many as rays of the form factors 
 
 void IncomingLight::see_sky(const Vec3& direction, const Rgb& weight, std::span<Rgb> out,
                             bool straight) const {
-  if (!sees_earth_) return;
-  const Rgb light = weight * scenes::earth_radiance(scene_, direction);
+  if (!earth_) return;
+  const Rgb light = weight * (*earth_)(direction);
   out[earth_layer_ + (by_part_ ? scenes::earth_part(scene_, direction) : 0)] += light;
   if (straight && out.size() > layers_) out.back() += light;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "raytrace/incoming/bright_patches.h"
 #include "raytrace/incoming/radiance_table.h"
 #include "scenes/effects/world.h"
+#include "scenes/sky/sky.h"
 
 namespace earthshine::raytrace {
 
@@ -35,9 +37,10 @@ class IncomingLight {
         bright_(bright),
         layers_(layers),
         earth_layer_(earth_layer),
-        sees_earth_(world.effects.earth_by_gather),
         by_part_(layers > 1 && world.scene.sky_parts != nullptr),
-        follows_specular_(follows_specular) {}
+        follows_specular_(follows_specular) {
+    if (world.effects.earth_by_gather) earth_.emplace(world.scene);
+  }
 
   // Adds weight * radiance along the ray to out[0 .. layers); if out is one longer, what came
   // straight from the sky is added to its last entry as well.
@@ -47,7 +50,7 @@ class IncomingLight {
              const Rgb& weight, std::span<Rgb> out, RayCounts& rays) const;
 
   // Whether no ray brings anything: there is no solution, and the sky is no part of it.
-  [[nodiscard]] bool is_dark() const { return table_.empty() && !sees_earth_; }
+  [[nodiscard]] bool is_dark() const { return table_.empty() && !earth_; }
 
   [[nodiscard]] const BrightPatches& bright() const { return bright_; }
 
@@ -76,7 +79,8 @@ class IncomingLight {
   const RadianceTable& table_;
   const BrightPatches& bright_;
   std::size_t layers_, earth_layer_;
-  bool sees_earth_, by_part_, follows_specular_;
+  std::optional<scenes::EarthRadiance> earth_;  // where gather rays carry its light
+  bool by_part_, follows_specular_;
 };
 
 }  // namespace earthshine::raytrace

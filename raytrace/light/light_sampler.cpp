@@ -43,6 +43,7 @@ LightSampler::LightSampler(const scenes::World& world, Indirect indirect, int di
         sun_illuminance_lx_ = distributed_
                                   ? scene_.sun->illuminance_lx * scenes::visible_sun_share(scene_)
                                   : scenes::sun_sample_illuminance(scene_);
+        sun_.emplace(scene_);
         add({Kind::Sun, group}, 1);
         break;
       case Shines::SunPart: {
@@ -54,8 +55,7 @@ LightSampler::LightSampler(const scenes::World& world, Indirect indirect, int di
       }
       case Shines::Earth:
         if (!distributed_ && world.effects.earth_by_gather) break;
-        earth_half_angle_rad_ = base::radians(scene_.earth->half_angle_deg);
-        earth_solid_angle_sr_ = scenes::cone_solid_angle_sr(earth_half_angle_rad_);
+        earth_.emplace(scene_);
         add({earth_area_ ? Kind::EarthArea : Kind::Earth, group}, copies);
         break;
       case Shines::Lamp:
@@ -239,7 +239,7 @@ scenes::LightSample LightSampler::sample_straight(const Light& light, const Vec3
   switch (light.kind) {
     case Kind::Sun:
       // The report's lights have no extent: its Sun casts hard shadows.
-      sample = {distributed_ ? scene_.sun->direction : scenes::sample_sun(scene_, u, v),
+      sample = {distributed_ ? scene_.sun->direction : (*sun_)(u, v),
                 std::numeric_limits<double>::infinity(), sun_illuminance_lx_};
       break;
     case Kind::SunPart: {
@@ -248,10 +248,9 @@ scenes::LightSample LightSampler::sample_straight(const Light& light, const Vec3
       break;
     }
     case Kind::Earth: {
-      const Vec3 direction =
-          scenes::sample_cone(scene_.earth->direction, earth_half_angle_rad_, u, v);
+      const Vec3 direction = earth_->cone.sample(u, v);
       sample = {direction, std::numeric_limits<double>::infinity(),
-                scenes::earth_radiance(scene_, direction) * earth_solid_angle_sr_};
+                earth_->radiance(direction) * earth_->solid_angle_sr};
       break;
     }
     case Kind::EarthArea:

@@ -14,6 +14,7 @@
 #include "scenes/light/emitters.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/light/light_tree.h"
+#include "scenes/sky/sky.h"
 
 namespace earthshine::raytrace {
 
@@ -137,13 +138,22 @@ class LightSampler {
   std::vector<scenes::EmitterSet> emitters_;
   std::vector<scenes::SpotCone> cones_;  // per lamp; of spots
   Rgb sun_illuminance_lx_{0.0};
+  std::optional<scenes::SunDirections> sun_;
   struct SunPart {
     Rgb illuminance_lx;
     scenes::Cone disc;
   };
   std::vector<SunPart> sun_parts_;
-  double earth_half_angle_rad_ = 0.0;
-  double earth_solid_angle_sr_ = 0.0;
+  struct EarthDisc {
+    explicit EarthDisc(const scenes::Scene& scene)
+        : cone(scene.earth->direction, base::radians(scene.earth->half_angle_deg)),
+          radiance(scene),
+          solid_angle_sr(scenes::cone_solid_angle_sr(base::radians(scene.earth->half_angle_deg))) {}
+    scenes::Cone cone;
+    scenes::EarthRadiance radiance;
+    double solid_angle_sr;
+  };
+  std::optional<EarthDisc> earth_;
 };
 
 }  // namespace earthshine::raytrace

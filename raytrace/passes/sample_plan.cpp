@@ -16,7 +16,7 @@ namespace {
 // rays (measured on the payload bay by its three lights).
 constexpr double ray_cost = 1.5, path_ray_cost = 1.7, camera_cost = 3.0;
 constexpr auto camera_kind = static_cast<std::uint8_t>(gathered_kinds);
-constexpr int bisections = 48;
+constexpr int bisections = 24;
 constexpr double greatest_price = 1e6;  // squared error per ray
 // Where a ray gains so much less than a ray so far has on the average, nothing is cast, as long as
 // others gain more: what few samples promise there is often wrong, and the next look tells better.
@@ -112,7 +112,7 @@ void SamplePlanner::look_at_field(const StatedError& stated, double mean, double
     const auto kind = static_cast<Gathered>(k);
     if (!field_->gathers(kind)) continue;
     const Shared& shared = field_->shared(kind);
-    const auto gain_of = [&](std::size_t p, std::vector<Gain>& gains) {
+    const auto gain_of = [&](std::size_t p, double two, double four, std::vector<Gain>& gains) {
       const std::size_t pixel = field_->pixel_of(p);
       const int x = field_->window().x + static_cast<int>(pixel % columns);
       const int y = field_->window().y + static_cast<int>(pixel / columns);
@@ -124,8 +124,6 @@ void SamplePlanner::look_at_field(const StatedError& stated, double mean, double
                             reflected * field_->cover_of(p);
       const double factor = weight * weight * scale;
       const auto one = double(shared.squared_error[p]);
-      const double two = shared.squared_error_with(p, 2.0);
-      const double four = shared.squared_error_with(p, 4.0);
       if (factor * (one - four) <= 0.0) return;
       gains.push_back({static_cast<std::uint32_t>(p), static_cast<std::uint8_t>(k), samples,
                        static_cast<float>(double(samples) * costs_.field[k]),
@@ -134,7 +132,12 @@ void SamplePlanner::look_at_field(const StatedError& stated, double mean, double
     };
     look_at(field_->points().size(),
             [&](std::size_t begin, std::size_t end, std::vector<Gain>& gains) {
-              for (std::size_t p = begin; p < end; ++p) gain_of(p, gains);
+              std::array<float, items_at_once> two, four;
+              shared.squared_errors_with(2.0, begin, end, two.data());
+              shared.squared_errors_with(4.0, begin, end, four.data());
+              for (std::size_t p = begin; p < end; ++p) {
+                gain_of(p, double(two[p - begin]), double(four[p - begin]), gains);
+              }
             });
   }
 }

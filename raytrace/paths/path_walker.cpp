@@ -110,13 +110,11 @@ void PathWalker::see(std::size_t group, const Rgb& radiance) {
 
 void PathWalker::see_sky() {
   const scenes::Scene& scene = world_.scene;
-  const bool on_earth = scene.earth && glm::dot(ray_.direction, scene.earth->direction) >=
-                                           std::cos(base::radians(scene.earth->half_angle_deg));
-  if (on_earth) {
+  if (earth_ && earth_->is_before(ray_.direction)) {
     const bool met = sees_sampled_ || world_.effects.earth_by_gather;
     if (met && world_.groups.earth != no_group) {
       see(world_.groups.earth + scenes::earth_part(scene, ray_.direction),
-          scenes::earth_radiance(scene, ray_.direction));
+          (*earth_)(ray_.direction));
     }
   } else if (sees_sampled_) {
     see(world_.groups.sun, scenes::sky_radiance(scene, ray_.direction));

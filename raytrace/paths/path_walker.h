@@ -2,6 +2,7 @@
 // One light path from the camera, of the path tracer (path_tracer.h says who carries what).
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,7 +26,9 @@ struct PathWorld : scenes::World {
 // Follows one path after another; one object per thread.
 class PathWalker {
  public:
-  explicit PathWalker(const PathWorld& world) : world_(world), radiance_(world.layers) {}
+  explicit PathWalker(const PathWorld& world) : world_(world), radiance_(world.layers) {
+    if (world.scene.earth) earth_.emplace(world.scene);
+  }
 
   // Which turn of Suns (light/sun_turns.h) the paths that follow carry.
   void take_turn(std::uint64_t first, std::uint64_t k, std::size_t half) {
@@ -89,6 +92,7 @@ class PathWalker {
   void scatter(const Surface& surface, bool by_lobe);
 
   const PathWorld& world_;
+  std::optional<scenes::EarthRadiance> earth_;
   RayCounts rays_;
   base::Rng* rng_ = nullptr;  // of the current path
   std::vector<Rgb> radiance_;

@@ -10,9 +10,12 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Sums of squared correlations of a level's details as many pixels apart as sharing steps over, of
-// independent values on an endless plane: squares of normal details are correlated so.
-constexpr std::array<float, share_levels> alike = {1.15F, 1.33F, 1.49F, 1.53F, 1.54F};
+// Sums of squared correlations of a level's details as many pixels apart as the first blur of their
+// window steps over, of independent values on an endless plane: squares of normal details are
+// correlated so.
+constexpr std::array<float, share_levels> alike = {1.15F, 1.10F, 1.13F, 1.14F, 1.14F};
+// Squares of all but single pixels' details are as smooth as the first blur would make them.
+constexpr std::size_t first_blur(std::size_t level) { return level > 0 ? 1 : 0; }
 constexpr std::size_t layers_at_once = 4;
 constexpr std::size_t points_at_once = 1024;
 
@@ -31,12 +34,8 @@ class Sharer {
 
   Shared run() {
     shared_.layers = estimate_.layers;
-    shared_.signal.assign(points_, {});
-    shared_.noise.assign(points_, {});
-    shared_.few.assign(points_, {});
-    shared_.squared_error.assign(points_, 0.0F);
-    keep_.assign(points_, {});
-    shared_.rest.assign(points_, 0.0F);
+    shared_.resize(points_);
+    for (std::vector<float>& of : keep_) of.assign(points_, 0.0F);
     signs_ = draw_signs(neighbours_, estimate_.samples);
     if (all_) {
       tell_noise();
@@ -44,9 +43,7 @@ class Sharer {
       split_halves();
     }
     for_all([&](std::size_t begin, std::size_t end) {
-      for (std::size_t p = begin; p < end; ++p) {
-        shared_.squared_error[p] = static_cast<float>(shared_.squared_error_with(p, 1.0));
-      }
+      shared_.squared_errors_with(1.0, begin, end, &shared_.squared_error[begin]);
     });
     take_layers();
     return std::move(shared_);
@@ -78,7 +75,7 @@ class Sharer {
   }
 
   void blur_squares(std::size_t level) {
-    for (std::size_t k = 0; k < window_blurs; ++k) {
+    for (std::size_t k = first_blur(level); k < window_blurs; ++k) {
       neighbours_.blur(level + k, squares_, nullptr, coarse_);
       squares_.swap(coarse_);
     }
@@ -114,8 +111,8 @@ class Sharer {
     take_squares(means_and_noise());
     blur_squares(0);
     for (std::size_t p = 0; p < points_; ++p) {
-      shared_.noise[p][0] = expected_[p] * squares_[NoiseSquare][p];
-      shared_.signal[p][0] = certain * shared_.noise[p][0];
+      shared_.noise[0][p] = expected_[p] * squares_[NoiseSquare][p];
+      shared_.signal[0][p] = certain * shared_.noise[0][p];
     }
   }
 
@@ -205,7 +202,7 @@ class Sharer {
     find_signals(level, squares_, expected_, shared_);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
-        keep_[p][level] = kept_share(shared_.signal[p][level], shared_.noise[p][level]);
+        keep_[level][p] = kept_share(shared_.signal[level][p], shared_.noise[level][p]);
       }
     });
   }
@@ -240,7 +237,7 @@ class Sharer {
       step(level, values, detail);
       for_all([&](std::size_t begin, std::size_t end) {
         for (std::size_t k = 0; k < values.size(); ++k) {
-          for (std::size_t p = begin; p < end; ++p) kept[k][p] += keep_[p][level] * detail[k][p];
+          for (std::size_t p = begin; p < end; ++p) kept[k][p] += keep_[level][p] * detail[k][p];
         }
       });
     }
@@ -264,7 +261,7 @@ class Sharer {
   std::size_t points_;
   bool in_place_;
   Shared shared_;
-  std::vector<std::array<float, share_levels>> keep_;
+  std::array<std::vector<float>, share_levels> keep_;
   std::vector<std::uint8_t> signs_;
   std::array<std::vector<float>, share_levels - 1> samples_around_;  // means of a level's
   std::vector<float> expected_;

@@ -53,8 +53,7 @@ struct GatherPoint {
 };
 
 inline constexpr std::size_t share_levels = 5;
-// Mean squares are taken over three blurs, the last of which reaches four times as far as the
-// detail.
+// Mean squares are taken over blurs, the last of which reaches four times as far as the detail.
 inline constexpr std::size_t window_blurs = 3;
 
 // Sums of samples at every point.
@@ -118,16 +117,20 @@ class Neighbours {
 struct Shared {
   std::size_t layers = 0;
   std::vector<glm::vec3> radiance;  // as Estimate::sum, the shared means
-  // Per point, of its luminance: mean squares of signal (found by chance: it may be negative) and
-  // noise, and 1 / N, by level; noise of the rest.
-  std::vector<std::array<float, share_levels>> signal, noise, few;
-  std::vector<float> rest;
+  // By level and point, of its luminance: mean squares of signal (found by chance: it may be
+  // negative) and noise, and 1 / N.
+  std::array<std::vector<float>, share_levels> signal, noise, few;
+  std::vector<float> rest;  // noise of it
   // Of strays, the signal that noise may hide: less cannot be told from none. Empty without strays.
   std::vector<float> hidden;
   std::vector<float> squared_error;  // stated
 
   // What the squared error would be with `factor` times the samples here and around.
   [[nodiscard]] double squared_error_with(std::size_t point, double factor) const;
+  // The same of each of [begin, end).
+  void squared_errors_with(double factor, std::size_t begin, std::size_t end, float* errors) const;
+  // For so many points; those there are keep theirs.
+  void resize(std::size_t points);
 };
 
 // What is kept of details: as told above, or all of them: values stay as they are, and their noise
@@ -143,8 +146,13 @@ enum class Keep { AsTold, All };
 [[nodiscard]] Shared share_in_place(const Neighbours& neighbours, Estimate& estimate,
                                     Keep keep = Keep::AsTold);
 
-// The share of a detail of signal s and noise q that is kept, mean squares.
-[[nodiscard]] float kept_share(float s, float q);
+// The share of a detail of signal s and noise q that is kept, mean squares. Noise that is found by
+// chance looks like signal half of the time: only what is well above it counts.
+[[nodiscard]] inline float kept_share(float s, float q) {
+  constexpr float doubt = 1.5F;
+  const float sure = s - (doubt - 1.0F) * q;
+  return sure > 0.0F ? sure / (sure + q) : 0.0F;
+}
 
 // Whether two points seen through nearby pixels lie on the same surface, flat or gently curved.
 

@@ -9,32 +9,16 @@ namespace {
 
 constexpr std::size_t points_at_once = 1024;
 
-// Of one point's window.
-struct Found {
-  float s = 0.0F, q = 0.0F;  // of a detail with the noise that is expected on the average there
-  float chance = 0.0F;       // variance of s / q
-};
-
-Found found_at(const Neighbours::Planes& squares, std::size_t p) {
-  const float noise = squares[NoiseSquare][p], weight = squares[Weight][p];
-  if (weight <= 0.0F) return {};
-  Found found{(squares[Energy][p] - noise) / weight, noise / weight, 0.0F};
-  for (std::size_t k = 0; noise > 0.0F && k < scatter_fields; ++k) {
-    const float off = squares[Scatter + k][p] / noise;
-    found.chance += off * off / float(scatter_fields);
-  }
-  return found;
-}
-
 // Of all windows of the picture.
 struct Spread {
   double count = 0.0, s = 0.0, q = 0.0;
   double ratio = 0.0, squared = 0.0, chance = 0.0;  // s / q, its square, and its variance by chance
-  void add(const Found& found) {
-    if (found.q <= 0.0F) return;
-    const double of_both = double(found.s) / double(found.q);
-    *this += {1.0,     double(found.s),   double(found.q),
-              of_both, of_both * of_both, std::min(2.0, double(found.chance))};
+  // by_chance: variance of the ratio.
+  void add(float signal, float noise, float by_chance) {
+    if (noise <= 0.0F) return;
+    const double of_both = double(signal) / double(noise);
+    *this += {1.0,     double(signal),    double(noise),
+              of_both, of_both * of_both, std::min(2.0, double(by_chance))};
   }
   Spread& operator+=(const Spread& other) {
     count += other.count, s += other.s, q += other.q;
@@ -76,29 +60,47 @@ std::vector<std::uint8_t> draw_signs(const Neighbours& neighbours,
   return signs;
 }
 
+// On the way noise is that of a detail with what is expected on the average of a window, and few
+// the variance of signal / noise there.
 void find_signals(std::size_t level, const Neighbours::Planes& squares,
                   const std::vector<float>& expected, Shared& shared) {
   const std::size_t points = expected.size();
+  float* const signal = shared.signal[level].data();
+  float* const noise = shared.noise[level].data();
+  float* const few = shared.few[level].data();
+  const float *energy = squares[Energy].data(), *of_noise = squares[NoiseSquare].data(),
+              *weight = squares[Weight].data(), *e = expected.data();
   const Spread all =
       base::ordered_sum(points, points_at_once, Spread(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) {
+          const float scale = weight[p] > 0.0F ? 1.0F / weight[p] : 0.0F;
+          signal[p] = (energy[p] - of_noise[p]) * scale;
+          noise[p] = of_noise[p] * scale;
+          few[p] = 0.0F;
+        }
+        for (std::size_t k = 0; k < scatter_fields; ++k) {
+          const float* const scatter = squares[Scatter + k].data();
+          for (std::size_t p = begin; p < end; ++p) {
+            const float off = noise[p] > 0.0F ? scatter[p] / of_noise[p] : 0.0F;
+            few[p] += off * off / float(scatter_fields);
+          }
+        }
         Spread part;
         for (std::size_t p = begin; p < end; ++p) {
-          if (expected[p] > 0.0F) part.add(found_at(squares, p));
+          if (e[p] > 0.0F) part.add(signal[p], noise[p], few[p]);
         }
         return part;
       });
   const float mean = all.mean(), by_chance = all.chance_share();
   base::parallel_chunks(points, points_at_once, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
-      const Found found = found_at(squares, p);
-      const float s = found.s + by_chance * (mean * found.q - found.s);
-      const float q =
-          expected[p] > 0.0F ? expected[p] * squares[NoiseSquare][p] : certain * std::max(0.0F, s);
-      const float over = q > 0.0F ? found.q / q : 0.0F;
-      shared.signal[p][level] = s;
-      shared.noise[p][level] = q;
+      const float s = signal[p] + by_chance * (mean * noise[p] - signal[p]);
+      const float q = e[p] > 0.0F ? e[p] * of_noise[p] : certain * std::max(0.0F, s);
+      const float over = q > 0.0F ? noise[p] / q : 0.0F;
+      signal[p] = s;
+      noise[p] = q;
       // The mean of N normal squares has the relative variance 2 / N.
-      shared.few[p][level] = std::min(1.0F, 0.5F * found.chance * over * over);
+      few[p] = std::min(1.0F, 0.5F * few[p] * over * over);
     }
   });
 }

@@ -81,12 +81,8 @@ void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared&
   const std::size_t grid = all - strays.size();
   const bool in_place = estimate.sum.empty();
   shared.radiance.resize(all * layers, glm::vec3(0.0F));
-  shared.signal.resize(all);
-  shared.noise.resize(all);
-  shared.few.resize(all);
-  shared.rest.resize(all, 0.0F);
+  shared.resize(all);
   shared.hidden.assign(all, 0.0F);
-  shared.squared_error.resize(all, 0.0F);
 
   std::uint32_t last = 0;
   for (const Stray& stray : strays) last = std::max(last, stray.region);
@@ -108,19 +104,18 @@ void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared&
     const std::size_t point = grid + k;
     const bool sampled = estimate.samples[point] > 0.0F, has_base = strays[k].base != no_base;
     float keep = sampled ? 1.0F : 0.0F;
-    shared.signal[point] = shared.noise[point] = shared.few[point] = {};
     if (has_base) {
       const Differences& region = regions[strays[k].region];
       const float s = std::max(region.signal(), region.hidden());
       const float q = sampled ? region.noise(estimate.samples[point]) : alone * s;
-      shared.signal[point][0] = region.signal();
+      shared.signal[0][point] = region.signal();
       shared.hidden[point] = region.hidden();
-      shared.noise[point][0] = q;
-      shared.few[point][0] = region.few(q);
+      shared.noise[0][point] = q;
+      shared.few[0][point] = region.few(q);
       if (sampled) keep = kept_share(s, q);
     } else {
-      shared.signal[point][0] = alone * noise[k];
-      shared.noise[point][0] = noise[k];
+      shared.signal[0][point] = alone * noise[k];
+      shared.noise[0][point] = noise[k];
     }
     for (std::size_t layer = 0; layer < layers; ++layer) {
       glm::vec3& value = shared.radiance[point * layers + layer];
@@ -146,26 +141,27 @@ void share_among_peers(const Peers& peers, const Estimate& estimate, Shared& sha
     if (half <= 0.0F) continue;
     const auto& [first, second] = estimate.luminance[grid + k];
     luminance[k] = 0.5F * (first + second) / half;
-    noise[k] = std::pow(0.5F * (first - second) / half, 2.0F);
+    const float off = 0.5F * (first - second) / half;
+    noise[k] = off * off;
   }
   base::parallel_chunks(strays, 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      float count = 0.0F, mean = 0.0F, all = 0.0F, of_sample = 0.0F, energy = 0.0F;
+      float count = 0.0F, all = 0.0F, of_sample = 0.0F;
+      double off = 0.0, squared = 0.0;  // from its own
       each(k, [&](std::size_t peer) {
-        count += 1.0F, mean += luminance[peer], all += noise[peer];
+        const double from_own = double(luminance[peer]) - double(luminance[k]);
+        count += 1.0F, off += from_own, squared += from_own * from_own, all += noise[peer];
         of_sample += noise[peer] * estimate.samples[grid + peer];
       });
       if (count < 2.0F) continue;
-      mean /= count, all /= count, of_sample /= count;
-      each(k, [&](std::size_t peer) {
-        energy += (luminance[peer] - mean) * (luminance[peer] - mean) / (count - 1.0F);
-      });
+      all /= count, of_sample /= count;
+      const double n = double(count), energy = std::max(0.0, squared - off * off / n) / (n - 1.0);
       const std::size_t point = grid + k;
-      const float samples = estimate.samples[point], s = energy - all;
+      const float samples = estimate.samples[point], s = static_cast<float>(energy) - all;
       const float q = samples > 0.0F ? of_sample / samples : alone * std::max(0.0F, s);
-      shared.signal[point][0] = s;
-      shared.noise[point][0] = q;
-      shared.few[point][0] = 1.0F / count;
+      shared.signal[0][point] = s;
+      shared.noise[0][point] = q;
+      shared.few[0][point] = 1.0F / count;
       shared.rest[point] = all / count;
       shared.squared_error[point] = static_cast<float>(shared.squared_error_with(point, 1.0));
       keep[k] = samples > 0.0F ? kept_share(s, q) : 0.0F;
@@ -178,13 +174,15 @@ void share_among_peers(const Peers& peers, const Estimate& estimate, Shared& sha
       return shared.radiance[(grid + k) * shared.layers + layer];
     };
     for (std::size_t k = 0; k < strays; ++k) own[k] = value(k);
-    for (std::size_t k = 0; k < strays; ++k) {
-      if (keep[k] >= 1.0F) continue;
-      glm::vec3 mean(0.0F);
-      float count = 0.0F;
-      each(k, [&](std::size_t peer) { mean += own[peer], count += 1.0F; });
-      if (count > 0.0F) value(k) = mean / count + keep[k] * (own[k] - mean / count);
-    }
+    base::parallel_chunks(strays, 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        if (keep[k] >= 1.0F) continue;
+        glm::vec3 mean(0.0F);
+        float count = 0.0F;
+        each(k, [&](std::size_t peer) { mean += own[peer], count += 1.0F; });
+        if (count > 0.0F) value(k) = mean / count + keep[k] * (own[k] - mean / count);
+      }
+    });
   }
 }
 

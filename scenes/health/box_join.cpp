@@ -10,7 +10,7 @@
 namespace earthshine::scenes {
 namespace {
 
-constexpr std::size_t few = 16, many = std::size_t{1} << 16U;
+constexpr std::size_t few = 16, many = std::size_t{1} << 12U;
 constexpr int deepest = 22;  // single precision has no smaller parts
 
 float longest_of(const glm::vec3& size) { return std::max({size.x, size.y, size.z}); }

@@ -53,26 +53,22 @@ void check_energy(const Material& material, const base::Location& where, const s
 }
 
 // Directions out have the density (n + 1) cos^n / (2 pi) about the mirrored direction, those in
-// cos / pi about the normal, in both as equal shares of probability: the midpoint rule.
+// cos / pi about the normal, in both as equal shares of probability: the midpoint rule. Over the
+// turn about the mirrored direction the cosine to the normal is a + b cos t, of which what is above
+// the surface counts: t up to acos(-a / b).
 double mean_lobe_reflectance(double n) {
   constexpr std::size_t steps = 48;
   const auto share = [](std::size_t k) { return (static_cast<double>(k) + 0.5) / steps; };
-  std::array<double, steps> cos_off, turn;
-  for (std::size_t k = 0; k < steps; ++k) {
-    cos_off[k] = std::pow(share(k), 1.0 / (n + 1.0));
-    turn[k] = std::cos(base::pi * share(k));
-  }
   double sum = 0.0;
-  for (std::size_t i = 0; i < steps; ++i) {
-    const double sin2_in = share(i), sin_in = std::sqrt(sin2_in), cos_in = std::sqrt(1.0 - sin2_in);
-    for (std::size_t j = 0; j < steps; ++j) {
-      const double sin_off = std::sqrt(std::max(0.0, 1.0 - cos_off[j] * cos_off[j]));
-      for (std::size_t k = 0; k < steps; ++k) {
-        sum += std::max(0.0, cos_off[j] * cos_in + sin_off * turn[k] * sin_in);
-      }
+  for (std::size_t j = 0; j < steps; ++j) {
+    const double cos_off = std::pow(share(j), 1.0 / (n + 1.0));
+    const double sin_off = std::sqrt(std::max(0.0, 1.0 - cos_off * cos_off));
+    for (std::size_t i = 0; i < steps; ++i) {
+      const double a = cos_off * std::sqrt(1.0 - share(i)), b = sin_off * std::sqrt(share(i));
+      sum += a >= b ? a : (a * std::acos(-a / b) + std::sqrt(b * b - a * a)) / base::pi;
     }
   }
-  return 2.0 / (n + 1.0) * sum / (double(steps) * steps * steps);
+  return 2.0 / (n + 1.0) * sum / (double(steps) * steps);
 }
 
 std::vector<Rgb> bihemispherical_albedos(const Scene& scene) {

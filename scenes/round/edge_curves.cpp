@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
+#include "base/free_memory.h"
 #include "scenes/mesh/triangulate.h"
 
 namespace earthshine::scenes {
@@ -86,31 +88,49 @@ Vec3 point_on(const EdgeCurve& curve, double t) {
   return s * s * s * a + 3.0 * s * s * t * b + 3.0 * s * t * t * c + t * t * t * d;
 }
 
-void EdgeCurves::add(std::uint32_t a, std::uint32_t b, const Vec3& normal_a, const Vec3& normal_b) {
-  faces_[std::minmax(a, b)].normals.push_back(a < b ? std::pair(normal_a, normal_b)
-                                                    : std::pair(normal_b, normal_a));
+std::uint32_t EdgeCurves::add(std::uint32_t a, std::uint32_t b, const Vec3& normal_a,
+                              const Vec3& normal_b) {
+  const auto number = static_cast<std::uint32_t>(uses_.size());
+  uses_.push_back(a < b ? Use{a, b, number, normal_a, normal_b}
+                        : Use{b, a, number, normal_b, normal_a});
+  return number;
 }
 
 void EdgeCurves::find(const std::vector<Vec3>& place, double turn_deg) {
-  for (const auto& [ends, faces] : faces_) {
-    std::vector<Vec3> low, high;
-    double turn = 0.0;
-    for (const auto& [at_low, at_high] : faces.normals) {
-      low.push_back(at_low);
-      high.push_back(at_high);
-      turn = std::max(turn, angle_deg(at_low, at_high));
+  std::sort(uses_.begin(), uses_.end(), [](const Use& a, const Use& b) {
+    return std::tie(a.low, a.high, a.number) < std::tie(b.low, b.high, b.number);
+  });
+  of_use_.resize(uses_.size());
+  for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
+    for (; end < uses_.size() && uses_[end].low == uses_[begin].low &&
+           uses_[end].high == uses_[begin].high;
+         ++end) {
+      of_use_[uses_[end].number] = static_cast<std::uint32_t>(curves_.size());
     }
-    EdgeCurve curve;
-    const Vec3 &a = place[ends.first], &b = place[ends.second];
-    curve.points = {a, inner_point(a, b, low), inner_point(b, a, high), b};
-    turn = std::max(turn, angle_deg(curve.points[1] - a, b - curve.points[2]));
-    if (turn > flat_deg) {
-      curve.pieces = std::clamp(static_cast<std::uint32_t>(std::ceil(turn / turn_deg - 1e-6)),
-                                std::uint32_t{1}, most_pieces);
-    }
-    curves_.emplace(ends, std::move(curve));
+    curves_.push_back(curve_of({&uses_[begin], end - begin}, place, turn_deg));
   }
-  faces_.clear();
+  base::release(uses_);
+}
+
+// Of one edge.
+EdgeCurve EdgeCurves::curve_of(std::span<const Use> uses, const std::vector<Vec3>& place,
+                               double turn_deg) {
+  std::vector<Vec3> low, high;
+  double turn = 0.0;
+  for (const Use& use : uses) {
+    low.push_back(use.at_low);
+    high.push_back(use.at_high);
+    turn = std::max(turn, angle_deg(use.at_low, use.at_high));
+  }
+  EdgeCurve curve;
+  const Vec3 &a = place[uses.front().low], &b = place[uses.front().high];
+  curve.points = {a, inner_point(a, b, low), inner_point(b, a, high), b};
+  turn = std::max(turn, angle_deg(curve.points[1] - a, b - curve.points[2]));
+  if (turn > flat_deg) {
+    curve.pieces = std::clamp(static_cast<std::uint32_t>(std::ceil(turn / turn_deg - 1e-6)),
+                              std::uint32_t{1}, most_pieces);
+  }
+  return curve;
 }
 
 std::vector<Vec3> corner_normals(const Mesh& mesh, const std::vector<std::uint32_t>& ids,

@@ -3,12 +3,10 @@
 // faces of an edge, so that no gap opens between a side and the cap it meets at a crease.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
-#include <utility>
+#include <span>
 #include <vector>
 
 #include "base/units.h"
@@ -28,8 +26,9 @@ struct EdgeCurve {
 
 class EdgeCurves {
  public:
-  // A face that has the edge from a to b, and its normals there. Ids are those of places.
-  void add(std::uint32_t a, std::uint32_t b, const Vec3& normal_a, const Vec3& normal_b);
+  // A face has the edge from a to b, and these normals there; a and b are ids of places. Returns
+  // the number of this use of the edge: 0, 1, 2 ...
+  std::uint32_t add(std::uint32_t a, std::uint32_t b, const Vec3& normal_a, const Vec3& normal_b);
   // Curves for all edges, after the last add(). At each end the curve leaves in the tangent plane
   // of the faces' common normal (Vlachos, Peters, Boyd and Mitchell, "Curved PN triangles", 2001),
   // or along the crease of two, as far as an arc does (Goldapp, "Approximation of circular arcs by
@@ -37,16 +36,19 @@ class EdgeCurves {
   // id.
   void find(const std::vector<Vec3>& place, double turn_deg);
 
-  [[nodiscard]] EdgeCurve& between(std::uint32_t a, std::uint32_t b) {
-    return curves_.at(std::minmax(a, b));
-  }
+  [[nodiscard]] EdgeCurve& of_use(std::uint32_t use) { return curves_[of_use_[use]]; }
 
  private:
-  struct Faces {
-    std::vector<std::pair<Vec3, Vec3>> normals;  // at the lower and at the higher id
+  struct Use {
+    std::uint32_t low, high, number;
+    Vec3 at_low, at_high;  // normals
   };
-  std::map<std::pair<std::uint32_t, std::uint32_t>, Faces> faces_;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, EdgeCurve> curves_;
+  [[nodiscard]] static EdgeCurve curve_of(std::span<const Use> uses, const std::vector<Vec3>& place,
+                                          double turn_deg);
+
+  std::vector<Use> uses_;
+  std::vector<std::uint32_t> of_use_;  // into curves_
+  std::vector<EdgeCurve> curves_;
 };
 
 // Normals of the surface that a mesh stands for, at the corners of its polygons.

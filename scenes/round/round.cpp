@@ -15,7 +15,12 @@ namespace {
 
 constexpr std::size_t most_round_triangles = std::size_t{1} << 24;
 
-using Corners = std::array<std::uint32_t, 3>;  // into Mesh::indices
+// A triangle that a polygon is cut into: its corners, into Mesh::indices, and the first of the uses
+// of its edges (edge_curves.h): from corner k to the next it is the k-th after.
+struct Piece {
+  std::array<std::uint32_t, 3> corner;
+  std::uint32_t first_use = 0;
+};
 
 class Rounder {
  public:
@@ -31,7 +36,7 @@ class Rounder {
     made_.uv_indices.clear();
     for (std::size_t p = 0; p < mesh.polygons.size(); ++p) {
       cut(p);
-      for (const Corners& corners : pieces_[p]) add_edges(corners);
+      for (Piece& piece : pieces_[p]) add_edges(piece);
     }
     std::vector<Vec3> place(mesh.vertices.size());
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) place[ids_[v]] = mesh.vertices[v];
@@ -41,12 +46,12 @@ class Rounder {
   Mesh make() {
     for (std::size_t p = 0; p < mesh_.polygons.size(); ++p) {
       const bool curved = std::any_of(pieces_[p].begin(), pieces_[p].end(),
-                                      [&](const Corners& corners) { return most(corners) > 1; });
+                                      [&](const Piece& piece) { return most(piece) > 1; });
       if (!curved) {
         keep(mesh_.polygons[p]);
         continue;
       }
-      for (const Corners& corners : pieces_[p]) refine(corners, mesh_.polygons[p]);
+      for (const Piece& piece : pieces_[p]) refine(piece, mesh_.polygons[p]);
     }
     return std::move(made_);
   }
@@ -62,22 +67,26 @@ class Rounder {
     Triangulation cut;
     triangulate(corners, 0.0, cut);
     for (const auto& [a, b, c] : cut.triangles) {
-      pieces_[p].push_back({polygon.first + a, polygon.first + b, polygon.first + c});
+      pieces_[p].push_back({{polygon.first + a, polygon.first + b, polygon.first + c}});
     }
   }
 
   [[nodiscard]] std::uint32_t id(std::uint32_t corner) const { return ids_[mesh_.indices[corner]]; }
-  EdgeCurve& edge(std::uint32_t a, std::uint32_t b) { return curves_.between(id(a), id(b)); }
+  // From corner k of the piece to the next.
+  EdgeCurve& edge(const Piece& piece, std::size_t k) {
+    return curves_.of_use(piece.first_use + static_cast<std::uint32_t>(k));
+  }
 
-  void add_edges(const Corners& c) {
+  void add_edges(Piece& piece) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = c[k], b = c[(k + 1) % 3];
-      curves_.add(id(a), id(b), normals_[a], normals_[b]);
+      const std::uint32_t a = piece.corner[k], b = piece.corner[(k + 1) % 3];
+      const std::uint32_t use = curves_.add(id(a), id(b), normals_[a], normals_[b]);
+      if (k == 0) piece.first_use = use;
     }
   }
 
-  std::uint32_t most(const Corners& c) {
-    return std::max({edge(c[0], c[1]).pieces, edge(c[1], c[2]).pieces, edge(c[2], c[0]).pieces});
+  std::uint32_t most(const Piece& piece) {
+    return std::max({edge(piece, 0).pieces, edge(piece, 1).pieces, edge(piece, 2).pieces});
   }
 
   void keep(const MeshPolygon& polygon) {
@@ -103,9 +112,10 @@ class Rounder {
     return corner < mesh_.uv_indices.size() ? mesh_.uv_indices[corner] : no_index;
   }
 
-  // Vertex k of the pieces of the edge from a to b, at k / pieces of the way.
-  std::uint32_t on_edge(std::uint32_t a, std::uint32_t b, std::uint32_t k) {
-    EdgeCurve& curve = edge(a, b);
+  // Vertex k of the pieces of the edge that begins at corner `from`, at k / pieces of the way.
+  std::uint32_t on_edge(const Piece& piece, std::size_t from, std::uint32_t k) {
+    EdgeCurve& curve = edge(piece, from);
+    const std::uint32_t a = piece.corner[from], b = piece.corner[(from + 1) % 3];
     if (k == 0) return mesh_.indices[a];
     if (k == curve.pieces) return mesh_.indices[b];
     if (curve.vertices.empty()) {
@@ -124,12 +134,12 @@ class Rounder {
 
   // The cubic patch whose edges are the curves (Vlachos and others 2001): at weights w of its
   // corners sum b_ijk 3!/(i! j! k!) w^ijk, the middle point from the others.
-  [[nodiscard]] Vec3 patch_point(const Corners& c, const Vec3& w) {
+  [[nodiscard]] Vec3 patch_point(const Piece& piece, const Vec3& w) {
     Vec3 sum(0.0), edges(0.0), ends(0.0);
     for (int k = 0; k < 3; ++k) {
       const int next = (k + 1) % 3;
-      const std::uint32_t a = c[std::size_t(k)], b = c[std::size_t(next)];
-      const EdgeCurve& curve = edge(a, b);
+      const std::uint32_t a = piece.corner[std::size_t(k)], b = piece.corner[std::size_t(next)];
+      const EdgeCurve& curve = edge(piece, std::size_t(k));
       const bool forward = id(a) < id(b);
       const Vec3& near = curve.points[forward ? 1 : 2];
       const Vec3& far = curve.points[forward ? 2 : 1];
@@ -142,7 +152,7 @@ class Rounder {
     return sum + 6.0 * w[0] * w[1] * w[2] * middle;
   }
 
-  Point point(const Corners& c, std::uint32_t n, const std::array<std::uint32_t, 3>& at) {
+  Point point(const Piece& piece, std::uint32_t n, const std::array<std::uint32_t, 3>& at) {
     std::array<double, 3> share{};
     for (std::size_t k = 0; k < 3; ++k) share[k] = double(at[k]) / n;
     Point made;
@@ -151,16 +161,17 @@ class Rounder {
       // On the edge opposite the corner: the neighbour cuts it into its own number of pieces, and
       // the nearest of these points is taken.
       const std::size_t from = (zero + 1) % 3, to = (zero + 2) % 3;
-      const std::uint32_t pieces = edge(c[from], c[to]).pieces;
+      const std::uint32_t pieces = edge(piece, from).pieces;
       const auto k = static_cast<std::uint32_t>(std::lround(share[to] * pieces));
-      made.vertex = on_edge(c[from], c[to], k);
+      made.vertex = on_edge(piece, from, k);
       share[to] = double(k) / pieces;
       share[from] = 1.0 - share[to];
     } else {
       made.vertex = static_cast<std::uint32_t>(made_.vertices.size());
-      made_.vertices.push_back(patch_point(c, {share[0], share[1], share[2]}));
+      made_.vertices.push_back(patch_point(piece, {share[0], share[1], share[2]}));
     }
-    const std::array<std::uint32_t, 3> uv{uv_of(c[0]), uv_of(c[1]), uv_of(c[2])};
+    const auto& [a, b, c] = piece.corner;
+    const std::array<std::uint32_t, 3> uv{uv_of(a), uv_of(b), uv_of(c)};
     if (uv[0] == no_index || uv[1] == no_index || uv[2] == no_index) return made;
     made.uv = static_cast<std::uint32_t>(made_.uv.size());
     glm::dvec2 mixed(0.0);
@@ -169,12 +180,12 @@ class Rounder {
     return made;
   }
 
-  void refine(const Corners& c, const MeshPolygon& polygon) {
-    const std::uint32_t n = most(c);
+  void refine(const Piece& piece, const MeshPolygon& polygon) {
+    const std::uint32_t n = most(piece);
     std::vector<Point> above, row;
     for (std::uint32_t i = 0; i <= n; ++i) {  // rows from corner 0 to the edge opposite
       row.clear();
-      for (std::uint32_t j = 0; j <= i; ++j) row.push_back(point(c, n, {n - i, i - j, j}));
+      for (std::uint32_t j = 0; j <= i; ++j) row.push_back(point(piece, n, {n - i, i - j, j}));
       for (std::uint32_t j = 0; j < i; ++j) {
         add_triangle(above[j], row[j], row[j + 1], polygon);
         if (j + 1 < i) add_triangle(above[j], row[j + 1], above[j + 1], polygon);
@@ -194,7 +205,7 @@ class Rounder {
   const base::Location& where_;
   std::vector<std::uint32_t> ids_;  // per vertex: equal at one place
   std::vector<Vec3> normals_;       // per entry of mesh_.indices
-  std::vector<std::vector<Corners>> pieces_;
+  std::vector<std::vector<Piece>> pieces_;
   EdgeCurves curves_;
   Mesh made_;
 };

@@ -4,23 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenes/light/lamp_light.h"
-#include "scenes/sky/two_discs.h"
-
 namespace earthshine::scenes {
 namespace {
-
-// The Sun's disc and the Earth's before it, radians.
-struct SunAndEarth {
-  double radius, limb, separation;
-  // Solid angle of what the Earth leaves of the disc, as far as `rim` from its middle.
-  [[nodiscard]] double left(double rim) const {
-    return disc_solid_angle(rim) - shared_solid_angle(rim, limb, separation);
-  }
-  [[nodiscard]] bool touch() const {
-    return separation < radius + limb && separation + radius > limb;
-  }
-};
 
 SunAndEarth sun_and_earth(const Scene& scene) {
   const Vec3 &sun = scene.sun->direction, &earth = scene.earth->direction;
@@ -60,7 +45,7 @@ std::optional<Vec3> EarthRadiance::surface_zenith(const Vec3& direction) const {
 
 Rgb EarthRadiance::operator()(const Vec3& direction) const {
   const Earth& earth = *scene_.earth;
-  if (glm::dot(direction, earth.direction) < limb_cosine_) return Rgb(0.0);
+  if (!is_before(direction)) return Rgb(0.0);
   if (earth.model == EarthModel::Uniform) return earth.radiance;
   const auto surface = surface_zenith(direction);
   if (!surface) return Rgb(0.0);
@@ -99,29 +84,37 @@ double visible_sun_share(const Scene& scene) {
   return std::clamp(discs.left(discs.radius) / disc_solid_angle(discs.radius), 0.0, 1.0);
 }
 
-Vec3 sample_sun(const Scene& scene, double u, double v) {
-  const Vec3& sun = scene.sun->direction;
-  const double radius = base::radians(scene.sun->angular_radius_deg);
-  if (!scene.earth) return sample_cone(sun, radius, u, v);
+SunDirections::SunDirections(const Scene& scene)
+    : disc_(scene.sun->direction, base::radians(scene.sun->angular_radius_deg)),
+      sun_(scene.sun->direction) {
+  if (!scene.earth) return;
   const SunAndEarth discs = sun_and_earth(scene);
-  if (!discs.touch()) return sample_cone(sun, radius, u, v);
-  // How far from the Sun's middle, by halving: what is left within grows with it; then along what
-  // is left of that rim.
-  const double wanted = u * discs.left(radius);
-  double low = 0.0, high = radius;
+  if (!discs.touch()) return;
+  partly_ = discs;
+  const Vec3 across = scene.earth->direction - glm::dot(sun_, scene.earth->direction) * sun_;
+  const double length = glm::length(across);
+  toward_ = length > 0.0 ? across / length : base::frame_around(sun_).tangent;
+}
+
+Vec3 SunDirections::operator()(double u, double v) const {
+  return partly_ ? beside_earth(u, v) : disc_.sample(u, v);
+}
+
+// How far from the Sun's middle, by halving: what is left within grows with it; then along what is
+// left of that rim.
+Vec3 SunDirections::beside_earth(double u, double v) const {
+  const double wanted = u * partly_->left(partly_->radius);
+  double low = 0.0, high = partly_->radius;
   for (int step = 0; step < 40; ++step) {
     const double middle = 0.5 * (low + high);
-    (discs.left(middle) > wanted ? high : low) = middle;
+    (partly_->left(middle) > wanted ? high : low) = middle;
   }
   const double off = 0.5 * (low + high);
-  const double covered = covered_half_arc(off, discs.limb, discs.separation);
+  const double covered = covered_half_arc(off, partly_->limb, partly_->separation);
   const double turn = covered + 2.0 * v * (base::pi - covered);
-  const Vec3 across = scene.earth->direction - glm::dot(sun, scene.earth->direction) * sun;
-  const double length = glm::length(across);
-  const Vec3 toward = length > 0.0 ? across / length : base::frame_around(sun).tangent;
-  return glm::normalize(std::cos(off) * sun +
-                        std::sin(off) *
-                            (std::cos(turn) * toward + std::sin(turn) * glm::cross(sun, toward)));
+  return glm::normalize(
+      std::cos(off) * sun_ +
+      std::sin(off) * (std::cos(turn) * toward_ + std::sin(turn) * glm::cross(sun_, toward_)));
 }
 
 Rgb sun_sample_illuminance(const Scene& scene) {

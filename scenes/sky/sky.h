@@ -4,7 +4,9 @@
 
 #include <optional>
 
+#include "scenes/light/lamp_light.h"
 #include "scenes/scene.h"
+#include "scenes/sky/two_discs.h"
 
 namespace earthshine::scenes {
 
@@ -23,6 +25,9 @@ class EarthRadiance {
  public:
   explicit EarthRadiance(const Scene& scene);
   [[nodiscard]] Rgb operator()(const Vec3& direction) const;
+  [[nodiscard]] bool is_before(const Vec3& direction) const {
+    return glm::dot(direction, scene_.earth->direction) >= limb_cosine_;
+  }
 
  private:
   // The zenith, unit, of the point of the sphere seen in `direction`; nothing beside the disc.
@@ -40,9 +45,22 @@ class EarthRadiance {
 // Share of the Sun's disc that the Earth does not cover, 0 to 1, by solid angle (two_discs.h).
 [[nodiscard]] double visible_sun_share(const Scene& scene);
 
-// A direction spread uniformly, for u and v in [0, 1), over what the Earth leaves of the Sun's
-// disc.
-[[nodiscard]] Vec3 sample_sun(const Scene& scene, double u, double v);
+// Directions spread uniformly, for u and v in [0, 1), over what the Earth leaves of the disc of the
+// Sun that the scene has.
+class SunDirections {
+ public:
+  explicit SunDirections(const Scene& scene);
+  [[nodiscard]] Vec3 operator()(double u, double v) const;
+
+ private:
+  [[nodiscard]] Vec3 beside_earth(double u, double v) const;
+
+  Cone disc_;
+  Vec3 sun_;
+  // Where the Earth hides some of it: both discs, and from the Sun's middle the way to the Earth's.
+  std::optional<SunAndEarth> partly_;
+  Vec3 toward_{0.0};
+};
 
 // What directions spread so must each carry so that a plate that faces
 // it gets illuminance_lx times the share in view: the mean cosine over the disc is (1 + cos r) / 2.

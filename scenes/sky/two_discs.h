@@ -18,4 +18,16 @@ namespace earthshine::scenes {
 // nine digits).
 [[nodiscard]] double shared_solid_angle(double a, double b, double separation);
 
+// A disc and another that may hide some of it: the Sun's and the Earth's.
+struct SunAndEarth {
+  double radius, limb, separation;
+  // Solid angle of what the Earth leaves of the Sun, as far as `rim` from its middle.
+  [[nodiscard]] double left(double rim) const {
+    return disc_solid_angle(rim) - shared_solid_angle(rim, limb, separation);
+  }
+  [[nodiscard]] bool touch() const {
+    return separation < radius + limb && separation + radius > limb;
+  }
+};
+
 }  // namespace earthshine::scenes

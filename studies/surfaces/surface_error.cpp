@@ -21,9 +21,7 @@ radiosity::FormFactors matrix_of(const scenes::World& scene, const radiosity::So
                                  std::uint64_t seed) {
   radiosity::SkyRadiance sky;
   if (scene.effects.earth_by_gather) {
-    sky = [&scene](const Vec3& direction) {
-      return scenes::earth_radiance(scene.scene, direction);
-    };
+    sky = scenes::EarthRadiance(scene.scene);
   }
   radiosity::FormFactorOptions options{matrix_rays, seed, replicate};
   options.leave_out_covered = true;

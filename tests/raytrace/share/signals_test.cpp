@@ -14,8 +14,8 @@ namespace {
 
 // Of a signal that is not there: its square, less the variance that is stated.
 double more_than_stated(const Shared& shared, std::size_t p, std::size_t level) {
-  const double noise = double(shared.noise[p][level]), found = double(shared.signal[p][level]);
-  return found * found - noise * noise * 2.0 * double(shared.few[p][level]);
+  const double noise = double(shared.noise[level][p]), found = double(shared.signal[level][p]);
+  return found * found - noise * noise * 2.0 * double(shared.few[level][p]);
 }
 
 // The left columns are another surface, whose signals, alike in both halves, differ by so much more
@@ -56,7 +56,7 @@ TEST(Signals, ASmoothPictureStatesLittleThatNoiseMayHide) {
       const double off = double(shared.radiance[p].g) - 10.0;
       found += off * off;
       stated += double(shared.squared_error[p]);
-      const double sigma = double(shared.noise[p][0]) * std::sqrt(2.0 * double(shared.few[p][0]));
+      const double sigma = double(shared.noise[0][p]) * std::sqrt(2.0 * double(shared.few[0][p]));
       alone += sigma / std::sqrt(2.0 * base::pi);
     }
   }

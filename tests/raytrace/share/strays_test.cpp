@@ -22,11 +22,7 @@ struct Written {
       : strays(count, Stray{0, 0, 0, 0.5F}), estimate(1 + count, 1, 1) {
     shared.layers = 1;
     shared.radiance = {glm::vec3(10.0F)};
-    shared.signal.resize(1);
-    shared.noise.resize(1);
-    shared.few.resize(1);
-    shared.rest.assign(1, 0.0F);
-    shared.squared_error.assign(1, 0.0F);
+    shared.resize(1);
   }
   // Means of the halves of so many samples.
   void sample(std::size_t stray, double first, double second, double samples = 2.0) {

@@ -77,14 +77,14 @@ TEST(TwoDiscs, ASunAroundTheEarthKeepsItsRing) {
   const double all = 1.0 - std::cos(base::radians(0.2666));
   EXPECT_NEAR(visible_sun_share(scene), 1.0 - (1.0 - std::cos(base::radians(0.1))) / all, 1e-9);
   for (const double u : {0.0, 0.3, 0.999}) {
-    const Vec3 direction = sample_sun(scene, u, u);
+    const Vec3 direction = SunDirections(scene)(u, u);
     EXPECT_NEAR(glm::length(direction), 1.0, 1e-12);
     EXPECT_LT(direction.z, std::cos(base::radians(0.0999)));
   }
 }
 
 TEST(TwoDiscs, DirectionsAreSpreadOverWhatTheEarthLeaves) {
-  // Of directions drawn over the whole Sun those that miss the Earth are what sample_sun() draws:
+  // Of directions drawn over the whole Sun those that miss the Earth are what SunDirections draw:
   // the shares of both below a plane through the Sun's middle, and within 0.7 of its radius, agree
   // within four standard errors of 40 000 draws, and so does how many miss.
   constexpr int draws = 40'000;
@@ -95,6 +95,7 @@ TEST(TwoDiscs, DirectionsAreSpreadOverWhatTheEarthLeaves) {
     const Vec3 slant = glm::normalize(Vec3(1.0, 0.5, 0.0));
     const auto below = [&](const Vec3& direction) { return glm::dot(direction, slant) < 0.0; };
     const auto inner = [&](const Vec3& direction) { return direction.z > std::cos(0.7 * radius); };
+    const SunDirections sun(scene);
     double missed = 0.0, missed_below = 0.0, missed_inner = 0.0, drawn_below = 0.0,
            drawn_inner = 0.0;
     for (int k = 0; k < draws; ++k) {
@@ -105,7 +106,7 @@ TEST(TwoDiscs, DirectionsAreSpreadOverWhatTheEarthLeaves) {
         missed_below += below(any) ? 1.0 : 0.0;
         missed_inner += inner(any) ? 1.0 : 0.0;
       }
-      const Vec3 left = sample_sun(scene, rng.next(), rng.next());
+      const Vec3 left = sun(rng.next(), rng.next());
       EXPECT_LT(glm::dot(left, scene.earth->direction),
                 std::cos(base::radians(scene.earth->half_angle_deg)) + 1e-12);
       drawn_below += below(left) ? 1.0 : 0.0;
