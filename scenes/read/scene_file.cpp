@@ -7,6 +7,7 @@
 #include "base/input/input_file.h"
 #include "scenes/health/coincident.h"
 #include "scenes/health/mend.h"
+#include "scenes/health/small_objects.h"
 #include "scenes/read/override.h"
 #include "scenes/read/scene_parts.h"
 #include "scenes/surface_texture.h"
@@ -158,6 +159,7 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   lift_lamps(scene);
   add_instances(parts, scene);
   find_coincident_faces(scene, parts);
+  name_small_objects(scene);
   return scene;
 }
 

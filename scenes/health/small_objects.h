@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// Objects that single precision loses in a scene as wide as it is.
+#pragma once
+
+#include "scenes/scene.h"
+
+namespace earthshine::scenes {
+
+// Names objects that are smaller than twenty times what rays are lifted off surfaces (ray_query.h),
+// as a warning of the scene, with the object that makes it so wide: a twentieth of their size about
+// them is without their light and shadow. Often one mesh is at another scale than the rest.
+void name_small_objects(Scene& scene);
+
+}  // namespace earthshine::scenes
