@@ -126,7 +126,7 @@ class ColumnSums {
   std::size_t count_;
   base::Shares::Range own_;
   // Every band has a sum of every column: where rows are short, bands cost more than entries.
-  std::size_t bands_ = std::clamp<std::size_t>(std::size_t(f_.rays_per_patch) / 4, 4, 16);
+  std::size_t bands_ = std::clamp<std::size_t>(std::size_t(f_.rays_per_patch) / 4, 8, 16);
   std::size_t first_ = 0, last_ = 0;         // bands with rows here: [first_, last_)
   bool is_begun_ = false, goes_on_ = false;  // the first one by, the last one with another rank
   std::vector<double> partial_;              // of each

@@ -14,7 +14,9 @@ namespace {
 // window steps over, of independent values on an endless plane: squares of normal details are
 // correlated so.
 constexpr std::array<float, share_levels> alike = {1.15F, 1.10F, 1.13F, 1.14F, 1.14F};
-// Squares of all but single pixels' details are as smooth as the first blur would make them.
+// Of all but single pixels' details two blurs are enough: a third one, between points as far apart
+// as the details, takes a fifth of the time of sharing and saves no rays, though it would make
+// windows of three times as many independent squares.
 constexpr std::size_t first_blur(std::size_t level) { return level > 0 ? 1 : 0; }
 constexpr std::size_t layers_at_once = 4;
 constexpr std::size_t points_at_once = 1024;

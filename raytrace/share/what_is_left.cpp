@@ -29,7 +29,7 @@ void Shared::squared_errors_with(double factor, std::size_t begin, std::size_t e
                                  float* errors) const {
   const float per_more = 1.0F / static_cast<float>(factor);
   std::array<float, points_at_once> kept, lost;
-  for (; begin < end; begin += points_at_once, errors += points_at_once) {
+  for (; begin < end; begin += points_at_once) {
     const std::size_t count = std::min(points_at_once, end - begin);
     for (std::size_t k = 0; k < count; ++k) kept[k] = rest[begin + k] * per_more, lost[k] = 0.0F;
     for (std::size_t level = 0; level < share_levels; ++level) {
@@ -48,7 +48,7 @@ void Shared::squared_errors_with(double factor, std::size_t begin, std::size_t e
         lost[k] += left.blur;
       }
     }
-    for (std::size_t k = 0; k < count; ++k) errors[k] = Left{kept[k], lost[k]}.all();
+    for (std::size_t k = 0; k < count; ++k) *errors++ = Left{kept[k], lost[k]}.all();
   }
 }
 

@@ -7,8 +7,9 @@
 namespace earthshine::scenes {
 
 // Names objects that are smaller than twenty times what rays are lifted off surfaces (ray_query.h),
-// as a warning of the scene, with the object that makes it so wide: a twentieth of their size about
-// them is without their light and shadow. Often one mesh is at another scale than the rest.
+// as a warning of the scene: at least a twentieth of their size about them is without their light
+// and shadow. The object without which the scene is half as wide at most, if there is one such, is
+// named with them: often it is out of place, or at another scale than the rest.
 void name_small_objects(Scene& scene);
 
 }  // namespace earthshine::scenes

@@ -19,8 +19,8 @@ namespace earthshine::scenes {
 
 // Radiance of the Earth in a unit direction, cd/m^2; 0 off its disc. Lambert: L = (a / pi) E_sun
 // max(0, cos theta_s), theta_s the Sun's zenith angle where the direction meets the sphere; a is
-// Earth::albedo, by latitude times albedo_at that place. Of a scene that has an Earth, for many
-// directions.
+// Earth::albedo, by latitude times albedo_at that place. Of a scene that has an Earth and outlives
+// it, for many directions; what changes in the scene later is not seen.
 class EarthRadiance {
  public:
   explicit EarthRadiance(const Scene& scene);
@@ -46,7 +46,7 @@ class EarthRadiance {
 [[nodiscard]] double visible_sun_share(const Scene& scene);
 
 // Directions spread uniformly, for u and v in [0, 1), over what the Earth leaves of the disc of the
-// Sun that the scene has.
+// Sun that the scene has now.
 class SunDirections {
  public:
   explicit SunDirections(const Scene& scene);
