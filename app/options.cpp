@@ -66,7 +66,8 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
             }
             input.overrides.push_back(fmt::format("quality.error={}", error->first));
           },
-          "Wanted relative error; the same as --set quality.error=E")
+          "Wanted relative error, to which render and solve go on; visibility and orbit draw by "
+          "the settings that go with it; the same as --set quality.error=E")
       ->type_name("E");
 }
 

@@ -2,8 +2,11 @@
 #include "app/output.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <system_error>
@@ -52,6 +55,17 @@ void check_outputs(const std::vector<std::string>& paths, const Files& inputs) {
       throw Error(Blame::Input, path, "would be written twice", {}, "Give two names");
     }
   }
+}
+
+void refuse_other_kind(std::string_view option, const std::string& path,
+                       const std::vector<std::string>& own) {
+  constexpr std::array kinds = {".bin",  ".csv", ".exr", ".glb", ".gltf", ".h5",  ".html", ".ies",
+                                ".json", ".mtl", ".obj", ".ply", ".png",  ".stl", ".toml"};
+  const std::string ending = fs::path(path).extension().string();
+  if (std::ranges::find(own, ending) != own.end()) return;
+  if (std::ranges::find(kinds, ending) == kinds.end()) return;
+  throw Error(Blame::Input, option, fmt::format("\"{}\" ends as another kind of file does", path),
+              {}, fmt::format("Name a file that ends in {}", fmt::join(own, " or ")));
 }
 
 void make_folder(const fs::path& folder) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenes/scene.h"
@@ -16,6 +17,11 @@ using Files = std::vector<std::filesystem::path>;
 // be written, two are the same, or one is an input, under whatever name: scenes::Scene::files has
 // those of a scene.
 void check_outputs(const std::vector<std::string>& paths, const Files& inputs);
+
+// Throws base::Error (Input) for a name that ends as files of another kind do, which are others'
+// work: "bay.toml" for a solution. own: the endings to choose from; names without one are fine.
+void refuse_other_kind(std::string_view option, const std::string& path,
+                       const std::vector<std::string>& own);
 
 // Throws base::Error (Input) where there is no folder and none can be made.
 void make_folder(const std::filesystem::path& folder);

@@ -18,6 +18,10 @@ std::string compose(std::string_view where, std::string_view found, std::string_
   text += found;
   if (!allowed.empty()) text.append("; ").append(allowed);
   if (!remedy.empty()) text.append(". ").append(remedy);
+  // what() ends at the first NUL, and binary files have them.
+  for (std::size_t at = 0; (at = text.find('\0', at)) != std::string::npos;) {
+    text.replace(at, 1, "\\x00");
+  }
   return text;
 }
 

@@ -81,7 +81,7 @@ PlotCurve law_curve(const studies::SeriesLaw& law) {
 PlotPanel law_panel(const AccuracyResult& result, const studies::SeriesLaw& law, const Look& look) {
   PlotPanel panel{look.title, law.spent, "error of the setting, %", {}, false};
   if (law.law) {
-    panel.title += fmt::format(": x^-{:.2f}", law.law->exponent);
+    panel.title += fmt::format(": x^{:.2f}", -law.law->exponent);
     if (law.law->exponent_error) panel.title += fmt::format(" ± {:.2f}", *law.law->exponent_error);
     if (law.law->floor > 0.0) panel.title += fmt::format(", floor {:.2g} %", 100 * law.law->floor);
     panel.curves.push_back(law_curve(law));

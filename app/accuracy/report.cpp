@@ -245,7 +245,7 @@ std::string accuracy_text(const AccuracyTask& task, const AccuracyResult& result
   for (const studies::SeriesLaw& law : result.findings.laws) {
     if (!law.law) continue;
     text += fmt::format(
-        "{} {}: error ~ ({})^-{:.2f}{}{}\n", law.method, law.series, law.spent, law.law->exponent,
+        "{} {}: error ~ ({})^{:.2f}{}{}\n", law.method, law.series, law.spent, -law.law->exponent,
         law.law->exponent_error ? fmt::format(" +- {:.2f}", *law.law->exponent_error) : "",
         law.law->floor > 0.0 ? ", floor " + percent(law.law->floor) : "");
   }

@@ -229,6 +229,7 @@ void run(const SolveCall& call, const Common& common) {
   Files inputs = loaded.scene.files;
   inputs.emplace_back(call.solution);
   check_outputs({call.output, call.mesh}, inputs);
+  refuse_other_kind("-o", call.output, {".h5", ".json"});
   const scenes::RayQuery query =
       times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
   const radiosity::SolveOptions options = solve_options(loaded.scene, common);

@@ -109,6 +109,8 @@ void run(const RelightCall& call, const Common& common) {
   }
   const std::map<std::string, Rgb> factors = factors_of(call.settings);
   check_outputs({call.output, call.png}, {call.input});
+  refuse_other_kind("-o", call.output, {".exr"});
+  refuse_other_kind("--png", call.png, {".png"});
   base::ExrFile file = base::read_exr(call.input);
   studies::relight(file.image, factors, call.input);
   // What was said of the error held for the lights as they were.

@@ -13,6 +13,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <string>
 #include <string_view>
 #include <system_error>
 
@@ -172,6 +174,9 @@ void check_exr_file(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) refuse_file(path, "there is no such file");
   check_input_file(path, {path.string()});
+  std::string begin(4, '\0');
+  std::ifstream(path, std::ios::binary).read(begin.data(), 4);
+  if (begin == "\x89PNG") refuse_file(path, "is a PNG", "OpenEXR is read", "Name a .exr file");
   guard_exr(path);
 }
 

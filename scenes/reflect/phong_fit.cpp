@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/input/input_file.h"
 #include "scenes/reflect/phong_least_squares.h"
+#include "scenes/text/message_text.h"
 #include "scenes/text/text_lines.h"
 
 namespace earthshine::scenes {
@@ -227,7 +228,7 @@ std::vector<ReflectancePoint> read_reflectance(const std::filesystem::path& path
     const auto comma = row.find(',');
     if (comma == std::string_view::npos || row.find(',', comma + 1) != std::string_view::npos) {
       throw Error(Blame::Input, base::Location{path.string(), number, 0},
-                  fmt::format("\"{}\" does not have two columns", trimmed(row)),
+                  fmt::format("{} does not have two columns", in_quotes(trimmed(row))),
                   "each row is an angle in degrees, a comma and a reflectance factor");
     }
     const std::string_view angle = row.substr(0, comma), reflectance = row.substr(comma + 1);

@@ -57,6 +57,8 @@ class FitPhong(program.Case):
         self.says(self.refused("fit-phong", "none.csv"), "none.csv")
         self.write("bad.csv", "0,1\n10,0.8\n80,\n")
         self.says(self.refused("fit-phong", "bad.csv"), "bad.csv:3:")
+        (self.folder / "binary.csv").write_bytes(b"v/1\x01\x00\x02\n")
+        self.says(self.refused("fit-phong", "binary.csv"), "binary.csv:1:", "does not have two columns")
         self.write("few.csv", "0,1\n80,0.5\n")
         self.says(self.refused("fit-phong", "few.csv"), "few.csv", "2 different angles")
 

@@ -57,7 +57,8 @@ class Relight(program.Case):
                             (("-o", "b.exr", "--set", "sun=-1"), "not a group and its factor"),
                             (("-o", "b.exr", "--set", "sun=nan"), "not a group and its factor"),
                             (("-o", "b.exr", "--set", "sun=1,2"), "not a group and its factor"),
-                            (("-o", "b.exr", "--set", "sun=1", "--set", "sun=2"), "twice")):
+                            (("-o", "b.exr", "--set", "sun=1", "--set", "sun=2"), "twice"), (("-o", "b.png", "--set", "sun=1"), "ends in .exr"),
+                            (("--png", "b.toml", "--set", "sun=1"), "ends in .png")):
             self.says(self.refused("relight", "a.exr", *call), words)
         self.done("render", "ball.toml", "--camera", "A", "--size", "8x8", "--error", "0.3", "-o", "plain.exr", "-q")
         self.says(self.refused("relight", "plain.exr", "-o", "b.exr"), "--per-light")

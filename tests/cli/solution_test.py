@@ -216,6 +216,9 @@ class Solution(program.Case):
         self.assertIn("patches", json.loads(self.bytes_of("report.json")))
         self.says(self.refused("solve", "ball.toml", "-o", "ball.glb"), "--glb")
         self.says(self.refused("solve", "ball.toml", "--glb", "ball.h5"), ".glb")
+        (self.folder / "kept.toml").write_text("a scene")
+        self.says(self.refused("solve", "ball.toml", "-o", "kept.toml"), "kept.toml", ".h5 or .json")
+        self.assertEqual((self.folder / "kept.toml").read_text(), "a scene")
         self.says(self.refused("solve", "ball.toml", "-o", "x", "--glb", "none/x.glb"), "none")
 
 
