@@ -3,6 +3,7 @@
 // code.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -42,8 +43,9 @@ class Error : public std::runtime_error {
 // What the system says of an error number, e.g. "No such file or directory".
 [[nodiscard]] std::string system_reason(int error_number);
 
-// The candidate nearest to `word` by edit distance, or "" when none is near enough to be meant.
-// Candidates: any range of strings.
+// The candidate nearest to `word` by edit distance, or "" when none is near enough to be meant:
+// words that have no letter in common are not. Candidates: any range of strings. Large and small
+// letters are alike.
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
 template <class Candidates>
@@ -52,9 +54,10 @@ template <class Candidates>
   std::string found;
   for (const auto& candidate : candidates) {
     const std::size_t distance = edit_distance(word, candidate);
-    if (distance < best) {
+    const std::string_view other(candidate);
+    if (distance < best && distance < std::max(word.size(), other.size())) {
       best = distance;
-      found = std::string(candidate);
+      found = std::string(other);
     }
   }
   return found;

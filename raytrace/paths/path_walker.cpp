@@ -110,7 +110,7 @@ void PathWalker::see(std::size_t group, const Rgb& radiance) {
 
 void PathWalker::see_sky() {
   const scenes::Scene& scene = world_.scene;
-  if (earth_ && earth_->is_before(ray_.direction)) {
+  if (earth_ && earth_->covers(ray_.direction)) {
     const bool met = sees_sampled_ || world_.effects.earth_by_gather;
     if (met && world_.groups.earth != no_group) {
       see(world_.groups.earth + scenes::earth_part(scene, ray_.direction),

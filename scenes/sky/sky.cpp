@@ -45,7 +45,7 @@ std::optional<Vec3> EarthRadiance::surface_zenith(const Vec3& direction) const {
 
 Rgb EarthRadiance::operator()(const Vec3& direction) const {
   const Earth& earth = *scene_.earth;
-  if (!is_before(direction)) return Rgb(0.0);
+  if (!covers(direction)) return Rgb(0.0);
   if (earth.model == EarthModel::Uniform) return earth.radiance;
   const auto surface = surface_zenith(direction);
   if (!surface) return Rgb(0.0);

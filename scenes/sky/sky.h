@@ -25,7 +25,7 @@ class EarthRadiance {
  public:
   explicit EarthRadiance(const Scene& scene);
   [[nodiscard]] Rgb operator()(const Vec3& direction) const;
-  [[nodiscard]] bool is_before(const Vec3& direction) const {
+  [[nodiscard]] bool covers(const Vec3& direction) const {
     return glm::dot(direction, scene_.earth->direction) >= limb_cosine_;
   }
 

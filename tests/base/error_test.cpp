@@ -37,6 +37,9 @@ TEST(Error, NearestWordFindsTheMisspeltKeyAndNotAStranger) {
   const std::vector<std::string> keys = {"gain_max", "gamma", "glare"};
   EXPECT_EQ(nearest_word("gama", keys), "gamma");
   EXPECT_EQ(nearest_word("max_gain_db_of_it", keys), "");
+  const std::vector<std::string> cameras = {"A", "B"};
+  EXPECT_EQ(nearest_word("b", cameras), "B");
+  EXPECT_EQ(nearest_word("Z", cameras), "");
 }
 
 }  // namespace
