@@ -16,7 +16,7 @@ namespace {
 
 constexpr double lifts = 20.0;
 constexpr double much_narrower = 0.5;  // times as wide
-constexpr double single_point_m = 1e-5;
+constexpr double least_scene_m = 1e-5;  // smaller ones have lifts of a fixed size
 
 Box box_of(const Scene& scene, const Object& object) {
   Box box;
@@ -59,7 +59,7 @@ void name_small_objects(Scene& scene) {
     all = both(all, boxes.back());
     if (boxes.back().diagonal() < lifts * lift_m) small.push_back(names.back());
   }
-  if (small.empty() || all.diagonal() < single_point_m) return;
+  if (small.empty() || all.diagonal() < least_scene_m) return;
   const std::vector<double> without = without_each(boxes);
   const auto narrows = [&](double across) { return across < much_narrower * all.diagonal(); };
   std::string across = fmt::format("{:.3g} m across", all.diagonal()),
