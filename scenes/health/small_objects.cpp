@@ -15,7 +15,7 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr double lifts = 20.0;
-constexpr double much_narrower = 0.5;  // times as wide
+constexpr double much_narrower = 0.5;   // times as wide
 constexpr double least_scene_m = 1e-5;  // smaller ones have lifts of a fixed size
 
 Box box_of(const Scene& scene, const Object& object) {
