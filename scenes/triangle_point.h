@@ -16,6 +16,10 @@ struct Box {
     low = glm::min(low, point);
     high = glm::max(high, point);
   }
+  void add(const Box& other) {
+    low = glm::min(low, other.low);
+    high = glm::max(high, other.high);
+  }
   [[nodiscard]] Vec3 middle() const { return 0.5 * (low + high); }
   // Out of line: in line GCC 12 drops the rounding, double to float to double, of two components
   // that it handles as a vector, and rounds only the third.

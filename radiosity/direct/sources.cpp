@@ -55,18 +55,12 @@ LightSource free_sun_source(const scenes::Sun& sun, std::uint64_t key, std::size
 }
 
 LightSource earth_source(const scenes::Scene& scene, std::size_t group, int points) {
-  const double half_angle = base::radians(scene.earth->half_angle_deg);
-  const double solid_angle = scenes::cone_solid_angle_sr(half_angle);
   Source source;
   source.key = 2;
   source.group = group;
   source.points = 4 * points;
-  source.sample = [disc = scenes::Cone(scene.earth->direction, half_angle),
-                   radiance = scenes::EarthRadiance(scene),
-                   solid_angle](const Vec3&, double u, double v) {
-    const Vec3 direction = disc.sample(u, v);
-    return LightSample{direction, std::numeric_limits<double>::infinity(),
-                       radiance(direction) * solid_angle};
+  source.sample = [earth = scenes::EarthLight(scene)](const Vec3&, double u, double v) {
+    return earth.sample(u, v);
   };
   return {{}, std::move(source), Rgb(0.0), {}};
 }

@@ -247,12 +247,9 @@ scenes::LightSample LightSampler::sample_straight(const Light& light, const Vec3
       sample = {sun.disc.sample(u, v), std::numeric_limits<double>::infinity(), sun.illuminance_lx};
       break;
     }
-    case Kind::Earth: {
-      const Vec3 direction = earth_->cone.sample(u, v);
-      sample = {direction, std::numeric_limits<double>::infinity(),
-                earth_->radiance(direction) * earth_->solid_angle_sr};
+    case Kind::Earth:
+      sample = earth_->sample(u, v);
       break;
-    }
     case Kind::EarthArea:
       sample = scenes::sample_lamp(*earth_area_, point, u, v);
       break;

@@ -144,16 +144,7 @@ class LightSampler {
     scenes::Cone disc;
   };
   std::vector<SunPart> sun_parts_;
-  struct EarthDisc {
-    explicit EarthDisc(const scenes::Scene& scene)
-        : cone(scene.earth->direction, base::radians(scene.earth->half_angle_deg)),
-          radiance(scene),
-          solid_angle_sr(scenes::cone_solid_angle_sr(base::radians(scene.earth->half_angle_deg))) {}
-    scenes::Cone cone;
-    scenes::EarthRadiance radiance;
-    double solid_angle_sr;
-  };
-  std::optional<EarthDisc> earth_;
+  std::optional<scenes::EarthLight> earth_;
 };
 
 }  // namespace earthshine::raytrace

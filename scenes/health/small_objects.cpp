@@ -28,8 +28,7 @@ Box box_of(const Scene& scene, const Object& object) {
 }
 
 Box both(Box box, const Box& other) {
-  box.low = glm::min(box.low, other.low);
-  box.high = glm::max(box.high, other.high);
+  box.add(other);
   return box;
 }
 
@@ -56,7 +55,7 @@ void name_small_objects(Scene& scene) {
     if (object.triangle_count == 0) continue;
     names.push_back(in_quotes(object.name));
     boxes.push_back(box_of(scene, object));
-    all = both(all, boxes.back());
+    all.add(boxes.back());
     if (boxes.back().diagonal() < lifts * lift_m) small.push_back(names.back());
   }
   if (small.empty() || all.diagonal() < least_scene_m) return;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace earthshine::scenes {
 namespace {
@@ -58,6 +59,17 @@ Rgb EarthRadiance::operator()(const Vec3& direction) const {
 
 Rgb earth_radiance(const Scene& scene, const Vec3& direction) {
   return EarthRadiance(scene)(direction);
+}
+
+EarthLight::EarthLight(const Scene& scene)
+    : disc_(scene.earth->direction, base::radians(scene.earth->half_angle_deg)),
+      radiance_(scene),
+      solid_angle_sr_(cone_solid_angle_sr(base::radians(scene.earth->half_angle_deg))) {}
+
+LightSample EarthLight::sample(double u, double v) const {
+  const Vec3 direction = disc_.sample(u, v);
+  return {direction, std::numeric_limits<double>::infinity(),
+          radiance_(direction) * solid_angle_sr_};
 }
 
 bool earth_is_lit(const Scene& scene) {

@@ -39,6 +39,20 @@ class EarthRadiance {
 // The same in one direction.
 [[nodiscard]] Rgb earth_radiance(const Scene& scene, const Vec3& direction);
 
+// The Earth as a source that shadow rays go to: a direction spread uniformly over the solid angle
+// of its disc, and all the light that would come if the disc were as bright there. Of a scene as
+// above.
+class EarthLight {
+ public:
+  explicit EarthLight(const Scene& scene);
+  [[nodiscard]] LightSample sample(double u, double v) const;
+
+ private:
+  Cone disc_;
+  EarthRadiance radiance_;
+  double solid_angle_sr_;
+};
+
 // Whether any part of the disc shines.
 [[nodiscard]] bool earth_is_lit(const Scene& scene);
 
