@@ -103,12 +103,14 @@ bool SceneInput::wants_error() const {
   });
 }
 
+const scenes::Camera& first_camera(const scenes::Scene& scene) {
+  if (!scene.cameras.empty()) return scene.cameras.front();
+  throw Error(Blame::Input, scene.path.string(), "has no camera", {}, "Add a [[camera]]");
+}
+
 const scenes::Camera& choose_camera(const scenes::Scene& scene, const std::string& name,
                                     const std::optional<base::Location>& named_at) {
-  if (scene.cameras.empty()) {
-    throw Error(Blame::Input, scene.path.string(), "has no camera", {}, "Add a [[camera]]");
-  }
-  if (name.empty()) return scene.cameras.front();
+  (void)first_camera(scene);
   std::vector<std::string> names;
   for (const scenes::Camera& camera : scene.cameras) {
     if (camera.name == name) return camera;

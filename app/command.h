@@ -107,8 +107,8 @@ using AskEffects = std::function<WantedEffects(const scenes::Scene&)>;
 // Warnings go to standard error unless `quiet`. The only place where a call's effects are decided.
 [[nodiscard]] LoadedScene load(const SceneInput& input, bool quiet, const AskEffects& ask = {});
 
-// The camera of that name, or the first one when the name is empty. named_at: where a file or an
-// option names it. Throws base::Error (Input).
+// Both throw base::Error (Input) where there is none. named_at: where a file or an option names it.
+[[nodiscard]] const scenes::Camera& first_camera(const scenes::Scene& scene);
 [[nodiscard]] const scenes::Camera& choose_camera(
     const scenes::Scene& scene, const std::string& name,
     const std::optional<base::Location>& named_at = {});

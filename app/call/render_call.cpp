@@ -162,7 +162,7 @@ std::vector<const scenes::Camera*> wanted_cameras(const std::vector<std::string>
       cameras.push_back(&choose_camera(scene, name));
     }
   }
-  if (cameras.empty()) cameras.push_back(&choose_camera(scene, ""));
+  if (cameras.empty()) cameras.push_back(&first_camera(scene));
   return cameras;
 }
 

@@ -94,16 +94,16 @@ void check_files(const DegradeCall& call, const std::vector<TapeFrame>& tape, co
 }
 
 // The camera asked for, else the one that the picture says it was rendered with, else the first.
-std::string camera_of(const DegradeCall& call, const scenes::Scene& scene,
-                      const base::ExrHeader& header) {
-  if (!call.camera.empty()) return call.camera;
+const scenes::Camera& camera_of(const DegradeCall& call, const scenes::Scene& scene,
+                                const base::ExrHeader& header) {
+  if (!call.camera.empty()) return choose_camera(scene, call.camera);
   for (const auto& [name, value] : header.text) {
     if (name != "earthshine:camera") continue;
     for (const scenes::Camera& camera : scene.cameras) {
-      if (camera.name == value) return value;
+      if (camera.name == value) return camera;
     }
   }
-  return {};
+  return first_camera(scene);
 }
 
 CctvSetup setup_for(const DegradeCall& call, const Common& common, const base::ExrHeader& header,
@@ -113,8 +113,7 @@ CctvSetup setup_for(const DegradeCall& call, const Common& common, const base::E
   if (!call.scene.empty()) {
     const LoadedScene loaded = load({call.scene, {}}, common.quiet);
     check_files(call, tape, loaded.scene.files);
-    return cctv_of_camera(
-        loaded.scene, choose_camera(loaded.scene, camera_of(call, loaded.scene, header)), common);
+    return cctv_of_camera(loaded.scene, camera_of(call, loaded.scene, header), common);
   }
   if (!common.quiet)
     note(fmt::format("note: no --preset, --cctv or --scene, taking \"{}\"", default_preset));

@@ -26,7 +26,7 @@ using base::Error;
 constexpr std::uint64_t most_parts = 1000000;
 constexpr const char* record_file = "parts.json";
 constexpr const char* part_forms =
-    "K/N with K from 1 to N, auto, auto/N (both in a job array), solve or merge";
+    "K/N with K from 1 to N, auto, auto/N (both in a job array) or solve";
 
 std::optional<std::uint64_t> number_in(const char* variable) {
   const char* const text = std::getenv(variable);

@@ -41,7 +41,7 @@ void add_camera_option(CLI::App& command, StudyCall& call) {
 
 const scenes::Camera& camera_of(const StudyCall& call, const scenes::Scene& scene, bool quiet) {
   const scenes::Camera& camera =
-      choose_camera(scene, call.cameras.empty() ? "" : call.cameras.front());
+      call.cameras.empty() ? first_camera(scene) : choose_camera(scene, call.cameras.front());
   if (call.cameras.empty() && scene.cameras.size() > 1 && !quiet) {
     note("note: no --camera, taking the first, \"" + camera.name + "\"");
   }

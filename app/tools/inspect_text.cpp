@@ -52,22 +52,24 @@ std::string materials_table(const Json& report) {
   std::string text = fmt::format("\n{:<24} {:>10} {:<20} {:<20} {:>9}  {}\n", "material", "area m2",
                                  "diffuse", "specular", "shininess", "also");
   for (const Json& m : report["materials"]) {
-    std::string also;
+    std::vector<std::string> also;
     if (!m["light_group"].is_null()) {
-      also +=
-          fmt::format("emits {} lm/m2 in group {}; ", numbers(m["emit_lm_m2"]), m["light_group"]);
+      also.push_back(
+          fmt::format("emits {} lm/m2 in group {}", numbers(m["emit_lm_m2"]), m["light_group"]));
     }
     const std::string black = "0 0 0";
-    if (numbers(m["mirror"]) != black) also += "mirror " + numbers(m["mirror"]) + "; ";
-    if (numbers(m["transmit"]) != black) also += "transmits " + numbers(m["transmit"]) + "; ";
-    if (m["two_sided"].get<bool>()) also += "two-sided";
+    if (numbers(m["mirror"]) != black) also.push_back("mirror " + numbers(m["mirror"]));
+    if (numbers(m["transmit"]) != black) {
+      also.push_back(fmt::format("transmits {}, ior {:g}", numbers(m["transmit"]), m["ior"]));
+    }
+    if (m["two_sided"].get<bool>()) also.push_back("two-sided");
     for (const Json& texture : m.value("textures", Json::array())) {
-      also += fmt::format("{}{} by {} ({} x {}, {:.3g} MiB)",
-                          also.empty() || also.ends_with("; ") ? "" : "; ", texture["use"],
-                          texture["file"], texture["size"][0], texture["size"][1], texture["mib"]);
+      also.push_back(fmt::format("{} by {} ({} x {}, {:.3g} MiB)", texture["use"], texture["file"],
+                                 texture["size"][0], texture["size"][1], texture["mib"]));
     }
     text += fmt::format("{:<24} {:>10.5g} {:<20} {:<20} {:>9g}  {}\n", m["name"], m["area_m2"],
-                        numbers(m["diffuse"]), numbers(m["specular"]), m["shininess"], also);
+                        numbers(m["diffuse"]), numbers(m["specular"]), m["shininess"],
+                        fmt::join(also, "; "));
   }
   return text;
 }

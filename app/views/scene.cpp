@@ -78,7 +78,7 @@ void find_cameras(const studies::StudyFile& study, const Common& common, StudyPa
     if (std::find(chosen.begin(), chosen.end(), camera) == chosen.end()) chosen.push_back(camera);
   }
   if (study.cameras.empty()) {
-    (void)choose_camera(scene, {});  // refuses a scene without any
+    (void)first_camera(scene);  // refuses a scene without any
     for (const scenes::Camera& camera : scene.cameras) chosen.push_back(&camera);
   }
   for (const scenes::Camera* camera : chosen) {

@@ -111,9 +111,9 @@ struct StatedError {
 // What an error at a pixel counts, over a picture (or a target) of that mean luminance: pixels
 // brighter than four times the mean count in proportion to their own. A glint or the wall beside a
 // lamp may be a thousand times as bright as the rest; its last per mille is nobody's concern.
+inline constexpr double error_bright = 4.0;  // over the mean
 [[nodiscard]] inline double error_weight(double luminance, double mean) {
-  constexpr double bright = 4.0;
-  return mean > 0.0 && luminance > bright * mean ? bright * mean / luminance : 1.0;
+  return mean > 0.0 && luminance > error_bright * mean ? error_bright * mean / luminance : 1.0;
 }
 
 // Over some pixels that count.

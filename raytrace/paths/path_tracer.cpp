@@ -13,6 +13,7 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr std::size_t rgb = 3;
+constexpr int stop_asked_after = 256;  // paths
 
 void check(const PathOptions& options) {
   if (options.columns < 1 || options.rows < 1) {
@@ -125,7 +126,6 @@ Frame trace_paths(const scenes::World& world, const scenes::Camera& camera,
   std::size_t done = 0;
   std::mutex progress_mutex;
   const auto trace_row = [&](std::size_t y) {
-    if (options.stop && options.stop()) return;
     PathWalker walker(paths);
     for (std::size_t x = 0; x < columns; ++x) {
       const std::size_t in_x = static_cast<std::size_t>(window.x) + x;
@@ -134,6 +134,8 @@ Frame trace_paths(const scenes::World& world, const scenes::Camera& camera,
                           in_y * static_cast<std::size_t>(options.columns) + in_x);
       PathSums sums{std::vector<Rgb>(paths.layers, Rgb(0.0)), {}, {}, {}};
       for (int path = 0; path < options.paths_per_pixel; ++path) {
+        // A pixel of many paths takes seconds.
+        if (path % stop_asked_after == 0 && options.stop && options.stop()) return;
         base::Rng rng(key.with(static_cast<std::uint64_t>(path)));
         const double at_x = double(in_x) + rng.next();
         const double at_y = double(in_y) + rng.next();

@@ -21,7 +21,7 @@ constexpr double aim = 0.85;  // of the wanted error
 // The error supposed at first; the share of the stated one that a pass cuts for.
 constexpr double first_error = 0.3, next_error = 0.4;
 constexpr double noise_share = 0.25;  // of the wanted squared error, left to the rays
-constexpr std::uint64_t many_rays = std::uint64_t{1} << 25;
+constexpr std::uint64_t many_rays = std::uint64_t{1} << 28;
 constexpr double most_times_more = 16.0;  // the rays cast so far
 constexpr double least_power = 0.05;      // of the rays: an error may seem to rise by chance
 constexpr double most_growth = 4.0;       // of the rays of a pass
@@ -148,7 +148,7 @@ class SurfaceSearch {
       const double error = result_.steps.back().estimate;
       if (error <= wanted_.error && is_sure(found)) return;
       if (!may_cut() && !may_cast()) return stop(Limit::Settings);
-      if (is_hopeless(error)) return stop(why_no_more());
+      if (is_hopeless(error) && !may_be_chance(found)) return stop(why_no_more());
       spent_.push_back(turns_->rays());
       if (time_gone() > last_share) return stop(Limit::Time);
       turns_->set_mean(found.mean);
@@ -161,9 +161,8 @@ class SurfaceSearch {
         cuts = turns_->cut_gathered(choice, cut_share * enough(), points_wanted_, parent);
         if (turns_->cut_shadows(cut_share * enough(), parent, &choice)) cuts = true;
       }
-      if (!cuts && pass > 4 && error > std::max(wanted_.error, 0.97 * before)) {
-        return stop(why_no_more());
-      }
+      const bool is_stuck = pass > 4 && error > std::max(wanted_.error, 0.97 * before);
+      if (!cuts && is_stuck && !may_be_chance(found)) return stop(why_no_more());
       before = error;
       const double target = noise_share * squared(aim * wanted_.error * turns_->mean());
       if (joins()) effort = next_effort(variance, parent, target);
@@ -176,6 +175,12 @@ class SurfaceSearch {
   [[nodiscard]] bool is_sure(const ResidualError& found) const {
     return found.doubt <= most_doubt * squared(wanted_.error) || points_wanted_ >= most_points ||
            time_gone() > last_share || !(may_cut() || may_cast());
+  }
+
+  // Whether what is stated may be off as far as what is wanted by chance, and more points would
+  // tell.
+  [[nodiscard]] bool may_be_chance(const ResidualError& found) const {
+    return !is_sure(found) && found.square - 2.0 * found.doubt < squared(wanted_.error);
   }
 
   // What may be left of the mean square by the next pass: no more is cut at once than halves the

@@ -7,15 +7,12 @@
 #include <functional>
 #include <numeric>
 
-#include "raytrace/frame/frame.h"
-
 namespace earthshine::studies {
 namespace {
 
 // Few patches hold much of the error: its mean is nearer to a lognormal than to a normal quantity.
 constexpr double sure = 1.5 * 1.645;
 constexpr std::size_t residual_columns = 6;  // three for either half of the samples
-constexpr double far_apart = 0.1;            // of the mean, that halves of shadow rays are
 constexpr double darkest = 0.02;             // of the mean that a solution has, that it should have
 
 double squared(double x) { return x * x; }
@@ -27,23 +24,6 @@ Rgb at(const std::vector<double>& values, std::size_t first) {
 ErrorEstimate doubt_of(double square, double more) {
   return {std::sqrt(std::max(0.0, square)), std::sqrt(std::max(0.0, square) + std::max(0.0, more))};
 }
-
-// Of n values the square of their mean without what chance adds, and the variance of the mean.
-struct MeanSquare {
-  double sum = 0.0, squares = 0.0, count = 0.0;
-  void add(double value) {
-    sum += value;
-    squares += value * value;
-    count += 1.0;
-  }
-  [[nodiscard]] double unbiased() const {
-    return count > 1.0 ? (sum * sum - squares) / (count * (count - 1.0)) : 0.0;
-  }
-  [[nodiscard]] double variance() const {
-    return count > 1.0 ? std::max(0.0, squares - sum * sum / count) / (count * (count - 1.0))
-                       : squares;
-  }
-};
 
 ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& samples,
                            const LightNoise& noise, const radiosity::PatchAlbedos& reflectances,
@@ -214,80 +194,6 @@ ResidualError residual_error(const LightOnSurfaces& light, const SurfaceSamples&
   }
   light.shares().tell_all(&error, 1);
   return error;
-}
-
-void ResidualSums::set(std::size_t point, std::size_t half, const Rgb& lamps, const Rgb& gathered) {
-  Point& p = points_[point];
-  const Rgb by_lamps = p.rho * (lamps - p.lamps);
-  p.rgb[half] = by_lamps + p.rho * (gathered - p.gathered);
-  p.by_lamps[half] = base::luminance(by_lamps);
-  p.all[half] = base::luminance(p.rgb[half]);
-  p.gathered_lx[half] = base::luminance(gathered);
-}
-
-bool ResidualSums::is_unsure(std::size_t point, double mean) const {
-  constexpr double another = 1.5;
-  const Point& p = points_[point];
-  const auto [least, most] = std::minmax({0.0, p.by_lamps[0], p.by_lamps[1]});
-  return raytrace::error_weight(p.radiosity + least, mean) >
-         another * raytrace::error_weight(p.radiosity + most, mean);
-}
-
-void ResidualSums::weigh_by(std::size_t point, const Rgb& lamps) {
-  Point& p = points_[point];
-  p.weighed_by = base::luminance(p.rho * (lamps - p.lamps));
-}
-
-void ResidualSums::finish(double mean, PatchResidual& residual) {
-  MeanSquare all, lamps, products;
-  double weights = 0.0;
-  double apart = 0.0, lamps_apart = 0.0;  // sums of the variance of the two halves' mean
-  std::array<double, 2> s_step{}, t_step{}, half_count{}, gathered{};
-  for (Point& p : points_) {
-    if (!p.placed) continue;
-    const double mine = 0.5 * (p.by_lamps[0] + p.by_lamps[1]);
-    const double should_be =
-        p.radiosity + 0.5 * (p.all[0] + p.all[1]) - mine + p.weighed_by.value_or(mine);
-    const double weight = raytrace::error_weight(should_be, mean);
-    weights += weight;
-    for (double* value : {&p.all[0], &p.all[1], &p.by_lamps[0], &p.by_lamps[1]}) *value *= weight;
-    all.add(0.5 * (p.all[0] + p.all[1]));
-    lamps.add(0.5 * (p.by_lamps[0] + p.by_lamps[1]));
-    products.add(p.all[0] * p.all[1]);
-    apart += 0.25 * (p.all[0] - p.all[1]) * (p.all[0] - p.all[1]);
-    lamps_apart += 0.25 * (p.by_lamps[0] - p.by_lamps[1]) * (p.by_lamps[0] - p.by_lamps[1]);
-    for (std::size_t half = 0; half < 2; ++half) {
-      gathered[half] += p.gathered_lx[half];
-      s_step[half] += p.x < 0.5 ? -p.all[half] : p.all[half];
-      t_step[half] += p.y < 0.5 ? -p.all[half] : p.all[half];
-    }
-  }
-  if (all.count == 0.0) return;
-  const auto kept = [](double value) { return static_cast<float>(value); };
-  residual.weight = kept(weights / all.count);
-  residual.square = kept(products.sum / all.count);
-  residual.square_error = kept(std::sqrt(products.variance()));
-  residual.mean_square = kept(all.unbiased());
-  residual.lamps_mean_square = kept(lamps.unbiased());
-  const double n2 = all.count * all.count;
-  residual.mean_variance = kept(apart / n2);
-  residual.lamps_mean_variance = kept(lamps_apart / n2);
-  residual.wants_shadow_rays = lamps_apart / all.count > squared(far_apart * mean);
-  for (std::size_t h = 0; h < 2; ++h) residual.gathered[h] = kept(gathered[h] / all.count);
-  residual.along_s = kept(std::max(0.0, s_step[0] * s_step[1] / n2));
-  residual.along_t = kept(std::max(0.0, t_step[0] * t_step[1] / n2));
-  // Every other of the points that are there.
-  std::array<Rgb, 2> half{Rgb(0.0), Rgb(0.0)};
-  std::size_t k = 0;
-  for (const Point& p : points_) {
-    if (!p.placed) continue;
-    half[k % 2] += 0.5 * (p.rgb[0] + p.rgb[1]);
-    half_count[k % 2] += 1.0;
-    ++k;
-  }
-  for (std::size_t h = 0; h < 2; ++h) {
-    if (half_count[h] > 0.0) residual.half[h] = glm::vec3(half[h] / half_count[h]);
-  }
 }
 
 }  // namespace earthshine::studies

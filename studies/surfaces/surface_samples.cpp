@@ -10,7 +10,7 @@
 #include "scenes/reflect/energy.h"
 #include "scenes/sky/sky_cells.h"
 #include "studies/surfaces/patch_looks.h"
-#include "studies/surfaces/residual_error.h"
+#include "studies/surfaces/residual_sums.h"
 
 namespace earthshine::studies {
 namespace {
@@ -21,9 +21,9 @@ constexpr std::size_t told_after = 1024;  // patches
 // Points that are tried for one that is sampled, where a body is known to cover some: what a sliver
 // of a patch says that looks out of the body counts by the sliver's area.
 constexpr std::uint32_t tried_points = 16;
-// Further shadow rays of a point, to each source, that say how bright it is where its halves do
-// not.
-constexpr std::uint32_t weighing_rays = 16;
+// Further rays of a point, to each source and into its hemisphere, that say how bright it is where
+// its halves do not.
+constexpr std::uint32_t weighing_rays = 16, weighing_shadow_rays = 64;
 
 }  // namespace
 
@@ -72,20 +72,27 @@ SurfaceSampler::SurfaceSampler(const scenes::World& scene, std::uint64_t seed)
 }
 
 void SurfaceSampler::weigh(PatchLooks& looks, std::span<const LookingPoint> places, base::Key key,
-                           double mean, ResidualSums& sums, std::size_t points) const {
+                           double mean, ResidualSums& sums, std::size_t points,
+                           bool gathers) const {
+  const std::size_t gather_key = 6 + 3 * sources_.size();  // behind the aims of sample()
   for (std::size_t point = 0; point < points; ++point) {
     if (!sums.is_unsure(point, mean)) continue;
     looks.start(1);
+    if (gathers) {
+      looks.gather(places[point], base::SobolOwen4(key.with(gather_key)),
+                   base::SobolOwen4(key.with(gather_key + 1)), point, weighing_rays, 0);
+    }
     for (std::size_t k = 0; k < sources_.size(); ++k) {
       const radiosity::Source& source = sources_[k].source;
-      const std::size_t rays = source.has_size ? weighing_rays : 1;
+      const std::size_t rays = source.has_size ? weighing_shadow_rays : 1;
       looks.look_at(source, places[point], base::SobolOwen4(key.with(4 + 2 * sources_.size() + k)),
                     point * rays, rays, 0, false);
     }
     looks.finish_shadows();
-    Rgb lamps(0.0);
+    Rgb lamps(0.0), gathered(0.0);
     for (const Rgb& l : looks.lamps(0)) lamps += l;
-    sums.weigh_by(point, lamps);
+    for (const Rgb& l : looks.gathered(0)) gathered += l;
+    sums.weigh_by(point, lamps, gathered);
   }
 }
 
@@ -224,7 +231,7 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
           sums.set(point, half, lamps, gathered);
         }
       }
-      weigh(looks, places, key, mean, sums, residual.taken);
+      weigh(looks, places, key, mean, sums, residual.taken, work.rays > 0);
       sums.finish(mean, residual);
     }
     rays_of[begin / chunk] += looks.rays();

@@ -105,7 +105,7 @@ class SurfaceSampler {
   // Independent shadow rays tell the weight of points whose halves do not agree how bright they
   // are: by their own values those that miss the light by chance would count most.
   void weigh(PatchLooks& looks, std::span<const LookingPoint> places, base::Key key, double mean,
-             ResidualSums& sums, std::size_t points) const;
+             ResidualSums& sums, std::size_t points, bool gathers) const;
 
   scenes::World scene_;
   std::uint64_t seed_;

@@ -32,6 +32,11 @@ class Inspect(program.Case):
         self.says(self.done("inspect", "ball.toml"), "ball on a floor", "floor", "paint", "lamp", "sun",
                   "camera above", "target")
 
+    def test_a_material_is_shown_whole(self):
+        self.write("ball.toml", program.BALL.replace("shininess = 20", "mirror = 0.2\ntransmit = 0.1\nior = 1.5\ntwo_sided = true"))
+        line = next(line for line in self.done("inspect", "ball.toml").splitlines() if line.startswith("paint"))
+        self.assertTrue(line.endswith("  mirror 0.2 0.2 0.2; transmits 0.1 0.1 0.1, ior 1.5; two-sided"), line)
+
     def test_units_become_metres(self):
         self.write("box.toml", program.CLOSED_BOX.replace('unit = "m"', 'unit = "ft"'))
         area = self.json("inspect", "box.toml")["objects"][0]["area_m2"]

@@ -81,6 +81,8 @@ class WrongCalls(program.Case):
         self.says(self.refused("render", "box.toml", "-o", "a.exr", "--indirect", "radiosty"), "distributed")
         self.says(self.refused("render", "box.toml", "-o", "a.exr", "--aov", "depth,colour"), '"colour"', "albedo")
         self.says(self.refused("render", "box.toml", "-o", "a.exr", "--camera", "B"), '"B"', "inside")
+        for unnamed in ("", "inside,"):
+            self.says(self.refused("render", "box.toml", "-o", "a.exr", "--camera", unnamed), 'no camera ""', "inside")
 
     def test_override_without_value_or_unknown(self):
         for override in ("quality", "quality.gather_rays", "quality.gather=3", "=3", "quality.error=x"):

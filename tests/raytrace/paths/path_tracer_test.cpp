@@ -197,6 +197,20 @@ TEST(PathTracer, StatesTheErrorOfLightThatIsNotSeenStraightFromASource) {
   EXPECT_LT(4.0 * doubt, squares);   // so that the law can fail
 }
 
+// A million paths take seconds: whoever wants to stop does not wait for a pixel's last.
+TEST(PathTracer, AStopDoesNotWaitForAPixelOfManyPaths) {
+  tests::SceneBuilder builder;
+  builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
+  const tests::Prepared prepared(builder.scene);
+  PathOptions options = pixels(1, 1 << 20);
+  int asked = 0;
+  options.stop = [&asked] { return ++asked > 8; };
+  const Frame frame = trace_paths(prepared, above(2.0), options);
+  EXPECT_TRUE(frame.report.stopped);
+  EXPECT_EQ(frame.report.finished_share, 0.0);
+  EXPECT_EQ(asked, 9);
+}
+
 TEST(PathTracer, SinglePathOrNoPixelIsRefused) {
   EXPECT_THROW((void)picture(scenes::Scene{}, above(1.0), pixels(1, 1)), base::Error);
   EXPECT_THROW((void)picture(scenes::Scene{}, above(1.0), pixels(0, 4)), base::Error);

@@ -1,34 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
-// What two halves of the shadow rays find at a point is all or nothing, and how much its error
-// counts goes by what it should be (error_weight): the one must not tell the other.
+// What two halves of the rays find at a point is all or nothing, in a penumbra as in the light of a
+// small bright thing, and how much its error counts goes by what it should be (error_weight): the
+// one must not tell the other.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
 #include "studies/steer/reach_surfaces.h"
-#include "studies/surfaces/residual_error.h"
+#include "studies/surfaces/residual_sums.h"
 #include "tests/studies/room.h"
 
 namespace earthshine::studies {
 namespace {
 
-// Halves of a penumbra, half lit, that is ten times as bright as the mean. The solution is right.
+enum class By { Lamps, GatherRays };
+
+// Points that each half finds by chance, ten times as bright as the mean. The solution is right.
 struct HalfLit {
   static constexpr double mean = 1.0, right = 10.0;
   static constexpr std::size_t count = 4096;
+  By by;
   ResidualSums sums;
-  explicit HalfLit(std::uint32_t seed) {
+  HalfLit(By by_what, std::uint32_t seed) : by(by_what) {
     std::mt19937 random(seed);
     std::bernoulli_distribution is_lit(0.5);
     sums.start(count);
     for (std::size_t n = 0; n < count; ++n) {
-      sums.place(n, 0.5, 0.5, Rgb(1.0), Rgb(right), Rgb(right), Rgb(0.0));
+      sums.place(n, 0.5, 0.5, Rgb(1.0), Rgb(right), lamps(right), gathered(right));
       for (const std::size_t half : {0U, 1U}) {
-        sums.set(n, half, Rgb(is_lit(random) ? 2.0 * right : 0.0), Rgb(0.0));
+        const double lx = is_lit(random) ? 2.0 * right : 0.0;
+        sums.set(n, half, lamps(lx), gathered(lx));
       }
     }
   }
+  [[nodiscard]] Rgb lamps(double lx) const { return Rgb(by == By::Lamps ? lx : 0.0); }
+  [[nodiscard]] Rgb gathered(double lx) const { return Rgb(by == By::GatherRays ? lx : 0.0); }
   PatchResidual finish() {
     PatchResidual residual;
     sums.finish(mean, residual);
@@ -39,16 +46,34 @@ struct HalfLit {
 // By their own values points whose halves both are dark count w = 1, those that both are lit
 // 4 / 20: a quarter of r^2 (1 + 1 / 25) less half of it at (4 / 10)^2, 0.18 of 10^2 in place of 0.
 TEST(Penumbra, ARightSolutionHasNoResidual) {
-  HalfLit penumbra(1);
-  for (std::size_t n = 0; n < HalfLit::count; ++n) {
-    ASSERT_TRUE(penumbra.sums.is_unsure(n, HalfLit::mean));
-    penumbra.sums.weigh_by(n, Rgb(HalfLit::right));
+  for (const By by : {By::Lamps, By::GatherRays}) {
+    HalfLit points(by, 1);
+    for (std::size_t n = 0; n < HalfLit::count; ++n) {
+      ASSERT_TRUE(points.sums.is_unsure(n, HalfLit::mean));
+      points.sums.weigh_by(n, points.lamps(HalfLit::right), points.gathered(HalfLit::right));
+    }
+    const PatchResidual residual = points.finish();
+    EXPECT_NEAR(residual.weight, 0.4, 1e-6);
+    EXPECT_LT(std::abs(residual.square), 4.0 * residual.square_error);
+    EXPECT_GT(0.18 * 100.0, 40.0 * double(residual.square_error));
+    EXPECT_EQ(residual.wants_shadow_rays, by == By::Lamps);
   }
-  const PatchResidual residual = penumbra.finish();
-  EXPECT_NEAR(residual.weight, 0.4, 1e-6);
-  EXPECT_LT(std::abs(residual.square), 4.0 * residual.square_error);
-  EXPECT_GT(0.18 * 100.0, 40.0 * double(residual.square_error));
-  EXPECT_TRUE(residual.wants_shadow_rays);
+}
+
+// A ray in a thousand finds a glint of a thousand times the mean: where it is one of a half's and
+// the rays that weigh the point have missed it, its half counts as twice what is bright, 2 x 4
+// means.
+TEST(Penumbra, AGlintThatOneRayFindsIsNoMoreThanTwiceWhatIsBright) {
+  ResidualSums sums;
+  sums.start(1);
+  sums.place(0, 0.5, 0.5, Rgb(1.0), Rgb(1.0), Rgb(0.0), Rgb(1.0));
+  sums.set(0, 0, Rgb(0.0), Rgb(1001.0));
+  sums.set(0, 1, Rgb(0.0), Rgb(0.0));
+  ASSERT_TRUE(sums.is_unsure(0, 1.0));
+  sums.weigh_by(0, Rgb(0.0), Rgb(0.0));
+  PatchResidual residual;
+  sums.finish(1.0, residual);
+  EXPECT_DOUBLE_EQ(double(residual.square), (2.0 * 4.0) * -1.0);
 }
 
 // A point that is dark, or that all agree on, needs no further rays.
