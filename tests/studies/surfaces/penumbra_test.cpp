@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "studies/steer/reach_surfaces.h"
 #include "studies/surfaces/residual_sums.h"
@@ -60,20 +61,22 @@ TEST(Penumbra, ARightSolutionHasNoResidual) {
   }
 }
 
-// A ray in a thousand finds a glint of a thousand times the mean: where it is one of a half's and
-// the rays that weigh the point have missed it, its half counts as twice what is bright, 2 x 4
-// means.
+// A ray in a thousand finds a glint of a thousand times the mean: where it is one of a half's, that
+// half counts as twice what is bright, 2 x 4 means, and the other, which is off by one, as further
+// rays say: in full where they find nothing, as 4 / 400 where they find 400 times the mean.
 TEST(Penumbra, AGlintThatOneRayFindsIsNoMoreThanTwiceWhatIsBright) {
-  ResidualSums sums;
-  sums.start(1);
-  sums.place(0, 0.5, 0.5, Rgb(1.0), Rgb(1.0), Rgb(0.0), Rgb(1.0));
-  sums.set(0, 0, Rgb(0.0), Rgb(1001.0));
-  sums.set(0, 1, Rgb(0.0), Rgb(0.0));
-  ASSERT_TRUE(sums.is_unsure(0, 1.0));
-  sums.weigh_by(0, Rgb(0.0), Rgb(0.0));
-  PatchResidual residual;
-  sums.finish(1.0, residual);
-  EXPECT_DOUBLE_EQ(double(residual.square), (2.0 * 4.0) * -1.0);
+  for (const auto& [found, weight] : {std::pair{0.0, 1.0}, {400.0, 0.01}}) {
+    ResidualSums sums;
+    sums.start(1);
+    sums.place(0, 0.5, 0.5, Rgb(1.0), Rgb(1.0), Rgb(0.0), Rgb(1.0));
+    sums.set(0, 0, Rgb(0.0), Rgb(1001.0));
+    sums.set(0, 1, Rgb(0.0), Rgb(0.0));
+    ASSERT_TRUE(sums.is_unsure(0, 1.0));
+    sums.weigh_by(0, Rgb(0.0), Rgb(found));
+    PatchResidual residual;
+    sums.finish(1.0, residual);
+    EXPECT_FLOAT_EQ(residual.square, static_cast<float>(2.0 * 4.0 * -weight));
+  }
 }
 
 // A point that is dark, or that all agree on, needs no further rays.
