@@ -27,7 +27,8 @@ constexpr double least_power = 0.05;      // of the rays: an error may seem to r
 constexpr double most_growth = 4.0;       // of the rays of a pass
 constexpr double cut_share = 0.6;         // to what is uneven within patches
 constexpr std::size_t largest_cut = std::size_t{1} << 21;  // patches
-constexpr double last_share = 0.5;                         // of a time limit: no pass then
+constexpr double next_pass = 1.2;                          // of the time that the one before took
+constexpr double more_points_share = 0.5;                  // of a time limit: no more points then
 constexpr double fewest_points = 8192.0, most_points = 1 << 20;
 constexpr double most_doubt = 0.3;  // of the wanted squared error, as a standard error
 
@@ -129,6 +130,7 @@ class SurfaceSearch {
     double before = 0.0;
     CutChoice choice(light_->patches());
     std::vector<Effort> effort = even_effort(light_->patches(), points_wanted_);
+    double pass_begun = time_gone();
     for (int pass = 0;; ++pass) {
       std::vector<std::uint32_t> all(light_->patches().count());
       std::iota(all.begin(), all.end(), 0U);
@@ -150,7 +152,9 @@ class SurfaceSearch {
       if (!may_cut() && !may_cast()) return stop(Limit::Settings);
       if (is_hopeless(error) && !may_be_chance(found)) return stop(why_no_more());
       spent_.push_back(turns_->rays());
-      if (time_gone() > last_share) return stop(Limit::Time);
+      const double gone = time_gone();
+      if (gone + next_pass * (gone - pass_begun) > 1.0) return stop(Limit::Time);
+      pass_begun = gone;
       turns_->set_mean(found.mean);
       if (joins()) choice.see(light_->patches(), samples, all, noise.all());
       if (may_cast()) light_->correct(samples, all, effort);
@@ -174,7 +178,7 @@ class SurfaceSearch {
   // there is time and up to a million.
   [[nodiscard]] bool is_sure(const ResidualError& found) const {
     return found.doubt <= most_doubt * squared(wanted_.error) || points_wanted_ >= most_points ||
-           time_gone() > last_share || !(may_cut() || may_cast());
+           time_gone() > more_points_share || !(may_cut() || may_cast());
   }
 
   // Whether what is stated may be off as far as what is wanted by chance, and more points would

@@ -19,7 +19,7 @@ constexpr int gain_turns = 4;
 // A turn cuts the patches that hold this share of what is uneven: where shadow rays tell it
 // exactly, and where rays do, by which the largest are the largest by chance too.
 constexpr double shadow_cuts = 0.5, gather_cuts = 0.8;
-constexpr double shadow_share = 0.25, gather_share = 0.5;  // of a time limit
+constexpr double shadow_share = 0.4, gather_share = 0.7;  // of a time limit
 // Patches, of those there are: what rays have said of few points is said anew before more are cut.
 constexpr double most_gather_growth = 1.5, most_shadow_growth = 2.0;
 // Few patches cost little to look at again.

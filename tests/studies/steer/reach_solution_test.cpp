@@ -227,5 +227,13 @@ TEST(ReachSolution, OfSurfacesNoPassIsBegunThatTheTimeLeftDoesNotPayFor) {
   EXPECT_LE(rays(1), 2.0 * rays(0));
 }
 
+// Passes of 0.3 of the limit: 0.6 is gone by the end of the second and leaves 0.4 for a third of
+// 1.2 x 0.3, 0.9 by the end of that.
+TEST(ReachSolution, OfSurfacesTheTimeThatPaysForAnotherPassIsUsed) {
+  const SteeredSolution found = within(1.0, 0.3);
+  EXPECT_EQ(found.limit, Limit::Time);
+  EXPECT_EQ(found.steps.size(), 3U);
+}
+
 }  // namespace
 }  // namespace earthshine::studies
