@@ -242,7 +242,8 @@ std::vector<Command> add_degrade(CLI::App& program) {
   parser
       ->add_option("--camera", call->camera,
                    "Camera of the scene (default: the one in the picture's header, or the first)")
-      ->type_name("NAME");
+      ->type_name("NAME")
+      ->check(not_empty());
   parser
       ->add_option("--cctv", call->cctv,
                    "CCTV camera: one that ships, FILE.toml with a [[cctv]], or FILE.toml:NAME")

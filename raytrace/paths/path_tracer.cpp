@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <numeric>
 #include <string>
 
 #include "base/ranks/ranks.h"
@@ -122,7 +123,7 @@ Frame trace_paths(const scenes::World& world, const scenes::Camera& camera,
   const auto columns = static_cast<std::size_t>(window.columns);
   const auto rows = static_cast<std::size_t>(window.rows);
   std::vector<RayCounts> row_rays(rows);
-  std::vector<char> finished(rows, 0);
+  std::vector<std::uint32_t> finished(rows, 0);  // pixels
   std::size_t done = 0;
   std::mutex progress_mutex;
   const auto trace_row = [&](std::size_t y) {
@@ -135,7 +136,10 @@ Frame trace_paths(const scenes::World& world, const scenes::Camera& camera,
       PathSums sums{std::vector<Rgb>(paths.layers, Rgb(0.0)), {}, {}, {}};
       for (int path = 0; path < options.paths_per_pixel; ++path) {
         // A pixel of many paths takes seconds.
-        if (path % stop_asked_after == 0 && options.stop && options.stop()) return;
+        if (path % stop_asked_after == 0 && options.stop && options.stop()) {
+          row_rays[y] = walker.rays();
+          return;
+        }
         base::Rng rng(key.with(static_cast<std::uint64_t>(path)));
         const double at_x = double(in_x) + rng.next();
         const double at_y = double(in_y) + rng.next();
@@ -144,9 +148,9 @@ Frame trace_paths(const scenes::World& world, const scenes::Camera& camera,
         sums.add(walker.walk(model.ray(at_x, at_y, lens_u, lens_v), rng), walker);
       }
       store(sums, y * columns + x, frame);
+      ++finished[y];
     }
     row_rays[y] = walker.rays();
-    finished[y] = 1;
     const std::lock_guard lock(progress_mutex);
     ++done;
     if (progress) progress(done, rows);
@@ -162,9 +166,10 @@ Frame trace_paths(const scenes::World& world, const scenes::Camera& camera,
     parcel.pass_range(&frame.error.counts[y * columns], columns);
   });
   for (const RayCounts& rays : row_rays) frame.report.rays += rays;
-  done = static_cast<std::size_t>(std::count(finished.begin(), finished.end(), 1));
-  frame.report.finished_share = static_cast<double>(done) / static_cast<double>(rows);
-  frame.report.stopped = done < rows;
+  const auto drawn = std::accumulate(finished.begin(), finished.end(), std::size_t{0});
+  frame.report.finished_share =
+      static_cast<double>(drawn) / static_cast<double>(window.pixel_count());
+  frame.report.stopped = drawn < window.pixel_count();
   frame.report.camera_samples = options.paths_per_pixel;
   frame.report.most_camera_samples = options.paths_per_pixel;
   frame.report.relative_noise = std::sqrt(add_up(frame.error).squared_error());

@@ -181,7 +181,7 @@ class SurfaceSearch {
            time_gone() > more_points_share || !(may_cut() || may_cast());
   }
 
-  // Whether what is stated may be off as far as what is wanted by chance, and more points would
+  // Whether what is wanted is within two standard errors of what is stated, and more points would
   // tell.
   [[nodiscard]] bool may_be_chance(const ResidualError& found) const {
     return !is_sure(found) && found.square - 2.0 * found.doubt < squared(wanted_.error);

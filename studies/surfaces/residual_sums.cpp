@@ -11,7 +11,7 @@ namespace earthshine::studies {
 namespace {
 
 constexpr double far_apart = 0.1;     // of the mean, that halves of shadow rays are
-constexpr double most_weighed = 2.0;  // of what gather rays bring, over what is bright
+constexpr double most_weighed = 2.0;  // over what is bright or in the solution, weighed
 
 double squared(double x) { return x * x; }
 
@@ -66,8 +66,8 @@ void ResidualSums::finish(double mean, PatchResidual& residual) {
     const double should_be = p.radiosity + p.weighed_by.value_or(0.5 * (p.all[0] + p.all[1]));
     const double weight = raytrace::error_weight(should_be, mean);
     weights += weight;
-    // What is weighed is no more than bright, or than the solution has it; a ray that finds a glint
-    // by chance says more.
+    // What gather rays find is held to that: where it is true, it cannot be more; one chance hit
+    // can.
     const double most = mean > 0.0
                             ? most_weighed * std::max(p.radiosity, raytrace::error_bright * mean)
                             : std::numeric_limits<double>::infinity();

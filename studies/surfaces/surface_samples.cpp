@@ -21,9 +21,9 @@ constexpr std::size_t told_after = 1024;  // patches
 // Points that are tried for one that is sampled, where a body is known to cover some: what a sliver
 // of a patch says that looks out of the body counts by the sliver's area.
 constexpr std::uint32_t tried_points = 16;
-// Further rays of a point, to each source and into its hemisphere, that say how bright it is where
+// Further rays of a point, into its hemisphere and to each source, that say how bright it is where
 // its halves do not.
-constexpr std::uint32_t weighing_rays = 16, weighing_shadow_rays = 64;
+constexpr std::uint32_t weighing_gather_rays = 16, weighing_shadow_rays = 64;
 
 }  // namespace
 
@@ -80,7 +80,7 @@ void SurfaceSampler::weigh(PatchLooks& looks, std::span<const LookingPoint> plac
     looks.start(1);
     if (gathers) {
       looks.gather(places[point], base::SobolOwen4(key.with(gather_key)),
-                   base::SobolOwen4(key.with(gather_key + 1)), point, weighing_rays, 0);
+                   base::SobolOwen4(key.with(gather_key + 1)), point, weighing_gather_rays, 0);
     }
     for (std::size_t k = 0; k < sources_.size(); ++k) {
       const radiosity::Source& source = sources_[k].source;

@@ -46,7 +46,8 @@ struct Effort {
   [[nodiscard]] std::uint32_t all_rays() const { return 2U * points * rays; }
 };
 
-// Of one patch. r as luminance of the radiosity, lm/m^2, times error_weight() at the point.
+// Of one patch. r as luminance of the radiosity, lm/m^2, times error_weight() at the point; what
+// gather rays find is held to 2 max(solution, 4 means), but for the means that are not weighted.
 struct PatchResidual {
   std::uint16_t taken = 0;                   // points that nothing covers
   float open = 1.0F;                         // share of the patch that nothing covers
@@ -102,8 +103,9 @@ class SurfaceSampler {
   [[nodiscard]] const std::vector<bool>& is_explicit() const { return is_explicit_; }
 
  private:
-  // Independent shadow rays tell the weight of points whose halves do not agree how bright they
-  // are: by their own values those that miss the light by chance would count most.
+  // Independent rays tell the weight of points whose halves do not agree how bright they are: by
+  // their own values those that miss the light by chance would count most. gathers: into the
+  // hemisphere, too.
   void weigh(PatchLooks& looks, std::span<const LookingPoint> places, base::Key key, double mean,
              ResidualSums& sums, std::size_t points, bool gathers) const;
 
