@@ -170,7 +170,8 @@ void add_part_options(CLI::App& command, PartCall& part) {
             part.wait_s = static_cast<double>(read_whole_number("--wait", text, 0, 10000000));
           },
           "A part waits so long for another's solution before it makes its own (default 0)")
-      ->type_name("SECONDS");
+      ->type_name("SECONDS")
+      ->needs("--part");
 }
 
 Share share_of(const PartCall& part, std::size_t items) {

@@ -79,8 +79,7 @@ class CheckedStream : public Imf::OStream {
 };
 
 [[noreturn]] void refuse_writing(const std::filesystem::path& path, const std::string& why) {
-  throw Error(Blame::Work, path.string(), "cannot be written: " + why, {},
-              "An older file of that name was kept");
+  throw Error(Blame::Work, path.string(), "cannot be written: " + why, {}, write_elsewhere);
 }
 
 // Where no memory is left to pack rows with, the library leaves them out and says nothing.

@@ -224,7 +224,7 @@ bool OutputFile::commit_if_new() {
 
 void OutputFile::refuse(int error_number) const {
   throw Error(Blame::Work, target_.string(), "cannot be written: " + system_reason(error_number),
-              {}, "An older file of that name was kept");
+              {}, write_elsewhere);
 }
 
 bool others_see_locks(const std::string& mounts, unsigned major, unsigned minor) {
@@ -271,7 +271,7 @@ void write_aside(const OutputFile& output, const fs::path& path, std::string_vie
   if (std::fclose(file.release()) != 0 && problem == 0) problem = errno;
   if (!flushed || problem != 0) {
     throw Error(Blame::Work, path.string(), "cannot be written: " + system_reason(problem), {},
-                "Free some space or write elsewhere; an older file of that name was kept");
+                write_elsewhere);
   }
 }
 

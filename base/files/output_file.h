@@ -10,6 +10,10 @@
 
 namespace earthshine::base {
 
+// What to do where a file cannot be written.
+inline constexpr const char* write_elsewhere =
+    "Free some space or write elsewhere; an older file of that name was kept";
+
 // A temporary file beside `target`, empty and locked; commit() renames it over the target, the
 // destructor removes it if commit() was not reached. What killed runs left in its folder is
 // cleared. Of several ranks (base/ranks) the first alone writes: the others have /dev/null there.

@@ -84,6 +84,7 @@ class WrongCalls(program.Case):
         for unnamed in ("", "inside,"):
             self.says(self.refused("render", "box.toml", "-o", "a.exr", "--camera", unnamed), 'no camera ""', "inside")
         self.says(self.refused("degrade", "a.exr", "-o", "a.png", "--scene", "box.toml", "--camera", ""), "--camera", "empty")
+        self.says(self.refused("render", "box.toml", "-o", "a.exr", "--wait", "5"), "--wait", "--part")
 
     def test_override_without_value_or_unknown(self):
         for override in ("quality", "quality.gather_rays", "quality.gather=3", "=3", "quality.error=x"):
