@@ -150,7 +150,7 @@ class SurfaceSearch {
       const double error = result_.steps.back().estimate;
       if (error <= wanted_.error && is_sure(found)) return;
       if (!may_cut() && !may_cast()) return stop(Limit::Settings);
-      if (is_hopeless(error) && !may_be_chance(found)) return stop(why_no_more());
+      if (is_hopeless(error)) return stop(why_no_more());
       spent_.push_back(turns_->rays());
       const double gone = time_gone();
       if (gone + next_pass * (gone - pass_begun) > 1.0) return stop(Limit::Time);
@@ -165,8 +165,9 @@ class SurfaceSearch {
         cuts = turns_->cut_gathered(choice, cut_share * enough(), points_wanted_, parent);
         if (turns_->cut_shadows(cut_share * enough(), parent, &choice)) cuts = true;
       }
-      const bool is_stuck = pass > 4 && error > std::max(wanted_.error, 0.97 * before);
-      if (!cuts && is_stuck && !may_be_chance(found)) return stop(why_no_more());
+      if (!cuts && pass > 4 && error > std::max(wanted_.error, 0.97 * before)) {
+        return stop(why_no_more());
+      }
       before = error;
       const double target = noise_share * squared(aim * wanted_.error * turns_->mean());
       if (joins()) effort = next_effort(variance, parent, target);
@@ -179,12 +180,6 @@ class SurfaceSearch {
   [[nodiscard]] bool is_sure(const ResidualError& found) const {
     return found.doubt <= most_doubt * squared(wanted_.error) || points_wanted_ >= most_points ||
            time_gone() > more_points_share || !(may_cut() || may_cast());
-  }
-
-  // Whether what is wanted is within two standard errors of what is stated, and more points would
-  // tell.
-  [[nodiscard]] bool may_be_chance(const ResidualError& found) const {
-    return !is_sure(found) && found.square - 2.0 * found.doubt < squared(wanted_.error);
   }
 
   // What may be left of the mean square by the next pass: no more is cut at once than halves the
