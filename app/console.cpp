@@ -2,6 +2,7 @@
 #include "app/console.h"
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -60,6 +61,15 @@ void note(std::string_view line) {
   if (silent_now) return;
   if (some_note_was_lost) return;  // nobody listens; a full pipe would wait once more
   if (!write_whole(base::escaped(line) + "\n", stderr)) some_note_was_lost = true;
+}
+
+void note_in_handler(std::string_view line) noexcept {
+  pollfd stream{STDERR_FILENO, POLLOUT, 0};
+  if (silent_now || ::poll(&stream, 1, 0) != 1 || stream.revents != POLLOUT) return;
+  const std::string_view wipe = "\r\033[2K";  // of a progress line
+  const bool terminal = ::isatty(STDERR_FILENO) == 1;
+  if (terminal && ::write(STDERR_FILENO, wipe.data(), wipe.size()) < 0) return;
+  if (::write(STDERR_FILENO, line.data(), line.size()) < 0) return;
 }
 
 bool lost_a_note() { return some_note_was_lost; }

@@ -19,6 +19,10 @@ void print(std::string_view text);
 // One line on standard error. Work goes on where nobody listens any more.
 void note(std::string_view line);
 
+// The same of a handler of signals, in words without names. Where it would have to wait it is not
+// said.
+void note_in_handler(std::string_view line) noexcept;
+
 // For a process that is one of several and not their speaker: neither prints nor notes.
 void be_silent(bool silent);
 
@@ -65,6 +69,12 @@ class Interrupt {
 
   // Safe on many threads.
   [[nodiscard]] static bool asked();
+
+  // The same for work that is kept whole or not at all: throws Left where an end is asked for.
+  struct Left {};
+  static void leave_if_asked() {
+    if (asked()) throw Left();
+  }
 
  private:
   using Handler = void (*)(int);

@@ -197,6 +197,10 @@ int run(std::vector<std::string> arguments, const Workers& workers) {
 // Interrupted or told to end: no half-written file stays behind, and the shell sees the signal.
 void end_by_signal(int signal) {
   base::remove_unfinished_files();
+  note_in_handler(Interrupt::asked()
+                      ? "earthshine: interrupted again: ended without what was under way\n"
+                      : "earthshine: interrupted before there was anything to keep of what was "
+                        "under way\n");
   std::signal(signal, SIG_DFL);
   std::raise(signal);
 }
@@ -236,6 +240,8 @@ int complain(std::string_view what, int exit_code) {
 constexpr std::chrono::seconds time_to_speak{3};
 
 void end_rank(base::Ranks& ranks, int exit_code, const std::string& what) {
+  // Who ends all is told to end, too, and has said why.
+  for (const int signal : ending_signals) std::signal(signal, SIG_DFL);
   if (ranks.number() > 0) {
     std::this_thread::sleep_for(time_to_speak);
     be_silent(false);

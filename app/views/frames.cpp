@@ -91,7 +91,10 @@ raytrace::RenderOptions StudyFrames::options(const StudyCamera& camera) const {
   options.seed = common_.seed;
   options.per_light = true;
   options.aovs = {"object"};
-  options.stop = [] { return Interrupt::asked(); };
+  options.stop = [] {
+    Interrupt::leave_if_asked();
+    return false;
+  };
   return options;
 }
 
@@ -203,10 +206,14 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
   const raytrace::RenderOptions how = options(camera);
   check_memory(basis, *part_.query, solver_, &how, !solution_.has_value());
   const radiosity::Solution& light = solution(costs);
-  raytrace::Frame drawn = raytrace::render(
-      basis.world(*part_.query), light, *camera.camera, how,
-      progress_of_stages(common_)(fmt::format("camera {} of {}", camera.camera->name, part_.path)));
-  if (drawn.report.stopped) return std::nullopt;
+  raytrace::Frame drawn;
+  try {
+    drawn = raytrace::render(basis.world(*part_.query), light, *camera.camera, how,
+                             progress_of_stages(common_)(
+                                 fmt::format("camera {} of {}", camera.camera->name, part_.path)));
+  } catch (const Interrupt::Left&) {
+    return std::nullopt;
+  }
   Frame frame{{},
               drawn.report.seconds,
               drawn.report.relative_noise,

@@ -81,6 +81,7 @@ StudyConditions::StudyConditions(const StudyPart& part, const studies::StudyFile
 
 studies::ConditionOptions StudyConditions::options() const {
   studies::ConditionOptions options;
+  options.before_each = Interrupt::leave_if_asked;
   options.why.wanted = study_.seen_probability;
   options.why.sight.seen_probability = study_.seen_probability;
   using Explain = studies::ConditionOptions::Explain;
@@ -168,8 +169,13 @@ Judged StudyConditions::judge(const StudyCamera& camera, const studies::BasisVie
     if (Interrupt::asked()) break;
     std::vector<studies::ConditionAt> conditions;
     for (std::size_t k = first; k < last; ++k) conditions.push_back(condition_at(part_, k));
-    const std::vector<studies::Outcome> outcomes =
-        studies::judge_conditions(*part_.basis, *part_.query, view, conditions, cctv, options());
+    std::vector<studies::Outcome> outcomes;
+    try {
+      outcomes =
+          studies::judge_conditions(*part_.basis, *part_.query, view, conditions, cctv, options());
+    } catch (const Interrupt::Left&) {
+      break;
+    }
     Batch batch_found(last - first);
     for (std::size_t k = first; k < last; ++k) {
       const studies::Outcome& outcome = outcomes[k - first];

@@ -169,7 +169,10 @@ std::vector<Outcome> judge_conditions(const LightBasis& basis, const scenes::Ray
                                       const ConditionOptions& options) {
   std::vector<Outcome> outcomes(conditions.size());
   const auto for_each = [&](const auto& visit) {
-    base::parallel_chunks(conditions.size(), 1, [&](std::size_t k, std::size_t) { visit(k); });
+    base::parallel_chunks(conditions.size(), 1, [&](std::size_t k, std::size_t) {
+      if (options.before_each) options.before_each();
+      visit(k);
+    });
   };
   for_each(
       [&](std::size_t k) { outcomes[k] = look(basis, query, view, conditions[k], cctv, options); });

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,6 +63,7 @@ struct ConditionOptions {
   // For which targets TargetOutcome::why is filled: each costs about as much as ten conditions.
   enum class Explain { None, Unseen, NotIdentified } explain = Explain::NotIdentified;
   WhyNotOptions why;
+  std::function<void()> before_each = {};  // condition, on many threads; what it throws ends all
 };
 
 struct ConditionAt {

@@ -76,6 +76,13 @@ class BrokenOff(program.Case):
         self.assertEqual(code, -signal.SIGINT)
         self.assertFalse((self.folder / "a.exr").exists())
 
+    def test_where_nothing_could_be_kept_it_is_said(self):
+        for study in ("compare", "visibility"):
+            code, out, err, seconds = self.stopped("study", study, "ball.toml", "-o", "d", "--camera", "A", "-q", *LONG)
+            self.assertEqual((code, out), (-signal.SIGINT, ""))
+            self.assertEqual(err, "earthshine: interrupted before there was anything to keep of what was under way\n")
+            self.assertLess(seconds, 5)  # at once, but for other processes
+
     def test_a_solve_keeps_what_it_had_come_to(self):
         code, out, err, seconds = self.stopped("solve", "ball.toml", "--error", "0.0005", "-o", "a.h5", "--json")
         self.assertEqual(code, 1, err)

@@ -136,6 +136,21 @@ class Resume(Case):
             self.assertEqual(run.returncode, -number)
             self.assertEqual(list(self.folder.glob("o/points/solution-*.h5")), [])
 
+    def test_a_signal_leaves_a_picture_at_once(self):
+        """None is kept that is not whole: it was finished as far as it had come, for 3 s of a processor, and thrown away."""
+        run = self.started("study", "orbit", "bay.toml", "--positions", "4", "-o", "o", "--size", "512x512")
+        while run.poll() is None and not list(self.folder.glob("o/points/solution-*.h5")):
+            time.sleep(0.01)
+        taken = self.cpu_seconds(run) + 0.3
+        while run.poll() is None and self.cpu_seconds(run) < taken:
+            time.sleep(0.01)
+        run.send_signal(signal.SIGINT)
+        errors = run.stderr.read()
+        _, status, usage = os.wait4(run.pid, 0)
+        self.assertEqual(os.waitstatus_to_exitcode(status), 1, errors)
+        self.says(errors, "interrupted", "again")
+        self.assertLess(usage.ru_utime + usage.ru_stime - taken, 1.5)
+
     def test_an_interrupted_run_says_so_and_goes_on(self):
         self.write("bay.toml", BAY)
         call = ("study", "orbit", "bay.toml", "--positions", "4", "-o", "o", "--wanted", "box>=0.5",

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "degrade/settings/presets.h"
 #include "tests/studies/basis_scenes.h"
@@ -225,6 +226,10 @@ TEST(Condition, ReasonsAreWorkedOutOncePerRunOfLikeConditions) {
     EXPECT_EQ(found[k].sight.targets[0].luminance, alone.sight.targets[0].luminance) << k;
     EXPECT_EQ(target.why.text.empty(), k == 2) << k;
   }
+  options.before_each = [] { throw std::domain_error("enough"); };
+  EXPECT_THROW(
+      (void)judge_conditions(judge.basis, judge.query, judge.view, conditions, eye, options),
+      std::domain_error);
 }
 
 }  // namespace
