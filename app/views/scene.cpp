@@ -8,6 +8,7 @@
 
 #include "app/console.h"
 #include "base/error.h"
+#include "base/input/input_file.h"
 #include "raytrace/camera/camera.h"
 #include "scenes/sky/orbit.h"
 #include "scenes/text/message_text.h"
@@ -32,6 +33,9 @@ void add_cctv(const studies::StudyFile& study, scenes::Scene& scene) {
                      [&name = name](const scenes::Camera& c) { return c.name == name; });
     if (camera == scene.cameras.end()) continue;  // another scene of the study may have it
     camera->cctv = model == "none" ? "" : model;
+    if (camera->cctv.empty()) continue;
+    (void)degrade::resolve_camera(scene, model, "camera_models: camera " + scenes::in_quotes(name),
+                                  study.place("camera_models"));
   }
   degrade::check_settings(scene);
 }
@@ -96,9 +100,12 @@ std::vector<studies::SkyPlace> find_places(const studies::StudyFile& study, Stud
   const scenes::Scene& scene = part.loaded.scene;
   if (study.positions_deg.empty()) return {studies::sky_of(scene)};
   if (!scene.orbit) {
-    throw Error(Blame::Input, part.path, "has no [orbit], so that there is nothing to go along",
-                "a study with positions needs a scene with [orbit]",
-                "Add [orbit] with altitude_km, or leave the positions out");
+    const bool in_file = study.where.contains("orbit");
+    throw Error(
+        Blame::Input, in_file ? study.place("orbit") : base::Location{part.path},
+        (in_file ? part.path + " " : "") + "has no [orbit], so that there is nothing to go along",
+        "a study with positions needs a scene with [orbit]",
+        "Add [orbit] with altitude_km, or leave the positions out");
   }
   scenes::Scene sky;  // without surfaces: cheap to move
   sky.sun = scene.sun;
@@ -121,6 +128,9 @@ std::unique_ptr<StudyPart> prepare_part(const studies::StudyFile& study, std::si
   auto part = std::make_unique<StudyPart>();
   part->id = fmt::format("s{}", index);
   part->path = study.scenes[index].lexically_normal().string();
+  for (const char* key : {"scene", "scenes"}) {
+    if (study.where.contains(key)) base::check_input_file(part->path, study.place(key));
+  }
   SceneInput input{part->path, study.overrides};
   if (study.where.count("set") > 0) input.overrides_at = study.place("set");
   part->loaded = load(input, common.quiet);

@@ -115,7 +115,10 @@ void check_pictures(const studies::StudyFile& study, const std::vector<const Stu
                          scenes::in_quotes(wish.camera)),
              "give it one under camera_models, or show \"clean\"");
     }
-    if (!wish.cctv.empty()) (void)degrade::resolve_camera((*part)->loaded.scene, wish.cctv);
+    if (!wish.cctv.empty()) {
+      const std::string of = fmt::format("cctv of [[picture]] {}", scenes::in_quotes(wish.name));
+      (void)degrade::resolve_camera((*part)->loaded.scene, wish.cctv, of, wish.where);
+    }
     if (setting_of(**part, wish) == (*part)->basis->settings().size()) {
       std::vector<std::string> names;
       for (const studies::LampSetting& s : (*part)->basis->settings()) names.push_back(s.name);

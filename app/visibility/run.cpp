@@ -57,7 +57,7 @@ void check_models(const studies::StudyFile& study, const std::vector<const Study
   for (const auto& [name, model] : study.camera_models) {
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
     throw base::Error(base::Blame::Input, study.place("camera_models"),
-                      "no scene has a camera " + scenes::in_quotes(name),
+                      "camera_models: no scene has a camera " + scenes::in_quotes(name),
                       "there are " + scenes::listed(names), scenes::did_you_mean(name, names));
   }
 }

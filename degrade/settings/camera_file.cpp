@@ -174,14 +174,13 @@ std::vector<std::string> preset_names() {
 }
 
 CctvCamera resolve_camera(const scenes::Scene& scene, const std::string& name,
-                          const std::string& of) {
+                          const std::string& of, const std::optional<base::Location>& named_at) {
   if (const SettingTable* table = find_table(scene, name)) return read_camera(*table);
   if (const Preset* preset = find_preset(name)) return preset->camera;
   std::vector<std::string> names = preset_names();
   for (const SettingTable& table : scene.cctv) names.push_back(table.name);
-  throw Error(Blame::Input, scene.path.string(),
-              (of.empty() ? "" : "camera " + in_quotes(of) + ": ") + "there is no CCTV camera " +
-                  in_quotes(name),
+  throw Error(Blame::Input, named_at.value_or(base::Location{scene.path.string()}),
+              (of.empty() ? "" : of + ": ") + "there is no CCTV camera " + in_quotes(name),
               "known are " + listed(names), did_you_mean(name, names));
 }
 
@@ -228,7 +227,8 @@ void check_settings(const scenes::Scene& scene) {
   for (const SettingTable& table : scene.cctv) static_cast<void>(read_camera(table));
   if (scene.monitor) static_cast<void>(read_monitor(*scene.monitor));
   for (const scenes::Camera& camera : scene.cameras) {
-    if (!camera.cctv.empty()) static_cast<void>(resolve_camera(scene, camera.cctv, camera.name));
+    if (camera.cctv.empty()) continue;
+    static_cast<void>(resolve_camera(scene, camera.cctv, "camera " + in_quotes(camera.name)));
   }
 }
 

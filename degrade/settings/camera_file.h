@@ -3,6 +3,7 @@
 // keys.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,10 @@ namespace earthshine::degrade {
 // Throws base::Error (Input) for an unknown name or key (with the nearest), a value of the wrong
 // kind or out of range, a key without effect in this camera, the noise given in two forms, and
 // limits that contradict each other.
-// of: the scene's camera that names it, for the message.
+// of, named_at: what names it, and where, for the message.
 [[nodiscard]] CctvCamera resolve_camera(const scenes::Scene& scene, const std::string& name,
-                                        const std::string& of = {});
+                                        const std::string& of = {},
+                                        const std::optional<base::Location>& named_at = {});
 
 // The monitor that the camera of that name is watched on: the scene's [monitor], which starts from
 // the monitor of `preset = "..."`, else from the default one; without that table the monitor of the

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "base/free_memory.h"
-#include "base/input/input_file.h"
 #include "scenes/health/coincident.h"
 #include "scenes/health/mend.h"
 #include "scenes/health/small_objects.h"
@@ -26,18 +25,15 @@ constexpr std::string_view units[] = {"m", "cm", "mm", "ft", "in"};
 constexpr double metres_per_unit[] = {1.0, 0.01, 0.001, 0.3048, 0.0254};
 static_assert(std::size(units) == std::size(metres_per_unit));
 
-void check_format(const TableReader& root) {
-  const TomlEntry* entry = root.find("format");
-  if (entry == nullptr) {
-    throw base::Error(base::Blame::Input, base::Location{root.where().file, 1, 1},
-                      "the scene has no \"format\"", "this program reads format = 1",
-                      "Begin the file with format = 1");
-  }
-  const auto* format = std::get_if<std::int64_t>(&entry->node.value);
-  if (format == nullptr || *format != 1) {
+// A study's file knows other keys.
+void refuse_study(const TomlNode& tree) {
+  for (const char* key : {"scene", "scenes"}) {
+    const TomlEntry* const entry = find_entry(std::get<TomlTable>(tree.value), key);
+    if (entry == nullptr) continue;
     throw base::Error(base::Blame::Input, entry->where,
-                      fmt::format("\"format\" is {}", describe(entry->node)),
-                      "this program reads format = 1");
+                      fmt::format("\"{}\" makes this a study file", key),
+                      "a scene file is wanted here",
+                      "Give it to earthshine study run, or give the scene that it names");
   }
 }
 
@@ -85,10 +81,24 @@ void check_size(Scene& scene) {
 
 }  // namespace
 
+void check_format(const TableReader& root) {
+  const char* const wanted = "this program reads format = 1";
+  const TomlEntry* entry = root.find("format");
+  if (entry == nullptr) {
+    throw base::Error(base::Blame::Input, base::Location{root.where().file, 1, 1},
+                      root.label() + " has no \"format\"", wanted,
+                      "Begin the file with format = 1");
+  }
+  const auto* format = std::get_if<std::int64_t>(&entry->node.value);
+  if (format != nullptr && *format == 1) return;
+  throw base::Error(base::Blame::Input, entry->where,
+                    fmt::format("\"format\" is {}", describe(entry->node)), wanted,
+                    format == nullptr ? "Write it as the whole number 1"
+                                      : "Another version of the program may read it");
+}
+
 Scene read_camera_file(const std::filesystem::path& path) {
-  const std::string text =
-      base::read_input_file(path, max_toml_bytes, base::Location{path.string()});
-  const TomlNode tree = parse_toml(text, path.string());
+  const TomlNode tree = read_toml(path);
   const bool whole_scene = find_entry(std::get<TomlTable>(tree.value), "format") != nullptr;
   const TableReader root(tree, whole_scene ? "the scene" : "a camera file",
                          whole_scene ? KeyList(root_keys) : KeyList(camera_file_keys));
@@ -102,9 +112,8 @@ Scene read_camera_file(const std::filesystem::path& path) {
 
 Scene read_scene(const std::filesystem::path& path, std::span<const std::string> overrides,
                  const std::optional<base::Location>& overrides_at) {
-  const std::string text =
-      base::read_input_file(path, max_toml_bytes, base::Location{path.string()});
-  TomlNode tree = parse_toml(text, path.string());
+  TomlNode tree = read_toml(path);
+  refuse_study(tree);
   for (const std::string& setting : overrides) apply_override(tree, setting, overrides_at);
 
   const TableReader root(tree, "the scene", root_keys);

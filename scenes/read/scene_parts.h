@@ -18,6 +18,9 @@
 
 namespace earthshine::scenes {
 
+// root: of a file of the kind that its label says, "the scene".
+void check_format(const TableReader& root);
+
 [[nodiscard]] Material read_material(const TomlNode& node);
 
 // Measured luminaires are read once however many lamps are of their kind.

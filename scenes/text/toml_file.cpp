@@ -5,7 +5,10 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <fstream>
+#include <utility>
 
+#include "base/input/input_file.h"
 #include "scenes/text/message_text.h"
 
 namespace earthshine::scenes {
@@ -46,6 +49,14 @@ TomlNode convert(const toml::node& node, const std::string& file) {
 
 using base::Blame;
 using base::Error;
+
+// What a picture, a solution or a mesh begins with that is given in place of a scene.
+constexpr std::pair<std::string_view, std::string_view> other_kinds[] = {
+    {"\x76\x2f\x31\x01", "an OpenEXR picture"},
+    {"\x89PNG", "a PNG picture"},
+    {"\xff\xd8\xff", "a JPEG picture"},
+    {"\x89HDF", "an HDF5 file, such as solve -o writes"},
+    {"glTF", "a binary glTF mesh"}};
 
 enum class Inside { Bare, Comment, Basic, Literal, BasicLines, LiteralLines };
 
@@ -135,13 +146,26 @@ TomlNode parse_toml(std::string_view text, const std::string& file) {
   }
 }
 
+TomlNode read_toml(const std::filesystem::path& path) {
+  const base::Location where{path.string()};
+  base::check_input_file(path, where);
+  std::string start(8, '\0');
+  std::ifstream(path, std::ios::binary).read(start.data(), 8);
+  for (const auto& [magic, kind] : other_kinds) {
+    if (!start.starts_with(magic)) continue;
+    throw Error(Blame::Input, where, fmt::format("is {}", kind),
+                "a TOML file is wanted here: plain text");
+  }
+  return parse_toml(base::read_input_file(path, max_toml_bytes, where), path.string());
+}
+
 std::string describe(const TomlNode& node) {
   struct Describe {
     std::string operator()(bool flag) const { return flag ? "true" : "false"; }
     std::string operator()(std::int64_t number) const {
       return fmt::format("the number {}", number);
     }
-    std::string operator()(double number) const { return fmt::format("the number {}", number); }
+    std::string operator()(double number) const { return fmt::format("the number {:#}", number); }
     std::string operator()(const std::string& text) const {
       return fmt::format("the string {}", in_quotes(text));
     }

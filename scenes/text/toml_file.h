@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -37,6 +38,10 @@ struct TomlEntry {
 
 // The root table. Throws base::Error (Input) at file:line:column for text that is not TOML.
 [[nodiscard]] TomlNode parse_toml(std::string_view text, const std::string& file);
+
+// The root table of a file. Throws as parse_toml, and for what is no file on disk or another kind
+// of file.
+[[nodiscard]] TomlNode read_toml(const std::filesystem::path& path);
 
 // "the string "abc"", "the number 3", "a table": for messages.
 [[nodiscard]] std::string describe(const TomlNode& node);

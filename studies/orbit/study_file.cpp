@@ -7,7 +7,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "base/input/input_file.h"
 #include "scenes/read/scene_parts.h"
 #include "scenes/text/toml_file.h"
 
@@ -53,7 +52,8 @@ std::vector<std::string> texts(const TableReader& table, std::string_view key) {
   }
   if (list.empty()) {
     table.fail(key, "is " + scenes::describe(entry->node),
-               "allowed is a list of strings with one or more", "Leave the key out for all");
+               "allowed is a list of strings with one or more",
+               key == "scenes" ? "Name a scene file" : "Leave the key out");
   }
   return list;
 }
@@ -218,18 +218,26 @@ void read_cameras(StudyFile& study, const TableReader& root) {
   }
 }
 
+// A scene's file has other tables, and names no scene.
+void refuse_scene(const TomlTable& root) {
+  if (find_entry(root, "scene") != nullptr || find_entry(root, "scenes") != nullptr) return;
+  for (const char* key : {"object", "material", "camera", "light"}) {
+    const TomlEntry* const entry = find_entry(root, key);
+    if (entry == nullptr) continue;
+    throw Error(Blame::Input, entry->where, fmt::format("[[{}]] makes this a scene file", key),
+                "a study file is wanted here, which names its scene",
+                "Give it to earthshine study visibility or study orbit, or write a study file with "
+                "scene = \"FILE.toml\"");
+  }
+}
+
 }  // namespace
 
 StudyFile read_study_file(const std::filesystem::path& path) {
-  const std::string text =
-      base::read_input_file(path, scenes::max_toml_bytes, base::Location{path.string()});
-  const TomlNode tree = scenes::parse_toml(text, path.string());
+  const TomlNode tree = scenes::read_toml(path);
+  refuse_scene(std::get<TomlTable>(tree.value));
   const TableReader root(tree, "the study", root_keys);
-  const std::optional<int> format = root.whole("format", 1, 1);
-  if (!format) {
-    throw Error(Blame::Input, base::Location{path.string(), 1, 1}, "the study has no \"format\"",
-                "this program reads format = 1", "Begin the file with format = 1");
-  }
+  scenes::check_format(root);
   StudyFile study;
   study.path = path;
   for (const TomlEntry& entry : std::get<TomlTable>(tree.value)) {

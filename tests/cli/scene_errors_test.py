@@ -35,6 +35,12 @@ class BrokenScenes(program.Case):
         self.broken("format = 2\n", "format")
         self.write("scene.toml", b"\xff\xfe\x00\x01")
         self.refused("inspect", "scene.toml")
+        self.broken("format = 1.0\n", "1.0", "the whole number 1")
+
+    def test_files_of_another_kind(self):
+        self.broken('format = 1\nscene = "bay.toml"\n', "scene.toml:2:1: ", "a study file", "earthshine study run")
+        self.write("a.exr", b"\x76\x2f\x31\x01" + bytes(2 << 20))
+        self.says(self.refused("render", "a.exr", "-o", "b.exr"), "a.exr: is an OpenEXR picture", "a TOML file is wanted")
 
     def test_unknown_key_names_the_nearest(self):
         self.replaced("diffuse = 0.5", "difuse = 0.5", '"difuse"', '"diffuse"')
