@@ -6,6 +6,7 @@
 
 #include "app/accuracy/report.h"
 #include "app/memory.h"
+#include "scenes/text/message_text.h"
 
 namespace earthshine::app {
 namespace {
@@ -83,7 +84,7 @@ PlotPanel law_panel(const AccuracyResult& result, const studies::SeriesLaw& law,
   if (law.law) {
     panel.title += fmt::format(": x^{:.2f}", -law.law->exponent);
     if (law.law->exponent_error) panel.title += fmt::format(" ± {:.2f}", *law.law->exponent_error);
-    if (law.law->floor > 0.0) panel.title += fmt::format(", floor {:.2g} %", 100 * law.law->floor);
+    if (law.law->floor > 0.0) panel.title += ", floor " + scenes::percent(law.law->floor);
     panel.curves.push_back(law_curve(law));
   }
   PlotCurve curve{

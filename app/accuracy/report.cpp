@@ -7,6 +7,7 @@
 
 #include "app/console.h"
 #include "app/memory.h"
+#include "scenes/text/message_text.h"
 
 namespace earthshine::app {
 namespace {
@@ -22,7 +23,7 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-std::string percent(double share) { return fmt::format("{:.2g} %", 100.0 * share); }
+using scenes::percent;
 
 Json error_json(const studies::PictureError& error) {
   return {{"error", error.error}, {"low", error.low}, {"high", error.high}, {"bias", error.bias}};

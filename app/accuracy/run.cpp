@@ -14,6 +14,7 @@
 #include "app/parts/part.h"
 #include "base/error.h"
 #include "raytrace/camera/camera.h"
+#include "scenes/text/message_text.h"
 
 namespace earthshine::app {
 namespace {
@@ -155,7 +156,7 @@ class Study : AccuracyStages {
         }
       }
       parts_.tell(fmt::format("{} of {}: {}", k + 1, ladder.size(), step.name()), left,
-                  fmt::format("{:.2g} % in {}", 100.0 * result_.points.back().error.error,
+                  fmt::format("{} in {}", scenes::percent(result_.points.back().error.error),
                               duration(cost.wall_seconds)));
     }
   }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "app/console.h"
+#include "scenes/text/message_text.h"
 
 namespace earthshine::app {
 namespace {
@@ -59,13 +60,14 @@ std::string noise_text(const studies::Comparison& comparison) {
   std::vector<std::string> judged;
   for (const std::size_t k : studies::errors_below_the_references_noise(comparison)) {
     const studies::MethodResult& result = comparison.methods[k];
-    judged.push_back(fmt::format("{} ({:.2g} +- {:.1g} %)", result.method.name,
-                                 100.0 * result.error.error, 100.0 * result.error.standard_error));
+    judged.push_back(fmt::format("{} ({} +- {})", result.method.name,
+                                 scenes::two_digits(100.0 * result.error.error),
+                                 scenes::percent(result.error.standard_error)));
   }
   return fmt::format(
-      "The references are noisier, {:.2g} %, than the errors that they judge of: {}. A smaller "
+      "The references are noisier, {}, than the errors that they judge of: {}. A smaller "
       "--error, or more rays, make them surer.",
-      100.0 * comparison.reference_noise, fmt::join(judged, ", "));
+      scenes::percent(comparison.reference_noise), fmt::join(judged, ", "));
 }
 
 std::string lights_text(const studies::Comparison& comparison, bool over_area) {

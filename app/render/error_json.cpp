@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/console.h"
+#include "scenes/text/message_text.h"
 
 namespace earthshine::app {
 namespace {
@@ -61,11 +62,11 @@ std::string text_of(const ErrorEstimate& total, bool known, const Parts& parts,
                     const std::vector<std::string>& not_captured) {
   std::string text = "no error can be told: nothing lit is seen";
   if (known) {
-    text = fmt::format("error {:.2g} %, 95 % sure below {:.2g} %:", 100.0 * total.estimate,
-                       100.0 * total.bound_95);
+    text = fmt::format("error {}, 95 % sure below {}:", scenes::percent(total.estimate),
+                       scenes::percent(total.bound_95));
     for (const NamedPart& part : parts) {
       const double percent = 100.0 * part.part.estimate;
-      if (percent >= 0.005) text += fmt::format(" {} {:.2g},", part.words, percent);
+      if (percent >= 0.005) text += fmt::format(" {} {},", part.words, scenes::two_digits(percent));
     }
     text.pop_back();
   }
@@ -123,12 +124,12 @@ std::string choice_text(studies::Limit limit, const std::vector<studies::Step>& 
       text += fmt::format(" {} patches, {} rays each,", step.patches, step.form_factor_rays);
     }
     if (step.gather_rays > 0) text += fmt::format(" {} gather rays a pixel,", step.gather_rays);
-    if (step.estimate > 0.0) text += fmt::format(" leaves {:.2g} %,", 100.0 * step.estimate);
+    if (step.estimate > 0.0) text += fmt::format(" leaves {},", scenes::percent(step.estimate));
     text.pop_back();
   }
   if (limit != studies::Limit::None) {
-    text +=
-        fmt::format("\n  the wanted {:.2g} % is not reached: {}", 100.0 * *wanted, words_of(limit));
+    text += fmt::format("\n  the wanted {} is not reached: {}", scenes::percent(*wanted),
+                        words_of(limit));
   }
   if (seconds_to_go > 0.0) {
     text += fmt::format("; it needs about {} more", duration(seconds_to_go));
@@ -193,8 +194,8 @@ std::string error_text(const Solved& light, std::optional<double> wanted) {
 
 void check_reached(const SceneInput& call, studies::Limit limit, double wanted) {
   if (!call.wants_error() || limit == studies::Limit::None) return;
-  throw StoppedShort(fmt::format("{}: the wanted error of {:.2g} % is not reached: {}", call.path,
-                                 100.0 * wanted, words_of(limit)));
+  throw StoppedShort(fmt::format("{}: the wanted error of {} is not reached: {}", call.path,
+                                 scenes::percent(wanted), words_of(limit)));
 }
 
 }  // namespace earthshine::app

@@ -21,6 +21,7 @@
 #include "radiosity/solution.h"
 #include "scenes/effects/quality.h"
 #include "scenes/ray_query.h"
+#include "scenes/text/message_text.h"
 #include "studies/steer/reach_surfaces.h"
 
 namespace earthshine::app {
@@ -187,7 +188,7 @@ std::string price_text(const Solved& light, std::optional<double> wanted, double
       light.limit == studies::Limit::Ledger) {
     return "";
   }
-  return fmt::format("\n  {:.2g} % needs about {} more, or more", 100.0 * *wanted,
+  return fmt::format("\n  {} needs about {} more, or more", scenes::percent(*wanted),
                      duration(seconds * (over * over - 1.0)));
 }
 

@@ -4,6 +4,7 @@
 
 #include "app/report/sections.h"
 #include "app/report/text.h"
+#include "scenes/text/message_text.h"
 #include "studies/orbit/condition_noise.h"
 
 namespace earthshine::app {
@@ -141,7 +142,7 @@ std::string answers_html(const StudyResults& study) {
       fact("iris", escaped(answer.iris));
       fact("lamps", escaped(answer.lamps));
       fact("needs of these lamps",
-           answer.least_factor ? studies::two_digits(100.0 * *answer.least_factor) + " %" : "");
+           answer.least_factor ? scenes::percent(*answer.least_factor) : "");
       fact("where", arcs);
     }
     if (!facts.empty()) html += "<dl>" + facts + "</dl>";

@@ -7,6 +7,7 @@
 
 #include "app/study/study.h"
 #include "base/parallel.h"
+#include "scenes/text/message_text.h"
 #include "studies/orbit/condition_noise.h"
 #include "studies/orbit/wanted_visibility.h"
 
@@ -94,7 +95,7 @@ std::string lamp_text(const std::vector<ViewingConfiguration>& ways, double want
   const std::string how =
       factor < 1.0 ? fmt::format("could be dimmed to {}{} %",
                                  factor <= studies::least_lamp_factor ? "less than " : "",
-                                 studies::two_digits(100.0 * factor))
+                                 scenes::two_digits(100.0 * factor))
                    : fmt::format("must be {:.2g} times as bright", factor);
   return fmt::format(" {}lamps {} {}; camera {} then still sees it so.", where, best->lamps, how,
                      best->camera);

@@ -8,6 +8,7 @@
 
 #include "app/parts/result_cache.h"
 #include "app/study/results.h"
+#include "scenes/text/message_text.h"
 #include "studies/error/error_budget.h"
 
 namespace earthshine::app {
@@ -46,8 +47,9 @@ CameraEntry camera_entry(const CameraFindings& found, std::size_t scene,
     entry.iris = degrade::word_of(cctv->chain.camera.iris);
   }
   const std::string own = noise_of_conditions(found, conditions);
-  entry.error_text = fmt::format("{}{}{:.2g} % in the picture of all lights together", own,
-                                 own.empty() ? "noise of " : "; ", 100.0 * found.relative_noise);
+  entry.error_text =
+      fmt::format("{}{}{} in the picture of all lights together", own,
+                  own.empty() ? "noise of " : "; ", scenes::percent(found.relative_noise));
   return entry;
 }
 
@@ -202,7 +204,7 @@ std::vector<std::string> notes_of(const StudyResults& results,
   for (const CameraEntry& camera : results.cameras) {
     const auto wanted = parts[camera.scene]->loaded.scene.quality.error;
     const std::string limit = wanted && *camera.relative_noise > *wanted
-                                  ? fmt::format(", where the scene wants {:.2g} %", 100.0 * *wanted)
+                                  ? ", where the scene wants " + scenes::percent(*wanted)
                                   : std::string();
     notes.push_back(
         fmt::format("Pictures of camera {}: {}{}.", camera.name, camera.error_text, limit));

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 
@@ -18,6 +19,16 @@ std::string printable(std::string_view text, std::size_t longest) {
 }
 
 std::string in_quotes(std::string_view text) { return fmt::format("\"{}\"", printable(text, 80)); }
+
+std::string two_digits(double value) {
+  if (value < 0.01 && value > 0.0) {
+    return fmt::format("{:.{}f}", value, 1 - static_cast<int>(std::floor(std::log10(value))));
+  }
+  const std::string text = fmt::format("{:.2g}", value);
+  return value < 99.5 ? text : fmt::format("{:.0f}", std::stod(text));
+}
+
+std::string percent(double share) { return two_digits(100.0 * share) + " %"; }
 
 std::string listed(std::span<const std::string> words) {
   constexpr std::size_t most = 20;

@@ -17,6 +17,12 @@ namespace earthshine::scenes {
 // The same in quotes, cut at 80 bytes.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
+// Two significant digits without a power of ten: 0.0013, 2000. value: 0 or more.
+[[nodiscard]] std::string two_digits(double value);
+
+// The same of a share: "0.0013 %", "130 %".
+[[nodiscard]] std::string percent(double share);
+
 // "a, b, c", at most 20 of them and then "and N more".
 [[nodiscard]] std::string listed(std::span<const std::string> words);
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "scenes/text/message_text.h"
+
 namespace earthshine::studies {
 namespace {
 
@@ -24,17 +26,9 @@ std::vector<std::size_t> ranked(std::span<const ConditionNoise> noise, Value val
   return order;
 }
 
-std::string percent(double share) { return fmt::format("{:.2g}", 100.0 * share); }
+std::string percent(double share) { return scenes::two_digits(100.0 * share); }
 
 }  // namespace
-
-std::string two_digits(double value) {
-  if (value < 0.01 && value > 0.0) {
-    return fmt::format("{:.{}f}", value, 1 - static_cast<int>(std::floor(std::log10(value))));
-  }
-  const std::string text = fmt::format("{:.2g}", value);
-  return value < 99.5 ? text : fmt::format("{:.0f}", std::stod(text));
-}
 
 ConditionNoise noise_of_condition(double rms, double mean) {
   ConditionNoise noise;
@@ -58,7 +52,7 @@ std::string noise_text(std::span<const ConditionNoise> noise, std::span<const st
                        least == most ? "" : least + " to ", most, names[lit.back()]);
   }
   if (unlit.empty()) return text;
-  const std::string most = two_digits(*dark[unlit.back()].cd_m2) + " cd/m²";
+  const std::string most = scenes::two_digits(*dark[unlit.back()].cd_m2) + " cd/m²";
   if (unlit.size() == 1) {
     return text + fmt::format("{}noise of {}, more than its light, in {}", text.empty() ? "" : "; ",
                               most, names[unlit.back()]);

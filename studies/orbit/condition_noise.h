@@ -21,8 +21,4 @@ struct ConditionNoise {
 // the dark ones in cd/m^2. "" where nothing is known.
 [[nodiscard]] std::string noise_text(std::span<const ConditionNoise> noise,
                                      std::span<const std::string> names);
-
-// Two significant digits without a power of ten: 0.0013, 2000. value: 0 or more.
-[[nodiscard]] std::string two_digits(double value);
-
 }  // namespace earthshine::studies

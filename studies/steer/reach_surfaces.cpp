@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "radiosity/fill_solution.h"
 #include "radiosity/near_lamps.h"
+#include "scenes/text/message_text.h"
 #include "studies/error/error_budget.h"
 #include "studies/steer/surface_turns.h"
 #include "studies/surfaces/residual_error.h"
@@ -237,8 +238,9 @@ class SurfaceSearch {
   }
   [[nodiscard]] std::string under_way() const {
     if (result_.steps.empty()) return fmt::format("{} patches", light_->patches().count());
-    return fmt::format("{} patches, error {:.2g} % of {:.2g} % wanted", light_->patches().count(),
-                       100.0 * result_.steps.back().estimate, 100.0 * wanted_.error);
+    return fmt::format("{} patches, error {} of {} wanted", light_->patches().count(),
+                       scenes::percent(result_.steps.back().estimate),
+                       scenes::percent(wanted_.error));
   }
 
   const scenes::World scene_;

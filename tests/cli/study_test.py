@@ -102,6 +102,11 @@ class Compare(Study):
             off = not 1 / 1.5 <= row["luminance_ratio"] <= 1.5
             self.assertEqual(row["misleads"], off or abs(row["contrast_difference"]) > 0.1, row)
 
+    def test_percentages_are_plain_numbers(self):
+        text = self.done("study", "compare", "ball.toml", "-o", "d", "--lights", "2", "--camera", "A", "--size", "4x4",
+                         "--set", "quality.gather_rays=1")
+        self.assertRegex(text, r"noisier, \d+ %, .*: radiosity \([0-9.]+ \+- \d+ %\)")
+
     def test_same_bytes_on_any_number_of_threads(self):
         def pictures(threads):
             self.done("study", "compare", "ball.toml", "-o", threads, "--lights", "4", "-j", threads)

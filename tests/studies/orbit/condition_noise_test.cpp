@@ -7,6 +7,8 @@
 #include <array>
 #include <string>
 
+#include "scenes/text/message_text.h"
+
 namespace earthshine::studies {
 namespace {
 
@@ -24,12 +26,13 @@ TEST(NoiseText, MoreNoiseThanLightHasNoShareOfIt) {
 }
 
 TEST(NoiseText, FiguresHaveTwoDigitsAndNoPowerOfTen) {
-  EXPECT_EQ(two_digits(0.0), "0");
-  EXPECT_EQ(two_digits(0.00001349), "0.000013");
-  EXPECT_EQ(two_digits(0.71), "0.71");
-  EXPECT_EQ(two_digits(7.06), "7.1");
-  EXPECT_EQ(two_digits(99.6), "100");
-  EXPECT_EQ(two_digits(2041.0), "2000");
+  EXPECT_EQ(scenes::two_digits(0.0), "0");
+  EXPECT_EQ(scenes::two_digits(0.00001349), "0.000013");
+  EXPECT_EQ(scenes::two_digits(0.71), "0.71");
+  EXPECT_EQ(scenes::two_digits(7.06), "7.1");
+  EXPECT_EQ(scenes::two_digits(99.6), "100");
+  EXPECT_EQ(scenes::two_digits(2041.0), "2000");
+  EXPECT_EQ(scenes::percent(1.34), "130 %");
 }
 
 TEST(NoiseText, DarkConditionsAreStatedInLuminance) {
