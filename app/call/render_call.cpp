@@ -16,6 +16,7 @@
 
 #include "app/console.h"
 #include "app/options.h"
+#include "app/provenance.h"
 #include "base/error.h"
 #include "base/files/overlay.h"
 #include "raytrace/camera/camera.h"
@@ -58,8 +59,14 @@ void add_indirect_options(CLI::App& parser, RenderCall& call) {
        {"paths", Indirect::Paths}},
       "radiosity (default), distributed (many lights, no interreflection), none, paths (slow "
       "reference)");
-  add_whole_number(parser, "--distributed-lights", call.distributed_lights, 1, 1U << 20U,
-                   "Lights of --indirect distributed (default 64)");
+  parser
+      .add_option_function<std::string>(
+          "--distributed-lights",
+          [&call](const std::string& text) {
+            call.distributed_lights = read_whole_number("--distributed-lights", text, 1, 1U << 20U);
+          },
+          "Lights of --indirect distributed (default 64)")
+      ->type_name("N");
   parser
       .add_option("--distributed-over", call.distributed_over,
                   "Spread the Earth's lights over this [[area]] of the scene, not its disc")
@@ -185,13 +192,19 @@ void add_picture_options(CLI::App& parser, RenderCall& call) {
                   "One layer per light group: light_<group>.R, .G, .B");
 }
 
-void check_aovs(const RenderCall& call) {
+void check_picture_options(const RenderCall& call) {
   for (const std::string& name : call.aovs) {
     const std::vector<std::string>& known = raytrace::aov_names();
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     throw base::Error(base::Blame::Input, "--aov", "there is no layer \"" + name + "\"",
                       fmt::format("the layers are {}", fmt::join(known, ", ")));
   }
+  const bool over = !call.distributed_over.empty();
+  if (call.indirect == raytrace::Indirect::Distributed || !(over || call.distributed_lights))
+    return;
+  throw Error(Blame::Input, over ? "--distributed-over" : "--distributed-lights",
+              fmt::format("--indirect {} spreads no lights", indirect_name(call.indirect)), {},
+              "Write --indirect distributed");
 }
 
 WantedEffects wanted_effects(const RenderCall& call, std::vector<const scenes::Camera*> cameras) {

@@ -71,7 +71,7 @@ struct RenderCall {
   double time_limit_s = 0.0;  // of the whole command; 0: none
   bool no_error = false;      // none is stated
   raytrace::Indirect indirect = raytrace::Indirect::Radiosity;
-  std::uint64_t distributed_lights = 64;
+  std::optional<std::uint64_t> distributed_lights;
   std::string distributed_over;  // [[area]] of the scene; empty: none
   std::vector<std::string> aovs;
   bool per_light = false, timings = false, json = false;
@@ -92,8 +92,8 @@ void add_window_options(CLI::App& parser, RenderCall& call);
 // --camera, --size, --aov, --per-light, --indirect and what belongs to its ways: what a picture's
 // cost depends on.
 void add_picture_options(CLI::App& parser, RenderCall& call);
-// Throws base::Error (Input) for a layer that is not known.
-void check_aovs(const RenderCall& call);
+// Throws base::Error (Input) for a layer that is not known, and for lights that are spread nowhere.
+void check_picture_options(const RenderCall& call);
 
 // Names, lists of names with commas between, or "all"; the first of the scene if there are none.
 [[nodiscard]] std::vector<const scenes::Camera*> wanted_cameras(

@@ -161,7 +161,9 @@ raytrace::RenderOptions picture_options(const RenderCall& call, const Common& co
                       fmt::format("0,0 to {},{}", options.columns - 1, options.rows - 1));
   }
   options.indirect = call.indirect;
-  options.distributed_lights = static_cast<int>(call.distributed_lights);
+  if (call.distributed_lights) {
+    options.distributed_lights = static_cast<int>(*call.distributed_lights);
+  }
   options.distributed_over = call.distributed_over;
   options.per_light = call.per_light;
   options.aovs = call.aovs;

@@ -32,7 +32,7 @@ using base::Blame;
 using base::Error;
 
 void check_call(const RenderCall& call) {
-  check_aovs(call);
+  check_picture_options(call);
   const auto check_ending = [](const std::string& path, std::string_view option,
                                std::string_view ending) {
     if (path.empty() || path.ends_with(ending) || path.starts_with("/dev/")) return;
@@ -76,10 +76,9 @@ void check_call(const RenderCall& call) {
                 fmt::format("--indirect {} reads no solution", indirect_name(call.indirect)), {},
                 "Leave one of the two out");
   }
-  if (!call.distributed_over.empty() && call.indirect != raytrace::Indirect::Distributed) {
-    throw base::Error(base::Blame::Input, "--distributed-over",
-                      fmt::format("--indirect {} spreads no lights", indirect_name(call.indirect)),
-                      {}, "Write --indirect distributed");
+  if (call.timings && call.output.empty()) {
+    throw Error(Blame::Input, "--timings", "writes into the header of -o, which is not there", {},
+                "Add -o FILE.exr, or leave --timings out");
   }
 }
 

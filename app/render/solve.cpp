@@ -236,6 +236,11 @@ void run(const SolveCall& call, const Common& common) {
   const radiosity::SolveOptions options = solve_options(loaded.scene, common);
   const std::optional<double> error = loaded.scene.quality.error;
   const bool steers = error && call.solution.empty();
+  if (call.time_limit_s > 0.0 && !steers) {
+    throw base::Error(base::Blame::Input, "--time-limit", "limits the way to an error",
+                      error ? "--solution is read as it is" : "no error is asked for",
+                      error ? "Leave one of the two out" : "Add --error E");
+  }
   check_memory(loaded, query,
                steers ? studies::first_surface_options(loaded.scene, *error, common.seed) : options,
                nullptr, call.solution.empty());

@@ -73,6 +73,10 @@ studies::StudyFile study_of(const StudyCall& call, const std::vector<std::string
     study.rows = call.size->rows;
   }
   study.lamps = {studies::lamps_as_they_are()};
+  if (!iris.empty() && wanted.empty()) {
+    throw Error(Blame::Input, "--iris", "is what --wanted may choose, which is not there", {},
+                "Add --wanted TARGET>=P; a scene's [[cctv]] says which iris its camera has");
+  }
   study.iris = iris;
   std::sort(study.iris.begin(), study.iris.end());
   study.iris.erase(std::unique(study.iris.begin(), study.iris.end()), study.iris.end());

@@ -99,6 +99,10 @@ void find_exactly(const scenes::Scene& scene, const scenes::RayQuery& query,
 }
 
 Found find(const FactorsCall& call, const Common& common) {
+  if (call.raw && call.method == Method::Exact) {
+    throw base::Error(base::Blame::Input, "--raw", "is of rays, and --method exact casts none", {},
+                      "Leave one of the two out");
+  }
   const LoadedScene loaded = load(call.scene, common.quiet);
   const scenes::Scene& scene = loaded.scene;
   const scenes::QualityKnobs knobs = scenes::resolve_quality(scene);

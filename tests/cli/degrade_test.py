@@ -172,7 +172,7 @@ class Degrade(program.Case):
         self.done("render", "ball.toml", "-o", "a.exr")
         for wrong, said in ((["--f-number", "nan"], "0.5"), (["--fov", "inf"], "179"), (["--cctv", ""], "--cctv"),
                             (["--preset", "ideal", "--f-number", 8], "iris_rate"),
-                            (["--target-resels", 7], "--twin")):
+                            (["--target-resels", 7], "--twin"), (["--preset", "ideal", "--fov", 30], "fall_off")):
             self.says(self.refused("degrade", "a.exr", "-o", "c.png", *wrong), said)
 
     def test_iris_on_its_way_is_no_failure_of_its_range(self):

@@ -15,6 +15,7 @@ class Refused(Case):
         self.says(self.orbit("--wanted", "lid>=0.5"), '"lid"', "box", "far")
         self.says(self.orbit("--wanted", "box"), "TARGET>=P")
         self.says(self.orbit("--iris", "wide"), "wide")
+        self.says(self.orbit("--iris", "peak"), "--iris", "Add --wanted")
         for positions in ("0", "-3", "3601", "x", "1.5"):
             self.says(self.orbit(f"--positions={positions}"), "--positions")
         for at in ("361", "x", "0,0", "1,", "nan", "inf"):

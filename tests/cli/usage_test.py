@@ -86,6 +86,15 @@ class WrongCalls(program.Case):
         self.says(self.refused("degrade", "a.exr", "-o", "a.png", "--scene", "box.toml", "--camera", ""), "--camera", "empty")
         self.says(self.refused("render", "box.toml", "-o", "a.exr", "--wait", "5"), "--wait", "--part")
 
+    def test_options_that_need_another(self):
+        for command in (["render", "box.toml", "-o", "a.exr"], ["plan", "box.toml"]):
+            for option in (["--distributed-lights", "8"], ["--distributed-over", "sky"]):
+                self.says(self.refused(*command, *option), option[0], "--indirect distributed")
+        self.says(self.refused("render", "box.toml", "--probe", "3,3", "--timings"), "--timings", "-o FILE.exr")
+        self.says(self.refused("solve", "box.toml", "--time-limit", "3"), "--time-limit", "--error")
+        self.says(self.refused("form-factors", "box.toml", "--method", "exact", "--raw"), "--raw")
+        self.says(self.refused("degrade", "a.exr", "-o", "a.png", "--list"), "--list", "-o")
+
     def test_override_without_value_or_unknown(self):
         for override in ("quality", "quality.gather_rays", "quality.gather=3", "=3", "quality.error=x"):
             self.refused("inspect", "box.toml", "--set", override)
