@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "app/call/render_call.h"
 #include "app/console.h"
 #include "app/options.h"
 #include "base/error.h"
@@ -28,7 +29,8 @@ void add_study_options(CLI::App& command, StudyCall& call) {
 }
 
 void add_cameras_option(CLI::App& command, StudyCall& call) {
-  may_repeat(command.add_option("--camera", call.cameras, "Camera (may be repeated; default: all)"))
+  may_repeat(command.add_option("--camera", call.cameras,
+                                "Cameras: A or A,B (may be repeated; default: all)"))
       ->type_name("NAME");
 }
 
@@ -40,8 +42,13 @@ void add_camera_option(CLI::App& command, StudyCall& call) {
 }
 
 const scenes::Camera& camera_of(const StudyCall& call, const scenes::Scene& scene, bool quiet) {
-  const scenes::Camera& camera =
-      call.cameras.empty() ? first_camera(scene) : choose_camera(scene, call.cameras.front());
+  const std::vector<const scenes::Camera*> named = wanted_cameras(call.cameras, scene);
+  if (named.size() > 1) {
+    throw Error(Blame::Input, "--camera",
+                "\"" + call.cameras.front() + "\" is more than one camera",
+                "this study looks through one", "Run it once for each");
+  }
+  const scenes::Camera& camera = *named.front();
   if (call.cameras.empty() && scene.cameras.size() > 1 && !quiet) {
     note("note: no --camera, taking the first, \"" + camera.name + "\"");
   }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "app/call/render_call.h"
 #include "app/console.h"
 #include "base/error.h"
 #include "base/input/input_file.h"
@@ -75,10 +76,15 @@ void check_wanted(const studies::StudyFile& study, const StudyPart& part) {
 
 void find_cameras(const studies::StudyFile& study, const Common& common, StudyPart& part) {
   const scenes::Scene& scene = part.loaded.scene;
-  std::vector<const scenes::Camera*> chosen;
-  for (const std::string& name : study.cameras) {
-    const std::string key = study.where.contains("cameras") ? "cameras" : "--camera";
-    const scenes::Camera* camera = &choose_camera(scene, name, study.place(key));
+  std::vector<const scenes::Camera*> chosen, named;
+  if (study.where.contains("cameras")) {
+    for (const std::string& name : study.cameras) {
+      named.push_back(&choose_camera(scene, name, study.place("cameras")));
+    }
+  } else if (!study.cameras.empty()) {
+    named = wanted_cameras(study.cameras, scene, base::Location{"--camera"});
+  }
+  for (const scenes::Camera* camera : named) {
     if (std::find(chosen.begin(), chosen.end(), camera) == chosen.end()) chosen.push_back(camera);
   }
   if (study.cameras.empty()) {

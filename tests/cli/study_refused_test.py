@@ -16,6 +16,8 @@ class Refused(Case):
         self.says(self.orbit("--wanted", "box"), "TARGET>=P")
         self.says(self.orbit("--iris", "wide"), "wide")
         self.says(self.orbit("--iris", "peak"), "--iris", "Add --wanted")
+        self.says(self.orbit("--camera", "A,Z"), '"Z"', "A, B")
+        self.says(self.refused_cleanly("study", "compare", "bay.toml", "--camera", "A,B"), '"A,B"', "looks through one")
         for positions in ("0", "-3", "3601", "x", "1.5"):
             self.says(self.orbit(f"--positions={positions}"), "--positions")
         for at in ("361", "x", "0,0", "1,", "nan", "inf"):

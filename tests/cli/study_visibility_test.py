@@ -181,7 +181,8 @@ class Visibility(Case):
                          [(c, t) for c in "AB" for t in ("box", "far")])
         self.assertTrue(all(row["verdict"] in VERDICTS for row in printed["results"]))
         self.no_nonsense("v")
-        self.says(self.done("study", "visibility", "bay.toml", "-o", "w", "--dry-run"), "1 places", "camera B")
+        for cameras in ([], ["--camera", "A,B"]):
+            self.says(self.done("study", "visibility", "bay.toml", "-o", "w", "--dry-run", *cameras), "1 places", "camera B")
         self.assertFalse((self.folder / "w").exists())
 
 
