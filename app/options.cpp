@@ -194,8 +194,9 @@ void add_time_limit(CLI::App& command, double& seconds, const std::string& help)
           [&seconds](const std::string& text) {
             seconds = parsed<double>(text).value_or(0.0);
             if (seconds > 0.0 && seconds <= 1e7) return;
-            throw CLI::ValidationError("--time-limit",
-                                       "\"" + text + "\" is not a number of seconds above 0");
+            throw CLI::ValidationError(
+                "--time-limit",
+                "\"" + text + "\" is not a number of seconds above 0 and up to 10000000");
           },
           help)
       ->type_name("SECONDS");

@@ -129,7 +129,13 @@ std::string numbered(const std::string& path, std::uint64_t number) {
 }
 
 void check_numbered(const std::string& option, const std::string& path, std::size_t frames) {
-  if (path.empty() || frames < 2 || run_of_hashes(path).second > 0) return;
+  const auto [begin, width] = run_of_hashes(path);
+  if (path.find('#', begin + width) != std::string::npos) {
+    throw base::Error(base::Blame::Input, option, fmt::format("\"{}\" has # in two places", path),
+                      "one run of # stands for the frame's number, as wide as the run",
+                      "Name it for example frame-####.png");
+  }
+  if (path.empty() || frames < 2 || width > 0) return;
   throw base::Error(base::Blame::Input, option,
                     fmt::format("{} frames would be written into \"{}\"", frames, path),
                     "the name of a sequence holds # where the frame's number goes",

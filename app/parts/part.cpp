@@ -187,7 +187,10 @@ PartsRecord read_parts_record(const fs::path& folder) {
   for (const fs::path& place : {folder, folder / points_folder}) {
     if (auto record = record_in(place)) return *record;
   }
-  throw Error(Blame::Input, folder.string(), fmt::format("holds no {}", record_file),
+  std::error_code ignored;
+  throw Error(Blame::Input, folder.string(),
+              fs::exists(folder, ignored) ? fmt::format("holds no {}", record_file)
+                                          : std::string("is not there"),
               "it is the folder of a call with --part: FILE.exr.parts of render, DIR of a study");
 }
 

@@ -8,6 +8,7 @@
 #include "app/console.h"
 #include "app/options.h"
 #include "app/tools/inspect_text.h"
+#include "scenes/effects/effects.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/ray_query.h"
 #include "scenes/reflect/energy.h"
@@ -129,13 +130,17 @@ Json areas_of(const scenes::Scene& scene) {
 }
 
 Json sky_of(const scenes::Scene& scene, const LoadedScene& loaded) {
-  Json sky;
+  Json sky, why;
+  for (const auto& row : scenes::describe_effects(scene, loaded.groups, loaded.asked)) {
+    why[row.effect] = row.reason;
+  }
   sky["sun"] = Json();
   if (scene.sun) {
     sky["sun"] = {{"direction", to_json(scene.sun->direction)},
                   {"illuminance_lx", to_json(scene.sun->illuminance_lx)},
                   {"angular_radius_deg", scene.sun->angular_radius_deg},
-                  {"shines", loaded.effects.sun}};
+                  {"shines", loaded.effects.sun},
+                  {"why", why["sun"]}};
   }
   sky["earth"] = Json();
   if (scene.earth) {
@@ -143,7 +148,8 @@ Json sky_of(const scenes::Scene& scene, const LoadedScene& loaded) {
         {"direction", to_json(scene.earth->direction)},
         {"half_angle_deg", scene.earth->half_angle_deg},
         {"model", scene.earth->model == scenes::EarthModel::Lambert ? "lambert" : "uniform"},
-        {"shines", loaded.effects.earth}};
+        {"shines", loaded.effects.earth},
+        {"why", why["earth"]}};
   }
   return sky;
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <vector>
 
 #include "base/units.h"
@@ -11,8 +12,17 @@
 namespace earthshine::app {
 namespace {
 
-std::string numbers(const Json& three, const char* format = "{:g} {:g} {:g}") {
-  return fmt::format(fmt::runtime(format), three[0], three[1], three[2]);
+std::string numbers(const Json& three) {
+  const auto plain = [&](std::size_t k) { return three[k].get<double>() + 0.0; };  // no -0
+  return fmt::format("{:g} {:g} {:g}", plain(0), plain(1), plain(2));
+}
+
+// Of a unit vector.
+std::string direction(const Json& three) {
+  const auto rounded = [&](std::size_t k) {
+    return std::round(1e4 * three[k].get<double>()) / 1e4;
+  };
+  return fmt::format("{:.4f} {:.4f} {:.4f}", rounded(0) + 0.0, rounded(1) + 0.0, rounded(2) + 0.0);
 }
 
 double luminance_of(const Json& three) {
@@ -90,9 +100,10 @@ std::string lights_table(const Json& report) {
   for (const char* name : {"sun", "earth"}) {
     const Json& body = report[name];
     if (body.is_null()) continue;
-    text +=
-        fmt::format("{}: toward {}{}\n", name, numbers(body["direction"], "{:.4f} {:.4f} {:.4f}"),
-                    body["shines"].get<bool>() ? "" : " (gives no light)");
+    text += fmt::format("{}: toward {}{}\n", name, direction(body["direction"]),
+                        body["shines"].get<bool>()
+                            ? ""
+                            : " (gives no light: " + body["why"].get<std::string>() + ")");
   }
   if (!report["orbit"].is_null()) text += orbit_line(report["orbit"]);
   for (const Json& camera : report["cameras"]) {

@@ -10,7 +10,7 @@ Window window_of(const RenderOptions& options) {
                       crop.columns <= options.columns - crop.x &&
                       crop.rows <= options.rows - crop.y;
   if (inside) return crop;
-  throw base::Error(base::Blame::Input, "crop",
+  throw base::Error(base::Blame::Input, "--crop",
                     "the window of " + std::to_string(crop.columns) + " x " +
                         std::to_string(crop.rows) + " pixels at " + std::to_string(crop.x) + ", " +
                         std::to_string(crop.y) + " leaves the picture",

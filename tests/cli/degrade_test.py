@@ -174,6 +174,7 @@ class Degrade(program.Case):
                             (["--preset", "ideal", "--f-number", 8], "iris_rate"),
                             (["--target-resels", 7], "--twin"), (["--preset", "ideal", "--fov", 30], "fall_off")):
             self.says(self.refused("degrade", "a.exr", "-o", "c.png", *wrong), said)
+        self.says(self.refused("degrade", "a.exr", "-o", "##-#.png"), "has # in two places")
 
     def test_iris_on_its_way_is_no_failure_of_its_range(self):
         self.done("render", "ball.toml", "-o", "a.exr")

@@ -32,6 +32,12 @@ class Inspect(program.Case):
         self.says(self.done("inspect", "ball.toml"), "ball on a floor", "floor", "paint", "lamp", "sun",
                   "camera above", "target")
 
+    def test_why_the_sky_gives_no_light(self):
+        self.write("night.toml", "format = 1\n[orbit]\naltitude_km = 400\nposition_deg = 180\n")
+        text = self.done("inspect", "night.toml")
+        self.says(text, "gives no light: the Sun is behind the Earth", "gives no light: the part of the Earth in view is dark")
+        self.assertNotIn("-0.0", text)
+
     def test_a_material_is_shown_whole(self):
         self.write("ball.toml", program.BALL.replace("shininess = 20", "mirror = 0.2\ntransmit = 0.1\nior = 1.5\ntwo_sided = true"))
         line = next(line for line in self.done("inspect", "ball.toml").splitlines() if line.startswith("paint"))

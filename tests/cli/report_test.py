@@ -238,7 +238,7 @@ class Studies(Report):
 
 class Refusals(Report):
     def test_what_is_no_study(self):
-        self.says(self.refused("report", "nowhere"), "nowhere/study.json", "cannot be read")
+        self.says(self.refused("report", "nowhere"), "nowhere/study.json", "cannot be read", 'no folder "nowhere"')
         self.refused_study("{\"format\": 1,", "study.json", "not JSON")
         self.refused_study("{\"format\": 1, \"x\": 1e400}", "study.json", "too large")
         self.refused_study("", "not JSON")

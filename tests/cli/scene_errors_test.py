@@ -80,6 +80,14 @@ class BrokenScenes(program.Case):
             self.write("scene.toml", BOX + TRIANGLE)
             self.says(self.refused("inspect", "scene.toml"), "part.obj:")
 
+    def test_text_called_gltf(self):
+        for name in ("part.glb", "part.gltf"):
+            self.write(name, "solid part\n")
+            self.write("scene.toml", BOX + TRIANGLE.replace("part.obj", name))
+            message = self.refused("inspect", "scene.toml")
+            self.says(message, name, "no JSON at line 1, column 1", "begins with the letters glTF")
+            self.assertNotIn("exception", message)
+
     def test_broken_luminaires(self):
         lines = program.EVEN_IES.split("\n")
         for ies, place in ((program.EVEN_IES[:-8], "even.ies:8"), (program.EVEN_IES.replace("100 100", "100 nan"), "even.ies:8:5"),

@@ -95,6 +95,11 @@ class WrongCalls(program.Case):
         self.says(self.refused("form-factors", "box.toml", "--method", "exact", "--raw"), "--raw")
         self.says(self.refused("degrade", "a.exr", "-o", "a.png", "--list"), "--list", "-o")
 
+    def test_what_is_wrong_with_a_value_is_said(self):
+        self.says(self.refused("render", "box.toml", "-o", "a.exr", "--time-limit", "1e300"), "up to 10000000")
+        self.says(self.refused("render", "box.toml", "-o", "a.exr", "--crop", "20,0,8x8"), "--crop", "24 x 16")
+        self.says(self.refused("merge", "nowhere"), "nowhere: is not there", "--part")
+
     def test_override_without_value_or_unknown(self):
         for override in ("quality", "quality.gather_rays", "quality.gather=3", "=3", "quality.error=x"):
             self.refused("inspect", "box.toml", "--set", override)

@@ -142,6 +142,16 @@ std::string one_line(std::string text) {
   return text.empty() ? "tinygltf gives no reason" : text;
 }
 
+[[noreturn]] void refuse_unsound(const std::filesystem::path& path, const std::string& problem) {
+  // The JSON parser's message names the library and its exceptions.
+  const std::size_t place = problem.find("at line "), end = problem.find(':', place);
+  if (problem.find("parse_error") != std::string::npos && end != std::string::npos) {
+    gltf_fail(path, fmt::format("not glTF: no JSON {}", problem.substr(place, end - place)),
+              "a .gltf file is JSON text, a .glb file begins with the letters glTF");
+  }
+  gltf_fail(path, fmt::format("not a sound glTF file: {}", one_line(problem)));
+}
+
 constexpr std::string_view of_textures[] = {"KHR_texture_basisu", "EXT_texture_webp",
                                             "EXT_texture_avif"};
 // Those that the readers here look into.
@@ -271,7 +281,7 @@ GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& p
     throw Error(Blame::Input, std::string_view(), files.refused);
   }
   check_required_extensions(model, path);
-  if (!loaded) gltf_fail(path, fmt::format("not a sound glTF file: {}", one_line(problem)));
+  if (!loaded) refuse_unsound(path, problem);
   GltfModel converted = convert(std::move(model), files);
   converted.files = std::move(files.found);
   return converted;
