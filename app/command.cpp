@@ -15,6 +15,7 @@
 #include "degrade/settings/camera_file.h"
 #include "radiosity/bodies/walls.h"
 #include "scenes/effects/quality.h"
+#include "scenes/light/lamp_light.h"
 #include "scenes/read/scene_file.h"
 #include "scenes/text/message_text.h"
 
@@ -71,6 +72,28 @@ void check_ranks_alike(const Json& things) {
               "Copy them, or put them where all machines see them");
 }
 
+namespace {
+
+// The squares of so little light leave the numbers of a float, and with them the stated errors.
+void note_faint_light(const LoadedScene& loaded) {
+  constexpr double faint = 1e-10;
+  const scenes::Scene& scene = loaded.scene;
+  double most = base::max_component(scene.ambient_radiance);
+  for (const scenes::Lamp& lamp : scene.lamps) {
+    most = std::max(most, base::max_component(scenes::lamp_flux_lm(lamp)));
+  }
+  for (const scenes::Material& material : scene.materials) {
+    most = std::max(most, base::max_component(material.emit));
+  }
+  if (most <= 0.0 || most >= faint || loaded.effects.sun || loaded.effects.earth) return;
+  note(
+      fmt::format("warning: no light has more than {:.1e} lm, lm/m2 or cd/m2; below {:g} stated "
+                  "errors may be too small; are the units right?",
+                  most, faint));
+}
+
+}  // namespace
+
 LoadedScene load(const SceneInput& input, bool quiet, const AskEffects& ask) {
   LoadedScene loaded;
   loaded.scene = scenes::read_scene(input.path, input.overrides, input.overrides_at);
@@ -88,6 +111,7 @@ LoadedScene load(const SceneInput& input, bool quiet, const AskEffects& ask) {
   const WantedEffects wanted = ask ? ask(loaded.scene) : WantedEffects{};
   loaded.asked = wanted.asked;
   loaded.effects = scenes::find_effects(loaded.scene, loaded.groups, loaded.asked);
+  if (!quiet) note_faint_light(loaded);
   if (wanted.culls) {
     loaded.culled = scenes::cull_effects(
         loaded.scene, loaded.asked, loaded.scene.quality.error.value_or(scenes::default_error),

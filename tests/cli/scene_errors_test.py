@@ -123,6 +123,12 @@ class BrokenScenes(program.Case):
         for setting in ("light.lamp.intensity=1e308", "sun.illuminance=1e40"):
             self.says(self.refused("solve", "scene.toml", "--set", setting), "1e+15")
 
+    def test_light_whose_squares_are_no_numbers(self):
+        self.write("scene.toml", BOX)
+        for emit, warned in (("1e-15", True), ("1e-9", False)):
+            run = self.run_program("plan", "scene.toml", "--set", f"material.wall.emit={emit}")
+            self.assertEqual("are the units right?" in run.stderr, warned, run.stderr)
+
     def test_names_that_no_picture_can_hold(self):
         self.write("scene.toml", program.BALL)
         for key in ("light.lamp.group", "light.lamp.name", "material.paint.light", "object.ball.name"):
