@@ -24,6 +24,10 @@ constexpr double shadow_share = 0.4, gather_share = 0.7;  // of a time limit
 constexpr double most_gather_growth = 1.5, most_shadow_growth = 2.0;
 // Few patches cost little to look at again.
 constexpr double few_patches = 1 << 16, few_growth = 8.0;
+// Second looks of a turn end where few of what is to be cut had none.
+constexpr Effort second_look{16, 16};
+constexpr double left_doubtful = 0.1;
+constexpr int most_second_looks = 8;
 constexpr std::size_t first_shadow_cut = 3 << 15;
 // Over all surfaces.
 constexpr double first_shadow_points = 1 << 17, most_shadow_points = 1 << 20;
@@ -83,6 +87,24 @@ void SurfaceTurns::look(CutChoice& choice, std::span<const std::uint32_t> which,
   light_.correct(samples, which, effort);
 }
 
+std::vector<radiosity::Cut> SurfaceTurns::sure_cuts(CutChoice& choice, const How& how) {
+  std::vector<radiosity::Cut> cuts = worst(choice, how);
+  How again = how;
+  again.effort = [&how](std::span<const std::uint32_t> which) {
+    return std::vector<Effort>(which.size(), how.second);
+  };
+  for (int k = 0; how.second.points > 0 && k < most_second_looks && time_gone() <= how.until; ++k) {
+    std::vector<std::uint32_t> doubtful;
+    if (joins()) doubtful = choice.doubtful(cuts, left_doubtful);
+    light_.shares().tell_all([&](base::Parcel& parcel) { parcel.pass(doubtful); });
+    if (doubtful.empty()) break;
+    look(choice, doubtful, again);
+    choice.be_sure_of(doubtful);
+    cuts = worst(choice, how);
+  }
+  return cuts;
+}
+
 bool SurfaceTurns::cut(CutChoice& choice, const How& how, std::vector<std::uint32_t>& parent,
                        CutChoice* also) {
   const std::size_t before = light_.patches().count();
@@ -98,7 +120,7 @@ bool SurfaceTurns::cut(CutChoice& choice, const How& how, std::vector<std::uint3
       if (left > least_gain * last_left) break;
       last_left = left;
     }
-    const std::vector<radiosity::Cut> cuts = worst(choice, how);
+    const std::vector<radiosity::Cut> cuts = sure_cuts(choice, how);
     if (cuts.empty()) break;
     std::vector<std::uint32_t> of = light_.cut(cuts, choice.kept_rays());
     const std::vector<std::uint32_t> fresh = choice.follow(light_.patches(), of);
@@ -123,7 +145,8 @@ bool SurfaceTurns::cut_gathered(CutChoice& choice, double enough, double points,
                 [&](std::span<const std::uint32_t> which) {
                   return effort_where_uneven(light_.patches(), which, choice, points);
                 },
-                "uneven light"};
+                "uneven light",
+                second_look};
   return cut(choice, how, parent, nullptr);
 }
 

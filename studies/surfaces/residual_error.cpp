@@ -112,11 +112,11 @@ std::vector<Effort> effort_where_uneven(const radiosity::Patches& patches,
 
 std::vector<Effort> shadow_effort(const radiosity::Patches& patches,
                                   std::span<const std::uint32_t> which, double points) {
-  constexpr double most = 4096.0;
+  constexpr double least = 8.0, most = 4096.0;
   const double all = std::accumulate(patches.area_m2.begin(), patches.area_m2.end(), 0.0);
   std::vector<Effort> effort;
   for (const std::uint32_t i : which) {
-    const double wanted = std::min(4.0 + points * patches.area_m2[i] / all, most);
+    const double wanted = std::min(least + points * patches.area_m2[i] / all, most);
     effort.push_back(
         {static_cast<std::uint16_t>(std::bit_floor(static_cast<std::uint32_t>(wanted))), 0});
   }

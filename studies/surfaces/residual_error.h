@@ -37,7 +37,7 @@ struct LightNoise {
                                                       std::span<const std::uint32_t> which,
                                                       const CutChoice& choice, double points);
 
-// Shadow rays alone: four points on each of these patches, and `points` more over all surfaces.
+// Shadow rays alone: eight points on each of these patches, and `points` more over all surfaces.
 [[nodiscard]] std::vector<Effort> shadow_effort(const radiosity::Patches& patches,
                                                 std::span<const std::uint32_t> which,
                                                 double points);

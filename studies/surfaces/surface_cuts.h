@@ -21,6 +21,12 @@ class CutChoice {
   // Empty: there is nothing left to cut that is not noise, or no need.
   [[nodiscard]] std::vector<radiosity::Cut> worst(const radiosity::Patches& patches, double enough,
                                                   double most_of, std::size_t most) const;
+  // Of the patches to be cut, those that were not looked at twice: the largest by what few points
+  // say are the largest by chance, too. None if they are no more than the share `left` of all.
+  [[nodiscard]] std::vector<std::uint32_t> doubtful(const std::vector<radiosity::Cut>& cuts,
+                                                    double left) const;
+  // What see() has of these comes from a second look.
+  void be_sure_of(std::span<const std::uint32_t> which);
   // After the cut: the patches that are new, which hold their part of what they were cut from.
   std::vector<std::uint32_t> follow(const radiosity::Patches& patches,
                                     const std::vector<std::uint32_t>& parent);
@@ -35,7 +41,8 @@ class CutChoice {
   std::vector<radiosity::Unevenness> uneven_;  // per patch, times area over all area
   std::vector<double> patch_m2_;               // area per patch
   std::vector<float> kept_rays_;
-  bool is_expected_ = false;  // after the first look
+  std::vector<bool> is_sure_;  // after a second look
+  bool is_expected_ = false;   // after the first look
   double area_m2_ = 0.0;
 };
 
