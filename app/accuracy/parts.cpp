@@ -10,7 +10,6 @@
 #include "app/study/json_fields.h"
 #include "base/error.h"
 #include "base/parallel.h"
-#include "raytrace/camera/camera.h"
 
 namespace earthshine::app {
 
@@ -253,34 +252,32 @@ std::vector<PathReference> AccuracyStages::new_references() const {
   return references;
 }
 
-std::string AccuracyStages::nothing_to_measure() {
+std::string AccuracyStages::nothing_to_measure() const {
   if (task_.loaded.groups.count() == 0 &&
       base::max_component(task_.loaded.scene.ambient_radiance) <= 0.0) {
     return "nothing gives light: the picture is black, and has no error";
   }
-  const raytrace::CameraModel camera =
-      raytrace::make_camera_model(task_.view.camera, task_.view.columns, task_.view.rows);
-  pixels_ = studies::counted_pixels(scene_, camera);
-  result_.pixels = std::size_t(std::count(pixels_.counted.begin(), pixels_.counted.end(), true));
-  if (result_.pixels > 0) return "";
-  return "no pixel shows a surface that reflects, edges of sources apart";
+  return "";
 }
 
-ReferencePair AccuracyStages::reflected(const PathReference& reference) const {
-  ReferencePair pair = reference.pair();
-  studies::take_source_off(pixels_, pair);
-  return pair;
+void AccuracyStages::take_truth(const PathReference& reference) {
+  full_ = reference.pair();
+  counted_ = studies::counted_pixels(full_);
+  result_.pixels = std::size_t(std::count(counted_.begin(), counted_.end(), true));
 }
 
-bool AccuracyStages::trace_first(std::vector<PathReference>& references) {
+std::string AccuracyStages::trace_first(std::vector<PathReference>& references) {
   trace_round(references, 0, first_paths);
-  full_ = reflected(references.front());
-  return studies::mean_luminance(full_, pixels_.counted) > 0.0;
+  take_truth(references.front());
+  if (result_.pixels == 0) return "no pixel shows a surface that reflects, edges of sources apart";
+  if (studies::mean_luminance(full_, counted_) > 0.0) return "";
+  return fmt::format("no light was found on what the camera sees, with {} paths a pixel",
+                     2 * result_.reference_paths);
 }
 
 std::vector<int> AccuracyStages::further_rounds() {
   result_.wanted_resolution = finest() / task_.call.reference_factor;
-  return studies::further_batches(first_paths, studies::resolution(full_, pixels_.counted),
+  return studies::further_batches(first_paths, studies::resolution(full_, counted_),
                                   result_.wanted_resolution, most_paths);
 }
 

@@ -16,7 +16,7 @@ class AccuracyParts {
  public:
   AccuracyParts(const AccuracyTask& task, const scenes::World& scene);
 
-  // Of a reference: channels Y and variance; fact: cpu_seconds.
+  // Of a reference: channels as trace_batch has them; fact: cpu_seconds.
   [[nodiscard]] CachedResult batch(const studies::Batch& batch);
   // A step's picture, channel Y, and its cost.
   [[nodiscard]] CachedResult point(const studies::AccuracyStep& step, std::uint64_t seed);
@@ -81,14 +81,13 @@ class AccuracyStages {
 
   [[nodiscard]] double finest() const;  // of the wanted errors
   // Why there is nothing to measure, as far as it is known without a path; "": there may be.
-  [[nodiscard]] std::string nothing_to_measure();
+  [[nodiscard]] std::string nothing_to_measure() const;
   [[nodiscard]] std::vector<PathReference> new_references() const;
   // One batch on both sides of every reference, so that a time limit leaves them alike.
   void trace_round(std::vector<PathReference>& references, int index, int paths);
-  // Without light straight from the sources.
-  [[nodiscard]] studies::ReferencePair reflected(const PathReference& reference) const;
-  // False if all is black.
-  bool trace_first(std::vector<PathReference>& references);
+  void take_truth(const PathReference& reference);
+  // Why there is nothing to measure; "": there is.
+  [[nodiscard]] std::string trace_first(std::vector<PathReference>& references);
   // Paths of the rounds after the first.
   [[nodiscard]] std::vector<int> further_rounds();
   // Direct light alone, on both sides.
@@ -100,8 +99,8 @@ class AccuracyStages {
   scenes::World scene_;
   AccuracyParts parts_;
   AccuracyResult result_;
-  studies::CountedPixels pixels_;
   studies::ReferencePair full_;  // without light straight from the sources
+  std::vector<bool> counted_;    // its pixels
 };
 
 }  // namespace earthshine::app

@@ -13,7 +13,6 @@
 #include "app/console.h"
 #include "app/parts/part.h"
 #include "base/error.h"
-#include "raytrace/camera/camera.h"
 #include "scenes/text/message_text.h"
 
 namespace earthshine::app {
@@ -30,11 +29,7 @@ class Study : AccuracyStages {
 
   AccuracyResult run() {
     if (const std::string why = nothing_to_measure(); !why.empty()) return nothing(why);
-    if (!trace_references()) {
-      return nothing(
-          fmt::format("no light was found on what the camera sees, with {} paths a pixel",
-                      2 * result_.reference_paths));
-    }
+    if (const std::string why = trace_references(); !why.empty()) return nothing(why);
     draw_straight();
     find_limits();
     climb();
@@ -60,10 +55,10 @@ class Study : AccuracyStages {
     return task_.call.time_limit_s - parts_.seconds();
   }
 
-  // False if all is black.
-  bool trace_references() {
+  // Why there is nothing to measure; "": there is.
+  std::string trace_references() {
     std::vector<PathReference> references = new_references();
-    if (!trace_first(references)) return false;
+    if (std::string why = trace_first(references); !why.empty()) return why;
     const std::vector<int> further = further_rounds();
     const double first_seconds = parts_.seconds();
     for (std::size_t k = 0; k < further.size(); ++k) {
@@ -76,12 +71,12 @@ class Study : AccuracyStages {
                   expected * static_cast<double>(further.size() - k), "");
       trace_round(references, static_cast<int>(k) + 1, further[k]);
     }
-    full_ = reflected(references.front());
-    gathered_ = reflected(references.back());
+    take_truth(references.front());
+    gathered_ = references.back().pair();
     differs_ = references.size() > 1;
-    result_.resolution = studies::resolution(full_, pixels_.counted);
-    result_.mean_luminance = studies::mean_luminance(full_, pixels_.counted);
-    return true;
+    result_.resolution = studies::resolution(full_, counted_);
+    result_.mean_luminance = studies::mean_luminance(full_, counted_);
+    return "";
   }
 
   void draw_straight() {
@@ -92,19 +87,17 @@ class Study : AccuracyStages {
       const std::vector<float>& values = part.image.find("Y")->values;
       sides[side]->luminance.assign(values.begin(), values.end());
     }
-    studies::take_source_off(pixels_, straight_);
   }
 
   void find_limits() {
     result_.limits.push_back(
         {"radiosity",
-         differs_ ? studies::limit_error(gathered_, full_, pixels_.counted)
-                  : studies::PictureError{},
+         differs_ ? studies::limit_error(gathered_, full_, counted_) : studies::PictureError{},
          differs_ ? "behind a diffuse bounce lobes reflect as if they were diffuse, and mirrors "
                     "and glass "
                     "throw no caustics"
                   : "none: without lobes, mirrors and glass it comes to what paths come to"});
-    const studies::PictureError straight = studies::limit_error(straight_, full_, pixels_.counted);
+    const studies::PictureError straight = studies::limit_error(straight_, full_, counted_);
     result_.limits.push_back({"direct", straight, "leaves out the light between surfaces"});
     result_.limits.push_back({"distributed", straight, "leaves out the light between surfaces"});
     result_.limits.push_back({"paths", {}, "none: its only error is noise"});
@@ -143,11 +136,9 @@ class Study : AccuracyStages {
       }
       const CachedResult part = parts_.point(step, task_.view.seed);
       const studies::StepCost cost = parts_.cost_of(part.facts);
-      std::vector<float> luminance = part.image.find("Y")->values;
-      studies::take_source_off(pixels_, luminance);
-      result_.points.push_back(
-          {step, cost, studies::picture_error(luminance, full_, pixels_.counted),
-           studies::picture_error(luminance, limit_of(step), pixels_.counted)});
+      const std::vector<float>& luminance = part.image.find("Y")->values;
+      result_.points.push_back({step, cost, studies::picture_error(luminance, full_, counted_),
+                                studies::picture_error(luminance, limit_of(step), counted_)});
       taken.push_back({step, cost.cpu_seconds});
       double left = 0.0;
       for (std::size_t j = k + 1; j < ladder.size(); ++j) {
@@ -192,7 +183,7 @@ class AccuracyShare : AccuracyStages {
       if (part.task == Task::Merge && !piece.is_done()) missing.push_back({piece.name, 1});
     }
     if (!missing.empty()) refuse_to_merge(task_.call.folder, missing);
-    if (!trace_first(references)) return;
+    if (!trace_first(references).empty()) return;
     std::vector<AccuracyPiece> pieces;
     const std::vector<int> further = further_rounds();
     for (std::size_t k = 0; k < further.size(); ++k) {

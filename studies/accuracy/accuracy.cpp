@@ -119,7 +119,7 @@ void add_picture(StepResult& result, const Work& work, const raytrace::Frame& fr
                  const radiosity::SolveOptions& solver, const raytrace::RenderOptions& options,
                  const radiosity::Solution* solution) {
   StepCost& cost = result.cost;
-  result.luminance = base::luminance_of(frame.image);
+  result.luminance = frame.error.luminance;
   cost.picture_rays = frame.report.rays.total();
   cost.gather_rays = frame.report.gather_rays;
   cost.camera_samples = frame.report.camera_samples;

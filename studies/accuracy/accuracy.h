@@ -54,7 +54,7 @@ struct StepCost {
   double statement_cpu_seconds = 0.0;
 };
 struct StepResult {
-  std::vector<float> luminance;
+  std::vector<float> luminance;  // without light straight from the sources
   StepCost cost;
 };
 
@@ -85,7 +85,8 @@ struct Batch {
   int index = 0;  // of the side
   int paths_per_pixel = 0;
 };
-// Channels Y and variance. None if view.stop said so.
+// Channels Y and variance, without light straight from the sources, and counts. None if view.stop
+// said so.
 [[nodiscard]] std::optional<base::Image> trace_batch(const scenes::World& study,
                                                      const AccuracyView& view, const Batch& batch,
                                                      const raytrace::Progress& progress = {});

@@ -28,8 +28,13 @@ std::optional<base::Image> trace_batch(const scenes::World& study, const Accurac
                             progress);
   if (frame.report.stopped) return std::nullopt;
   base::Image kept{frame.image.width, frame.image.height, {}};
-  kept.channels.push_back({"Y", base::luminance_of(frame.image)});
-  kept.channels.push_back({"variance", frame.image.find("variance")->values});
+  const raytrace::StatedError& stated = frame.error;
+  kept.channels.push_back({"Y", stated.luminance});
+  base::Channel& variance = kept.channels.emplace_back(base::Channel{"variance", {}});
+  for (const auto& parts : stated.squared) {
+    variance.values.push_back(parts[static_cast<std::size_t>(raytrace::ErrorPart::Camera)]);
+  }
+  kept.channels.push_back({"counts", {stated.counts.begin(), stated.counts.end()}});
   return kept;
 }
 
@@ -38,14 +43,17 @@ NoisyPicture mean_of_batches(const std::vector<Batch>& batches,
   double paths = 0.0;
   for (const Batch& batch : batches) paths += batch.paths_per_pixel;
   const std::size_t pixels = pictures.front().pixel_count();
-  NoisyPicture mean{std::vector<double>(pixels), std::vector<double>(pixels)};
+  NoisyPicture mean{std::vector<double>(pixels), std::vector<double>(pixels),
+                    std::vector<bool>(pixels, true)};
   for (std::size_t k = 0; k < batches.size(); ++k) {
     const double weight = batches[k].paths_per_pixel / paths;
     const std::vector<float>& luminance = pictures[k].find("Y")->values;
     const std::vector<float>& variance = pictures[k].find("variance")->values;
+    const std::vector<float>& counts = pictures[k].find("counts")->values;
     for (std::size_t p = 0; p < pixels; ++p) {
       mean.luminance[p] += weight * double(luminance[p]);
       mean.variance[p] += weight * weight * double(variance[p]);
+      mean.counts[p] = mean.counts[p] && counts[p] > 0.0F;
     }
   }
   return mean;

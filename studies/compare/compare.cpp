@@ -108,6 +108,7 @@ class Comparing {
       result.render_seconds += frame.report.seconds;
       const std::vector<float> luminance = base::luminance_of(frame.image);
       (k == 1 ? pair_.first : pair_.second).luminance.assign(luminance.begin(), luminance.end());
+      (k == 1 ? reflected_.first : reflected_.second) = reflected_light(frame);
       if (k == 1) {
         result.frame = std::move(frame);
         continue;
@@ -124,9 +125,12 @@ class Comparing {
       comparison_.target_shines.push_back(shines(study_.scene, view.object));
     }
     mean_ = base::luminance_of(image);
-    for (const std::int32_t object : comparison_.map.object)
-      counted_.push_back(object != no_object);
-    comparison_.reference_noise = noise_of_mean(pair_, counted_);
+    counted_ = counted_pixels(reflected_);
+    for (std::size_t p = 0; p < counted_.size(); ++p) {
+      mean_reflected_.push_back(static_cast<float>(
+          (reflected_.first.luminance[p] + reflected_.second.luminance[p]) / 2.0));
+    }
+    comparison_.reference_noise = noise_of_mean(reflected_, counted_);
     result.error.pixels =
         static_cast<std::size_t>(std::count(counted_.begin(), counted_.end(), true));
     for (const TargetView& view : comparison_.targets) {
@@ -162,9 +166,8 @@ class Comparing {
     result.frame = draw(solution, render_options(method), method.name);
     result.render_cpu_seconds = base::cpu_seconds() - solved;
     result.render_seconds = result.frame.report.seconds;
-    const std::vector<float> luminance = base::luminance_of(result.frame.image);
-    result.error = picture_error(luminance, pair_, counted_);
-    result.off_share = off_share(luminance, mean_, counted_);
+    result.error = picture_error(result.frame.error.luminance, reflected_, counted_);
+    result.off_share = off_share(result.frame.error.luminance, mean_reflected_, counted_);
     result.targets = target_differences(result.frame.image, comparison_.targets, pair_, mean_);
     comparison_.methods.push_back(std::move(result));
   }
@@ -173,9 +176,9 @@ class Comparing {
   const scenes::Camera& camera_;
   const CompareOptions& options_;
   const StageListener& listen_;
-  ReferencePair pair_;
-  std::vector<float> mean_;    // luminance of the pair's mean
-  std::vector<bool> counted_;  // pixels that show an object
+  ReferencePair pair_, reflected_;  // of all light; without that straight from the sources
+  std::vector<float> mean_, mean_reflected_;  // luminance of the pairs' means
+  std::vector<bool> counted_;                 // pixels of `reflected_`
   Comparison comparison_;
 };
 

@@ -79,7 +79,7 @@ struct MethodResult {
   double solve_seconds = 0.0;  // of the radiosity solution; 0 for methods without
   double render_seconds = 0.0;
   double solve_cpu_seconds = 0.0, render_cpu_seconds = 0.0;
-  PictureError error;      // over the pixels that show an object: the sky is the same in all
+  PictureError error;      // of reflected_light, over the counted_pixels of the references
   double off_share = 0.0;  // of them, those off by more than misleading_factor
   std::vector<std::optional<TargetDifference>>
       targets;  // as Comparison::targets; none: not in view

@@ -3,14 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
-
-#include "base/parallel.h"
-#include "raytrace/frame/frame.h"
-#include "raytrace/light/light_sampler.h"
-#include "scenes/sky/sky.h"
-#include "scenes/surface_texture.h"
 
 namespace earthshine::studies {
 namespace {
@@ -67,50 +60,12 @@ double middle(const ReferencePair& pair, std::size_t p) {
   return (pair.first.luminance[p] + pair.second.luminance[p]) / 2.0;
 }
 
-constexpr int places = 4;  // along each side of a pixel
-
-struct Look {
-  const scenes::World& study;
-  const raytrace::LightSampler& lamps;
-  const raytrace::CameraModel& camera;
-
-  void see(double x, double y, raytrace::SourceSeen& seen) const {
-    const raytrace::Ray ray = camera.ray(x, y, 0.0, 0.0);
-    const scenes::Hit hit = study.query.closest(ray.origin, ray.direction);
-    const double range = hit.missed() ? std::numeric_limits<double>::infinity() : hit.t;
-    if (const auto lamp = lamps.seen_lamp(ray.origin, ray.direction, range)) {
-      return seen.add(base::luminance(lamp->hit.radiance));
-    }
-    if (hit.missed()) {
-      return seen.add(base::luminance(scenes::sky_radiance(study.scene, ray.direction)));
-    }
-    const scenes::Material& material =
-        study.scene.materials[study.scene.triangles[hit.triangle].material];
-    const bool shines = hit.front || material.two_sided;
-    if ((shines && material.reflects()) || material.passes_light_on()) seen.reflecting += 1.0;
-    if (shines) seen.add(base::luminance(scenes::emit_at(study.scene, material, hit)) / base::pi);
-  }
-  // The luminance of sources there, if the pixel counts.
-  [[nodiscard]] std::optional<double> source_where_counted(int column, int row) const {
-    const raytrace::Ray ray = camera.ray(column + 0.5, row + 0.5, 0.0, 0.0);
-    if (study.query.closest(ray.origin, ray.direction).missed()) return std::nullopt;
-    constexpr int all = places * places;
-    raytrace::SourceSeen seen;
-    for (int k = 0; k < all; ++k) {
-      const int across = k % places, down = k / places;
-      see(column + (across + 0.5) / places, row + (down + 0.5) / places, seen);
-    }
-    if (!seen.counts(all)) return std::nullopt;
-    return seen.luminance / all;
-  }
-};
-
 }  // namespace
 
 PictureError picture_error(const std::vector<float>& luminance, const ReferencePair& truth,
                            const std::vector<bool>& counted) {
-  const NoisyPicture picture{{luminance.begin(), luminance.end()},
-                             std::vector<double>(luminance.size(), 0.0)};
+  const NoisyPicture picture{
+      {luminance.begin(), luminance.end()}, std::vector<double>(luminance.size(), 0.0), {}};
   return limit_error({picture, picture}, truth, counted);
 }
 
@@ -167,38 +122,19 @@ double resolution(const ReferencePair& truth, const std::vector<bool>& counted) 
   return std::sqrt(2.0 * std::sqrt(squares) / pixels) / mean;
 }
 
-CountedPixels counted_pixels(const scenes::World& study, const raytrace::CameraModel& camera) {
-  const raytrace::LightSampler lamps(study, raytrace::Indirect::None, 2);
-  const Look look{study, lamps, camera};
-  const auto columns = static_cast<std::size_t>(camera.columns);
-  const auto rows = static_cast<std::size_t>(camera.rows);
-  CountedPixels result;
-  result.source.resize(columns * rows);
-  std::vector<char> found(columns * rows);  // bits of a vector<bool> cannot be owned by threads
-  base::parallel_chunks(rows, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin * columns; p < end * columns; ++p) {
-      const auto source =
-          look.source_where_counted(static_cast<int>(p % columns), static_cast<int>(p / columns));
-      found[p] = source ? 1 : 0;
-      result.source[p] = source.value_or(0.0);
-    }
-  });
-  result.counted.assign(found.begin(), found.end());
-  return result;
+NoisyPicture reflected_light(const raytrace::Frame& frame) {
+  const raytrace::StatedError& stated = frame.error;
+  return {{stated.luminance.begin(), stated.luminance.end()},
+          {},
+          {stated.counts.begin(), stated.counts.end()}};
 }
 
-void take_source_off(const CountedPixels& pixels, std::vector<float>& luminance) {
-  for (std::size_t p = 0; p < luminance.size(); ++p) {
-    luminance[p] = static_cast<float>(double(luminance[p]) - pixels.source[p]);
+std::vector<bool> counted_pixels(const ReferencePair& truth) {
+  std::vector<bool> counted = truth.first.counts;
+  for (std::size_t p = 0; p < counted.size(); ++p) {
+    counted[p] = counted[p] && truth.second.counts[p];
   }
-}
-
-void take_source_off(const CountedPixels& pixels, ReferencePair& pair) {
-  for (NoisyPicture* picture : {&pair.first, &pair.second}) {
-    for (std::size_t p = 0; p < pixels.source.size(); ++p) {
-      picture->luminance[p] -= pixels.source[p];
-    }
-  }
+  return counted;
 }
 
 }  // namespace earthshine::studies

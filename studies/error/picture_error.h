@@ -16,15 +16,14 @@
 #include <cstddef>
 #include <vector>
 
-#include "raytrace/camera/camera.h"
-#include "scenes/effects/light_groups.h"
-#include "studies/study.h"
+#include "raytrace/frame/frame.h"
 
 namespace earthshine::studies {
 
 // Luminance, cd/m^2, and its variance, (cd/m^2)^2, per pixel.
 struct NoisyPicture {
   std::vector<double> luminance, variance;  // variance: empty if it is not known
+  std::vector<bool> counts = {};            // as StatedError::counts; empty if it is not known
 };
 struct ReferencePair {
   NoisyPicture first, second;
@@ -61,20 +60,12 @@ struct PictureError {
 
 [[nodiscard]] double mean_luminance(const ReferencePair& truth, const std::vector<bool>& counted);
 
-// The pixels that pictures state an error of, as 4 x 4 places tell: they show a surface at their
-// centre, one that reflects, and no edge of a source itself (lit sky, a lamp, a surface that
-// emits). How exact an edge is depends on no setting here, and the source's light would drown the
-// rest; within it what the surface emits is the same in every picture.
-struct CountedPixels {
-  std::vector<bool> counted;
-  std::vector<double> source;  // luminance of sources that the camera sees itself, cd/m^2; 0
-                               // where the pixel does not count
-};
-[[nodiscard]] CountedPixels counted_pixels(const scenes::World& study,
-                                           const raytrace::CameraModel& camera);
+// What the picture states its error of: light straight from a source that the camera sees is left
+// out, sample by sample. How exact an edge of a source is depends on no setting here, and its light
+// would drown the rest, however small it is seen. Without variances, which not every frame knows.
+[[nodiscard]] NoisyPicture reflected_light(const raytrace::Frame& frame);
 
-// Leaves the light that surfaces reflect, which errors are relative to.
-void take_source_off(const CountedPixels& pixels, std::vector<float>& luminance);
-void take_source_off(const CountedPixels& pixels, ReferencePair& pair);
+// Where both say that they show a surface that reflects and no edge of a source.
+[[nodiscard]] std::vector<bool> counted_pixels(const ReferencePair& truth);
 
 }  // namespace earthshine::studies

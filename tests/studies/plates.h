@@ -38,6 +38,23 @@ inline SceneBuilder plate_on_ground(double ground_diffuse, double plate_diffuse)
   return builder;
 }
 
+// A plate of reflectance 0.5 under 1000 lx, which shows 500 / pi cd/m2, on black ground; 2 m seen
+// from 10 m in 16 pixels. Before the middle of a pixel a lamp that shines at the camera, 2000 times
+// as bright, and lights nothing.
+inline scenes::Scene plate_behind_a_speck(double radius_m) {
+  SceneBuilder builder = plate_on_ground(0.0, 0.5);
+  builder.scene.sun = overhead_sun(1000.0);
+  scenes::Lamp lamp;
+  lamp.name = lamp.group = "speck";
+  lamp.kind = scenes::LampKind::Disk;
+  lamp.position = Vec3(0.0625, 0.0625, 0.1);
+  lamp.axis = Vec3(0, 0, 1);
+  lamp.radius_m = radius_m;
+  lamp.exitance = Rgb(1e6);
+  builder.scene.lamps.push_back(lamp);
+  return builder.scene;
+}
+
 // Direct light alone, with the layer "object".
 inline raytrace::Frame direct_picture(const scenes::Scene& scene, const scenes::Camera& camera,
                                       int size) {

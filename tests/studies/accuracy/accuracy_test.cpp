@@ -163,12 +163,13 @@ TEST(Reference, BatchesBringTheNoiseDownByTheRootOfThePaths) {
 }
 
 TEST(Reference, MeanOfBatchesWeighsByPaths) {
-  const base::Image one{1, 1, {{"Y", {1.0F}}, {"variance", {4.0F}}}};
-  const base::Image two{1, 1, {{"Y", {5.0F}}, {"variance", {8.0F}}}};
+  const base::Image one{1, 1, {{"Y", {1.0F}}, {"variance", {4.0F}}, {"counts", {1.0F}}}};
+  const base::Image two{1, 1, {{"Y", {5.0F}}, {"variance", {8.0F}}, {"counts", {0.0F}}}};
   const NoisyPicture mean = mean_of_batches(
       {{raytrace::PathSet::All, 0, 0, 16}, {raytrace::PathSet::All, 0, 1, 48}}, {one, two});
   EXPECT_DOUBLE_EQ(mean.luminance[0], 0.25 * 1.0 + 0.75 * 5.0);
   EXPECT_DOUBLE_EQ(mean.variance[0], 0.0625 * 4.0 + 0.5625 * 8.0);
+  EXPECT_FALSE(mean.counts[0]);  // one of the batches saw an edge of a source
 }
 
 TEST(Reference, SeedsAreAllDifferent) {
@@ -198,14 +199,12 @@ TEST(Accuracy, PathsErrorFallsWithTheirRoot) {
   const tests::Prepared prepared(scene);
   const scenes::World study = prepared;
   AccuracyView view = accuracy_view(tests::above(10.0, 2.0), 24, 24, 1);
-  const std::vector<bool> counted =
-      counted_pixels(study, raytrace::make_camera_model(view.camera, view.columns, view.rows))
-          .counted;
   const auto side = [&](int k) {
     const Batch batch{raytrace::PathSet::All, k, 0, 256};
     return mean_of_batches({batch}, {*trace_batch(study, view, batch)});
   };
   const ReferencePair truth{side(0), side(1)};
+  const std::vector<bool> counted = counted_pixels(truth);
   double errors[2];
   for (const int k : {0, 1}) {
     AccuracyStep step;
@@ -224,6 +223,29 @@ TEST(Accuracy, PathsErrorFallsWithTheirRoot) {
   // The square of either is known to sqrt(2 / 576) of itself.
   EXPECT_NEAR(errors[0] / errors[1], 4.0,
               4.0 * 4.0 * std::sqrt(2.0 / 576.0) / 2.0 * std::sqrt(2.0));
+}
+
+// A lamp 0.16 pixels wide covers 0.02 of one of the plate's 64: with its light they would show 1.6
+// times as much, as far as paths meet it. Without it they show 500 / pi, and direct light is all.
+TEST(Accuracy, ALampSeenSmallIsNoPartOfTheTruth) {
+  const scenes::Scene scene = tests::plate_behind_a_speck(0.01);
+  const tests::Prepared prepared(scene);
+  const AccuracyView view = accuracy_view(tests::above(10.0, 2.0), 16, 16, 1);
+  const auto side = [&](int k) {
+    const Batch batch{raytrace::PathSet::All, k, 0, 256};
+    return mean_of_batches({batch}, {*trace_batch(prepared, view, batch)});
+  };
+  const ReferencePair truth{side(0), side(1)};
+  const std::vector<bool> counted = counted_pixels(truth);
+  EXPECT_EQ(std::count(counted.begin(), counted.end(), true), 63);
+  EXPECT_NEAR(mean_luminance(truth, counted), 500.0 / base::pi, 1e-4);
+  EXPECT_LT(resolution(truth, counted), 1e-6);
+  AccuracyStep step;
+  step.indirect = raytrace::Indirect::None;
+  SolutionShelf shelf;
+  const auto result = run_step(prepared, view, step, shelf);
+  ASSERT_TRUE(result);
+  EXPECT_LT(picture_error(result->luminance, truth, counted).high, 1e-6);
 }
 
 // A caller may watch over every solve: of one that is broken off nothing is kept. What the shelf

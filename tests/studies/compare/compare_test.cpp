@@ -119,6 +119,31 @@ TEST(Compare, DistributedLightsConverge) {
   EXPECT_EQ(verdict.verdict, ApproximationVerdict::NotMisled) << verdict.sentence;
 }
 
+// No light but the Sun's reaches the plate, and every method has that. A lamp before it, half a
+// pixel wide, is in every picture as its own samples meet it.
+TEST(Compare, ALampSeenSmallIsNoDifference) {
+  const Comparison comparison =
+      compared(tests::plate_behind_a_speck(0.03), tests::above(10.0, 2.0), {4});
+  EXPECT_LT(comparison.reference_noise, 1e-6);
+  EXPECT_EQ(comparison.reference().error.pixels, 63U);
+  for (const MethodResult& result : comparison.methods) {
+    EXPECT_LT(result.error.high, 1e-6) << result.method.name;
+    EXPECT_EQ(result.off_share, 0.0) << result.method.name;
+  }
+}
+
+// Every wall emits M = 10 lm/m2 and reflects half: B = M + B / 2 = 20, of which 10 is reflected
+// light, and M / 2 = 5 reflected straight from the sources: half of what errors are relative to.
+TEST(Compare, ARoomThatGlowsIsComparedByWhatItReflects) {
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5, 10.0));
+  builder.room({m, m, m, m, m, m});
+  const MethodResult direct = compared(builder.scene, in_the_room(), {4}).methods.back();
+  // 64 rays leave 0.12 of that in each of 256 pixels: four standard errors.
+  EXPECT_NEAR(direct.error.bias, -0.5, 4.0 * 0.12 / 16.0);
+  EXPECT_GT(direct.off_share, 0.8);
+}
+
 TEST(Compare, TargetOutOfViewIsSaidToBe) {
   auto builder = tests::plate_on_ground(0.4, 0.6);
   builder.scene.sun = tests::overhead_sun(1000.0);

@@ -4,21 +4,35 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raytrace/paths/path_tracer.h"
 #include "studies/error/picture_error.h"
 #include "tests/studies/plates.h"
 
 namespace earthshine::studies {
 namespace {
 
+constexpr int across = 16;  // pixels
+
+ReferencePair traced(const scenes::Scene& scene, const scenes::Camera& camera) {
+  const tests::Prepared prepared(scene);
+  raytrace::PathOptions options;
+  options.columns = options.rows = across;
+  options.paths_per_pixel = 32;
+  ReferencePair pair;
+  pair.first = reflected_light(raytrace::trace_paths(prepared, camera, options));
+  options.seed = 2;
+  pair.second = reflected_light(raytrace::trace_paths(prepared, camera, options));
+  return pair;
+}
+
 // A plate of 1 m seen from straight above, 2 m of the ground plane in 16 pixels: 8 x 8 of them.
 TEST(CountedPixels, SurfacesCountAndSourcesDoNot) {
   tests::SceneBuilder builder;
   builder.plate(builder.material(tests::grey(0.5)), 1.0, 0.0, true);
   builder.scene.sun = tests::overhead_sun(1000.0);
-  const raytrace::CameraModel camera = raytrace::make_camera_model(tests::above(10.0, 2.0), 16, 16);
   const auto count = [&] {
-    const tests::Prepared prepared(builder.scene);
-    const std::vector<bool> counted = counted_pixels(prepared, camera).counted;
+    const std::vector<bool> counted =
+        counted_pixels(traced(builder.scene, tests::above(10.0, 2.0)));
     return std::count(counted.begin(), counted.end(), true);
   };
   EXPECT_EQ(count(), 64);
@@ -45,21 +59,11 @@ TEST(CountedPixels, AWallThatGlowsCountsByWhatItReflects) {
   builder.plate(builder.material(tests::grey(0.5, 0.001 * base::pi)), 1.0, 0.0, true);
   builder.scene.sun = tests::overhead_sun(1000.0);
   const scenes::Camera camera = tests::above(10.0, 2.0);
-  const auto counted = [&] {
-    const tests::Prepared prepared(builder.scene);
-    return counted_pixels(prepared, raytrace::make_camera_model(camera, 16, 16));
-  };
-  const CountedPixels all = counted();
-  EXPECT_EQ(std::count(all.counted.begin(), all.counted.end(), true), 64);
-  std::vector<float> shown(16 * 16, 0.0F);
-  for (std::size_t p = 0; p < shown.size(); ++p) {
-    if (!all.counted[p]) continue;
-    EXPECT_NEAR(all.source[p], 0.001, 1e-12);
-    shown[p] = static_cast<float>(500.0 / base::pi + 0.001);
-  }
-  take_source_off(all, shown);
-  for (std::size_t p = 0; p < shown.size(); ++p) {
-    EXPECT_NEAR(double(shown[p]), all.counted[p] ? 500.0 / base::pi : 0.0, 1e-4);
+  const ReferencePair truth = traced(builder.scene, camera);
+  const std::vector<bool> all = counted_pixels(truth);
+  EXPECT_EQ(std::count(all.begin(), all.end(), true), 64);
+  for (std::size_t p = 0; p < all.size(); ++p) {
+    EXPECT_NEAR(truth.first.luminance[p], all[p] ? 500.0 / base::pi : 0.0, 1e-4);
   }
 
   scenes::Lamp lamp;
@@ -70,15 +74,15 @@ TEST(CountedPixels, AWallThatGlowsCountsByWhatItReflects) {
   lamp.radius_m = 0.3;
   lamp.exitance = Rgb(1000.0);
   builder.scene.lamps.push_back(lamp);
-  const CountedPixels around = counted();
-  const raytrace::Frame frame = tests::direct_picture(builder.scene, camera, 16);
+  const std::vector<bool> around = counted_pixels(traced(builder.scene, camera));
+  const raytrace::Frame frame = tests::direct_picture(builder.scene, camera, across);
   int hidden = 0;
-  for (int y = 0; y < 16; ++y) {
-    for (int x = 0; x < 16; ++x) {
+  for (int y = 0; y < across; ++y) {
+    for (int x = 0; x < across; ++x) {
       const double from_middle = std::hypot(x - 7.5, y - 7.5), rim = 0.3 * 8.0 * 10.0 / 9.9;
       if (std::fabs(from_middle - rim) < std::sqrt(0.5)) continue;
-      const auto p = static_cast<std::size_t>(16 * y + x);
-      EXPECT_EQ(frame.error.counts[p] != 0, around.counted[p]) << x << ", " << y;
+      const auto p = static_cast<std::size_t>(across * y + x);
+      EXPECT_EQ(frame.error.counts[p] != 0, around[p]) << x << ", " << y;
       hidden += from_middle < rim ? 1 : 0;
     }
   }
