@@ -56,8 +56,9 @@ TEST(Rounds, NoneCostsMoreThanCanBeAfforded) {
 }
 
 // All pixels alike but for a little: halving the squared error takes twice the samples of all, by 1
-// / N. That is two thirds of the way to a quarter, and rounds go 1.5 times as far as they plan.
-TEST(Rounds, GrowthIsWhatThePlanCosts) {
+// / N. That is two thirds of the way to a quarter, and rounds go 1.5 times as far as they plan. By
+// 1 / N alone a quarter would take four times the samples: sqrt(2 * 4) is expected.
+TEST(Rounds, GrowthIsMidwayBetweenThePlanAndTheSquare) {
   PixelSums sums = surprised();
   sums.samples[0] = 1024;
   sums.rays[0] = 1024.0F;
@@ -74,7 +75,8 @@ TEST(Rounds, GrowthIsWhatThePlanCosts) {
   const double so_far = spent(sums, nullptr, {});
   const double quarter = 0.5 * std::sqrt(planner.squared_error());
   // 0.97 of 0.94 of the wanted error is aimed at.
-  EXPECT_NEAR(Rounds(quarter / (0.97 * sure_share)).growth(planner, so_far), 2.0, 0.02);
+  EXPECT_NEAR(Rounds(quarter / (0.97 * sure_share)).growth(planner, so_far), std::sqrt(2.0 * 4.0),
+              0.02);
   EXPECT_EQ(Rounds(4.0 * quarter).growth(planner, so_far), 1.0);
 }
 
