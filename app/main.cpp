@@ -194,13 +194,17 @@ int run(std::vector<std::string> arguments, const Workers& workers) {
   return exit_code;
 }
 
+// Of several ranks the one that fails says why; the others are told to end.
+volatile std::sig_atomic_t one_of_several = 0;
+
 // Interrupted or told to end: no half-written file stays behind, and the shell sees the signal.
 void end_by_signal(int signal) {
   base::remove_unfinished_files();
-  note_in_handler(Interrupt::asked()
-                      ? "earthshine: interrupted again: ended without what was under way\n"
-                      : "earthshine: interrupted before there was anything to keep of what was "
-                        "under way\n");
+  if (one_of_several == 0) {
+    note_in_handler(Interrupt::asked()
+                        ? "earthshine: interrupted again: ended without what was under way\n"
+                        : "earthshine: interrupted: ended without what was under way\n");
+  }
   std::signal(signal, SIG_DFL);
   std::raise(signal);
 }
@@ -265,6 +269,7 @@ int main(int argc, char** argv) {
   const auto run = [&] {
     try {
       ranks = base::start_ranks(argc, argv);
+      app::one_of_several = ranks && ranks->count() > 1 ? 1 : 0;
       app::take_signals();
       app::be_silent(ranks && ranks->number() > 0);
       const int exit_code = app::run({argv + std::min(argc, 1), argv + argc},

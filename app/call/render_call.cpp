@@ -193,19 +193,23 @@ void add_picture_options(CLI::App& parser, RenderCall& call) {
                   "One layer per light group: light_<group>.R, .G, .B");
 }
 
-void check_picture_options(const RenderCall& call) {
+void check_picture_options(const RenderCall& call, bool quiet) {
   for (const std::string& name : call.aovs) {
     const std::vector<std::string>& known = raytrace::aov_names();
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     throw base::Error(base::Blame::Input, "--aov", "there is no layer \"" + name + "\"",
                       fmt::format("the layers are {}", fmt::join(known, ", ")));
   }
-  const bool over = !call.distributed_over.empty();
-  if (call.indirect == raytrace::Indirect::Distributed || !(over || call.distributed_lights))
-    return;
-  throw Error(Blame::Input, over ? "--distributed-over" : "--distributed-lights",
-              fmt::format("--indirect {} spreads no lights", indirect_name(call.indirect)), {},
-              "Write --indirect distributed");
+  if (call.indirect == raytrace::Indirect::Distributed) return;
+  if (!call.distributed_over.empty()) {
+    throw Error(Blame::Input, "--distributed-over",
+                fmt::format("--indirect {} spreads no lights", indirect_name(call.indirect)), {},
+                "Write --indirect distributed");
+  }
+  if (call.distributed_lights && !quiet) {
+    note(fmt::format("note: --distributed-lights has no effect: --indirect {} spreads none",
+                     indirect_name(call.indirect)));
+  }
 }
 
 WantedEffects wanted_effects(const RenderCall& call, std::vector<const scenes::Camera*> cameras) {

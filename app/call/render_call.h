@@ -92,8 +92,9 @@ void add_window_options(CLI::App& parser, RenderCall& call);
 // --camera, --size, --aov, --per-light, --indirect and what belongs to its ways: what a picture's
 // cost depends on.
 void add_picture_options(CLI::App& parser, RenderCall& call);
-// Throws base::Error (Input) for a layer that is not known, and for lights that are spread nowhere.
-void check_picture_options(const RenderCall& call);
+// Throws base::Error (Input) for a layer that is not known, and for an area without its lights;
+// notes lights that are spread nowhere.
+void check_picture_options(const RenderCall& call, bool quiet);
 
 // Names, lists of names with commas between, or "all"; the first of the scene if there are none.
 [[nodiscard]] std::vector<const scenes::Camera*> wanted_cameras(

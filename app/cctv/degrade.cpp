@@ -156,7 +156,8 @@ Json picture_json(const degrade::RadianceFile& file, const base::ExrHeader::Whol
 
 void run(const DegradeCall& call, const Common& common) {
   if ((call.list || !call.describe.empty()) && !(call.tape.inputs.empty() && call.output.empty()))
-    refuse("degrade", "--list and --describe make no picture", "Leave them out, or picture and -o");
+    refuse("degrade", "--list and --describe make no picture",
+           "Leave out the picture and -o, or them");
   if (call.list) return list_cameras(call.json);
   if (!call.describe.empty()) {
     return print_camera(camera_of_argument("--describe", call.describe), call.json);
@@ -175,8 +176,8 @@ void run(const DegradeCall& call, const Common& common) {
     refuse("--f-number", "has no effect: the iris of \"" + setup.name + "\" moves at once",
            "Leave it out, or give the camera an iris_rate or iris_slew");
   }
-  if (call.fov_deg && setup.chain.camera.fall_off == 0.0)
-    refuse("--fov", "has no effect: \"" + setup.name + "\" has no fall_off", "Leave it out");
+  if (call.fov_deg && setup.chain.camera.fall_off == 0.0 && !common.quiet)
+    note("note: --fov has no effect: \"" + setup.name + "\" has no fall_off");
   degrade::Memory memory, twin_memory;
   memory.f_number = twin_memory.f_number = call.f_number;
   Json reports = Json::array();

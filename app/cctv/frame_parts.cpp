@@ -130,7 +130,7 @@ std::string numbered(const std::string& path, std::uint64_t number) {
 
 void check_numbered(const std::string& option, const std::string& path, std::size_t frames) {
   const auto [begin, width] = run_of_hashes(path);
-  if (path.find('#', begin + width) != std::string::npos) {
+  if (frames > 1 && path.find('#', begin + width) != std::string::npos) {
     throw base::Error(base::Blame::Input, option, fmt::format("\"{}\" has # in two places", path),
                       "one run of # stands for the frame's number, as wide as the run",
                       "Name it for example frame-####.png");

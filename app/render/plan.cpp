@@ -258,7 +258,7 @@ Command add_plan(CLI::App& program) {
       ->type_name("N");
   parser->add_flag("--json", call->json, "JSON on standard output");
   return {parser, [call, ranks](const Common& common) {
-            check_picture_options(*call);
+            check_picture_options(*call, common.quiet);
             const Json report = report_of(*call, common, *ranks);
             print(call->json ? dump(report) : text_of(report));
           }};

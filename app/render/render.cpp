@@ -31,8 +31,8 @@ namespace {
 using base::Blame;
 using base::Error;
 
-void check_call(const RenderCall& call) {
-  check_picture_options(call);
+void check_call(const RenderCall& call, bool quiet) {
+  check_picture_options(call, quiet);
   const auto check_ending = [](const std::string& path, std::string_view option,
                                std::string_view ending) {
     if (path.empty() || path.ends_with(ending) || path.starts_with("/dev/")) return;
@@ -75,10 +75,6 @@ void check_call(const RenderCall& call) {
     throw Error(Blame::Input, "--solution",
                 fmt::format("--indirect {} reads no solution", indirect_name(call.indirect)), {},
                 "Leave one of the two out");
-  }
-  if (call.timings && call.output.empty()) {
-    throw Error(Blame::Input, "--timings", "writes into the header of -o, which is not there", {},
-                "Add -o FILE.exr, or leave --timings out");
   }
 }
 
@@ -150,7 +146,7 @@ std::vector<const scenes::Camera*> cameras_of(const std::vector<Wanted>& picture
 }
 
 void run(RenderCall call, const Common& common) {
-  check_call(call);
+  check_call(call, common.quiet);
   check_part(call);
   StageTimes times;
   std::vector<Wanted> pictures;

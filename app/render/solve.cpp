@@ -236,10 +236,9 @@ void run(const SolveCall& call, const Common& common) {
   const radiosity::SolveOptions options = solve_options(loaded.scene, common);
   const std::optional<double> error = loaded.scene.quality.error;
   const bool steers = error && call.solution.empty();
-  if (call.time_limit_s > 0.0 && !steers) {
-    throw base::Error(base::Blame::Input, "--time-limit", "limits the way to an error",
-                      error ? "--solution is read as it is" : "no error is asked for",
-                      error ? "Leave one of the two out" : "Add --error E");
+  if (call.time_limit_s > 0.0 && !steers && !common.quiet) {
+    note(std::string("note: --time-limit has no effect: ") +
+         (call.solution.empty() ? "no error is asked for" : "--solution is read as it is"));
   }
   check_memory(loaded, query,
                steers ? studies::first_surface_options(loaded.scene, *error, common.seed) : options,

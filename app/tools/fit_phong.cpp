@@ -9,6 +9,7 @@
 #include "app/console.h"
 #include "app/options.h"
 #include "scenes/reflect/phong_fit.h"
+#include "scenes/text/message_text.h"
 
 namespace earthshine::app {
 namespace {
@@ -46,7 +47,7 @@ std::string text_of(const scenes::PhongFits& fits, scenes::ReflectanceNoise nois
   if (fits.noise) {
     text += noise == scenes::ReflectanceNoise::Constant
                 ? fmt::format("; noise {:.2g}, the same everywhere", *fits.noise)
-                : fmt::format("; noise {:.2g} % of R", 100.0 * *fits.noise);
+                : fmt::format("; noise {} of R", scenes::percent(*fits.noise));
   }
   text += fmt::format("\n\n{:<14} {:>20} {:>20} {:>20} {:>13} {:>18}\n", "method", "k_d", "k_s",
                       "n", "RMS residual", "k_d + 2 k_s/(n+2)");

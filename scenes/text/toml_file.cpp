@@ -165,7 +165,11 @@ std::string describe(const TomlNode& node) {
     std::string operator()(std::int64_t number) const {
       return fmt::format("the number {}", number);
     }
-    std::string operator()(double number) const { return fmt::format("the number {:#}", number); }
+    std::string operator()(double number) const {
+      const std::string text = fmt::format("{}", number);
+      const bool whole = text.find_first_of(".en") == std::string::npos;
+      return "the number " + text + (whole ? ".0" : "");
+    }
     std::string operator()(const std::string& text) const {
       return fmt::format("the string {}", in_quotes(text));
     }

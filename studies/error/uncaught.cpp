@@ -11,6 +11,7 @@
 #include "base/numbers/random.h"
 #include "base/parallel.h"
 #include "raytrace/light/light_sampler.h"
+#include "scenes/text/message_text.h"
 #include "studies/error/error_budget.h"
 
 namespace earthshine::studies {
@@ -199,7 +200,7 @@ class Finder {
 std::string extent(const Uncaught& light) {
   std::string text = ": less than 0.1 % of what falls straight from them";
   if (light.share >= 0.001) {
-    text = fmt::format(": about {:.2g} % of what falls straight from them", 100.0 * light.share);
+    text = fmt::format(": about {} of what falls straight from them", scenes::percent(light.share));
   }
   if (light.objects.empty()) return text;
   return fmt::format("{} (\"{}\")", text, fmt::join(light.objects, "\", \""));

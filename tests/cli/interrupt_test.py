@@ -80,7 +80,7 @@ class BrokenOff(program.Case):
         for study in ("compare", "visibility"):
             code, out, err, seconds = self.stopped("study", study, "ball.toml", "-o", "d", "--camera", "A", "-q", *LONG)
             self.assertEqual((code, out), (-signal.SIGINT, ""))
-            self.assertEqual(err, "earthshine: interrupted before there was anything to keep of what was under way\n")
+            self.assertEqual(err, "earthshine: interrupted: ended without what was under way\n")
             self.assertLess(seconds, 5)  # at once, but for other processes
 
     def test_a_solve_keeps_what_it_had_come_to(self):

@@ -36,6 +36,7 @@ class BrokenScenes(program.Case):
         self.write("scene.toml", b"\xff\xfe\x00\x01")
         self.refused("inspect", "scene.toml")
         self.broken("format = 1.0\n", "1.0", "the whole number 1")
+        self.broken("format = 1e300\n", "the number 1e+300")
 
     def test_files_of_another_kind(self):
         self.broken('format = 1\nscene = "bay.toml"\n', "scene.toml:2:1: ", "a study file", "earthshine study run")

@@ -15,7 +15,6 @@ class Refused(Case):
         self.says(self.orbit("--wanted", "lid>=0.5"), '"lid"', "box", "far")
         self.says(self.orbit("--wanted", "box"), "TARGET>=P")
         self.says(self.orbit("--iris", "wide"), "wide")
-        self.says(self.orbit("--iris", "peak"), "--iris", "Add --wanted")
         self.says(self.orbit("--camera", "A,Z"), '"Z"', "A, B")
         self.says(self.refused_cleanly("study", "compare", "bay.toml", "--camera", "A,B"), '"A,B"', "looks through one")
         for positions in ("0", "-3", "3601", "x", "1.5"):
