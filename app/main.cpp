@@ -194,13 +194,13 @@ int run(std::vector<std::string> arguments, const Workers& workers) {
   return exit_code;
 }
 
-// Of several ranks the one that fails says why; the others are told to end.
-volatile std::sig_atomic_t one_of_several = 0;
+// Of ranks the one that fails says why, and all are told to end, itself too.
+volatile std::sig_atomic_t is_rank = 0;
 
 // Interrupted or told to end: no half-written file stays behind, and the shell sees the signal.
 void end_by_signal(int signal) {
   base::remove_unfinished_files();
-  if (one_of_several == 0) {
+  if (is_rank == 0) {
     note_in_handler(Interrupt::asked()
                         ? "earthshine: interrupted again: ended without what was under way\n"
                         : "earthshine: interrupted: ended without what was under way\n");
@@ -244,8 +244,6 @@ int complain(std::string_view what, int exit_code) {
 constexpr std::chrono::seconds time_to_speak{3};
 
 void end_rank(base::Ranks& ranks, int exit_code, const std::string& what) {
-  // Who ends all is told to end, too, and has said why.
-  for (const int signal : ending_signals) std::signal(signal, SIG_DFL);
   if (ranks.number() > 0) {
     std::this_thread::sleep_for(time_to_speak);
     be_silent(false);
@@ -269,7 +267,7 @@ int main(int argc, char** argv) {
   const auto run = [&] {
     try {
       ranks = base::start_ranks(argc, argv);
-      app::one_of_several = ranks && ranks->count() > 1 ? 1 : 0;
+      app::is_rank = ranks ? 1 : 0;
       app::take_signals();
       app::be_silent(ranks && ranks->number() > 0);
       const int exit_code = app::run({argv + std::min(argc, 1), argv + argc},

@@ -26,8 +26,6 @@ std::vector<std::size_t> ranked(std::span<const ConditionNoise> noise, Value val
   return order;
 }
 
-std::string percent(double share) { return scenes::two_digits(100.0 * share); }
-
 }  // namespace
 
 ConditionNoise noise_of_condition(double rms, double mean) {
@@ -46,10 +44,10 @@ std::string noise_text(std::span<const ConditionNoise> noise, std::span<const st
   const std::vector<std::size_t> unlit = ranked(dark, &ConditionNoise::cd_m2);
   std::string text;
   if (!lit.empty()) {
-    const std::string least = percent(*noise[lit.front()].relative);
-    const std::string most = percent(*noise[lit.back()].relative);
-    text = fmt::format("noise of {}{} % of the mean in the conditions' pictures, most in {}",
-                       least == most ? "" : least + " to ", most, names[lit.back()]);
+    const std::string least = scenes::two_digits(100.0 * *noise[lit.front()].relative);
+    const std::string most = scenes::percent(*noise[lit.back()].relative);
+    text = fmt::format("noise of {}{} of the mean in the conditions' pictures, most in {}",
+                       least + " %" == most ? "" : least + " to ", most, names[lit.back()]);
   }
   if (unlit.empty()) return text;
   const std::string most = scenes::two_digits(*dark[unlit.back()].cd_m2) + " cd/m²";
