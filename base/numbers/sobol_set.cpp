@@ -26,7 +26,7 @@ std::uint32_t interleave(std::uint32_t x, std::uint32_t y) {
 
 }  // namespace
 
-SobolSet4::SobolSet4(std::uint32_t count) {
+SobolSet4::SobolSet4(std::uint32_t count) : count_(count) {
   std::vector<std::uint32_t> order(count), morton(count);
   std::iota(order.begin(), order.end(), 0U);
   for (std::uint32_t i = 0; i < count; ++i) morton[i] = interleave(sobol(0, i), sobol(1, i));
@@ -34,8 +34,9 @@ SobolSet4::SobolSet4(std::uint32_t count) {
     return morton[a] != morton[b] ? morton[a] < morton[b] : a < b;
   });
   for (std::size_t d = 0; d < 4; ++d) {
-    bits_[d].reserve(count);
+    bits_[d].reserve(std::max(count, width));
     for (const std::uint32_t i : order) bits_[d].push_back(reverse_bits(sobol(d, i)));
+    for (std::uint32_t k = count; k < width; ++k) bits_[d].push_back(bits_[d][k % count]);
   }
 }
 

@@ -18,9 +18,9 @@ class SobolSet4 {
  public:
   static constexpr std::uint32_t width = 8;
 
-  // count: a power of two, at least `width`.
+  // count: a power of two.
   explicit SobolSet4(std::uint32_t count);
-  [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(bits_[0].size()); }
+  [[nodiscard]] std::uint32_t count() const { return count_; }
 
   // One random scrambling of each dimension.
   struct Scramble {
@@ -36,10 +36,11 @@ class SobolSet4 {
   struct alignas(32) Points {
     float x[4][width];  // [dimension][point], in (0, 1)
   };
-  // Points first .. first + width - 1; first is a multiple of width.
+  // Points first .. first + width - 1, first a multiple of width; what is past count() comes again.
   void points(std::uint32_t first, const Scramble& scramble, Points& out) const;
 
  private:
+  std::uint32_t count_;
   std::vector<std::uint32_t> bits_[4];  // the coordinates' bits, lowest first
 };
 

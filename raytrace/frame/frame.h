@@ -119,8 +119,10 @@ inline constexpr double error_bright = 4.0;  // over the mean
 // Over some pixels that count.
 struct ErrorSums {
   std::size_t pixels = 0;
-  double luminance = 0.0;                     // their mean
-  std::array<double, error_parts> squared{};  // mean squared errors, weighted, over luminance^2
+  double luminance = 0.0;  // their mean
+  // What errors are relative to: that mean, or what it is off by where noise leaves none of it.
+  double yardstick = 0.0;
+  std::array<double, error_parts> squared{};  // mean squared errors, weighted, over yardstick^2
   [[nodiscard]] double squared_error() const {
     double all = 0.0;
     for (const double part : squared) all += part;

@@ -49,7 +49,7 @@ GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
 }
 
 std::uint32_t GatherField::fewest_samples(Gathered kind) {
-  return kind == Gathered::Solution ? 16 : 2;
+  return kind == Gathered::Solution ? 8 : 2;
 }
 
 RayCounts GatherField::rays() const {

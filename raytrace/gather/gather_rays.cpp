@@ -44,9 +44,10 @@ void GatherRays::fill(std::size_t point, base::Key key, Samples& samples) const 
   const std::size_t per_cell = rays() / cells_;
   std::array<std::size_t, most_cells> used{};
   base::SobolSet4::Points p;
+  const auto at_once = std::min<std::size_t>(base::SobolSet4::width, rays());
   for (std::uint32_t first = 0; first < rays(); first += base::SobolSet4::width) {
     set_.points(first, scramble, p);
-    for (std::size_t k = 0; k < base::SobolSet4::width; ++k) {
+    for (std::size_t k = 0; k < at_once; ++k) {
       const auto column = static_cast<std::size_t>(p.x[0][k] * columns_);
       const auto row = static_cast<std::size_t>(p.x[1][k] * rows_);
       const std::size_t cell = row * static_cast<std::size_t>(columns_) + column;

@@ -105,7 +105,7 @@ struct TilePoints {
 // The samples of all points of a batch, in cells.
 class GatherRays {
  public:
-  // rays: per point, a power of two, 8 or more.
+  // rays: per point, a power of two, 4 or more.
   explicit GatherRays(std::uint32_t rays);
   [[nodiscard]] std::size_t rays() const { return set_.count(); }
   // Points that a batch may have, so that its samples stay in cache.

@@ -137,9 +137,10 @@ class Passes {
       const auto start = Clock::now();
       begin_field();
       reserve_s_ = after_gathering * seconds_since(start);
-      cast_evenly(Gathered::Solution, GatherField::fewest_samples(Gathered::Solution));
-      cast_evenly(Gathered::Residual, 4U);
-      cast_evenly(Gathered::Lobe, 2U);
+      const FirstLook first = first_look(options_.error, field_->points().size());
+      cast_evenly(Gathered::Solution, first.gather_rays);
+      cast_evenly(Gathered::Residual, first.paths);
+      cast_evenly(Gathered::Lobe, first.lobe_rays);
       covered = !ends();
       share();
       report_.gather_seconds += seconds_since(start);

@@ -2,6 +2,7 @@
 #include "raytrace/passes/rounds.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -18,9 +19,19 @@ constexpr double last_step_share = 0.5;
 constexpr double least_step = 0.05;
 // Of the wanted error, what samples are planned for: the next statement may turn out larger.
 constexpr double aimed_share = 0.97;
+constexpr double fine_error = 0.04;  // from there down a first look is a full one
+constexpr std::size_t least_paths = 1U << 16U;
 constexpr double hopeless_growth = 1024.0, hopeless_share = 0.5;
 
 }  // namespace
+
+FirstLook first_look(double wanted, std::size_t points) {
+  FirstLook first;
+  if (wanted <= 0.0 || wanted > fine_error) first.gather_rays /= 2, first.paths /= 2;
+  const std::size_t each = least_paths / std::max<std::size_t>(1, points);
+  first.paths = std::max(first.paths, std::bit_floor(static_cast<std::uint32_t>(each)));
+  return first;
+}
 
 double Rounds::aim() const { return aimed_share * sure_share * wanted_; }
 

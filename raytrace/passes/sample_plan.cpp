@@ -85,12 +85,12 @@ SamplePlanner::SamplePlanner(const PixelSums& sums, const GatherField* field,
     : sums_(sums), field_(field), costs_(costs) {
   const StatedError stated = state_error(sums, field, sums.window);
   const ErrorSums whole = add_up(stated);
-  if (whole.pixels == 0 || whole.luminance <= 0.0) return;
+  if (whole.yardstick <= 0.0) return;
   now_ = whole.squared_error();
   const double scale =
-      1.0 / (static_cast<double>(whole.pixels) * whole.luminance * whole.luminance);
-  if (field != nullptr) look_at_field(stated, whole.luminance, scale);
-  look_at_pixels(stated, whole.luminance, scale);
+      1.0 / (static_cast<double>(whole.pixels) * whole.yardstick * whole.yardstick);
+  if (field != nullptr) look_at_field(stated, whole.yardstick, scale);
+  look_at_pixels(stated, whole.yardstick, scale);
 }
 
 template <class Look>

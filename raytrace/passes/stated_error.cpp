@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "raytrace/passes/stated_error.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "base/parallel.h"
@@ -85,11 +87,20 @@ ErrorSums add_up(const StatedError& stated, std::span<const std::size_t> pixels)
   }
   if (sums.pixels == 0) return sums;
   sums.luminance /= static_cast<double>(sums.pixels);
-  if (sums.luminance <= 0.0) return sums;
-  const double scale = 1.0 / (static_cast<double>(sums.pixels) * sums.luminance * sums.luminance);
+  sums.yardstick = std::max(0.0, sums.luminance);
+  if (sums.yardstick <= 0.0) {
+    double square = 0.0;
+    for (const std::size_t p : pixels) {
+      if (stated.counts[p] == 0) continue;
+      for (const float part : stated.squared[p]) square += double(part);
+    }
+    sums.yardstick = std::sqrt(square / static_cast<double>(sums.pixels));
+  }
+  if (sums.yardstick <= 0.0) return sums;
+  const double scale = 1.0 / (static_cast<double>(sums.pixels) * sums.yardstick * sums.yardstick);
   for (const std::size_t p : pixels) {
     if (stated.counts[p] == 0) continue;
-    const double weight = error_weight(double(stated.luminance[p]), sums.luminance);
+    const double weight = error_weight(double(stated.luminance[p]), sums.yardstick);
     for (std::size_t part = 0; part < error_parts; ++part) {
       sums.squared[part] += weight * weight * scale * double(stated.squared[p][part]);
     }

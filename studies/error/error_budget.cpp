@@ -28,7 +28,7 @@ double bound_ratio(const StatedError& stated, const std::vector<std::size_t>& pi
   std::map<std::size_t, double> tiles;
   for (const std::size_t p : pixels) {
     if (stated.counts[p] == 0) continue;
-    const double weight = raytrace::error_weight(double(stated.luminance[p]), whole.luminance);
+    const double weight = raytrace::error_weight(double(stated.luminance[p]), whole.yardstick);
     double square = 0.0;
     for (const float part : stated.squared[p]) square += double(part);
     const std::size_t x = p % static_cast<std::size_t>(columns) / tile_px;
@@ -65,7 +65,7 @@ ErrorBudget error_budget(const scenes::World& scene, const WatchedPicture& pictu
   std::vector<std::size_t> all(stated.luminance.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   const ErrorSums whole = raytrace::add_up(stated, all);
-  budget.pixels = whole.luminance > 0.0 ? whole.pixels : 0;
+  budget.pixels = whole.yardstick > 0.0 ? whole.pixels : 0;
   budget.total = total_of(stated, all, frame.window.columns);
   const double bound =
       budget.total.estimate > 0.0 ? budget.total.bound_95 / budget.total.estimate : 1.0;

@@ -97,6 +97,19 @@ TEST(Random, TheSobolSetIsANetInEachPairOfItsDimensionsThatSobolMakesOne) {
   for (const auto& seen : strata) EXPECT_EQ(seen.size(), 1U << m);
 }
 
+TEST(Random, ASobolSetOfFewIsANetThatComesAgain) {
+  const SobolSet4 set(4);
+  SobolSet4::Points p;
+  set.points(0, SobolSet4::Scramble(Key(5, Stream::Test, 9)), p);
+  std::set<int> quarters;
+  for (std::size_t k = 0; k < 4; ++k) {
+    quarters.insert(2 * static_cast<int>(2.0F * p.x[0][k]) + static_cast<int>(2.0F * p.x[1][k]));
+    for (std::size_t d = 0; d < 4; ++d) EXPECT_EQ(p.x[d][k], p.x[d][k + 4]);
+  }
+  EXPECT_EQ(set.count(), 4U);
+  EXPECT_EQ(quarters.size(), 4U);
+}
+
 TEST(Random, TheRunsOfASobolSetAreTogetherTheLargerSet) {
   const Key key(7, Stream::Test, 3);
   using Point = std::array<float, 4>;

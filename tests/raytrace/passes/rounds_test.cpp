@@ -80,6 +80,36 @@ TEST(Rounds, GrowthIsMidwayBetweenThePlanAndTheSquare) {
   EXPECT_EQ(Rounds(4.0 * quarter).growth(planner, so_far), 1.0);
 }
 
+// What is lacking may outweigh, by chance, all that there is: a mean of nothing or less has not
+// reached its error, but is off by 100 %.
+TEST(Rounds, APictureThatNoiseLeavesNothingOfGoesOn) {
+  PixelSums sums = surprised();
+  for (glm::vec3& light : sums.radiance) light = -light;
+  const SamplePlanner planner(sums, nullptr, {});
+  EXPECT_NEAR(planner.squared_error(), 1.0, 1e-12);
+  EXPECT_TRUE(Rounds(0.05).next(planner, spent(sums, nullptr, {}), no_limit).has_value());
+}
+
+// A full first look at 4 % and less, half of it at more, and where a limit alone ends the picture.
+TEST(Rounds, AFirstLookIsAsCoarseAsThePicture) {
+  constexpr std::size_t points = 256 * 256;
+  const FirstLook full = first_look(0.04, points);
+  for (const double wanted : {0.041, 0.5, 0.0}) {
+    const FirstLook half = first_look(wanted, points);
+    EXPECT_EQ(2 * half.gather_rays, full.gather_rays);
+    EXPECT_EQ(2 * half.paths, full.paths);
+  }
+  EXPECT_EQ(first_look(0.01, points).paths, full.paths);
+}
+
+// Light that one of ten thousand paths finds is found by them all or not, however few the points:
+// of 2^16 paths some find it but with a chance of exp(-6.5).
+TEST(Rounds, AFirstLookOfFewPointsIsOfManyPaths) {
+  for (const std::size_t points : {std::size_t{1}, std::size_t{256}, std::size_t{5000}}) {
+    EXPECT_GT(2 * first_look(0.5, points).paths * points, 65536U);
+  }
+}
+
 // Of samples that know all noise, 1024 times as many leave 1/32 of it.
 TEST(Rounds, AnErrorThatWillNotFallIsHopeless) {
   EXPECT_FALSE(Rounds::is_hopeless({{1.0, 0.1}}));
