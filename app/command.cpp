@@ -133,18 +133,16 @@ const scenes::Camera& first_camera(const scenes::Scene& scene) {
 }
 
 const scenes::Camera& choose_camera(const scenes::Scene& scene, const std::string& name,
-                                    const std::optional<base::Location>& named_at) {
+                                    const base::Location& named_at) {
   (void)first_camera(scene);
   std::vector<std::string> names;
   for (const scenes::Camera& camera : scene.cameras) {
     if (camera.name == name) return camera;
     names.push_back(camera.name);
   }
-  const std::string path = scene.path.string();
-  throw Error(Blame::Input, named_at.value_or(base::Location{path}),
-              (named_at ? path + " " : "") + "has no camera \"" + name + "\"",
-              fmt::format("its cameras are {}", fmt::join(names, ", ")),
-              scenes::did_you_mean(name, names));
+  throw Error(
+      Blame::Input, named_at, scene.path.string() + " has no camera " + scenes::in_quotes(name),
+      fmt::format("its cameras are {}", fmt::join(names, ", ")), scenes::did_you_mean(name, names));
 }
 
 double StageTimes::total() const {

@@ -109,9 +109,9 @@ using AskEffects = std::function<WantedEffects(const scenes::Scene&)>;
 
 // Both throw base::Error (Input) where there is none. named_at: where a file or an option names it.
 [[nodiscard]] const scenes::Camera& first_camera(const scenes::Scene& scene);
-[[nodiscard]] const scenes::Camera& choose_camera(
-    const scenes::Scene& scene, const std::string& name,
-    const std::optional<base::Location>& named_at = {});
+[[nodiscard]] const scenes::Camera& choose_camera(const scenes::Scene& scene,
+                                                  const std::string& name,
+                                                  const base::Location& named_at);
 
 // A line on stderr where the form factors could not be balanced, with how near they came and which
 // object is furthest off; and one where that took more than a thousandth of the light.

@@ -153,8 +153,7 @@ void add_window_options(CLI::App& parser, RenderCall& call) {
 }
 
 std::vector<const scenes::Camera*> wanted_cameras(const std::vector<std::string>& texts,
-                                                  const scenes::Scene& scene,
-                                                  const std::optional<base::Location>& named_at) {
+                                                  const scenes::Scene& scene) {
   std::vector<const scenes::Camera*> cameras;
   const auto is_name = [&scene](const std::string& text) {
     return std::any_of(scene.cameras.begin(), scene.cameras.end(),
@@ -167,7 +166,7 @@ std::vector<const scenes::Camera*> wanted_cameras(const std::vector<std::string>
     }
     for (const std::string& name :
          is_name(text) ? std::vector<std::string>{text} : split_at_commas(text)) {
-      cameras.push_back(&choose_camera(scene, name, named_at));
+      cameras.push_back(&choose_camera(scene, name, {"--camera"}));
     }
   }
   if (cameras.empty()) cameras.push_back(&first_camera(scene));

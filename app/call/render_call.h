@@ -96,10 +96,10 @@ void add_picture_options(CLI::App& parser, RenderCall& call);
 // notes lights that are spread nowhere.
 void check_picture_options(const RenderCall& call, bool quiet);
 
-// Names, lists of names with commas between, or "all"; the first of the scene if there are none.
+// Of --camera: names, lists of names with commas between, or "all"; the first of the scene if there
+// are none.
 [[nodiscard]] std::vector<const scenes::Camera*> wanted_cameras(
-    const std::vector<std::string>& texts, const scenes::Scene& scene,
-    const std::optional<base::Location>& named_at = {});
+    const std::vector<std::string>& texts, const scenes::Scene& scene);
 
 // What the call asks of the scene, for load(). Effects that cannot matter run if the call wants all
 // of them, paths as a reference, or a solution that is there already.

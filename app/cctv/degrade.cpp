@@ -96,7 +96,7 @@ void check_files(const DegradeCall& call, const std::vector<TapeFrame>& tape, co
 // The camera asked for, else the one that the picture says it was rendered with, else the first.
 const scenes::Camera& camera_of(const DegradeCall& call, const scenes::Scene& scene,
                                 const base::ExrHeader& header) {
-  if (!call.camera.empty()) return choose_camera(scene, call.camera);
+  if (!call.camera.empty()) return choose_camera(scene, call.camera, {"--camera"});
   for (const auto& [name, value] : header.text) {
     if (name != "earthshine:camera") continue;
     for (const scenes::Camera& camera : scene.cameras) {

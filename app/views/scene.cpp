@@ -82,7 +82,7 @@ void find_cameras(const studies::StudyFile& study, const Common& common, StudyPa
       named.push_back(&choose_camera(scene, name, study.place("cameras")));
     }
   } else if (!study.cameras.empty()) {
-    named = wanted_cameras(study.cameras, scene, base::Location{"--camera"});
+    named = wanted_cameras(study.cameras, scene);
   }
   for (const scenes::Camera* camera : named) {
     if (std::find(chosen.begin(), chosen.end(), camera) == chosen.end()) chosen.push_back(camera);
