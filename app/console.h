@@ -75,6 +75,11 @@ class Interrupt {
   static void leave_if_asked() {
     if (asked()) throw Left();
   }
+  // To be asked while such work goes on: throws so, or says that it is to go on.
+  static bool leave_or_go_on() {
+    leave_if_asked();
+    return false;
+  }
 
  private:
   using Handler = void (*)(int);

@@ -202,7 +202,8 @@ Frame render(const scenes::World& world, const radiosity::Solution& solution,
   if (!frame.layers.noise.empty()) {
     frame.layers.luminance = layer_luminance(sums, frame.error, window);
     frame.layers.see(frame.image, world.groups.names);
-    frame.layers.scale_to(add_up(frame.error).squared);
+    const ErrorSums all = add_up(frame.error);
+    frame.layers.scale_to(all.squared, all.yardstick);
   }
   frame.report.rays.layers += fill_first_hit(world.scene, world.query, model, window, frame.image);
   frame.report.rays.layers += fill_cryptomatte(

@@ -41,7 +41,7 @@ Json json_of(const ErrorEstimate& error, bool known) {
 }
 
 Json json_of(const studies::TargetError& target) {
-  Json json = json_of(target.error, target.luminance > 0.0);
+  Json json = json_of(target.error, target.luminance > 0.0 || target.error.estimate > 0.0);
   json["name"] = target.name;
   json["pixels"] = target.pixels;
   json["luminance_cd_m2"] = target.pixels > 0 ? Json(target.luminance) : Json();

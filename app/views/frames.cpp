@@ -91,10 +91,7 @@ raytrace::RenderOptions StudyFrames::options(const StudyCamera& camera) const {
   options.seed = common_.seed;
   options.per_light = true;
   options.aovs = {"object"};
-  options.stop = [] {
-    Interrupt::leave_if_asked();
-    return false;
-  };
+  options.stop = Interrupt::leave_or_go_on;
   return options;
 }
 

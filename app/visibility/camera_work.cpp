@@ -62,7 +62,11 @@ Judged CameraWork::judge(const studies::BasisView& view, const StudyFrames::Fram
 
 CameraWork::Configurations CameraWork::conclude(const studies::BasisView& view,
                                                 std::vector<FigureEntry>& figures) const {
-  draw_pictures(pictures_, &view, figures);
+  try {
+    draw_pictures(pictures_, &view, figures);
+  } catch (const Interrupt::Left&) {
+    return Configurations(pictures_.study.wanted.size());
+  }
   if (auto kept = known_configurations()) return std::move(*kept);
   Configurations found(pictures_.study.wanted.size());
   add_configurations(pictures_.part, pictures_.study, pictures_.camera, view, found);

@@ -39,7 +39,7 @@ class CameraWork {
                                            std::vector<StudyCost>& costs) const;
   [[nodiscard]] Judged judge(const studies::BasisView& view, const StudyFrames::Frame& frame,
                              Share batches, std::vector<StudyCost>& costs) const;
-  // The camera's pictures, and what its wishes are answered by.
+  // The camera's pictures, and what its wishes are answered by; nothing where an end is asked for.
   [[nodiscard]] Configurations conclude(const studies::BasisView& view,
                                         std::vector<FigureEntry>& figures) const;
 

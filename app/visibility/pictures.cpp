@@ -85,6 +85,7 @@ base::Image draw_distributed(const StudyPart& part, const StudyCamera& camera,
   options.seed = common.seed;
   options.indirect = raytrace::Indirect::Distributed;
   options.distributed_lights = wish.lights;
+  options.stop = Interrupt::leave_or_go_on;
   const scenes::Effects effects = scenes::find_effects(scene, groups, asked);
   return raytrace::render({scene, groups, effects, *part.query}, {}, *camera.camera, options,
                           progress_of_stages(common)("picture " + wish.name))

@@ -150,6 +150,7 @@ class Runner {
     found.conditions = work.judge(view, frame, work.all_batches(), results_.costs);
     if (Interrupt::asked()) return;
     add_all(work.conclude(view, results_.figures));
+    if (Interrupt::asked()) return;
     found.thumbnails = draw_thumbnails(work, &view, found.conditions);
   }
 

@@ -120,7 +120,8 @@ inline constexpr double error_bright = 4.0;  // over the mean
 struct ErrorSums {
   std::size_t pixels = 0;
   double luminance = 0.0;  // their mean
-  // What errors are relative to: that mean, or what it is off by where noise leaves none of it.
+  // What errors are relative to: that mean, or, where noise has made it negative, half of what
+  // pixels are off by, so that no error that can be asked for, 1 at most, is reached there.
   double yardstick = 0.0;
   std::array<double, error_parts> squared{};  // mean squared errors, weighted, over yardstick^2
   [[nodiscard]] double squared_error() const {
@@ -151,8 +152,8 @@ struct LayerErrors {
 
   // Takes each place's light from the picture. groups: its layers'.
   void see(const base::Image& picture, std::span<const std::string> groups);
-  // squared: by part, stated of the sum of all: mean, relative.
-  void scale_to(std::span<const double> squared);
+  // squared: by part, stated of the sum of all: mean, over yardstick^2 (ErrorSums).
+  void scale_to(std::span<const double> squared, double yardstick);
   // Error of the sum with these weights, whose bright pixels count as error_weight says: of each
   // part what is stated of the sum of all, by as much as its samples' noise is that of the weighted
   // sum, before neighbours share it. None where the sum is dark or nothing is known.

@@ -12,6 +12,10 @@ namespace earthshine::raytrace {
 
 using base::pi;
 
+namespace {
+constexpr std::uint32_t paths_between_stops = 256;
+}
+
 void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& more,
                              std::uint32_t round, const std::function<bool()>& stop) {
   Estimate& estimate = estimate_[number(kind)];
@@ -22,7 +26,7 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
     if (stop && stop()) return;
     PathWalker walker(world_);
     RayCounts& counts = counts_of[t];
-    std::vector<Rgb> sum(image_layers_);
+    std::array<std::vector<Rgb>, 2> sums;
     std::vector<float> off;
     for (const std::size_t p : points_of_tile(t)) {
       const GatherPoint& point = points_[p];
@@ -32,7 +36,8 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
       if ((lobe ? point.lobe : point.reflectance) <= 0.0F) continue;
       off.assign(notes(p, round) ? image_layers_ : 0, 0.0F);
       for (std::uint32_t half = 0; half < 2; ++half) {
-        std::fill(sum.begin(), sum.end(), Rgb(0.0));
+        std::vector<Rgb>& sum = sums[half];
+        sum.assign(image_layers_, Rgb(0.0));
         const base::Key key =
             base::Key(setting_.seed, lobe ? base::Stream::Lobe : base::Stream::Residual,
                       random_number_of(p))
@@ -40,6 +45,11 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
         const base::SobolOwen4 directions(key);
         const RayOrigins origins = draw_origins(kind, p, 2 * round + half, each, counts);
         for (std::uint32_t k = 0; k < each; ++k) {
+          // What was cast of a point that a stop leaves half done is lost.
+          if (k % paths_between_stops == paths_between_stops - 1 && stop && stop()) {
+            counts += walker.rays();
+            return;
+          }
           base::Rng rng(key.with(k));
           walker.take_turn(random_number_of(p), first / 2 + k, half);  // neighbours: another first
           const auto u = directions.point2(k);
@@ -52,11 +62,13 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
                                                 double(u[0]), double(u[1]), rng);
           for (std::size_t layer = 0; layer < image_layers_; ++layer) sum[layer] += found[layer];
         }
+      }
+      for (std::uint32_t half = 0; half < 2; ++half) {
         for (std::size_t layer = 0; layer < image_layers_; ++layer) {
-          estimate.sum[p * image_layers_ + layer] += glm::vec3(sum[layer]);
+          estimate.sum[p * image_layers_ + layer] += glm::vec3(sums[half][layer]);
         }
-        estimate.luminance[p][half] += static_cast<float>(luminance_of(sum));
-        note_half(half, sum, off);
+        estimate.luminance[p][half] += static_cast<float>(luminance_of(sums[half]));
+        note_half(half, sums[half], off);
       }
       finish_note(kind, p, 2.0 * each, off, notes_of[t]);
       estimate.samples[p] += static_cast<float>(2 * each);

@@ -92,7 +92,8 @@ class Passes {
 
   void run_shared() {
     const SharedGather& how = options_.shared;
-    const PilotPass pilot = run_pilot_pass(shared_, camera_, how.least_samples);
+    const PilotPass pilot =
+        run_pilot_pass(shared_, camera_, how.least_samples, [this] { return ends(); });
     report_.rays.planning += pilot.rays.total();
     // n = deviation / c gives a mean squared error of c times the mean deviation.
     const double wanted_error = how.noise * pilot.luminance;

@@ -19,8 +19,8 @@ constexpr double last_step_share = 0.5;
 constexpr double least_step = 0.05;
 // Of the wanted error, what samples are planned for: the next statement may turn out larger.
 constexpr double aimed_share = 0.97;
-constexpr double fine_error = 0.04;  // from there down a first look is a full one
-constexpr std::size_t least_paths = 1U << 16U;
+constexpr double fine_error = 0.04;             // from there down a first look is a full one
+constexpr std::size_t least_paths = 1U << 16U;  // of a first look, up to rounding down
 constexpr double hopeless_growth = 1024.0, hopeless_share = 0.5;
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far each round of samples goes on the way to the error that is wanted of a picture, and when
-// no end of them is in sight.
+// How much a first look at a picture takes, how far each round of samples goes from there to the
+// error that is wanted, and when no end of them is in sight.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,10 @@ namespace earthshine::raytrace {
 // error is stated.
 inline constexpr double sure_share = 0.94;
 
-// What a first look casts at every gather point. Half as much where a coarse picture is wanted, or
-// any that a time limit allows: smooth pictures are done with it, and where others' samples go, few
-// tell as well as twice as many (payload bay, 5 %). At 3 % they do not.
+// What a first look casts at every gather point. Of gather rays and paths half as many where a
+// coarse picture is wanted, or any that a time limit allows: smooth pictures are done with that,
+// and of others half tells as well as the whole where more samples should go (payload bay, 5 %; at
+// 3 % it does not). In small pictures more paths, for light that few of them find.
 struct FirstLook {
   std::uint32_t gather_rays = 16, paths = 4, lobe_rays = 2;
 };

@@ -256,7 +256,8 @@ SamplePlan SamplePlanner::plan(double wanted, double most_cost) const {
   return plan;
 }
 
-PilotPass run_pilot_pass(ShadingScene shared, const CameraModel& camera, int samples) {
+PilotPass run_pilot_pass(ShadingScene shared, const CameraModel& camera, int samples,
+                         const std::function<bool()>& stop) {
   shared.diffuse = DiffuseSource::Solution;
   shared.splits_parts = false;
   const int step = std::max(1, std::min(camera.columns, camera.rows) / planning_grid);
@@ -271,7 +272,8 @@ PilotPass run_pilot_pass(ShadingScene shared, const CameraModel& camera, int sam
       const int column = static_cast<int>(k) % columns, row = static_cast<int>(k) / columns;
       looks[k].window.x = std::min(camera.columns - 1, column * step + step / 2);
       looks[k].window.y = std::min(camera.rows - 1, row * step + step / 2);
-      shade_samples(shared, camera, {static_cast<std::uint32_t>(samples)}, looks[k], rays, {}, {});
+      shade_samples(shared, camera, {static_cast<std::uint32_t>(samples)}, looks[k], rays, stop,
+                    {});
     }
     const std::lock_guard lock(mutex);
     pilot.rays += rays;

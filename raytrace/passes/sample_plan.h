@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -96,7 +97,9 @@ struct PilotPass {
   [[nodiscard]] double bright() const { return 4.0 * luminance; }
 };
 
-// samples: camera samples per pixel that is looked at. The same for every crop of a picture.
-[[nodiscard]] PilotPass run_pilot_pass(ShadingScene shared, const CameraModel& camera, int samples);
+// samples: camera samples per pixel that is looked at. The same for every crop of a picture, but
+// where stop() leaves pixels out.
+[[nodiscard]] PilotPass run_pilot_pass(ShadingScene shared, const CameraModel& camera, int samples,
+                                       const std::function<bool()>& stop);
 
 }  // namespace earthshine::raytrace

@@ -10,6 +10,8 @@
 namespace earthshine::raytrace {
 namespace {
 
+constexpr double rounding = 1e-6;  // of sums in single precision
+
 double luminance_of(std::span<const glm::vec3> layers, const glm::vec3& factor) {
   glm::vec3 sum(0.0F);
   for (const glm::vec3& layer : layers) sum += layer;
@@ -54,7 +56,8 @@ StatedError state_error(const PixelSums& sums, const GatherField* field, const W
       if (n == 0.0) continue;
       Rgb own(0.0);
       for (std::size_t k = 0; k < layers; ++k) own += Rgb(sums.radiance[from * sums.entries + k]);
-      double luminance = base::luminance(own) - sums.source[from].luminance;
+      const double all = base::luminance(own), seen_source = sums.source[from].luminance;
+      double luminance = std::abs(all - seen_source) > rounding * all ? all - seen_source : 0.0;
       std::array<float, error_parts>& squared = stated.squared[to];
       if (field != nullptr) {
         const FieldOfPixel read(sums, *field, from);
@@ -87,14 +90,14 @@ ErrorSums add_up(const StatedError& stated, std::span<const std::size_t> pixels)
   }
   if (sums.pixels == 0) return sums;
   sums.luminance /= static_cast<double>(sums.pixels);
-  sums.yardstick = std::max(0.0, sums.luminance);
-  if (sums.yardstick <= 0.0) {
+  sums.yardstick = sums.luminance;
+  if (sums.luminance < 0.0) {
     double square = 0.0;
     for (const std::size_t p : pixels) {
       if (stated.counts[p] == 0) continue;
       for (const float part : stated.squared[p]) square += double(part);
     }
-    sums.yardstick = std::sqrt(square / static_cast<double>(sums.pixels));
+    sums.yardstick = 0.5 * std::sqrt(square / static_cast<double>(sums.pixels));
   }
   if (sums.yardstick <= 0.0) return sums;
   const double scale = 1.0 / (static_cast<double>(sums.pixels) * sums.yardstick * sums.yardstick);

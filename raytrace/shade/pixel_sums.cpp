@@ -170,12 +170,11 @@ void shade_samples(const ShadingScene& shared, const CameraModel& camera,
     }
   };
   const auto shade_tile = [&](std::size_t tile) {
-    if (stop && stop()) return;
     PixelShader shader(shared);
     std::uint64_t count = 0;
     for_each_pixel(tile, [&](int x, int y, std::size_t pixel) {
       const std::uint32_t first = sums.samples[pixel];
-      if (wanted[pixel] <= first) return;
+      if (wanted[pixel] <= first || (stop && stop())) return;
       const std::uint64_t before = shader.rays().total();
       shade_pixel(shared, camera, x, y, first, wanted[pixel], shader);
       sums.rays[pixel] += static_cast<float>(shader.rays().total() - before);

@@ -151,6 +151,33 @@ class Resume(Case):
         self.says(errors, "interrupted", "again")
         self.assertLess(usage.ru_utime + usage.ru_stime - taken, 1.5)
 
+    def test_a_signal_leaves_a_picture_by_spread_lights_at_once(self):
+        """It was drawn to its end, for a minute of a processor; the coarse look at it asked nobody, either."""
+        self.write("study.toml", '''format = 1
+scene = "bay.toml"
+size = "128x128"
+[orbit]
+positions = 4
+[[picture]]
+name = "spread"
+camera = "A"
+shows = "distributed"
+lights = 65536
+''')
+        run = self.started("study", "run", "study.toml", "-o", "o")
+        while run.poll() is None and not list(self.folder.glob("o/points/*.json")):
+            time.sleep(0.01)
+        taken = self.cpu_seconds(run) + 1.0
+        while run.poll() is None and self.cpu_seconds(run) < taken:
+            time.sleep(0.01)
+        run.send_signal(signal.SIGINT)
+        errors = run.stderr.read()
+        _, status, usage = os.wait4(run.pid, 0)
+        self.assertEqual(os.waitstatus_to_exitcode(status), 1, errors)
+        self.says(errors, "interrupted", "again")
+        self.assertLess(usage.ru_utime + usage.ru_stime - taken, 1.5)
+        self.assertEqual(list(self.folder.glob("o/pictures/*.exr")), [])
+
     def test_an_interrupted_run_says_so_and_goes_on(self):
         self.write("bay.toml", BAY)
         call = ("study", "orbit", "bay.toml", "--positions", "4", "-o", "o", "--wanted", "box>=0.5",

@@ -22,7 +22,7 @@ TEST(LayerErrors, EachPartIsScaledByItsOwnNoise) {
   errors.noise[0].add(0, std::array<float, 2>{0.5F, 0.0F});
   errors.noise[1].add(1, std::array<float, 2>{0.0F, 0.1F});
   for (LayerNoise& part : errors.noise) part.luminance = {3.0F, 1.0F};
-  errors.scale_to(std::array<double, 2>{0.01, 0.04});
+  errors.scale_to(std::array<double, 2>{0.01, 0.04}, 3.0 + 1.0);
   const auto of = [&](double first, double second) {
     const auto found = errors.of(std::array<double, 2>{first, second});
     return found ? std::optional(found->relative()) : std::nullopt;
@@ -42,7 +42,7 @@ LayerErrors errors_of_one_place(const std::array<double, 2>& mean, const std::ar
   errors.noise.resize(1);
   errors.noise[0].add(0, off);
   errors.noise[0].luminance.assign(there.begin(), there.end());
-  errors.scale_to(std::array<double, 1>{0.01});
+  errors.scale_to(std::array<double, 1>{0.01}, mean[0] + mean[1]);
   return errors;
 }
 
