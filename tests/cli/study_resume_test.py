@@ -136,12 +136,9 @@ class Resume(Case):
             self.assertEqual(run.returncode, -number)
             self.assertEqual(list(self.folder.glob("o/points/solution-*.h5")), [])
 
-    def test_a_signal_leaves_a_picture_at_once(self):
-        """None is kept that is not whole: it was finished as far as it had come, for 3 s of a processor, and thrown away."""
-        run = self.started("study", "orbit", "bay.toml", "--positions", "4", "-o", "o", "--size", "512x512")
-        while run.poll() is None and not list(self.folder.glob("o/points/solution-*.h5")):
-            time.sleep(0.01)
-        taken = self.cpu_seconds(run) + 0.3
+    def leaves_at_once(self, run, after):
+        """Ctrl-C, after so many seconds of a processor more, ends it within a second and a half of one."""
+        taken = self.cpu_seconds(run) + after
         while run.poll() is None and self.cpu_seconds(run) < taken:
             time.sleep(0.01)
         run.send_signal(signal.SIGINT)
@@ -150,6 +147,13 @@ class Resume(Case):
         self.assertEqual(os.waitstatus_to_exitcode(status), 1, errors)
         self.says(errors, "interrupted", "again")
         self.assertLess(usage.ru_utime + usage.ru_stime - taken, 1.5)
+
+    def test_a_signal_leaves_a_picture_at_once(self):
+        """None is kept that is not whole: it was finished as far as it had come, for 3 s of a processor, and thrown away."""
+        run = self.started("study", "orbit", "bay.toml", "--positions", "4", "-o", "o", "--size", "512x512")
+        while run.poll() is None and not list(self.folder.glob("o/points/solution-*.h5")):
+            time.sleep(0.01)
+        self.leaves_at_once(run, 0.3)
 
     def test_a_signal_leaves_a_picture_by_spread_lights_at_once(self):
         """It was drawn to its end, for a minute of a processor; the coarse look at it asked nobody, either."""
@@ -167,15 +171,7 @@ lights = 65536
         run = self.started("study", "run", "study.toml", "-o", "o")
         while run.poll() is None and not list(self.folder.glob("o/points/*.json")):
             time.sleep(0.01)
-        taken = self.cpu_seconds(run) + 1.0
-        while run.poll() is None and self.cpu_seconds(run) < taken:
-            time.sleep(0.01)
-        run.send_signal(signal.SIGINT)
-        errors = run.stderr.read()
-        _, status, usage = os.wait4(run.pid, 0)
-        self.assertEqual(os.waitstatus_to_exitcode(status), 1, errors)
-        self.says(errors, "interrupted", "again")
-        self.assertLess(usage.ru_utime + usage.ru_stime - taken, 1.5)
+        self.leaves_at_once(run, 1.0)
         self.assertEqual(list(self.folder.glob("o/pictures/*.exr")), [])
 
     def test_an_interrupted_run_says_so_and_goes_on(self):
