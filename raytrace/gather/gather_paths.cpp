@@ -23,12 +23,12 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
   std::vector<RayCounts> counts_of(tile_count(window_));
   std::vector<LayerNoise> notes_of(counts_of.size());
   const auto cast_tile = [&](std::size_t t) {
-    if (stop && stop()) return;
     PathWalker walker(world_);
     RayCounts& counts = counts_of[t];
     std::array<std::vector<Rgb>, 2> sums;
     std::vector<float> off;
     for (const std::size_t p : points_of_tile(t)) {
+      if (stop && stop()) break;
       const GatherPoint& point = points_[p];
       const std::uint32_t each = more[p] / 2;
       const auto first = static_cast<std::uint64_t>(estimate.samples[p]);

@@ -89,8 +89,8 @@ SamplePlanner::SamplePlanner(const PixelSums& sums, const GatherField* field,
   now_ = whole.squared_error();
   const double scale =
       1.0 / (static_cast<double>(whole.pixels) * whole.yardstick * whole.yardstick);
-  if (field != nullptr) look_at_field(stated, whole.yardstick, scale);
-  look_at_pixels(stated, whole.yardstick, scale);
+  if (field != nullptr) look_at_field(stated, whole.luminance, scale);
+  look_at_pixels(stated, whole.luminance, scale);
 }
 
 template <class Look>

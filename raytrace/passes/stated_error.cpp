@@ -103,7 +103,7 @@ ErrorSums add_up(const StatedError& stated, std::span<const std::size_t> pixels)
   const double scale = 1.0 / (static_cast<double>(sums.pixels) * sums.yardstick * sums.yardstick);
   for (const std::size_t p : pixels) {
     if (stated.counts[p] == 0) continue;
-    const double weight = error_weight(double(stated.luminance[p]), sums.yardstick);
+    const double weight = error_weight(double(stated.luminance[p]), sums.luminance);
     for (std::size_t part = 0; part < error_parts; ++part) {
       sums.squared[part] += weight * weight * scale * double(stated.squared[p][part]);
     }

@@ -51,7 +51,7 @@ struct PixelSums {
 };
 
 // Brings every pixel up to wanted[pixel] samples. Sample k of a pixel is the same whatever came
-// before. Returns early, between tiles, when stop says so.
+// before. Returns early, between pixels, when stop says so.
 void shade_samples(const ShadingScene& shared, const CameraModel& camera,
                    const std::vector<std::uint32_t>& wanted, PixelSums& sums, RayCounts& rays,
                    const std::function<bool()>& stop,
