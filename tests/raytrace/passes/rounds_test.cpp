@@ -89,8 +89,8 @@ TEST(Rounds, APictureThatNoiseLeavesNothingOfGoesOn) {
   EXPECT_NEAR(planner.squared_error(), 4.0, 1e-12);
   EXPECT_TRUE(Rounds(1.0).next(planner, spent(sums, nullptr, {}), no_limit).has_value());
   // Nor where all that it is off by is in one bright pixel, which counts whole.
-  sums.radiance[0] = glm::vec3(100.0F * 4.0F);
-  sums.radiance[1] = glm::vec3(-1000.0F * 1024.0F);
+  sums.radiance[0] = glm::vec3(1e4F * 4.0F);
+  sums.radiance[1] = glm::vec3(-1e5F * 1024.0F);
   sums.half_difference[0] = 1000.0 * 4.0;
   EXPECT_NEAR(SamplePlanner(sums, nullptr, {}).squared_error(), 4.0, 1e-12);
 }
