@@ -86,6 +86,10 @@ class GatherField {
   // of two; the `round`-th time.
   void cast(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
             const std::function<bool()>& stop);
+  // A first look: `each` everywhere, or where the centres of a pixel and of those about it lie on
+  // one surface at every second pixel, which serves those beside it.
+  void look_first(Gathered kind, std::uint32_t each, bool every_second,
+                  const std::function<bool()>& stop);
   // Where a stop or the time limit left no samples of a kind: the fewest. Where neighbours share,
   // the middle one of 25 pixels serves those about it that show the same surface, and where none
   // does a point as far on as it may be.

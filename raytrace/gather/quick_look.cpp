@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which gather points are sampled where a stop or a time limit leaves no time for all of them.
+// Which gather points a first look samples, and which where a stop or a time limit leaves no time
+// for all of these.
 #include <algorithm>
 
 #include "raytrace/gather/gather_field.h"
@@ -12,6 +13,16 @@ namespace {
 constexpr int reach = 2;
 
 }  // namespace
+
+void GatherField::look_first(Gathered kind, std::uint32_t each, bool every_second,
+                             const std::function<bool()>& stop) {
+  std::vector<std::uint32_t> samples(points_.size(), each);
+  for (std::size_t p = 0; every_second && p < grid_; ++p) {
+    const auto [x, y] = place_of(p);
+    if ((x + y) % 2 != 0 && is_even(x, y)) samples[p] = 0;
+  }
+  cast(kind, samples, 0, stop);
+}
 
 void GatherField::look_quickly(Gathered kind) {
   if (!gathers(kind)) return;

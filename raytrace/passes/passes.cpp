@@ -112,7 +112,7 @@ class Passes {
       const auto rays = static_cast<std::uint32_t>(options_.gather_rays);
       const std::uint32_t fewest = GatherField::fewest_samples(Gathered::Solution);
       for (const Gathered kind : every_kind) {
-        cast_evenly(kind, kind == Gathered::Solution ? std::max(rays, fewest) : rays / 2);
+        look_first(kind, kind == Gathered::Solution ? std::max(rays, fewest) : rays / 2);
         field_->share(kind, true);
       }
       count_gather_rays();
@@ -139,9 +139,9 @@ class Passes {
       begin_field();
       reserve_s_ = after_gathering * seconds_since(start);
       const FirstLook first = first_look(options_.error, field_->points().size());
-      cast_evenly(Gathered::Solution, first.gather_rays);
-      cast_evenly(Gathered::Residual, first.paths);
-      cast_evenly(Gathered::Lobe, first.lobe_rays);
+      look_first(Gathered::Solution, first.gather_rays, first.every_second);
+      look_first(Gathered::Residual, first.paths, first.every_second);
+      look_first(Gathered::Lobe, first.lobe_rays);
       covered = !ends();
       share();
       report_.gather_seconds += seconds_since(start);
@@ -204,9 +204,8 @@ class Passes {
     shared_.field = &*field_;
   }
 
-  void cast_evenly(Gathered kind, std::uint32_t each) {
-    const std::vector<std::uint32_t> more(field_->points().size(), each);
-    field_->cast(kind, more, 0, [this] { return ends(); });
+  void look_first(Gathered kind, std::uint32_t each, bool every_second = false) {
+    field_->look_first(kind, each, every_second, [this] { return ends(); });
     tell(pixels() * each);
     if (ends()) field_->look_quickly(kind);
   }

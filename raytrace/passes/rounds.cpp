@@ -9,9 +9,7 @@
 namespace earthshine::raytrace {
 namespace {
 
-constexpr double most_step = 2.0;  // less squared error a round
-// Off the squared error, rounds take so many times what plans promise.
-constexpr double kept = 1.5;
+constexpr double most_step = 4.0;  // less squared error a round
 // Near the wanted error, how much more is cast before looking again, over what samples spread as
 // so far would take: what was known by few samples is often better than it seemed.
 constexpr double last_step_share = 0.5;
@@ -27,7 +25,10 @@ constexpr double hopeless_growth = 1024.0, hopeless_share = 0.5;
 
 FirstLook first_look(double wanted, std::size_t points) {
   FirstLook first;
-  if (wanted <= 0.0 || wanted > fine_error) first.gather_rays /= 2, first.paths /= 2;
+  if (wanted <= 0.0 || wanted > fine_error) {
+    first.gather_rays /= 2, first.paths /= 2;
+    first.every_second = first.paths * points / 2 >= least_paths;
+  }
   const std::size_t each = least_paths / std::max<std::size_t>(1, points);
   first.paths = std::max(first.paths, std::bit_floor(static_cast<std::uint32_t>(each)));
   return first;
@@ -46,7 +47,7 @@ std::optional<SamplePlan> Rounds::next(const SamplePlanner& planner, double so_f
     return {};
   }
   // Step by step: what few samples say of more of them is rough.
-  const double step = now - (now - std::max(aimed, now / most_step)) / kept;
+  const double step = std::max(aimed, now / most_step);
   double most = affordable;
   if (now < most_step * aimed) {
     const double missing = last_step_share * (now / aimed - 1.0);
@@ -70,11 +71,9 @@ double Rounds::growth() const {
 double Rounds::growth(const SamplePlanner& planner, double so_far) const {
   const double now = planner.squared_error(), aimed = aim() * aim();
   if (now <= aimed || so_far <= 0.0) return 1.0;
-  const SamplePlan plan =
-      planner.plan(now - (now - aimed) / kept, std::numeric_limits<double>::infinity());
+  const SamplePlan plan = planner.plan(aimed, std::numeric_limits<double>::infinity());
   // A plan gives a point four times its samples at most: beyond, as the square of the error.
-  const double left = now - kept * (now - plan.squared_error);
-  const double by_plan = (1.0 + plan.cost / so_far) * std::max(1.0, left / aimed);
+  const double by_plan = (1.0 + plan.cost / so_far) * std::max(1.0, plan.squared_error / aimed);
   // Further samples find further points that are bad, of which the plan knows nothing: what
   // pictures took in the end lay midway between it and samples that are spread as so far.
   return std::sqrt(by_plan * now / aimed);

@@ -112,14 +112,16 @@ void SamplePlanner::look_at_field(const StatedError& stated, double mean, double
     const auto kind = static_cast<Gathered>(k);
     if (!field_->gathers(kind)) continue;
     const Shared& shared = field_->shared(kind);
+    const auto fewest = static_cast<float>(GatherField::fewest_samples(kind));
     const auto gain_of = [&](std::size_t p, double two, double four, std::vector<Gain>& gains) {
       const std::size_t pixel = field_->pixel_of(p);
       const int x = field_->window().x + static_cast<int>(pixel % columns);
       const int y = field_->window().y + static_cast<int>(pixel / columns);
       if (!window.contains(x, y)) return;
-      const float samples = field_->samples(kind, p);
       const double reflected = field_->reflected(kind, p);
-      if (samples <= 0.0F || reflected <= 0.0) return;
+      if (reflected <= 0.0) return;
+      // Points that others served until now have the fewest to begin with.
+      const float samples = std::max(field_->samples(kind, p), fewest);
       const double weight = error_weight(double(stated.luminance[window.index(x, y)]), mean) *
                             reflected * field_->cover_of(p);
       const double factor = weight * weight * scale;
@@ -220,9 +222,7 @@ SamplePlan SamplePlanner::plan(double wanted, double most_cost) const {
   // cast.
   double all = 0.0;
   for (const Gain& gain : gains_) all += double(gain.cost);
-  if (all <= 0.0 || now_ <= 0.0) {
-    return plan;
-  }
+  if (all <= 0.0 || now_ <= 0.0) return plan;
   const double mean_gain = now_ / all;
   const bool any = outcome(gains_, least_gain * mean_gain).cost > 0.0;
   double low = std::log((any ? least_gain : least_gain_of_all) * mean_gain);

@@ -18,7 +18,10 @@
 // N is not told by how far the fields of noise are apart, since all are made of the same halves: s
 // is off by chance as a mean of (d^2 - n^2) / e with random signs is, whose square is 2 / N of q^2.
 // Where the s / q of a level differ by no more than that all over the picture, as where all is
-// smooth, what each is off their mean says nothing and is left out of s (signals.h).
+// smooth, what each is off their mean says nothing and is left out of s (signals.h). Noise of
+// single pixels is a hundred times all that is left: where nothing of a detail is kept, s is held
+// between none and that of the next coarser ones. An edge has half of their signal, what is smooth
+// a fourth or less.
 // That sum over the levels, and the noise of the rest, is the squared error that is stated. It goes
 // to nothing with more samples, and with it what sharing blurs.
 #pragma once

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The squared error that keeping details leaves.
+#include <limits>
+
 #include "raytrace/share/share.h"
 
 namespace earthshine::raytrace {
@@ -7,20 +9,20 @@ namespace {
 
 constexpr std::size_t points_at_once = 256;
 
-// What is kept of the noise, and what is not kept of the signal.
-struct Left {
-  float noise, blur;
-  // Signals that are not there come out as often below zero as above; noise is never undone so.
-  [[nodiscard]] float all() const { return noise + std::max(0.0F, blur); }
-};
-
-// few: 1 / N. c = 1 - q / (D - k q), so c' = (1 - c)^2 / q; no choice is off by more than the
-// detail.
-Left left_of(float s, float q, float few) {
+// What is kept of the noise and not kept of the signal. few: 1 / N. c = 1 - q / (D - k q), so c' =
+// (1 - c)^2 / q; no choice is off by more than the detail.
+float left_of(float s, float q, float few) {
   const float share = kept_share(s, q), ratio = 1.0F - share;
   const float kept = share * share * q, lost = ratio * ratio * s;
   const float choice = std::min(4.0F * (s + q) * ratio * ratio * few, s + q - kept - lost);
-  return {kept + (share > 0.0F ? choice : 0.0F), lost};
+  return kept + lost + (share > 0.0F ? choice : 0.0F);
+}
+
+// Of details that nothing is kept of the signal that is found is mostly chance: it is held to that
+// of the next coarser ones.
+float told_signal(float s, float q, float coarser) {
+  const float held = std::min(std::max(s, 0.0F), coarser);
+  return kept_share(s, q) > 0.0F ? s : held;
 }
 
 }  // namespace
@@ -28,27 +30,27 @@ Left left_of(float s, float q, float few) {
 void Shared::squared_errors_with(double factor, std::size_t begin, std::size_t end,
                                  float* errors) const {
   const float per_more = 1.0F / static_cast<float>(factor);
-  std::array<float, points_at_once> kept, lost;
   for (; begin < end; begin += points_at_once) {
     const std::size_t count = std::min(points_at_once, end - begin);
-    for (std::size_t k = 0; k < count; ++k) kept[k] = rest[begin + k] * per_more, lost[k] = 0.0F;
-    for (std::size_t level = 0; level < share_levels; ++level) {
+    std::array<float, points_at_once> told, coarser;
+    coarser.fill(std::numeric_limits<float>::max());
+    for (std::size_t k = 0; k < count; ++k) errors[k] = rest[begin + k] * per_more;
+    for (std::size_t level = share_levels; level-- > 0;) {
       const float *s = &signal[level][begin], *q = &noise[level][begin], *n = &few[level][begin];
-      std::array<float, points_at_once> least;
+      for (std::size_t k = 0; k < count; ++k) {
+        told[k] = told_signal(s[k], q[k], coarser[k]);
+        // Strays have single pixels' details alone.
+        coarser[k] = told[k] + q[k] > 0.0F ? told[k] : coarser[k];
+      }
       if (level == 0 && !hidden.empty()) {
-        for (std::size_t k = 0; k < count; ++k) {
-          const float hides = hidden[begin + k] * per_more;
-          least[k] = hides > 0.0F ? std::max(s[k], hides) : s[k];
-        }
-        s = least.data();
+        const float* const hides = &hidden[begin];
+        for (std::size_t k = 0; k < count; ++k) told[k] = std::max(told[k], hides[k] * per_more);
       }
       for (std::size_t k = 0; k < count; ++k) {
-        const Left left = left_of(s[k], q[k] * per_more, n[k]);
-        kept[k] += left.noise;
-        lost[k] += left.blur;
+        errors[k] += left_of(told[k], q[k] * per_more, n[k]);
       }
     }
-    for (std::size_t k = 0; k < count; ++k) *errors++ = Left{kept[k], lost[k]}.all();
+    errors += count;
   }
 }
 

@@ -23,10 +23,8 @@ constexpr double aim = 0.85;  // of the wanted error
 constexpr double first_error = 0.3, next_error = 0.4;
 constexpr double noise_share = 0.25;  // of the wanted squared error, left to the rays
 constexpr std::uint64_t many_rays = std::uint64_t{1} << 28;
-constexpr double most_times_more = 16.0;  // the rays cast so far
-constexpr double least_power = 0.05;      // of the rays: an error may seem to rise by chance
-constexpr double most_growth = 4.0;       // of the rays of a pass
-constexpr double cut_share = 0.6;         // to what is uneven within patches
+constexpr double most_growth = 4.0;                        // of the rays of a pass
+constexpr double cut_share = 0.6;                          // to what is uneven within patches
 constexpr std::size_t largest_cut = std::size_t{1} << 21;  // patches
 constexpr double next_pass = 1.2;                          // of the time that the one before took
 constexpr double more_points_share = 0.5;                  // of a time limit: no more points then
@@ -151,8 +149,11 @@ class SurfaceSearch {
       const double error = result_.steps.back().estimate;
       if (error <= wanted_.error && is_sure(found)) return;
       if (!may_cut() && !may_cast()) return stop(Limit::Settings);
-      if (is_hopeless(error)) return stop(why_no_more());
-      spent_.push_back(turns_->rays());
+      passes_.push_back({double(turns_->rays()), error});
+      if (wanted_.seconds <= 0.0 && turns_->rays() > many_rays &&
+          is_far_off(passes_, wanted_.error)) {
+        return stop(why_no_more());
+      }
       const double gone = time_gone();
       if (gone + next_pass * (gone - pass_begun) > 1.0) return stop(Limit::Time);
       pass_begun = gone;
@@ -188,18 +189,6 @@ class SurfaceSearch {
   [[nodiscard]] double enough() const {
     const double now = result_.steps.empty() ? first_error : result_.steps.back().estimate;
     return squared(std::max(aim * wanted_.error, next_error * now) * turns_->mean());
-  }
-
-  // By the power of all rays with which the error fell since half of them were cast.
-  [[nodiscard]] bool is_hopeless(double error) const {
-    const std::uint64_t rays = turns_->rays();
-    if (wanted_.seconds > 0.0 || rays <= many_rays) return false;
-    std::size_t half = spent_.size();
-    while (half > 0 && 2 * spent_[half - 1] > rays) --half;
-    if (half == 0) return false;
-    const double power = std::log(result_.steps[half - 1].estimate / error) /
-                         std::log(double(rays) / double(spent_[half - 1]));
-    return error > wanted_.error * std::pow(most_times_more, std::max(power, least_power));
   }
 
   // At most four times as many rays as before, or as many as the time that is left pays for.
@@ -252,7 +241,7 @@ class SurfaceSearch {
   std::optional<LightOnSurfaces> light_;
   std::optional<SurfaceTurns> turns_;  // of the light, and with it
   double solver_error_ = 0.0;
-  std::vector<std::uint64_t> spent_;  // rays by the end of each pass
+  std::vector<PassError> passes_;
   double points_wanted_ = fewest_points, last_rays_ = 0.0, last_took_ = 0.0;
   std::size_t first_patches_ = 0;
   PatchBound bound_;

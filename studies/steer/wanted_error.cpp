@@ -15,6 +15,10 @@ constexpr double measured_error = 0.05;
 constexpr double rays_there = 16.0;
 // Of each lamp: where the solution is off, pictures find it.
 constexpr int flux_rays = 1 << 12;
+constexpr double told_by = 8.0;           // rays so far over those of the passes that count
+constexpr double most_times_more = 16.0;  // the rays so far
+constexpr double least_power = 0.05;      // of the rays: an error may seem to rise by chance
+constexpr double least_told = 1e-3;       // of the wanted error
 constexpr double smallest_edge = 0.25, largest_edge = 2.0;  // over that of the measured error
 
 }  // namespace
@@ -37,6 +41,21 @@ std::string limit_name(Limit limit) {
       return "ledger";
   }
   return "";
+}
+
+bool is_far_off(const std::vector<PassError>& passes, double wanted) {
+  double count = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+  for (const PassError& pass : passes) {
+    if (told_by * pass.rays < passes.back().rays) continue;
+    const double rays = std::log(pass.rays / passes.back().rays);
+    const double error = std::log(std::max(pass.error, least_told * wanted));
+    count += 1.0, x += rays, y += error, xx += rays * rays, xy += rays * error;
+  }
+  const double spread = count * xx - x * x;
+  if (spread <= 0.0) return false;
+  const double power = std::max((x * y - count * xy) / spread, least_power);
+  const double now = std::exp((y + power * x) / count);
+  return now > wanted * std::pow(most_times_more, power);
 }
 
 radiosity::SolveOptions picture_solver(const scenes::Scene& scene, const scenes::Quality& quality,

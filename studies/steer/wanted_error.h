@@ -44,6 +44,15 @@ struct SteeredSolution {
   Limit limit = Limit::None;
 };
 
+// Whether a solve is to go on: what passes stated, after so many rays in all.
+struct PassError {
+  double rays = 0.0, error = 0.0;
+};
+// Whether what is left of the error takes more than 16 times the rays of all that has been done, as
+// the line has it that fits the logarithms of both best since an eighth of them were cast: a single
+// pass states too much or too little by chance. Of one pass nothing is known.
+[[nodiscard]] bool is_far_off(const std::vector<PassError>& passes, double wanted);
+
 // Called before each solve; gives the listener for what the solve takes, which may be empty.
 using SolveListener = std::function<void(const radiosity::SolveReport&)>;
 

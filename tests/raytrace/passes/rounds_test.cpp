@@ -55,29 +55,49 @@ TEST(Rounds, NoneCostsMoreThanCanBeAfforded) {
   EXPECT_FALSE(rounds.gave_up());
 }
 
-// All pixels alike but for a little: halving the squared error takes twice the samples of all, by 1
-// / N. That is two thirds of the way to a quarter, and rounds go 1.5 times as far as they plan. By
-// 1 / N alone a quarter would take four times the samples: sqrt(2 * 4) is expected.
-TEST(Rounds, GrowthIsMidwayBetweenThePlanAndTheSquare) {
+// All pixels alike but for a little, with 1024 samples each.
+PixelSums alike() {
   PixelSums sums = surprised();
   sums.samples[0] = 1024;
   sums.rays[0] = 1024.0F;
   sums.radiance[0] = glm::vec3(1024.0F);
   sums.luminance[0] = sums.source[0].reflecting = 1024.0;
-  sums.luminance2[0] = 1024.0 + 1023.0;
-  sums.half_difference[0] = std::sqrt(1024.0);
-  for (std::size_t p = 1; p < sums.samples.size(); ++p) {
-    const double alike = 1.0 + 1e-4 * double(p);
-    sums.luminance2[p] = 1024.0 + alike * 1023.0;
-    sums.half_difference[p] = std::sqrt(alike * 1024.0);
+  for (std::size_t p = 0; p < sums.samples.size(); ++p) {
+    const double variance = 1.0 + 1e-4 * double(p);
+    sums.luminance2[p] = 1024.0 + variance * 1023.0;
+    sums.half_difference[p] = std::sqrt(variance * 1024.0);
   }
+  return sums;
+}
+
+// A quarter of the squared error takes four times the samples, by 1 / N and by the plan; a
+// sixteenth four times those, of which a plan, which gives a point four times its samples at most,
+// knows the first step. 0.97 of the share of the wanted error that is sure is aimed at.
+TEST(Rounds, GrowthIsMidwayBetweenThePlanAndTheSquare) {
+  const PixelSums sums = alike();
   const SamplePlanner planner(sums, nullptr, {});
   const double so_far = spent(sums, nullptr, {});
-  const double quarter = 0.5 * std::sqrt(planner.squared_error());
-  // 0.97 of 0.94 of the wanted error is aimed at.
-  EXPECT_NEAR(Rounds(quarter / (0.97 * sure_share)).growth(planner, so_far), std::sqrt(2.0 * 4.0),
-              0.02);
-  EXPECT_EQ(Rounds(4.0 * quarter).growth(planner, so_far), 1.0);
+  const double half = 0.5 * std::sqrt(planner.squared_error());
+  const auto growth = [&](double aimed) {
+    return Rounds(aimed / (0.97 * sure_share)).growth(planner, so_far);
+  };
+  EXPECT_NEAR(growth(half), 4.0, 0.02);
+  EXPECT_NEAR(growth(0.5 * half), 16.0, 0.1);
+  EXPECT_EQ(growth(4.0 * half), 1.0);
+}
+
+// Each round takes a sharing and a look, too: one goes to a quarter of the squared error, for three
+// times the samples so far, and no further, since what few samples say of many more is rough.
+TEST(Rounds, OneGoesToAQuarterOfTheSquaredError) {
+  const PixelSums sums = alike();
+  const SamplePlanner planner(sums, nullptr, {});
+  const double so_far = spent(sums, nullptr, {});
+  const double half = 0.5 * std::sqrt(planner.squared_error());
+  for (const double aimed : {half, 0.1 * half}) {
+    const auto plan = Rounds(aimed / (0.97 * sure_share)).next(planner, so_far, no_limit);
+    ASSERT_TRUE(plan.has_value());
+    EXPECT_NEAR(plan->cost, 3.0 * so_far, 0.1 * so_far);
+  }
 }
 
 // What is lacking may outweigh, by chance, all that there is: a mean of less than nothing has not
@@ -116,6 +136,13 @@ TEST(Rounds, AFirstLookIsAsCoarseAsThePicture) {
     EXPECT_EQ(2 * half.paths, full.paths);
   }
   EXPECT_EQ(first_look(0.01, points).paths, full.paths);
+}
+
+// At half of the points where a picture is coarse, as long as their paths are 2^16.
+TEST(Rounds, AFirstLookAtEverySecondPointIsOfManyPointsAlone) {
+  EXPECT_TRUE(first_look(0.05, 1U << 16U).every_second);
+  EXPECT_FALSE(first_look(0.05, (1U << 16U) - 1).every_second);
+  EXPECT_FALSE(first_look(0.04, 1U << 20U).every_second);
 }
 
 // Light that one of ten thousand paths finds, of 2^15 some find but with a chance of exp(-3.3) = 4

@@ -47,6 +47,24 @@ TEST(Share, NoiseFallsAndNoLessIsStated) {
   EXPECT_LT(stated, 0.5 / 8.0);
 }
 
+// A detail of signal s and noise q of which c = sure / (sure + q), sure = s - q / 2, is kept leaves
+// (1 - c)^2 s + c^2 q; here s = 2, q = 1 leave 0.32 + 0.36. A finer one that nothing is kept of is
+// held between none and that signal. A stray has no coarser details, and one that is kept is what
+// it was found to be: s = 200, q = 100 leave 0.16 200 + 0.36 100.
+TEST(Share, WhatNoiseHidesIsNoMoreThanCoarserDetailsHold) {
+  Shared shared;
+  shared.resize(4);
+  shared.signal[1] = {2.0F, 2.0F, 0.0F, 2.0F};
+  shared.noise[1] = {1.0F, 1.0F, 0.0F, 1.0F};
+  shared.signal[0] = {5.0F, -5.0F, 5.0F, 200.0F};
+  shared.noise[0] = {100.0F, 100.0F, 100.0F, 100.0F};
+  constexpr double coarser = 0.32 + 0.36;
+  EXPECT_NEAR(shared.squared_error_with(0, 1.0), coarser + 2.0, 1e-5);
+  EXPECT_NEAR(shared.squared_error_with(1, 1.0), coarser, 1e-5);
+  EXPECT_NEAR(shared.squared_error_with(2, 1.0), 5.0, 1e-5);
+  EXPECT_NEAR(shared.squared_error_with(3, 1.0), coarser + 32.0 + 36.0, 1e-4);
+}
+
 TEST(Share, NothingIsSharedAcrossAnEdgeOrAStep) {
   // Two planes that meet at x = 20, turned by 90 degrees or half a metre apart, of unlike light and
   // as much noise: the means of each stay its own.

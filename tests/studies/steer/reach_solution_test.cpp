@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -20,6 +21,23 @@ SteeredSolution reached(const scenes::Scene& scene, double error, std::uint64_t 
   Wanted wanted;
   wanted.error = error;
   return reach_surfaces(prepared, wanted, seed, {});
+}
+
+// An error that falls as the fourth root of the rays is halved by 16 times as many, however much
+// the last pass states by chance: here a tenth more and, of the one before, less. What does not
+// fall is far off, and what falls fast from far above is not.
+TEST(ReachSolution, ASinglePassDoesNotTellHowFarTheEndIs) {
+  std::vector<PassError> passes;
+  for (const double rays : {1.0, 2.0, 4.0, 8.0, 16.0, 32.0}) {
+    passes.push_back({rays, 0.2 / std::sqrt(std::sqrt(rays))});
+  }
+  const double now = passes.back().error;
+  EXPECT_FALSE(is_far_off(passes, 0.51 * now));
+  EXPECT_TRUE(is_far_off(passes, 0.49 * now));
+  passes.back().error *= 1.1, passes[4].error *= 0.9;
+  EXPECT_FALSE(is_far_off(passes, 0.7 * now));
+  EXPECT_TRUE(is_far_off({{1.0, 0.1}, {4.0, 0.1}, {8.0, 0.1}}, 0.05));
+  EXPECT_FALSE(is_far_off({{8.0, 0.1}}, 0.05));
 }
 
 // What was reached has no limit, however little the last solve brought, and what was not has one.

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a first look at a coarse picture samples, and what it leaves to neighbours and to later
+// rounds.
+#include <gtest/gtest.h>
+
+#include "raytrace/passes/passes.h"
+#include "raytrace/passes/rounds.h"
+#include "raytrace/passes/sample_plan.h"
+#include "raytrace/shade/shading_setup.h"
+#include "tests/support/scene_builder.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+// Half of as many pixels' paths are still as many as a first look takes.
+constexpr int edge_px = 256;
+
+// A room lit by one of its walls, seen from a corner: what is off is mostly what is gathered.
+struct Looked {
+  scenes::Scene scene = [] {
+    tests::SceneBuilder builder;
+    const std::uint32_t grey = builder.material(tests::grey(0.5));
+    const std::uint32_t bright = builder.material(tests::grey(0.5, 100.0));
+    builder.room({bright, grey, grey, grey, grey, grey});
+    return builder.scene;
+  }();
+  tests::Prepared prepared{scene};
+  radiosity::Solution solution = [this] {
+    radiosity::SolveOptions solve;
+    solve.patch_edge_m = 0.25;
+    solve.form_factor_rays = 64;
+    return prepared.solve(solve);
+  }();
+  scenes::Camera camera = [] {
+    scenes::Camera corner;
+    corner.position = Vec3(0.95, 0.9, 0.6);
+    corner.look_at = Vec3(0.4, 0.45, 0.2);
+    corner.fov_deg = 60.0;
+    return corner;
+  }();
+  RenderOptions options = [] {
+    RenderOptions of_a_coarse_picture;
+    of_a_coarse_picture.columns = of_a_coarse_picture.rows = edge_px;
+    of_a_coarse_picture.shared.on = true;
+    of_a_coarse_picture.error = 1.0;
+    return of_a_coarse_picture;
+  }();
+  // What is sampled points at what it was sampled with.
+  scenes::World world = prepared;
+  ShadingSetup setup{world, solution, camera, options};
+  RenderReport report;
+  Sampled sampled =
+      sample_picture(setup.shared(), setup.world(), setup.camera(), options, {}, report);
+  [[nodiscard]] const GatherField& field() const { return *sampled.field; }
+  [[nodiscard]] bool is_left_out(Gathered kind, int x, int y) const {
+    return field().samples(kind, field().window().index(x, y)) == 0.0F;
+  }
+};
+
+const Looked& looked() {
+  static const Looked one;
+  return one;
+}
+
+TEST(FirstLook, LeavesEverySecondPixelOfASurfaceToThoseBesideIt) {
+  for (const Gathered kind : {Gathered::Solution, Gathered::Residual}) {
+    int left_out = 0;
+    for (int y = 0; y < edge_px; ++y) {
+      for (int x = 0; x < edge_px; ++x) {
+        const bool leaves = (x + y) % 2 != 0 && looked().field().is_even(x, y);
+        ASSERT_EQ(looked().is_left_out(kind, x, y), leaves) << x << ' ' << y;
+        left_out += leaves ? 1 : 0;
+      }
+    }
+    EXPECT_GT(left_out, edge_px * edge_px / 3);  // most of the room is walls
+  }
+}
+
+// What sharing blurs there goes to nothing as that of all others does: where squared error has a
+// price, such points get the fewest samples of their own, or four times as many.
+TEST(FirstLook, WhatItLeavesOutIsSampledByRounds) {
+  const GatherField& field = looked().field();
+  const SamplePlanner planner(looked().sampled.sums, &field, sample_costs(&field));
+  const SamplePlan plan = planner.plan(0.0, 1e30);
+  for (const Gathered kind : {Gathered::Solution, Gathered::Residual}) {
+    const auto& wanted = plan.field[static_cast<std::size_t>(kind)];
+    int sampled = 0;
+    for (int y = 0; y < edge_px; ++y) {
+      for (int x = 0; x < edge_px; ++x) {
+        if (!looked().is_left_out(kind, x, y)) continue;
+        sampled += wanted[field.window().index(x, y)] >= GatherField::fewest_samples(kind) ? 1 : 0;
+      }
+    }
+    EXPECT_GT(sampled, edge_px * edge_px / 8);
+  }
+}
+
+}  // namespace
+}  // namespace earthshine::raytrace
