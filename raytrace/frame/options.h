@@ -47,6 +47,8 @@ struct RenderOptions {
   // With SharedGather: samples of all kinds go where they help most until the picture's stated
   // error, over its mean luminance, is no more than this; 0: as many as the settings say.
   double error = 0.0;
+  // The first look is as coarse as that of a picture of so many pixels; 0: of its own.
+  std::size_t first_look_pixels = 0;
   // With SharedGather: goes on until these seconds have passed, however exact the picture is by
   // then, with samples of all kinds where they help most; 0: no limit. The bytes then differ
   // between runs.

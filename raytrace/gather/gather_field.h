@@ -86,8 +86,8 @@ class GatherField {
   // of two; the `round`-th time.
   void cast(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
             const std::function<bool()>& stop);
-  // A first look: `each` everywhere, or where the centres of a pixel and of those about it lie on
-  // one surface at every second pixel, which serves those beside it.
+  // A first look: `each` everywhere, or, where neighbours share and the centres of a pixel and of
+  // those about it lie on one surface, at every second pixel, which serves those beside it.
   void look_first(Gathered kind, std::uint32_t each, bool every_second,
                   const std::function<bool()>& stop);
   // Where a stop or the time limit left no samples of a kind: the fewest. Where neighbours share,

@@ -17,7 +17,7 @@ constexpr int reach = 2;
 void GatherField::look_first(Gathered kind, std::uint32_t each, bool every_second,
                              const std::function<bool()>& stop) {
   std::vector<std::uint32_t> samples(points_.size(), each);
-  for (std::size_t p = 0; every_second && p < grid_; ++p) {
+  for (std::size_t p = 0; every_second && setting_.shares && p < grid_; ++p) {
     const auto [x, y] = place_of(p);
     if ((x + y) % 2 != 0 && is_even(x, y)) samples[p] = 0;
   }

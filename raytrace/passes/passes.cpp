@@ -138,7 +138,8 @@ class Passes {
       const auto start = Clock::now();
       begin_field();
       reserve_s_ = after_gathering * seconds_since(start);
-      const FirstLook first = first_look(options_.error, field_->points().size());
+      const FirstLook first =
+          first_look(options_.error, std::max(field_->points().size(), options_.first_look_pixels));
       look_first(Gathered::Solution, first.gather_rays, first.every_second);
       look_first(Gathered::Residual, first.paths, first.every_second);
       look_first(Gathered::Lobe, first.lobe_rays);
@@ -206,7 +207,7 @@ class Passes {
 
   void look_first(Gathered kind, std::uint32_t each, bool every_second = false) {
     field_->look_first(kind, each, every_second, [this] { return ends(); });
-    tell(pixels() * each);
+    tell(pixels() * each * (every_second ? 0.5 : 1.0));
     if (ends()) field_->look_quickly(kind);
   }
 
@@ -221,7 +222,7 @@ class Passes {
     for (std::size_t p = 0; p < field_->points().size(); ++p) {
       const float samples = field_->samples(Gathered::Solution, p);
       rays += double(samples);
-      points += samples > 0.0F ? 1.0 : 0.0;
+      points += field_->reflected(Gathered::Solution, p) > 0.0 ? 1.0 : 0.0;
     }
     report_.gather_rays = static_cast<int>(std::lround(rays / std::max(1.0, points)));
   }

@@ -10,9 +10,6 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr double most_step = 4.0;  // less squared error a round
-// Near the wanted error, how much more is cast before looking again, over what samples spread as
-// so far would take: what was known by few samples is often better than it seemed.
-constexpr double last_step_share = 0.5;
 // No round costs less of all before, if it can help: each takes a sharing and a look, too.
 constexpr double least_step = 0.05;
 // Of the wanted error, what samples are planned for: the next statement may turn out larger.
@@ -48,11 +45,8 @@ std::optional<SamplePlan> Rounds::next(const SamplePlanner& planner, double so_f
   }
   // Step by step: what few samples say of more of them is rough.
   const double step = std::max(aimed, now / most_step);
-  double most = affordable;
-  if (now < most_step * aimed) {
-    const double missing = last_step_share * (now / aimed - 1.0);
-    most = std::min(most, std::max(least_step, missing) * so_far);
-  }
+  // No more than samples that are spread as so far would take.
+  const double most = std::min(affordable, std::max(least_step, now / aimed - 1.0) * so_far);
   SamplePlan plan = planner.plan(step, most);
   // A few points that turned out bad cost next to nothing: what is worst beside them goes along.
   const double fewest = std::min(most, least_step * so_far);

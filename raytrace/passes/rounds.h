@@ -17,7 +17,7 @@ namespace earthshine::raytrace {
 // wanted error is stated.
 inline constexpr double sure_share = 0.9;
 
-// What a first look casts at every gather point. Of gather rays and paths half as many where a
+// What a first look casts at gather points. Of gather rays and paths half as many where a
 // coarse picture is wanted, or any that a time limit allows, and at every second pixel where no
 // edge is near: smooth pictures are done with that, and of others it tells as well as the whole
 // where more samples should go (payload bay, 5 %; at 3 % it does not). In small pictures more

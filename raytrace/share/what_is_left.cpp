@@ -39,7 +39,7 @@ void Shared::squared_errors_with(double factor, std::size_t begin, std::size_t e
       const float *s = &signal[level][begin], *q = &noise[level][begin], *n = &few[level][begin];
       for (std::size_t k = 0; k < count; ++k) {
         told[k] = told_signal(s[k], q[k], coarser[k]);
-        // Strays have single pixels' details alone.
+        // Of strays, and in small pictures, there are no coarser ones.
         coarser[k] = told[k] + q[k] > 0.0F ? told[k] : coarser[k];
       }
       if (level == 0 && !hidden.empty()) {

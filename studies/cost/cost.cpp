@@ -121,6 +121,8 @@ raytrace::RenderReport expect_steered(const PictureDrawer& drawer, const scenes:
                                       raytrace::RenderOptions options, base::Image& image) {
   const Stopwatch watch;
   options.stop = [&watch] { return watch.cpu_seconds() > begun_cpu_s; };
+  options.first_look_pixels =
+      static_cast<std::size_t>(options.columns) * static_cast<std::size_t>(options.rows);
   raytrace::Frame frame = timed(watch, drawer.draw(camera, options, begun_pixels));
   const double growth = samples_growth(frame.report, options.error);
   const double pixels = std::pow(

@@ -44,15 +44,16 @@ std::string limit_name(Limit limit) {
 }
 
 bool is_far_off(const std::vector<PassError>& passes, double wanted) {
-  double count = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+  double count = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, fewest = 1.0;
   for (const PassError& pass : passes) {
     if (told_by * pass.rays < passes.back().rays) continue;
+    fewest = std::min(fewest, pass.rays / passes.back().rays);
     const double rays = std::log(pass.rays / passes.back().rays);
     const double error = std::log(std::max(pass.error, least_told * wanted));
     count += 1.0, x += rays, y += error, xx += rays * rays, xy += rays * error;
   }
   const double spread = count * xx - x * x;
-  if (spread <= 0.0) return false;
+  if (fewest > 0.5 || spread <= 0.0) return false;
   const double power = std::max((x * y - count * xy) / spread, least_power);
   const double now = std::exp((y + power * x) / count);
   return now > wanted * std::pow(most_times_more, power);

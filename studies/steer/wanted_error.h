@@ -50,7 +50,8 @@ struct PassError {
 };
 // Whether what is left of the error takes more than 16 times the rays of all that has been done, as
 // the line has it that fits the logarithms of both best since an eighth of them were cast: a single
-// pass states too much or too little by chance. Of one pass nothing is known.
+// pass states too much or too little by chance. Passes none of which is after half of the rays or
+// fewer say nothing.
 [[nodiscard]] bool is_far_off(const std::vector<PassError>& passes, double wanted);
 
 // Called before each solve; gives the listener for what the solve takes, which may be empty.

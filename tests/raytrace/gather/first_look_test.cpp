@@ -12,11 +12,12 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Half of as many pixels' paths are still as many as a first look takes.
-constexpr int edge_px = 256;
+constexpr int edge_px = 96;
 
 // A room lit by one of its walls, seen from a corner: what is off is mostly what is gathered.
 struct Looked {
+  explicit Looked(double smooth_share) : share(smooth_share) {}
+  double share;
   scenes::Scene scene = [] {
     tests::SceneBuilder builder;
     const std::uint32_t grey = builder.material(tests::grey(0.5));
@@ -38,11 +39,13 @@ struct Looked {
     corner.fov_deg = 60.0;
     return corner;
   }();
-  RenderOptions options = [] {
+  RenderOptions options = [this] {
     RenderOptions of_a_coarse_picture;
     of_a_coarse_picture.columns = of_a_coarse_picture.rows = edge_px;
     of_a_coarse_picture.shared.on = true;
+    of_a_coarse_picture.shared.smooth_share = share;
     of_a_coarse_picture.error = 1.0;
+    of_a_coarse_picture.first_look_pixels = 1U << 16U;
     return of_a_coarse_picture;
   }();
   // What is sampled points at what it was sampled with.
@@ -58,8 +61,17 @@ struct Looked {
 };
 
 const Looked& looked() {
-  static const Looked one;
+  static const Looked one(0.25);
   return one;
+}
+
+TEST(FirstLook, LeavesNothingOutWhereNeighboursShareNothing) {
+  const Looked alone(0.0);
+  for (const Gathered kind : {Gathered::Solution, Gathered::Residual}) {
+    for (int y = 0; y < edge_px; ++y) {
+      for (int x = 0; x < edge_px; ++x) ASSERT_FALSE(alone.is_left_out(kind, x, y));
+    }
+  }
 }
 
 TEST(FirstLook, LeavesEverySecondPixelOfASurfaceToThoseBesideIt) {

@@ -38,6 +38,7 @@ TEST(ReachSolution, ASinglePassDoesNotTellHowFarTheEndIs) {
   EXPECT_FALSE(is_far_off(passes, 0.7 * now));
   EXPECT_TRUE(is_far_off({{1.0, 0.1}, {4.0, 0.1}, {8.0, 0.1}}, 0.05));
   EXPECT_FALSE(is_far_off({{8.0, 0.1}}, 0.05));
+  EXPECT_FALSE(is_far_off({{7.9, 0.1}, {8.0, 0.1005}}, 0.05));
 }
 
 // What was reached has no limit, however little the last solve brought, and what was not has one.
