@@ -67,10 +67,7 @@ double Rounds::growth(const SamplePlanner& planner, double so_far) const {
   if (now <= aimed || so_far <= 0.0) return 1.0;
   const SamplePlan plan = planner.plan(aimed, std::numeric_limits<double>::infinity());
   // A plan gives a point four times its samples at most: beyond, as the square of the error.
-  const double by_plan = (1.0 + plan.cost / so_far) * std::max(1.0, plan.squared_error / aimed);
-  // Further samples find further points that are bad, of which the plan knows nothing: what
-  // pictures took in the end lay midway between it and samples that are spread as so far.
-  return std::sqrt(by_plan * now / aimed);
+  return (1.0 + plan.cost / so_far) * std::max(1.0, plan.squared_error / aimed);
 }
 
 bool Rounds::is_hopeless(const std::vector<Look>& looks) {

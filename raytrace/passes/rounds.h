@@ -42,7 +42,7 @@ class Rounds {
   [[nodiscard]] bool gave_up() const { return gave_up_; }
   // By the last look alone: samples in all over those so far.
   [[nodiscard]] double growth() const;
-  // The same by where they would go too: the geometric mean of that and of what they plan.
+  // The same by where they would go.
   [[nodiscard]] double growth(const SamplePlanner& planner, double so_far) const;
 
   // That was stated after samples of that cost.

@@ -73,7 +73,7 @@ PixelSums alike() {
 // A quarter of the squared error takes four times the samples, by 1 / N and by the plan; a
 // sixteenth four times those, of which a plan, which gives a point four times its samples at most,
 // knows the first step. 0.97 of the share of the wanted error that is sure is aimed at.
-TEST(Rounds, GrowthIsMidwayBetweenThePlanAndTheSquare) {
+TEST(Rounds, GrowthIsThatOfThePlanAndBeyondItOfTheSquare) {
   const PixelSums sums = alike();
   const SamplePlanner planner(sums, nullptr, {});
   const double so_far = spent(sums, nullptr, {});
