@@ -6,10 +6,15 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cstddef>
 #include <fstream>
 #include <sstream>
 
 #include "base/error.h"
+
+// jemalloc's, where the program is linked with it.
+extern "C" [[gnu::weak]] int mallctl(const char* name, void* old, std::size_t* old_size, void* set,
+                                     std::size_t set_size);
 
 namespace earthshine::base {
 namespace {
@@ -155,6 +160,13 @@ std::optional<std::uint64_t> free_memory_bytes(const fs::path& root) {
   return least;
 }
 
-void give_back_freed_memory() { ::malloc_trim(0); }
+void give_back_freed_memory() {
+  if (&mallctl == nullptr) {
+    ::malloc_trim(0);
+  } else {
+    constexpr const char* of_all_arenas = "arena.4096.purge";
+    mallctl(of_all_arenas, nullptr, nullptr, nullptr, 0);
+  }
+}
 
 }  // namespace earthshine::base

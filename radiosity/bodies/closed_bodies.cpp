@@ -61,8 +61,13 @@ ClosedSurface::ClosedSurface(std::span<const Vec3> corners)
       }
     }
   }
+  const auto top = [&](std::uint32_t k) {
+    const Corners& t = triangles_[k];
+    return std::max({t.a.z, t.b.z, t.c.z});
+  };
   first_.push_back(0);
-  for (const std::vector<std::uint32_t>& list : lists) {
+  for (std::vector<std::uint32_t>& list : lists) {
+    std::ranges::sort(list, std::greater(), top);
     of_cell_.insert(of_cell_.end(), list.begin(), list.end());
     first_.push_back(static_cast<std::uint32_t>(of_cell_.size()));
   }
@@ -80,6 +85,7 @@ int ClosedSurface::winding(const Vec3& point) const {
   int winding = 0;
   for (std::uint32_t k = first_[at]; k < first_[at + 1]; ++k) {
     const auto& [a, b, c] = triangles_[of_cell_[k]];
+    if (std::max({a.z, b.z, c.z}) < p.z) break;  // and so are all that follow: none is beyond
     const int turns = crossing(a, b, p) + crossing(b, c, p) + crossing(c, a, p);
     if (turns == 0) continue;
     // Beyond the point along the axis: the point is behind the face if it winds upward.

@@ -63,7 +63,8 @@ class ClosedSurface {
   double volume_m3_ = 0.0;
   int axis_ = 2;
   std::vector<Corners> triangles_;  // turned
-  // A grid over the projection: which triangles may wind around a cell's points.
+  // A grid over the projection: which triangles may wind around a cell's points, those that reach
+  // farthest first.
   std::size_t cells_ = 1;              // per way
   Vec3 corner_{0.0}, cell_size_{1.0};  // turned
   std::vector<std::uint32_t> first_, of_cell_;

@@ -72,9 +72,15 @@ LightSource lamp_source(const scenes::Lamp& lamp, std::uint64_t key, std::size_t
   source.group = group;
   source.has_size = scenes::is_wide(lamp.kind);
   source.points = points * (source.has_size ? 4 : 1);
-  source.sample = [&lamp](const Vec3& point, double u, double v) {
-    return scenes::sample_lamp(lamp, point, u, v);
-  };
+  if (lamp.kind == scenes::LampKind::Spot) {
+    source.sample = [&lamp, cone = scenes::spot_cone(lamp)](const Vec3& point, double, double) {
+      return scenes::sample_spot(lamp, cone, point);
+    };
+  } else {
+    source.sample = [&lamp](const Vec3& point, double u, double v) {
+      return scenes::sample_lamp(lamp, point, u, v);
+    };
+  }
   source.distance_m = [&lamp](const Vec3& point) { return glm::length(point - lamp.position); };
   return {lamp.name, std::move(source), scenes::lamp_flux_lm(lamp),
           [&lamp](double u, double v, double x, double y) {

@@ -83,6 +83,7 @@ void GatherField::share(Gathered kind, bool last) {
   Shared& shared = shared_[number(kind)];
   const Neighbours& neighbours = lobe ? *of_material_ : *of_surface_;
   const Keep keep = setting_.shares ? Keep::AsTold : Keep::All;
+  shared = {};  // its memory is taken again
   shared = last ? share_in_place(neighbours, estimate, keep)
                 : raytrace::share(neighbours, estimate, keep);
   add_strays(strays_, estimate, shared);

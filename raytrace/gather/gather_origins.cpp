@@ -54,16 +54,16 @@ RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t
                               .with(turn);
     const base::SobolOwen4 places(key);
     Places in_x, in_y;
-    for (std::uint32_t k = 0; k < RayOrigins::most; ++k) {
-      const auto u = places.point2(k);
-      in_x[k] = double(u[0]), in_y[k] = double(u[1]);
-    }
     const auto [x, y] = place_of(pixel_of(p));
     // No more places than rays, unless some of them show another surface.
     std::size_t drawn = 0;
     for (const std::size_t end :
          {std::min<std::size_t>(rays, RayOrigins::most), RayOrigins::most}) {
       if (origins.count >= rays || drawn >= end) break;
+      for (std::size_t k = drawn; k < end; ++k) {
+        const auto u = places.point2(static_cast<std::uint32_t>(k));
+        in_x[k] = double(u[0]), in_y[k] = double(u[1]);
+      }
       const auto met = look(pixel_of(p), in_x, in_y, drawn, end);
       counts.camera += end - drawn;
       for (; drawn < end; ++drawn) {

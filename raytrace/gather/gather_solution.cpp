@@ -123,7 +123,7 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
           off[k].assign(notes(some[k], round) ? image_layers_ : 0, 0.0F);
         }
         for (std::uint32_t half = 0; half < 2; ++half) {
-          TilePoints points(origins);
+          TilePoints points(std::min<std::size_t>(origins, of_class));
           for (const std::size_t p : some) {
             points.add(p, random_number_of(p),
                        draw_origins(Gathered::Solution, p, 2 * round + half, of_class, counts[t]),

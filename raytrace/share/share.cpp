@@ -36,7 +36,7 @@ class Sharer {
 
   Shared run() {
     shared_.layers = estimate_.layers;
-    shared_.resize(points_);
+    shared_.resize(estimate_.samples.size());  // strays follow
     for (std::vector<float>& of : keep_) of.assign(points_, 0.0F);
     signs_ = draw_signs(neighbours_, estimate_.samples);
     if (all_) {

@@ -41,22 +41,27 @@ std::vector<std::uint8_t> draw_signs(const Neighbours& neighbours,
                                      const std::vector<float>& samples) {
   const std::size_t points = neighbours.count();
   std::vector<std::uint8_t> signs(points);
-  for (std::size_t p = 0; p < points; ++p) signs[p] = static_cast<std::uint8_t>(base::mix64(p));
+  const auto for_all = [&](const auto& visit) {
+    base::parallel_chunks(points, points_at_once, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) visit(p);
+    });
+  };
+  for_all([&](std::size_t p) { signs[p] = static_cast<std::uint8_t>(base::mix64(p)); });
   const auto sampled = [](float n) { return n > 0.0F; };
   if (std::all_of(samples.begin(), samples.begin() + std::ptrdiff_t(points), sampled)) return signs;
   constexpr std::size_t fields = noise_fields + scatter_fields;
   Neighbours::Planes own(fields, std::vector<float>(points)), around;
-  for (std::size_t k = 0; k < fields; ++k) {
-    for (std::size_t p = 0; p < points; ++p) own[k][p] = sign_of(signs[p], k);
-  }
+  for_all([&](std::size_t p) {
+    for (std::size_t k = 0; k < fields; ++k) own[k][p] = sign_of(signs[p], k);
+  });
   neighbours.blur(0, own, &samples, around);
-  for (std::size_t p = 0; p < points; ++p) {
-    if (sampled(samples[p])) continue;
+  for_all([&](std::size_t p) {
+    if (sampled(samples[p])) return;
     signs[p] = 0;
     for (std::size_t k = 0; k < fields; ++k) {
       if (around[k][p] < 0.0F) signs[p] |= static_cast<std::uint8_t>(1U << k);
     }
-  }
+  });
   return signs;
 }
 
