@@ -160,7 +160,9 @@ std::optional<std::uint64_t> free_memory_bytes(const fs::path& root) {
   return least;
 }
 
-void give_back_freed_memory() {
+void give_back_freed_memory(std::size_t bytes) {
+  constexpr std::size_t small = 16U << 20U;
+  if (bytes < small) return;
   if (&mallctl == nullptr) {
     ::malloc_trim(0);
   } else {

