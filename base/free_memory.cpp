@@ -110,6 +110,16 @@ Bytes left_of_machine(const fs::path& root) {
 std::atomic<std::uint64_t> most_bytes{0}, room_bytes{0};
 std::atomic<int> sharers{1};
 
+// All that the allocator keeps.
+void give_back() {
+  if (&mallctl == nullptr) {
+    ::malloc_trim(0);
+  } else {
+    constexpr const char* of_all_arenas = "arena.4096.purge";
+    mallctl(of_all_arenas, nullptr, nullptr, nullptr, 0);
+  }
+}
+
 // What the process holds in memory now; 0 where Linux does not say.
 std::uint64_t resident_bytes() {
   std::ifstream file("/proc/self/statm");
@@ -135,6 +145,7 @@ MemoryLimit::~MemoryLimit() {
 void check_room(std::uint64_t bytes, std::string_view what) {
   constexpr std::uint64_t mib = 1 << 20, small = 8 * mib;
   if (bytes < small) return;
+  give_back();
   const std::uint64_t cap = most_bytes;
   Bytes left = cap == 0 ? free_memory_bytes() : less(cap, resident_bytes());
   if (const std::uint64_t room = room_bytes) take_least(left, less(room, resident_bytes()));
@@ -152,6 +163,7 @@ std::string memory_bound() {
 }
 
 std::optional<std::uint64_t> free_memory_bytes(const fs::path& root) {
+  give_back();
   Bytes least = left_of_machine(root);
   take_least(least, left_of_address_space(root));
   for (const std::uint64_t cap : {most_bytes.load(), room_bytes.load()}) {
@@ -162,13 +174,7 @@ std::optional<std::uint64_t> free_memory_bytes(const fs::path& root) {
 
 void give_back_freed_memory(std::size_t bytes) {
   constexpr std::size_t small = 16U << 20U;
-  if (bytes < small) return;
-  if (&mallctl == nullptr) {
-    ::malloc_trim(0);
-  } else {
-    constexpr const char* of_all_arenas = "arena.4096.purge";
-    mallctl(of_all_arenas, nullptr, nullptr, nullptr, 0);
-  }
+  if (bytes >= small) give_back();
 }
 
 }  // namespace earthshine::base

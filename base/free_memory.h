@@ -33,8 +33,8 @@ void check_room(std::uint64_t bytes, std::string_view what);
 
 // Bytes. The least of what Linux calls MemAvailable, what is left below the limit of the control
 // group or any above it (versions 1 and 2; file cache that can be dropped counts as free), and what
-// is left of RLIMIT_AS. Nothing where none of them can be read. Inside `root`, for tests, stand
-// proc/ and sys/.
+// is left of RLIMIT_AS; what the allocator kept is given back first. Nothing where none of them can
+// be read. Inside `root`, for tests, stand proc/ and sys/.
 [[nodiscard]] std::optional<std::uint64_t> free_memory_bytes(
     const std::filesystem::path& root = "/");
 
@@ -45,8 +45,7 @@ void release(std::vector<Value>& values) {
 }
 
 // What was freed of arrays of so many bytes together is the system's again, unless they are small:
-// to take its pages anew would cost more. The allocator else keeps it for what it is asked for
-// later, which large arrays do not take.
+// to take its pages anew would cost more. The allocator else keeps it, for each thread by itself.
 void give_back_freed_memory(std::size_t bytes);
 
 }  // namespace earthshine::base
