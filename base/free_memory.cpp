@@ -90,12 +90,21 @@ Bytes left_of_groups(const fs::path& root) {
   return least;
 }
 
+// Addresses without memory, which the allocator has for itself.
+std::uint64_t retained_bytes() {
+  if (&mallctl == nullptr) return 0;
+  std::uint64_t epoch = 1;  // asks for numbers of now
+  std::size_t retained = 0, size = sizeof(retained);
+  mallctl("epoch", nullptr, nullptr, &epoch, sizeof(epoch));
+  return mallctl("stats.retained", &retained, &size, nullptr, 0) == 0 ? retained : 0;
+}
+
 Bytes left_of_address_space(const fs::path& root) {
   rlimit limit{};
   if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
   const std::uint64_t pages = number_in(root / "proc/self/statm").value_or(0);
   const auto page_bytes = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  return less(limit.rlim_cur, pages * page_bytes);
+  return less(limit.rlim_cur, less(pages * page_bytes, retained_bytes()));
 }
 
 // Of the machine and of the process's control groups.
@@ -145,10 +154,17 @@ MemoryLimit::~MemoryLimit() {
 void check_room(std::uint64_t bytes, std::string_view what) {
   constexpr std::uint64_t mib = 1 << 20, small = 8 * mib;
   if (bytes < small) return;
-  give_back();
   const std::uint64_t cap = most_bytes;
-  Bytes left = cap == 0 ? free_memory_bytes() : less(cap, resident_bytes());
-  if (const std::uint64_t room = room_bytes) take_least(left, less(room, resident_bytes()));
+  const auto look = [&] {
+    Bytes left = cap == 0 ? free_memory_bytes() : less(cap, resident_bytes());
+    if (const std::uint64_t room = room_bytes) take_least(left, less(room, resident_bytes()));
+    return left;
+  };
+  Bytes left = look();
+  if (left && bytes > *left) {
+    give_back();
+    left = look();
+  }
   if (!left || bytes <= *left) return;
   throw Error(
       Blame::Work, what, "needs " + std::to_string(bytes / mib) + " MiB more",
@@ -163,9 +179,17 @@ std::string memory_bound() {
 }
 
 std::optional<std::uint64_t> free_memory_bytes(const fs::path& root) {
-  give_back();
-  Bytes least = left_of_machine(root);
-  take_least(least, left_of_address_space(root));
+  const auto look = [&] {
+    Bytes least = left_of_machine(root);
+    take_least(least, left_of_address_space(root));
+    return least;
+  };
+  Bytes least = look();
+  // Of what the process holds all may be kept: where that is next to nothing it may stay.
+  if (least && resident_bytes() > *least / 8) {
+    give_back();
+    least = look();
+  }
   for (const std::uint64_t cap : {most_bytes.load(), room_bytes.load()}) {
     if (cap > 0) take_least(least, cap);
   }

@@ -33,8 +33,8 @@ void check_room(std::uint64_t bytes, std::string_view what);
 
 // Bytes. The least of what Linux calls MemAvailable, what is left below the limit of the control
 // group or any above it (versions 1 and 2; file cache that can be dropped counts as free), and what
-// is left of RLIMIT_AS; what the allocator kept is given back first. Nothing where none of them can
-// be read. Inside `root`, for tests, stand proc/ and sys/.
+// is left of RLIMIT_AS; what the allocator kept is given back first where it matters. Nothing where
+// none of them can be read. Inside `root`, for tests, stand proc/ and sys/.
 [[nodiscard]] std::optional<std::uint64_t> free_memory_bytes(
     const std::filesystem::path& root = "/");
 
