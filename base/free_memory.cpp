@@ -137,6 +137,16 @@ std::uint64_t resident_bytes() {
   return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
+// What look() says is left, once what the allocator keeps is given back. That is part of what the
+// process holds: where this is little beside what is left, it may stay.
+template <class Look>
+Bytes left_for_use(const Look& look) {
+  const Bytes left = look();
+  if (!left || resident_bytes() <= *left / 8) return left;
+  give_back();
+  return look();
+}
+
 }  // namespace
 
 MemoryLimit::MemoryLimit(std::uint64_t bytes, int processes) {
@@ -155,16 +165,11 @@ void check_room(std::uint64_t bytes, std::string_view what) {
   constexpr std::uint64_t mib = 1 << 20, small = 8 * mib;
   if (bytes < small) return;
   const std::uint64_t cap = most_bytes;
-  const auto look = [&] {
-    Bytes left = cap == 0 ? free_memory_bytes() : less(cap, resident_bytes());
-    if (const std::uint64_t room = room_bytes) take_least(left, less(room, resident_bytes()));
-    return left;
+  const auto left_of_limit = [](std::uint64_t most) {
+    return left_for_use([most] { return Bytes(less(most, resident_bytes())); });
   };
-  Bytes left = look();
-  if (left && bytes > *left) {
-    give_back();
-    left = look();
-  }
+  Bytes left = cap == 0 ? free_memory_bytes() : left_of_limit(cap);
+  if (const std::uint64_t room = room_bytes) take_least(left, left_of_limit(room));
   if (!left || bytes <= *left) return;
   throw Error(
       Blame::Work, what, "needs " + std::to_string(bytes / mib) + " MiB more",
@@ -179,17 +184,11 @@ std::string memory_bound() {
 }
 
 std::optional<std::uint64_t> free_memory_bytes(const fs::path& root) {
-  const auto look = [&] {
-    Bytes least = left_of_machine(root);
-    take_least(least, left_of_address_space(root));
-    return least;
-  };
-  Bytes least = look();
-  // Of what the process holds all may be kept: where that is next to nothing it may stay.
-  if (least && resident_bytes() > *least / 8) {
-    give_back();
-    least = look();
-  }
+  Bytes least = left_for_use([&] {
+    Bytes left = left_of_machine(root);
+    take_least(left, left_of_address_space(root));
+    return left;
+  });
   for (const std::uint64_t cap : {most_bytes.load(), room_bytes.load()}) {
     if (cap > 0) take_least(least, cap);
   }
