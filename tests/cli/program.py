@@ -165,6 +165,11 @@ class Case(unittest.TestCase):
         self.assertTrue(any(line.startswith("earthshine: ") for line in message.splitlines()), message)
         return message
 
+    def work_memory(self, scene, mib):
+        """--max-memory that leaves the work so much, beside the program as plan prices it."""
+        of_program = self.json("plan", scene)["memory"]["parts_mib"]["program"]
+        return "--max-memory", f"{of_program + mib:.2f}MiB"
+
     def says(self, message, *parts):
         for part in parts:
             self.assertIn(part, message)

@@ -6,7 +6,7 @@ import unittest
 import program
 
 FINE = "quality.error=0.002"
-LITTLE = ("--max-memory", "22MiB")
+LITTLE = 4.8  # MiB for the work: less than 0.2 % takes
 
 
 class StoppedShort(program.Case):
@@ -14,6 +14,7 @@ class StoppedShort(program.Case):
         super().setUp()
         self.write("ball.toml", program.BALL.split("[quality]")[0])
         self.write("fine.toml", program.BALL.split("[quality]")[0] + "[quality]\nerror = 0.002\n")
+        self.little = self.work_memory("ball.toml", LITTLE)
 
     def short(self, *call):
         run = self.run_program(*call)
@@ -25,14 +26,14 @@ class StoppedShort(program.Case):
 
     def test_every_command_that_takes_an_error(self):
         for wish in (("--error", "0.002"), ("--set", FINE)):
-            self.says(self.short("solve", "ball.toml", *wish, *LITTLE)[1], "ball.toml", "0.2 %", "--max-memory")
+            self.says(self.short("solve", "ball.toml", *wish, *self.little)[1], "ball.toml", "0.2 %", "--max-memory")
         for wish in (("--error", "0.0001"), ("--set", "quality.error=0.0001")):
             render = ("render", "ball.toml", "-o", "a.exr", "--size", "24x24", "--time-limit", "0.3", "-q", *wish)
             self.says(self.short(*render)[1], "ball.toml", "0.01 %", "--time-limit")
             self.short(*render, "--camera", "A", "--camera", "above")
 
     def test_what_there_is_was_written(self):
-        out, _ = self.short("solve", "ball.toml", "--error", "0.002", *LITTLE, "-o", "a.h5", "--json")
+        out, _ = self.short("solve", "ball.toml", "--error", "0.002", *self.little, "-o", "a.h5", "--json")
         self.assertEqual(json.loads(out)["error"]["limit"], "memory")
         self.assertTrue((self.folder / "a.h5").exists())
         self.short("render", "ball.toml", "--size", "24x24", "--error", "0.0001", "--time-limit", "0.3", "-o", "a.exr")
@@ -45,7 +46,7 @@ class StoppedShort(program.Case):
         self.done("render", "ball.toml", "-o", "a.exr", "--size", "24x24", "--set", "quality.error=0.02", "--no-error")
 
     def test_a_scene_alone_changes_nothing(self):
-        self.done("solve", "fine.toml", *LITTLE)
+        self.done("solve", "fine.toml", *self.little)
 
     def test_settings_that_win_over_the_error_are_named(self):
         knobs = ("--set", "quality.patch_edge=1", "--set", "quality.form_factor_rays=16")

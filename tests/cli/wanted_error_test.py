@@ -58,7 +58,7 @@ class WantedError(program.Case):
 
     def test_memory_comes_first_and_is_named(self):
         self.write("scene.toml", OPEN)
-        error = self.json("solve", "scene.toml", "--error", 0.002, "--max-memory", "22MiB", code=3)["error"]
+        error = self.json("solve", "scene.toml", "--error", 0.002, *self.work_memory("scene.toml", 4.8), code=3)["error"]
         self.assertEqual(error["limit"], "memory")
         self.assertGreater(error["estimate"], 0.002)
 
