@@ -107,11 +107,30 @@ class Stopper {
   double touch_m_ = 0.0;
 };
 
+// Of every edge, by object and triangle.
+void sort_by_edge(std::vector<EdgeUse>& uses, std::size_t vertices) {
+  // Few edges have the same lower end: what is left to sort are a handful.
+  std::vector<std::uint32_t> first(vertices + 1, 0);
+  for (const EdgeUse& use : uses) ++first[use.low + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<EdgeUse> sorted(uses.size());
+  std::vector<std::uint32_t> next = first;
+  for (const EdgeUse& use : uses) sorted[next[use.low]++] = use;
+  for (std::size_t v = 0; v < vertices; ++v) {
+    std::sort(sorted.begin() + first[v], sorted.begin() + first[v + 1],
+              [](const EdgeUse& a, const EdgeUse& b) {
+                return a.high != b.high ? a.high < b.high : a.face() < b.face();
+              });
+  }
+  uses.swap(sorted);
+}
+
 }  // namespace
 
 ClosedParts find_closed_parts(const scenes::Scene& scene, const std::vector<char>& left_out) {
   std::vector<std::uint32_t> id;
   std::vector<EdgeUse> uses;
+  uses.reserve(3 * scene.triangles.size());
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
     const scenes::Triangle& triangle = scene.triangles[t];
     const scenes::Material& material = scene.materials[triangle.material];
@@ -124,9 +143,7 @@ ClosedParts find_closed_parts(const scenes::Scene& scene, const std::vector<char
         uses.push_back({std::min(a, b), std::max(a, b), triangle.object, t, a < b ? 1 : -1});
     }
   }
-  std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
-    return a.edge() != b.edge() ? a.edge() < b.edge() : a.face() < b.face();
-  });
+  sort_by_edge(uses, id.size());
 
   ClosedParts parts;
   parts.of.resize(scene.triangles.size());

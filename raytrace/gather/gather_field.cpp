@@ -11,6 +11,8 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr std::size_t points_at_once = 4096;
+// To so many pixels there is a stray, or fewer: room for these is asked for at once.
+constexpr std::size_t usual_strays = 3;
 
 }  // namespace
 
@@ -25,9 +27,11 @@ GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
       setting_(setting),
       grid_(window.pixel_count()),
       image_layers_(setting.image_layers),
-      layers_(setting.image_layers + (setting.keeps_sky_apart ? 1 : 0)),
-      points_(window.pixel_count()),
-      start_(window.pixel_count()) {
+      layers_(setting.image_layers + (setting.keeps_sky_apart ? 1 : 0)) {
+  points_.reserve(grid_ + grid_ / usual_strays);
+  start_.reserve(grid_ + grid_ / usual_strays);
+  points_.resize(grid_);
+  start_.resize(grid_);
   find_strays(find_points());
   find_peers();
   lengths_.assign(points_.size(), {});

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "raytrace/passes/pilot_pass.h"
 #include "raytrace/passes/rounds.h"
 
 namespace earthshine::raytrace {
@@ -156,7 +157,7 @@ class Passes {
     Rounds rounds(options_.error);
     for (std::uint32_t round = 1; !ends(); ++round) {
       const SampleCosts each = sample_costs(field());
-      const SamplePlanner planner(*sums_, field(), each);
+      SamplePlanner planner(*sums_, field(), each);
       const double so_far = spent(*sums_, field(), each);
       const std::optional<SamplePlan> plan = rounds.next(planner, so_far, affordable(so_far));
       if (!plan) break;
@@ -175,8 +176,8 @@ class Passes {
     report_.gave_up = rounds.gave_up();
     if (!covered || options_.error <= 0.0 || !(ends() || report_.gave_up)) return;
     const SampleCosts each = sample_costs(field());
-    report_.growth =
-        rounds.growth(SamplePlanner(*sums_, field(), each), spent(*sums_, field(), each));
+    SamplePlanner planner(*sums_, field(), each);
+    report_.growth = rounds.growth(planner, spent(*sums_, field(), each));
   }
 
   // What the time that is left buys; infinite without a limit.

@@ -33,8 +33,7 @@ FirstLook first_look(double wanted, std::size_t points) {
 
 double Rounds::aim() const { return aimed_share * sure_share * wanted_; }
 
-std::optional<SamplePlan> Rounds::next(const SamplePlanner& planner, double so_far,
-                                       double affordable) {
+std::optional<SamplePlan> Rounds::next(SamplePlanner& planner, double so_far, double affordable) {
   const double now = planner.squared_error(), error = std::sqrt(now), aimed = aim() * aim();
   const bool first = looks_.empty();
   looks_.push_back({so_far, error});
@@ -62,7 +61,7 @@ double Rounds::growth() const {
   return error * error / std::max(aim() * aim(), 1e-12);
 }
 
-double Rounds::growth(const SamplePlanner& planner, double so_far) const {
+double Rounds::growth(SamplePlanner& planner, double so_far) const {
   const double now = planner.squared_error(), aimed = aim() * aim();
   if (now <= aimed || so_far <= 0.0) return 1.0;
   const SamplePlan plan = planner.plan(aimed, std::numeric_limits<double>::infinity());

@@ -36,14 +36,14 @@ class Rounds {
   // Looks at the picture's error. so_far, affordable: what its samples have cost, and what more may
   // (rays of a packet). No plan: the error is reached, or no samples can be afforded, or
   // gave_up().
-  [[nodiscard]] std::optional<SamplePlan> next(const SamplePlanner& planner, double so_far,
+  [[nodiscard]] std::optional<SamplePlan> next(SamplePlanner& planner, double so_far,
                                                double affordable);
   // Far more samples than the error should have taken have not brought it much down.
   [[nodiscard]] bool gave_up() const { return gave_up_; }
   // By the last look alone: samples in all over those so far.
   [[nodiscard]] double growth() const;
   // The same by where they would go.
-  [[nodiscard]] double growth(const SamplePlanner& planner, double so_far) const;
+  [[nodiscard]] double growth(SamplePlanner& planner, double so_far) const;
 
   // That was stated after samples of that cost.
   struct Look {

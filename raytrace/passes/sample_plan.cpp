@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <iterator>
-#include <mutex>
 
 #include "base/parallel.h"
 
@@ -45,8 +44,6 @@ struct Scatter {
   }
 };
 
-constexpr int planning_grid = 48;  // pixels along the shorter edge that are looked at
-
 }  // namespace
 
 SampleCosts sample_costs(const GatherField* field) {
@@ -82,30 +79,37 @@ double spent(const PixelSums& sums, const GatherField* field, const SampleCosts&
 
 SamplePlanner::SamplePlanner(const PixelSums& sums, const GatherField* field,
                              const SampleCosts& costs)
-    : sums_(sums), field_(field), costs_(costs) {
-  const StatedError stated = state_error(sums, field, sums.window);
-  const ErrorSums whole = add_up(stated);
-  if (whole.yardstick <= 0.0) return;
-  now_ = whole.squared_error();
+    : sums_(sums),
+      field_(field),
+      costs_(costs),
+      stated_(state_error(sums, field, sums.window)),
+      whole_(add_up(stated_)) {}
+
+void SamplePlanner::look() {
+  if (looked_ || whole_.yardstick <= 0.0) return;
+  looked_ = true;
   const double scale =
-      1.0 / (static_cast<double>(whole.pixels) * whole.yardstick * whole.yardstick);
-  if (field != nullptr) look_at_field(stated, whole.luminance, scale);
-  look_at_pixels(stated, whole.luminance, scale);
+      1.0 / (static_cast<double>(whole_.pixels) * whole_.yardstick * whole_.yardstick);
+  std::size_t items = stated_.luminance.size();
+  for (const Gathered kind : {Gathered::Solution, Gathered::Residual, Gathered::Lobe}) {
+    if (field_ != nullptr && field_->gathers(kind)) items += field_->points().size();
+  }
+  gains_.reserve(items);
+  if (field_ != nullptr) look_at_field(scale);
+  look_at_pixels(scale);
 }
 
 template <class Look>
 void SamplePlanner::look_at(std::size_t count, const Look& look) {
-  std::vector<std::vector<Gain>> parts((count + items_at_once - 1) / items_at_once);
-  base::parallel_chunks(parts.size(), 1, [&](std::size_t part, std::size_t) {
-    look(part * items_at_once, std::min(count, (part + 1) * items_at_once), parts[part]);
-    for (Gain& gain : parts[part]) gain.find_prices();
+  const std::size_t before = gains_.size();
+  gains_.resize(before + count);
+  base::parallel_chunks(count, items_at_once, [&](std::size_t begin, std::size_t end) {
+    look(begin, end, &gains_[before + begin]);
+    for (std::size_t k = begin; k < end; ++k) gains_[before + k].find_prices();
   });
-  for (const std::vector<Gain>& part : parts) {
-    gains_.insert(gains_.end(), part.begin(), part.end());
-  }
 }
 
-void SamplePlanner::look_at_field(const StatedError& stated, double mean, double scale) {
+void SamplePlanner::look_at_field(double scale) {
   const Window& window = sums_.window;
   const auto columns = static_cast<std::size_t>(field_->window().columns);
   for (std::size_t k = 0; k < gathered_kinds; ++k) {
@@ -113,54 +117,56 @@ void SamplePlanner::look_at_field(const StatedError& stated, double mean, double
     if (!field_->gathers(kind)) continue;
     const Shared& shared = field_->shared(kind);
     const auto fewest = static_cast<float>(GatherField::fewest_samples(kind));
-    const auto gain_of = [&](std::size_t p, double two, double four, std::vector<Gain>& gains) {
+    const auto gain_of = [&](std::size_t p, double two, double four) -> Gain {
       const std::size_t pixel = field_->pixel_of(p);
       const int x = field_->window().x + static_cast<int>(pixel % columns);
       const int y = field_->window().y + static_cast<int>(pixel / columns);
-      if (!window.contains(x, y)) return;
+      if (!window.contains(x, y)) return {};
       const double reflected = field_->reflected(kind, p);
-      if (reflected <= 0.0) return;
+      if (reflected <= 0.0) return {};
       // Points that others served until now have the fewest to begin with.
       const float samples = std::max(field_->samples(kind, p), fewest);
-      const double weight = error_weight(double(stated.luminance[window.index(x, y)]), mean) *
-                            reflected * field_->cover_of(p);
+      const double weight =
+          error_weight(double(stated_.luminance[window.index(x, y)]), whole_.luminance) *
+          reflected * field_->cover_of(p);
       const double factor = weight * weight * scale;
       const auto one = double(shared.squared_error[p]);
-      if (factor * (one - four) <= 0.0) return;
-      gains.push_back({static_cast<std::uint32_t>(p), static_cast<std::uint8_t>(k), samples,
-                       static_cast<float>(double(samples) * costs_.field[k]),
-                       static_cast<float>(factor * (one - two)),
-                       static_cast<float>(factor * (two - four))});
+      if (factor * (one - four) <= 0.0) return {};
+      return {static_cast<std::uint32_t>(p),
+              static_cast<std::uint8_t>(k),
+              samples,
+              static_cast<float>(double(samples) * costs_.field[k]),
+              static_cast<float>(factor * (one - two)),
+              static_cast<float>(factor * (two - four))};
     };
-    look_at(field_->points().size(),
-            [&](std::size_t begin, std::size_t end, std::vector<Gain>& gains) {
-              std::array<float, items_at_once> two, four;
-              shared.squared_errors_with(2.0, begin, end, two.data());
-              shared.squared_errors_with(4.0, begin, end, four.data());
-              for (std::size_t p = begin; p < end; ++p) {
-                gain_of(p, double(two[p - begin]), double(four[p - begin]), gains);
-              }
-            });
+    look_at(field_->points().size(), [&](std::size_t begin, std::size_t end, Gain* gain) {
+      std::array<float, items_at_once> two, four;
+      shared.squared_errors_with(2.0, begin, end, two.data());
+      shared.squared_errors_with(4.0, begin, end, four.data());
+      for (std::size_t at = 0; at < end - begin; ++at) {
+        gain[at] = gain_of(begin + at, double(two[at]), double(four[at]));
+      }
+    });
   }
 }
 
 // Samples of a pixel have its own deviation, but few of them may miss what they seldom meet: what
 // covers less than one of n is told by the noisiest of the pixels around. What the halves of pixels
 // with as many samples differ by tells how much less these scatter than if they were independent.
-void SamplePlanner::look_at_pixels(const StatedError& stated, double mean, double scale) {
+void SamplePlanner::look_at_pixels(double scale) {
   const Window& window = sums_.window;
-  std::vector<double> variance(stated.luminance.size());  // of one sample, weighted
+  std::vector<double> variance(stated_.luminance.size());  // of one sample, weighted
   std::array<Scatter, sample_classes> of_class{};
   Scatter all;
   for (std::size_t p = 0; p < variance.size(); ++p) {
-    const double weight = error_weight(double(stated.luminance[p]), mean);
+    const double weight = error_weight(double(stated_.luminance[p]), whole_.luminance);
     const double of_mean = weight * weight * sums_.sample_variance(p);
     variance[p] = of_mean * sums_.samples[p];
     const double found = weight * weight * sums_.squared_error(p);
     all.add(found, of_mean);
     of_class[class_of(sums_.samples[p])].add(found, of_mean);
   }
-  const auto gain_of = [&](std::size_t p, std::vector<Gain>& gains) {
+  const auto gain_of = [&](std::size_t p) -> Gain {
     const auto columns = static_cast<std::size_t>(window.columns);
     const int x = window.x + static_cast<int>(p % columns);
     const int y = window.y + static_cast<int>(p / columns);
@@ -177,18 +183,23 @@ void SamplePlanner::look_at_pixels(const StatedError& stated, double mean, doubl
     const Scatter& like = of_class[class_of(sums_.samples[p])];
     const double better = (like.pixels < few_pixels ? all : like).share();
     const double error = likely * better * scale / samples;
-    if (error <= 0.0) return;
+    if (error <= 0.0) return {};
     const double cost = samples * costs_.camera + double(sums_.rays[p]) * costs_.camera_ray;
-    gains.push_back({static_cast<std::uint32_t>(p), camera_kind, static_cast<float>(samples),
-                     static_cast<float>(cost), static_cast<float>(error / 2.0),
-                     static_cast<float>(error / 4.0), static_cast<float>(variance[p] / likely)});
+    return {static_cast<std::uint32_t>(p),
+            camera_kind,
+            static_cast<float>(samples),
+            static_cast<float>(cost),
+            static_cast<float>(error / 2.0),
+            static_cast<float>(error / 4.0),
+            static_cast<float>(variance[p] / likely)};
   };
-  look_at(variance.size(), [&](std::size_t begin, std::size_t end, std::vector<Gain>& gains) {
-    for (std::size_t p = begin; p < end; ++p) gain_of(p, gains);
+  look_at(variance.size(), [&](std::size_t begin, std::size_t end, Gain* gain) {
+    for (std::size_t p = begin; p < end; ++p) *gain++ = gain_of(p);
   });
 }
 
 void SamplePlanner::Gain::find_prices() {
+  if (cost <= 0.0F) return;
   price_of_two = first / cost;
   price_of_four = std::max(second / (2.0F * cost), (first + second) / (3.0F * cost));
 }
@@ -208,12 +219,14 @@ SamplePlanner::Outcome SamplePlanner::outcome(std::span<const Gain> gains, doubl
         }
         return sum;
       });
-  return {now_ + change.squared_error, change.cost};
+  return {squared_error() + change.squared_error, change.cost};
 }
 
-SamplePlan SamplePlanner::plan(double wanted, double most_cost) const {
+SamplePlan SamplePlanner::plan(double wanted, double most_cost) {
+  look();
+  const double now = squared_error();
   SamplePlan plan;
-  plan.squared_error = now_;
+  plan.squared_error = now;
   for (std::size_t k = 0; k < gathered_kinds && field_ != nullptr; ++k) {
     plan.field[k].assign(field_->points().size(), 0U);
   }
@@ -222,8 +235,8 @@ SamplePlan SamplePlanner::plan(double wanted, double most_cost) const {
   // cast.
   double all = 0.0;
   for (const Gain& gain : gains_) all += double(gain.cost);
-  if (all <= 0.0 || now_ <= 0.0) return plan;
-  const double mean_gain = now_ / all;
+  if (all <= 0.0 || now <= 0.0) return plan;
+  const double mean_gain = now / all;
   const bool any = outcome(gains_, least_gain * mean_gain).cost > 0.0;
   double low = std::log((any ? least_gain : least_gain_of_all) * mean_gain);
   double high = std::log(greatest_price);
@@ -254,47 +267,6 @@ SamplePlan SamplePlanner::plan(double wanted, double most_cost) const {
         static_cast<std::uint32_t>(gain.samples) * (times == 4 ? 4U : 1U);
   }
   return plan;
-}
-
-PilotPass run_pilot_pass(ShadingScene shared, const CameraModel& camera, int samples,
-                         const std::function<bool()>& stop) {
-  shared.diffuse = DiffuseSource::Solution;
-  shared.splits_parts = false;
-  const int step = std::max(1, std::min(camera.columns, camera.rows) / planning_grid);
-  const int columns = (camera.columns + step - 1) / step, rows = (camera.rows + step - 1) / step;
-  const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-  std::vector<PixelSums> looks(count, PixelSums({0, 0, 1, 1}, shared.layers, false));
-  PilotPass pilot;
-  std::mutex mutex;
-  base::parallel_chunks(count, 16, [&](std::size_t begin, std::size_t end) {
-    RayCounts rays;
-    for (std::size_t k = begin; k < end; ++k) {
-      const int column = static_cast<int>(k) % columns, row = static_cast<int>(k) / columns;
-      looks[k].window.x = std::min(camera.columns - 1, column * step + step / 2);
-      looks[k].window.y = std::min(camera.rows - 1, row * step + step / 2);
-      shade_samples(shared, camera, {static_cast<std::uint32_t>(samples)}, looks[k], rays, stop,
-                    {});
-    }
-    const std::lock_guard lock(mutex);
-    pilot.rays += rays;
-  });
-  double pixels = 0.0;
-  pilot.dimmest.assign(shared.light_of_layer.back() + 1, 0.0);
-  for (const PixelSums& look : looks) {
-    if (!look.counts(0)) continue;
-    pilot.luminance += look.luminance[0] / samples;
-    for (std::size_t k = 0; k < shared.layers; ++k) {
-      pilot.dimmest[shared.light_of_layer[k]] +=
-          dimmest_share * base::luminance(Rgb(look.radiance[k])) / samples;
-    }
-    pixels += 1.0;
-  }
-  pilot.luminance /= std::max(1.0, pixels);
-  for (double& of_light : pilot.dimmest) of_light /= std::max(1.0, pixels);
-  for (const PixelSums& look : looks) {
-    pilot.deviation += look.deviation(0, pilot.bright()) / static_cast<double>(count);
-  }
-  return pilot;
 }
 
 }  // namespace earthshine::raytrace

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -41,13 +40,15 @@ class SamplePlanner {
   SamplePlanner(const PixelSums& sums, const GatherField* field, const SampleCosts& costs);
 
   // Of the picture as it is: relative to its mean luminance, squared.
-  [[nodiscard]] double squared_error() const { return now_; }
+  [[nodiscard]] double squared_error() const {
+    return whole_.yardstick > 0.0 ? whole_.squared_error() : 0.0;
+  }
   // The cheapest that is expected to bring the squared error down to `wanted`, at no more than
   // most_cost.
-  [[nodiscard]] SamplePlan plan(double wanted, double most_cost) const;
+  [[nodiscard]] SamplePlan plan(double wanted, double most_cost);
 
  private:
-  struct Gain {  // of one point or pixel
+  struct Gain {  // of one point or pixel; none where more samples help nothing
     std::uint32_t index = 0;
     std::uint8_t kind = 0;
     float samples = 0.0F;               // that it has
@@ -61,11 +62,14 @@ class SamplePlanner {
       return per_cost <= price_of_four ? 4 : per_cost <= price_of_two ? 2 : 1;
     }
   };
-  // Appends what look(begin, end, gains) finds of each part of [0, count), in order.
+  // At the gain of every point and pixel, once a plan is asked for: a picture that is exact enough
+  // needs none.
+  void look();
+  // Appends the gains of [0, count): look(begin, end, gains) fills in those of each part.
   template <class Look>
   void look_at(std::size_t count, const Look& look);
-  void look_at_field(const StatedError& stated, double mean, double scale);
-  void look_at_pixels(const StatedError& stated, double mean, double scale);
+  void look_at_field(double scale);
+  void look_at_pixels(double scale);
   struct Outcome {
     double squared_error = 0.0, cost = 0.0;
     Outcome& operator+=(const Outcome& other) {
@@ -80,26 +84,10 @@ class SamplePlanner {
   const PixelSums& sums_;
   const GatherField* field_;
   SampleCosts costs_;
+  StatedError stated_;
+  ErrorSums whole_;
+  bool looked_ = false;
   std::vector<Gain> gains_;
-  double now_ = 0.0;
 };
-
-// A look ahead, to plan a picture's rays.
-
-// What a coarse look at the whole picture tells, read from the solution: the mean luminance of what
-// is lit, and the mean deviation of a camera sample from its pixel. Sources that the camera sees
-// themselves are left out of the former.
-struct PilotPass {
-  double luminance = 0.0, deviation = 0.0;
-  std::vector<double> dimmest;  // ShadingScene::dimmest
-  RayCounts rays;               // that it took
-  // From here on pixels count as bright (PixelSums::deviation).
-  [[nodiscard]] double bright() const { return 4.0 * luminance; }
-};
-
-// samples: camera samples per pixel that is looked at. The same for every crop of a picture, but
-// where stop() leaves pixels out.
-[[nodiscard]] PilotPass run_pilot_pass(ShadingScene shared, const CameraModel& camera, int samples,
-                                       const std::function<bool()>& stop);
 
 }  // namespace earthshine::raytrace

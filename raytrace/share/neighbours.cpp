@@ -92,6 +92,12 @@ Neighbours Neighbours::of_like_material(const std::vector<GatherPoint>& points) 
   return like;
 }
 
+Neighbours::Planes Neighbours::planes(std::size_t number) const {
+  Planes all(number);
+  for (std::vector<float>& of : all) of.resize(count());
+  return all;
+}
+
 void Neighbours::blur(std::size_t level, const Planes& values, const std::vector<float>* weight,
                       Planes& means) const {
   means.resize(values.size());

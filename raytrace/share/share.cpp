@@ -47,6 +47,8 @@ class Sharer {
     for_all([&](std::size_t begin, std::size_t end) {
       shared_.squared_errors_with(1.0, begin, end, &shared_.squared_error[begin]);
     });
+    squares_.clear();  // the layers take more than both
+    blurred_.clear();
     take_layers();
     return std::move(shared_);
   }
@@ -63,8 +65,7 @@ class Sharer {
   // sampled there is none. Neighbours count by the samples that they are the mean of.
   void step(std::size_t level, Planes& values, Planes& detail) {
     neighbours_.blur(level, values, &samples_at(level), coarse_);
-    detail.resize(values.size());
-    for (std::vector<float>& of : detail) of.resize(points_);
+    if (detail.empty()) detail = neighbours_.planes(values.size());
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t k = 0; k < values.size(); ++k) {
         for (std::size_t p = begin; p < end; ++p) {
@@ -78,8 +79,8 @@ class Sharer {
 
   void blur_squares(std::size_t level) {
     for (std::size_t k = first_blur(level); k < window_blurs; ++k) {
-      neighbours_.blur(level + k, squares_, nullptr, coarse_);
-      squares_.swap(coarse_);
+      neighbours_.blur(level + k, squares_, nullptr, blurred_);
+      squares_.swap(blurred_);
     }
   }
 
@@ -89,7 +90,7 @@ class Sharer {
 
   // Means of both halves, and fields of their noise.
   [[nodiscard]] Planes means_and_noise() const {
-    Planes values(1 + noise_fields, std::vector<float>(points_, 0.0F));
+    Planes values = neighbours_.planes(1 + noise_fields);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
         const float n = 0.5F * estimate_.samples[p];
@@ -133,6 +134,8 @@ class Sharer {
       blur_squares(level);
       keep(level);
     }
+    squares_.resize(Scatter);
+    blurred_.resize(Scatter);
     take_squares(values);
     blur_squares(share_levels - 1);
     for_all([&](std::size_t begin, std::size_t end) {
@@ -145,8 +148,7 @@ class Sharer {
   // Squares over what noise is expected of the samples there: of the values, the mean of those of
   // the fields of noise, and what weight this gives each.
   void take_squares(const Planes& values) {
-    squares_.resize(Scatter);
-    for (std::vector<float>& of : squares_) of.resize(points_);
+    if (squares_.empty()) squares_ = neighbours_.planes(all_ ? Scatter : Scatter + scatter_fields);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
         const float weight = expected_[p] > 0.0F ? 1.0F / expected_[p] : 0.0F;
@@ -163,8 +165,6 @@ class Sharer {
   // variance of s there. It holds the chance of the product of a point's halves, which all fields
   // of noise share, and how unevenly the signal lies.
   void take_scatter(std::size_t level) {
-    squares_.resize(Scatter + scatter_fields);
-    for (std::size_t k = 0; k < scatter_fields; ++k) squares_[Scatter + k].resize(points_);
     const float root = std::sqrt(alike[level]);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t k = 0; k < scatter_fields; ++k) {
@@ -221,7 +221,7 @@ class Sharer {
   }
 
   void take_layers(std::size_t first, std::size_t count) {
-    Planes values(3 * count, std::vector<float>(points_, 0.0F)), detail, kept = values;
+    Planes values = neighbours_.planes(3 * count), kept = neighbours_.planes(3 * count), detail;
     const auto at = [&](std::size_t p, std::size_t k) {
       return p * estimate_.layers + first + k / 3;
     };
@@ -267,7 +267,7 @@ class Sharer {
   std::vector<std::uint8_t> signs_;
   std::array<std::vector<float>, share_levels - 1> samples_around_;  // means of a level's
   std::vector<float> expected_;
-  Planes coarse_, squares_;
+  Planes coarse_, squares_, blurred_;
 };
 
 }  // namespace

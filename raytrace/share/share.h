@@ -100,6 +100,7 @@ class Neighbours {
   // times `weight` (nullptr: 1), of some values a point: values[k] and means[k] hold the k-th of
   // all points.
   using Planes = std::vector<std::vector<float>>;
+  [[nodiscard]] Planes planes(std::size_t number) const;  // all 0
   [[nodiscard]] std::size_t count() const { return masks_.front().size(); }
   void blur(std::size_t level, const Planes& values, const std::vector<float>* weight,
             Planes& means) const;

@@ -50,7 +50,7 @@ std::vector<std::uint8_t> draw_signs(const Neighbours& neighbours,
   const auto sampled = [](float n) { return n > 0.0F; };
   if (std::all_of(samples.begin(), samples.begin() + std::ptrdiff_t(points), sampled)) return signs;
   constexpr std::size_t fields = noise_fields + scatter_fields;
-  Neighbours::Planes own(fields, std::vector<float>(points)), around;
+  Neighbours::Planes own = neighbours.planes(fields), around;
   for_all([&](std::size_t p) {
     for (std::size_t k = 0; k < fields; ++k) own[k][p] = sign_of(signs[p], k);
   });

@@ -101,6 +101,7 @@ void EdgeCurves::find(const std::vector<Vec3>& place, double turn_deg) {
     return std::tie(a.low, a.high, a.number) < std::tie(b.low, b.high, b.number);
   });
   of_use_.resize(uses_.size());
+  curves_.reserve(uses_.size() / 2 + 1);  // most edges are of two faces
   for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
     for (; end < uses_.size() && uses_[end].low == uses_[begin].low &&
            uses_[end].high == uses_[begin].high;

@@ -26,6 +26,8 @@ struct EdgeCurve {
 
 class EdgeCurves {
  public:
+  // So many uses will be added.
+  void reserve(std::size_t uses) { uses_.reserve(uses); }
   // A face has the edge from a to b, and these normals there; a and b are ids of places. Returns
   // the number of this use of the edge: 0, 1, 2 ...
   std::uint32_t add(std::uint32_t a, std::uint32_t b, const Vec3& normal_a, const Vec3& normal_b);

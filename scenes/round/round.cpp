@@ -34,9 +34,14 @@ class Rounder {
     made_.indices.clear();
     made_.polygons.clear();
     made_.uv_indices.clear();
+    std::size_t triangles = 0;
     for (std::size_t p = 0; p < mesh.polygons.size(); ++p) {
       cut(p);
-      for (Piece& piece : pieces_[p]) add_edges(piece);
+      triangles += pieces_[p].size();
+    }
+    curves_.reserve(3 * triangles);
+    for (std::vector<Piece>& of_polygon : pieces_) {
+      for (Piece& piece : of_polygon) add_edges(piece);
     }
     std::vector<Vec3> place(mesh.vertices.size());
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) place[ids_[v]] = mesh.vertices[v];

@@ -92,7 +92,7 @@ TEST(FirstLook, LeavesEverySecondPixelOfASurfaceToThoseBesideIt) {
 // price, such points get the fewest samples of their own, or four times as many.
 TEST(FirstLook, WhatItLeavesOutIsSampledByRounds) {
   const GatherField& field = looked().field();
-  const SamplePlanner planner(looked().sampled.sums, &field, sample_costs(&field));
+  SamplePlanner planner(looked().sampled.sums, &field, sample_costs(&field));
   const SamplePlan plan = planner.plan(0.0, 1e30);
   for (const Gathered kind : {Gathered::Solution, Gathered::Residual}) {
     const auto& wanted = plan.field[static_cast<std::size_t>(kind)];

@@ -35,7 +35,7 @@ PixelSums surprised() {
 // the samples.
 TEST(Rounds, NoneCostsNextToNothing) {
   const PixelSums sums = surprised();
-  const SamplePlanner planner(sums, nullptr, {});
+  SamplePlanner planner(sums, nullptr, {});
   const double so_far = spent(sums, nullptr, {});
   EXPECT_LT(planner.plan(0.7 * planner.squared_error(), no_limit).cost, 1e-3 * so_far);
   Rounds rounds(0.001);
@@ -46,7 +46,7 @@ TEST(Rounds, NoneCostsNextToNothing) {
 
 TEST(Rounds, NoneCostsMoreThanCanBeAfforded) {
   const PixelSums sums = surprised();
-  const SamplePlanner planner(sums, nullptr, {});
+  SamplePlanner planner(sums, nullptr, {});
   const double so_far = spent(sums, nullptr, {});
   Rounds rounds(0.001);
   const auto plan = rounds.next(planner, so_far, 1e-3 * so_far);
@@ -75,7 +75,7 @@ PixelSums alike() {
 // knows the first step. 0.97 of the share of the wanted error that is sure is aimed at.
 TEST(Rounds, GrowthIsThatOfThePlanAndBeyondItOfTheSquare) {
   const PixelSums sums = alike();
-  const SamplePlanner planner(sums, nullptr, {});
+  SamplePlanner planner(sums, nullptr, {});
   const double so_far = spent(sums, nullptr, {});
   const double half = 0.5 * std::sqrt(planner.squared_error());
   const auto growth = [&](double aimed) {
@@ -90,7 +90,7 @@ TEST(Rounds, GrowthIsThatOfThePlanAndBeyondItOfTheSquare) {
 // times the samples so far, and no further, since what few samples say of many more is rough.
 TEST(Rounds, OneGoesToAQuarterOfTheSquaredError) {
   const PixelSums sums = alike();
-  const SamplePlanner planner(sums, nullptr, {});
+  SamplePlanner planner(sums, nullptr, {});
   const double so_far = spent(sums, nullptr, {});
   const double half = 0.5 * std::sqrt(planner.squared_error());
   for (const double aimed : {half, 0.1 * half}) {
@@ -105,7 +105,7 @@ TEST(Rounds, OneGoesToAQuarterOfTheSquaredError) {
 TEST(Rounds, APictureThatNoiseLeavesNothingOfGoesOn) {
   PixelSums sums = surprised();
   for (glm::vec3& light : sums.radiance) light = -light;
-  const SamplePlanner planner(sums, nullptr, {});
+  SamplePlanner planner(sums, nullptr, {});
   EXPECT_NEAR(planner.squared_error(), 4.0, 1e-12);
   EXPECT_TRUE(Rounds(1.0).next(planner, spent(sums, nullptr, {}), no_limit).has_value());
   // Nor where all that it is off by is in one bright pixel, which counts whole.
@@ -121,7 +121,7 @@ TEST(Rounds, RoundingOfASourceIsNoLightThatIsMissing) {
   for (std::size_t p = 0; p < sums.samples.size(); ++p) {
     sums.source[p].luminance = double(sums.radiance[p].x) * (1.0 + 1e-7);
   }
-  const SamplePlanner planner(sums, nullptr, {});
+  SamplePlanner planner(sums, nullptr, {});
   EXPECT_EQ(planner.squared_error(), 0.0);
   EXPECT_FALSE(Rounds(0.05).next(planner, spent(sums, nullptr, {}), no_limit).has_value());
 }
