@@ -36,7 +36,7 @@ GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
   find_peers();
   lengths_.assign(points_.size(), {});
   over_pixel_.assign(points_.size(), 0);
-  find_turning_lobes();
+  find_first_origins();
   const std::size_t count = points_.size();
   const auto begin = [&](Gathered kind, std::size_t layers) {
     Estimate& estimate = estimate_[number(kind)];

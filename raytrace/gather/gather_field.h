@@ -6,7 +6,7 @@
 // (strays.h), which lies on no grid. Where what comes in changes within a pixel, as its rays'
 // lengths tell, or a glossy surface turns from one pixel to the next, they start from several
 // places of the point's surface in the pixel's footprint, other ones each time: the point stands
-// for their mean.
+// for their mean. So they do beside edges.
 //
 //   solution  mean radiance that cosine-distributed rays read from the radiosity solution, the sky
 //             and what mirrors and glass pass on: T L~ over k_d, L~ what the solution says
@@ -152,9 +152,10 @@ class GatherField {
   void find_strays(const std::vector<Found>& mirrored);
   // Of points that mirrors show, which others share with them.
   void find_peers();
-  // Glossy points beside which their material has another normal: their rays start all over their
-  // pixel.
-  void find_turning_lobes();
+  // Points whose rays start all over their pixel from the first look on: those about which not all
+  // centres lie on one surface (on the payload bay the rays' lengths tell so of three in four), and
+  // glossy ones beside which their material has another normal.
+  void find_first_origins();
   // Of what a camera ray met: true where light is gathered there.
   bool place(const Ray& ray, const scenes::Hit& hit, GatherPoint& point, RayStart& start) const;
   // The same of what is shown there by a flat or curved mirror that lets nothing through.
@@ -169,7 +170,7 @@ class GatherField {
   [[nodiscard]] std::array<Met, scenes::RayPacket::width> look(
       std::size_t pixel, const Places& x, const Places& y, std::size_t first = 0,
       std::size_t end = scenes::RayPacket::width) const;
-  // Finds the points whose rays must start all over their pixel, by the length of all their rays,
+  // Finds more points whose rays must start all over their pixel, by the length of all their rays,
   // and casts anew there as many as they had.
   void classify_origins(std::uint32_t round, const std::function<bool()>& stop);
   [[nodiscard]] std::size_t origins_at(std::size_t point) const {

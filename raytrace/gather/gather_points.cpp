@@ -206,9 +206,10 @@ void GatherField::find_strays(const std::vector<Found>& mirrored) {
   }
 }
 
-void GatherField::find_turning_lobes() {
+void GatherField::find_first_origins() {
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const GatherPoint& point = points_[p];
+    if (p < grid_ && even_[p] == 0) over_pixel_[p] = 1;
     if (point.lobe <= 0.0F) continue;
     const auto [x, y] = place_of(pixel_of(p));
     for (int ring = 0; ring <= 1; ++ring) {

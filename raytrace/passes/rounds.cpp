@@ -12,13 +12,16 @@ namespace {
 constexpr double most_step = 4.0;  // less squared error a round
 // No round costs less of all before, if it can help: each takes a sharing and a look, too.
 constexpr double least_step = 0.05;
-// Of the wanted error, what samples are planned for: the next statement may turn out larger.
-constexpr double aimed_share = 0.97;
-constexpr double fine_error = 0.04;             // from there down a first look is a full one
+constexpr double fine_error = 0.04;  // from there down a first look is a full one
+constexpr double sure_share_of_coarse = 0.94, sure_share_of_fine = 0.9;
 constexpr std::size_t least_paths = 1U << 16U;  // of a first look, up to rounding down
 constexpr double hopeless_growth = 1024.0, hopeless_share = 0.5;
 
 }  // namespace
+
+double sure_share(double wanted) {
+  return wanted > fine_error ? sure_share_of_coarse : sure_share_of_fine;
+}
 
 FirstLook first_look(double wanted, std::size_t points) {
   FirstLook first;
@@ -31,13 +34,11 @@ FirstLook first_look(double wanted, std::size_t points) {
   return first;
 }
 
-double Rounds::aim() const { return aimed_share * sure_share * wanted_; }
-
 std::optional<SamplePlan> Rounds::next(SamplePlanner& planner, double so_far, double affordable) {
   const double now = planner.squared_error(), error = std::sqrt(now), aimed = aim() * aim();
   const bool first = looks_.empty();
   looks_.push_back({so_far, error});
-  if (wanted_ > 0.0 && error <= (first ? 1.0 : sure_share) * wanted_) return {};
+  if (wanted_ > 0.0 && error <= (first ? 1.0 : sure_share(wanted_)) * wanted_) return {};
   if (wanted_ > 0.0 && is_hopeless(looks_)) {
     gave_up_ = true;
     return {};

@@ -173,7 +173,7 @@ double solve_seconds(const radiosity::SolveReport& report) {
 double samples_growth(const raytrace::RenderReport& report, double wanted) {
   if (report.growth > 0.0) return report.growth;
   const double ratio = report.relative_noise / wanted;
-  return ratio > 1.0 ? std::pow(ratio / raytrace::sure_share, power_of_a_cut_look) : 1.0;
+  return ratio > 1.0 ? std::pow(ratio / raytrace::sure_share(wanted), power_of_a_cut_look) : 1.0;
 }
 
 Pilot expect_costs(const PilotCall& call, const std::vector<const scenes::Camera*>& cameras,

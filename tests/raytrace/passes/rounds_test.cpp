@@ -72,14 +72,14 @@ PixelSums alike() {
 
 // A quarter of the squared error takes four times the samples, by 1 / N and by the plan; a
 // sixteenth four times those, of which a plan, which gives a point four times its samples at most,
-// knows the first step. 0.97 of the share of the wanted error that is sure is aimed at.
+// knows the first step.
 TEST(Rounds, GrowthIsThatOfThePlanAndBeyondItOfTheSquare) {
   const PixelSums sums = alike();
   SamplePlanner planner(sums, nullptr, {});
   const double so_far = spent(sums, nullptr, {});
   const double half = 0.5 * std::sqrt(planner.squared_error());
   const auto growth = [&](double aimed) {
-    return Rounds(aimed / (0.97 * sure_share)).growth(planner, so_far);
+    return Rounds(aimed / aimed_share).growth(planner, so_far);
   };
   EXPECT_NEAR(growth(half), 4.0, 0.02);
   EXPECT_NEAR(growth(0.5 * half), 16.0, 0.1);
@@ -94,7 +94,7 @@ TEST(Rounds, OneGoesToAQuarterOfTheSquaredError) {
   const double so_far = spent(sums, nullptr, {});
   const double half = 0.5 * std::sqrt(planner.squared_error());
   for (const double aimed : {half, 0.1 * half}) {
-    const auto plan = Rounds(aimed / (0.97 * sure_share)).next(planner, so_far, no_limit);
+    const auto plan = Rounds(aimed / aimed_share).next(planner, so_far, no_limit);
     ASSERT_TRUE(plan.has_value());
     EXPECT_NEAR(plan->cost, 3.0 * so_far, 0.1 * so_far);
   }

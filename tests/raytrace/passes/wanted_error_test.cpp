@@ -37,7 +37,8 @@ TEST(WantedError, RoundsThatChoseWhereToSampleStateLessThanIsWanted) {
   const double first_look = stated(1.0);
   EXPECT_EQ(stated(1.01 * first_look), first_look);
   for (const double wanted : {0.95, 0.85, 0.7, 0.5}) {
-    EXPECT_LE(stated(wanted * first_look), sure_share * wanted * first_look);
+    const double error = wanted * first_look;
+    EXPECT_LE(stated(error), sure_share(error) * error);
   }
 }
 
