@@ -11,8 +11,8 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr std::size_t points_at_once = 4096;
-// To so many pixels there is a stray, or fewer: room for these is asked for at once.
-constexpr std::size_t usual_strays = 3;
+// Pixels to a stray, or more: room for so many strays is asked for at once.
+constexpr std::size_t pixels_per_stray = 3;
 
 }  // namespace
 
@@ -28,8 +28,8 @@ GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
       grid_(window.pixel_count()),
       image_layers_(setting.image_layers),
       layers_(setting.image_layers + (setting.keeps_sky_apart ? 1 : 0)) {
-  points_.reserve(grid_ + grid_ / usual_strays);
-  start_.reserve(grid_ + grid_ / usual_strays);
+  points_.reserve(grid_ + grid_ / pixels_per_stray);
+  start_.reserve(grid_ + grid_ / pixels_per_stray);
   points_.resize(grid_);
   start_.resize(grid_);
   find_strays(find_points());

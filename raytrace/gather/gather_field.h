@@ -125,6 +125,10 @@ class GatherField {
   }
   // Whether the centres of a pixel and of those about it lie on one surface, or on none.
   [[nodiscard]] bool is_even(int x, int y) const { return even_[window_.index(x, y)] != 0; }
+  // Places that a point's rays start from, at most: 1, or all over its pixel.
+  [[nodiscard]] std::size_t origins_at(std::size_t point) const {
+    return over_pixel_[point] != 0 ? RayOrigins::most : 1;
+  }
   [[nodiscard]] std::size_t image_layers() const { return image_layers_; }
   [[nodiscard]] const std::vector<GatherPoint>& points() const { return points_; }
   [[nodiscard]] const Shared& shared(Gathered kind) const { return shared_[number(kind)]; }
@@ -152,8 +156,8 @@ class GatherField {
   void find_strays(const std::vector<Found>& mirrored);
   // Of points that mirrors show, which others share with them.
   void find_peers();
-  // Points whose rays start all over their pixel from the first look on: those about which not all
-  // centres lie on one surface (on the payload bay the rays' lengths tell so of three in four), and
+  // Points whose rays start all over their pixel from the first look on: centres about which not
+  // all lie on one surface (on the payload bay the rays' lengths tell so of three in four), and
   // glossy ones beside which their material has another normal.
   void find_first_origins();
   // Of what a camera ray met: true where light is gathered there.
@@ -173,9 +177,6 @@ class GatherField {
   // Finds more points whose rays must start all over their pixel, by the length of all their rays,
   // and casts anew there as many as they had.
   void classify_origins(std::uint32_t round, const std::function<bool()>& stop);
-  [[nodiscard]] std::size_t origins_at(std::size_t point) const {
-    return over_pixel_[point] != 0 ? RayOrigins::most : 1;
-  }
   // Where so many rays of a point start, other places for each `turn`.
   [[nodiscard]] RayOrigins draw_origins(Gathered kind, std::size_t point, std::uint32_t turn,
                                         std::uint32_t rays, RayCounts& counts) const;

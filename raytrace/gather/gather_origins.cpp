@@ -76,7 +76,11 @@ RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t
           continue;
         }
         // Only where camera samples read this point: it stands for the mean over just these places.
-        if (find(x, y, sighting_of(found)) != p) continue;
+        // At a first look, which does not know yet what is near, that is the footprint.
+        const bool far = points_[p].reach_m == std::numeric_limits<float>::max() &&
+                         glm::length(found.position - points_[p].position) >
+                             (p < grid_ ? 1.0F : 2.0F) * footprint_radius(points_[p]);
+        if (far || find(x, y, sighting_of(found)) != p) continue;
         origins.add(start);
       }
     }

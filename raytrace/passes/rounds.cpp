@@ -14,7 +14,8 @@ constexpr double most_step = 4.0;  // less squared error a round
 constexpr double least_step = 0.05;
 constexpr double fine_error = 0.04;  // from there down a first look is a full one
 constexpr double sure_share_of_coarse = 0.94, sure_share_of_fine = 0.9;
-constexpr std::size_t least_paths = 1U << 16U;  // of a first look, up to rounding down
+static_assert(planned_share < sure_share_of_fine);  // or it would plan for what it refuses
+constexpr std::size_t least_paths = 1U << 16U;      // of a first look, up to rounding down
 constexpr double hopeless_growth = 1024.0, hopeless_share = 0.5;
 
 }  // namespace

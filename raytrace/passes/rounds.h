@@ -18,7 +18,7 @@ namespace earthshine::raytrace {
 // takes a twentieth of the time.
 [[nodiscard]] double sure_share(double wanted);
 // And samples are planned for this share: the next statement may turn out larger.
-inline constexpr double aimed_share = 0.873;
+inline constexpr double planned_share = 0.873;
 
 // What a first look casts at gather points. Of gather rays and paths half as many where a
 // coarse picture is wanted, or any that a time limit allows, and at every second pixel where no
@@ -58,7 +58,7 @@ class Rounds {
   [[nodiscard]] static bool is_hopeless(const std::vector<Look>& looks);
 
  private:
-  [[nodiscard]] double aim() const { return aimed_share * wanted_; }
+  [[nodiscard]] double aim() const { return planned_share * wanted_; }
 
   double wanted_;
   std::vector<Look> looks_;

@@ -36,7 +36,7 @@ struct SamplePlan {
 
 class SamplePlanner {
  public:
-  // field: as above. All must outlive it.
+  // field: as above. All must outlive it, and stay as they are.
   SamplePlanner(const PixelSums& sums, const GatherField* field, const SampleCosts& costs);
 
   // Of the picture as it is: relative to its mean luminance, squared.
@@ -55,8 +55,8 @@ class SamplePlanner {
     float cost = 0.0F;                  // of as many again
     float first = 0.0F, second = 0.0F;  // squared error that twice, four times as many take off
     float found = 1.0F;  // of what they promise, as much as the point or pixel itself has shown
-    // Up to which price of a ray, in squared error, that many are cast.
-    float price_of_two = 0.0F, price_of_four = 0.0F;
+    // Up to which price of a ray, in squared error, that many are cast; below zero: at none.
+    float price_of_two = -1.0F, price_of_four = -1.0F;
     void find_prices();
     [[nodiscard]] int factor(float per_cost) const {
       return per_cost <= price_of_four ? 4 : per_cost <= price_of_two ? 2 : 1;

@@ -14,15 +14,19 @@ namespace {
 
 constexpr int edge_px = 96;
 
-// A room lit by one of its walls, seen from a corner: what is off is mostly what is gathered.
+// A room lit by one of its walls, seen from a corner: what is off is mostly what is gathered. There
+// may be a sheet in the middle.
 struct Looked {
-  explicit Looked(double smooth_share) : share(smooth_share) {}
+  explicit Looked(double smooth_share, bool sheet = false)
+      : share(smooth_share), has_sheet(sheet) {}
   double share;
-  scenes::Scene scene = [] {
+  bool has_sheet;
+  scenes::Scene scene = [this] {
     tests::SceneBuilder builder;
     const std::uint32_t grey = builder.material(tests::grey(0.5));
     const std::uint32_t bright = builder.material(tests::grey(0.5, 100.0));
     builder.room({bright, grey, grey, grey, grey, grey});
+    if (has_sheet) builder.plate(grey, 0.3, 0.2, true);
     return builder.scene;
   }();
   tests::Prepared prepared{scene};
@@ -86,6 +90,27 @@ TEST(FirstLook, LeavesEverySecondPixelOfASurfaceToThoseBesideIt) {
     }
     EXPECT_GT(left_out, edge_px * edge_px / 3);  // most of the room is walls
   }
+}
+
+// Far from all else, too, as on the wall behind the border of a sheet.
+TEST(FirstLook, RaysBesideEdgesStartAllOverThePixel) {
+  const Looked at_sheet(0.25, true);
+  const GatherField& field = at_sheet.field();
+  int beside = 0, alone = 0;
+  for (int y = 0; y < edge_px; ++y) {
+    for (int x = 0; x < edge_px; ++x) {
+      const std::size_t p = field.window().index(x, y);
+      if (field.points()[p].reach_m <= 0.0F) continue;
+      if (field.is_even(x, y)) {
+        alone += field.origins_at(p) == 1 ? 1 : 0;
+      } else {
+        EXPECT_GT(field.origins_at(p), 1U) << x << ' ' << y;
+        ++beside;
+      }
+    }
+  }
+  EXPECT_GT(beside, edge_px);
+  EXPECT_GT(alone, edge_px);
 }
 
 // What sharing blurs there goes to nothing as that of all others does: where squared error has a

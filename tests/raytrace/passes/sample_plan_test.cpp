@@ -48,6 +48,19 @@ TEST(SamplePlan, FewSamplesAreToldByTheNoisiestAround) {
   EXPECT_EQ(few.camera[sums.window.index(2, 2)], 4U);
 }
 
+// Where the error is so small that the price of a ray is none in single precision, pixels that need
+// nothing still get nothing.
+TEST(SamplePlan, NoErrorIsTooSmallToTellWhoNeedsNothing) {
+  constexpr double dim = 1e-20;
+  PixelSums sums = quiet(4);
+  const std::size_t noisy = sums.window.index(8, 8);
+  sums.luminance[noisy] = 4.0 * dim;
+  sums.luminance2[noisy] = 8.0 * dim * dim;
+  sums.half_difference[noisy] = 2.0 * dim;
+  const SamplePlan least = plan(sums, 0.0);
+  EXPECT_EQ(least.camera[sums.window.index(2, 2)], 4U);
+}
+
 // With 256 samples what a pixel may have missed covers less than 1 of 64 of it: half of the
 // picture's squared error, that of the noisy pixel, goes by doubling its samples alone.
 TEST(SamplePlan, ManySamplesSpeakForThemselves) {
