@@ -54,9 +54,11 @@ TEST(SamplePlan, NoErrorIsTooSmallToTellWhoNeedsNothing) {
   constexpr double dim = 1e-20;
   PixelSums sums = quiet(4);
   const std::size_t noisy = sums.window.index(8, 8);
+  sums.radiance[noisy] = glm::vec3(float(4.0 * dim));
   sums.luminance[noisy] = 4.0 * dim;
   sums.luminance2[noisy] = 8.0 * dim * dim;
   sums.half_difference[noisy] = 2.0 * dim;
+  EXPECT_GT(SamplePlanner(sums, nullptr, {}).squared_error(), 0.0);
   const SamplePlan least = plan(sums, 0.0);
   EXPECT_EQ(least.camera[sums.window.index(2, 2)], 4U);
 }
