@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -48,11 +49,12 @@ TEST(SamplePlan, FewSamplesAreToldByTheNoisiestAround) {
   EXPECT_EQ(few.camera[sums.window.index(2, 2)], 4U);
 }
 
-// Where the error is so small that the price of a ray is none in single precision, pixels that need
-// nothing still get nothing.
+// Where the error is so small, and samples so dear, that a ray's price is none in single precision,
+// pixels that need nothing still get nothing.
 TEST(SamplePlan, NoErrorIsTooSmallToTellWhoNeedsNothing) {
-  constexpr double dim = 1e-20;
+  constexpr double dim = 4e-19;  // its square is still a normal number
   PixelSums sums = quiet(4);
+  std::fill(sums.rays.begin(), sums.rays.end(), 1e6F);
   const std::size_t noisy = sums.window.index(8, 8);
   sums.radiance[noisy] = glm::vec3(float(4.0 * dim));
   sums.luminance[noisy] = 4.0 * dim;
