@@ -177,6 +177,8 @@ class GatherField {
   // Finds more points whose rays must start all over their pixel, by the length of all their rays,
   // and casts anew there as many as they had.
   void classify_origins(std::uint32_t round, const std::function<bool()>& stop);
+  // How far about a point its surface is its pixel's, whatever is near, m.
+  [[nodiscard]] float own_radius(std::size_t point) const;
   // Where so many rays of a point start, other places for each `turn`.
   [[nodiscard]] RayOrigins draw_origins(Gathered kind, std::size_t point, std::uint32_t turn,
                                         std::uint32_t rays, RayCounts& counts) const;

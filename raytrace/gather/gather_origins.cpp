@@ -78,8 +78,7 @@ RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t
         // Only where camera samples read this point: it stands for the mean over just these places.
         // At a first look, which does not know yet what is near, that is the footprint.
         const bool far = points_[p].reach_m == std::numeric_limits<float>::max() &&
-                         glm::length(found.position - points_[p].position) >
-                             (p < grid_ ? 1.0F : 2.0F) * footprint_radius(points_[p]);
+                         glm::length(found.position - points_[p].position) > own_radius(p);
         if (far || find(x, y, sighting_of(found)) != p) continue;
         origins.add(start);
       }
@@ -89,14 +88,19 @@ RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t
   return origins;
 }
 
+// A stray lies anywhere in its pixel: if it stands for the mean over the pixel, all of the pixel
+// has to read it.
+float GatherField::own_radius(std::size_t p) const {
+  const float radius = footprint_radius(points_[p]);
+  return p >= grid_ && origins_at(p) > 1 ? 2.0F * radius : radius;
+}
+
 std::size_t GatherField::find(int x, int y, const Sighting& place) const {
-  // Further off, as a lens out of focus looks, irradiance may be another. A stray lies anywhere in
-  // its pixel: if it stands for the mean over the pixel, all of the pixel has to read it.
+  // Further off, as a lens out of focus looks, irradiance may be another.
   const auto if_near = [&](std::size_t index) {
     const GatherPoint& point = points_[index];
-    const float radius = footprint_radius(point);
-    const float own = index >= grid_ && origins_at(index) > 1 ? 2.0F * radius : radius;
-    const float most = std::max(own, std::min(6.0F * radius, alike_share * point.reach_m));
+    const float wide = std::min(6.0F * footprint_radius(point), alike_share * point.reach_m);
+    const float most = std::max(own_radius(index), wide);
     return glm::length(place.position - point.position) <= most ? index : no_point;
   };
   if (!window_.contains(x, y)) return no_point;
