@@ -204,7 +204,8 @@ class Sharer {
     find_signals(level, squares_, expected_, shared_);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
-        keep_[level][p] = kept_share(shared_.signal[level][p], shared_.noise[level][p]);
+        keep_[level][p] =
+            kept_share(shared_.signal[level][p], shared_.noise[level][p], shared_.few[level][p]);
       }
     });
   }

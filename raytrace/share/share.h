@@ -151,10 +151,10 @@ enum class Keep { AsTold, All };
                                     Keep keep = Keep::AsTold);
 
 // The share of a detail of signal s and noise q that is kept, mean squares. Noise that is found by
-// chance looks like signal half of the time: only what is well above it counts.
-[[nodiscard]] inline float kept_share(float s, float q) {
-  constexpr float doubt = 1.5F;
-  const float sure = s - (doubt - 1.0F) * q;
+// chance looks like signal half of the time: only what is well above it counts. Of a signal that is
+// found by N details that is what it is off by as well, sqrt(2 / N) q; few: 1 / N.
+[[nodiscard]] inline float kept_share(float s, float q, float few) {
+  const float doubt = 0.3F + 0.7F * std::sqrt(2.0F * few), sure = s - doubt * q;
   return sure > 0.0F ? sure / (sure + q) : 0.0F;
 }
 

@@ -112,7 +112,7 @@ void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared&
       shared.hidden[point] = region.hidden();
       shared.noise[0][point] = q;
       shared.few[0][point] = region.few(q);
-      if (sampled) keep = kept_share(s, q);
+      if (sampled) keep = kept_share(s, q, region.few(q));
     } else {
       shared.signal[0][point] = alone * noise[k];
       shared.noise[0][point] = noise[k];
@@ -164,7 +164,7 @@ void share_among_peers(const Peers& peers, const Estimate& estimate, Shared& sha
       shared.few[0][point] = 1.0F / count;
       shared.rest[point] = all / count;
       shared.squared_error[point] = static_cast<float>(shared.squared_error_with(point, 1.0));
-      keep[k] = samples > 0.0F ? kept_share(s, q) : 0.0F;
+      keep[k] = samples > 0.0F ? kept_share(s, q, 1.0F / count) : 0.0F;
     }
   });
   // A layer after the other: of all of them there may be as much as of the whole picture.

@@ -12,7 +12,7 @@ constexpr std::size_t points_at_once = 256;
 // What is kept of the noise and not kept of the signal. few: 1 / N. c = 1 - q / (D - k q), so c' =
 // (1 - c)^2 / q; no choice is off by more than the detail.
 float left_of(float s, float q, float few) {
-  const float share = kept_share(s, q), ratio = 1.0F - share;
+  const float share = kept_share(s, q, few), ratio = 1.0F - share;
   const float kept = share * share * q, lost = ratio * ratio * s;
   const float choice = std::min(4.0F * (s + q) * ratio * ratio * few, s + q - kept - lost);
   return kept + lost + (share > 0.0F ? choice : 0.0F);
@@ -20,9 +20,9 @@ float left_of(float s, float q, float few) {
 
 // Of details that nothing is kept of the signal that is found is mostly chance: it is held to that
 // of the next coarser ones.
-float told_signal(float s, float q, float coarser) {
+float told_signal(float s, float q, float few, float coarser) {
   const float held = std::min(std::max(s, 0.0F), coarser);
-  return kept_share(s, q) > 0.0F ? s : held;
+  return kept_share(s, q, few) > 0.0F ? s : held;
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ void Shared::squared_errors_with(double factor, std::size_t begin, std::size_t e
     for (std::size_t level = share_levels; level-- > 0;) {
       const float *s = &signal[level][begin], *q = &noise[level][begin], *n = &few[level][begin];
       for (std::size_t k = 0; k < count; ++k) {
-        told[k] = told_signal(s[k], q[k], coarser[k]);
+        told[k] = told_signal(s[k], q[k], n[k], coarser[k]);
         // Of strays, and in small pictures, there are no coarser ones.
         coarser[k] = told[k] + q[k] > 0.0F ? told[k] : coarser[k];
       }

@@ -47,10 +47,10 @@ TEST(Share, NoiseFallsAndNoLessIsStated) {
   EXPECT_LT(stated, 0.5 / 8.0);
 }
 
-// A detail of signal s and noise q of which c = sure / (sure + q), sure = s - q / 2, is kept leaves
-// (1 - c)^2 s + c^2 q; here s = 2, q = 1 leave 0.32 + 0.36. A finer one that nothing is kept of is
-// held between none and that signal. A stray has no coarser details, and one that is kept is what
-// it was found to be: s = 200, q = 100 leave 0.16 200 + 0.36 100.
+// A detail of signal s and noise q of which c = sure / (sure + q), sure = s - 0.3 q, is kept leaves
+// (1 - c)^2 s + c^2 q; here s = 2 q, c = 17 / 27. A finer one that nothing is kept of is held
+// between none and that signal. A stray has no coarser details, and one that is kept is what it was
+// found to be: s = 200, q = 100.
 TEST(Share, WhatNoiseHidesIsNoMoreThanCoarserDetailsHold) {
   Shared shared;
   shared.resize(4);
@@ -58,11 +58,24 @@ TEST(Share, WhatNoiseHidesIsNoMoreThanCoarserDetailsHold) {
   shared.noise[1] = {1.0F, 1.0F, 0.0F, 1.0F};
   shared.signal[0] = {5.0F, -5.0F, 5.0F, 200.0F};
   shared.noise[0] = {100.0F, 100.0F, 100.0F, 100.0F};
-  constexpr double coarser = 0.32 + 0.36;
+  constexpr double c = 17.0 / 27.0, coarser = (1.0 - c) * (1.0 - c) * 2.0 + c * c;
   EXPECT_NEAR(shared.squared_error_with(0, 1.0), coarser + 2.0, 1e-5);
   EXPECT_NEAR(shared.squared_error_with(1, 1.0), coarser, 1e-5);
   EXPECT_NEAR(shared.squared_error_with(2, 1.0), 5.0, 1e-5);
-  EXPECT_NEAR(shared.squared_error_with(3, 1.0), coarser + 32.0 + 36.0, 1e-4);
+  EXPECT_NEAR(shared.squared_error_with(3, 1.0), 101.0 * coarser, 1e-4);
+}
+
+// Of a signal found by N = 8 details, off by sqrt(2 / 8) q by chance, as much again times 0.7 is
+// doubted: sure = 2 - 0.3 - 0.35 = 1.35 and c = 1.35 / 2.35 for s = 2, q = 1. To what that leaves
+// Stein's term is added, 4 (s + q) (1 - c)^2 / N.
+TEST(Share, WhatFewDetailsSayIsDoubtedMore) {
+  Shared shared;
+  shared.resize(1);
+  shared.signal[0] = {2.0F};
+  shared.noise[0] = {1.0F};
+  shared.few[0] = {0.125F};
+  constexpr double c = 1.35 / 2.35, lost = (1.0 - c) * (1.0 - c);
+  EXPECT_NEAR(shared.squared_error_with(0, 1.0), 2.0 * lost + c * c + 12.0 * lost / 8.0, 1e-5);
 }
 
 TEST(Share, NothingIsSharedAcrossAnEdgeOrAStep) {

@@ -108,7 +108,8 @@ TEST(Strays, TheirErrorIsAsStated) {
       found += std::pow(written.value(k) - truth[k], 2) / count;
       stated += double(written.shared.squared_error[1 + k]) / count;
     }
-    const double c = double(kept_share(static_cast<float>(s), static_cast<float>(q)));
+    const double c =
+        double(kept_share(static_cast<float>(s), static_cast<float>(q), 1.0F / float(count)));
     const double left = (1.0 - c) * (1.0 - c) * s + c * c * q;
     const double error = left + (1.0 - c) * (1.0 - c) * (s + 2.0 * q) + c * c * q;
     EXPECT_NEAR(stated, found, 4.0 * std::sqrt(2.0 / count) * error) << q;
@@ -145,7 +146,8 @@ TEST(Strays, MoreSamplesAreStatedAsWhatTheyAre) {
       of += 1.0;
     }
     const double q = v / samples(kind);
-    const double c = double(kept_share(static_cast<float>(s), static_cast<float>(q)));
+    const double c =
+        double(kept_share(static_cast<float>(s), static_cast<float>(q), 1.0F / float(count)));
     const double left = (1.0 - c) * (1.0 - c) * s + c * c * q;
     // q is found to sqrt(2 / count) of itself, s + q of the others likewise.
     const double error = left * std::sqrt(2.0 / of) +
