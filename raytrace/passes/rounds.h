@@ -12,7 +12,7 @@
 namespace earthshine::raytrace {
 
 // Where the first look all over a picture is not enough, samples follow where errors look largest,
-// and what looked too small stays so. On the payload bay the true error is 0.81 to 1.05 of what is
+// and what looked too small stays so. On the payload bay the true error is 0.89 to 1.08 of what is
 // stated at 5 %, and up to 1.1 of it at 2 % (night, camera A). Rounds go on until this share of the
 // wanted error is stated: more of a coarse one, since a round more for a hundredth of the samples
 // takes a twentieth of the time.

@@ -150,11 +150,13 @@ enum class Keep { AsTold, All };
 [[nodiscard]] Shared share_in_place(const Neighbours& neighbours, Estimate& estimate,
                                     Keep keep = Keep::AsTold);
 
-// The share of a detail of signal s and noise q that is kept, mean squares. Noise that is found by
-// chance looks like signal half of the time: only what is well above it counts. Of a signal that is
-// found by N details that is what it is off by as well, sqrt(2 / N) q; few: 1 / N.
+// The share of a detail of signal s and noise q that is kept, mean squares; few: 1 / N. Noise that
+// is found by chance looks like signal half of the time: only what is well above it counts, the
+// more so the fewer details tell s, which is off by sqrt(2 / N) q by chance. Both shares of q are
+// what cost least on the payload bay (decision 0018).
 [[nodiscard]] inline float kept_share(float s, float q, float few) {
-  const float doubt = 0.3F + 0.7F * std::sqrt(2.0F * few), sure = s - doubt * q;
+  constexpr float doubt = 0.3F, doubt_of_chance = 0.7F;
+  const float sure = s - (doubt + doubt_of_chance * std::sqrt(2.0F * few)) * q;
   return sure > 0.0F ? sure / (sure + q) : 0.0F;
 }
 
