@@ -30,7 +30,13 @@ studies::Limit limit_of(const Drawn& drawn, double wanted) {
     return studies::Limit::None;
   }
   if (drawn.frame.report.stopped) return studies::Limit::Stopped;
-  const bool endless = drawn.options.time_limit_s <= 0.0 || drawn.frame.report.gave_up;
+  const double most_s = drawn.options.time_limit_s;
+  // Without sharing quality.gather_rays alone says how many samples there are.
+  const bool as_set = !drawn.options.shared.on;
+  if (as_set && (most_s <= 0.0 || drawn.frame.report.seconds < most_s)) {
+    return studies::Limit::Settings;
+  }
+  const bool endless = most_s <= 0.0 || drawn.frame.report.gave_up;
   return endless ? studies::Limit::Steps : studies::Limit::Time;
 }
 

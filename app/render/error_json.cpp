@@ -83,9 +83,8 @@ const char* words_of(studies::Limit limit) {
     case studies::Limit::Memory:
       return "memory came first (--max-memory, or what is free)";
     case studies::Limit::Settings:
-      return "quality.max_patches, or quality.form_factor_rays with quality.patch_edge (or refine "
-             "= "
-             "false), is given, which wins over it; leave it out";
+      return "quality.max_patches, quality.form_factor_rays with quality.patch_edge (or refine = "
+             "false), or quality.gather = \"per-sample\" is given, which wins over it; leave it out";
     case studies::Limit::Steps:
       return "no end in sight after several tries";
     case studies::Limit::Stopped:

@@ -46,6 +46,13 @@ class WantedError(program.Case):
         self.assertIsNone(error["limit"])  # the picture makes up for what the solution lacks
         self.assertLessEqual(error["estimate"], 0.001)
 
+    def test_without_sharing_the_rays_that_are_set_win_and_are_named(self):
+        error = self.rendered("--error", 0.001, "--set", "quality.gather=per-sample", code=3)
+        self.assertEqual(error["limit"], "settings")
+        run = self.run_program("render", "scene.toml", "-o", "out.exr", "--size", "48x36", "--error", 0.001, "--set",
+                               "quality.gather=per-sample")
+        self.assertIn('quality.gather = "per-sample" is given', run.stderr)
+
     def test_a_time_limit_comes_first_and_is_named(self):
         # 0.7 s reach 0.0005 on two cores; this takes thousands of times as long.
         error = self.rendered("--error", 0.00001, "--time-limit", 0.7, code=3)
