@@ -26,6 +26,7 @@ constexpr std::uint64_t many_rays = std::uint64_t{1} << 28;
 constexpr double most_growth = 4.0;                        // of the rays of a pass
 constexpr double cut_share = 0.6;                          // to what is uneven within patches
 constexpr std::size_t largest_cut = std::size_t{1} << 21;  // patches
+constexpr int most_idle = 2;                               // a single pass may look worse by chance
 constexpr double next_pass = 1.2;                          // of the time that the one before took
 constexpr double more_points_share = 0.5;                  // of a time limit: no more points then
 constexpr double fewest_points = 8192.0, most_points = 1 << 20;
@@ -127,6 +128,7 @@ class SurfaceSearch {
 
   void improve() {
     double before = 0.0;
+    int idle = 0;  // passes in a row that cut nothing and brought nothing
     CutChoice choice(light_->patches());
     std::vector<Effort> effort = even_effort(light_->patches(), points_wanted_);
     double pass_begun = time_gone();
@@ -167,9 +169,8 @@ class SurfaceSearch {
         cuts = turns_->cut_gathered(choice, cut_share * enough(), points_wanted_, parent);
         if (turns_->cut_shadows(cut_share * enough(), parent, &choice)) cuts = true;
       }
-      if (!cuts && pass > 4 && error > std::max(wanted_.error, 0.97 * before)) {
-        return stop(why_no_more());
-      }
+      idle = cuts || error <= std::max(wanted_.error, 0.97 * before) ? 0 : idle + 1;
+      if (idle >= most_idle && pass > 4) return stop(why_no_more());
       before = error;
       const double target = noise_share * squared(aim * wanted_.error * turns_->mean());
       if (joins()) effort = next_effort(variance, parent, target);
