@@ -25,15 +25,18 @@ raytrace::Frame trace(const Studio& studio, const scenes::Camera& camera,
       progress);
 }
 
+// Whether quality.gather_rays alone says how many samples there are.
+bool as_set(const raytrace::RenderOptions& options) {
+  return !options.shared.on || options.indirect == raytrace::Indirect::Paths;
+}
+
 studies::Limit limit_of(const Drawn& drawn, double wanted) {
   if (drawn.errors.pixels == 0 || drawn.errors.total.estimate <= wanted) {
     return studies::Limit::None;
   }
   if (drawn.frame.report.stopped) return studies::Limit::Stopped;
   const double most_s = drawn.options.time_limit_s;
-  // Without sharing quality.gather_rays alone says how many samples there are.
-  const bool as_set = !drawn.options.shared.on;
-  if (as_set && (most_s <= 0.0 || drawn.frame.report.seconds < most_s)) {
+  if (as_set(drawn.options) && (most_s <= 0.0 || drawn.frame.report.seconds < most_s)) {
     return studies::Limit::Settings;
   }
   const bool endless = most_s <= 0.0 || drawn.frame.report.gave_up;
@@ -72,12 +75,14 @@ Drawn draw_picture(const Studio& studio, const scenes::Camera& camera, StageTime
     return drawn;
   }
   drawn.errors = studies::error_budget(studio.scene(), {&camera, options}, drawn.frame);
-  if (!steers(studio.call, loaded.scene)) return drawn;
+  if (!loaded.scene.quality.error) return drawn;
   const double wanted = *loaded.scene.quality.error;
   drawn.limit = limit_of(drawn, wanted);
   if (drawn.limit != studies::Limit::None) {
-    drawn.seconds_to_go =
-        drawn.frame.report.seconds * (studies::samples_growth(drawn.frame.report, wanted) - 1.0);
+    const double ratio = drawn.errors.total.estimate / wanted;
+    const double growth =
+        as_set(options) ? ratio * ratio : studies::samples_growth(drawn.frame.report, wanted);
+    drawn.seconds_to_go = drawn.frame.report.seconds * (growth - 1.0);
   }
   if (studio.light.solved) {
     studies::Step solve;

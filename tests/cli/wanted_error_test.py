@@ -51,7 +51,22 @@ class WantedError(program.Case):
         self.assertEqual(error["limit"], "settings")
         run = self.run_program("render", "scene.toml", "-o", "out.exr", "--size", "48x36", "--error", 0.001, "--set",
                                "quality.gather=per-sample")
-        self.assertIn('quality.gather = "per-sample" is given', run.stderr)
+        self.assertIn('quality.gather = "per-sample" or --indirect paths is given', run.stderr)
+
+    def test_of_paths_the_rays_that_are_set_win_and_are_named(self):
+        few = ("--set", "quality.gather_rays=4", "--indirect", "paths")
+        self.write("scene.toml", OPEN)
+        report = self.json("render", "scene.toml", "-o", "out.exr", "--size", "48x36", "--error", 0.001, *few, code=3)
+        error = report["error"]
+        self.assertEqual(error["limit"], "settings")
+        # The mean of n paths is off by sqrt(1 / n); the stage that draws takes no less than the drawing.
+        self.assertGreater(error["seconds_to_go"], 0)
+        self.assertLessEqual(error["seconds_to_go"],
+                             report["seconds"]["render"] * ((error["estimate"] / 0.001) ** 2 - 1))
+        self.assertEqual(self.rendered("--error", 1, *few)["limit"], None)
+        # A scene's own error changes no exit code.
+        fixed = self.rendered(*few, scene=OPEN + "[quality]\nerror = 0.001\n")
+        self.assertEqual(fixed["limit"], "settings")
 
     def test_a_time_limit_comes_first_and_is_named(self):
         # 0.7 s reach 0.0005 on two cores; this takes thousands of times as long.
