@@ -235,6 +235,8 @@ Solution solve_keeping(const scenes::World& world, const SolveOptions& options, 
   DirectOptions direct_options = variant.direct;
   if (direct_options.seed == 0) direct_options.seed = options.seed;
   direct_options.flux_rays = std::min(direct_options.flux_rays, options.flux_rays);
+  direct_options.points_per_patch =
+      std::min(direct_options.points_per_patch, options.direct_points);
   DirectLight light = direct_light(world, patches, factors, direct_options);
   report.shadow_rays = light.shadow_rays;
   report.sources_cost = light.cost;

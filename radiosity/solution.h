@@ -34,7 +34,9 @@ struct SolveOptions {
   double tolerance = 1e-8;      // of B, relative to each right-hand side's largest (linear_solve.h)
   std::uint64_t seed = 1;
   RefineOptions refine = {};
-  int flux_rays = 1 << 16;  // shot from each lamp (DirectOptions); at most
+  // Of direct light (DirectOptions), at most: shot from each lamp, and looked up on each patch.
+  int flux_rays = 1 << 16;
+  int direct_points = 16;
 };
 
 // The solver's part of the accuracy knobs.

@@ -151,7 +151,8 @@ std::vector<ScenePart> scene_parts(const Scene& scene, const scenes::LightGroups
 }
 
 std::vector<SolveKnob> solve_knobs(const SolveOptions& options) {
-  const auto& [patch_edge_m, form_factor_rays, tolerance, seed, refine, flux_rays] = options;
+  const auto& [patch_edge_m, form_factor_rays, tolerance, seed, refine, flux_rays, direct_points] =
+      options;
   const auto& [on, start_edge_m, max_patches, error] = refine;
   std::vector<SolveKnob> knobs = {
       {"patch_edge_m", "quality.patch_edge in m", patch_edge_m},
@@ -168,6 +169,10 @@ std::vector<SolveKnob> solve_knobs(const SolveOptions& options) {
   if (flux_rays != SolveOptions().flux_rays) {
     knobs.push_back({"flux_rays", "the rays from each lamp, by quality.error",
                      static_cast<std::uint64_t>(flux_rays)});
+  }
+  if (direct_points != SolveOptions().direct_points) {
+    knobs.push_back({"direct_points", "the points of a patch for direct light, by quality.error",
+                     static_cast<std::uint64_t>(direct_points)});
   }
   return knobs;
 }

@@ -198,7 +198,8 @@ std::optional<StepResult> run_steered(const Work& work) {
 bool same_solver(const radiosity::SolveOptions& a, const radiosity::SolveOptions& b) {
   return a.patch_edge_m == b.patch_edge_m && a.form_factor_rays == b.form_factor_rays &&
          a.tolerance == b.tolerance && a.seed == b.seed && a.flux_rays == b.flux_rays &&
-         a.refine.on == b.refine.on && a.refine.start_edge_m == b.refine.start_edge_m &&
+         a.direct_points == b.direct_points && a.refine.on == b.refine.on &&
+         a.refine.start_edge_m == b.refine.start_edge_m &&
          a.refine.max_patches == b.refine.max_patches && a.refine.error == b.refine.error;
 }
 

@@ -221,17 +221,19 @@ TEST(SolutionFile, AChangedOptionIsNamedWithBothValues) {
             stored.refusal(stored.scene, stored.options, "1.1"));
 }
 
-TEST(SolutionFile, FewerRaysOfALampAreNamedAndTheWholeNumberIsNot) {
-  // Files of before there was a choice have no such number, and stay good.
-  const auto named = [](const SolveOptions& options) {
+TEST(SolutionFile, FewerSamplesOfDirectLightAreNamedAndTheWholeNumbersAreNot) {
+  // Files of before there was a choice have no such numbers, and stay good.
+  const auto named = [](const SolveOptions& options, const std::string& key) {
     const std::vector<SolveKnob> knobs = solve_knobs(options);
     return std::any_of(knobs.begin(), knobs.end(),
-                       [](const SolveKnob& knob) { return knob.key == "flux_rays"; });
+                       [&](const SolveKnob& knob) { return knob.key == key; });
   };
   SolveOptions options;
-  EXPECT_FALSE(named(options));
+  EXPECT_FALSE(named(options, "flux_rays") || named(options, "direct_points"));
   options.flux_rays /= 16;
-  EXPECT_TRUE(named(options));
+  EXPECT_TRUE(named(options, "flux_rays"));
+  options.direct_points /= 4;
+  EXPECT_TRUE(named(options, "direct_points"));
 }
 
 TEST(SolutionFile, WhatRadiosityDoesNotReadDoesNotMakeItStale) {
