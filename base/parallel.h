@@ -47,6 +47,15 @@ class StopInForce {
 void parallel_chunks(std::size_t count, std::size_t chunk,
                      const std::function<void(std::size_t begin, std::size_t end)>& body);
 
+// Fresh memory takes longer to come than to be filled: each is touched first by one of all threads.
+template <class Vectors>
+void resize_together(Vectors& all, std::size_t size) {
+  for (auto& one : all) one.reserve(size);
+  parallel_chunks(all.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) all[k].resize(size);
+  });
+}
+
 // Sums sum_chunk(begin, end) over fixed chunks, adding in chunk order: the same bits on any number
 // of threads.
 template <class T, class SumChunk>

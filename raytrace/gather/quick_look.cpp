@@ -11,6 +11,8 @@ namespace {
 // Sharing at its finest reaches so many pixels across and down: of every block as wide as that the
 // middle is sampled.
 constexpr int reach = 2;
+// Peers with samples that stand for a stray: what is seen in mirrors is all of strays.
+constexpr int enough_peers = 4;
 
 }  // namespace
 
@@ -79,8 +81,12 @@ void GatherField::look_quickly(Gathered kind) {
       if (wants(at(x, y)) && !is_served(x, y)) sample(best_for(x, y));
     }
   }
+  const Peers peers{strays_, first_stray_, peers_, window_.columns};
   for (std::size_t p = grid_; p < points_.size(); ++p) {
-    if (wants(p) && strays_[p - grid_].base == no_base) sample(p);
+    if (!wants(p) || strays_[p - grid_].base != no_base) continue;
+    int served_by = 0;
+    peers.each(p - grid_, [&](std::size_t peer) { served_by += sampled[grid_ + peer]; });
+    if (served_by < enough_peers) sample(p);
   }
   cast(kind, missing, 0, {});
 }

@@ -2,7 +2,6 @@
 #include "raytrace/passes/passes.h"
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -19,9 +18,9 @@ constexpr int hasty_share = 4;  // a sample's gather rays over those where time 
 constexpr int most_rounds = 6;  // of camera samples, each at most four times the one before
 constexpr std::array<Gathered, gathered_kinds> every_kind = {Gathered::Solution, Gathered::Residual,
                                                              Gathered::Lobe};
-// What must follow a gather field's first samples, over the time that finding its points takes
-// (payload bay: 6 by day, 8 by night); and what must follow sharing.
-constexpr double after_gathering = 6.0, after_sharing = 2.5;
+// What must follow a gather field's points, at the least, over the time that finding them takes
+// (payload bay: 6 by day, 9 by night); and what must follow sharing.
+constexpr double after_points = 9.0, after_sharing = 4.0;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -32,20 +31,6 @@ Window widened(const Window& window, int pixels, const CameraModel& camera) {
   const int x1 = std::min(camera.columns, window.x + window.columns + pixels);
   const int y1 = std::min(camera.rows, window.y + window.rows + pixels);
   return {x0, y0, x1 - x0, y1 - y0};
-}
-
-struct Sampling {
-  int camera_samples = 16;  // per pixel
-  int gather_rays = 16;     // per camera sample
-};
-
-// Rays per pixel shared out so that the pixel's edge and the hemisphere get about equal attention.
-// Without gather rays the samples serve edges, lamps and lenses alone.
-Sampling share_out(int rays_per_pixel, bool gathers) {
-  const auto rays = std::bit_ceil(static_cast<std::uint32_t>(std::max(1, rays_per_pixel)));
-  const int log2 = static_cast<int>(std::bit_width(rays)) - 1;
-  const int samples = 1 << std::min((log2 + 1) / 2, 6);
-  return {samples, gathers ? static_cast<int>(rays) / samples : 0};
 }
 
 class Passes {
@@ -81,7 +66,7 @@ class Passes {
   [[nodiscard]] bool ends() const { return stops() || out_of_time(); }
 
   void run_per_sample() {
-    const Sampling sampling = share_out(options_.gather_rays, shared_.gathers);
+    const PixelSamples sampling = share_out(options_.gather_rays, shared_.gathers);
     shared_.diffuse = DiffuseSource::Gather;
     shared_.gather_rays = sampling.gather_rays;
     sums_.emplace(window_, shared_.layers, shared_.splits_parts);
@@ -138,7 +123,7 @@ class Passes {
     if (shared_.gathers) {
       const auto start = Clock::now();
       begin_field();
-      reserve_s_ = after_gathering * seconds_since(start);
+      reserve_s_ = after_points * seconds_since(start);
       const FirstLook first =
           first_look(options_.error, std::max(field_->points().size(), options_.first_look_pixels));
       look_first(Gathered::Solution, first.gather_rays, first.every_second);
@@ -147,7 +132,7 @@ class Passes {
       covered = !ends();
       share();
       report_.gather_seconds += seconds_since(start);
-      reserve_s_ *= after_sharing / after_gathering;
+      reserve_s_ *= after_sharing / after_points;
     }
     const int least = options_.shared.least_samples;
     first_round(by_edges(least, std::max(std::min(2, least), least / 2)));
@@ -155,6 +140,7 @@ class Passes {
     if (!ends()) shade(wanted_for_the_eye(*sums_, scatter_of_samples(*sums_)));
     covered = covered && !ends();
     Rounds rounds(options_.error);
+    reserve_s_ = sharing_s_;
     for (std::uint32_t round = 1; !ends(); ++round) {
       const SampleCosts each = sample_costs(field());
       SamplePlanner planner(*sums_, field(), each);
@@ -171,7 +157,9 @@ class Passes {
         share();
         report_.gather_seconds += seconds_since(start);
       }
+      reserve_s_ = 0.0;
       shade(plan->camera);
+      reserve_s_ = sharing_s_;
     }
     report_.gave_up = rounds.gave_up();
     if (!covered || options_.error <= 0.0 || !(ends() || report_.gave_up)) return;
@@ -213,7 +201,9 @@ class Passes {
   }
 
   void share() {
+    const auto start = Clock::now();
     for (const Gathered kind : every_kind) field_->share(kind, false);
+    sharing_s_ = seconds_since(start);
     count_gather_rays();
   }
 
@@ -285,6 +275,7 @@ class Passes {
   std::optional<PixelSums> sums_;
   Clock::time_point start_ = Clock::now();
   double reserve_s_ = 0.0;  // of the time limit, for what has to follow
+  double sharing_s_ = 0.0;  // what it took the last time
   double done_ = 0.0, expected_ = 1.0;
 };
 

@@ -35,6 +35,13 @@ FirstLook first_look(double wanted, std::size_t points) {
   return first;
 }
 
+PixelSamples share_out(int rays_per_pixel, bool gathers) {
+  const auto rays = std::bit_ceil(static_cast<std::uint32_t>(std::max(1, rays_per_pixel)));
+  const int log2 = static_cast<int>(std::bit_width(rays)) - 1;
+  const int samples = 1 << std::min((log2 + 1) / 2, 6);
+  return {samples, gathers ? static_cast<int>(rays) / samples : 0};
+}
+
 std::optional<SamplePlan> Rounds::next(SamplePlanner& planner, double so_far, double affordable) {
   const double now = planner.squared_error(), error = std::sqrt(now), aimed = aim() * aim();
   const bool first = looks_.empty();

@@ -31,6 +31,14 @@ struct FirstLook {
 };
 [[nodiscard]] FirstLook first_look(double wanted, std::size_t points);
 
+// Samples that are not shared: the rays of a pixel are divided so that its edges and the hemisphere
+// get about equal attention. Without gather rays the samples serve edges, lamps and lenses alone.
+struct PixelSamples {
+  int camera_samples = 16;  // per pixel
+  int gather_rays = 16;     // per camera sample
+};
+[[nodiscard]] PixelSamples share_out(int rays_per_pixel, bool gathers);
+
 class Rounds {
  public:
   // wanted: relative to the mean luminance; 0: as small as can be.

@@ -94,14 +94,14 @@ Neighbours Neighbours::of_like_material(const std::vector<GatherPoint>& points) 
 
 Neighbours::Planes Neighbours::planes(std::size_t number) const {
   Planes all(number);
-  for (std::vector<float>& of : all) of.resize(count());
+  base::resize_together(all, count());
   return all;
 }
 
 void Neighbours::blur(std::size_t level, const Planes& values, const std::vector<float>* weight,
                       Planes& means) const {
   means.resize(values.size());
-  for (std::size_t k = 0; k < values.size(); ++k) means[k].resize(values[k].size());
+  base::resize_together(means, count());
   const auto rows = static_cast<std::size_t>(rows_);
   const std::size_t step = std::size_t{1} << level, chains = std::min(step, rows);
   const std::size_t pieces = (rows + longest_chain * step - 1) / (longest_chain * step);

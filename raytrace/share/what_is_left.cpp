@@ -2,6 +2,7 @@
 // The squared error that keeping details leaves.
 #include <limits>
 
+#include "base/parallel.h"
 #include "raytrace/share/share.h"
 
 namespace earthshine::raytrace {
@@ -62,7 +63,7 @@ double Shared::squared_error_with(std::size_t point, double factor) const {
 
 void Shared::resize(std::size_t points) {
   for (auto* const by_level : {&signal, &noise, &few}) {
-    for (std::vector<float>& of : *by_level) of.resize(points, 0.0F);
+    base::resize_together(*by_level, points);
   }
   rest.resize(points, 0.0F);
   squared_error.resize(points, 0.0F);
