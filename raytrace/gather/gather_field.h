@@ -87,7 +87,8 @@ class GatherField {
   void cast(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
             const std::function<bool()>& stop);
   // A first look: `each` everywhere, or, where neighbours share and the centres of a pixel and of
-  // those about it lie on one surface, at every second pixel, which serves those beside it.
+  // those about it lie on one surface, at every second pixel, which serves those beside it. More
+  // lobe rays where more than the mean of all lobes is reflected.
   void look_first(Gathered kind, std::uint32_t each, bool every_second,
                   const std::function<bool()>& stop);
   // Where a stop or the time limit left no samples of a kind: the fewest. Where neighbours share,
@@ -145,6 +146,7 @@ class GatherField {
   [[nodiscard]] const RayCounts& rays_of(Gathered kind) const { return rays_of_[number(kind)]; }
 
  private:
+  [[nodiscard]] double mean_lobe() const;  // of the points that have one
   static std::size_t number(Gathered kind) { return static_cast<std::size_t>(kind); }
   struct Found {
     Stray stray;

@@ -92,6 +92,55 @@ TEST(FirstLook, LeavesEverySecondPixelOfASurfaceToThoseBesideIt) {
   }
 }
 
+TEST(FirstLook, SharpLobesGetMoreRays) {
+  // Two surfaces: a wall whose lobe is wide, and a plate with a narrow one whose peak is 40 times
+  // as high. Where the camera sees both, few pixels show the plate, so that the mean is nearer to
+  // the wall's: the plate gets as many times two rays as its lobe reflects more than the mean, down
+  // to a power of two and at most 32 times, and the wall no more than two.
+  tests::SceneBuilder builder;
+  scenes::Material wide = tests::grey(0.5, 1.0), sharp = tests::grey(0.1);
+  wide.specular = Rgb(0.1);
+  wide.shininess = 2.0;
+  sharp.specular = Rgb(4.0);
+  sharp.shininess = 50.0;
+  const std::uint32_t of_wall = builder.material(wide), of_plate = builder.material(sharp);
+  builder.room({of_wall, of_wall, of_wall, of_wall, of_wall, of_wall});
+  builder.plate(of_plate, 0.2, 0.3, true);
+  for (std::size_t v = builder.scene.vertices.size() - 4; v < builder.scene.vertices.size(); ++v) {
+    builder.scene.vertices[v] += Vec3(0.4, 0.45, 0.0);
+  }
+  Looked seen(0.25);
+  seen.scene = builder.scene;
+  const tests::Prepared prepared(seen.scene);
+  const radiosity::Solution solution = prepared.solve({});
+  const scenes::World world = prepared;
+  ShadingSetup setup(world, solution, seen.camera, seen.options);
+  RenderReport report;
+  const Sampled sampled =
+      sample_picture(setup.shared(), setup.world(), setup.camera(), seen.options, {}, report);
+  const GatherField& field = *sampled.field;
+  double sum = 0.0, count = 0.0;
+  for (const GatherPoint& point : field.points()) {
+    sum += double(point.lobe);
+    count += point.lobe > 0.0F ? 1.0 : 0.0;
+  }
+  int plates = 0;
+  for (std::size_t p = 0; p < field.points().size(); ++p) {
+    const double lobe = double(field.points()[p].lobe);
+    if (lobe <= 0.0) continue;
+    const double rays = double(field.samples(Gathered::Lobe, p)), times = lobe * count / sum;
+    const bool of_the_plate = field.points()[p].material == of_plate;
+    plates += of_the_plate ? 1 : 0;
+    if (of_the_plate) {
+      EXPECT_GE(rays, 2.0 * std::min(32.0, times / 2.0));
+      EXPECT_LE(rays, 2.0 * std::min(32.0, times));
+    } else {
+      EXPECT_EQ(rays, 2.0);
+    }
+  }
+  EXPECT_GT(plates, 30);
+}
+
 // Far from all else, too, as on the wall behind the border of a sheet.
 TEST(FirstLook, RaysBesideEdgesStartAllOverThePixel) {
   const Looked at_sheet(0.25, true);
