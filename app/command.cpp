@@ -175,20 +175,22 @@ double peak_memory_mib() {
 std::vector<std::string> limits_of_balance(const radiosity::Solution& solution) {
   const radiosity::BalanceReport& balance = solution.report.balance;
   std::vector<std::string> limits;
+  std::string where;
+  if (balance.worst < solution.patches.count()) {
+    const std::uint32_t object = solution.patches.object(balance.worst);
+    where = fmt::format(", {} at \"{}\"", balance.balanced ? "most" : "worst",
+                        solution.report.objects.at(object).name);
+  }
   if (balance.held > 0.001) {
     limits.push_back(
         fmt::format("so few form-factor rays that patches keep {:.1g} of their light for "
-                    "themselves, as no other patch has room for it; raise quality.form_factor_rays",
-                    balance.held));
+                    "themselves, as no other patch has room for it{}; raise "
+                    "quality.form_factor_rays",
+                    balance.held, where));
   }
   // Less light than that no result shows, whatever else is exact.
   constexpr double tells = 1e-6;
   if (balance.balanced || balance.sweeps == 0 || balance.after <= tells) return limits;
-  std::string where;
-  if (balance.worst < solution.patches.count()) {
-    const std::uint32_t object = solution.patches.object(balance.worst);
-    where = fmt::format(", worst at \"{}\"", solution.report.objects.at(object).name);
-  }
   limits.push_back(
       fmt::format("the form factors conserve energy to {:.1e} of the surface only, after "
                   "{} sweeps{}; raise quality.form_factor_rays to come nearer",

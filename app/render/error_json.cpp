@@ -58,9 +58,10 @@ Json json_of(const ErrorEstimate& total, bool known, const Parts& parts,
   return json;
 }
 
-std::string text_of(const ErrorEstimate& total, bool known, const Parts& parts,
-                    const std::vector<std::string>& not_captured) {
-  std::string text = "no error can be told: nothing lit is seen";
+// why_unknown: where none is known.
+std::string text_of(const ErrorEstimate& total, bool known, const char* why_unknown,
+                    const Parts& parts, const std::vector<std::string>& not_captured) {
+  std::string text = fmt::format("no error can be told: {}", why_unknown);
   if (known) {
     text = fmt::format("error {}, 95 % sure below {}:", scenes::percent(total.estimate),
                        scenes::percent(total.bound_95));
@@ -179,7 +180,8 @@ void add_errors(base::ExrHeader& header, const Drawn& drawn) {
 
 std::string error_text(const Drawn& drawn, std::optional<double> wanted) {
   const studies::ErrorBudget& budget = drawn.errors;
-  return text_of(budget.total, budget.pixels > 0, parts_of(budget.parts), budget.not_captured) +
+  return text_of(budget.total, budget.pixels > 0, "no pixel shows reflected light alone",
+                 parts_of(budget.parts), budget.not_captured) +
          (budget.pixels > 0 ? choice_text(drawn.limit, drawn.steps, wanted, drawn.seconds_to_go)
                             : "");
 }
@@ -189,7 +191,8 @@ std::string error_text(const Solved& light, std::optional<double> wanted) {
   if (!error.known && light.limit == studies::Limit::Stopped) {
     return "no error is known: it was stopped before one was looked for";
   }
-  return text_of(error.parts.total(), error.known, parts_of(error.parts), error.not_captured) +
+  return text_of(error.parts.total(), error.known, "no surface reflects light",
+                 parts_of(error.parts), error.not_captured) +
          (error.known ? choice_text(light.limit, light.steps, wanted, 0.0) : "");
 }
 

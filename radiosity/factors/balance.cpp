@@ -67,7 +67,10 @@ BalanceReport balance(FormFactors& factors, std::span<const double> area_m2, dou
   report.before = Scaling(factors, area_m2).defect();
   report.borrowed = borrow_starved_columns(factors, area_m2);
   Scaling scaling(factors, area_m2);
-  if (find_scales(scaling, enough, report)) report.held = scaling.held();
+  if (find_scales(scaling, enough, report)) {
+    report.held = scaling.held();
+    if (report.balanced) report.worst = scaling.holds_most();
+  }
   scaling.finish();
   base::give_back_freed_memory(factors.entry_bytes());
   return report;

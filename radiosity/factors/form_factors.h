@@ -96,11 +96,13 @@ struct BalanceReport {
   int sweeps = 0;
   double before = 0.0;  // sum_j |column defect| / sum_j A_j
   double after = 0.0;
-  std::size_t borrowed = 0;        // patches that no ray had reached
-  std::size_t filled = 0;          // entries added for a scaling to exist
-  double held = 0.0;               // of sum_j A_j: what patches then send to themselves
-  bool balanced = false;           // after <= 1e-12
-  std::uint32_t worst = no_patch;  // else: the patch whose column is furthest from its sum
+  std::size_t borrowed = 0;  // patches that no ray had reached
+  std::size_t filled = 0;    // entries added for a scaling to exist
+  double held = 0.0;         // of sum_j A_j: what patches then send to themselves
+  bool balanced = false;     // after <= 1e-12
+  // The patch whose column is furthest from its sum; where all are balanced and entries were added,
+  // the one that keeps most.
+  std::uint32_t worst = no_patch;
 };
 // enough: the defect at which it ends.
 inline constexpr double balance_to_rounding = 1e-13;

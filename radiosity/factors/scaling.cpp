@@ -55,33 +55,42 @@ double Scaling::defect() const {
          total_m2_;
 }
 
-std::uint32_t Scaling::worst() const {
+std::uint32_t Scaling::most(const std::function<double(std::size_t k)>& value) const {
   struct Patch {
-    double defect = -1.0;
+    double value = -1.0;
     std::uint32_t number = 0;
-  } worst;
+  } own;
   for (std::size_t k = 0; k < sums_.size(); ++k) {
-    const double defect = std::abs(sums_[k] - area_m2_[own_.begin + k]);
-    if (defect > worst.defect) worst = {defect, static_cast<std::uint32_t>(own_.begin + k)};
+    if (const double v = value(k); v > own.value) {
+      own = {v, static_cast<std::uint32_t>(own_.begin + k)};
+    }
   }
-  Patch of_all = f_.shares.divided() ? Patch() : worst;
-  f_.shares.hear([&](base::Parcel& parcel) { parcel.pass(worst); },
+  Patch of_all = f_.shares.divided() ? Patch() : own;
+  f_.shares.hear([&](base::Parcel& parcel) { parcel.pass(own); },
                  [&](base::Parcel& parcel) {
                    Patch theirs;
                    parcel.pass(theirs);
-                   if (theirs.defect > of_all.defect) of_all = theirs;
+                   if (theirs.value > of_all.value) of_all = theirs;
                  });
   return of_all.number;
 }
 
+std::uint32_t Scaling::worst() const {
+  return most([&](std::size_t k) { return std::abs(sums_[k] - area_m2_[own_.begin + k]); });
+}
+
+double Scaling::held_m2(std::size_t k) const {
+  const std::size_t i = own_.begin + k;
+  if (!keeps_its_own(f_, area_m2_, i)) return 0.0;
+  return area_m2_[i] * f_.kept[i] * own_share * row_[k] * f_.column_scale[i];
+}
+
 double Scaling::held() const {
-  return sum_of([&](std::size_t k) {
-           const std::size_t i = own_.begin + k;
-           return keeps_its_own(f_, area_m2_, i)
-                      ? area_m2_[i] * f_.kept[i] * own_share * row_[k] * f_.column_scale[i]
-                      : 0.0;
-         }) /
-         total_m2_;
+  return sum_of([&](std::size_t k) { return held_m2(k); }) / total_m2_;
+}
+
+std::uint32_t Scaling::holds_most() const {
+  return most([&](std::size_t k) { return held_m2(k); });
 }
 
 void Scaling::sweep() {

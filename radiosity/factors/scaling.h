@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -35,12 +36,16 @@ class Scaling {
   // step only if it helps. Returns the passes over the matrix.
   int newton_step(int most_passes);
 
-  // After fill(): what the patches keep for themselves, of sum_j A_j.
+  // After fill(): what the patches keep for themselves, of sum_j A_j; and the one that keeps most.
   [[nodiscard]] double held() const;
+  [[nodiscard]] std::uint32_t holds_most() const;
   // The shares of sky and black backs follow the scales. The last that is called.
   void finish();
 
  private:
+  // Of this rank's k-th patch, and the patch of all that has most of something.
+  [[nodiscard]] double held_m2(std::size_t k) const;
+  [[nodiscard]] std::uint32_t most(const std::function<double(std::size_t k)>& value) const;
   void close_rows();
   void scale_column(std::size_t j, double factor);
   void update_sums();

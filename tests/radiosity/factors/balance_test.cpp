@@ -219,6 +219,7 @@ TEST(Balance, HitsThatAdmitAScalingAreNotTouched) {
   const BalanceReport report = balance(factors, patches.area_m2);
   EXPECT_EQ(report.filled, 0U);
   EXPECT_EQ(report.held, 0.0);
+  EXPECT_EQ(report.worst, no_patch);
   EXPECT_EQ(factors.hits, hits);
 }
 

@@ -79,6 +79,7 @@ TEST(FilledHits, APatchWhoseLightHasNoRoomElsewhereKeepsTheRest) {
   EXPECT_TRUE(report.balanced) << report.after;
   EXPECT_NEAR(entry(f, 0, 0), 1.0 / 3.0, 1e-3);
   EXPECT_NEAR(report.held, 0.2, 1e-3);
+  EXPECT_EQ(report.worst, 0U);
 }
 
 TEST(FilledHits, FewRaysBalanceToTheSameBytesOnOneThreadAndTwo) {
