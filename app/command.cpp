@@ -186,7 +186,7 @@ std::vector<std::string> limits_of_balance(const radiosity::Solution& solution) 
         fmt::format("so few form-factor rays that patches keep {:.1g} of their light for "
                     "themselves, as no other patch has room for it{}; raise "
                     "quality.form_factor_rays",
-                    balance.held, where));
+                    balance.held, balance.balanced ? where : ""));
   }
   // Less light than that no result shows, whatever else is exact.
   constexpr double tells = 1e-6;

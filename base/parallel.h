@@ -47,7 +47,8 @@ class StopInForce {
 void parallel_chunks(std::size_t count, std::size_t chunk,
                      const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-// Fresh memory takes longer to come than to be filled: each is touched first by one of all threads.
+// Fresh memory takes longer to come than to be filled: each is touched first by one of all threads,
+// and taken by the caller's, which gives it back.
 template <class Vectors>
 void resize_together(Vectors& all, std::size_t size) {
   for (auto& one : all) one.reserve(size);

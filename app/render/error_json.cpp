@@ -85,9 +85,8 @@ const char* words_of(studies::Limit limit) {
       return "memory came first (--max-memory, or what is free)";
     case studies::Limit::Settings:
       return "quality.max_patches, quality.form_factor_rays with quality.patch_edge (or refine = "
-             "false), quality.gather = \"per-sample\" or --indirect paths is given, which wins "
-             "over "
-             "it; leave it out, or give more quality.gather_rays";
+             "false) is given, which wins over it, or a picture has as many quality.gather_rays as "
+             "are set (gather = \"per-sample\", --indirect paths); leave it out, or raise these";
     case studies::Limit::Steps:
       return "no end in sight after several tries";
     case studies::Limit::Stopped:

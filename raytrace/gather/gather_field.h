@@ -87,13 +87,13 @@ class GatherField {
   void cast(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
             const std::function<bool()>& stop);
   // A first look: `each` everywhere, or, where neighbours share and the centres of a pixel and of
-  // those about it lie on one surface, at every second pixel, which serves those beside it. More
-  // lobe rays where more than the mean of all lobes is reflected.
+  // those about it lie on one surface, at every second pixel, which serves those beside it. Of the
+  // fewest lobe rays more where a lobe peaks higher than their mean.
   void look_first(Gathered kind, std::uint32_t each, bool every_second,
                   const std::function<bool()>& stop);
   // Where a stop or the time limit left no samples of a kind: the fewest. Where neighbours share,
   // the middle one of 25 pixels serves those about it that show the same surface, and where none
-  // does a point as far on as it may be.
+  // does a point as far on as it may be; of what mirrors show any with fewer than four such peers.
   void look_quickly(Gathered kind);
   // The least that can be asked for at once: two halves of the fewest.
   [[nodiscard]] static std::uint32_t fewest_samples(Gathered kind);

@@ -14,9 +14,8 @@ namespace {
 constexpr int reach = 2;
 // Peers with samples that stand for a stray: what is seen in mirrors is all of strays.
 constexpr int enough_peers = 4;
-// Rays of sharp lobes seldom meet what is bright, and what the first of them miss is stated as
-// none: in proportion to how much the lobe reflects of it, a point gets up to so many times as
-// many.
+// Rays of sharp lobes seldom meet what is bright, and what the fewest of them miss is stated as
+// none: by how high a point's lobe peaks over the mean of all it gets up to so many times as many.
 constexpr double most_times = 32.0;
 
 }  // namespace
@@ -33,7 +32,8 @@ double GatherField::mean_lobe() const {
 void GatherField::look_first(Gathered kind, std::uint32_t each, bool every_second,
                              const std::function<bool()>& stop) {
   std::vector<std::uint32_t> samples(points_.size(), each);
-  const double mean = kind == Gathered::Lobe ? mean_lobe() : 0.0;
+  const bool hasty = kind == Gathered::Lobe && each <= fewest_samples(kind);
+  const double mean = hasty ? mean_lobe() : 0.0;
   for (std::size_t p = 0; p < samples.size() && mean > 0.0; ++p) {
     const double times = std::clamp(double(points_[p].lobe) / mean, 1.0, most_times);
     samples[p] *= std::bit_floor(static_cast<std::uint32_t>(times));

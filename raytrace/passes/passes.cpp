@@ -172,7 +172,7 @@ class Passes {
   [[nodiscard]] double affordable(double so_far) const {
     if (options_.time_limit_s <= 0.0) return std::numeric_limits<double>::infinity();
     const double gone = seconds_since(start_);
-    return std::max(0.0, options_.time_limit_s - gone) * so_far / std::max(gone, 1e-3);
+    return std::max(0.0, options_.time_limit_s - reserve_s_ - gone) * so_far / std::max(gone, 1e-3);
   }
 
   [[nodiscard]] const GatherField* field() const { return field_ ? &*field_ : nullptr; }

@@ -51,7 +51,7 @@ class WantedError(program.Case):
         self.assertEqual(error["limit"], "settings")
         run = self.run_program("render", "scene.toml", "-o", "out.exr", "--size", "48x36", "--error", 0.001, "--set",
                                "quality.gather=per-sample")
-        self.assertIn('quality.gather = "per-sample" or --indirect paths is given', run.stderr)
+        self.assertIn('quality.gather_rays as are set (gather = "per-sample", --indirect paths)', run.stderr)
 
     def test_of_paths_the_rays_that_are_set_win_and_are_named(self):
         few = ("--set", "quality.gather_rays=4", "--indirect", "paths")

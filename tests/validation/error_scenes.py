@@ -200,8 +200,10 @@ def knobs(**values):
     return [word for key, value in values.items() for word in ("--set", f"quality.{key}={value}")]
 
 
-# What a user may ask for: an error, which the program then steers by, with or without a knob held fast; or knobs alone.
+# What a user may ask for: an error, which the program then steers by, with or without a knob held fast, or knobs alone; and of
+# pictures without their solution an error.
 ASKED = {
+    **{f"picture within {error}": ["--error", error] for error in ("0.05", "0.02", "0.01")},
     "error 0.1": ["--error", "0.1"],
     "error 0.05": ["--error", "0.05"],
     "error 0.03": ["--error", "0.03"],
@@ -212,6 +214,7 @@ ASKED = {
     "few patches": knobs(max_patches=500, form_factor_rays=128, gather_rays=16),
     "plain gather": knobs(patch_edge=0.5, gather="per-sample", gather_rays=64),
 }
+PICTURES = [asked for asked in ASKED if asked.startswith("picture")]
 PAIRS = (("error 0.1", "coarse patches"), ("error 0.05", "few patches"), ("error 0.1", "few form-factor rays"),
          ("error 0.03", "plain gather"), ("error, even patches", "error, 8 gather rays"))
 
@@ -226,13 +229,22 @@ SHIPPED = {
     "sts46/day-earthshine.toml": (["error 0.1"], ["--camera", "B", *SMALL]),
     "sts46/night-lamps.toml": (["error 0.1"], ["--camera", "B", *SMALL]),
 }
+# And pictures of these alone by another camera.
+ASIDE = [name for name in SHIPPED if name.startswith("sts46")]
 ROOMS = 22
+
+
+def with_pictures(asked):
+    """And pictures within each error that is not asked for already."""
+    return [*asked, *(one for one in PICTURES if ASKED[one] not in [ASKED[other] for other in asked])]
 
 
 def cases(quick=False):
     """Yields (name, path or text, further arguments, names of what is asked)."""
     for number in range(4 if quick else ROOMS):
-        yield f"room {number}", room(number), [], list(PAIRS[number % len(PAIRS)])
+        yield f"room {number}", room(number), [], with_pictures(PAIRS[number % len(PAIRS)])
     for name, (asked, more) in SHIPPED.items():
         if not quick or name.startswith("cornell"):
-            yield name.replace("/scene.toml", "").replace(".toml", ""), LIBRARY / name, more, asked
+            yield name.replace("/scene.toml", "").replace(".toml", ""), LIBRARY / name, more, with_pictures(asked)
+    for name in [] if quick else ASIDE:
+        yield name.replace(".toml", ", camera A"), LIBRARY / name, ["--camera", "A", *SMALL], PICTURES

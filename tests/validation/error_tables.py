@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What error_bounds.py found, as tables: how often the bounds held, and how often no more than was asked for came out."""
+import dataclasses
+import math
+
+import error_scenes
+import error_truth
+
+SHARE, MEDIAN = 0.9, 3.0  # asked for
+# Of a true error: below, the references' own noise and rounding decide, and a ratio says nothing.
+LEAST = 1e-3
+UNSURE = 0.2  # standard error of the true error over the larger of it and the bound; less sure rows are shown and not judged
+
+
+@dataclasses.dataclass
+class Row:
+    kind: str  # picture or solve
+    scene: str
+    asked: str
+    patches: int
+    estimate: float
+    bound: float
+    parts: dict
+    truth: error_truth.Truth
+
+    @property
+    def within(self):
+        return self.truth.error <= self.bound or self.truth.error < LEAST
+
+    @property
+    def ratio(self):
+        return self.bound / self.truth.error if self.truth.error >= LEAST else math.nan
+
+    @property
+    def unsure(self):
+        """Standard error of the true error, from that of its square."""
+        return self.truth.doubt / (2 * self.truth.error) if self.truth.error > 0 else math.sqrt(self.truth.doubt)
+
+    @property
+    def tells(self):
+        """Whether the references are sure enough of the true error to judge the bound by it."""
+        return self.unsure <= UNSURE * max(self.bound, self.truth.error, LEAST)
+
+    @property
+    def by_error(self):
+        """Whether an error was asked for, not knobs."""
+        return self.asked.startswith(("error", "picture"))
+
+    @property
+    def wanted(self):
+        """The error that was asked for with nothing else set; or None."""
+        words = error_scenes.ASKED[self.asked]
+        return float(words[1]) if len(words) == 2 and words[0] == "--error" else None
+
+
+def median(values):
+    values = sorted(values)
+    middle = len(values) // 2
+    return values[middle] if len(values) % 2 else (values[middle - 1] + values[middle]) / 2
+
+
+def percent(value):
+    return f"{100 * value:.2g} %"
+
+
+def table(rows):
+    print("| scene | asked for | patches | estimate | bound 95 % | its parts | true error | bound / true |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    for row in rows:
+        parts = ", ".join(f"{key.replace('_', ' ')} {percent(value)}" for key, value in row.parts.items()
+                          if value > 0.2 * row.estimate)  # those that make up 96 % of the square and more
+        mark = " (?)" if not row.tells else "" if row.within else " **outside**"
+        ratio = f"{row.ratio:.2f}" if row.truth.error >= LEAST else ""
+        print(f"| {row.scene} | {row.asked} | {row.patches} | {percent(row.estimate)} | {percent(row.bound)} | {parts} | "
+              f"{percent(row.truth.error)} ± {percent(row.unsure)} | {ratio}{mark} |")
+
+
+def summary(kind, rows):
+    """Prints how often the bound held; whether that is what was asked for."""
+    share = sum(row.within for row in rows) / max(1, len(rows))
+    unsure = math.sqrt(share * (1 - share) / max(1, len(rows)))
+    ratios = [row.ratio for row in rows if not math.isnan(row.ratio)]
+    middle = median(ratios) if ratios else math.nan
+    good = share >= SHARE and not middle > MEDIAN
+    print(f"| {kind} | {sum(row.within for row in rows)} of {len(rows)} | {100 * share:.0f} ± {100 * unsure:.0f} % | "
+          f"{middle:.2f} | {min(ratios, default=math.nan):.2f} to {max(ratios, default=math.nan):.1f} | "
+          f"{'yes' if good else 'no'} |")
+    return good
+
+
+def summaries(rows):
+    print(f"\n| | true error within the bound | share (asked: {100 * SHARE:.0f} %) | bound / true, median (asked: at most "
+          f"{MEDIAN:.0f}) | of all | holds |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    good = [summary(title, [r for r in rows if r.kind == kind])
+            for kind, title in (("picture", "pictures"), ("solve", "radiosities")) if any(r.kind == kind for r in rows)]
+    for kind, title in (("picture", "pictures"), ("solve", "radiosities")):
+        for by_error, how in ((True, "by `error`"), (False, "by knobs")):
+            mine = [r for r in rows if r.kind == kind and r.by_error == by_error]
+            if mine:
+                summary(f"{title}, {how}", mine)
+    good.append(summary("all", rows))
+    return all(good)
+
+
+def reached(rows):
+    """Prints how often no more than what was asked for came out: --error E gives E."""
+    print("\n| asked for | true error of pictures no larger | in all | largest | of radiosities | in all | largest |")
+    print("| --- | --- | --- | --- | --- | --- | --- |")
+    for wanted in sorted({row.wanted for row in rows if row.wanted}, reverse=True):
+        cells = [percent(wanted)]
+        for kind in ("picture", "solve"):
+            of_kind = [row.truth.error for row in rows if row.kind == kind and row.wanted == wanted]
+            cells += [str(sum(error <= wanted for error in of_kind)), str(len(of_kind)), percent(max(of_kind)) if of_kind else ""]
+        print(f"| {' | '.join(cells)} |")
+
+
+def write(rows):
+    """Prints everything; whether it is what was asked for."""
+    judged = [row for row in rows if row.tells]
+    good = summaries(judged)
+    reached(judged)
+    print(f"\n{len(rows) - len(judged)} of {len(rows)} rows, marked (?), are in neither: the references' own noise leaves their true "
+          f"errors too unsure.")
+    for kind, title in (("picture", "Pictures"), ("solve", "Radiosities")):
+        mine = [row for row in rows if row.kind == kind]
+        if mine:
+            print(f"\n{title}:\n")
+            table(mine)
+    return good
