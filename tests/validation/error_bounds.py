@@ -7,8 +7,8 @@ Renders and solves shipped scenes, hard ones and random rooms by many settings, 
 true error against two independent references (error_truth.py; their noise drops out): pictures against path-traced ones, of
 all light paths, radiosities against solutions of ten times the patches or, of scenes of which an error is asked, to half of
 the least of them: evenly cut patches, however many, are too large where light comes through a window. Of every scene pictures
-alone are asked for at 5, 2 and 1 %, too. Ends with code 1 unless at least 90 % of the true errors that the references can tell lie
-within the bounds and the median of bound over true error is 3 or less. References are kept in DIR (out/error-references).
+alone are asked for at 5, 2 and 1 %, too. Ends with code 1 unless at least 90 % of the true errors lie within the bounds and the
+median of bound over true error is 3 or less. References are kept in DIR (out/error-references).
 """
 import argparse
 import concurrent.futures

@@ -9,7 +9,7 @@ import error_truth
 SHARE, MEDIAN = 0.9, 3.0  # asked for
 # Of a true error: below, the references' own noise and rounding decide, and a ratio says nothing.
 LEAST = 1e-3
-UNSURE = 0.2  # standard error of the true error over the larger of it and the bound; less sure rows are shown and not judged
+UNSURE = 0.2  # standard error of the true error over the larger of it and the bound; less sure rows are marked
 
 
 @dataclasses.dataclass
@@ -38,7 +38,7 @@ class Row:
 
     @property
     def tells(self):
-        """Whether the references are sure enough of the true error to judge the bound by it."""
+        """Whether the references are sure enough of the true error to judge a single bound by it."""
         return self.unsure <= UNSURE * max(self.bound, self.truth.error, LEAST)
 
     @property
@@ -69,7 +69,7 @@ def table(rows):
     for row in rows:
         parts = ", ".join(f"{key.replace('_', ' ')} {percent(value)}" for key, value in row.parts.items()
                           if value > 0.2 * row.estimate)  # those that make up 96 % of the square and more
-        mark = " (?)" if not row.tells else "" if row.within else " **outside**"
+        mark = ("" if row.within else " **outside**") + ("" if row.tells else " (?)")
         ratio = f"{row.ratio:.2f}" if row.truth.error >= LEAST else ""
         print(f"| {row.scene} | {row.asked} | {row.patches} | {percent(row.estimate)} | {percent(row.bound)} | {parts} | "
               f"{percent(row.truth.error)} ± {percent(row.unsure)} | {ratio}{mark} |")
@@ -116,12 +116,14 @@ def reached(rows):
 
 
 def write(rows):
-    """Prints everything; whether it is what was asked for."""
-    judged = [row for row in rows if row.tells]
-    good = summaries(judged)
-    reached(judged)
-    print(f"\n{len(rows) - len(judged)} of {len(rows)} rows, marked (?), are in neither: the references' own noise leaves their true "
-          f"errors too unsure.")
+    """Prints everything; whether all rows together are what was asked for."""
+    good = summaries(rows)
+    reached(rows)
+    sure = [row for row in rows if row.tells]
+    print(f"\n{len(rows) - len(sure)} of {len(rows)} rows are marked (?): the references' own noise leaves their true errors unsure. "
+          f"Without them:")
+    summaries(sure)
+    reached(sure)
     for kind, title in (("picture", "Pictures"), ("solve", "Radiosities")):
         mine = [row for row in rows if row.kind == kind]
         if mine:

@@ -3,6 +3,8 @@
 // rounds.
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "raytrace/passes/passes.h"
 #include "raytrace/passes/rounds.h"
 #include "raytrace/passes/sample_plan.h"
@@ -14,21 +16,22 @@ namespace {
 
 constexpr int edge_px = 96;
 
-// A room lit by one of its walls, seen from a corner: what is off is mostly what is gathered. There
-// may be a sheet in the middle.
+// A room lit by one of its walls. There may be a sheet in the middle.
+scenes::Scene room(bool has_sheet) {
+  tests::SceneBuilder builder;
+  const std::uint32_t grey = builder.material(tests::grey(0.5));
+  const std::uint32_t bright = builder.material(tests::grey(0.5, 100.0));
+  builder.room({bright, grey, grey, grey, grey, grey});
+  if (has_sheet) builder.plate(grey, 0.3, 0.2, true);
+  return builder.scene;
+}
+
+// Seen from a corner: what is off is mostly what is gathered.
 struct Looked {
-  explicit Looked(double smooth_share, bool sheet = false)
-      : share(smooth_share), has_sheet(sheet) {}
+  explicit Looked(double smooth_share, scenes::Scene seen = room(false))
+      : share(smooth_share), scene(std::move(seen)) {}
   double share;
-  bool has_sheet;
-  scenes::Scene scene = [this] {
-    tests::SceneBuilder builder;
-    const std::uint32_t grey = builder.material(tests::grey(0.5));
-    const std::uint32_t bright = builder.material(tests::grey(0.5, 100.0));
-    builder.room({bright, grey, grey, grey, grey, grey});
-    if (has_sheet) builder.plate(grey, 0.3, 0.2, true);
-    return builder.scene;
-  }();
+  scenes::Scene scene;
   tests::Prepared prepared{scene};
   radiosity::Solution solution = [this] {
     radiosity::SolveOptions solve;
@@ -109,16 +112,8 @@ TEST(FirstLook, SharpLobesGetMoreRays) {
   for (std::size_t v = builder.scene.vertices.size() - 4; v < builder.scene.vertices.size(); ++v) {
     builder.scene.vertices[v] += Vec3(0.4, 0.45, 0.0);
   }
-  Looked seen(0.25);
-  seen.scene = builder.scene;
-  const tests::Prepared prepared(seen.scene);
-  const radiosity::Solution solution = prepared.solve({});
-  const scenes::World world = prepared;
-  ShadingSetup setup(world, solution, seen.camera, seen.options);
-  RenderReport report;
-  const Sampled sampled =
-      sample_picture(setup.shared(), setup.world(), setup.camera(), seen.options, {}, report);
-  const GatherField& field = *sampled.field;
+  const Looked seen(0.25, builder.scene);
+  const GatherField& field = seen.field();
   double sum = 0.0, count = 0.0;
   for (const GatherPoint& point : field.points()) {
     sum += double(point.lobe);
@@ -143,7 +138,7 @@ TEST(FirstLook, SharpLobesGetMoreRays) {
 
 // Far from all else, too, as on the wall behind the border of a sheet.
 TEST(FirstLook, RaysBesideEdgesStartAllOverThePixel) {
-  const Looked at_sheet(0.25, true);
+  const Looked at_sheet(0.25, room(true));
   const GatherField& field = at_sheet.field();
   int beside = 0, alone = 0;
   for (int y = 0; y < edge_px; ++y) {
