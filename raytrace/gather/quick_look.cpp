@@ -32,8 +32,8 @@ double GatherField::mean_lobe() const {
 void GatherField::look_first(Gathered kind, std::uint32_t each, bool every_second,
                              const std::function<bool()>& stop) {
   std::vector<std::uint32_t> samples(points_.size(), each);
-  const bool hasty = kind == Gathered::Lobe && each <= fewest_samples(kind);
-  const double mean = hasty ? mean_lobe() : 0.0;
+  const bool few_rays = kind == Gathered::Lobe && each <= fewest_samples(kind);
+  const double mean = few_rays ? mean_lobe() : 0.0;
   for (std::size_t p = 0; p < samples.size() && mean > 0.0; ++p) {
     const double times = std::clamp(double(points_[p].lobe) / mean, 1.0, most_times);
     samples[p] *= std::bit_floor(static_cast<std::uint32_t>(times));
