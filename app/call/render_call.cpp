@@ -188,6 +188,8 @@ void add_picture_options(CLI::App& parser, RenderCall& call) {
       ->type_name("LIST");
   parser.add_flag("--all-effects", call.all_effects,
                   "Also those that cannot matter (plan says which they are)");
+  parser.add_flag("--no-caustics", call.no_caustics,
+                  "With --indirect paths: what pictures on a solution converge to");
   parser.add_flag("--per-light", call.per_light,
                   "One layer per light group: light_<group>.R, .G, .B");
 }
@@ -198,6 +200,11 @@ void check_picture_options(const RenderCall& call, bool quiet) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     throw base::Error(base::Blame::Input, "--aov", "there is no layer \"" + name + "\"",
                       fmt::format("the layers are {}", fmt::join(known, ", ")));
+  }
+  if (call.no_caustics && call.indirect != raytrace::Indirect::Paths) {
+    throw Error(Blame::Input, "--no-caustics",
+                fmt::format("--indirect {} draws none", indirect_name(call.indirect)), {},
+                "Leave it out, or write --indirect paths");
   }
   if (call.indirect == raytrace::Indirect::Distributed) return;
   if (!call.distributed_over.empty()) {

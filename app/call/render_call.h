@@ -74,7 +74,7 @@ struct RenderCall {
   std::optional<std::uint64_t> distributed_lights;
   std::string distributed_over;  // [[area]] of the scene; empty: none
   std::vector<std::string> aovs;
-  bool per_light = false, timings = false, json = false;
+  bool per_light = false, timings = false, json = false, no_caustics = false;
   bool all_effects = false;  // also those that cannot matter
   PartCall part;
   ToneChoice tone;

@@ -21,7 +21,8 @@ raytrace::Frame trace(const Studio& studio, const scenes::Camera& camera,
   return raytrace::trace_paths(
       loaded.world(studio.query), camera,
       {options.columns, options.rows, options.gather_rays, options.per_light,
-       raytrace::PathSet::All, options.seed, options.stop, options.crop},
+       options.caustics ? raytrace::PathSet::All : raytrace::PathSet::NoCaustics, options.seed,
+       options.stop, options.crop},
       progress);
 }
 

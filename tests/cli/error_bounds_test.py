@@ -28,6 +28,7 @@ class Truth(unittest.TestCase):
         spread = math.sqrt((sigma**4 + 2 * off**2 * sigma**2) / number)
         self.assertLess(abs(found.error**2 - off**2), 4 * spread)
         self.assertAlmostEqual(found.doubt, spread, delta=0.05 * spread)
+        self.assertAlmostEqual(found.of_references, spread, delta=0.05 * spread)
         self.assertAlmostEqual(found.bias, off, delta=4 * sigma / math.sqrt(2 * number))
 
     def test_more_references_tell_it_better(self):
@@ -38,6 +39,19 @@ class Truth(unittest.TestCase):
         spread = math.sqrt((4 * off**2 * sigma**2 / k + 2 * sigma**4 / (k * (k - 1))) / number)
         self.assertLess(abs(found.error**2 - off**2), 4 * spread)
         self.assertAlmostEqual(found.doubt, spread, delta=0.05 * spread)
+        self.assertAlmostEqual(found.of_references, spread, delta=0.05 * spread)
+
+    def test_what_pixels_differ_by_is_no_doubt_of_these(self):
+        # A tenth of the pixels is off, by o: as a sample the squares' mean scatters by o^2 sqrt(0.09 / N) beside the references'
+        # noise, whose variance is 4 (o^2 / 10) s^2 / k + 2 s^4 / (k (k - 1)).
+        number, sigma, off, k = 10000, 0.1, 0.5, 4
+        light = [1.0 + off * (p % 10 == 0) for p in range(number)]
+        first, second, *more = (noisy([1.0] * number, sigma, seed) for seed in range(k))
+        found = error_truth.compare(light, first, second, None, more)
+        spread = math.sqrt((0.4 * off**2 * sigma**2 / k + 2 * sigma**4 / (k * (k - 1))) / number)
+        self.assertAlmostEqual(found.of_references, spread, delta=0.05 * spread)
+        self.assertAlmostEqual(found.doubt, math.sqrt(0.09 * off**4 / number + spread**2), delta=0.05 * found.doubt)
+        self.assertLess(abs(found.error**2 - off**2 / 10), 4 * spread)
 
     def test_only_pixels_that_count(self):
         found = error_truth.compare([3.0, 9.0], [2.0, 1.0], [2.0, 1.0], [1.0, 0.0])

@@ -8,6 +8,38 @@ import exr
 import program
 
 
+# A mirror ball over a floor, by a wide Sun.
+CAUSTIC = """format = 1
+[[material]]
+name = "floor"
+diffuse = 0.5
+[[material]]
+name = "mirror"
+mirror = 1.0
+[[object]]
+name = "floor"
+shape = "quad"
+corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+material = "floor"
+[[object]]
+name = "ball"
+shape = "sphere"
+center = [0.5, 0.5, 0.5]
+radius = 0.4
+material = "mirror"
+[sun]
+direction = [1.0, 0.0, 0.3]
+illuminance = 1000
+angular_radius_deg = 10
+[[camera]]
+name = "above"
+position = [0.5, -1, 1.5]
+look_at = [0.5, 0.5, 0]
+fov_deg = 40
+resolution = [24, 24]
+"""
+
+
 class Render(program.Case):
     def setUp(self):
         super().setUp()
@@ -120,6 +152,25 @@ class Render(program.Case):
         for arguments, words in ((("--aov", "depth"), ("--aov", "--indirect paths")),
                                  (("--set", "quality.gather_rays=1"), ("1 paths", "2 or more"))):
             self.says(self.refused("render", "ball.toml", "-o", "a.exr", "--indirect", "paths", *arguments), *words)
+
+    def test_paths_without_caustics_are_what_pictures_converge_to(self):
+        self.write("caustic.toml", CAUSTIC)
+        paths = ("--indirect", "paths", "--set", "quality.gather_rays=1024")
+
+        def summed(*options):
+            header, _, _, light = self.render("caustic.toml", *options)
+            return header, sum(light["G"]), sum(light["variance"]) ** 0.5 if "variance" in light else 0.0
+        _, everything, of_everything = summed(*paths)
+        header, gathered, of_gathered = summed(*paths, "--no-caustics")
+        _, picture, _ = summed("--error", "0.02")
+        # The ball throws sunlight onto the floor: a quarter of all, eighteen times the paths' noise.
+        self.assertGreater(everything - gathered, 8 * math.hypot(of_everything, of_gathered))
+        # A picture is off by no more than 2 % in any pixel's mean square, and so in the mean.
+        self.assertLess(abs(picture - gathered), 4 * of_gathered + 0.02 * gathered)
+        self.assertEqual(header["earthshine:caustics"], "no")
+        self.assertIn("Sun", header["earthshine:error.not_captured"])
+        self.says(self.refused("render", "caustic.toml", "-o", "a.exr", "--no-caustics"),
+                  "--no-caustics", "--indirect radiosity draws none", "--indirect paths")
 
     def test_indirect_light_adds(self):
         sums = {how: sum(self.render("ball.toml", "--indirect", how)[3]["G"])

@@ -4,10 +4,10 @@
     error_bounds.py PROGRAM [--quick] [--only NAME] [--cache DIR] [--seed N]
 
 Renders and solves shipped scenes, hard ones and random rooms by many settings, and compares what the program states with the
-true error against two independent references (error_truth.py; their noise drops out): pictures against path-traced ones, of
-all light paths, radiosities against solutions of ten times the patches or, of scenes of which an error is asked, to half of
-the least of them: evenly cut patches, however many, are too large where light comes through a window. Of every scene pictures
-alone are asked for at 5, 2 and 1 %, too. Ends with code 1 unless at least 90 % of the true errors lie within the bounds and the
+true error against independent references (error_truth.py; their noise drops out): pictures against path-traced ones, of all
+light paths, as many as tell the true error; radiosities against two solutions of ten times the patches or, of scenes of which
+an error is asked, to half of the least of them: evenly cut patches, however many, are too large where light comes through a
+window. Of every scene pictures alone are asked for at 5, 2 and 1 %, too. Ends with code 1 unless at least 90 % of the true errors lie within the bounds and the
 median of bound over true error is 3 or less. References are kept in DIR (out/error-references).
 """
 import argparse
@@ -33,6 +33,9 @@ TOP = pathlib.Path(__file__).resolve().parents[2]
 FINER = 10  # of the references, in patches
 REFERENCE_RAYS = 512  # form-factor rays per patch of a reference, or as many as the settings have
 REFERENCE_PATHS = 1024  # per pixel of a reference picture
+# Reference pictures are drawn, twice as many each time, until each true error is known to this share of it or of its bound.
+# Doubt of its square goes with 1 / all paths, cast as one pair or as many.
+SURE, MOST_REFERENCES = 0.1, 32
 MOST_PATCHES = 100000  # of a reference solution: 5 GB
 HARD = ("small emitter", "sun spot", "pinhole", "baffle")
 
@@ -78,34 +81,48 @@ class Bench:
                   *error_scenes.knobs(gather="per-sample", gather_rays=REFERENCE_PATHS))
         return [light > 0 for light in error_truth.picture(out)[0]]
 
-    def references(self, path, text, more, patches, rays, asked):
-        """(solutions, luminances of both references, pixels that count), from the cache if they are there."""
-        errors = [float(value) for setting in asked for key, value in zip(*[iter(error_scenes.ASKED[setting])] * 2) if key == "--error"]
-        # Of a scene that takes more patches than that the picture alone is judged, by paths.
-        judged = FINER * patches <= MOST_PATCHES
-        fine = error_scenes.knobs(max_patches=rounded_up(FINER * patches), form_factor_rays=max(REFERENCE_RAYS, rays))
-        fine += error_scenes.knobs(refine="true")
-        paths = ["--indirect", "paths", *error_scenes.knobs(gather_rays=REFERENCE_PATHS)]
-        folder = self.cache / hash_of(text, *fine, *paths)[:16]
-        if not (folder / "done").exists():
-            shutil.rmtree(folder, ignore_errors=True)
-            folder.mkdir(parents=True)
-            for k in (1, 2):
-                seed = ["--seed", 9000 + k]
-                self.json("render", path, *paths, *seed, *more, "-o", folder / f"{k}.exr")
+    def folder_of(self, path, text, more):
+        """Where the references of a scene are kept, with what its pictures show."""
+        folder = self.cache / hash_of(text, str(REFERENCE_PATHS), "no caustics")[:16]
+        if not (folder / "seen").exists():
+            folder.mkdir(parents=True, exist_ok=True)
             self.json("render", path, *more, "--indirect", "none", "--aov", "object", "-o", folder / "objects.exr")
-            (folder / "seen").write_text(json.dumps([int(seen) for seen in self.sources_seen(path, more)]))
-            (folder / "done").touch()
-        first, second = (error_truth.picture(folder / f"{k}.exr")[0] for k in (1, 2))
+            keep(folder / "seen", lambda new: new.write_text(json.dumps([int(seen) for seen in self.sources_seen(path, more)])))
+        return folder
+
+    def pictures(self, folder, path, more, count):
+        """Luminances of so many path-traced pictures."""
+        found = []
+        for k in range(1, count + 1):
+            words = ["--indirect", "paths", "--no-caustics", *error_scenes.knobs(gather_rays=REFERENCE_PATHS), "--seed", 9000 + k]
+            keep(folder / f"{k}.exr", lambda new: self.json("render", path, *words, *more, "-o", new))
+            found.append(error_truth.picture(folder / f"{k}.exr")[0])
+        return found
+
+    def solutions(self, folder, path, patches, rays, asked):
+        """Words of two reference solutions for earthshine_surfaces; none of a scene that takes more patches than that."""
+        if FINER * patches > MOST_PATCHES:
+            return []
+        errors = [float(value) for setting in asked for key, value in zip(*[iter(error_scenes.ASKED[setting])] * 2) if key == "--error"]
+        words = error_scenes.knobs(max_patches=rounded_up(FINER * patches), form_factor_rays=max(REFERENCE_RAYS, rays), refine="true")
+        words = ["--error", str(min(errors) / 2)] if errors else words
+        found = [[folder / f"{hash_of(*words)[:16]}-{k}.h5", 9000 + k, *overrides(words)] for k in (1, 2)]
+        for solution, seed, *_ in found:
+            keep(solution, lambda new: self.json("solve", path, *words, "--seed", seed, "-o", new))
+        return found
+
+    def true_errors(self, folder, path, more, judged):
+        """Of pictures, given as (luminances, bound): against as many references as tell them."""
         _, things = error_truth.picture(folder / "objects.exr", "object")
-        seen = with_neighbours(json.loads((folder / "seen").read_text()), error_truth.columns(folder / "1.exr"))
-        words = ["--error", str(min(errors) / 2)] if errors else fine
-        solutions = [[folder / f"{hash_of(*words)[:16]}-{k}.h5", 9000 + k, *overrides(words)] for k in (1, 2)] if judged else []
-        for solution, seed, *_ in solutions:
-            if not solution.exists():
-                self.json("solve", path, *words, "--seed", seed, "-o", folder / "new.h5")
-                (folder / "new.h5").rename(solution)
-        return solutions, first, second, [float(o >= 0 and not s) for o, s in zip(things, seen)]
+        count = 2
+        while True:
+            first, second, *others = self.pictures(folder, path, more, count)
+            seen = with_neighbours(json.loads((folder / "seen").read_text()), error_truth.columns(folder / "1.exr"))
+            counts = [float(thing >= 0 and not source) for thing, source in zip(things, seen)]
+            found = [error_truth.compare(light, first, second, counts, others) for light, _ in judged]
+            if count >= MOST_REFERENCES or all(error_tables.doubt(one, bound) <= SURE for one, (_, bound) in zip(found, judged)):
+                return found
+            count *= 2
 
     def rows(self, name, source, more, asked):
         """Everything that is asked of one scene."""
@@ -121,13 +138,14 @@ class Bench:
         solves = [solved for _, _, solved, _ in runs if solved]
         patches = max((solved["patches"] for solved in solves), default=MOST_PATCHES)
         rays = max((solved["rays"] // max(1, solved["patches"]) for solved in solves), default=0)
-        solutions, first, second, counts = self.references(path, text, more, patches, power_of_two(rays),
-                                                           [one for one in asked if one not in error_scenes.PICTURES])
+        folder = self.folder_of(path, text, more)
+        solutions = self.solutions(folder, path, patches, power_of_two(rays),
+                                   [one for one in asked if one not in error_scenes.PICTURES])
+        lights = [(error_truth.picture(f"{stem}.exr")[0], rendered["error"]["bound_95"] or 0.0) for _, stem, _, rendered in runs]
         found = []
-        for setting, stem, solved, rendered in runs:
-            light, _ = error_truth.picture(f"{stem}.exr")
+        for (setting, stem, solved, rendered), of_picture in zip(runs, self.true_errors(folder, path, more, lights)):
             own = [f"{stem}.h5", self.seed, *overrides(error_scenes.ASKED[setting])]
-            truths = [("picture", rendered, error_truth.compare(light, first, second, counts))]
+            truths = [("picture", rendered, of_picture)]
             if solutions and solved:
                 surface = error_truth.radiosities(self.reader, path, [own, *solutions])
                 truths.insert(0, ("solve", solved, error_truth.compare(*surface)))
@@ -147,6 +165,14 @@ def cases(quick):
     for hard in [] if quick else hard_scenes.all_of_them():
         if hard.name in HARD:
             yield hard.name, hard.text, [], ["error 0.05", "few form-factor rays"]
+
+
+def keep(path, make):
+    """Makes the file unless it is there; one that is there is whole."""
+    if not path.exists():
+        new = path.with_name(f"new-{path.name}")
+        make(new)
+        new.rename(path)
 
 
 def hash_of(*what):

@@ -33,13 +33,12 @@ class Row:
 
     @property
     def unsure(self):
-        """Standard error of the true error, from that of its square."""
-        return self.truth.doubt / (2 * self.truth.error) if self.truth.error > 0 else math.sqrt(self.truth.doubt)
+        return unsure(self.truth)
 
     @property
     def tells(self):
         """Whether the references are sure enough of the true error to judge a single bound by it."""
-        return self.unsure <= UNSURE * max(self.bound, self.truth.error, LEAST)
+        return doubt(self.truth, self.bound) <= UNSURE
 
     @property
     def by_error(self):
@@ -51,6 +50,16 @@ class Row:
         """The error that was asked for with nothing else set; or None."""
         words = error_scenes.ASKED[self.asked]
         return float(words[1]) if len(words) == 2 and words[0] == "--error" else None
+
+
+def unsure(truth):
+    """Standard error of the true error, from that of its square, for the references' noise."""
+    return truth.of_references / (2 * truth.error) if truth.error > 0 else math.sqrt(truth.of_references)
+
+
+def doubt(truth, bound):
+    """The same over the larger of the true error and its bound."""
+    return unsure(truth) / max(bound, truth.error, LEAST)
 
 
 def median(values):

@@ -29,10 +29,11 @@ def columns(path):
 
 
 class Truth:
-    """error and bias: relative to `mean`; doubt: standard error of the error's square."""
+    """error and bias: relative to `mean`; doubt: standard error of the error's square, the pixels being a sample of many;
+    of_references: of that the references' own noise alone, which is what these pixels' error is unknown by."""
 
-    def __init__(self, error, doubt, bias, mean):
-        self.error, self.doubt, self.bias, self.mean = error, doubt, bias, mean
+    def __init__(self, error, doubt, of_references, bias, mean):
+        self.error, self.doubt, self.of_references, self.bias, self.mean = error, doubt, of_references, bias, mean
 
 
 BRIGHT = 4.0  # times the mean: above, an error counts in proportion (raytrace/frame/frame.h, error_weight)
@@ -42,20 +43,26 @@ def compare(values, first, second, counts=None, more=()):
     """The error of values, where first, second and perhaps more are references of the same, over those that count, relative to
     their mean, with the program's weights: a value L brighter than 4 times the mean counts with w = 4 mean / L, in both
     factors. L is the references' mean, so that what is judged has no say in it. Of more than two, the mean over all pairs:
-    of k differences d, ((sum d)^2 - sum d^2) / (k (k - 1))."""
+    of k differences d, ((sum d)^2 - sum d^2) / (k (k - 1)). Its variance for k normal references of the deviation s about a
+    value off by d, 4 d^2 s^2 / k + 2 s^4 / (k (k - 1)), is that of 4 m^2 s^2 / k - 2 s^4 (k - 2) / (k^2 (k + 1)) on the average,
+    where m is the mean of the differences and s^2 their variance found from them: E m^2 s^2 = (d^2 + s^2 / k) s^2, and
+    E s^4 = (k + 1) / (k - 1) times its square."""
     if counts is None:
         counts = [1.0] * len(values)
     k = 2 + len(more)
     rows = [(v, sum(all_of) / k, all_of) for v, c, *all_of in zip(values, counts, first, second, *more) if c]
     mean = sum(middle for _, middle, _ in rows) / len(rows) if rows else 0.0
     if mean <= 0:
-        return Truth(0.0, 0.0, 0.0, 0.0)
-    products = [weight(middle, mean)**2 * ((k * (v - middle))**2 - sum((v - one)**2 for one in all_of)) / (k * (k - 1) * mean**2)
-                for v, middle, all_of in rows]
+        return Truth(0.0, 0.0, 0.0, 0.0, 0.0)
+    factors = [(weight(middle, mean) / mean)**2 for _, middle, _ in rows]
+    variances = [max(0.0, sum((v - one)**2 for one in all_of) - k * (v - middle)**2) / (k - 1) for v, middle, all_of in rows]
+    products = [w * ((v - middle)**2 - variance / k) for w, variance, (v, middle, _) in zip(factors, variances, rows)]
+    noise = sum(w**2 * variance * (4 * (v - middle)**2 / k - 2 * variance * (k - 2) / (k**2 * (k + 1)))
+                for w, variance, (v, middle, _) in zip(factors, variances, rows))
     square = sum(products) / len(rows)
     spread = sum((p - square)**2 for p in products) / len(rows)**2
     bias = sum(v - middle for v, middle, _ in rows) / len(rows) / mean
-    return Truth(math.sqrt(max(0.0, square)), math.sqrt(spread), bias, mean)
+    return Truth(math.sqrt(max(0.0, square)), math.sqrt(spread), math.sqrt(max(0.0, noise)) / len(rows), bias, mean)
 
 
 def weight(luminance, mean):

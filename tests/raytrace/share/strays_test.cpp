@@ -60,6 +60,23 @@ TEST(Strays, WithoutASurfaceBesideThemTheyKeepTheirOwn) {
   EXPECT_NEAR(double(written.shared.squared_error[1]), 1.0, 1e-4);  // ((3 - 5) / 2)^2
 }
 
+TEST(Strays, HalvesThatAgreeByChanceAreNoCertainty) {
+  // Of nine without a surface beside them eight have halves of 10 - 3 and 10 + 3, noise 9, one has
+  // halves alike: the noise of any is the mean of its own and of the mean of all, 8.
+  Written written(9);
+  for (std::size_t k = 0; k < 9; ++k) {
+    written.strays[k].base = no_base;
+    written.sample(k, k == 0 ? 10.0 : 7.0, k == 0 ? 10.0 : 13.0);
+  }
+  add_strays(written.strays, written.estimate, written.shared);
+  EXPECT_NEAR(double(written.shared.squared_error[1]), 4.0, 1e-4);
+  for (std::size_t k = 1; k < 9; ++k) {
+    EXPECT_NEAR(double(written.shared.squared_error[1 + k]), 8.5, 1e-4);
+  }
+  // Four times the samples: a quarter of a sample's noise is left.
+  EXPECT_NEAR(written.shared.squared_error_with(1, 4.0), 1.0, 1e-4);
+}
+
 TEST(Strays, WhatIsNoNoiseIsKeptWhole) {
   Written written(8);
   for (std::size_t k = 0; k < 8; ++k) written.sample(k, 4.0 + double(k), 4.0 + double(k));
