@@ -93,10 +93,9 @@ class Study : AccuracyStages {
     result_.limits.push_back(
         {"radiosity",
          differs_ ? studies::limit_error(gathered_, full_, counted_) : studies::PictureError{},
-         differs_ ? "behind a diffuse bounce lobes reflect as if they were diffuse, and mirrors "
-                    "and glass "
-                    "throw no caustics"
-                  : "none: without lobes, mirrors and glass it comes to what paths come to"});
+         differs_
+             ? "curved mirrors, two mirrors in turn and glass that bends light throw no caustics"
+             : "none: without lobes, mirrors and glass it comes to what paths come to"});
     const studies::PictureError straight = studies::limit_error(straight_, full_, counted_);
     result_.limits.push_back({"direct", straight, "leaves out the light between surfaces"});
     result_.limits.push_back({"distributed", straight, "leaves out the light between surfaces"});

@@ -189,7 +189,7 @@ void add_picture_options(CLI::App& parser, RenderCall& call) {
   parser.add_flag("--all-effects", call.all_effects,
                   "Also those that cannot matter (plan says which they are)");
   parser.add_flag("--no-caustics", call.no_caustics,
-                  "With --indirect paths: what pictures on a solution converge to");
+                  "With --indirect paths: without what pictures on a solution leave out");
   parser.add_flag("--per-light", call.per_light,
                   "One layer per light group: light_<group>.R, .G, .B");
 }
@@ -203,8 +203,8 @@ void check_picture_options(const RenderCall& call, bool quiet) {
   }
   if (call.no_caustics && call.indirect != raytrace::Indirect::Paths) {
     throw Error(Blame::Input, "--no-caustics",
-                fmt::format("--indirect {} draws none", indirect_name(call.indirect)), {},
-                "Leave it out, or write --indirect paths");
+                fmt::format("belongs to --indirect paths, not {}", indirect_name(call.indirect)),
+                {}, "Leave it out, or write --indirect paths");
   }
   if (call.indirect == raytrace::Indirect::Distributed) return;
   if (!call.distributed_over.empty()) {

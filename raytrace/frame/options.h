@@ -39,7 +39,7 @@ struct RenderOptions {
   int gather_rays = 256;  // per pixel
   SharedGather shared = {};
   Indirect indirect = Indirect::Radiosity;
-  bool caustics = true;  // of Indirect::Paths: off, paths are those that pictures converge to
+  bool caustics = true;  // off, with Indirect::Paths: PathSet::NoCaustics, what render() comes to
   int distributed_lights = 64;   // N of Indirect::Distributed
   std::string distributed_over;  // the [[area]] that the Earth's N lights lie on; empty: its disc
   bool per_light = false;

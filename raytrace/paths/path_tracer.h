@@ -30,7 +30,8 @@ namespace earthshine::raytrace {
 
 enum class PathSet {
   All,
-  NoCaustics  // as render() has them: mirrors and glass throw no light onto other surfaces
+  NoCaustics  // as render() has them: of what mirrors and glass throw onto other surfaces, what
+              // shadow rays bring (flat mirrors, straight glass) and what gather rays meet
 };
 
 struct PathOptions {

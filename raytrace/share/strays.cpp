@@ -27,8 +27,8 @@ class Differences {
  public:
   // The noise of any stray there.
   void add_noise(float noise, float samples) {
-    of_any_sample_ += double(noise) * double(samples);
-    any_ += 1.0;
+    of_any_ += double(noise);
+    per_sample_ += 1.0 / double(samples);
   }
   void add(float squared, float noise, float samples) {
     squared_.push_back(squared);
@@ -46,9 +46,11 @@ class Differences {
   [[nodiscard]] float noise(float samples) const {
     return static_cast<float>(of_sample_ / double(samples));
   }
-  // Of one that stands alone, whose own halves may agree by chance.
+  // Of one that stands alone, whose own halves may agree by chance: no less than that of as many
+  // samples of any there. There are more samples where there is more noise: weighted so, the mean
+  // leaves the sum of all as it is.
   [[nodiscard]] float noise_alone(float own, float samples) const {
-    return 0.5F * (own + static_cast<float>(of_any_sample_ / any_ / double(samples)));
+    return std::max(own, static_cast<float>(of_any_ / per_sample_ / double(samples)));
   }
   [[nodiscard]] float signal() const { return static_cast<float>(signal_); }
   // Signal that noise may hide: the standard error of what is found of none.
@@ -79,7 +81,7 @@ class Differences {
   }
 
   std::vector<float> squared_, samples_;
-  double of_any_sample_ = 0.0, any_ = 0.0;
+  double of_any_ = 0.0, per_sample_ = 0.0;
   double of_sample_ = 0.0, signal_ = 0.0, known_ = 0.0, hidden_ = 0.0;
 };
 

@@ -6,7 +6,7 @@
 // s: mean square of the true difference, a mean over the strays of a part of the picture, no less
 // than the noise there may hide; q: noise of as many samples as the stray has, each of which has
 // the mean noise of a sample there. One that has no such point keeps all of its own, whose noise is
-// half its own halves', half that of any stray there: two halves may agree by chance.
+// no less than that of as many samples of any stray there: two halves may agree by chance.
 #pragma once
 
 #include <bit>

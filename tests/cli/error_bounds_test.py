@@ -136,9 +136,32 @@ material = "panel"
         for row in rows:
             self.assertTrue(0 < row.truth.error < 0.5, row)
             self.assertGreater(row.bound, row.estimate)
-        stamp = [path.stat().st_mtime_ns for path in (self.folder / "cache").glob("*/*.h5")]
+        stamp = [path.stat().st_mtime_ns for path in (self.folder / "cache").glob("*/*")]
         self.assertEqual([row.truth.error for row in self.bench.rows(*case)], [row.truth.error for row in rows])
-        self.assertEqual([path.stat().st_mtime_ns for path in (self.folder / "cache").glob("*/*.h5")], stamp)
+        self.assertEqual([path.stat().st_mtime_ns for path in (self.folder / "cache").glob("*/*")], stamp)
+
+    def test_references_are_drawn_until_they_tell(self):
+        # A picture off by 0.01, references of the deviation 0.3: of k the square, 1e-4, is off by
+        # sqrt((4e-4 0.09 / k + 2 0.0081 / (k (k - 1))) / N), which must be a tenth of a bound of 0.02 of it or less, 2 0.01 0.002:
+        # with N = 10 000 that is 1.6e-4 of 8, 7.5e-5 of 16 and 3.7e-5 of 32, the first that is less than 4e-5.
+        number, sigma = 10000, 0.3
+        asked = []
+
+        def pictures(_folder, _path, _more, count):
+            asked.append(count)
+            return [noisy([1.0] * number, sigma, seed) for seed in range(count)]
+        self.bench.pictures = pictures
+        self.write("seen", str([0] * number))
+        self.addCleanup(setattr, error_truth, "picture", error_truth.picture)
+        self.addCleanup(setattr, error_truth, "columns", error_truth.columns)
+        error_truth.picture = lambda *_: (None, [0.0] * number)
+        error_truth.columns = lambda _: 100
+        found, = self.bench.true_errors(self.folder, None, [], [([1.01] * number, 0.02)])
+        self.assertEqual(asked, [2, 4, 8, 16, 32])
+        self.assertLess(abs(found.error**2 - 1e-4), 4 * 3.7e-5)
+        asked.clear()
+        self.bench.true_errors(self.folder, None, [], [([1.01] * number, 1.0)])
+        self.assertEqual(asked, [2])
 
 
 if __name__ == "__main__":

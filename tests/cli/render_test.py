@@ -162,15 +162,16 @@ class Render(program.Case):
             return header, sum(light["G"]), sum(light["variance"]) ** 0.5 if "variance" in light else 0.0
         _, everything, of_everything = summed(*paths)
         header, gathered, of_gathered = summed(*paths, "--no-caustics")
-        _, picture, _ = summed("--error", "0.02")
+        shown, picture, _ = summed("--error", "0.02")
         # The ball throws sunlight onto the floor: a quarter of all, eighteen times the paths' noise.
         self.assertGreater(everything - gathered, 8 * math.hypot(of_everything, of_gathered))
-        # A picture is off by no more than 2 % in any pixel's mean square, and so in the mean.
-        self.assertLess(abs(picture - gathered), 4 * of_gathered + 0.02 * gathered)
+        # Its mean is off by no more than its pixels are in the mean square.
+        bound = float(shown["earthshine:error.bound_95"])
+        self.assertLess(abs(picture - gathered), 4 * of_gathered + bound * gathered)
         self.assertEqual(header["earthshine:caustics"], "no")
         self.assertIn("Sun", header["earthshine:error.not_captured"])
         self.says(self.refused("render", "caustic.toml", "-o", "a.exr", "--no-caustics"),
-                  "--no-caustics", "--indirect radiosity draws none", "--indirect paths")
+                  "--no-caustics", "belongs to --indirect paths, not radiosity")
 
     def test_indirect_light_adds(self):
         sums = {how: sum(self.render("ball.toml", "--indirect", how)[3]["G"])

@@ -5,7 +5,7 @@
 
 Renders and solves shipped scenes, hard ones and random rooms by many settings, and compares what the program states with the
 true error against independent references (error_truth.py; their noise drops out): pictures against path-traced ones, of all
-light paths, as many as tell the true error; radiosities against two solutions of ten times the patches or, of scenes of which
+light paths but caustics, as many as tell the true error; radiosities against two solutions of ten times the patches or, of scenes of which
 an error is asked, to half of the least of them: evenly cut patches, however many, are too large where light comes through a
 window. Of every scene pictures alone are asked for at 5, 2 and 1 %, too. Ends with code 1 unless at least 90 % of the true errors lie within the bounds and the
 median of bound over true error is 3 or less. References are kept in DIR (out/error-references).
@@ -18,7 +18,6 @@ import math
 import os
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -34,7 +33,6 @@ FINER = 10  # of the references, in patches
 REFERENCE_RAYS = 512  # form-factor rays per patch of a reference, or as many as the settings have
 REFERENCE_PATHS = 1024  # per pixel of a reference picture
 # Reference pictures are drawn, twice as many each time, until each true error is known to this share of it or of its bound.
-# Doubt of its square goes with 1 / all paths, cast as one pair or as many.
 SURE, MOST_REFERENCES = 0.1, 32
 MOST_PATCHES = 100000  # of a reference solution: 5 GB
 HARD = ("small emitter", "sun spot", "pinhole", "baffle")
@@ -87,7 +85,8 @@ class Bench:
         if not (folder / "seen").exists():
             folder.mkdir(parents=True, exist_ok=True)
             self.json("render", path, *more, "--indirect", "none", "--aov", "object", "-o", folder / "objects.exr")
-            keep(folder / "seen", lambda new: new.write_text(json.dumps([int(seen) for seen in self.sources_seen(path, more)])))
+            seen = json.dumps([int(one) for one in self.sources_seen(path, more)])
+            keep(folder / "seen", lambda new: new.write_text(seen))
         return folder
 
     def pictures(self, folder, path, more, count):
@@ -170,9 +169,9 @@ def cases(quick):
 def keep(path, make):
     """Makes the file unless it is there; one that is there is whole."""
     if not path.exists():
-        new = path.with_name(f"new-{path.name}")
+        new = path.with_name(f"new-{os.getpid()}-{path.name}")
         make(new)
-        new.rename(path)
+        new.replace(path)
 
 
 def hash_of(*what):

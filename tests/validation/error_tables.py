@@ -37,8 +37,9 @@ class Row:
 
     @property
     def tells(self):
-        """Whether the references are sure enough of the true error to judge a single bound by it."""
-        return doubt(self.truth, self.bound) <= UNSURE
+        """Whether the references are sure enough of the true error to judge a single bound by it. Of solutions they do not say:
+        the noise of all points of a patch is the same."""
+        return self.kind == "solve" or doubt(self.truth, self.bound) <= UNSURE
 
     @property
     def by_error(self):
@@ -54,7 +55,8 @@ class Row:
 
 def unsure(truth):
     """Standard error of the true error, from that of its square, for the references' noise."""
-    return truth.of_references / (2 * truth.error) if truth.error > 0 else math.sqrt(truth.of_references)
+    root = math.sqrt(truth.of_references)
+    return min(root, truth.of_references / (2 * truth.error)) if truth.error > 0 else root
 
 
 def doubt(truth, bound):
@@ -79,9 +81,10 @@ def table(rows):
         parts = ", ".join(f"{key.replace('_', ' ')} {percent(value)}" for key, value in row.parts.items()
                           if value > 0.2 * row.estimate)  # those that make up 96 % of the square and more
         mark = ("" if row.within else " **outside**") + ("" if row.tells else " (?)")
+        unsure_by = "" if row.kind == "solve" else f" ± {percent(row.unsure)}"
         ratio = f"{row.ratio:.2f}" if row.truth.error >= LEAST else ""
         print(f"| {row.scene} | {row.asked} | {row.patches} | {percent(row.estimate)} | {percent(row.bound)} | {parts} | "
-              f"{percent(row.truth.error)} ± {percent(row.unsure)} | {ratio}{mark} |")
+              f"{percent(row.truth.error)}{unsure_by} | {ratio}{mark} |")
 
 
 def summary(kind, rows):

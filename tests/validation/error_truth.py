@@ -43,10 +43,8 @@ def compare(values, first, second, counts=None, more=()):
     """The error of values, where first, second and perhaps more are references of the same, over those that count, relative to
     their mean, with the program's weights: a value L brighter than 4 times the mean counts with w = 4 mean / L, in both
     factors. L is the references' mean, so that what is judged has no say in it. Of more than two, the mean over all pairs:
-    of k differences d, ((sum d)^2 - sum d^2) / (k (k - 1)). Its variance for k normal references of the deviation s about a
-    value off by d, 4 d^2 s^2 / k + 2 s^4 / (k (k - 1)), is that of 4 m^2 s^2 / k - 2 s^4 (k - 2) / (k^2 (k + 1)) on the average,
-    where m is the mean of the differences and s^2 their variance found from them: E m^2 s^2 = (d^2 + s^2 / k) s^2, and
-    E s^4 = (k + 1) / (k - 1) times its square."""
+    of k differences d, ((sum d)^2 - sum d^2) / (k (k - 1)). What pixels' references have in common (patches) would make
+    of_references too small."""
     if counts is None:
         counts = [1.0] * len(values)
     k = 2 + len(more)
@@ -57,12 +55,23 @@ def compare(values, first, second, counts=None, more=()):
     factors = [(weight(middle, mean) / mean)**2 for _, middle, _ in rows]
     variances = [max(0.0, sum((v - one)**2 for one in all_of) - k * (v - middle)**2) / (k - 1) for v, middle, all_of in rows]
     products = [w * ((v - middle)**2 - variance / k) for w, variance, (v, middle, _) in zip(factors, variances, rows)]
-    noise = sum(w**2 * variance * (4 * (v - middle)**2 / k - 2 * variance * (k - 2) / (k**2 * (k + 1)))
-                for w, variance, (v, middle, _) in zip(factors, variances, rows))
+    noise = sum(w**2 * variance_of_product([v - one for one in all_of]) for w, (v, _, all_of) in zip(factors, rows))
     square = sum(products) / len(rows)
     spread = sum((p - square)**2 for p in products) / len(rows)**2
     bias = sum(v - middle for v, middle, _ in rows) / len(rows) / mean
     return Truth(math.sqrt(max(0.0, square)), math.sqrt(spread), math.sqrt(max(0.0, noise)) / len(rows), bias, mean)
+
+
+def variance_of_product(differences):
+    """Of U, the mean product of two of them, found without bias: U^2 less the mean product of four, which is d^4 on the average,
+    by power sums. Of fewer than four, which tell no such, 2 m^2 s^2, m their mean and s^2 their variance: d^2 s^2 more than a
+    pair has if they are normal, so that it is seldom too small."""
+    k = len(differences)
+    p1, p2, p3, p4 = (sum(d**n for d in differences) for n in (1, 2, 3, 4))
+    if k < 4:
+        return 2 * (p1 / k)**2 * max(0.0, p2 - p1**2 / k) / (k - 1)
+    product = (p1**2 - p2) / (k * (k - 1))
+    return product**2 - (p1**4 - 6 * p1**2 * p2 + 3 * p2**2 + 8 * p1 * p3 - 6 * p4) / (k * (k - 1) * (k - 2) * (k - 3))
 
 
 def weight(luminance, mean):

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "base/numbers/random.h"
 #include "raytrace/paths/path_tracer.h"
@@ -35,7 +36,7 @@ const std::vector<float>& objects() {
   }();
   return seen;
 }
-constexpr std::size_t room_objects = 7;  // walls and the block
+constexpr std::size_t room_objects = 7;  // walls and the block, which is the last
 
 // Of pictures that differ by their seed, per channel: the mean of all pixels, and those of every
 // object's. Of objects that are not seen, 0.
@@ -100,6 +101,8 @@ const std::vector<Means>& truth() {
 }
 
 void expect_truth(const radiosity::Solution& solution, const char* what) {
+  ASSERT_GE(std::set<float>(objects().begin(), objects().end()).size(), 4U);
+  ASSERT_GE(std::ranges::count(objects(), float(room_objects - 1)), 10);
   for (const bool shares : {true, false}) {
     const std::vector<Means> found = pictures_of(solution, shares);
     for (std::size_t k = 0; k < found.size(); ++k) {
