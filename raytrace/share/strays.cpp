@@ -25,11 +25,6 @@ float luminance_at(const std::vector<glm::vec3>& radiance, std::size_t point, st
 // more (weights 1 / (s + q)^2, which are best for normal numbers; found in a few rounds).
 class Differences {
  public:
-  // The noise of any stray there.
-  void add_noise(float noise, float samples) {
-    of_any_ += double(noise);
-    per_sample_ += 1.0 / double(samples);
-  }
   void add(float squared, float noise, float samples) {
     squared_.push_back(squared);
     samples_.push_back(samples);
@@ -45,12 +40,6 @@ class Differences {
   }
   [[nodiscard]] float noise(float samples) const {
     return static_cast<float>(of_sample_ / double(samples));
-  }
-  // Of one that stands alone, whose own halves may agree by chance: no less than that of as many
-  // samples of any there. There are more samples where there is more noise: weighted so, the mean
-  // leaves the sum of all as it is.
-  [[nodiscard]] float noise_alone(float own, float samples) const {
-    return std::max(own, static_cast<float>(of_any_ / per_sample_ / double(samples)));
   }
   [[nodiscard]] float signal() const { return static_cast<float>(signal_); }
   // Signal that noise may hide: the standard error of what is found of none.
@@ -81,7 +70,6 @@ class Differences {
   }
 
   std::vector<float> squared_, samples_;
-  double of_any_ = 0.0, per_sample_ = 0.0;
   double of_sample_ = 0.0, signal_ = 0.0, known_ = 0.0, hidden_ = 0.0;
 };
 
@@ -106,7 +94,6 @@ void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared&
     const auto& [first, second] = estimate.luminance[grid + k];
     const float off = 0.5F * (first - second) / half;
     noise[k] = off * off;
-    regions[strays[k].region].add_noise(noise[k], estimate.samples[grid + k]);
     if (strays[k].base == no_base) continue;
     const float more = 0.5F * (first + second) / half -
                        luminance_at(shared.radiance, strays[k].base, layers, estimate.image_layers);
@@ -126,10 +113,9 @@ void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared&
       shared.noise[0][point] = q;
       shared.few[0][point] = region.few(q);
       if (sampled) keep = kept_share(s, q, region.few(q));
-    } else if (sampled) {
-      const float q = regions[strays[k].region].noise_alone(noise[k], estimate.samples[point]);
-      shared.signal[0][point] = alone * q;
-      shared.noise[0][point] = q;
+    } else {
+      shared.signal[0][point] = alone * noise[k];
+      shared.noise[0][point] = noise[k];
     }
     for (std::size_t layer = 0; layer < layers; ++layer) {
       glm::vec3& value = shared.radiance[point * layers + layer];

@@ -5,8 +5,7 @@
 //   value = shared + c (own - shared),  c = s / (s + q)
 // s: mean square of the true difference, a mean over the strays of a part of the picture, no less
 // than the noise there may hide; q: noise of as many samples as the stray has, each of which has
-// the mean noise of a sample there. One that has no such point keeps all of its own, whose noise is
-// no less than that of as many samples of any stray there: two halves may agree by chance.
+// the mean noise of a sample there.
 #pragma once
 
 #include <bit>

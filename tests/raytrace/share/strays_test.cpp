@@ -60,25 +60,6 @@ TEST(Strays, WithoutASurfaceBesideThemTheyKeepTheirOwn) {
   EXPECT_NEAR(double(written.shared.squared_error[1]), 1.0, 1e-4);  // ((3 - 5) / 2)^2
 }
 
-TEST(Strays, HalvesThatAgreeByChanceAreNoCertainty) {
-  // Of nine without a surface beside them eight have halves of 10 - 3 and 10 + 3, noise 9, of two
-  // samples; one, of eight samples, has halves alike. A sample's noise there is the sum of all,
-  // 8 x 9, over that of 1 / samples, 8 / 2 + 1 / 8: that of eight is 72 / 4.125 / 8.
-  Written written(9);
-  for (std::size_t k = 0; k < 9; ++k) {
-    written.strays[k].base = no_base;
-    written.sample(k, k == 0 ? 10.0 : 7.0, k == 0 ? 10.0 : 13.0, k == 0 ? 8.0 : 2.0);
-  }
-  add_strays(written.strays, written.estimate, written.shared);
-  const double of_eight = 72.0 / 4.125 / 8.0;
-  EXPECT_NEAR(double(written.shared.squared_error[1]), of_eight, 1e-4);
-  for (std::size_t k = 1; k < 9; ++k) {
-    EXPECT_NEAR(double(written.shared.squared_error[1 + k]), 9.0, 1e-4);
-  }
-  // Four times the samples leave a quarter.
-  EXPECT_NEAR(written.shared.squared_error_with(1, 4.0), of_eight / 4.0, 1e-4);
-}
-
 TEST(Strays, WhatIsNoNoiseIsKeptWhole) {
   Written written(8);
   for (std::size_t k = 0; k < 8; ++k) written.sample(k, 4.0 + double(k), 4.0 + double(k));
