@@ -5,10 +5,11 @@
 
 Renders and solves shipped scenes, hard ones and random rooms by many settings, and compares what the program states with the
 true error against independent references (error_truth.py; their noise drops out): pictures against path-traced ones, of all
-light paths but caustics, as many as tell the true error; radiosities against two solutions of ten times the patches or, of scenes of which
-an error is asked, to half of the least of them: evenly cut patches, however many, are too large where light comes through a
-window. Of every scene pictures alone are asked for at 5, 2 and 1 %, too. Ends with code 1 unless at least 90 % of the true errors lie within the bounds and the
-median of bound over true error is 3 or less. References are kept in DIR (out/error-references).
+light paths but caustics, as many as tell the true error; radiosities against two solutions of ten times the patches or, of
+scenes of which an error is asked, to half of the least of them: evenly cut patches, however many, are too large where light
+comes through a window. Of every scene pictures alone are asked for at 5, 2 and 1 %, too. Ends with code 1 unless at least 90 %
+of the true errors lie within the bounds and the median of bound over true error is 3 or less. References are kept in DIR
+(out/error-references).
 """
 import argparse
 import concurrent.futures
