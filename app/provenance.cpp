@@ -139,7 +139,7 @@ base::ExrHeader provenance_header(const Provenance& p) {
     header.number("distributed_lights", p.options.distributed_lights);
     header.text("distributed_over", p.options.distributed_over);
   }
-  if (!p.options.caustics) header.text("caustics", "no");
+  if (p.options.paths == raytrace::PathSet::NoCaustics) header.text("caustics", "no");
   header.text("aov", fmt::format("{}", fmt::join(p.options.aovs, ",")));
   header.text("per_light", p.options.per_light ? "yes" : "no");
   add_camera(result, p.camera, p.options.columns, p.options.rows);

@@ -20,9 +20,8 @@ raytrace::Frame trace(const Studio& studio, const scenes::Camera& camera,
   const LoadedScene& loaded = studio.loaded;
   return raytrace::trace_paths(
       loaded.world(studio.query), camera,
-      {options.columns, options.rows, options.gather_rays, options.per_light,
-       options.caustics ? raytrace::PathSet::All : raytrace::PathSet::NoCaustics, options.seed,
-       options.stop, options.crop},
+      {options.columns, options.rows, options.gather_rays, options.per_light, options.paths,
+       options.seed, options.stop, options.crop},
       progress);
 }
 

@@ -166,7 +166,7 @@ raytrace::RenderOptions picture_options(const RenderCall& call, const Common& co
   }
   options.distributed_over = call.distributed_over;
   options.per_light = call.per_light;
-  options.caustics = !call.no_caustics;
+  if (call.no_caustics) options.paths = raytrace::PathSet::NoCaustics;
   options.aovs = call.aovs;
   if (call.only_pixel) {
     for (const char* layer : {"object", "material", "range", "variance"}) {

@@ -25,7 +25,7 @@ Json settings_of(const RenderCall& call, const raytrace::RenderOptions& how) {
           {"gather", {how.gather_rays, how.shared.on, how.shared.smooth_share, how.shared.noise}},
           {"samples", {how.shared.least_samples, how.shared.most_samples}},
           {"indirect", indirect_name(how.indirect)},
-          {"caustics", how.caustics},
+          {"caustics", how.paths == raytrace::PathSet::All},
           {"lights", how.distributed_lights},
           {"over", how.distributed_over},
           {"layers", how.aovs},

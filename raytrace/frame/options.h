@@ -20,6 +20,13 @@ enum class Indirect {
   Paths         // the reference: trace_paths (path_tracer.h) instead of render()
 };
 
+// Of Indirect::Paths.
+enum class PathSet {
+  All,
+  NoCaustics  // as render() has them: of what mirrors and glass throw onto other surfaces, what
+              // shadow rays bring (flat mirrors, straight glass) and what gather rays meet
+};
+
 // How rays are spent on the final gather.
 struct SharedGather {
   // On: gather rays start at one point per pixel and serve all of its camera samples, and
@@ -39,7 +46,7 @@ struct RenderOptions {
   int gather_rays = 256;  // per pixel
   SharedGather shared = {};
   Indirect indirect = Indirect::Radiosity;
-  bool caustics = true;  // off, with Indirect::Paths: PathSet::NoCaustics, what render() comes to
+  PathSet paths = PathSet::All;
   int distributed_lights = 64;   // N of Indirect::Distributed
   std::string distributed_over;  // the [[area]] that the Earth's N lights lie on; empty: its disc
   bool per_light = false;

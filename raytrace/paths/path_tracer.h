@@ -28,12 +28,6 @@
 
 namespace earthshine::raytrace {
 
-enum class PathSet {
-  All,
-  NoCaustics  // as render() has them: of what mirrors and glass throw onto other surfaces, what
-              // shadow rays bring (flat mirrors, straight glass) and what gather rays meet
-};
-
 struct PathOptions {
   int columns = 512;
   int rows = 512;

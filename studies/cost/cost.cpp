@@ -91,15 +91,14 @@ class PictureDrawer {
     options.shared.noise *= coarser;
     options.crop = {};
     if (options.indirect == raytrace::Indirect::Paths) {
-      return raytrace::trace_paths(
-          call_, camera,
-          {options.columns,
-           options.rows,
-           std::max(2, std::min(8, options.gather_rays)),
-           options.per_light,
-           options.caustics ? raytrace::PathSet::All : raytrace::PathSet::NoCaustics,
-           options.seed,
-           {}});
+      return raytrace::trace_paths(call_, camera,
+                                   {options.columns,
+                                    options.rows,
+                                    std::max(2, std::min(8, options.gather_rays)),
+                                    options.per_light,
+                                    options.paths,
+                                    options.seed,
+                                    {}});
     }
     options.time_limit_s = 0.0;
     return raytrace::render(call_, coarse_, camera, options);

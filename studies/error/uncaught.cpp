@@ -217,7 +217,8 @@ std::vector<std::string> not_captured(const scenes::World& scene,
                                       const raytrace::RenderOptions& options) {
   const scenes::Effects& effects = scene.effects;
   const bool throws_light = effects.mirror || effects.refraction;
-  const bool traced = options.indirect == raytrace::Indirect::Paths && options.caustics;
+  const bool by_paths = options.indirect == raytrace::Indirect::Paths;
+  const bool traced = by_paths && options.paths == raytrace::PathSet::All;
   std::vector<std::string> missing;
   if (options.indirect == raytrace::Indirect::Distributed) {
     missing.emplace_back(
@@ -227,9 +228,7 @@ std::vector<std::string> not_captured(const scenes::World& scene,
   }
   if (!throws_light) return missing;
   const UncaughtLight light =
-      uncaught_light(scene,
-                     options.indirect == raytrace::Indirect::Paths ? raytrace::Indirect::Radiosity
-                                                                   : options.indirect,
+      uncaught_light(scene, by_paths ? raytrace::Indirect::Radiosity : options.indirect,
                      traced ? SourcesOf::WithoutSize : SourcesOf::All);
   const std::string sources =
       traced ? "light of sources without size" : "light of lamps, Sun and emitters";
