@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "raytrace/gather/gather_tiles.h"
+#include "raytrace/share/alone.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -42,8 +43,9 @@ GatherField::GatherField(const PathWorld& world, const IncomingLight& incoming,
     Estimate& estimate = estimate_[number(kind)];
     estimate.layers = layers;
     estimate.image_layers = image_layers_;
-    estimate.luminance.assign(count, {0.0F, 0.0F});
-    estimate.samples.assign(count, 0.0F);
+    for (auto* const of : {&estimate.luminance, &estimate.variance, &estimate.samples}) {
+      of->assign(count, 0.0F);
+    }
   };
   if (!incoming.is_dark()) begin(Gathered::Solution, layers_);
   if (setting.gathers_residual) begin(Gathered::Residual, image_layers_);
@@ -92,6 +94,7 @@ void GatherField::share(Gathered kind, bool last) {
                 : raytrace::share(neighbours, estimate, keep);
   add_strays(strays_, estimate, shared);
   share_among_peers({strays_, first_stray_, peers_, window_.columns}, estimate, shared);
+  tell_alone(neighbours, window_, strays_, estimate, shared);
   if (lobe) return;
   std::vector<glm::vec3> radiance;
   radiance.swap(shared.radiance);

@@ -67,9 +67,10 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
         for (std::size_t layer = 0; layer < image_layers_; ++layer) {
           estimate.sum[p * image_layers_ + layer] += glm::vec3(sums[half][layer]);
         }
-        estimate.luminance[p][half] += static_cast<float>(luminance_of(sums[half]));
         note_half(half, sums[half], off);
       }
+      estimate.add_luminance(p, static_cast<float>(luminance_of(sums[0])),
+                             static_cast<float>(luminance_of(sums[1])));
       finish_note(kind, p, 2.0 * each, off, notes_of[t]);
       estimate.samples[p] += static_cast<float>(2 * each);
     }

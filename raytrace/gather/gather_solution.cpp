@@ -119,6 +119,7 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
       if (stop && stop()) return;
       const auto cast = [&](std::span<const std::size_t> some, std::size_t origins) {
         std::vector<std::vector<float>> off(some.size());
+        std::vector<std::array<float, 2>> luminance(some.size());
         for (std::size_t k = 0; k < some.size(); ++k) {
           off[k].assign(notes(some[k], round) ? image_layers_ : 0, 0.0F);
         }
@@ -137,7 +138,7 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
             for (std::size_t layer = 0; layer < layers_; ++layer) {
               estimate.sum[p * layers_ + layer] += glm::vec3(found.sums[k * layers_ + layer]);
             }
-            estimate.luminance[p][half] +=
+            luminance[k][half] =
                 static_cast<float>(luminance_of({&found.sums[k * layers_], image_layers_}));
             estimate.samples[p] += static_cast<float>(of_class);
             note_half(half, {&found.sums[k * layers_], image_layers_}, off[k]);
@@ -145,6 +146,7 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
           counts[t] += found.counts;
         }
         for (std::size_t k = 0; k < some.size(); ++k) {
+          estimate.add_luminance(some[k], luminance[k][0], luminance[k][1]);
           finish_note(Gathered::Solution, some[k], 2.0 * of_class, off[k], notes_of[t]);
         }
       };

@@ -22,7 +22,8 @@ class SunTurns {
 
   [[nodiscard]] std::size_t count() const { return count_; }
   // Of the k-th sample of a half. Each half takes all turns one after another, or the halves would
-  // not differ by chance alone; those of few samples together, as they begin with different ones.
+  // not differ by chance alone; those of few samples together, as they begin with different ones:
+  // what halves of less than four samples differ by tells more noise than their sum has.
   [[nodiscard]] std::size_t turn_of(std::uint64_t first, std::uint64_t k, std::size_t half) const {
     return (first + k + half * (most / 2)) % count_;
   }

@@ -109,6 +109,8 @@ void SamplePlanner::look_at(std::size_t count, const Look& look) {
   });
 }
 
+// Points that stand alone are told by likely noise; of what more samples take off it a plan counts
+// on no more than they state themselves.
 void SamplePlanner::look_at_field(double scale) {
   const Window& window = sums_.window;
   const auto columns = static_cast<std::size_t>(field_->window().columns);
@@ -117,7 +119,7 @@ void SamplePlanner::look_at_field(double scale) {
     if (!field_->gathers(kind)) continue;
     const Shared& shared = field_->shared(kind);
     const auto fewest = static_cast<float>(GatherField::fewest_samples(kind));
-    const auto gain_of = [&](std::size_t p, double two, double four) -> Gain {
+    const auto gain_of = [&](std::size_t p, double one, double two, double four) -> Gain {
       const std::size_t pixel = field_->pixel_of(p);
       const int x = field_->window().x + static_cast<int>(pixel % columns);
       const int y = field_->window().y + static_cast<int>(pixel / columns);
@@ -130,21 +132,23 @@ void SamplePlanner::look_at_field(double scale) {
           error_weight(double(stated_.luminance[window.index(x, y)]), whole_.luminance) *
           reflected * field_->cover_of(p);
       const double factor = weight * weight * scale;
-      const auto one = double(shared.squared_error[p]);
       if (factor * (one - four) <= 0.0) return {};
       return {static_cast<std::uint32_t>(p),
               static_cast<std::uint8_t>(k),
               samples,
               static_cast<float>(double(samples) * costs_.field[k]),
               static_cast<float>(factor * (one - two)),
-              static_cast<float>(factor * (two - four))};
+              static_cast<float>(factor * (two - four)),
+              static_cast<float>(double(shared.squared_error[p]) / one)};
     };
     look_at(field_->points().size(), [&](std::size_t begin, std::size_t end, Gain* gain) {
       std::array<float, items_at_once> two, four;
       shared.squared_errors_with(2.0, begin, end, two.data());
       shared.squared_errors_with(4.0, begin, end, four.data());
       for (std::size_t at = 0; at < end - begin; ++at) {
-        gain[at] = gain_of(begin + at, double(two[at]), double(four[at]));
+        const double more = double(shared.likely_more[begin + at]);
+        gain[at] = gain_of(begin + at, double(shared.squared_error[begin + at]) + more,
+                           double(two[at]) + more / 2.0, double(four[at]) + more / 4.0);
       }
     });
   }

@@ -13,6 +13,7 @@ constexpr std::size_t taps = 5;
 constexpr std::array<float, taps> spline = {1.0F / 16, 1.0F / 4, 3.0F / 8, 1.0F / 4, 1.0F / 16};
 // The five of a point's row, then those of its column.
 constexpr std::uint16_t all_bits = (1U << (2U * taps)) - 1U;
+constexpr std::uint16_t own_bits = (1U << (taps / 2U)) | (1U << (taps + taps / 2U));
 
 // Rounding of single-precision positions.
 float slack(const GatherPoint& point) { return 0.02F * point.spacing_m; }
@@ -90,6 +91,11 @@ Neighbours Neighbours::of_like_material(const std::vector<GatherPoint>& points) 
     });
   }
   return like;
+}
+
+bool Neighbours::is_alone(std::size_t point) const {
+  return std::all_of(masks_.begin(), masks_.end(),
+                     [&](const auto& mask) { return (mask[point] & ~own_bits) == 0; });
 }
 
 Neighbours::Planes Neighbours::planes(std::size_t number) const {

@@ -38,11 +38,11 @@ class Sharer {
     shared_.layers = estimate_.layers;
     shared_.resize(estimate_.samples.size());  // strays follow
     for (std::vector<float>& of : keep_) of.assign(points_, 0.0F);
-    signs_ = draw_signs(neighbours_, estimate_.samples);
+    signs_ = draw_signs(neighbours_, estimate_);
     if (all_) {
       tell_noise();
     } else {
-      split_halves();
+      split();
     }
     for_all([&](std::size_t begin, std::size_t end) {
       shared_.squared_errors_with(1.0, begin, end, &shared_.squared_error[begin]);
@@ -88,18 +88,14 @@ class Sharer {
     return sign_of(signs_[p], field);
   }
 
-  // Means of both halves, and fields of their noise.
+  // Means, and fields of their noise.
   [[nodiscard]] Planes means_and_noise() const {
     Planes values = neighbours_.planes(1 + noise_fields);
     for_all([&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
-        const float n = 0.5F * estimate_.samples[p];
-        if (n <= 0.0F) continue;
-        const float first = estimate_.luminance[p][0] / n, second = estimate_.luminance[p][1] / n;
-        values[0][p] = 0.5F * (first + second);
-        for (std::size_t k = 0; k < noise_fields; ++k) {
-          values[1 + k][p] = 0.5F * sign(p, k) * (first - second);
-        }
+        values[0][p] = estimate_.mean(p);
+        const float noise = std::sqrt(estimate_.noise(p));
+        for (std::size_t k = 0; k < noise_fields; ++k) values[1 + k][p] = sign(p, k) * noise;
       }
     });
     return values;
@@ -119,7 +115,7 @@ class Sharer {
     }
   }
 
-  void split_halves() {
+  void split() {
     Planes values = means_and_noise(), detail;
     for (std::size_t level = 0; level < samples_around_.size(); ++level) {
       Planes around;
@@ -162,8 +158,8 @@ class Sharer {
   }
 
   // What both squares differ by, with random signs: the square of its mean over a window is the
-  // variance of s there. It holds the chance of the product of a point's halves, which all fields
-  // of noise share, and how unevenly the signal lies.
+  // variance of s there. It holds the chance of each point's own mean and noise, which all
+  // fields share, and how unevenly the signal lies.
   void take_scatter(std::size_t level) {
     const float root = std::sqrt(alike[level]);
     for_all([&](std::size_t begin, std::size_t end) {

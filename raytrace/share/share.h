@@ -3,9 +3,10 @@
 // same surface as far as its own samples allow.
 //
 // The estimates are split into details of 1, 2, 4, 8 and 16 pixels and a rest (a wavelet transform
-// with holes over the points of one surface; Dammertz et al. 2010). Every estimate comes in two
-// halves of independent samples, a and b. (a - b) / 2 has the noise of their mean, and has it still
-// where each point's sign is drawn anew: so many fields of noise as are wanted, whose means over
+// with holes over the points of one surface; Dammertz et al. 2010). Every round of samples comes in
+// two independent halves of as many, with sums a and b. (a - b)^2 has the variance of a + b, and
+// added over the rounds that of the whole sum; its root over the samples has the noise of the mean,
+// by whatever sign is drawn for each point: so many fields of noise as are wanted, whose means over
 // small surfaces are known better than one (the wild bootstrap; Wu 1986). Of a detail d, means over
 // its surroundings are, with e the noise that is expected of the samples that a detail is made of,
 // relative to others,
@@ -15,7 +16,7 @@
 // what choosing c by the same d makes it look better (Stein 1981; N: how many normal details the
 // means are over),
 //   (1 - c)^2 s + c^2 q + 4 q D c'(D) / N,   no more than D together.
-// N is not told by how far the fields of noise are apart, since all are made of the same halves: s
+// N is not told by how far the fields of noise are apart, since all are made of the same rounds: s
 // is off by chance as a mean of (d^2 - n^2) / e with random signs is, whose square is 2 / N of q^2.
 // Where the s / q of a level differ by no more than that all over the picture, as where all is
 // smooth, what each is off their mean says nothing and is left out of s (signals.h). Noise of
@@ -61,28 +62,42 @@ inline constexpr std::size_t window_blurs = 3;
 
 // Sums of samples at every point.
 struct Estimate {
-  std::size_t layers = 0;                       // per point
-  std::size_t image_layers = 0;                 // the first of them, whose sum the eye sees
-  std::vector<glm::vec3> sum;                   // point * layers + layer
-  std::vector<std::array<float, 2>> luminance;  // of the image layers together, by half
-  std::vector<float> samples;                   // half of them in each half
+  std::size_t layers = 0;        // per point
+  std::size_t image_layers = 0;  // the first of them, whose sum the eye sees
+  std::vector<glm::vec3> sum;    // point * layers + layer
+  std::vector<float> luminance;  // of the image layers together
+  std::vector<float> variance;   // of the luminance, as the halves of its rounds tell it
+  std::vector<float> samples;
 
   Estimate() = default;
   Estimate(std::size_t points, std::size_t layers_each, std::size_t layers_seen)
       : layers(layers_each),
         image_layers(layers_seen),
         sum(points * layers_each, glm::vec3(0.0F)),
-        luminance(points, {0.0F, 0.0F}),
+        luminance(points, 0.0F),
+        variance(points, 0.0F),
         samples(points, 0.0F) {}
   void clear(std::size_t point) {
     std::fill_n(sum.begin() + static_cast<std::ptrdiff_t>(point * layers), layers, glm::vec3(0.0F));
-    luminance[point] = {0.0F, 0.0F};
-    samples[point] = 0.0F;
+    luminance[point] = variance[point] = samples[point] = 0.0F;
+  }
+  // Of one round: what each half of the samples adds up to.
+  void add_luminance(std::size_t point, float first, float second) {
+    luminance[point] += first + second;
+    variance[point] += (first - second) * (first - second);
+  }
+  [[nodiscard]] float mean(std::size_t point) const {
+    return samples[point] > 0.0F ? luminance[point] / samples[point] : 0.0F;
+  }
+  // Squared error of the mean.
+  [[nodiscard]] float noise(std::size_t point) const {
+    return samples[point] > 0.0F ? variance[point] / (samples[point] * samples[point]) : 0.0F;
   }
   // A point's sums.
   void pass(std::size_t point, base::Parcel& parcel) {
     parcel.pass_range(&sum[point * layers], layers);
     parcel.pass(luminance[point]);
+    parcel.pass(variance[point]);
     parcel.pass(samples[point]);
   }
 };
@@ -102,6 +117,8 @@ class Neighbours {
   using Planes = std::vector<std::vector<float>>;
   [[nodiscard]] Planes planes(std::size_t number) const;  // all 0
   [[nodiscard]] std::size_t count() const { return masks_.front().size(); }
+  // Without neighbours at any distance.
+  [[nodiscard]] bool is_alone(std::size_t point) const;
   void blur(std::size_t level, const Planes& values, const std::vector<float>* weight,
             Planes& means) const;
 
@@ -128,6 +145,8 @@ struct Shared {
   // Of strays, the signal that noise may hide: less cannot be told from none. Empty without strays.
   std::vector<float> hidden;
   std::vector<float> squared_error;  // stated
+  // Of points that stand alone, noise that is likely beyond it, or less than none (alone.h).
+  std::vector<float> likely_more;
 
   // What the squared error would be with `factor` times the samples here and around.
   [[nodiscard]] double squared_error_with(std::size_t point, double factor) const;
@@ -138,8 +157,8 @@ struct Shared {
 };
 
 // What is kept of details: as told above, or all of them: values stay as they are, and their noise
-// is that of a sample around, over the samples there (a point's own two halves may agree by
-// chance).
+// is that of a sample around, over the samples there (the halves of a point's own rounds may
+// agree by chance).
 enum class Keep { AsTold, All };
 
 // The points of the grid, which come first in the estimate.

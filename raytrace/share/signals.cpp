@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "raytrace/share/signals.h"
 
+#include <bit>
+
 #include "base/numbers/random.h"
 #include "base/parallel.h"
 
@@ -37,8 +39,8 @@ struct Spread {
 
 }  // namespace
 
-std::vector<std::uint8_t> draw_signs(const Neighbours& neighbours,
-                                     const std::vector<float>& samples) {
+std::vector<std::uint8_t> draw_signs(const Neighbours& neighbours, const Estimate& estimate) {
+  const std::vector<float>& samples = estimate.samples;
   const std::size_t points = neighbours.count();
   std::vector<std::uint8_t> signs(points);
   const auto for_all = [&](const auto& visit) {
@@ -46,7 +48,10 @@ std::vector<std::uint8_t> draw_signs(const Neighbours& neighbours,
       for (std::size_t p = begin; p < end; ++p) visit(p);
     });
   };
-  for_all([&](std::size_t p) { signs[p] = static_cast<std::uint8_t>(base::mix64(p)); });
+  for_all([&](std::size_t p) {
+    const auto by_chance = std::bit_cast<std::uint32_t>(estimate.variance[p]);
+    signs[p] = static_cast<std::uint8_t>(base::mix64(p ^ base::mix64(by_chance)));
+  });
   const auto sampled = [](float n) { return n > 0.0F; };
   if (std::all_of(samples.begin(), samples.begin() + std::ptrdiff_t(points), sampled)) return signs;
   constexpr std::size_t fields = noise_fields + scatter_fields;

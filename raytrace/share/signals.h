@@ -17,11 +17,12 @@ enum Square : std::size_t { Energy, NoiseSquare, Weight, Scatter };
 // Noise over signal of what has no samples, and signal over noise where all is kept.
 inline constexpr float certain = 1e6F;
 
-// A bit for every field of noise, and behind them of scatter, of each point. Points without samples
-// say what those around them do, and have the signs of these. samples: of the grid's points, and
-// any more.
+// A bit for every field of noise, and behind them of scatter, of each point: other ones for other
+// samples, or which noise cancels where would be the same for every seed, round and kind. Points
+// without samples say what those around them do, and have the signs of these. estimate: of the
+// grid's points, and any more.
 [[nodiscard]] std::vector<std::uint8_t> draw_signs(const Neighbours& neighbours,
-                                                   const std::vector<float>& samples);
+                                                   const Estimate& estimate);
 [[nodiscard]] inline float sign_of(std::uint8_t signs, std::size_t field) {
   return 1.0F - 2.0F * static_cast<float>((std::int32_t{signs} >> field) & 1);
 }

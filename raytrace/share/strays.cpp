@@ -89,13 +89,10 @@ void add_strays(std::span<const Stray> strays, const Estimate& estimate, Shared&
   std::vector<Differences> regions(last + 1U);
   std::vector<float> noise(strays.size(), 0.0F);
   for (std::size_t k = 0; k < strays.size(); ++k) {
-    const float half = 0.5F * estimate.samples[grid + k];
-    if (half <= 0.0F) continue;
-    const auto& [first, second] = estimate.luminance[grid + k];
-    const float off = 0.5F * (first - second) / half;
-    noise[k] = off * off;
+    if (estimate.samples[grid + k] <= 0.0F) continue;
+    noise[k] = estimate.noise(grid + k);
     if (strays[k].base == no_base) continue;
-    const float more = 0.5F * (first + second) / half -
+    const float more = estimate.mean(grid + k) -
                        luminance_at(shared.radiance, strays[k].base, layers, estimate.image_layers);
     regions[strays[k].region].add(more * more, noise[k], estimate.samples[grid + k]);
   }
@@ -134,24 +131,17 @@ void share_among_peers(const Peers& peers, const Estimate& estimate, Shared& sha
       if (estimate.samples[grid + peer] > 0.0F) visit(peer);
     });
   };
-  // Of a stray's own samples.
-  std::vector<float> luminance(strays, 0.0F), noise(strays, 0.0F), keep(strays, 1.0F);
-  for (std::size_t k = 0; k < strays; ++k) {
-    const float half = 0.5F * estimate.samples[grid + k];
-    if (half <= 0.0F) continue;
-    const auto& [first, second] = estimate.luminance[grid + k];
-    luminance[k] = 0.5F * (first + second) / half;
-    const float off = 0.5F * (first - second) / half;
-    noise[k] = off * off;
-  }
+  std::vector<float> keep(strays, 1.0F);
   base::parallel_chunks(strays, 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       float count = 0.0F, all = 0.0F, of_sample = 0.0F;
       double off = 0.0, squared = 0.0;  // from its own
       each(k, [&](std::size_t peer) {
-        const double from_own = double(luminance[peer]) - double(luminance[k]);
-        count += 1.0F, off += from_own, squared += from_own * from_own, all += noise[peer];
-        of_sample += noise[peer] * estimate.samples[grid + peer];
+        const double from_own =
+            double(estimate.mean(grid + peer)) - double(estimate.mean(grid + k));
+        const float noise = estimate.noise(grid + peer);
+        count += 1.0F, off += from_own, squared += from_own * from_own, all += noise;
+        of_sample += noise * estimate.samples[grid + peer];
       });
       if (count < 2.0F) continue;
       all /= count, of_sample /= count;

@@ -39,11 +39,10 @@ Estimate estimate_of(const Value& value) {
   for (int y = 0; y < edge_px; ++y) {
     for (int x = 0; x < edge_px; ++x) {
       const std::size_t p = pixel(x, y);
-      for (std::size_t half = 0; half < 2; ++half) {
-        const auto v = static_cast<float>(value(x, y, half));
-        estimate.sum[p] += glm::vec3(v);
-        estimate.luminance[p][half] = v;
-      }
+      const auto first = static_cast<float>(value(x, y, std::size_t{0}));
+      const auto second = static_cast<float>(value(x, y, std::size_t{1}));
+      estimate.add_luminance(p, first, second);
+      estimate.sum[p] = glm::vec3(first + second);
       estimate.samples[p] = 2.0F;
     }
   }

@@ -106,17 +106,12 @@ TEST(Share, PointsThatHaveNoSamplesTakeThoseAround) {
   Estimate sparse = estimate_of([](int, int, std::size_t) { return 3.0; });
   for (std::size_t p = 0; p < count; ++p) {
     if (p % 3 == 0) continue;
-    sparse.sum[p] = glm::vec3(0.0F);
-    sparse.luminance[p] = {0.0F, 0.0F};
-    sparse.samples[p] = 0.0F;
+    sparse.clear(p);
   }
   const Shared shared = share(Neighbours(window, flat()), sparse);
   for (const glm::vec3& value : shared.radiance) EXPECT_NEAR(double(value.g), 3.0, 1e-4);
 }
 
-// Two samples, uniform over [0, 1), are off in the mean by a variance of 1 / 24. A point whose two
-// happen to agree is told so by the others: by 4 fields of noise over windows of some 60 points
-// each, within a factor of two.
 TEST(Share, WhatFewPointsSayLeavesNoLattice) {
   // One point of 25 is sampled, and its samples are noise. Coarser levels step over pixels, so that
   // neighbours read other points; yet they should differ no more than what leads from one point to
@@ -143,6 +138,9 @@ TEST(Share, WhatFewPointsSayLeavesNoLattice) {
   EXPECT_LT(apart, 4.0 / 25.0 * off);
 }
 
+// Two samples, uniform over [0, 1), are off in the mean by a variance of 1 / 24. A point whose two
+// happen to agree is told so by the others: by 4 fields of noise over windows of some 60 points
+// each, within a factor of two.
 TEST(Share, WhatKeepsAllOfItsOwnStillTellsNoiseByOthers) {
   base::Rng rng(base::Key(3, base::Stream::Test, 4));
   const Estimate estimate = estimate_of([&](int, int, std::size_t) { return rng.next(); });
@@ -198,13 +196,12 @@ TEST(Share, ManySamplesKeepTheirOwnAmongFew) {
   for (std::size_t p = 0; p < count; ++p) {
     truth.push_back(10.0 + std::sqrt(s) * normal());
     const double samples = has_many(p) ? many : 2.0, half = samples / 2.0;
-    double sum = 0.0;
-    for (float& of_half : estimate.luminance[p]) {
-      const double of = half * (truth[p] + std::sqrt(v / half) * normal());
-      of_half = static_cast<float>(of);
-      sum += of;
-    }
-    estimate.sum[p] = glm::vec3(static_cast<float>(sum));
+    const auto of_half = [&] {
+      return static_cast<float>(half * (truth[p] + std::sqrt(v / half) * normal()));
+    };
+    const float first = of_half(), second = of_half();
+    estimate.add_luminance(p, first, second);
+    estimate.sum[p] = glm::vec3(first + second);
     estimate.samples[p] = static_cast<float>(samples);
   }
   const Shared shared = share(Neighbours(window, flat()), estimate);

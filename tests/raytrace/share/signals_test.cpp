@@ -98,11 +98,13 @@ TEST(Signals, HowFarOffASignalIsByChanceGoesByTheSamplesThere) {
     for (std::size_t p = 0; p < count; ++p) {
       const bool many = p % edge_px / 2 % 2 == 0 && p / edge_px / 2 % 2 == 0;
       const double half = many ? 64.0 : 1.0;
-      for (float& of_half : estimate.luminance[p]) {
+      const auto of_half = [&] {
         const double noise = std::sqrt(12.0 / half) * (rng.next() - 0.5);
-        of_half = static_cast<float>(half * (10.0 + strip_signal(p) + noise));
-      }
-      estimate.sum[p] = glm::vec3(estimate.luminance[p][0] + estimate.luminance[p][1]);
+        return static_cast<float>(half * (10.0 + strip_signal(p) + noise));
+      };
+      const float first = of_half(), second = of_half();
+      estimate.add_luminance(p, first, second);
+      estimate.sum[p] = glm::vec3(first + second);
       estimate.samples[p] = static_cast<float>(2.0 * half);
     }
     const Shared shared = share(neighbours, estimate);

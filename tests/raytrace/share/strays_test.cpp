@@ -27,7 +27,8 @@ struct Written {
   // Means of the halves of so many samples.
   void sample(std::size_t stray, double first, double second, double samples = 2.0) {
     first *= samples / 2.0, second *= samples / 2.0;
-    estimate.luminance[1 + stray] = {static_cast<float>(first), static_cast<float>(second)};
+    estimate.clear(1 + stray);
+    estimate.add_luminance(1 + stray, static_cast<float>(first), static_cast<float>(second));
     estimate.sum[1 + stray] = glm::vec3(static_cast<float>(first + second));
     estimate.samples[1 + stray] = static_cast<float>(samples);
   }

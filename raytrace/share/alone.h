@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Gather points that stand alone: of the grid, without neighbours, and strays that neither a point
+// of the grid nor peers stand beside. All that they know of their noise is what the halves of their
+// own few rounds differ by. That is right on the average over such points, but the halves of one
+// may agree by chance, and a point that seems exact would get no more samples for ever.
+//
+// So the noise that is likely tells where samples go: half the point's own, half that of as many
+// samples of any point of its part of the picture. It is not stated: where noise differs from
+// surface to surface, and samples with it, it would be too large (decision 0018).
+#pragma once
+
+#include <span>
+
+#include "raytrace/share/share.h"
+#include "raytrace/share/strays.h"
+
+namespace earthshine::raytrace {
+
+// Fills Shared::likely_more. neighbours: of the grid, whose points lie row by row in the window.
+void tell_alone(const Neighbours& neighbours, const Window& window, std::span<const Stray> strays,
+                const Estimate& estimate, Shared& shared);
+
+}  // namespace earthshine::raytrace
