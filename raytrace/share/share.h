@@ -17,7 +17,8 @@
 // means are over),
 //   (1 - c)^2 s + c^2 q + 4 q D c'(D) / N,   no more than D together.
 // N is not told by how far the fields of noise are apart, since all are made of the same rounds: s
-// is off by chance as a mean of (d^2 - n^2) / e with random signs is, whose square is 2 / N of q^2.
+// is off by chance as a mean of (d^2 - n^2) / e with random signs is, whose square is 2 / N of q^2
+// (with more rounds n is known better, and N larger).
 // Where the s / q of a level differ by no more than that all over the picture, as where all is
 // smooth, what each is off their mean says nothing and is left out of s (signals.h). Noise of
 // single pixels is a hundred times all that is left: where nothing of a detail is kept, s is held
