@@ -23,7 +23,6 @@ constexpr std::array<double, packet_width> stray_columns = {0.0625, 0.1875, 0.31
 constexpr std::array<double, packet_width> stray_rows = {0.0625, 0.5625, 0.3125, 0.8125,
                                                          0.1875, 0.6875, 0.4375, 0.9375};
 constexpr float least_cover = 0.2F;  // of a pixel
-constexpr int region_px = 8;         // over which strays are held to be alike
 // What a lobe reflects turns twice as far as the surface does.
 constexpr float lobe_cosine = 0.985F;  // 10 degrees
 constexpr float rounding = 0.02F;      // of positions, over the points' spacing
@@ -97,7 +96,8 @@ std::vector<GatherField::Found> GatherField::find_points() {
           const std::size_t index = window_.index(tile.x + static_cast<int>(k), y);
           place(rays[k], hit_of(hits, k), points_[index], start_[index]);
           Found mirrored;
-          mirrored.stray = {static_cast<std::uint32_t>(index), no_base, 0, 1.0F};
+          mirrored.stray = {static_cast<std::uint32_t>(index), no_base,
+                            region_of(index, static_cast<std::size_t>(window_.columns)), 1.0F};
           if (place_mirrored(rays[k], hit_of(hits, k), mirrored.point, mirrored.start)) {
             shown[t].push_back(mirrored);
           }
@@ -175,8 +175,7 @@ void GatherField::find_strays(const std::vector<Found>& mirrored) {
           }
         });
       }
-      stray.region = static_cast<std::uint32_t>(y / region_px * (camera_.columns / region_px + 1) +
-                                                x / region_px);
+      stray.region = region_of(stray.pixel, static_cast<std::size_t>(window_.columns));
     }
   };
   base::parallel_chunks(found.size(), 1, [&](std::size_t t, std::size_t) {

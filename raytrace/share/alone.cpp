@@ -4,8 +4,8 @@
 namespace earthshine::raytrace {
 namespace {
 
-// Of a part's points with samples: noise of one sample is the sum of all noise over that of 1 / n.
-// Samples are more where there is more noise: so the noise of as many samples as each point has
+// Of a region's points with samples: noise of one sample is the sum of all noise over that of 1 /
+// n. Samples are more where there is more noise: so the noise of as many samples as each point has
 // adds up to what all have.
 struct Around {
   double noise = 0.0, per_sample = 0.0;
@@ -15,30 +15,27 @@ struct Around {
 
 void tell_alone(const Neighbours& neighbours, const Window& window, std::span<const Stray> strays,
                 const Estimate& estimate, Shared& shared) {
-  constexpr std::size_t part_px = 8;
   const std::size_t grid = neighbours.count(), points = estimate.samples.size();
   const auto columns = static_cast<std::size_t>(window.columns);
-  const std::size_t across = columns / part_px + 1;
-  const auto part_of = [&](std::size_t p) {
-    const std::size_t pixel = p < grid ? p : strays[p - grid].pixel;
-    return pixel / columns / part_px * across + pixel % columns / part_px;
+  const auto at = [&](std::size_t p) {
+    return p < grid ? region_of(p, columns) : strays[p - grid].region;
   };
   const auto stands_alone = [&](std::size_t p) {
     if (p < grid) return neighbours.is_alone(p);
     return strays[p - grid].base == no_base && shared.few[0][p] <= 0.0F;  // peers tell 1 / N
   };
-  std::vector<Around> parts((static_cast<std::size_t>(window.rows) / part_px + 1) * across);
+  std::vector<Around> regions(region_of(window.pixel_count() - 1, columns) + 1U);
   for (std::size_t p = 0; p < points; ++p) {
     if (estimate.samples[p] <= 0.0F) continue;
-    Around& part = parts[part_of(p)];
-    part.noise += double(estimate.noise(p));
-    part.per_sample += 1.0 / double(estimate.samples[p]);
+    Around& region = regions[at(p)];
+    region.noise += double(estimate.noise(p));
+    region.per_sample += 1.0 / double(estimate.samples[p]);
   }
   shared.likely_more.assign(points, 0.0F);
   for (std::size_t p = 0; p < points; ++p) {
     if (estimate.samples[p] <= 0.0F || !stands_alone(p)) continue;
-    const Around& part = parts[part_of(p)];
-    const double of_as_many = part.noise / part.per_sample / double(estimate.samples[p]);
+    const Around& region = regions[at(p)];
+    const double of_as_many = region.noise / region.per_sample / double(estimate.samples[p]);
     shared.likely_more[p] = static_cast<float>(0.5 * (of_as_many - double(estimate.noise(p))));
   }
 }

@@ -5,7 +5,7 @@
 // may agree by chance, and a point that seems exact would get no more samples for ever.
 //
 // So the noise that is likely tells where samples go: half the point's own, half that of as many
-// samples of any point of its part of the picture. It is not stated: where noise differs from
+// samples of any point of its region of the picture. It is not stated: where noise differs from
 // surface to surface, and samples with it, it would be too large (decision 0018).
 #pragma once
 

@@ -3,7 +3,7 @@
 // its centre. What nearby points of the grid say of the same surface is told apart from what is the
 // case there by the stray's own samples, as far as these know better (Wiener, as in share.h):
 //   value = shared + c (own - shared),  c = s / (s + q)
-// s: mean square of the true difference, a mean over the strays of a part of the picture, no less
+// s: mean square of the true difference, a mean over the strays of a region, no less
 // than the noise there may hide; q: noise of as many samples as the stray has, each of which has
 // the mean noise of a sample there.
 #pragma once
@@ -22,10 +22,17 @@ struct Stray {
   std::uint32_t pixel = 0;  // of the window
   std::uint32_t base =
       0;  // nearest point of the grid on the same surface; no_base if there is none
-  std::uint32_t region = 0;  // part of the picture
+  std::uint32_t region = 0;  // region_of() its pixel
   float cover = 0.0F;        // about, of the pixel
 };
 inline constexpr std::uint32_t no_base = 0xffffffffU;
+
+// Parts of the picture, over which strays are held to be alike, row by row.
+inline constexpr std::size_t region_px = 8;
+[[nodiscard]] inline std::uint32_t region_of(std::size_t pixel, std::size_t columns) {
+  const std::size_t x = pixel % columns / region_px, y = pixel / columns / region_px;
+  return static_cast<std::uint32_t>(y * (columns / region_px + 1) + x);
+}
 
 // Strays that lie side by side on one surface, each among its own: the last ones of some pixels.
 struct Peers {

@@ -97,10 +97,11 @@ TEST(Alone, LikelyNoiseLeavesTheSumAsItIs) {
 TEST(Alone, StraysStandAloneWithoutAPointOfTheGridOrPeers) {
   const Neighbours neighbours(window, flat());
   const auto there = static_cast<std::uint32_t>(pixel(20, 20));
-  const std::vector<Stray> strays = {{there, no_base, 0, 0.5F},
-                                     {there, there, 0, 0.5F},
-                                     {there, no_base, 0, 0.5F},
-                                     {there, no_base, 0, 0.5F}};
+  const std::uint32_t region = region_of(there, edge_px);
+  const std::vector<Stray> strays = {{there, no_base, region, 0.5F},
+                                     {there, there, region, 0.5F},
+                                     {there, no_base, region, 0.5F},
+                                     {there, no_base, region, 0.5F}};
   Estimate estimate(count + strays.size(), 1, 1);
   for (std::size_t p = 0; p < count + strays.size(); ++p) {
     estimate.add_luminance(p, p < count ? 1.0F : 0.0F, 1.0F);
