@@ -22,7 +22,7 @@ void tell_alone(const Neighbours& neighbours, const Window& window, std::span<co
   };
   const auto stands_alone = [&](std::size_t p) {
     if (p < grid) return neighbours.is_alone(p);
-    return strays[p - grid].base == no_base && shared.few[0][p] <= 0.0F;  // peers tell 1 / N
+    return shared.few[0][p] <= 0.0F;  // those beside a base or among peers tell 1 / N
   };
   std::vector<Around> regions(region_of(window.pixel_count() - 1, columns) + 1U);
   for (std::size_t p = 0; p < points; ++p) {
