@@ -43,10 +43,12 @@ PixelSamples share_out(int rays_per_pixel, bool gathers) {
 }
 
 std::optional<SamplePlan> Rounds::next(SamplePlanner& planner, double so_far, double affordable) {
-  const double now = planner.squared_error(), error = std::sqrt(now), aimed = aim() * aim();
   const bool first = looks_.empty();
+  doubt_ = planner.doubt();
+  const double now = planner.squared_error(), error = std::sqrt(now);
+  const double aimed = aim(doubt_) * aim(doubt_);
   looks_.push_back({so_far, error});
-  if (wanted_ > 0.0 && error <= (first ? 1.0 : sure_share(wanted_)) * wanted_) return {};
+  if (wanted_ > 0.0 && doubt_ * error <= (first ? 1.0 : sure_share(wanted_)) * wanted_) return {};
   if (wanted_ > 0.0 && is_hopeless(looks_)) {
     gave_up_ = true;
     return {};
@@ -67,11 +69,12 @@ std::optional<SamplePlan> Rounds::next(SamplePlanner& planner, double so_far, do
 
 double Rounds::growth() const {
   const double error = looks_.empty() ? 0.0 : looks_.back().error;
-  return error * error / std::max(aim() * aim(), 1e-12);
+  return error * error / std::max(aim(doubt_) * aim(doubt_), 1e-12);
 }
 
 double Rounds::growth(SamplePlanner& planner, double so_far) const {
-  const double now = planner.squared_error(), aimed = aim() * aim();
+  const double now = planner.squared_error(), aim_now = aim(planner.doubt());
+  const double aimed = aim_now * aim_now;
   if (now <= aimed || so_far <= 0.0) return 1.0;
   const SamplePlan plan = planner.plan(aimed, std::numeric_limits<double>::infinity());
   // A plan gives a point four times its samples at most: beyond, as the square of the error.

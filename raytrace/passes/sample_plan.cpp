@@ -29,6 +29,11 @@ std::size_t class_of(std::uint32_t samples) {
   return static_cast<std::size_t>(std::bit_width(samples));
 }
 
+// Of an edge that is as likely in a pixel as in its neighbour, and as likely anywhere in it: the
+// square of the share beyond it, f, in the mean over those that n samples miss, the integral of
+// f^2 (1 - f)^n / 2.
+double share_missed(double n) { return 1.0 / ((n + 1.0) * (n + 2.0) * (n + 3.0)); }
+
 // How samples of some pixels scatter: their means' squared errors, and what these would be if the
 // samples were independent.
 struct Scatter {
@@ -155,17 +160,20 @@ void SamplePlanner::look_at_field(double scale) {
 }
 
 // Samples of a pixel have its own deviation, but few of them may miss what they seldom meet: what
-// covers less than one of n is told by the noisiest of the pixels around. What the halves of pixels
+// covers less than one of n is told by the noisiest of the pixels around, and by what they differ
+// by: samples of a pixel may agree for want of the one beyond an edge. What the halves of pixels
 // with as many samples differ by tells how much less these scatter than if they were independent.
 void SamplePlanner::look_at_pixels(double scale) {
   const Window& window = sums_.window;
   std::vector<double> variance(stated_.luminance.size());  // of one sample, weighted
+  std::vector<double> mean(variance.size());
   std::array<Scatter, sample_classes> of_class{};
   Scatter all;
   for (std::size_t p = 0; p < variance.size(); ++p) {
     const double weight = error_weight(double(stated_.luminance[p]), whole_.luminance);
     const double of_mean = weight * weight * sums_.sample_variance(p);
     variance[p] = of_mean * sums_.samples[p];
+    mean[p] = sums_.luminance[p] / std::max(1U, sums_.samples[p]);
     const double found = weight * weight * sums_.squared_error(p);
     all.add(found, of_mean);
     of_class[class_of(sums_.samples[p])].add(found, of_mean);
@@ -174,16 +182,21 @@ void SamplePlanner::look_at_pixels(double scale) {
     const auto columns = static_cast<std::size_t>(window.columns);
     const int x = window.x + static_cast<int>(p % columns);
     const int y = window.y + static_cast<int>(p / columns);
-    double around = 0.0;
+    double around = 0.0, contrast = 0.0;
     for (int qy = std::max(window.y, y - 1); qy <= std::min(window.y + window.rows - 1, y + 1);
          ++qy) {
       for (int qx = std::max(window.x, x - 1); qx <= std::min(window.x + window.columns - 1, x + 1);
            ++qx) {
-        around = std::max(around, variance[window.index(qx, qy)]);
+        const std::size_t q = window.index(qx, qy);
+        around = std::max(around, variance[q]);
+        contrast = std::max(contrast, std::abs(mean[q] - mean[p]));
       }
     }
     const double samples = std::max(1U, sums_.samples[p]);
-    const double likely = std::max(variance[p], around * std::min(1.0, unsure_samples / samples));
+    const double weight = error_weight(double(stated_.luminance[p]), whole_.luminance);
+    const double unseen = weight * weight * contrast * contrast * share_missed(samples);
+    const double likely =
+        std::max({variance[p], around * std::min(1.0, unsure_samples / samples), unseen * samples});
     const Scatter& like = of_class[class_of(sums_.samples[p])];
     const double better = (like.pixels < few_pixels ? all : like).share();
     const double error = likely * better * scale / samples;

@@ -43,6 +43,7 @@ class SamplePlanner {
   [[nodiscard]] double squared_error() const {
     return whole_.yardstick > 0.0 ? whole_.squared_error() : 0.0;
   }
+  [[nodiscard]] double doubt() const { return whole_.doubt; }
   // The cheapest that is expected to bring the squared error down to `wanted`, at no more than
   // most_cost.
   [[nodiscard]] SamplePlan plan(double wanted, double most_cost);

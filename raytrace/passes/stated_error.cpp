@@ -11,6 +11,7 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr double rounding = 1e-6;  // of sums in single precision
+constexpr double one_sided_90 = 1.2816;
 
 double luminance_of(std::span<const glm::vec3> layers, const glm::vec3& factor) {
   glm::vec3 sum(0.0F);
@@ -101,13 +102,21 @@ ErrorSums add_up(const StatedError& stated, std::span<const std::size_t> pixels)
   }
   if (sums.yardstick <= 0.0) return sums;
   const double scale = 1.0 / (static_cast<double>(sums.pixels) * sums.yardstick * sums.yardstick);
+  double fourths = 0.0;
   for (const std::size_t p : pixels) {
     if (stated.counts[p] == 0) continue;
     const double weight = error_weight(double(stated.luminance[p]), sums.luminance);
+    double of_pixel = 0.0;
     for (std::size_t part = 0; part < error_parts; ++part) {
-      sums.squared[part] += weight * weight * scale * double(stated.squared[p][part]);
+      const double square = weight * weight * scale * double(stated.squared[p][part]);
+      sums.squared[part] += square;
+      of_pixel += square;
     }
+    fourths += of_pixel * of_pixel;
   }
+  const double square = sums.squared_error();
+  if (square <= 0.0) return sums;
+  sums.doubt = std::sqrt(1.0 + one_sided_90 * std::sqrt(2.0 / 3.0 * fourths) / square);
   return sums;
 }
 

@@ -49,6 +49,32 @@ TEST(SamplePlan, FewSamplesAreToldByTheNoisiestAround) {
   EXPECT_EQ(few.camera[sums.window.index(2, 2)], 4U);
 }
 
+// All samples left of an edge say 1, all right of it 3: of two in a pixel both may have missed what
+// lies beyond the edge. If that is as likely in this pixel as in the next, and a share f of the
+// pixel with all f alike, they are off by f (3 - 1) with a chance of (1 - f)^2:
+//   4 * 1/2 * integral of f^2 (1 - f)^2 = 4 / 60.
+// Pixels that are off by a tenth more come first, those off by a tenth less do not.
+TEST(SamplePlan, ContrastTellsOfAnEdgeThatSamplesMissed) {
+  constexpr double missed = 4.0 / 60.0;
+  constexpr double each = 2.0 * 2.0;  // as many samples again, and their rays
+  for (const double noise : {0.9, 1.1}) {
+    PixelSums sums = quiet(2);
+    for (std::size_t p = 0; p < sums.samples.size(); ++p) {
+      if (p % edge < edge / 2) continue;
+      sums.radiance[p] *= 3.0F;
+      sums.luminance[p] *= 3.0;
+      sums.luminance2[p] *= 9.0;
+    }
+    disturb(sums, sums.window.index(2, 2), 2.0 * noise * missed);
+    const SamplePlan next = plan(sums, 0.0, 2.0 * edge * each);
+    EXPECT_EQ(next.camera[sums.window.index(2, 2)], noise > 1.0 ? 4U : 2U);
+    for (const int x : {7, 8}) {
+      EXPECT_EQ(next.camera[sums.window.index(x, 9)], noise > 1.0 ? 2U : 4U);
+    }
+    EXPECT_EQ(next.camera[sums.window.index(9, 9)], 2U);
+  }
+}
+
 // Where the error is so small, and samples so dear, that a ray's price is none in single precision,
 // pixels that need nothing still get nothing.
 TEST(SamplePlan, NoErrorIsTooSmallToTellWhoNeedsNothing) {
