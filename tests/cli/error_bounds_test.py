@@ -53,6 +53,13 @@ class Truth(unittest.TestCase):
         self.assertAlmostEqual(found.doubt, math.sqrt(0.09 * off**4 / number + spread**2), delta=0.05 * found.doubt)
         self.assertLess(abs(found.error**2 - off**2 / 10), 4 * spread)
 
+    def test_an_outlier_is_no_certainty(self):
+        # One of four references is off by d in one of 100 pixels: s^2 = d^2 / 4, and 2 s^4 / (4 * 5) is the least that is unknown.
+        truth, d = [1.0] * 100, 0.4
+        found = error_truth.compare(truth, [1.0 + d, *truth[1:]], truth, None, [truth, truth])
+        mean = 1.0 + d / 400
+        self.assertAlmostEqual(found.of_references, (d**2 / 4) * math.sqrt(2 / 20) / 100 / mean**2, places=12)
+
     def test_only_pixels_that_count(self):
         found = error_truth.compare([3.0, 9.0], [2.0, 1.0], [2.0, 1.0], [1.0, 0.0])
         self.assertEqual((found.error, found.bias, found.mean), (0.5, 0.5, 2.0))

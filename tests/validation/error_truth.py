@@ -56,6 +56,9 @@ def compare(values, first, second, counts=None, more=()):
     variances = [max(0.0, sum((v - one)**2 for one in all_of) - k * (v - middle)**2) / (k - 1) for v, middle, all_of in rows]
     products = [w * ((v - middle)**2 - variance / k) for w, variance, (v, middle, _) in zip(factors, variances, rows)]
     noise = sum(w**2 * variance_of_product([v - one for one in all_of]) for w, (v, _, all_of) in zip(factors, rows))
+    # Of a single outlier it finds none: no less than normal noise s has by itself, 2 s^4 / (k (k - 1)), the mean of whose
+    # estimate s^4 is 1 + 2 / (k - 1) times too large.
+    noise = max(noise, sum(w**2 * variance**2 for w, variance in zip(factors, variances)) * 2 / (k * (k + 1)))
     square = sum(products) / len(rows)
     spread = sum((p - square)**2 for p in products) / len(rows)**2
     bias = sum(v - middle for v, middle, _ in rows) / len(rows) / mean
