@@ -100,8 +100,8 @@ struct Batch {
 [[nodiscard]] std::vector<int> further_batches(int first_paths, double found, double wanted,
                                                int most);
 
-// Whether the paths that a render on a solution leaves out exist at all: without lobes, mirrors and
-// glass both sets are the same.
+// Whether the paths that a render on a solution leaves out exist at all: without mirrors and glass
+// both sets are the same.
 [[nodiscard]] bool leaves_paths_out(const scenes::Effects& effects);
 
 // The two pictures of the straight truth come from the finest step of that way, other random

@@ -72,7 +72,7 @@ std::vector<int> further_batches(int first_paths, double found, double wanted, i
 }
 
 bool leaves_paths_out(const scenes::Effects& effects) {
-  return effects.phong || effects.glossy || effects.mirror || effects.refraction;
+  return effects.mirror || effects.refraction;
 }
 
 AccuracyStep straight_step(const scenes::Scene& scene, double error) {

@@ -196,5 +196,24 @@ TEST(PathTracer, CausticsAreLeftOutOfTheGatheredPaths) {
   EXPECT_EQ(estimate(picture(builder.scene, above(0.5), options)).mean, 0.0);
 }
 
+// What lobes throw is no caustic: shadow rays follow it, or paths that are in either set. So without
+// mirrors and glass the sets are the same, path by path.
+TEST(PathTracer, LobesThrowNoCaustics) {
+  tests::SceneBuilder builder;
+  scenes::Material glossy = tests::grey(0.4);
+  glossy.specular = Rgb(0.5);
+  glossy.shininess = 200.0;
+  builder.plate(builder.material(glossy), 2.0, 0.0, true);
+  builder.plate(builder.material(glossy), 2.0, 1.0, false);
+  builder.plate(builder.material(tests::grey(0.3, 50.0)), 0.2, 0.9, false);
+  builder.scene.lamps.push_back(panel(2.0, 0.5));
+  PathOptions options = pixels(8, 64);
+  const Frame all = picture(builder.scene, above(0.5), options);
+  EXPECT_GT(estimate(all).mean, 0.0);
+  options.paths = PathSet::NoCaustics;
+  const Frame gathered = picture(builder.scene, above(0.5), options);
+  EXPECT_EQ(all.image.find("R")->values, gathered.image.find("R")->values);
+}
+
 }  // namespace
 }  // namespace earthshine::raytrace
