@@ -62,7 +62,7 @@ struct RenderReport {
                                  // show one sample or two
   bool stopped = false;
   // Samples in all that the wanted error is expected to take, over those that were cast; 0 where it
-  // was reached, or before there were some all over the picture.
+  // was surely reached (Rounds), or before there were some all over the picture.
   double growth = 0.0;
   bool gave_up = false;  // far more samples than should do have not reached the wanted error
 };
@@ -124,9 +124,12 @@ struct ErrorSums {
   // pixels are off by, so that no error that can be asked for, 1 at most, is reached there.
   double yardstick = 0.0;
   std::array<double, error_parts> squared{};  // mean squared errors, weighted, over yardstick^2
-  // The error that is exceeded by chance once in ten times, over the stated one: what a pixel is
-  // off by is told by a difference of its halves, d; of normal noise of variance s^2 its square
-  // scatters by 2 s^4, 2/3 of the mean of d^4. Much where few pixels hold most of the error.
+  // By how much the error may well be larger than is stated: as if each pixel were told by itself,
+  // by one difference of its halves, d, whose square scatters by 2 s^4 for normal noise of variance
+  // s^2, 2/3 of the mean of d^4; 1.28 of the root of their sum is added. The true error is more
+  // than that once in ten times where many pixels hold it, twice of ten where a dozen do, whose own
+  // d^4 tell it too small when they are small. All parts of a pixel are taken as going the same
+  // way.
   double doubt = 1.0;
   [[nodiscard]] double squared_error() const {
     double all = 0.0;

@@ -44,11 +44,10 @@ PixelSamples share_out(int rays_per_pixel, bool gathers) {
 
 std::optional<SamplePlan> Rounds::next(SamplePlanner& planner, double so_far, double affordable) {
   const bool first = looks_.empty();
-  doubt_ = planner.doubt();
-  const double now = planner.squared_error(), error = std::sqrt(now);
-  const double aimed = aim(doubt_) * aim(doubt_);
-  looks_.push_back({so_far, error});
-  if (wanted_ > 0.0 && doubt_ * error <= (first ? 1.0 : sure_share(wanted_)) * wanted_) return {};
+  const double now = planner.squared_error(), error = std::sqrt(now), doubt = planner.doubt();
+  const double aimed = squared_aim(doubt);
+  looks_.push_back({so_far, error, doubt});
+  if (wanted_ > 0.0 && doubt * error <= (first ? 1.0 : sure_share(wanted_)) * wanted_) return {};
   if (wanted_ > 0.0 && is_hopeless(looks_)) {
     gave_up_ = true;
     return {};
@@ -68,13 +67,12 @@ std::optional<SamplePlan> Rounds::next(SamplePlanner& planner, double so_far, do
 }
 
 double Rounds::growth() const {
-  const double error = looks_.empty() ? 0.0 : looks_.back().error;
-  return error * error / std::max(aim(doubt_) * aim(doubt_), 1e-12);
+  const Look last = looks_.empty() ? Look() : looks_.back();
+  return last.error * last.error / std::max(squared_aim(last.doubt), 1e-12);
 }
 
 double Rounds::growth(SamplePlanner& planner, double so_far) const {
-  const double now = planner.squared_error(), aim_now = aim(planner.doubt());
-  const double aimed = aim_now * aim_now;
+  const double now = planner.squared_error(), aimed = squared_aim(planner.doubt());
   if (now <= aimed || so_far <= 0.0) return 1.0;
   const SamplePlan plan = planner.plan(aimed, std::numeric_limits<double>::infinity());
   // A plan gives a point four times its samples at most: beyond, as the square of the error.

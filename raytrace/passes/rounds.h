@@ -14,10 +14,10 @@ namespace earthshine::raytrace {
 // Where the first look all over a picture is not enough, samples follow where errors look largest,
 // and what looked too small stays so. On the payload bay the true error is 0.89 to 1.08 of what is
 // stated at 5 %, and up to 1.1 of it at 2 % (night, camera A). Rounds go on until this share of the
-// wanted error is stated, less by the doubt that few pixels leave (ErrorSums): more of a coarse
+// wanted error is stated, times the doubt that few pixels leave (ErrorSums): more of a coarse
 // one, since a round more for a hundredth of the samples takes a twentieth of the time.
 [[nodiscard]] double sure_share(double wanted);
-// And samples are planned for this share: the next statement may turn out larger.
+// And samples are planned for this share, over the doubt: the next statement may turn out larger.
 inline constexpr double planned_share = 0.873;
 
 // What a first look casts at gather points. Of gather rays and paths half as many where a
@@ -56,9 +56,9 @@ class Rounds {
   // The same by where they would go.
   [[nodiscard]] double growth(SamplePlanner& planner, double so_far) const;
 
-  // That was stated after samples of that cost.
+  // That was stated after samples of that cost, and its doubt (ErrorSums).
   struct Look {
-    double cost = 0.0, error = 0.0;
+    double cost = 0.0, error = 0.0, doubt = 1.0;
   };
   // Whether the last of these looks is after 1024 times the samples of one whose error it has not
   // halved: of noise that all samples know of they leave a thirty-second, but a first look may miss
@@ -66,9 +66,12 @@ class Rounds {
   [[nodiscard]] static bool is_hopeless(const std::vector<Look>& looks);
 
  private:
-  [[nodiscard]] double aim(double doubt) const { return planned_share * wanted_ / doubt; }
+  [[nodiscard]] double squared_aim(double doubt) const {
+    const double aim = planned_share * wanted_ / doubt;
+    return aim * aim;
+  }
 
-  double wanted_, doubt_ = 1.0;  // doubt: of the last look (ErrorSums)
+  double wanted_;
   std::vector<Look> looks_;
   bool gave_up_ = false;
 };

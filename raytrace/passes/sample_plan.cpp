@@ -30,8 +30,8 @@ std::size_t class_of(std::uint32_t samples) {
 }
 
 // Of an edge that is as likely in a pixel as in its neighbour, and as likely anywhere in it: the
-// square of the share beyond it, f, in the mean over those that n samples miss, the integral of
-// f^2 (1 - f)^n / 2.
+// square of the share beyond it, f, where n samples miss it, none where they do not, in the mean:
+// the integral of f^2 (1 - f)^n / 2.
 double share_missed(double n) { return 1.0 / ((n + 1.0) * (n + 2.0) * (n + 3.0)); }
 
 // How samples of some pixels scatter: their means' squared errors, and what these would be if the

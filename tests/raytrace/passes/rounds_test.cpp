@@ -105,8 +105,8 @@ PixelSums off_by(double error) {
 // True errors of coarse pictures are at most 1.06 of what is stated, those of fine ones up to 1.1:
 // of 5 % a statement of 4.6 is enough and one of 4.8 is not, of 3 % one of 2.65 and not one
 // of 2.76. A first look, which has not chosen where to look, is taken at its word. Each of 256
-// pixels tells the variance by one difference, whose square scatters by the root of two over that:
-// the mean of as many is off by more than 1.2816 of its standard errors once in ten times.
+// pixels is told by one difference d, all alike here: the sum of 2/3 d^4 of them is 2/3 / 256 of
+// the square of the sum of d^2, and 1.2816 of its root goes to the doubt.
 const double doubt_of_256 = std::sqrt(1.0 + 1.2816 * std::sqrt(2.0 / 3.0 / 256.0));
 TEST(Rounds, GoOnUntilTheErrorIsSure) {
   const auto goes_on = [](double wanted, double first, double second) {

@@ -33,8 +33,8 @@ TEST(Doubt, IsThatOfThePixelsThatHoldTheError) {
 
 // Halves of normal noise of variance 1 in 2500 pixels: once in ten times the true error, 1, is more
 // than what is stated and its doubt. 4000 pictures tell that to the root of 0.1 * 0.9 / 4000; the
-// sum of 2500 squares is normal but for a skewness of the root of 8 / 2500, which moves it by less
-// than 0.18 * (1.28^2 - 1) / 6 of that.
+// sum of 2500 squares has a skewness g of the root of 8 / 2500, and over a spread that is told by
+// the same squares that adds phi(z) (2 z^2 + 1) / 6 g, phi the normal density.
 TEST(Doubt, IsExceededOnceInTenTimes) {
   constexpr int pictures = 4000;
   constexpr std::size_t pixels = 2500;
@@ -50,8 +50,9 @@ TEST(Doubt, IsExceededOnceInTenTimes) {
     const ErrorSums sums = add_up(stated);
     if (sums.doubt * std::sqrt(sums.squared_error()) < 1.0) ++exceeded;
   }
-  const double skewed = 0.18 * (1.2816 * 1.2816 - 1.0) / 6.0 * std::sqrt(8.0 / pixels);
-  EXPECT_NEAR(double(exceeded) / pictures, 0.1, skewed + 4.0 * std::sqrt(0.09 / pictures));
+  const double density = 0.17550, z = 1.2816;
+  const double skewed = density * (2.0 * z * z + 1.0) / 6.0 * std::sqrt(8.0 / pixels);
+  EXPECT_NEAR(double(exceeded) / pictures, 0.1 + skewed, 4.0 * std::sqrt(0.09 / pictures));
 }
 
 }  // namespace

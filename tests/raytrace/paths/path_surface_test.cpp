@@ -196,8 +196,8 @@ TEST(PathTracer, CausticsAreLeftOutOfTheGatheredPaths) {
   EXPECT_EQ(estimate(picture(builder.scene, above(0.5), options)).mean, 0.0);
 }
 
-// What lobes throw is no caustic: shadow rays follow it, or paths that are in either set. So without
-// mirrors and glass the sets are the same, path by path.
+// What lobes throw is no caustic: shadow rays follow it, or paths that are in either set. So
+// without mirrors and glass the sets are the same, path by path.
 TEST(PathTracer, LobesThrowNoCaustics) {
   tests::SceneBuilder builder;
   scenes::Material glossy = tests::grey(0.4);
