@@ -13,9 +13,10 @@ namespace earthshine::raytrace {
 
 // Where the first look all over a picture is not enough, samples follow where errors look largest,
 // and what looked too small stays so. On the payload bay the true error is 0.89 to 1.08 of what is
-// stated at 5 %, and up to 1.1 of it at 2 % (night, camera A). Rounds go on until this share of the
-// wanted error is stated, times the doubt that few pixels leave (ErrorSums): more of a coarse
-// one, since a round more for a hundredth of the samples takes a twentieth of the time.
+// stated at 5 %, and up to 1.1 of it at 2 % (night, camera A). Rounds go on until the
+// statement, times the doubt that few pixels leave (ErrorSums), is this share of the wanted error:
+// more of a coarse one, since a round more for a hundredth of the samples takes a twentieth of the
+// time.
 [[nodiscard]] double sure_share(double wanted);
 // And samples are planned for this share, over the doubt: the next statement may turn out larger.
 inline constexpr double planned_share = 0.873;
