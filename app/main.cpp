@@ -24,10 +24,10 @@
 #include "base/ranks/start.h"
 
 // Read by jemalloc as it starts. Pictures take and give back a few values a pixel again and again:
-// by pages of 2 MiB, kept until base/free_memory.h gives them back.
+// their pages are kept until base/free_memory.h gives them back.
 extern "C" {
 extern const char* malloc_conf;
-const char* malloc_conf = "thp:always,dirty_decay_ms:-1";
+const char* malloc_conf = "dirty_decay_ms:-1";
 }
 
 namespace earthshine::app {

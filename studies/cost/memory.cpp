@@ -16,7 +16,7 @@
 namespace earthshine::studies {
 namespace {
 
-constexpr double program_bytes = 30e6;   // code and libraries, and what large pages leave unused
+constexpr double program_bytes = 18e6;   // code and libraries
 constexpr double open_mpi_bytes = 12e6;  // its libraries and buffers
 
 constexpr double vertex_bytes = 24.0 + 12.0;          // the scene's, the ray structure's copy
