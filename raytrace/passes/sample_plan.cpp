@@ -99,18 +99,18 @@ void SamplePlanner::look() {
   for (const Gathered kind : {Gathered::Solution, Gathered::Residual, Gathered::Lobe}) {
     if (field_ != nullptr && field_->gathers(kind)) items += field_->points().size();
   }
-  gains_.reserve(items);
+  gains_ = std::make_unique_for_overwrite<Gain[]>(items);
   if (field_ != nullptr) look_at_field(scale);
   look_at_pixels(scale);
 }
 
 template <class Look>
 void SamplePlanner::look_at(std::size_t count, const Look& look) {
-  const std::size_t before = gains_.size();
-  gains_.resize(before + count);
+  Gain* const gains = &gains_[gain_count_];
+  gain_count_ += count;
   base::parallel_chunks(count, items_at_once, [&](std::size_t begin, std::size_t end) {
-    look(begin, end, &gains_[before + begin]);
-    for (std::size_t k = begin; k < end; ++k) gains_[before + k].find_prices();
+    look(begin, end, gains + begin);
+    for (std::size_t k = begin; k < end; ++k) gains[k].find_prices();
   });
 }
 
@@ -144,7 +144,9 @@ void SamplePlanner::look_at_field(double scale) {
               static_cast<float>(double(samples) * costs_.field[k]),
               static_cast<float>(factor * (one - two)),
               static_cast<float>(factor * (two - four)),
-              static_cast<float>(double(shared.squared_error[p]) / one)};
+              static_cast<float>(double(shared.squared_error[p]) / one),
+              Gain::none,
+              Gain::none};
     };
     look_at(field_->points().size(), [&](std::size_t begin, std::size_t end, Gain* gain) {
       std::array<float, items_at_once> two, four;
@@ -208,7 +210,9 @@ void SamplePlanner::look_at_pixels(double scale) {
             static_cast<float>(cost),
             static_cast<float>(error / 2.0),
             static_cast<float>(error / 4.0),
-            static_cast<float>(variance[p] / likely)};
+            static_cast<float>(variance[p] / likely),
+            Gain::none,
+            Gain::none};
   };
   look_at(variance.size(), [&](std::size_t begin, std::size_t end, Gain* gain) {
     for (std::size_t p = begin; p < end; ++p) *gain++ = gain_of(p);
@@ -216,6 +220,7 @@ void SamplePlanner::look_at_pixels(double scale) {
 }
 
 void SamplePlanner::Gain::find_prices() {
+  price_of_two = price_of_four = none;
   if (cost <= 0.0F) return;
   price_of_two = first / cost;
   price_of_four = std::max(second / (2.0F * cost), (first + second) / (3.0F * cost));
@@ -250,15 +255,16 @@ SamplePlan SamplePlanner::plan(double wanted, double most_cost) {
   plan.camera = sums_.samples;
   // The price of a ray at which the picture is just exact enough; the less it is, the more are
   // cast.
+  const std::span<const Gain> gains(gains_.get(), gain_count_);
   double all = 0.0;
-  for (const Gain& gain : gains_) all += double(gain.cost);
+  for (const Gain& gain : gains) all += double(gain.cost);
   if (all <= 0.0 || now <= 0.0) return plan;
   const double mean_gain = now / all;
-  const bool any = outcome(gains_, least_gain * mean_gain).cost > 0.0;
+  const bool any = outcome(gains, least_gain * mean_gain).cost > 0.0;
   double low = std::log((any ? least_gain : least_gain_of_all) * mean_gain);
   double high = std::log(greatest_price);
   std::vector<Gain> worth;  // at the least price; most are not
-  std::ranges::copy_if(gains_, std::back_inserter(worth), [&](const Gain& gain) {
+  std::ranges::copy_if(gains, std::back_inserter(worth), [&](const Gain& gain) {
     return gain.factor(static_cast<float>(std::exp(low))) > 1;
   });
   for (int k = 0; k < bisections; ++k) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -49,15 +50,18 @@ class SamplePlanner {
   [[nodiscard]] SamplePlan plan(double wanted, double most_cost);
 
  private:
-  struct Gain {  // of one point or pixel; none where more samples help nothing
-    std::uint32_t index = 0;
-    std::uint8_t kind = 0;
-    float samples = 0.0F;               // that it has
-    float cost = 0.0F;                  // of as many again
-    float first = 0.0F, second = 0.0F;  // squared error that twice, four times as many take off
-    float found = 1.0F;  // of what they promise, as much as the point or pixel itself has shown
-    // Up to which price of a ray, in squared error, that many are cast; below zero: at none.
-    float price_of_two = -1.0F, price_of_four = -1.0F;
+  // Of one point or pixel; no cost where more samples help nothing. Members have no initial values:
+  // one thread would touch the memory of all first (base/parallel.h).
+  struct Gain {
+    std::uint32_t index;
+    std::uint8_t kind;
+    float samples;        // that it has
+    float cost;           // of as many again
+    float first, second;  // squared error that twice, four times as many take off
+    float found;          // of what they promise, as much as the point or pixel itself has shown
+    // Up to which price of a ray, in squared error, that many are cast.
+    static constexpr float none = -1.0F;
+    float price_of_two, price_of_four;
     void find_prices();
     [[nodiscard]] int factor(float per_cost) const {
       return per_cost <= price_of_four ? 4 : per_cost <= price_of_two ? 2 : 1;
@@ -88,7 +92,8 @@ class SamplePlanner {
   StatedError stated_;
   ErrorSums whole_;
   bool looked_ = false;
-  std::vector<Gain> gains_;
+  std::unique_ptr<Gain[]> gains_;
+  std::size_t gain_count_ = 0;
 };
 
 }  // namespace earthshine::raytrace
