@@ -98,7 +98,7 @@ class Passes {
       const auto rays = static_cast<std::uint32_t>(options_.gather_rays);
       const std::uint32_t fewest = GatherField::fewest_samples(Gathered::Solution);
       for (const Gathered kind : every_kind) {
-        look_first(kind, kind == Gathered::Solution ? std::max(rays, fewest) : rays / 2);
+        look_first(kind, kind == Gathered::Solution ? std::max(rays, fewest) : rays / 2, false);
         field_->share(kind, true);
       }
       count_gather_rays();
@@ -128,7 +128,7 @@ class Passes {
           first_look(options_.error, std::max(field_->points().size(), options_.first_look_pixels));
       look_first(Gathered::Solution, first.gather_rays, first.every_second);
       look_first(Gathered::Residual, first.paths, first.every_second);
-      look_first(Gathered::Lobe, first.lobe_rays);
+      look_first(Gathered::Lobe, first.lobe_rays, first.every_second);
       covered = !ends();
       share();
       report_.gather_seconds += seconds_since(start);
@@ -194,7 +194,7 @@ class Passes {
     shared_.field = &*field_;
   }
 
-  void look_first(Gathered kind, std::uint32_t each, bool every_second = false) {
+  void look_first(Gathered kind, std::uint32_t each, bool every_second) {
     field_->look_first(kind, each, every_second, [this] { return ends(); });
     tell(pixels() * each * (every_second ? 0.5 : 1.0));
     if (ends()) field_->look_quickly(kind);

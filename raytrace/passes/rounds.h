@@ -21,11 +21,11 @@ namespace earthshine::raytrace {
 // And samples are planned for this share, over the doubt: the next statement may turn out larger.
 inline constexpr double planned_share = 0.873;
 
-// What a first look casts at gather points. Of gather rays and paths half as many where a
-// coarse picture is wanted, or any that a time limit allows, and at every second pixel where no
-// edge is near: smooth pictures are done with that, and of others it tells as well as the whole
-// where more samples should go (payload bay, 5 %; at 3 % it does not). In small pictures more
-// paths, for light that few of them find.
+// What a first look casts at gather points. Where a coarse picture is wanted, or any that a time
+// limit allows, half as many gather rays and paths, and of all three kinds none at every second
+// pixel where no edge is near: smooth pictures are done with that, and of others it tells as well
+// as the whole where more samples should go (payload bay, 5 %; at 3 % it does not). In small
+// pictures more paths, for light that few of them find.
 struct FirstLook {
   std::uint32_t gather_rays = 16, paths = 4, lobe_rays = 2;
   bool every_second = false;  // GatherField::look_first()
