@@ -4,6 +4,7 @@
 // the name says _deg.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <numbers>
@@ -25,7 +26,7 @@ inline constexpr double earth_radius_m = 6371e3;
 }
 
 [[nodiscard]] inline double max_component(const Rgb& c) {
-  return std::fmax(c.r, std::fmax(c.g, c.b));
+  return std::max(c.r, std::max(c.g, c.b));
 }
 
 [[nodiscard]] inline bool is_lit(const Rgb& c) { return max_component(c) > 0.0; }

@@ -237,7 +237,7 @@ class Passes {
 
   // What was not reached when it was stopped gets two samples all the same, which tell what they
   // are off by: by twice as much as is true of two that are spread evenly (a room of 64 x 64
-  // pixels), so that where no edge is near every second pixel, with one, is left to them.
+  // pixels), so that where no edge is near one pixel of four is enough for it.
   void first_round(const std::vector<std::uint32_t>& samples) {
     report_.least_camera_samples = static_cast<int>(*std::ranges::min_element(samples));
     shade(samples);
@@ -246,7 +246,7 @@ class Passes {
     std::vector<std::uint32_t> least = field_ ? by_edges(2, 1) : everywhere(2);
     const auto columns = static_cast<std::size_t>(sums_->window.columns);
     for (std::size_t p = 0; p < least.size(); ++p) {
-      if ((p % columns + p / columns) % 2 == 0) least[p] = 2;
+      if (p % columns % 2 == 0 && p / columns % 2 == 0) least[p] = 2;
     }
     shade_samples(shared_, camera_, least, *sums_, report_.rays, {}, {});
   }

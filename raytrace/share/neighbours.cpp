@@ -18,6 +18,19 @@ constexpr std::uint16_t own_bits = (1U << (taps / 2U)) | (1U << (taps + taps / 2
 // Rounding of single-precision positions.
 float slack(const GatherPoint& point) { return 0.02F * point.spacing_m; }
 
+// The triangle that each shows, and the mirror that it is seen in; of points without a surface
+// none.
+constexpr std::uint64_t no_face = ~std::uint64_t{0};
+std::vector<std::uint64_t> faces_of(const std::vector<GatherPoint>& points, std::size_t count) {
+  std::vector<std::uint64_t> faces(count);
+  for (std::size_t p = 0; p < count; ++p) {
+    const GatherPoint& point = points[p];
+    faces[p] =
+        point.reach_m > 0.0F ? (std::uint64_t{point.triangle} << 32U) | point.mirror : no_face;
+  }
+  return faces;
+}
+
 constexpr std::size_t rows_at_once = 4;
 // Of those that are as far apart as neighbours.
 constexpr std::size_t longest_chain = 16;
@@ -69,16 +82,18 @@ void Neighbours::sift(std::size_t level, const Keep& keep) {
 
 Neighbours::Neighbours(const Window& window, const std::vector<GatherPoint>& points)
     : columns_(window.columns), rows_(window.rows), masks_(mask_levels) {
+  // Most lie on the same face, side by side in memory: points are looked at where they do not.
+  const std::vector<std::uint64_t> faces = faces_of(points, window.pixel_count());
   for (std::size_t level = 0; level < mask_levels; ++level) {
     masks_[level].resize(window.pixel_count());
     for (std::size_t p = 0; p < masks_[level].size(); ++p) {
-      masks_[level][p] = points[p].reach_m <= 0.0F ? std::uint16_t{0} : all_bits;
+      masks_[level][p] = faces[p] == no_face ? std::uint16_t{0} : all_bits;
     }
     sift(level, [&](std::size_t p, std::size_t q) {
+      if (faces[p] == faces[q]) return true;
       const GatherPoint &a = points[p], &b = points[q];
-      return b.reach_m > 0.0F &&
-             ((a.triangle == b.triangle && a.mirror == b.mirror) ||
-              same_surface(a.position, a.normal, b.position, b.normal, slack(a)));
+      return faces[q] != no_face &&
+             same_surface(a.position, a.normal, b.position, b.normal, slack(a));
     });
   }
 }
