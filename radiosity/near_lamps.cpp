@@ -165,4 +165,10 @@ Patches subdivide_near_lamps(const scenes::Scene& scene, double edge_m) {
   return patches;
 }
 
+std::size_t count_near_lamps(const scenes::Scene& scene, double edge_m) {
+  constexpr std::size_t most = 1'000'000;
+  const std::size_t least = count_patches(scene, edge_m);
+  return least > most ? least : subdivide_near_lamps(scene, edge_m).count();
+}
+
 }  // namespace earthshine::radiosity

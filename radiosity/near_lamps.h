@@ -14,4 +14,8 @@ namespace earthshine::radiosity {
 // them. Lamps without any light cost nothing.
 [[nodiscard]] Patches subdivide_near_lamps(const scenes::Scene& scene, double edge_m);
 
+// How many that makes. Beyond a million, where cutting takes seconds and memory, what they are at
+// the least (count_patches()).
+[[nodiscard]] std::size_t count_near_lamps(const scenes::Scene& scene, double edge_m);
+
 }  // namespace earthshine::radiosity

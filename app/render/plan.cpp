@@ -16,6 +16,7 @@
 #include "app/render/light.h"
 #include "base/free_memory.h"
 #include "base/parallel.h"
+#include "radiosity/near_lamps.h"
 #include "radiosity/refine.h"
 #include "scenes/effects/quality.h"
 
@@ -69,10 +70,11 @@ struct RankBytes {
 // Of the solution alone, with its error stated, and of each camera's picture of its own size, the
 // solution included. Returns the most of them where so many ranks divide the matrix; 0: no mpirun.
 RankBytes add_memory(Json& report, const LoadedScene& loaded, const RenderCall& call,
-                     const Common& common, const scenes::RayQuery& query, int ranks) {
+                     const Common& common, const scenes::RayQuery& query, int ranks,
+                     std::size_t patches) {
   const radiosity::SolveOptions solver = solver_of(call, loaded.scene, common);
   studies::MemoryCase sizes =
-      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver);
+      studies::memory_case(loaded.scene, loaded.groups, loaded.effects, solver, patches);
   if (!loaded.effects.solution) {
     sizes.solves = false;
     sizes.columns = 0;
@@ -156,8 +158,9 @@ Json report_of(const RenderCall& call, const Common& common, int ranks) {
   const radiosity::SolveOptions solver = solver_of(call, loaded.scene, common);
   const auto rays_per_patch = std::bit_ceil(static_cast<std::uint64_t>(solver.form_factor_rays));
   const bool refines = solver.refine.on && radiosity::is_lit(loaded.effects);
-  const std::size_t patches = refines ? radiosity::most_refined_patches(loaded.scene, solver)
-                                      : radiosity::count_patches(loaded.scene, solver.patch_edge_m);
+  const std::size_t patches = refines
+                                  ? radiosity::most_refined_patches(loaded.scene, solver)
+                                  : radiosity::count_near_lamps(loaded.scene, solver.patch_edge_m);
   const bool solves = loaded.effects.solution;
   Json report;
   report["scene"] = loaded.scene.path.string();
@@ -176,7 +179,7 @@ Json report_of(const RenderCall& call, const Common& common, int ranks) {
   report["images"] = images_of(loaded.scene, call, loaded.asked,
                                solves ? static_cast<std::uint64_t>(knobs.gather_rays) : 0);
   const scenes::RayQuery query(loaded.scene);
-  const RankBytes bytes = add_memory(report, loaded, call, common, query, ranks);
+  const RankBytes bytes = add_memory(report, loaded, call, common, query, ranks, patches);
   add_seconds(report, loaded, call, common, query, ranks, bytes);
   return report;
 }
@@ -252,14 +255,13 @@ Command add_plan(CLI::App& program) {
   parser->add_flag_callback(
       "--cctv", [call] { call->cctv = "asked"; },
       "As if the pictures on the CCTV monitors were asked for");
-  const auto ranks = std::make_shared<int>(0);
-  parser->add_option("--ranks", *ranks, "What so many ranks of earthshine-mpi take, each of them")
-      ->check(CLI::Range(1, 65536).description(""))
-      ->type_name("N");
+  const auto ranks = std::make_shared<std::uint64_t>(0);
+  add_whole_number(*parser, "--ranks", *ranks, 1, 65536,
+                   "What so many ranks of earthshine-mpi take, each of them");
   parser->add_flag("--json", call->json, "JSON on standard output");
   return {parser, [call, ranks](const Common& common) {
             check_picture_options(*call, common.quiet);
-            const Json report = report_of(*call, common, *ranks);
+            const Json report = report_of(*call, common, static_cast<int>(*ranks));
             print(call->json ? dump(report) : text_of(report));
           }};
 }

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "base/ranks/ranks.h"
+#include "radiosity/near_lamps.h"
 #include "radiosity/refine.h"
 #include "raytrace/passes/rounds.h"
 #include "raytrace/paths/path_tracer.h"
@@ -50,9 +51,9 @@ radiosity::SolveReport expect_solve(const PilotCall& call, radiosity::Solution& 
   cheap.form_factor_rays = std::min(pilot_rays, cheap.form_factor_rays);
   cheap.tolerance = std::max(cheap.tolerance, 1e-4);
   const bool refines = call.solver.refine.on;
-  const double most =
-      static_cast<double>(refines ? radiosity::most_refined_patches(call.scene, call.solver)
-                                  : radiosity::count_patches(call.scene, call.solver.patch_edge_m));
+  const double most = static_cast<double>(
+      refines ? radiosity::most_refined_patches(call.scene, call.solver)
+              : radiosity::count_near_lamps(call.scene, call.solver.patch_edge_m));
   if (refines) {
     const std::size_t start = radiosity::count_patches(call.scene, call.solver.refine.start_edge_m);
     cheap.refine.max_patches = std::min(static_cast<std::size_t>(most), start + pilot_growth);

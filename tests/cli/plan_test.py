@@ -185,8 +185,22 @@ class Plan(program.Case):
         for wrong in ("0", "-1", "two"):
             self.says(self.refused("plan", "scene.toml", "--ranks", wrong), "--ranks")
 
+    def test_patches_are_those_that_are_cut_where_lamps_are_near(self):
+        self.write("scene.toml", program.BALL)
+        counts = []
+        for height in (2, 0.1):
+            options = ["--set", "quality.patch_edge=0.8", "--set", "quality.refine=false",
+                       "--set", f"light.lamp.position=[1.5, 0, {height}]"]
+            plan = self.json("plan", "scene.toml", *options)
+            counts.append(plan["patches"])
+            self.assertEqual(plan["expected"]["patches"], plan["patches"])
+            self.assertEqual(self.json("solve", "scene.toml", *options)["patches"], plan["patches"])
+        self.assertGreater(counts[1], counts[0])
+
     def test_bad_options_are_refused_as_render_refuses_them(self):
         self.write("scene.toml", program.BALL)
+        self.says(self.refused("plan", "scene.toml", "--aov", "depth", "--indirect", "paths"), "--aov", "--indirect paths")
+        self.says(self.refused("plan", "scene.toml", "--camera", "A,above,A"), "--camera", "names A twice")
         self.says(self.refused("plan", "scene.toml", "--aov", "deep"), "deep", "depth")
         self.says(self.refused("plan", "scene.toml", "--camera", "B"), '"B"', "A, above")
         self.says(self.refused("plan", "scene.toml", "--size", "10"), "COLUMNSxROWS")
