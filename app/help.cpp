@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/help.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <vector>
+
+#include "base/error.h"
 
 namespace earthshine::app {
 namespace {
@@ -76,6 +81,63 @@ std::string entry(const std::string& name, const std::string& text) {
   return line + wrapped(text, column) + "\n";
 }
 
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
+  const std::string nearest = base::nearest_word(word, known);
+  return nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?";
+}
+
+std::vector<std::string> commands_of(const CLI::App& parser) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : parser.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+// A word nobody asked for is the likeliest reason of any other complaint, so it is named first.
+std::string unknown_word(const CLI::App& program) {
+  const CLI::App& parser = chosen_parser(program);
+  const std::vector<std::string> extras = parser.remaining(false);
+  if (extras.empty()) return {};
+  const std::string& word = extras.front();
+  if (word.size() > 1 && word.front() == '-') {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : parser.get_options()) {
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    }
+    const std::string plain = word.substr(0, word.find('='));
+    return fmt::format("unknown option \"{}\"{}", plain, did_you_mean(plain, known));
+  }
+  const std::vector<std::string> known = commands_of(parser);
+  const std::vector<const CLI::Option*> options = parser.get_options();
+  const bool takes_files = std::any_of(options.begin(), options.end(),
+                                       [](const CLI::Option* o) { return o->get_positional(); });
+  if (known.empty() || takes_files) return fmt::format("unexpected argument \"{}\"", word);
+  const std::string nearest = did_you_mean(word, known);
+  const bool top = parser.get_parent() == nullptr;
+  return fmt::format("unknown {} \"{}\"{} {}: {}", top ? "command" : parser.get_name(), word,
+                     nearest.empty() ? "." : nearest, top ? "Commands" : "There are",
+                     fmt::join(known, ", "));
+}
+
+// What the library found, and what to do about it.
+std::string found_by_parser(const CLI::App& parser, const CLI::ParseError& error) {
+  const std::string what = error.what();
+  if (what == "A subcommand is required") {
+    const bool top = parser.get_parent() == nullptr;
+    return fmt::format("no {} is named. {}: {}", top ? "command" : parser.get_name(),
+                       top ? "Commands" : "There are", fmt::join(commands_of(parser), ", "));
+  }
+  if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr) {
+    return what + ". Leave one of the two out";
+  }
+  if (dynamic_cast<const CLI::RequiresError*>(&error) != nullptr) {
+    return what + ". Add it, or leave the first out";
+  }
+  if (const std::size_t at = what.find(": At Most 1 required"); at != std::string::npos) {
+    return what.substr(0, at) + " is given more than once. Write it once";
+  }
+  return what;
+}
+
 }  // namespace
 
 std::string words_to(const CLI::App& parser) {
@@ -118,6 +180,18 @@ std::string Help::make_help(const CLI::App* parser, std::string, CLI::AppFormatM
              "short of the error that the call asked for.",
              0) +
          "\n";
+}
+
+const CLI::App& chosen_parser(const CLI::App& program) {
+  const CLI::App* parser = &program;
+  while (!parser->get_subcommands().empty()) parser = parser->get_subcommands().front();
+  return *parser;
+}
+
+std::string problem_of(const CLI::App& program, const CLI::ParseError& error) {
+  std::string problem = unknown_word(program);
+  if (problem.empty()) problem = found_by_parser(chosen_parser(program), error);
+  return problem;
 }
 
 }  // namespace earthshine::app

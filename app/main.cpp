@@ -46,51 +46,10 @@ void add_common_options(CLI::App& parser, Common& common, std::uint64_t& threads
   parser.add_flag("-q,--quiet", common.quiet, "No progress, no notes on standard error");
 }
 
-std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
-  const std::string nearest = base::nearest_word(word, known);
-  return nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?";
-}
-
-// The command that the call reached: the study of a study, else the command, else the program.
-const CLI::App& chosen_parser(const CLI::App& program) {
-  const CLI::App* parser = &program;
-  while (!parser->get_subcommands().empty()) parser = parser->get_subcommands().front();
-  return *parser;
-}
-
-// A word nobody asked for is the likeliest reason of any other complaint, so it is named first.
-std::string unknown_word(const CLI::App& program) {
-  const CLI::App& parser = chosen_parser(program);
-  const std::vector<std::string> extras = parser.remaining(false);
-  if (extras.empty()) return {};
-  const std::string& word = extras.front();
-  if (word.size() > 1 && word.front() == '-') {
-    std::vector<std::string> known;
-    for (const CLI::Option* option : parser.get_options()) {
-      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
-    }
-    const std::string plain = word.substr(0, word.find('='));
-    return fmt::format("unknown option \"{}\"{}", plain, did_you_mean(plain, known));
-  }
-  std::vector<std::string> known;
-  for (const CLI::App* command : parser.get_subcommands({})) known.push_back(command->get_name());
-  const std::vector<const CLI::Option*> options = parser.get_options();
-  const bool takes_files = std::any_of(options.begin(), options.end(),
-                                       [](const CLI::Option* o) { return o->get_positional(); });
-  if (known.empty() || takes_files) return fmt::format("unexpected argument \"{}\"", word);
-  const std::string nearest = did_you_mean(word, known);
-  const bool top = parser.get_parent() == nullptr;
-  return fmt::format("unknown {} \"{}\"{} {}: {}", top ? "command" : parser.get_name(), word,
-                     nearest.empty() ? "." : nearest, top ? "Commands" : "There are",
-                     fmt::join(known, ", "));
-}
-
 int usage_error(const CLI::App& program, const CLI::ParseError& error) {
   const std::string words = words_to(chosen_parser(program));
-  std::string problem = unknown_word(program);
-  if (problem.empty()) problem = error.what();
   const std::string where = words.empty() ? "" : words.substr(0, words.size() - 1) + ": ";
-  note(fmt::format("earthshine: {}{}", where, problem));
+  note(fmt::format("earthshine: {}{}", where, problem_of(program, error)));
   note(fmt::format("\"earthshine {}--help\" shows how to call it.", words));
   return call_is_wrong;
 }

@@ -224,6 +224,7 @@ struct Camera {
   FilterShape filter = FilterShape::Box;
   double filter_width_px = 1.0;  // full width of the filter's support
   base::Location where;          // of its position in the scene file
+  std::optional<base::Location> cctv_at, range_sensor_at;
 };
 
 // A [[cctv]], [monitor] or [[range_sensor]] table as written; degrade/ knows its keys and checks

@@ -170,6 +170,11 @@ std::vector<const scenes::Camera*> wanted_cameras(const std::vector<std::string>
     }
   }
   if (cameras.empty()) cameras.push_back(&first_camera(scene));
+  for (auto camera = cameras.begin(); camera != cameras.end(); ++camera) {
+    if (std::find(cameras.begin(), camera, *camera) == camera) continue;
+    throw Error(Blame::Input, "--camera", "names " + (*camera)->name + " twice", {},
+                "Name it once");
+  }
   return cameras;
 }
 
@@ -200,6 +205,10 @@ void check_picture_options(const RenderCall& call, bool quiet) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     throw base::Error(base::Blame::Input, "--aov", "there is no layer \"" + name + "\"",
                       fmt::format("the layers are {}", fmt::join(known, ", ")));
+  }
+  if (call.indirect == raytrace::Indirect::Paths && !call.aovs.empty()) {
+    throw Error(Blame::Input, "--aov", "--indirect paths has no further layers", {},
+                "Take them from a render without it");
   }
   if (call.no_caustics && call.indirect != raytrace::Indirect::Paths) {
     throw Error(Blame::Input, "--no-caustics",
@@ -259,13 +268,8 @@ void check_over(const RenderCall& call) {
   }
   if (call.png.empty()) fail("--over", "has no file for its picture", "", "Add --png FILE.png");
   if (call.size || call.crop) {
-    fail(call.size ? "--size" : "--crop", "disagrees with --over",
+    fail(call.size ? "--size" : call.crop_option(), "disagrees with --over",
          "the picture has the photograph's size", "Leave one of the two out");
-  }
-  if (call.wire_alone() && (call.json || call.timings || call.per_light || !call.aovs.empty())) {
-    fail("--over", "draws lines and renders nothing to report",
-         "--json, --timings, --per-light and --aov belong to a picture",
-         "Add -o FILE.exr, or leave them out");
   }
 }
 

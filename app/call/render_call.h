@@ -68,6 +68,7 @@ struct RenderCall {
   bool only_pixel = false;
   bool probe = false;  // with only_pixel: where its light comes from
   [[nodiscard]] const char* pixel_option() const { return probe ? "--probe" : "--only-pixel"; }
+  [[nodiscard]] const char* crop_option() const { return only_pixel ? pixel_option() : "--crop"; }
   double time_limit_s = 0.0;  // of the whole command; 0: none
   bool no_error = false;      // none is stated
   raytrace::Indirect indirect = raytrace::Indirect::Radiosity;
@@ -81,7 +82,12 @@ struct RenderCall {
   OverCall over;
   std::optional<base::Picture8> photo;  // of --over, once it is read
 
-  // Lines over a photograph: no light is computed.
+  // What the range sensor sees: no light is computed.
+  [[nodiscard]] bool range_alone() const {
+    return !range.empty() && output.empty() && png.empty() && cctv.empty() && !only_pixel &&
+           !over.asked();
+  }
+  // Lines over a photograph: nor is it here.
   [[nodiscard]] bool wire_alone() const {
     return over.asked() && !over.needs_picture() && output.empty() && cctv.empty();
   }

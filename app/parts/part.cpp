@@ -188,10 +188,11 @@ PartsRecord read_parts_record(const fs::path& folder) {
     if (auto record = record_in(place)) return *record;
   }
   std::error_code ignored;
-  throw Error(Blame::Input, folder.string(),
-              fs::exists(folder, ignored) ? fmt::format("holds no {}", record_file)
-                                          : std::string("is not there"),
-              "it is the folder of a call with --part: FILE.exr.parts of render, DIR of a study");
+  throw Error(
+      Blame::Input, folder.string(),
+      fs::exists(folder, ignored) ? fmt::format("holds no {}", record_file)
+                                  : std::string("is not there"),
+      "it is the folder of a call with --part: OUTPUT.parts of render and degrade, DIR of a study");
 }
 
 void join_parts(const fs::path& folder, const Common& common, const Json& digests, PartCall& part) {

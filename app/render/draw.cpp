@@ -88,7 +88,7 @@ Drawn draw_picture(const Studio& studio, const scenes::Camera& camera, StageTime
     studies::Step solve;
     solve.stage = "solve";
     solve.patches = studio.light.solution.report.patches;
-    solve.form_factor_rays = studio.light.solver.form_factor_rays;
+    solve.form_factor_rays = studio.light.solution.report.rays_per_patch;
     solve.asked = wanted;
     drawn.steps.push_back(solve);
   }

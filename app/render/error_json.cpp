@@ -94,6 +94,8 @@ const char* words_of(studies::Limit limit) {
     case studies::Limit::Ledger:
       return "the ledger lacks light that no ray finds again, as on a spot beside a lamp that "
              "mirrors alone show; move such a lamp off the surface";
+    case studies::Limit::Given:
+      return "the solution of --solution is taken as it is; leave it out to solve anew";
   }
   return "";
 }
@@ -193,6 +195,15 @@ std::string error_text(const Solved& light, std::optional<double> wanted) {
   return text_of(error.parts.total(), error.known, "no surface reflects light",
                  parts_of(error.parts), error.not_captured) +
          (error.known ? choice_text(light.limit, light.steps, wanted, 0.0) : "");
+}
+
+double seconds_to_go(const Solved& light, std::optional<double> wanted, double seconds) {
+  using studies::Limit;
+  const bool more_helps = light.limit == Limit::Time || light.limit == Limit::Memory ||
+                          light.limit == Limit::Steps || light.limit == Limit::Stopped;
+  if (!wanted || !more_helps || light.steps.empty()) return 0.0;
+  const double over = light.steps.back().estimate / *wanted;
+  return std::max(0.0, seconds * (over * over - 1.0));
 }
 
 void check_reached(const SceneInput& call, studies::Limit limit, double wanted) {

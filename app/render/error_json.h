@@ -25,6 +25,12 @@ void add_errors(base::ExrHeader& header, const Drawn& drawn);
 [[nodiscard]] std::string error_text(const Drawn& drawn, std::optional<double> wanted);
 [[nodiscard]] std::string error_text(const Solved& light, std::optional<double> wanted);
 
+// What an error that a limit came before would still take, after so many seconds: time goes with
+// the inverse of the squared error, patches and rays alike. 0: nothing, or more time would not
+// help.
+[[nodiscard]] double seconds_to_go(const Solved& light, std::optional<double> wanted,
+                                   double seconds);
+
 // Throws StoppedShort where the call wants an error that a limit has kept it from.
 void check_reached(const SceneInput& call, studies::Limit limit, double wanted);
 

@@ -31,6 +31,32 @@ namespace {
 using base::Blame;
 using base::Error;
 
+// The range sensor and lines over a photograph need none, and leave nothing to say about it.
+void check_without_light(const RenderCall& call) {
+  if (!call.range_alone() && !call.wire_alone()) return;
+  const bool wire = call.wire_alone();
+  const std::array<std::pair<const char*, bool>, 12> of_light = {
+      {{"--json", call.json && wire},
+       {"--timings", call.timings},
+       {"--per-light", call.per_light},
+       {"--aov", !call.aovs.empty()},
+       {"--report", !call.report.empty()},
+       {"--error", call.scene.wants_error()},
+       {"--no-error", call.no_error},
+       {"--indirect", call.indirect != raytrace::Indirect::Radiosity},
+       {"--time-limit", call.time_limit_s > 0.0},
+       {"--all-effects", call.all_effects},
+       {"--solution", !call.solution.empty()},
+       {"--exposure", call.tone.shared()}}};
+  for (const auto& [option, asked] : of_light) {
+    if (!asked) continue;
+    throw Error(Blame::Input, option,
+                wire ? "belongs to a picture, and --over alone draws lines"
+                     : "belongs to a picture, and --range alone takes none",
+                {}, "Add -o FILE.exr, or leave it out");
+  }
+}
+
 void check_call(const RenderCall& call, bool quiet) {
   check_picture_options(call, quiet);
   const auto check_ending = [](const std::string& path, std::string_view option,
@@ -49,23 +75,19 @@ void check_call(const RenderCall& call, bool quiet) {
     throw Error(Blame::Input, "--exposure", "is how a PNG is shown, and none is written", {},
                 "Name one with --png, or leave --exposure out");
   }
-  const bool range_alone = !call.range.empty() && call.png.empty() && call.cctv.empty();
-  if (call.output.empty() && !call.only_pixel && !call.over.asked() && !range_alone) {
+  check_without_light(call);
+  if (call.output.empty() && !call.only_pixel && !call.over.asked() && !call.range_alone()) {
     throw Error(Blame::Input, "--output", "is missing", {},
                 "Name the picture: -o FILE.exr; only --range, --over, --probe and --only-pixel "
                 "do without");
   }
   if (call.crop && !call.cctv.empty()) {
     throw Error(Blame::Input, "--cctv", "the CCTV stage needs the whole picture", {},
-                "Leave out --cctv, --crop or --only-pixel");
-  }
-  if (call.indirect == raytrace::Indirect::Paths && !call.aovs.empty()) {
-    throw Error(Blame::Input, "--aov", "--indirect paths has no further layers", {},
-                "Take them from a render without it");
+                fmt::format("Leave out --cctv or {}", call.crop_option()));
   }
   if (call.indirect == raytrace::Indirect::Paths && (call.crop || call.time_limit_s > 0.0)) {
     throw Error(Blame::Input, "--indirect paths", "draws whole pictures, however long it takes", {},
-                "Leave out --crop, --only-pixel and --time-limit");
+                fmt::format("Leave out {}", call.crop ? call.crop_option() : "--time-limit"));
   }
   if (call.probe && call.indirect != raytrace::Indirect::Radiosity) {
     throw Error(Blame::Input, "--probe", "reads the radiosity solution", {},
@@ -178,8 +200,7 @@ void run(RenderCall call, const Common& common) {
         lay_over(call.over, *call.photo, loaded.scene, query, *pictures.front().camera, {});
     return base::write_png(call.png, drawn.width, drawn.height, 3, drawn.rgb);
   }
-  if (call.output.empty() && !call.only_pixel && !call.over.asked()) {
-    // The range sensor alone needs no light.
+  if (call.range_alone()) {
     if (call.json) print(dump(ranges.size() == 1 ? ranges.front() : Json(ranges)));
     return;
   }

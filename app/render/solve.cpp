@@ -179,19 +179,6 @@ std::string solve_text(const Json& json) {
   return text;
 }
 
-// What the wanted error would still take where a limit came first: time goes with the inverse of
-// the squared error, patches and rays alike.
-std::string price_text(const Solved& light, std::optional<double> wanted, double seconds) {
-  if (!wanted || light.limit == studies::Limit::None || light.steps.empty()) return "";
-  const double over = light.steps.back().estimate / *wanted;
-  if (over <= 1.0 || light.limit == studies::Limit::Settings ||
-      light.limit == studies::Limit::Ledger) {
-    return "";
-  }
-  return fmt::format("\n  {} needs about {} more, or more", scenes::percent(*wanted),
-                     duration(seconds * (over * over - 1.0)));
-}
-
 bool is_json(const std::string& path) { return path.ends_with(".json"); }
 
 void check_call(const SolveCall& call) {
@@ -220,6 +207,12 @@ Solved solve_alone(const SolveCall& call, const Common& common, const LoadedScen
   light.surface = times.measure("error", [&] {
     return studies::surface_error(loaded.world(query), light.solution, options);
   });
+  const std::optional<double> error = loaded.scene.quality.error;
+  if (!error) return light;
+  const radiosity::SolveReport& report = light.solution.report;
+  const double found = light.surface.parts.total().estimate;
+  light.steps.push_back({"solve", report.patches, report.rays_per_patch, 0, *error, found});
+  if (light.surface.known && found > *error) light.limit = studies::Limit::Given;
   return light;
 }
 
@@ -254,12 +247,19 @@ void run(const SolveCall& call, const Common& common) {
     times.measure("write GLB", [&] { write_mesh(call.mesh, solution, loaded); });
   }
   Json json = json_of(loaded, solution.report, times);
-  json["error"] = error_json(light, loaded.scene.quality.error);
+  const double price = seconds_to_go(light, error, times.total());
+  json["error"] = error_json(light, error);
+  json["error"]["seconds_to_go"] = price > 0.0 ? Json(price) : Json();
   if (writes_report) base::write_text(call.output, dump(json));
   if (call.json) print(dump(json));
-  if (!call.json && !writes_report)
-    print(solve_text(json) + "\n" + error_text(light, loaded.scene.quality.error) +
-          price_text(light, loaded.scene.quality.error, times.total()) + "\n");
+  if (!call.json && !writes_report) {
+    std::string text = solve_text(json) + "\n" + error_text(light, error);
+    if (price > 0.0) {
+      text += fmt::format("\n  {} needs about {} more, or more", scenes::percent(*error),
+                          duration(price));
+    }
+    print(text + "\n");
+  }
   if (light.limit == studies::Limit::Stopped) {
     const std::string& file = call.output.empty() ? call.mesh : call.output;
     throw base::Error(base::Blame::Work, "solve", "interrupted", {},

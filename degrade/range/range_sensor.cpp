@@ -120,7 +120,7 @@ RangeSensor read_sensor(const SettingTable& table) {
   RangeSensor sensor;
   const auto visit = [](RangeSensor& s, auto&& field) { visit_range_fields(s, field); };
   for (const scenes::Setting& setting : table.settings) {
-    read_setting(setting, sensor, visit, {});
+    read_setting(setting, "[[range_sensor]]", sensor, visit, {"name"});
   }
   if (sensor.max_range_m > 0.0 && sensor.min_range_m >= sensor.max_range_m) {
     throw Error(Blame::Input, place_of(table, "min_range_m"),
@@ -155,13 +155,14 @@ RangeView sense_range(const base::Image& layers, const Vec3& position, const Ran
 }
 
 RangeSensor resolve_range_sensor(const scenes::Scene& scene, const std::string& name,
-                                 const std::string& of) {
+                                 const std::string& of,
+                                 const std::optional<base::Location>& named_at) {
   std::vector<std::string> names;
   for (const SettingTable& table : scene.range_sensors) {
     if (table.name == name) return read_sensor(table);
     names.push_back(table.name);
   }
-  throw Error(Blame::Input, scene.path.string(),
+  throw Error(Blame::Input, named_at.value_or(base::Location{scene.path.string()}),
               (of.empty() ? "" : "camera " + in_quotes(of) + ": ") + "there is no range sensor " +
                   in_quotes(name),
               names.empty() ? "the scene has no [[range_sensor]]" : "known are " + listed(names),
@@ -172,7 +173,8 @@ void check_range_sensors(const scenes::Scene& scene) {
   for (const SettingTable& table : scene.range_sensors) static_cast<void>(read_sensor(table));
   for (const scenes::Camera& camera : scene.cameras) {
     if (camera.range_sensor.empty()) continue;
-    static_cast<void>(resolve_range_sensor(scene, camera.range_sensor, camera.name));
+    static_cast<void>(
+        resolve_range_sensor(scene, camera.range_sensor, camera.name, camera.range_sensor_at));
   }
 }
 

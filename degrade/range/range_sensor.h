@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "base/image.h"
@@ -78,9 +79,10 @@ struct RangeView {
 
 // The [[range_sensor]] of that name. Throws base::Error (Input) for an unknown name or key (with
 // the nearest), a value of the wrong kind or out of range, and limits that contradict each other.
-// of: the camera that names it, for the message.
+// of, named_at: the camera that names it, and where, for the message.
 [[nodiscard]] RangeSensor resolve_range_sensor(const scenes::Scene& scene, const std::string& name,
-                                               const std::string& of = {});
+                                               const std::string& of = {},
+                                               const std::optional<base::Location>& named_at = {});
 
 // Everything that resolve_range_sensor would refuse, for all tables and all cameras of the scene.
 void check_range_sensors(const scenes::Scene& scene);

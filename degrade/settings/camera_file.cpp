@@ -91,7 +91,7 @@ CctvCamera read_camera(const SettingTable& table) {
   const auto visit = [](CctvCamera& c, auto&& field) { visit_camera_fields(c, field); };
   for (const Setting& setting : table.settings) {
     if (setting.key == "preset") continue;
-    read_setting(setting, camera, visit, {"preset", "name"});
+    read_setting(setting, "[[cctv]]", camera, visit, {"preset", "name"});
   }
   // Only now, because a later key may say which iris or noise it is.
   check_one_form_of_noise(table);
@@ -122,7 +122,7 @@ Monitor read_monitor(const SettingTable& table) {
   Monitor monitor = start != nullptr ? start->monitor : Monitor{};
   const auto visit = [](Monitor& m, auto&& field) { visit_monitor_fields(m, field); };
   for (const Setting& setting : table.settings) {
-    if (setting.key != "preset") read_setting(setting, monitor, visit, {"preset"});
+    if (setting.key != "preset") read_setting(setting, "[monitor]", monitor, visit, {"preset"});
   }
   for (const Setting& setting : table.settings) {
     if (is_used(monitor, setting.key)) continue;
@@ -228,7 +228,8 @@ void check_settings(const scenes::Scene& scene) {
   if (scene.monitor) static_cast<void>(read_monitor(*scene.monitor));
   for (const scenes::Camera& camera : scene.cameras) {
     if (camera.cctv.empty()) continue;
-    static_cast<void>(resolve_camera(scene, camera.cctv, "camera " + in_quotes(camera.name)));
+    static_cast<void>(
+        resolve_camera(scene, camera.cctv, "camera " + in_quotes(camera.name), camera.cctv_at));
   }
 }
 

@@ -71,10 +71,10 @@ void read_value(const scenes::Setting& setting, E& field, Limits) {
                     "it must be " + listed(words), did_you_mean(word, words));
 }
 
-// Puts one setting into the field of its name; `visit` walks the fields of `target`.
+// Puts one setting of a `table` into the field of its name; `visit` walks the fields of `target`.
 template <class Target, class Visit>
-void read_setting(const scenes::Setting& setting, Target& target, Visit visit,
-                  std::vector<std::string> other_keys) {
+void read_setting(const scenes::Setting& setting, std::string_view table, Target& target,
+                  Visit visit, std::vector<std::string> other_keys) {
   bool known = false;
   visit(target, [&](const char* key, auto& field, Limits limits, const char*, const char*) {
     other_keys.emplace_back(key);
@@ -83,8 +83,9 @@ void read_setting(const scenes::Setting& setting, Target& target, Visit visit,
     read_value(setting, field, limits);
   });
   if (known) return;
-  throw base::Error(base::Blame::Input, setting.where, "unknown key " + in_quotes(setting.key), {},
-                    did_you_mean(setting.key, other_keys));
+  throw base::Error(base::Blame::Input, setting.where,
+                    "unknown key " + in_quotes(setting.key) + " in " + std::string(table),
+                    "allowed keys: " + listed(other_keys), did_you_mean(setting.key, other_keys));
 }
 
 }  // namespace earthshine::degrade

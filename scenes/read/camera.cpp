@@ -140,6 +140,8 @@ Camera read_camera(const TomlNode& node, double unit_m) {
   read_filter(camera, table);
   camera.cctv = table.text("cctv").value_or("");
   camera.range_sensor = table.text("range_sensor").value_or("");
+  if (table.has("cctv")) camera.cctv_at = table.where("cctv");
+  if (table.has("range_sensor")) camera.range_sensor_at = table.where("range_sensor");
   return camera;
 }
 

@@ -41,6 +41,8 @@ std::string limit_name(Limit limit) {
       return "stopped";
     case Limit::Ledger:
       return "ledger";
+    case Limit::Given:
+      return "given";
   }
   return "";
 }

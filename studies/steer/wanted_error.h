@@ -23,7 +23,8 @@ struct Wanted {
 };
 
 // What stopped it before the wanted error.
-enum class Limit { None, Time, Memory, Settings, Steps, Stopped, Ledger };
+// Given: a solution that was read is taken as it is.
+enum class Limit { None, Time, Memory, Settings, Steps, Stopped, Ledger, Given };
 [[nodiscard]] std::string limit_name(Limit limit);
 
 // One try: what was chosen and what came of it.

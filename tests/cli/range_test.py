@@ -68,6 +68,20 @@ class Range(program.Case):
         report = self.json("render", "scene.toml", "--range", "a.exr", "-o", "b.exr", "--indirect", "none")
         self.assertEqual(report["range"]["returned"], counts["returned"])
 
+    def test_alone_it_takes_no_option_of_a_picture(self):
+        self.write("scene.toml", SCENE)
+        for option in (["--report", "r.json"], ["--timings"], ["--per-light"], ["--aov", "depth"], ["--error", "0.1"],
+                       ["--no-error"], ["--indirect", "none"], ["--time-limit", "1"], ["--all-effects"],
+                       ["--solution", "s.h5"]):
+            self.says(self.refused("render", "scene.toml", "--range", "a.exr", *option), option[0], "--range alone", "-o FILE.exr")
+            self.assertFalse((self.folder / "a.exr").exists())
+
+    def test_an_unknown_sensor_is_named_with_its_place(self):
+        scene = SCENE.replace('range_sensor = "lidar"', 'range_sensor = "radar"', 1)
+        self.write("scene.toml", scene)
+        line = scene.splitlines().index('range_sensor = "radar"') + 1
+        self.says(self.refused("inspect", "scene.toml"), f"scene.toml:{line}:", 'no range sensor "radar"', '"lidar"')
+
     def test_several_cameras_have_files_and_noise_of_their_own(self):
         scene = SCENE.replace('name = "above"\n', 'name = "above"\nrange_sensor = "lidar"\n', 1)
         self.write("scene.toml", scene)

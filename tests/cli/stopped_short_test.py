@@ -34,8 +34,16 @@ class StoppedShort(program.Case):
 
     def test_what_there_is_was_written(self):
         out, _ = self.short("solve", "ball.toml", "--error", "0.002", *self.little, "-o", "a.h5", "--json")
-        self.assertEqual(json.loads(out)["error"]["limit"], "memory")
+        error = json.loads(out)["error"]
+        self.assertEqual(error["limit"], "memory")
+        self.assertGreater(error["seconds_to_go"], 0)
         self.assertTrue((self.folder / "a.h5").exists())
+        # Read again it is as far off, and no time makes it better.
+        out, line = self.short("solve", "ball.toml", "--error", "0.002", "--solution", "a.h5", "--json")
+        self.says(line, "taken as it is")
+        error = json.loads(out)["error"]
+        self.assertEqual((error["limit"], error["seconds_to_go"]), ("given", None))
+        self.assertEqual(error["steps"][0]["patches"], json.loads(out)["patches"])
         self.short("render", "ball.toml", "--size", "24x24", "--error", "0.0001", "--time-limit", "0.3", "-o", "a.exr")
         self.assertTrue((self.folder / "a.exr").exists())
 

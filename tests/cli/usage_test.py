@@ -43,7 +43,14 @@ class WrongCalls(program.Case):
         self.write("box.toml", program.CLOSED_BOX)
 
     def test_no_command(self):
-        self.says(self.refused(), "--help")
+        self.says(self.refused(), "no command is named", "--help", *COMMANDS)
+        self.says(self.refused("study"), "no study is named", "visibility, compare, accuracy, orbit, run")
+
+    def test_options_that_do_not_go_together_or_alone_or_twice(self):
+        call = ("render", "box.toml", "-o", "a.exr")
+        self.says(self.refused(*call, "--crop", "0,0,2x2", "--only-pixel", "1,1"), "excludes", "Leave one of the two out")
+        self.says(self.refused(*call, "--wait", "3"), "--wait requires --part", "Add it")
+        self.says(self.refused(*call, "--error", "0.1", "--error", "0.2"), "--error is given more than once", "Write it once")
 
     def test_unknown_command_names_the_nearest(self):
         self.says(self.refused("rendr", "box.toml"), 'unknown command "rendr"', 'did you mean "render"?')

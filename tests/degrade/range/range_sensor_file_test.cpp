@@ -59,8 +59,9 @@ TEST(RangeSensorFile, ValuesArriveInTheirField) {
 
 TEST(RangeSensorFile, WhatIsWrongIsNamedWithItsPlaceAndWhatIsAllowed) {
   std::string message = refusal(scene_with({{"noise", 0.1}}));
-  EXPECT_TRUE(holds(message, "bay.toml:11:1") && holds(message, "unknown key \"noise\"") &&
-              holds(message, "\"noise_m\""))
+  EXPECT_TRUE(holds(message, "bay.toml:11:1") &&
+              holds(message, "unknown key \"noise\" in [[range_sensor]]; ") &&
+              holds(message, "allowed keys: \"name\"") && holds(message, "mean \"noise_m\""))
       << message;
   message = refusal(scene_with({{"dropout", 1.5}}));
   EXPECT_TRUE(holds(message, "\"dropout\" is 1.5") && holds(message, "between 0 and 1")) << message;
