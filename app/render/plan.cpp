@@ -171,7 +171,12 @@ Json report_of(const RenderCall& call, const Common& common, int ranks) {
                        {"refine", solver.refine.on},
                        {"form_factor_rays", rays_per_patch},
                        {"gather_rays", knobs.gather_rays},
-                       {"solver_tolerance", solver.tolerance}};
+                       {"solver_tolerance", solver.tolerance},
+                       {"error", to_json(loaded.scene.quality.error)},
+                       {"max_patches", knobs.max_patches > 0 ? Json(knobs.max_patches) : Json()},
+                       {"gather", knobs.share_gather ? "shared" : "per-sample"},
+                       {"smooth", knobs.smooth_share},
+                       {"picture_noise", knobs.picture_noise}};
   report["patches"] = patches;
   report["patches_at_most"] = refines;
   report["rays"] = solves ? patches * rays_per_patch : 0;
