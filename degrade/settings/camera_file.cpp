@@ -6,6 +6,9 @@
 namespace earthshine::degrade {
 namespace {
 
+// Spreads each point over a quarter of a line.
+constexpr double least_bandwidth_mhz = 0.01;
+
 using base::Blame;
 using base::Error;
 using scenes::Setting;
@@ -100,6 +103,11 @@ CctvCamera read_camera(const SettingTable& table) {
     throw Error(Blame::Input, place_of(table, "f_number_min"),
                 "f_number_min = " + number(camera.f_number_min) +
                     " is above f_number_max = " + number(camera.f_number_max));
+  }
+  if (camera.bandwidth_mhz > 0.0 && camera.bandwidth_mhz < least_bandwidth_mhz) {
+    throw Error(Blame::Input, place_of(table, "bandwidth_mhz"),
+                "bandwidth_mhz = " + number(camera.bandwidth_mhz) + " leaves one grey of a line",
+                "it must be 0 (any), or from " + number(least_bandwidth_mhz) + " on");
   }
   return camera;
 }

@@ -144,7 +144,7 @@ void visit_camera_fields(Camera& c, Visitor&& field) {
   field("dsnu_percent", c.dsnu_percent, Limits{0.0, 50.0}, "%",
         "noise = photon: spread of black over white, the same pattern in every frame");
   field("bandwidth_mhz", c.bandwidth_mhz, Limits{0.0, 100.0}, "MHz",
-        "-3 dB along a line of 52.66 us; 0: any");
+        "-3 dB along a line of 52.66 us; 0: any, else 0.01 or more");
   field("aperture_correction", c.aperture_correction, Limits{0.0, 4.0}, "1",
         "k of the transfer 1 + k (1 - cos 2 pi f) along a line");
   field("black_clamp", c.black_clamp, no_limits, "", "signals below black become black");

@@ -89,6 +89,16 @@ TEST(CameraFile, ValueOutOfRangeNamesTheRange) {
   EXPECT_TRUE(holds(refusal(scene_with({{"bits", 7.5}})), "whole number"));
 }
 
+// A Gaussian of 0.01 MHz spreads over a quarter of a line; one of 1e-6 would have millions of taps.
+TEST(CameraFile, BandwidthLeavesSomethingOfALine) {
+  EXPECT_EQ(refusal(scene_with({{"bandwidth_mhz", 0.01}})), "accepted");
+  for (const double value : {1e-6, 1e-300}) {
+    const std::string message = refusal(scene_with({{"colour", true}, {"bandwidth_mhz", value}}));
+    EXPECT_TRUE(holds(message, "bay.toml:12:1: bandwidth_mhz = 1e-")) << message;
+    EXPECT_TRUE(holds(message, "0 (any), or from 0.01 on")) << message;
+  }
+}
+
 TEST(CameraFile, WrongKindAndWrongWordAreRefused) {
   EXPECT_TRUE(holds(refusal(scene_with({{"gamma", std::string("2.2")}})), "must be a number"));
   EXPECT_TRUE(holds(refusal(scene_with({{"colour", 1.0}})), "must be true or false"));
