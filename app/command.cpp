@@ -145,6 +145,15 @@ const scenes::Camera& choose_camera(const scenes::Scene& scene, const std::strin
       fmt::format("its cameras are {}", fmt::join(names, ", ")), scenes::did_you_mean(name, names));
 }
 
+std::vector<const scenes::Camera*> each_once(std::vector<const scenes::Camera*> cameras) {
+  for (auto camera = cameras.begin(); camera != cameras.end(); ++camera) {
+    if (std::find(cameras.begin(), camera, *camera) == camera) continue;
+    throw Error(Blame::Input, "--camera", "names " + (*camera)->name + " twice", {},
+                "Name it once");
+  }
+  return cameras;
+}
+
 double StageTimes::total() const {
   double sum = 0.0;
   for (const Stage& stage : stages_) sum += stage.second;

@@ -112,6 +112,9 @@ using AskEffects = std::function<WantedEffects(const scenes::Scene&)>;
 [[nodiscard]] const scenes::Camera& choose_camera(const scenes::Scene& scene,
                                                   const std::string& name,
                                                   const base::Location& named_at);
+// Throws base::Error (Input) where one is named twice: its pictures would have the same name.
+[[nodiscard]] std::vector<const scenes::Camera*> each_once(
+    std::vector<const scenes::Camera*> cameras);
 
 // A line on stderr where the form factors could not be balanced, with how near they came and which
 // object is furthest off; and one where that took more than a thousandth of the light.

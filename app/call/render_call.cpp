@@ -170,11 +170,6 @@ std::vector<const scenes::Camera*> wanted_cameras(const std::vector<std::string>
     }
   }
   if (cameras.empty()) cameras.push_back(&first_camera(scene));
-  for (auto camera = cameras.begin(); camera != cameras.end(); ++camera) {
-    if (std::find(cameras.begin(), camera, *camera) == camera) continue;
-    throw Error(Blame::Input, "--camera", "names " + (*camera)->name + " twice", {},
-                "Name it once");
-  }
   return cameras;
 }
 

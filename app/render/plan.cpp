@@ -27,7 +27,7 @@ constexpr double network_bytes_per_s = 12.5e9;  // assumed: 100 Gbit/s (docs/sca
 
 std::vector<const scenes::Camera*> planned_cameras(const RenderCall& call,
                                                    const scenes::Scene& scene) {
-  if (!call.cameras.empty()) return wanted_cameras(call.cameras, scene);
+  if (!call.cameras.empty()) return each_once(wanted_cameras(call.cameras, scene));
   std::vector<const scenes::Camera*> all;
   for (const scenes::Camera& camera : scene.cameras) all.push_back(&camera);
   return all;

@@ -132,7 +132,7 @@ struct Wanted {
 
 std::vector<Wanted> wanted_pictures(const RenderCall& call, const scenes::Scene& scene,
                                     bool quiet) {
-  const std::vector<const scenes::Camera*> cameras = wanted_cameras(call.cameras, scene);
+  const auto cameras = each_once(wanted_cameras(call.cameras, scene));
   if (call.cameras.empty() && scene.cameras.size() > 1 && !quiet) {
     note("note: no --camera, taking the first, \"" + scene.cameras.front().name + "\"");
   }
