@@ -43,7 +43,7 @@ OWNERS = {
     "tinygltf": (r"tiny_?gltf", ["scenes/mesh/gltf/*"]),
     "HDF5": (r"(hdf5(_hl)?|H5\w*)\.h", ["base/files/hdf5_handle.h"]),
     "CLI11": (r"CLI/", ["app/*"]),
-    "nlohmann-json": (r"nlohmann/", ["app/*"]),
+    "nlohmann-json": (r"nlohmann/", ["app/*", "scenes/mesh/gltf/json.cpp"]),
 }
 
 LINE_LIMIT = 300

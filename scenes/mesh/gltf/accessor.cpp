@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <glm/gtc/matrix_access.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
@@ -29,26 +30,16 @@ struct Elements {
   [[nodiscard]] const unsigned char* operator[](std::size_t i) const { return first + stride * i; }
 };
 
-std::size_t unsigned_of(const std::filesystem::path& path, std::int64_t value,
-                        std::string_view what) {
-  // tinygltf keeps 32 bits of a number: a large one turns up as a negative one.
-  if (value < 0) {
-    gltf_fail(path, fmt::format("{} is negative, or too large", what),
-              "it is from 0 to 2147483647");
-  }
-  return static_cast<std::size_t>(value);
-}
-
 Elements view_elements(const GltfModel& model, int view_number, std::size_t offset,
                        std::size_t count, std::size_t size, bool may_have_stride,
                        const std::filesystem::path& path) {
-  const std::size_t v = unsigned_of(path, view_number, "a buffer view number");
+  const std::size_t v = static_cast<std::size_t>(view_number);
   if (v >= model.file.bufferViews.size()) {
     gltf_fail(path, fmt::format("buffer view {} does not exist", v),
               fmt::format("the file has {}", model.file.bufferViews.size()));
   }
   const tinygltf::BufferView& view = model.file.bufferViews[v];
-  const std::size_t b = unsigned_of(path, view.buffer, "a buffer number");
+  const std::size_t b = static_cast<std::size_t>(view.buffer);
   if (b >= model.file.buffers.size()) {
     gltf_fail(path, fmt::format("buffer {} does not exist", b),
               fmt::format("the file has {}", model.file.buffers.size()));
@@ -145,11 +136,10 @@ void each_sparse(const GltfModel& model, const tinygltf::Accessor& accessor, std
                  const std::filesystem::path& path, Write write) {
   const auto& sparse = accessor.sparse;
   if (!sparse.isSparse) return;
-  const std::size_t count = unsigned_of(path, sparse.count, "a sparse count");
+  const std::size_t count = static_cast<std::size_t>(sparse.count);
   const std::size_t size = index_bytes(sparse.indices.componentType, path);
   const auto elements = [&](const auto& from, std::size_t bytes) {
-    const auto offset = static_cast<std::int64_t>(from.byteOffset);
-    return view_elements(model, from.bufferView, unsigned_of(path, offset, "a byte offset"), count,
+    return view_elements(model, from.bufferView, static_cast<std::size_t>(from.byteOffset), count,
                          bytes, false, path);
   };
   const Elements indices = elements(sparse.indices, size);
@@ -235,6 +225,13 @@ glm::dmat4 node_matrix(const tinygltf::Node& node, const std::filesystem::path& 
   glm::dmat4 matrix(1.0);
   if (!node.matrix.empty()) {
     for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
+    const glm::dvec4 last = glm::row(matrix, 3);
+    if (glm::distance(last, glm::dvec4(0.0, 0.0, 0.0, 1.0)) > 1e-5) {
+      gltf_fail(path,
+                fmt::format("the matrix of node {} is of a projection: its last row is {} {} {} {}",
+                            in_quotes(node.name), last.x, last.y, last.z, last.w),
+                "the last row is 0 0 0 1");
+    }
     return matrix;
   }
   if (!node.translation.empty()) {

@@ -30,6 +30,11 @@ class GltfReader {
     mesh_.unused = model_.unused;
     mesh_.warnings = model_.warnings;
     for (const int root : roots()) visit(root, glm::dmat4(1.0), {}, 1);
+    for (std::size_t i = 0; i < visited_.size(); ++i) {
+      const tinygltf::Node& node = model_.file.nodes[i];
+      const bool holds = node.mesh >= 0 || node.camera >= 0 || lamp_on(node) >= 0;
+      if (visited_[i] == 0 && holds) ++mesh_.unused["nodes outside the scene that is read"];
+    }
     if (!mesh_.uv.empty()) mesh_.uv_indices.resize(mesh_.indices.size(), no_index);
     if (reads_normals_) mesh_.unused.erase("NORMAL");
     return std::move(mesh_);
@@ -157,13 +162,15 @@ class GltfReader {
   }
 
   void add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& matrix) {
-    // Points, lines, or nothing to place.
     const int mode = primitive.mode == -1 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
     const bool has_faces = mode == TINYGLTF_MODE_TRIANGLES ||
                            mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
                            mode == TINYGLTF_MODE_TRIANGLE_FAN;
     const auto position = primitive.attributes.find("POSITION");
-    if (!has_faces || position == primitive.attributes.end() || position->second < 0) return;
+    if (!has_faces || position == primitive.attributes.end()) {
+      ++mesh_.unused[has_faces ? "primitives without positions" : "points or lines"];
+      return;
+    }
     std::uint32_t material = no_index;
     if (primitive.material >= 0) {
       material = static_cast<std::uint32_t>(primitive.material);
@@ -245,6 +252,7 @@ class GltfReader {
     begin(first.uv, mesh_.uv_indices);
     begin(first.normal, mesh_.normal_indices);
     const std::size_t step = mode == TINYGLTF_MODE_TRIANGLES ? 3 : 1;
+    if (indices.size() % step != 0) ++mesh_.unused["primitives with corners of no triangle"];
     for (std::size_t i = 0; i + 3 <= indices.size(); i += step) {
       std::array<std::uint32_t, 3> corners{indices[i], indices[i + 1], indices[i + 2]};
       if (mode == TINYGLTF_MODE_TRIANGLE_FAN)

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "base/input/input_file.h"
 #include "scenes/mesh/gltf/file.h"
+#include "scenes/mesh/gltf/json.h"
 #include "scenes/mesh/gltf/materials.h"
 #include "scenes/mesh/gltf/punctual.h"
 #include "scenes/text/confined_path.h"
@@ -18,39 +18,6 @@ namespace {
 
 using base::Blame;
 using base::Error;
-
-// tinygltf's JSON reader and the model's values recurse; a deep text ends the stack.
-void check_json_depth(std::string_view json, const std::filesystem::path& path) {
-  int depth = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const char c = json[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') in_string = false;
-      continue;
-    }
-    if (c == '"') in_string = true;
-    if (c == '{' || c == '[') ++depth;
-    if (c == '}' || c == ']') --depth;
-    if (depth > max_json_depth) {
-      gltf_fail(path, "the JSON is nested too deeply",
-                fmt::format("allowed are {} levels", max_json_depth));
-    }
-  }
-}
-
-// The JSON chunk of a GLB, or the whole of a glTF.
-std::string_view json_of(std::string_view bytes, bool binary, const std::filesystem::path& path) {
-  if (!binary) return bytes;
-  std::uint32_t length = 0;
-  if (bytes.size() >= 20) std::memcpy(&length, bytes.data() + 12, sizeof length);
-  if (bytes.size() < 20 || length > bytes.size() - 20) {
-    gltf_fail(path, fmt::format("a GLB file of {} bytes is cut off", bytes.size()),
-              "it holds a header of 20 bytes and what this announces");
-  }
-  return bytes.substr(20, length);
-}
 
 // What tinygltf's file access is replaced with: paths stay in the folders, sizes are bounded.
 struct FileAccess {
@@ -183,8 +150,8 @@ bool has_texture(const tinygltf::Model& model, int material) {
          found.extensions.count("KHR_materials_pbrSpecularGlossiness") > 0;
 }
 
-// Vertex attributes but for positions and coordinates of textures, lamps, cameras, skins,
-// animations, extensions that nothing here knows.
+// Vertex attributes but for positions and coordinates of textures, morph targets, lamps, cameras,
+// skins, animations, extensions that nothing here knows.
 std::map<std::string, std::size_t> unused_of(const tinygltf::Model& model) {
   std::map<std::string, std::size_t> unused;
   const auto count = [&](const std::string& what, std::size_t number) {
@@ -196,6 +163,7 @@ std::map<std::string, std::size_t> unused_of(const tinygltf::Model& model) {
       for (const auto& [name, accessor] : primitive.attributes) {
         if (name != "POSITION" && !(textured && name == "TEXCOORD_0")) count(name, 1);
       }
+      count("morph targets", primitive.targets.size());
     }
   }
   for (const tinygltf::Light& light : model.lights) {
@@ -225,8 +193,9 @@ void check_required_extensions(const tinygltf::Model& model, const std::filesyst
   }
 }
 
-GltfModel convert(tinygltf::Model&& source, FileAccess& files) {
+GltfModel convert(tinygltf::Model&& source, FileAccess& files, std::vector<std::string> warnings) {
   GltfModel model;
+  model.warnings = std::move(warnings);
   model.file = std::move(source);
   model.unused = unused_of(model.file);
   GltfTextures textures(
@@ -256,9 +225,10 @@ void gltf_fail(const std::filesystem::path& path, std::string_view found,
 
 GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& path,
                           std::span<const std::filesystem::path> folders) {
+  std::vector<std::string> warnings;
+  const std::optional<std::string> rewritten = check_gltf_text(bytes, path, warnings);
+  if (rewritten) bytes = *rewritten;
   const bool binary = bytes.starts_with("glTF");
-  const std::string_view json = json_of(bytes, binary, path);
-  check_json_depth(json, path);
   FileAccess files{path, folders, {}, {}};
 
   tinygltf::TinyGLTF loader;
@@ -282,7 +252,7 @@ GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& p
   }
   check_required_extensions(model, path);
   if (!loaded) refuse_unsound(path, problem);
-  GltfModel converted = convert(std::move(model), files);
+  GltfModel converted = convert(std::move(model), files, std::move(warnings));
   converted.files = std::move(files.found);
   return converted;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A glTF file as tinygltf reads it, not checked yet: numbers may point anywhere. Its materials,
-// lamps and cameras as the scene has them.
+// A glTF file as tinygltf reads it, its values checked one by one (json.h) but not against each
+// other: numbers may point anywhere. Its materials, lamps and cameras as the scene has them.
 #pragma once
 
 #include <tiny_gltf.h>
@@ -49,7 +49,7 @@ struct GltfModel {
                                         std::span<const std::filesystem::path> folders);
 
 // A node's own transform: its matrix, or translation, rotation and scale in that order. Throws
-// base::Error (Input) for numbers that are too few, too many or not finite.
+// base::Error (Input) for numbers that are too few, too many or not finite, and for a projection.
 [[nodiscard]] glm::dmat4 node_matrix(const tinygltf::Node& node, const std::filesystem::path& path);
 
 // The accessor's values, checked against buffer view and buffer in wide arithmetic; sparse ones

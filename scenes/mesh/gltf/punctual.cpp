@@ -18,7 +18,6 @@ GltfLamp lamp_of(const tinygltf::Light& source, GltfModel& model) {
   lamp.axis = {0.0, 0.0, -1.0};
   const double intensity_cd = in_range(source.intensity, strongest_lamp);
   lamp.intensity_cd = colour_of(source.color, 1.0) * intensity_cd;
-  if (intensity_cd != source.intensity) ++model.unused["intensities out of range, brought there"];
   if (source.type == "spot") {
     lamp.kind = LampKind::Spot;
     const auto full = [](double half_angle) {
@@ -39,10 +38,8 @@ GltfCamera camera_of(const tinygltf::Camera& source, GltfModel& model) {
   camera.name = source.name;
   made.is_camera = source.type == "perspective" && source.perspective.yfov > 0.0 &&
                    source.perspective.yfov < base::pi;
-  if (!made.is_camera) {
-    ++model.unused["orthographic cameras"];
-    return made;
-  }
+  if (source.type == "orthographic") ++model.unused["orthographic cameras"];
+  if (!made.is_camera) return made;
   camera.fov_deg = source.perspective.yfov * degrees;
   const double aspect = source.perspective.aspectRatio;
   if (aspect > 0.0 && aspect < 32.0) {

@@ -9,54 +9,14 @@
 #include "scenes/reflect/energy.h"
 #include "scenes/reflect/specular.h"
 #include "scenes/texture/texture.h"
-#include "tests/scenes/scene_text.h"
+#include "tests/scenes/mesh/gltf/gltf_triangle.h"
 
 namespace earthshine::scenes {
 namespace {
 
 using test::holds;
 
-// A triangle with right angle at the origin and legs of 1, indices implied: three corners as floats
-// at 0, as normalised shorts (8 bytes apart) at 36, as plain bytes (4 apart) at 60.
-std::string triangle_buffer() {
-  std::string bytes;
-  const auto append = [&](auto value) {
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-  };
-  for (const float x : {0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 1.F, 0.F}) append(x);
-  for (const int x : {0, 0, 0, 0, 32767, 0, 0, 0, 0, 32767, 0, 0}) {
-    append(static_cast<std::int16_t>(x));
-  }
-  for (const int x : {0, 0, 0, 0, 100, 0, 0, 0, 0, 100, 0, 0}) append(static_cast<std::int8_t>(x));
-  return bytes;
-}
-
-class GltfMaterials : public ::testing::Test {
- protected:
-  GltfMaterials() { folder_.put("a.bin", triangle_buffer()); }
-
-  // `more`: further members of the file; `node`: further ones of the triangle's node.
-  Scene read(const std::string& material, const std::string& more = "",
-             const std::string& node = "", const std::string& keys = "",
-             const std::string& accessor = R"("bufferView": 0, "componentType": 5126)") const {
-    folder_.put("a.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
-      "nodes": [{"name": "thing", "mesh": 0)" +
-                              node + R"(}],
-      "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
-      "buffers": [{"byteLength": 72, "uri": "a.bin"}],
-      "bufferViews": [{"buffer": 0, "byteLength": 36},
-        {"buffer": 0, "byteOffset": 36, "byteLength": 24, "byteStride": 8},
-        {"buffer": 0, "byteOffset": 60, "byteLength": 12, "byteStride": 4}],
-      "accessors": [{)" + accessor +
-                              R"(, "count": 3, "type": "VEC3"}],
-      "materials": [)" + material +
-                              "]" + more + "}");
-    return folder_.read("format = 1\n[[object]]\nname = \"o\"\nmesh = \"a.gltf\"\n" + keys);
-  }
-  Material material(const std::string& text) const { return read(text).materials.at(0); }
-
-  test::SceneFolder folder_;
-};
+using GltfMaterials = test::GltfTriangle;
 
 TEST_F(GltfMaterials, MetalIsALobeWithThePeakAndTheAlbedoOfItsFacets) {
   const Material metal = material(
@@ -176,7 +136,7 @@ TEST_F(GltfMaterials, TexturesThatAreNotThereAreNamed) {
 
 TEST_F(GltfMaterials, NumbersThatAreNoneAreRefusedByTheirName) {
   const float nan = std::nanf("");
-  std::string bytes = triangle_buffer();
+  std::string bytes = test::triangle_buffer();
   std::memcpy(bytes.data() + 4, &nan, sizeof nan);
   folder_.put("a.bin", bytes);
   try {
@@ -220,18 +180,20 @@ TEST_F(GltfMaterials, LampsAndCamerasComeWhenAskedFor) {
 }
 
 TEST_F(GltfMaterials, LampsThatCannotBeAreNamed) {
-  const auto unused = [&](const std::string& light) {
+  const auto lit = [&](const std::string& light) {
     return read("{}",
                 R"(, "extensionsUsed": ["KHR_lights_punctual"],
         "extensions": {"KHR_lights_punctual": {"lights": [)" +
                     light + "]}}",
-                R"(, "extensions": {"KHR_lights_punctual": {"light": 0}})", "lights = true\n")
-        .objects.at(0)
-        .unused;
+                R"(, "extensions": {"KHR_lights_punctual": {"light": 0}})", "lights = true\n");
   };
-  EXPECT_EQ(unused(R"({"type": "point", "intensity": 5})"), "");
-  EXPECT_TRUE(holds(unused(R"({"type": "laser", "intensity": 5})"), {"1 lights of an unknown"}));
-  EXPECT_TRUE(holds(unused(R"({"type": "point", "intensity": -5})"), {"1 intensities out of"}));
+  const Scene sound = lit(R"({"type": "point", "intensity": 5})");
+  EXPECT_EQ(sound.objects.at(0).unused, "");
+  const Scene laser = lit(R"({"type": "laser", "intensity": 5})");
+  EXPECT_TRUE(holds(laser.objects.at(0).unused, {"1 lights of an unknown"}));
+  const Scene dark = lit(R"({"type": "point", "intensity": -5})");
+  EXPECT_EQ(dark.warnings.size(), sound.warnings.size() + 1);
+  EXPECT_TRUE(holds(dark.warnings.at(0), {"lights[0].intensity is -5", "from 0 to 1e+15"}));
 }
 
 TEST_F(GltfMaterials, QuantisedPositionsAreTheNumbersTheyStandFor) {
