@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <unordered_map>
 
 #include "base/input/input_file.h"
 #include "scenes/mesh/mtl_maps.h"
@@ -97,7 +98,12 @@ class MtlReader {
       : lines_(text, path.string(), TextLines::Style::Wavefront),
         path_(path),
         mesh_(mesh),
-        maps_(path, folders, mesh.files, mesh.warnings) {}
+        maps_(path, folders, mesh.files, mesh.warnings) {
+    // Those of the libraries before.
+    for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
+      places_.emplace(mesh.materials[i].name, i);
+    }
+  }
 
   void read() {
     while (lines_.next()) {
@@ -141,8 +147,15 @@ class MtlReader {
                 "newmtl is followed by a name");
   }
 
+  // Of materials of one name the first counts, as everywhere where materials are looked for.
   void end() {
     if (!material_) return;
+    const auto [first, fresh] = places_.emplace(material_->name, mesh_.materials.size());
+    if (!fresh && repeated_++ == 0) {
+      first_repeated_ = fmt::format("{}: the material {} again, as at {}",
+                                    base::to_string(material_->where), in_quotes(material_->name),
+                                    base::to_string(mesh_.material_places[first->second]));
+    }
     mesh_.materials.push_back(material_of(*material_));
     mesh_.material_places.push_back(material_->where);
     material_.reset();
@@ -176,7 +189,9 @@ class MtlReader {
     MaterialMaps& maps = material_->maps;
     const bool is_mask = keyword == "map_d";
     TextureMap& map = is_mask ? maps.opacity : keyword == "map_Ke" ? maps.emit : maps.diffuse;
-    if (!maps_.read(lines_, is_mask, map)) ++passed_over_[fmt::format("{} with options", keyword)];
+    if (maps_.read(lines_, is_mask, map)) return;
+    const bool bare = lines_.words().size() == 1;
+    ++passed_over_[fmt::format("{} {}", keyword, bare ? "without a file" : "with options")];
   }
 
   // Models 0 to 9; 10 is of shadows alone.
@@ -190,6 +205,11 @@ class MtlReader {
   }
 
   void report() {
+    if (repeated_ > 0) {
+      const std::string more =
+          repeated_ > 1 ? fmt::format(" ({} more such)", repeated_ - 1) : std::string();
+      mesh_.warnings.push_back(first_repeated_ + more + "; the first is taken");
+    }
     if (passed_over_.empty()) return;
     std::string list;
     for (const auto& [keyword, count] : passed_over_) {
@@ -207,6 +227,9 @@ class MtlReader {
   Mesh& mesh_;
   MtlMaps maps_;
   std::optional<MtlMaterial> material_;
+  std::unordered_map<std::string, std::size_t> places_;  // of materials by name, in the mesh's list
+  std::string first_repeated_;
+  std::size_t repeated_ = 0;
   std::map<std::string, std::size_t> passed_over_;
 };
 

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/mesh/mtl_maps.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/input/input_file.h"
 #include "scenes/mesh.h"
 #include "scenes/text/confined_path.h"
+#include "scenes/text/message_text.h"
 
 namespace earthshine::scenes {
 namespace {
 
 struct Option {
   std::string_view name;
-  std::size_t least, most;  // numbers or words after it
+  std::size_t least, most;  // numbers after it, or one word
   bool changes_nothing;     // here
 };
 // Of the format's text. -bm is of bump maps, -imfchan names the channel that a mask is taken from.
@@ -40,17 +43,22 @@ bool MtlMaps::read(const TextLines& line, bool is_mask, TextureMap& map) {
     std::size_t used = 1;
     // Numbers as long as there are some: "-s 2 floor.png" has one.
     for (; used <= option->most && at + used < words.size(); ++used) {
-      const auto number = number_in(words[at + used].text);
-      if (!number && used > option->least) break;
-      numbers.push_back(number.value_or(0.0));
+      if (used > option->least && !number_in(words[at + used].text)) break;
+      if (option->most > 1) numbers.push_back(line.number(words[at + used]));
     }
     const auto component = [&](std::size_t k, double otherwise) {
       return k < numbers.size() ? numbers[k] : otherwise;
     };
     if (option->name == "-s") scale = {component(0, 1.0), component(1, 1.0)};
     if (option->name == "-o") shift = {component(0, 0.0), component(1, 0.0)};
-    if (option->name == "-clamp" && at + 1 < words.size() && words[at + 1].text == "on") {
-      reading.wrap_u = reading.wrap_v = Wrap::Clamp;
+    if (option->name == "-clamp" && at + 1 < words.size()) {
+      const Word& word = words[at + 1];
+      if (word.text == "on") reading.wrap_u = reading.wrap_v = Wrap::Clamp;
+      if (word.text != "on" && word.text != "off") {
+        throw base::Error(base::Blame::Input, line.where(word),
+                          fmt::format("\"-clamp\" is {}", in_quotes(word.text)),
+                          "allowed are on and off");
+      }
     }
     at += used;
   }

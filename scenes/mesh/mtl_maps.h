@@ -21,8 +21,9 @@ class MtlMaps {
       : library_(std::move(library)), folders_(folders), files_(files), shelf_(warnings) {}
 
   // The texture of a line: its options -s, -o and -clamp, and its file beside the library or in the
-  // folders. False for another option that changes what it shows; no texture, and a warning, for a
-  // file that cannot be read.
+  // folders. False for another option that changes what it shows, and without a file; no texture,
+  // and a warning, for a file that cannot be read. Throws base::Error (Input) for an option's value
+  // that is none.
   [[nodiscard]] bool read(const TextLines& line, bool is_mask, TextureMap& map);
 
  private:

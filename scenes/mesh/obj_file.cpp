@@ -61,8 +61,7 @@ class ObjReader {
       } else if (keyword == "vt" && !mesh_.libraries.empty()) {
         read_coordinates();
       } else if (keyword == "vn" && reads_normals_) {
-        mesh_.normals.emplace_back(lines_.number(std::size_t{1}), lines_.number(std::size_t{2}),
-                                   lines_.number(std::size_t{3}));
+        mesh_.normals.emplace_back(lines_.vector());
       } else if (std::find(std::begin(passed_over), std::end(passed_over), keyword) ==
                  std::end(passed_over)) {
         warn_once(keyword);
@@ -85,8 +84,7 @@ class ObjReader {
 
   void read_vertex() {
     // After x y z there may be a weight, a colour, or both.
-    mesh_.vertices.emplace_back(lines_.number(std::size_t{1}), lines_.number(std::size_t{2}),
-                                lines_.number(std::size_t{3}));
+    mesh_.vertices.push_back(lines_.vector());
     if (mesh_.vertices.size() >= no_index) {
       throw Error(Blame::Input, lines_.where(), "too many vertices", "a mesh has fewer than 2^32");
     }

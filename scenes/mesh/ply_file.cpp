@@ -51,7 +51,8 @@ void read_header_line(const TextLines& lines, Header& header, bool& has_format) 
   const std::string_view keyword = words[0].text;
   if (keyword == "format") {
     const auto encoding = words.size() >= 2 ? ply_encoding(words[1].text) : std::nullopt;
-    if (!encoding)
+    const bool other_version = words.size() > 2 && words[2].text != "1.0";
+    if (!encoding || other_version)
       bad_header(lines, "format ascii, binary_little_endian or binary_big_endian, and 1.0");
     header.encoding = *encoding;
     has_format = true;
@@ -123,23 +124,54 @@ class PlyReader {
         : element.name == "face" ? read_face(element)
                                  : pass_over(element);
       }
+      count_unused(element);
+    }
+    if (values_.has_more()) {
+      const Element none, &last = header.elements.empty() ? none : header.elements.back();
+      throw Error(Blame::Input, values_.where(), "the file goes on behind its last number",
+                  fmt::format("the header ends with {} of {}", last.count, in_quotes(last.name)),
+                  "Mend the header's counts, or take away what follows");
     }
     return std::move(mesh_);
   }
 
  private:
+  [[nodiscard]] static bool is_position(const Property& property) {
+    return !property.count_type && property.name.size() == 1 && property.name[0] >= 'x' &&
+           property.name[0] <= 'z';
+  }
+
+  [[nodiscard]] bool is_normal(const Property& property) const {
+    return reads_normals_ && !property.count_type && property.name.size() == 2 &&
+           property.name[0] == 'n' && property.name[1] >= 'x' && property.name[1] <= 'z';
+  }
+
+  [[nodiscard]] static bool is_corners(const Property& property) {
+    return property.count_type &&
+           (property.name == "vertex_indices" || property.name == "vertex_index");
+  }
+
+  // Edges and strips, colours and whatever else.
+  void count_unused(const Element& element) {
+    if (element.count == 0) return;
+    const bool of_vertex = element.name == "vertex", of_face = element.name == "face";
+    if (!of_vertex && !of_face) mesh_.unused[element.name] += element.count;
+    for (const Property& property : element.properties) {
+      const bool unused = of_vertex ? !is_position(property) && !is_normal(property)
+                                    : of_face && !is_corners(property);
+      if (unused) mesh_.unused[property.name] += element.count;
+    }
+  }
+
   void read_vertex(const Element& element) {
     Vec3 position(std::nan(""));
     glm::vec3 normal(0.0F);
     for (const Property& property : element.properties) {
-      if (reads_normals_ && !property.count_type && property.name.size() == 2 &&
-          property.name[0] == 'n' && property.name[1] >= 'x' && property.name[1] <= 'z') {
+      if (is_normal(property)) {
         normal[property.name[1] - 'x'] = static_cast<float>(values_.next(property.type));
         continue;
       }
-      const bool wanted = !property.count_type && property.name.size() == 1 &&
-                          property.name[0] >= 'x' && property.name[0] <= 'z';
-      if (!wanted) {
+      if (!is_position(property)) {
         pass_over(property);
         continue;
       }
@@ -161,9 +193,7 @@ class PlyReader {
 
   void read_face(const Element& element) {
     for (const Property& property : element.properties) {
-      const bool wanted = property.count_type &&
-                          (property.name == "vertex_indices" || property.name == "vertex_index");
-      if (!wanted) {
+      if (!is_corners(property)) {
         pass_over(property);
         continue;
       }

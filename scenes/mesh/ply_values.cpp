@@ -75,13 +75,20 @@ double PlyValues::next(PlyType type) {
   return value(raw);
 }
 
-double PlyValues::next_word() {
-  if (word_ >= lines_.words().size()) {
+bool PlyValues::has_more() {
+  if (encoding_ == PlyEncoding::Ascii) {
+    if (word_ < lines_.words().size()) return true;
     word_ = 0;
-    if (!lines_.next()) {
-      throw base::Error(base::Blame::Input, where(), "the file ends before its last number",
-                        "the header announces more", "The file is cut off");
-    }
+    return lines_.next();
+  }
+  constexpr std::string_view padding{"\0 \r\n\t", 5};
+  return bytes_.find_first_not_of(padding, position_) != std::string_view::npos;
+}
+
+double PlyValues::next_word() {
+  if (!has_more()) {
+    throw base::Error(base::Blame::Input, where(), "the file ends before its last number",
+                      "the header announces more", "The file is cut off");
   }
   return lines_.number(lines_.words()[word_++]);
 }

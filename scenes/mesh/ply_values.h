@@ -30,6 +30,8 @@ class PlyValues {
 
   // No more numbers than this can follow.
   [[nodiscard]] std::size_t bytes_left() const { return bytes_.size() - position_; }
+  // Whether a word follows, or in binary bytes besides zeros and blanks.
+  [[nodiscard]] bool has_more();
   // Ascii: the line of the last number; binary: 0.
   [[nodiscard]] std::uint32_t line() const;
   [[nodiscard]] base::Location where() const;

@@ -63,15 +63,25 @@ class AsciiReader {
       : lines_(text, mesh.path.string(), TextLines::Style::Plain), mesh_(mesh) {}
 
   void read() {
+    bool ended = true;
     while (lines_.next()) {
       const std::string_view keyword = lines_.words().front().text;
       if (keyword == "solid") {
         begin_solid();
+        ended = false;
       } else if (keyword == "facet") {
         read_facet();
-      } else if (keyword != "endsolid") {
+      } else if (keyword == "endsolid") {
+        ended = true;
+      } else {
         unexpected("solid, facet or endsolid");
       }
+    }
+    // Facets end where lines do: nothing else tells a whole file from one that is cut off.
+    if (!ended) {
+      throw Error(Blame::Input, lines_.where(), "the file ends within a solid",
+                  "\"endsolid\" is wanted",
+                  "The file is cut off; if it is whole, add the line endsolid at its end");
     }
   }
 
@@ -90,8 +100,7 @@ class AsciiReader {
     std::array<Vec3, 3> corners;
     for (Vec3& corner : corners) {
       expect("vertex");
-      corner = {lines_.number(std::size_t{1}), lines_.number(std::size_t{2}),
-                lines_.number(std::size_t{3})};
+      corner = lines_.vector();
     }
     expect("endloop");
     expect("endfacet");
@@ -101,7 +110,7 @@ class AsciiReader {
 
   void expect(std::string_view keyword) {
     if (!lines_.next()) {
-      throw Error(Blame::Input, base::Location{mesh_.path.string()}, "the file ends within a facet",
+      throw Error(Blame::Input, lines_.where(), "the file ends within a facet",
                   fmt::format("\"{}\" is wanted", keyword));
     }
     if (lines_.words().front().text != keyword) unexpected(keyword);

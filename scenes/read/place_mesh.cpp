@@ -119,10 +119,10 @@ class Placer {
                       base::to_string(place_of(first_degenerate_))));
     }
     if (without_uv_ > 0) {
-      scene_.warnings.push_back(
-          fmt::format("object {}: {} corners of faces with a texture have no texture coordinates; "
-                      "they take its upper left corner",
-                      in_quotes(object_.name), without_uv_));
+      scene_.warnings.push_back(fmt::format(
+          "object {}: {} corners of faces with a texture have no texture coordinates, "
+          "or such that are not there, the first at {}; they take its upper left corner",
+          in_quotes(object_.name), without_uv_, base::to_string(place_of(first_without_uv_))));
     }
     if (warped_count_ > 0) {
       scene_.warnings.push_back(
@@ -207,6 +207,9 @@ class Placer {
                   fmt::format("it has at most {} triangles", max_scene_triangles));
     }
     const auto number = static_cast<std::uint32_t>(scene_.objects.size());
+    if (without_uv_ == 0) {
+      first_without_uv_ = static_cast<std::size_t>(&polygon - mesh_.polygons.data());
+    }
     for (const auto& piece : pieces.triangles) {
       Triangle triangle{{0, 0, 0}, number, material, next_polygon_};
       for (std::size_t k = 0; k < 3; ++k) {
@@ -236,6 +239,7 @@ class Placer {
   std::vector<std::uint32_t> placed_at_;                          // scene vertex per mesh vertex
   std::unordered_map<std::uint64_t, std::uint32_t> textured_at_;  // the same by (vertex, uv)
   std::size_t without_uv_ = 0;                                    // textured corners
+  std::size_t first_without_uv_ = 0;                              // the polygon of the first
   double smallest_area_ = 0.0;
   std::uint32_t next_polygon_ = 0;
   std::size_t first_degenerate_ = 0;

@@ -100,6 +100,12 @@ double TextLines::number(std::size_t word) const {
   return number(words_[word]);
 }
 
+Vec3 TextLines::vector() const {
+  // A line that is too short says how many it wants, whichever is asked for first.
+  if (words_.size() < 4) return Vec3(number(std::size_t{3}));
+  return {number(words_[1]), number(words_[2]), number(words_[3])};
+}
+
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r");
   if (first == std::string_view::npos) return {};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/units.h"
 
 namespace earthshine::scenes {
 
@@ -47,6 +48,8 @@ class TextLines {
   // Finite and at most largest_coordinate in magnitude.
   [[nodiscard]] double number(const Word& word) const;
   [[nodiscard]] double number(std::size_t word) const;  // an error if the line has no such word
+  // The first three after the line's keyword.
+  [[nodiscard]] Vec3 vector() const;
 
  private:
   void read_line();

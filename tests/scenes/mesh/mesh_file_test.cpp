@@ -108,6 +108,7 @@ TEST(MeshFile, EveryFormatGivesTheSamePyramid) {
     EXPECT_NEAR(scene.objects.at(0).area_m2, pyramid_area, 1e-6) << name;
     EXPECT_EQ(scene.objects.at(0).triangle_count, 6U) << name;
     EXPECT_EQ(scene.objects.at(0).source, name);
+    EXPECT_EQ(scene.objects.at(0).unused, name.ends_with(".ply") ? "5 red" : "");
     double volume = 0.0;
     for (const Triangle& t : scene.triangles) {
       const auto& v = scene.vertices;
@@ -168,25 +169,6 @@ TEST(ObjFile, MaterialsComeFromTheSceneThenFromTheLibrary) {
   EXPECT_EQ(red.light_group, "red paint");
   // `material` of the object wins.
   for (const Triangle& t : folder.read(object("a.obj")).triangles) EXPECT_EQ(t.material, 0U);
-}
-
-TEST(ObjFile, OneNameInTwoLibrariesIsTwoMaterials) {
-  const test::SceneFolder folder;
-  for (const std::string name : {"a", "b", "c"}) {
-    folder.put(name + ".obj", "mtllib " + name + ".mtl\nv 0 0 0\nv 1 0 0\nv 0 1 " +
-                                  std::to_string(name[0]) + "\nusemtl x\nf 1 2 3\n");
-    folder.put(name + ".mtl",
-               name == "c" ? "newmtl x\nKd 0.1 0.1 0.1\n" : "newmtl x\nKd 0.2 0.2 0.2\n");
-  }
-  std::string text = "format = 1\n";
-  for (const std::string name : {"a", "b", "c"}) {
-    text += "[[object]]\nname = \"" + name + "\"\nmesh = \"" + name + ".obj\"\n";
-  }
-  const Scene scene = folder.read(text);
-  ASSERT_EQ(scene.materials.size(), 2U);
-  EXPECT_EQ(scene.triangles[0].material, scene.triangles[1].material);
-  EXPECT_EQ(scene.materials[scene.triangles[2].material].diffuse, Rgb(0.1));
-  EXPECT_NE(scene.materials[0].name, scene.materials[1].name);
 }
 
 TEST(ObjFile, ReadsWhatExportersWrite) {
@@ -262,6 +244,17 @@ TEST(MeshFile, BrokenMeshesAreRefusedWithTheirPlace) {
       {"b.ply",
        "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n1\n",
        {"b.ply", "4000000000"}},
+      {"b.ply",
+       ply_pyramid("ascii") + "\n3 0 1 2\n",
+       {"b.ply:23", "goes on behind its last number", "5 of \"face\""}},
+      {"b.ply", ply_pyramid("binary_big_endian") + "\x03", {"b.ply", "goes on behind"}},
+      {"b.ply", "ply\nformat ascii 2.0\nend_header\n", {"b.ply:2", "and 1.0"}},
+      {"c.stl",
+       stl_pyramid(true).substr(0, stl_pyramid(true).find("endsolid")),
+       {"c.stl:43", "ends within a solid", "\"endsolid\" is wanted", "cut off"}},
+      {"c.stl",
+       "solid x\nfacet normal 0 0 1\nouter loop\nvertex 1\n",
+       {"c.stl:4", "\"vertex\" has 1 numbers", "at least 3"}},
       {"c.stl", short_stl, {"c.stl", "6 triangles", "84 + 50 n"}},
       {"c.stl", nan_stl, {"c.stl, triangle 1", "nan"}},
       {"c.stl", "solid x\nfacet normal 0 0 1\nouter loop\nvertex 1 2 nan\n", {"c.stl:4:12", "nan"}},

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/files/png_file.h"
+#include "scenes/mesh/mesh_file.h"
 #include "scenes/mesh/obj_file.h"
 #include "scenes/texture/texture.h"
 #include "tests/scenes/scene_text.h"
@@ -94,6 +95,54 @@ TEST(MtlMaterials, TexturesHaveTheirOptionsAndNamesWithBlanks) {
   EXPECT_EQ(mesh.unused, (std::map<std::string, std::size_t>{{"map_Ke with options", 1}}));
 }
 
+TEST(MtlMaterials, ValuesOfTextureOptionsAreRefusedWhereTheyAreNone) {
+  const auto refusal = [](const std::string& option) -> std::string {
+    Mesh mesh;
+    try {
+      parse_mtl("newmtl m\nmap_Kd " + option + " a.png\n", "a.mtl", {}, mesh);
+    } catch (const base::Error& error) {
+      return error.what();
+    }
+    return "was not refused";
+  };
+  EXPECT_TRUE(holds(refusal("-s nan"), {"a.mtl:2:11", "\"nan\""}));
+  EXPECT_TRUE(holds(refusal("-s abc"), {"a.mtl:2:11", "\"abc\" is not a number"}));
+  EXPECT_TRUE(holds(refusal("-o 1 1e300"), {"a.mtl:2:13", "\"1e300\""}));
+  EXPECT_TRUE(holds(refusal("-clamp ON"), {"a.mtl:2:15", "\"ON\"", "on and off"}));
+}
+
+TEST(MtlMaterials, OfMaterialsOfOneNameTheFirstCounts) {
+  Mesh mesh;
+  parse_mtl("newmtl m\nKd 0.5\nnewmtl m\nKd 0.1\nmap_Kd\nnewmtl m\n", "a.mtl", {}, mesh);
+  ASSERT_EQ(mesh.warnings.size(), 2U);
+  EXPECT_TRUE(holds(mesh.warnings[0], {"a.mtl:3: the material \"m\" again, as at a.mtl:1",
+                                       "(1 more such)", "the first is taken"}));
+  EXPECT_TRUE(holds(mesh.warnings[1], {"\"map_Kd without a file\" (1)"}));
+  parse_mtl("newmtl m\n", "b.mtl", {}, mesh);
+  EXPECT_TRUE(holds(mesh.warnings.back(), {"b.mtl:1: the material \"m\" again, as at a.mtl:1"}));
+  mesh.path = "a.obj";
+  EXPECT_EQ(find_mesh_material(mesh, "m", {}), 0U);
+}
+
+TEST(MtlMaterials, OneNameInTwoLibrariesIsTwoMaterials) {
+  const test::SceneFolder folder;
+  for (const std::string name : {"a", "b", "c"}) {
+    folder.put(name + ".obj", "mtllib " + name + ".mtl\nv 0 0 0\nv 1 0 0\nv 0 1 " +
+                                  std::to_string(name[0]) + "\nusemtl x\nf 1 2 3\n");
+    folder.put(name + ".mtl",
+               name == "c" ? "newmtl x\nKd 0.1 0.1 0.1\n" : "newmtl x\nKd 0.2 0.2 0.2\n");
+  }
+  std::string text = "format = 1\n";
+  for (const std::string name : {"a", "b", "c"}) {
+    text += "[[object]]\nname = \"" + name + "\"\nmesh = \"" + name + ".obj\"\n";
+  }
+  const Scene scene = folder.read(text);
+  ASSERT_EQ(scene.materials.size(), 2U);
+  EXPECT_EQ(scene.triangles[0].material, scene.triangles[1].material);
+  EXPECT_EQ(scene.materials[scene.triangles[2].material].diffuse, Rgb(0.1));
+  EXPECT_NE(scene.materials[0].name, scene.materials[1].name);
+}
+
 TEST(MtlMaterials, CornersWithoutCoordinatesAreNamed) {
   const test::SceneFolder folder;
   base::write_png(folder.path() / "a.png", 1, 1, 3, std::vector<std::uint8_t>(3, 255));
@@ -104,7 +153,7 @@ TEST(MtlMaterials, CornersWithoutCoordinatesAreNamed) {
   const Scene scene =
       folder.read("format = 1\n[[object]]\nname = \"o\"\nmesh = \"a.obj\"\norient = \"as-is\"\n");
   ASSERT_EQ(scene.warnings.size(), 1U);
-  EXPECT_TRUE(holds(scene.warnings[0], {"\"o\"", "4 corners"}));
+  EXPECT_TRUE(holds(scene.warnings[0], {"\"o\"", "4 corners", "the first at ", "a.obj:8;"}));
   const glm::vec2 uv = scene.vertex_uv.at(scene.triangles.at(0).vertex[0]);
   EXPECT_EQ(uv, glm::vec2(0.5F, 0.75F));
   EXPECT_EQ(scene.objects.at(0).unused, "");
