@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Meshes as others export them: with a fault the picture is that of the sound mesh, and the fault is named."""
+import json
 import sys
 import unittest
 
 import program
 
-sys.path.insert(0, str(program.TOP / "tests" / "validation"))
+sys.path[:0] = [str(program.TOP / "tests" / "validation"), str(program.TOP / "tests" / "support")]
 import error_truth  # noqa: E402
+import model_kit  # noqa: E402
 
 CORNERS = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
 CUBE = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
@@ -117,6 +119,43 @@ class MeshFaults(program.Case):
         for neutral in ("Tr", "Tf", "map_Ka"):
             self.assertNotIn(neutral, " ".join(report["warnings"]))
         self.assertEqual(report["objects"][0]["unused"], "1 Pr, 1 bump, 1 vn, 1 vt")
+
+    def read(self, ending, data):
+        """What inspect says of a mesh: its refusal, or its warnings and what is not used of it."""
+        self.write("thing." + ending, data)
+        self.write("scene.toml", SCENE.format(sheet="", more="", on_floor="").replace("thing.obj", "thing." + ending))
+        run = self.run_program("inspect", "scene.toml", "--json")
+        if run.returncode != 0:
+            self.assertEqual(run.returncode, 2, run.stderr)
+            return run.stderr
+        report = json.loads(run.stdout)
+        return " ".join(report["warnings"] + [report["objects"][0]["unused"]])
+
+    def test_a_file_that_is_cut_off_or_goes_on_is_not_read_as_whole(self):
+        facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+        self.says(self.read("stl", "solid a\n" + facet), "thing.stl:8", "endsolid", "cut off")
+        self.assertEqual(self.read("stl", "solid a\n" + facet + "endsolid a\n"), "")
+        head = ("ply\nformat ascii {}\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                "element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+        self.says(self.read("ply", head.format("1.0") + "3 0 2 1\n"), "thing.ply:14", "1 of \"face\"")
+        self.says(self.read("ply", head.format("2.0")), "thing.ply:2", "1.0")
+        self.assertEqual(self.read("ply", head.format("1.0")), "")
+
+    def test_values_that_gltf_does_not_have_are_refused_or_named(self):
+        def glb(**more):
+            model = model_kit.Model(cameras=[{"type": "perspective", "perspective": {"yfov": 4, "znear": 1}}])
+            node = more.pop("node", {})
+            model.mesh("thing", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], model.material(**more), **node)
+            return model.glb()
+        self.says(self.read("glb", glb(emissiveFactor=[5, 0, 0])), "materials[0].emissiveFactor[0] is 5", "yfov is 4")
+        self.assertNotIn("orthographic", self.read("glb", glb()))
+        for place, more in (("materials[0].pbrMetallicRoughness.baseColorFactor is a list of 3",
+                             {"pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0]}}),
+                            ("materials[0].alphaMode is \"Blend\"", {"alphaMode": "Blend"}),
+                            ("nodes[0].extensions.KHR_lights_punctual.light is \"0\"",
+                             {"node": {"extensions": {"KHR_lights_punctual": {"light": "0"}}}}),
+                            ("projection", {"node": {"matrix": [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}})):
+            self.says(self.read("glb", glb(**more)), "thing.glb", place)
 
 
 if __name__ == "__main__":

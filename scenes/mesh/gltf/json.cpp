@@ -134,6 +134,14 @@ class Values {
       case GltfKind::Table:
         if (!value.is_object()) refuse(rule, value, place);
         return;
+      case GltfKind::Texture:
+        if (!value.is_object()) refuse(rule, value, place);
+        for (const GltfRule& entry : gltf_rules::of_texture) {
+          const auto found = value.find(entry.path);
+          if (found != value.end())
+            check_value(entry, *found, fmt::format("{}.{}", place, entry.path));
+        }
+        return;
       case GltfKind::Tables:
         if (!value.is_array()) refuse(rule, value, place);
         for (const Json& entry : value) {
@@ -181,7 +189,12 @@ class Values {
     }
     const bool is_listed =
         rule.words.empty() || rule.kind == GltfKind::Entry || is_among(rule.words, value.dump());
-    if (is_listed && range_of(rule).holds(number)) return;
+    // Rounded to a float, pi / 2 is above pi / 2.
+    constexpr double rounding = 1e-6;
+    const Range range = range_of(rule);
+    const bool is_in_range =
+        range.holds(number) || range.holds(number - rounding) || range.holds(number + rounding);
+    if (is_listed && is_in_range) return;
     if (rule.otherwise.empty()) refuse(rule, value, place);
     Note& note = notes_[&rule];
     if (note.count++ > 0) return;
@@ -208,7 +221,7 @@ class Values {
   }
 
   [[nodiscard]] std::string allowed(const GltfRule& rule) const {
-    if (rule.kind == GltfKind::Table) return "a table, {...}";
+    if (rule.kind == GltfKind::Table || rule.kind == GltfKind::Texture) return "a table, {...}";
     if (rule.kind == GltfKind::Tables) return "a list of tables, [{...}, ...]";
     if (rule.kind == GltfKind::Truth) return "true or false";
     const Range range = range_of(rule);

@@ -10,7 +10,7 @@
 
 namespace earthshine::scenes {
 
-enum class GltfKind { Number, Whole, Entry, Word, Truth, Table, Tables };
+enum class GltfKind { Number, Whole, Entry, Word, Truth, Table, Tables, Texture };
 
 struct GltfRule {
   std::string_view path;  // keys from the top, joined by '/', numbers in lists left out; '*': any
@@ -88,6 +88,9 @@ constexpr GltfRule all[] = {
     {"materials/pbrMetallicRoughness/baseColorFactor", Number, share, 4, brought},
     {"materials/pbrMetallicRoughness/metallicFactor", Number, share, 0, brought},
     {"materials/pbrMetallicRoughness/roughnessFactor", Number, share, 0, brought},
+    {"materials/pbrMetallicRoughness/baseColorTexture", Texture},
+    {"materials/pbrMetallicRoughness/metallicRoughnessTexture", Texture},
+    {"materials/emissiveTexture", Texture},
     {"materials/extensions", Table},
     {"*/KHR_materials_emissive_strength", Table},
     {"*/KHR_materials_emissive_strength/emissiveStrength", Number, {0.0, 1e12}, 0, brought},
@@ -104,9 +107,7 @@ constexpr GltfRule all[] = {
     {"*/KHR_materials_pbrSpecularGlossiness/diffuseFactor", Number, share, 4, brought},
     {"*/KHR_materials_pbrSpecularGlossiness/specularFactor", Number, share, 3, brought},
     {"*/KHR_materials_pbrSpecularGlossiness/glossinessFactor", Number, share, 0, brought},
-    {"*Texture", Table},
-    {"*Texture/index", Whole, whole, 0, none},
-    {"*Texture/texCoord", Whole, whole},
+    {"*/KHR_materials_pbrSpecularGlossiness/diffuseTexture", Texture},
     {"*/KHR_texture_transform", Table},
     {"*/KHR_texture_transform/offset", Number, length, 2},
     {"*/KHR_texture_transform/scale", Number, length, 2},
@@ -134,6 +135,9 @@ constexpr GltfRule all[] = {
     {"extensions/KHR_lights_punctual/lights/spot", Table},
     {"extensions/KHR_lights_punctual/lights/spot/innerConeAngle", Number, half_angle, 0, brought},
     {"extensions/KHR_lights_punctual/lights/spot/outerConeAngle", Number, half_angle, 0, brought}};
+
+// Of a table that names a texture.
+constexpr GltfRule of_texture[] = {{"index", Whole, whole, 0, none}, {"texCoord", Whole, whole}};
 
 }  // namespace gltf_rules
 }  // namespace earthshine::scenes

@@ -28,6 +28,8 @@ TEST_F(GltfValues, ValuesThatNobodyCanMeanAreRefusedByTheirPlace) {
                      "4 numbers, from 0 to 1", "glTF 2.0"}));
   EXPECT_TRUE(holds(refusal(pbr(R"("baseColorFactor": [1, 0, "0", 1])")), {"[2] is \"0\""}));
   EXPECT_TRUE(holds(refusal(pbr(R"("roughnessFactor": "x")")), {"roughnessFactor is \"x\""}));
+  EXPECT_TRUE(holds(refusal(pbr(R"("baseColorTexture": {"index": "0"})")),
+                    {"baseColorTexture.index is \"0\"", "a whole number"}));
   EXPECT_TRUE(holds(refusal(R"({"pbrMetallicRoughness": []})"), {"is a list of 0", "a table"}));
   EXPECT_TRUE(holds(refusal(R"({}, {"alphaMode": "Blend"})"),
                     {"materials[1].alphaMode is \"Blend\"", "OPAQUE, MASK, BLEND"}));
@@ -61,6 +63,11 @@ TEST_F(GltfValues, ValuesOutOfRangeAreNamedOnceWithWhatIsDone) {
                               R"(, "camera": -1)");
   EXPECT_TRUE(named(textured, {"textures[0].sampler is 9", "from 0 to 0", "taken as none"}));
   EXPECT_TRUE(named(textured, {"samplers[0].wrapS is 3", "33071", "10497 is taken"}));
+  // What other extensions call their own is theirs; nor does a float's rounding matter.
+  const Scene other = read(R"({"extensions": {"XYZ_toon": {"shadeTexture": 3}}, "extras":
+      {"alphaMode": 1}, "emissiveFactor": [1.0000001, 0, 0]})",
+                           R"(, "extensions": {"XYZ_all": {"scene": "x", "materials": 2}})");
+  EXPECT_TRUE(other.warnings.empty());
   EXPECT_TRUE(named(textured, {"nodes[0].camera is -1", "taken as none"}));
 }
 
