@@ -8,6 +8,7 @@
 
 #include "raytrace/passes/pilot_pass.h"
 #include "raytrace/passes/rounds.h"
+#include "raytrace/passes/small_sources.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -73,6 +74,7 @@ class Passes {
     expected_ =
         static_cast<double>(sampling.camera_samples) * static_cast<double>(window_.pixel_count());
     first_round(everywhere(sampling.camera_samples));
+    if (!ends()) shade(wanted_for_small_sources(shared_, camera_, *sums_));
     report_.gather_rays = sampling.camera_samples * sampling.gather_rays;
   }
 
@@ -109,6 +111,7 @@ class Passes {
     first_round(everywhere(how.least_samples));
     shared_.dimmest.clear();
     if (!ends()) shade(wanted_for_the_eye(*sums_, sums_->scatter));
+    if (!ends()) shade(wanted_for_small_sources(shared_, camera_, *sums_));
     for (int round = 1; round < most_rounds && !ends() && per_deviation > 0.0; ++round) {
       shade(wanted_samples(*sums_, per_deviation, pilot.bright(), how.least_samples,
                            how.most_samples));
@@ -138,6 +141,7 @@ class Passes {
     first_round(by_edges(least, std::max(std::min(2, least), least / 2)));
     reserve_s_ = 0.0;
     if (!ends()) shade(wanted_for_the_eye(*sums_, scatter_of_samples(*sums_)));
+    if (!ends()) shade(wanted_for_small_sources(shared_, camera_, *sums_));
     covered = covered && !ends();
     Rounds rounds(options_.error);
     reserve_s_ = sharing_s_;

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sources smaller than a pixel, in black rooms, so that all light of a picture is theirs: its sum
+// over the pixels is the source's luminance times its image's area in px^2. n samples that meet it
+// independently by a chance of 64 / n leave at most 1 / 8 of it, better spread ones less.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+#include "raytrace/render.h"
+#include "tests/support/scene_builder.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+constexpr int pixels_across = 32, source_seeds = 16;
+constexpr double source_exitance = 1000.0, distance_m = 0.7, side_m = 0.01;
+
+scenes::Camera into_room() {
+  scenes::Camera camera;
+  camera.position = Vec3(0.2, 0.5, 0.5);
+  camera.look_at = Vec3(1.0, 0.5, 0.5);
+  camera.fov_deg = 60.0;
+  return camera;
+}
+
+tests::SceneBuilder black_room() {
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.0));
+  builder.room({m, m, m, m, m, m});
+  return builder;
+}
+
+// 0.7 m in front of the camera, turned to it, not in the middle of a pixel.
+const Vec3 source_place(0.9, 0.507, 0.483);
+
+void add_lamp(scenes::Scene& scene, scenes::LampKind kind) {
+  scenes::Lamp lamp;
+  lamp.name = lamp.group = "lamp";
+  lamp.kind = kind;
+  lamp.position = source_place;
+  lamp.axis = Vec3(-1, 0, 0);
+  lamp.edge_u = Vec3(0, 0, side_m);
+  lamp.edge_v = Vec3(0, side_m, 0);
+  lamp.radius_m = side_m / std::sqrt(base::pi);
+  lamp.exitance = Rgb(source_exitance);
+  scene.lamps.push_back(lamp);
+}
+
+// cells x cells quads that emit, each of that edge.
+void add_emitters(tests::SceneBuilder& builder, int cells, double edge) {
+  const std::uint32_t m = builder.material(tests::grey(0.0, source_exitance));
+  for (int k = 0; k < cells * cells; ++k) {
+    const Vec3 a = source_place + Vec3(0, k % cells * edge, k / cells * edge);
+    const Vec3 y(0, edge, 0), z(0, 0, edge);
+    builder.quad(m, a, a + z, a + y + z, a + y);
+  }
+}
+
+RenderOptions options_of(std::uint64_t seed) {
+  RenderOptions options;
+  options.columns = options.rows = pixels_across;
+  options.gather_rays = 16;
+  options.seed = seed;
+  return options;
+}
+
+Frame source_picture(const scenes::Scene& scene, const scenes::Camera& camera,
+                     const RenderOptions& options) {
+  const tests::Prepared prepared(scene);
+  radiosity::SolveOptions solve;
+  solve.patch_edge_m = 1.0;
+  solve.form_factor_rays = 16;
+  return render(prepared, prepared.solve(solve), camera, options);
+}
+
+double sum_of(const Frame& frame) {
+  const std::vector<float>& light = frame.image.find("G")->values;
+  return std::accumulate(light.begin(), light.end(), 0.0);
+}
+
+void expect_sum(const scenes::Scene& scene, const scenes::Camera& camera, double expected,
+                const std::function<void(RenderOptions&)>& how, double hits = 64.0) {
+  std::vector<double> sums;
+  for (std::uint64_t seed = 1; seed <= source_seeds; ++seed) {
+    RenderOptions options = options_of(seed);
+    how(options);
+    sums.push_back(sum_of(source_picture(scene, camera, options)));
+  }
+  const double mean = std::accumulate(sums.begin(), sums.end(), 0.0) / source_seeds;
+  double squares = 0.0;
+  for (const double sum : sums) squares += (sum - mean) * (sum - mean);
+  const double deviation = std::sqrt(squares / (source_seeds - 1));
+  EXPECT_NEAR(mean, expected, 4.0 * deviation / std::sqrt(double(source_seeds)));
+  // A deviation that is told by 16 is itself off by 1 / sqrt(2 * 15).
+  EXPECT_LT(deviation, expected / std::sqrt(hits) * (1.0 + 4.0 / std::sqrt(30.0)));
+}
+
+// Of a square of side_m at distance_m, through an even picture plane.
+double image_px2() {
+  const double px = pixels_across / 2.0 / std::tan(base::radians(30.0));
+  return std::pow(side_m * px / distance_m, 2);
+}
+
+const std::vector<std::function<void(RenderOptions&)>>& every_way() {
+  static const std::vector<std::function<void(RenderOptions&)>> ways = {
+      [](RenderOptions& options) { options.shared.on = false; },
+      [](RenderOptions& options) { options.shared.on = true; },
+      [](RenderOptions& options) { options.shared.on = true, options.error = 0.05; }};
+  return ways;
+}
+
+TEST(SmallSources, LampsAndEmittersSendWhatTheirImagesHold) {
+  ASSERT_LT(image_px2(), 0.2);
+  const double expected = source_exitance / base::pi * image_px2();
+  for (const auto& how : every_way()) {
+    for (const auto kind : {scenes::LampKind::Disk, scenes::LampKind::Rectangle}) {
+      tests::SceneBuilder builder = black_room();
+      add_lamp(builder.scene, kind);
+      expect_sum(builder.scene, into_room(), expected, how);
+    }
+    tests::SceneBuilder builder = black_room();
+    add_emitters(builder, 1, side_m);
+    expect_sum(builder.scene, into_room(), expected, how);
+  }
+}
+
+TEST(SmallSources, ALensSpreadsTheSame) {
+  tests::SceneBuilder builder = black_room();
+  add_lamp(builder.scene, scenes::LampKind::Disk);
+  scenes::Camera camera = into_room();
+  camera.focus_m = 0.4;
+  camera.aperture_m = 0.15;
+  // The blur's radius, px (depth_of_field_test.cpp); each of its pixels meets the lamp 64 times.
+  const double blur = 0.5 * camera.aperture_m * std::sqrt(image_px2()) / side_m *
+                      std::abs(distance_m - camera.focus_m) / camera.focus_m;
+  EXPECT_GT(blur, 2.0);
+  expect_sum(builder.scene, camera, source_exitance / base::pi * image_px2(), every_way().back(),
+             64.0 * base::pi * blur * blur);
+}
+
+TEST(SmallSources, ASunIsOne) {
+  tests::SceneBuilder builder;
+  builder.plate(builder.material(tests::grey(0.0)), 0.1, 10.0, true);
+  scenes::Sun sun;
+  sun.direction = glm::normalize(Vec3(1.0, 0.01, -0.02));
+  builder.scene.sun = sun;
+  // E = L times the solid angle, which a plane at unit distance shows as it is near the axis.
+  const double px = pixels_across / 2.0 / std::tan(base::radians(30.0));
+  expect_sum(builder.scene, into_room(), sun.illuminance_lx.g * px * px, every_way().back());
+}
+
+TEST(SmallSources, HiddenOnesAndPartsOfLargeOnesTakeNoMoreSamples) {
+  const auto samples = [](const tests::SceneBuilder& builder) {
+    RenderOptions options = options_of(1);
+    options.shared.on = true;
+    options.error = 0.05;
+    return source_picture(builder.scene, into_room(), options).report.most_camera_samples;
+  };
+  tests::SceneBuilder lamp = black_room();
+  add_lamp(lamp.scene, scenes::LampKind::Disk);
+  EXPECT_GT(samples(lamp), 256);
+  tests::SceneBuilder hidden = black_room();
+  add_lamp(hidden.scene, scenes::LampKind::Disk);
+  const std::uint32_t m = hidden.material(tests::grey(0.0));
+  hidden.quad(m, {0.8, 0.4, 0.4}, {0.8, 0.4, 0.6}, {0.8, 0.6, 0.6}, {0.8, 0.6, 0.4});
+  EXPECT_LE(samples(hidden), 64);
+  tests::SceneBuilder mesh = black_room();
+  add_emitters(mesh, 20, side_m);
+  EXPECT_LE(samples(mesh), 64);
+}
+
+}  // namespace
+}  // namespace earthshine::raytrace
