@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <set>
+#include <string>
 
+#include "base/free_memory.h"
 #include "base/parallel.h"
 
 namespace earthshine::degrade {
@@ -220,28 +222,50 @@ Covariance filtered_across(const Covariance& noise, const AxisMap& full) {
   std::vector<int> order(sides.begin(), sides.end());
   std::stable_sort(order.begin(), order.end(),
                    [](int a, int b) { return std::abs(a) < std::abs(b); });
-  Covariance out{noise.columns, noise.rows, {}, {}};
+  // What is worked out, before any of it is: wide filters take many offsets.
+  struct Side {
+    int dx = 0;
+    std::vector<Lag> lags;
+    std::vector<std::uint8_t> wanted;  // per offset dy from 0 on
+  };
+  std::vector<Side> wanted_of;
   double scale = 0.0;
+  std::uint64_t count = 0;
   for (const int dx : order) {
-    const std::vector<Lag> lags = lags_of(noise, dx);
-    const std::vector<double> bound = bounds(map, lags);
+    Side side{dx, lags_of(noise, dx), {}};
+    const std::vector<double> bound = bounds(map, side.lags);
     if (dx == 0) scale = bound.front();
-    // Well below the share that is dropped in the end, as the bound of the variance is one too.
-    std::vector<Plane> planes(bound.size());
-    std::vector<Plane*> wanted(bound.size(), nullptr);
     for (std::size_t e = 0; e < bound.size(); ++e) {
       const bool variance = dx == 0 && e == 0;
-      if (dx < 0 && e == 0) continue;
-      if (!variance && bound[e] <= 0.1 * least_share * scale) continue;
-      planes[e].resize(noise.variance().size());
-      wanted[e] = &planes[e];
+      // Well below the share that is dropped in the end, as the bound of the variance is one too.
+      const bool matters = variance || bound[e] > 0.1 * least_share * scale;
+      side.wanted.push_back(matters && (dx >= 0 || e > 0) ? 1 : 0);
+      count += side.wanted.back();
     }
-    base::parallel_chunks(size(noise.rows), 8, [&](std::size_t begin, std::size_t end) {
-      LineSum sum(map, lags, noise.columns, dx);
-      for (std::size_t y = begin; y < end; ++y) sum.add_line(static_cast<int>(y), wanted);
-    });
+    wanted_of.push_back(std::move(side));
+  }
+  // The same again turned, and what is made of that.
+  constexpr std::uint64_t at_once = 3;
+  base::check_room(
+      at_once * count * noise.variance().size() * sizeof(float),
+      "the twin: noise that a blur makes alike at " + std::to_string(count) + " offsets");
+  Covariance out{noise.columns, noise.rows, {}, {}};
+  for (const auto& [dx, lags, wanted] : wanted_of) {
+    std::vector<Plane> planes(wanted.size());
+    std::vector<Plane*> made(wanted.size(), nullptr);
+    for (std::size_t e = 0; e < wanted.size(); ++e) {
+      if (wanted[e] == 0) continue;
+      planes[e].resize(noise.variance().size());
+      made[e] = &planes[e];
+    }
+    base::parallel_chunks(size(noise.rows), 8,
+                          [&, side = dx, &of = lags](std::size_t begin, std::size_t end) {
+                            LineSum sum(map, of, noise.columns, side);
+                            for (std::size_t y = begin; y < end; ++y)
+                              sum.add_line(static_cast<int>(y), made);
+                          });
     for (std::size_t e = 0; e < planes.size(); ++e) {
-      if (wanted[e] == nullptr) continue;
+      if (made[e] == nullptr) continue;
       out.offsets.push_back({dx, static_cast<int>(e)});
       out.planes.push_back(std::move(planes[e]));
     }

@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "base/error.h"
+#include "base/free_memory.h"
 #include "base/units.h"
 #include "tests/degrade/covariances.h"
 
@@ -215,6 +217,22 @@ TEST(NoiseMoments, FiltersThatDoNotFitAreRefused) {
   EXPECT_THROW((void)filtered(c, area_average(6, 3), five), base::Error);
   EXPECT_THROW((void)variance_after(c, six, six), base::Error);
   EXPECT_THROW((void)covariance_between(c, {six, five}, {six, six}), base::Error);
+}
+
+TEST(NoiseMoments, WideFiltersThatDoNotFitAreRefusedBeforeTheWork) {
+  // Every pair of 200 columns is alike after a filter as wide as the picture: 200 offsets at the
+  // least, 200 x 200 floats each, 32 MB.
+  const int size = 200;
+  const AxisMap wide = gaussian_blur(size, 60.0);
+  const Covariance noise = white(size, size, Plane(std::size_t{size} * size, 1.0F));
+  const base::MemoryLimit limit(std::uint64_t{1} << 20U);
+  try {
+    (void)filtered(noise, gaussian_blur(size, 0.0), wide);
+    FAIL() << "it was worked out";
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.blame(), base::Blame::Work);
+    EXPECT_NE(std::string(error.what()).find("offsets"), std::string::npos) << error.what();
+  }
 }
 
 }  // namespace
