@@ -133,6 +133,7 @@ int run(std::vector<std::string> arguments, const Workers& workers) {
   try {
     std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
     program.parse(arguments);
+    refuse_empty_words(program);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) return usage_error(program, error);
     std::ostringstream text, ignored;

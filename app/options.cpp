@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace earthshine::app {
@@ -208,8 +209,14 @@ CLI::Option* may_repeat(CLI::Option* option) {
       ->allow_extra_args(false);
 }
 
-CLI::Validator not_empty() {
-  return {[](const std::string& word) { return word.empty() ? "is an empty word" : ""; }, ""};
+void refuse_empty_words(const CLI::App& parser) {
+  for (const CLI::Option* option : parser.get_options()) {
+    if (std::ranges::count(option->results(), "") == 0) continue;
+    throw CLI::ValidationError(option->get_name(),
+                               "is an empty word, as the shell makes of a variable that is not "
+                               "set. Write what is meant, or leave it out");
+  }
+  for (const CLI::App* command : parser.get_subcommands()) refuse_empty_words(*command);
 }
 
 }  // namespace earthshine::app

@@ -93,7 +93,8 @@ void add_time_limit(CLI::App& command, double& seconds, const std::string& help)
 // Makes it one that may be repeated, with one value each time.
 CLI::Option* may_repeat(CLI::Option* option);
 
-// Refuses an empty word, such as that of a variable that the shell does not know.
-[[nodiscard]] CLI::Validator not_empty();
+// Of the options that were given and the commands that were named: what is kept as a word may be
+// empty where nothing is meant, so that "" would be taken for silence. Throws CLI::ValidationError.
+void refuse_empty_words(const CLI::App& parser);
 
 }  // namespace earthshine::app

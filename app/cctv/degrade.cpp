@@ -247,16 +247,13 @@ std::vector<Command> add_degrade(CLI::App& program) {
   parser
       ->add_option("--camera", call->camera,
                    "Camera of the scene (default: the one in the picture's header, or the first)")
-      ->type_name("NAME")
-      ->check(not_empty());
+      ->type_name("NAME");
   parser
       ->add_option("--cctv", call->cctv,
                    "CCTV camera: one that ships, FILE.toml with a [[cctv]], or FILE.toml:NAME")
       ->group("What is read")
-      ->check(not_empty())
       ->type_name("CAMERA");
   parser->add_option("--preset", call->preset, "CCTV camera that ships (see --list)")
-      ->check(not_empty())
       ->type_name("NAME");
   add_whole_number(*parser, "--frame", call->tape.first, 0, most_frames,
                    "Number of the (first) television frame: other noise (default 0)");

@@ -36,7 +36,6 @@ Command add_merge(CLI::App& program, const RunCall& run_call) {
           "DIR", call->folder,
           "Folder of the parts: OUTPUT.parts of render and degrade, the study's own of a study")
       ->required()
-      ->check(not_empty())
       ->type_name("");
   parser->add_flag("--json", call->json, "Report as JSON on standard output");
   return {parser, [call, run_call](const Common& common) {

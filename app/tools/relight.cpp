@@ -140,7 +140,6 @@ Command add_relight(CLI::App& program) {
   const auto call = std::make_shared<RelightCall>();
   parser->add_option("FRAME", call->input, "EXR file that render --per-light wrote")
       ->required()
-      ->check(not_empty())
       ->type_name("");
   parser
       ->add_option("--set", call->settings,

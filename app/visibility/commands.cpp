@@ -138,7 +138,6 @@ Command add_study_orbit(CLI::App& study) {
                    "Positions, evenly over one turn from orbit noon");
   parser->add_option("--at", call->at, "Positions in degrees instead, with commas between")
       ->type_name("LIST")
-      ->check(not_empty())
       ->excludes("--positions");
   return {parser, [call](const Common& common) { run_orbit(*call, common); }};
 }
@@ -147,10 +146,7 @@ Command add_study_run(CLI::App& study) {
   CLI::App* parser =
       study.add_subcommand("run", "A study file: scenes, cameras, targets, lamps, orbit, wishes");
   const auto call = std::make_shared<FileCall>();
-  parser->add_option("STUDY", call->file, "Study file (TOML)")
-      ->required()
-      ->check(not_empty())
-      ->type_name("");
+  parser->add_option("STUDY", call->file, "Study file (TOML)")->required()->type_name("");
   parser->add_option("-o,--output", call->folder, "Folder for the results; made if it is not there")
       ->type_name("DIR")
       ->required();
