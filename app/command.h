@@ -24,6 +24,9 @@ class App;
 
 namespace earthshine::app {
 
+// Keywords and values in the header of a picture.
+using HeaderTexts = std::vector<std::pair<std::string, std::string>>;
+
 // Options of every command.
 struct Common {
   int threads = 0;  // 0: all

@@ -129,6 +129,10 @@ void add_origin(base::ExrHeader& result, const scenes::Scene& scene,
   header.text("seed", std::to_string(seed));
 }
 
+HeaderTexts partial_mark(bool stopped) {
+  return stopped ? HeaderTexts{{"earthshine:partial", "yes"}} : HeaderTexts{};
+}
+
 base::ExrHeader provenance_header(const Provenance& p) {
   base::ExrHeader result;
   HeaderWriter header(result);

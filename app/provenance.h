@@ -25,6 +25,9 @@ struct Provenance {
   const raytrace::RenderReport& render;
 };
 
+// Of a PNG that was stopped: "earthshine:partial", as every header of an EXR says; else nothing.
+[[nodiscard]] HeaderTexts partial_mark(bool stopped);
+
 [[nodiscard]] std::string indirect_name(raytrace::Indirect indirect);
 
 // Version, scene, overrides and seed.

@@ -162,5 +162,7 @@ struct Picture {
 };
 [[nodiscard]] Picture take_picture(const Studio& studio, const scenes::Camera& camera,
                                    const PictureFiles& files, StageTimes times);
+// Throws base::Error (Work), which names the files of the picture that was stopped.
+[[noreturn]] void end_interrupted(const PictureFiles& last);
 
 }  // namespace earthshine::app

@@ -100,8 +100,7 @@ degrade::Result run_chain(const CctvSetup& setup, const base::Image& radiance) {
 
 namespace {
 
-std::vector<std::pair<std::string, std::string>> provenance(const CctvSetup& setup,
-                                                            const degrade::Result& result) {
+HeaderTexts provenance(const CctvSetup& setup, const degrade::Result& result) {
   return {{"Software", "earthshine " EARTHSHINE_VERSION},
           {"earthshine:cctv", setup.name},
           {"earthshine:seed", std::to_string(setup.chain.options.seed)},
@@ -111,12 +110,14 @@ std::vector<std::pair<std::string, std::string>> provenance(const CctvSetup& set
 
 }  // namespace
 
-void write_cctv(const std::string& path, const CctvSetup& setup, const degrade::Result& result) {
+void write_cctv(const std::string& path, const CctvSetup& setup, const degrade::Result& result,
+                const HeaderTexts& more) {
+  HeaderTexts texts = provenance(setup, result);
+  texts.insert(texts.end(), more.begin(), more.end());
   if (path.ends_with(".exr")) {
-    base::write_exr(path, result.viewed, {provenance(setup, result), {}});
+    base::write_exr(path, result.viewed, {texts, {}});
   } else {
-    base::write_png(path, result.columns, result.rows, result.channels, result.pixels,
-                    provenance(setup, result));
+    base::write_png(path, result.columns, result.rows, result.channels, result.pixels, texts);
   }
 }
 

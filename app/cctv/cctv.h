@@ -49,8 +49,10 @@ template <class Value>
 [[nodiscard]] Json settings_json(const degrade::CctvCamera& camera);
 [[nodiscard]] Json monitor_json(const degrade::Monitor& monitor);
 
-// A PNG, or an EXR of what the viewer sees in cd/m^2; both say the settings and the exposure.
-void write_cctv(const std::string& path, const CctvSetup& setup, const degrade::Result& result);
+// A PNG, or an EXR of what the viewer sees in cd/m^2; both say the settings and the exposure, and
+// `more`.
+void write_cctv(const std::string& path, const CctvSetup& setup, const degrade::Result& result,
+                const HeaderTexts& more = {});
 
 void write_twin(const std::string& path, const CctvSetup& setup, const degrade::Twin& twin,
                 const degrade::Result& noisy);

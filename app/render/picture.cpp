@@ -11,6 +11,7 @@
 #include "app/render/draw.h"
 #include "app/render/error_json.h"
 #include "app/render/light.h"
+#include "base/error.h"
 #include "base/files/exr_file.h"
 #include "base/files/png_file.h"
 #include "base/tone.h"
@@ -135,7 +136,7 @@ void tell(const Studio& studio, const raytrace::Frame& frame, const StageTimes& 
       short_count(rays), short_count(rays / std::max(1e-9, report.seconds)), report.gather_rays,
       report.camera_samples, report.relative_noise));
   if (report.stopped) {
-    note(fmt::format("  stopped: {:.0f} % of the pixels are finished; the file is marked partial",
+    note(fmt::format("  stopped: {:.0f} % of the pixels are finished",
                      100.0 * report.finished_share));
   }
 }
@@ -205,8 +206,9 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
   add_errors(header, drawn);
   if (call.timings) add_times(header, times);
   times.measure("write", [&] {
-    if (tone) base::write_png(files.png, frame.image.width, frame.image.height, 3, tone->rgb);
-    if (screen) write_cctv(files.cctv, *cctv, *screen);
+    const HeaderTexts mark = partial_mark(frame.report.stopped);
+    if (tone) base::write_png(files.png, frame.image.width, frame.image.height, 3, tone->rgb, mark);
+    if (screen) write_cctv(files.cctv, *cctv, *screen, mark);
     if (!files.output.empty()) base::write_exr(files.output, frame.image, header);
   });
   Picture picture{json_of(studio, camera, frame, times),
@@ -242,6 +244,19 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
   }
   if (screen) note("  " + cctv_summary(*cctv, *screen));
   return picture;
+}
+
+void end_interrupted(const PictureFiles& last) {
+  std::vector<std::string> files;
+  for (const std::string& file : {last.output, last.png, last.cctv}) {
+    if (!file.empty()) files.push_back(file);
+  }
+  const std::string say = files.size() == 1 ? "says it is" : "say they are";
+  throw base::Error(base::Blame::Work, "render", "interrupted", {},
+                    files.empty() ? ""
+                                  : fmt::format("What was finished is in {}, which {} partial; "
+                                                "older files of that name are gone",
+                                                fmt::join(files, ", "), say));
 }
 
 }  // namespace earthshine::app

@@ -262,9 +262,7 @@ void run(RenderCall call, const Common& common) {
     }
     return;
   }
-  const std::string& file = pictures[reports.size() - 1].files.output;
-  throw Error(Blame::Work, "render", "interrupted", {},
-              file.empty() ? "" : "What was finished is in " + file + ", which says it is partial");
+  end_interrupted(pictures[reports.size() - 1].files);
 }
 
 }  // namespace

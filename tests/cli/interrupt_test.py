@@ -49,13 +49,27 @@ class BrokenOff(program.Case):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             code, out, err, seconds = self.stopped(*self.call, "--json", signal_number=number)
             self.assertEqual(code, 1, err)
-            self.says(err, "interrupted", "a.exr, which says it is partial")
+            self.says(err, "interrupted", "a.exr, which says it is partial", "older files of that name are gone")
             report = json.loads(out)
             self.assertEqual(report["patches"], 0)
             self.assertGreater(report["error"]["estimate"], 0.02)
             header = self.is_the_picture(report["error"]["bound_95"])
             self.assertEqual(header["earthshine:partial"], "yes")
             self.assertLess(seconds, 10)  # the solve would take minutes
+
+    def test_every_picture_says_that_it_is_partial(self):
+        mark = b"earthshine:partial\0yes"
+        self.done("render", "ball.toml", "-o", "a.exr", "--camera", "A", "--size", "96x72", "--png", "a.png", "--cctv", "c.png")
+        pngs = ("a.png", "c.png")
+        for png in pngs:
+            self.assertNotIn(mark, (self.folder / png).read_bytes())
+        _, _, err, _ = self.stopped(*self.call, "--png", "a.png", "--cctv", "c.png")
+        self.says(err, "a.exr, a.png, c.png, which say they are partial")
+        self.write("photo.png", (self.folder / "a.png").read_bytes())
+        _, _, err, _ = self.stopped("render", "ball.toml", "--camera", "A", "--over", "photo.png", "--over-style", "both", "--png", "o.png", *LONG)
+        self.says(err, "in o.png, which says it is partial")
+        for png in (*pngs, "o.png"):
+            self.assertIn(mark, (self.folder / png).read_bytes())
 
     def test_it_says_what_is_missing(self):
         _, _, err, _ = self.stopped(*self.call, "--error", "0.02")
