@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
-#include <map>
 
 #include "app/build_id.h"
 #include "app/console.h"
@@ -24,7 +23,6 @@ using base::Blame;
 using base::Error;
 
 constexpr std::uint64_t most_parts = 1000000;
-constexpr const char* record_file = "parts.json";
 constexpr const char* part_forms =
     "K/N with K from 1 to N, auto, auto/N (both in a job array) or solve";
 
@@ -101,18 +99,6 @@ PartCall::Task read_part(const std::string& text, PartCall& part) {
   return Task::Share;
 }
 
-// In single quotes where a shell would take the word for something else.
-std::string shell_word(const std::string& word) {
-  const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string_view("-_./=:,+@%").find(c) != std::string_view::npos;
-  });
-  if (plain) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
 Json json_of(const PartsRecord& record) {
   return {{"parts", record.parts},
           {"folder", record.folder.string()},
@@ -121,7 +107,7 @@ Json json_of(const PartsRecord& record) {
 }
 
 std::optional<PartsRecord> record_in(const fs::path& folder) {
-  const fs::path path = folder / record_file;
+  const fs::path path = folder / parts_file;
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return std::nullopt;
   const Json json = json_in(path);
@@ -141,7 +127,12 @@ std::optional<PartsRecord> record_in(const fs::path& folder) {
 // Names of the digests that are not the same.
 std::vector<std::string> differences(const PartsRecord& mine, const PartsRecord& there) {
   std::vector<std::string> differ;
-  if (mine.arguments != there.arguments) {
+  const auto without_output = [](std::vector<std::string> arguments) {
+    if (std::string* output = output_in(arguments).word) output->clear();
+    return arguments;
+  };
+  // That one is where the record lies, however it is spelt.
+  if (without_output(mine.arguments) != without_output(there.arguments)) {
     differ.push_back(fmt::format("its arguments (there: {})", fmt::join(there.arguments, " ")));
   }
   if (mine.parts != there.parts && mine.parts > 0 && there.parts > 0) {
@@ -174,6 +165,18 @@ void add_part_options(CLI::App& command, PartCall& part) {
       ->needs("--part");
 }
 
+OutputWord output_in(std::vector<std::string>& arguments) {
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    std::string& word = arguments[k];
+    const bool apart = word == "-o" || word == "--output";
+    if (apart && k + 1 < arguments.size()) return {&arguments[k + 1], 0};
+    for (const std::string_view joined : {"--output=", "-o"}) {
+      if (word.starts_with(joined)) return {&word, joined.size()};
+    }
+  }
+  return {};
+}
+
 Share share_of(const PartCall& part, std::size_t items) {
   return {items * (part.number - 1) / part.count, items * part.number / part.count};
 }
@@ -190,7 +193,7 @@ PartsRecord read_parts_record(const fs::path& folder) {
   std::error_code ignored;
   throw Error(
       Blame::Input, folder.string(),
-      fs::exists(folder, ignored) ? fmt::format("holds no {}", record_file)
+      fs::exists(folder, ignored) ? fmt::format("holds no {}", parts_file)
                                   : std::string("is not there"),
       "it is the folder of a call with --part: OUTPUT.parts of render and degrade, DIR of a study");
 }
@@ -204,13 +207,13 @@ void join_parts(const fs::path& folder, const Common& common, const Json& digest
     make_folder(folder);
     base::remove_abandoned_files(folder);
     std::error_code ignored;
-    if (part.begins) fs::remove(folder / record_file, ignored);
-    if (base::write_new_text(folder / record_file, dump(json_of(mine)))) return;
+    if (part.begins) fs::remove(folder / parts_file, ignored);
+    if (base::write_new_text(folder / parts_file, dump(json_of(mine)))) return;
   }
   PartsRecord there = read_parts_record(folder);
   const std::vector<std::string> differ = differences(mine, there);
   if (!differ.empty()) {
-    throw Error(Blame::Input, (folder / record_file).string(),
+    throw Error(Blame::Input, (folder / parts_file).string(),
                 fmt::format("belongs to another call: {} changed", fmt::join(differ, ", ")),
                 "all parts of one call have the same scene, settings and program",
                 "Remove that file to begin anew, or name another place to write");
@@ -222,7 +225,7 @@ void join_parts(const fs::path& folder, const Common& common, const Json& digest
   if (merges) {
     part.count = there.parts;
   } else if (there.parts == 0 && part.count > 0) {  // a solve came first
-    base::write_text(folder / record_file, dump(json_of(mine)));
+    base::write_text(folder / parts_file, dump(json_of(mine)));
   }
 }
 
@@ -230,23 +233,6 @@ void end_part_if_interrupted() {
   if (!Interrupt::asked()) return;
   throw Error(Blame::Work, "--part", "interrupted", {},
               "Run the same part again: it goes on with what is finished");
-}
-
-void refuse_to_merge(const fs::path& folder, const std::vector<MissingWork>& missing) {
-  const PartsRecord record = read_parts_record(folder);
-  std::map<std::size_t, std::vector<std::string>> by_part;
-  for (const MissingWork& one : missing) by_part[one.part].push_back(one.what);
-  std::vector<std::string> words;
-  for (const std::string& word : record.arguments) words.push_back(shell_word(word));
-  for (const auto& [part, what] : by_part) {
-    note(fmt::format("missing: part {}: {}{}", part, what.front(),
-                     what.size() > 1 ? fmt::format(" and {} more", what.size() - 1) : ""));
-    note(fmt::format("  earthshine {} --part {}/{}", fmt::join(words, " "), part,
-                     std::max<std::size_t>(1, record.parts)));
-  }
-  throw Error(Blame::Work, folder.string(), "is not complete", {},
-              fmt::format("Run what is missing in {}, then merge again",
-                          shell_word(record.folder.string())));
 }
 
 }  // namespace earthshine::app

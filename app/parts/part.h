@@ -31,6 +31,8 @@ struct PartCall {
 
 // In a study's folder: what is kept.
 inline constexpr const char* points_folder = "points";
+// In the folder of parts, and in points.
+inline constexpr const char* parts_file = "parts.json";
 
 // --part K/N, auto, auto/N, solve or merge; --wait SECONDS.
 void add_part_options(CLI::App& command, PartCall& part);
@@ -59,6 +61,13 @@ struct PartsRecord {
 // of parts from the record.
 void join_parts(const std::filesystem::path& folder, const Common& common, const Json& digests,
                 PartCall& part);
+
+// What -o says in a call: `word` from the letter `from` on; nullptr: nothing.
+struct OutputWord {
+  std::string* word = nullptr;
+  std::size_t from = 0;
+};
+[[nodiscard]] OutputWord output_in(std::vector<std::string>& arguments);
 
 // Of a folder that join_parts() made, or of the folder of a study. Throws base::Error (Input).
 [[nodiscard]] PartsRecord read_parts_record(const std::filesystem::path& folder);

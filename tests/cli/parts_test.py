@@ -84,6 +84,33 @@ class SameBytes(PartCase):
         self.done("merge", "v.exr.parts", "-q")
         self.assertEqual((self.folder / "v.exr").read_bytes(), whole)
 
+    def test_folders_that_were_copied_or_renamed(self):
+        whole = self.whole()
+        for part in (1, 2):
+            self.done(*CALL, "--part", f"{part}/2", "-q")
+        # With the files that the call reads: it is made there.
+        copy = self.folder / "copy"
+        copy.mkdir()
+        shutil.copytree(self.folder / "v.exr.parts", copy / "v.exr.parts")
+        shutil.copy(self.folder / "ball.toml", copy)
+        self.done("merge", "copy/v.exr.parts", "-q")
+        self.assertEqual({name: (copy / name).read_bytes() for name in OUTPUTS}, whole)
+        self.assertFalse(any((self.folder / name).exists() for name in OUTPUTS))
+        # Alone: what it makes is called as it is.
+        (self.folder / "v.exr.parts").rename(self.folder / "copy/w.exr.parts")
+        self.done("merge", "copy/w.exr.parts", "-q")
+        self.assertEqual((copy / "w-A.exr").read_bytes(), whole["v-A.exr"])
+        for piece in (copy / "w.exr.parts").glob("*.exr"):
+            piece.unlink()
+        self.says(self.refused("merge", "copy/w.exr.parts", code=1), "copy/w.exr", "--part 1/2", f"missing in '{self.folder.resolve()}'")
+        (copy / "w.exr.parts").rename(copy / "w")
+        self.says(self.refused("merge", "copy/w"), "has the parts of v.exr", ".parts")
+        self.done("study", "visibility", "ball.toml", "-o", "d/", "--size", "8x8", "--part", "1/1", "-q")
+        (self.folder / "d").rename(self.folder / "e")
+        self.done("merge", "e", "-q")
+        self.assertTrue((self.folder / "e/report.html").exists())
+        self.assertFalse((self.folder / "d").exists())
+
     def test_the_report_but_for_what_it_took(self):
         whole = self.json(*CALL)
         for part in (2, 1):
