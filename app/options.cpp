@@ -61,11 +61,12 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
       .add_option_function<std::string>(
           "--error",
           [&input](const std::string& text) {
-            const auto error = measure_of(text);
-            if (!error || !error->second.empty()) {
-              throw CLI::ValidationError("--error", "\"" + text + "\" is not a number");
+            const auto error = parsed<double>(text);
+            if (!error || !(*error > 0.0 && *error <= 1.0)) {
+              throw CLI::ValidationError("--error",
+                                         "\"" + text + "\" is not a number above 0 and at most 1");
             }
-            input.overrides.push_back(fmt::format("quality.error={}", error->first));
+            input.overrides.push_back(fmt::format("quality.error={}", *error));
           },
           "Wanted relative error, to which render and solve go on; visibility and orbit draw by "
           "the settings that go with it; the same as --set quality.error=E")

@@ -69,12 +69,12 @@ void refuse_other_kind(std::string_view option, const std::string& path,
 }
 
 void make_folder(const fs::path& folder) {
-  std::error_code problem;
+  std::error_code problem, ignored;
   fs::create_directories(folder, problem);
-  if (fs::is_directory(folder)) return;
+  if (fs::is_directory(folder, ignored)) return;
   const std::string why = problem ? ": " + problem.message() : "";
-  throw Error(Blame::Input, folder.string(), "cannot be made a folder" + why, {},
-              "Name another folder");
+  throw Error(problem ? base::blame_of_target(problem.value()) : Blame::Input, folder.string(),
+              "cannot be made a folder" + why, {}, "Name another folder");
 }
 
 void prepare_folder(const std::string& folder, const std::vector<std::string>& files,

@@ -23,7 +23,7 @@ void check_outputs(const std::vector<std::string>& paths, const Files& inputs);
 void refuse_other_kind(std::string_view option, const std::string& path,
                        const std::vector<std::string>& own);
 
-// Throws base::Error (Input) where there is no folder and none can be made.
+// Throws base::Error where there is no folder and none can be made: base::blame_of_target().
 void make_folder(const std::filesystem::path& folder);
 
 // Makes the folder where there is none and sees that each of the files can be written in it, as

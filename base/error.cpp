@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <numeric>
 #include <system_error>
 #include <vector>
@@ -67,6 +68,13 @@ Error::Error(Blame blame, const Location& where, std::string_view found, std::st
 
 std::string system_reason(int error_number) {
   return std::error_code(error_number, std::generic_category()).message();
+}
+
+Blame blame_of_target(int error_number) {
+  for (const int of_name : {ENAMETOOLONG, ENOTDIR, ENOENT, EEXIST, EISDIR, ELOOP, EINVAL}) {
+    if (error_number == of_name) return Blame::Input;
+  }
+  return Blame::Work;
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {

@@ -43,6 +43,10 @@ class Error : public std::runtime_error {
 // What the system says of an error number, e.g. "No such file or directory".
 [[nodiscard]] std::string system_reason(int error_number);
 
+// Whose fault it is that a file or folder cannot be written: Input where its name can be none (too
+// long, below a file), Work where the machine refuses (no permission, read only, full).
+[[nodiscard]] Blame blame_of_target(int error_number);
+
 // The candidate nearest to `word` by edit distance, or "" when none is near enough to be meant:
 // words that have no letter in common are not. Candidates: any range of strings. Large and small
 // letters are alike.

@@ -190,11 +190,13 @@ PartsRecord read_parts_record(const fs::path& folder) {
   for (const fs::path& place : {folder, folder / points_folder}) {
     if (auto record = record_in(place)) return *record;
   }
-  std::error_code ignored;
+  std::error_code why, ignored;
+  static_cast<void>(fs::exists(folder / parts_file, why));
   throw Error(
       Blame::Input, folder.string(),
-      fs::exists(folder, ignored) ? fmt::format("holds no {}", parts_file)
-                                  : std::string("is not there"),
+      why                           ? "cannot be looked into: " + why.message()
+      : fs::exists(folder, ignored) ? fmt::format("holds no {}", parts_file)
+                                    : std::string("is not there"),
       "it is the folder of a call with --part: OUTPUT.parts of render and degrade, DIR of a study");
 }
 

@@ -23,14 +23,15 @@ struct ReportCall {
 
 StudyResults read_study(const fs::path& folder) {
   const std::string name = (folder / study_file).string();
-  std::error_code ignored;
-  if (!fs::is_regular_file(name, ignored)) {
-    const bool there = fs::exists(folder, ignored);
-    throw Error(
-        Blame::Input, name,
-        there ? "cannot be read" : "cannot be read: there is no folder \"" + folder.string() + "\"",
-        "a study's folder has this file",
-        "Name the folder given as -o to study visibility, orbit or run");
+  std::error_code why, other;
+  if (!fs::is_regular_file(name, why)) {
+    const bool there = fs::exists(folder, other) || other;
+    throw Error(Blame::Input, name,
+                "cannot be read" + (!there ? ": there is no folder \"" + folder.string() + "\""
+                                    : why  ? ": " + why.message()
+                                           : ""),
+                "a study's folder has this file",
+                "Name the folder given as -o to study visibility, orbit or run");
   }
   check_outputs({(folder / report_file).string()}, {name});
   return read_results(name, read_json(name, "Run the study again, which writes the file anew"));

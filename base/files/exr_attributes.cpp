@@ -171,8 +171,8 @@ ExrPicture find_picture(const Names& channels) {
 }
 
 void check_exr_file(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) refuse_file(path, "there is no such file");
+  std::error_code other;  // such as no permission, which is said below
+  if (!std::filesystem::exists(path, other) && !other) refuse_file(path, "there is no such file");
   check_input_file(path, {path.string()});
   std::string begin(4, '\0');
   std::ifstream(path, std::ios::binary).read(begin.data(), 4);

@@ -138,8 +138,12 @@ OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
   if (!target_.has_filename()) {
     throw Error(Blame::Input, name, "is not the name of a file", {}, "Name a file to write");
   }
-  std::error_code ignored;
-  const fs::file_status status = fs::status(target_, ignored);
+  std::error_code problem, ignored;
+  const fs::file_status status = fs::status(target_, problem);
+  if (!fs::status_known(status)) {
+    throw Error(blame_of_target(problem.value()), name, "cannot be written: " + problem.message(),
+                {}, "Name another file to write");
+  }
   if (fs::is_directory(status)) {
     throw Error(Blame::Input, name, "is a folder", {}, "Name a file inside it");
   }

@@ -139,8 +139,8 @@ void refuse_stale(const Hdf5Reader& file, const SolutionOrigin& origin) {
 }  // namespace
 
 Solution read_solution(const std::filesystem::path& path, const SolutionOrigin& origin) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
+  std::error_code other;  // such as no permission, which is said below
+  if (!std::filesystem::exists(path, other) && !other) {
     throw Error(Blame::Input, path.string(), "there is no such file", {},
                 fmt::format("Make it with \"earthshine solve {} -o {}\"",
                             origin.scene.path.string(), path.string()));

@@ -21,7 +21,7 @@ std::string printable(std::string_view text, std::size_t longest) {
 std::string in_quotes(std::string_view text) { return fmt::format("\"{}\"", printable(text, 80)); }
 
 std::string two_digits(double value) {
-  if (value < 0.01 && value > 0.0) {
+  if (value < 0.01 && value > 1e-12) {
     return fmt::format("{:.{}f}", value, 1 - static_cast<int>(std::floor(std::log10(value))));
   }
   const std::string text = fmt::format("{:.2g}", value);

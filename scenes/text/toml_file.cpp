@@ -175,7 +175,14 @@ std::string describe(const TomlNode& node) {
     }
     std::string operator()(TomlDate) const { return "a date or time"; }
     std::string operator()(const TomlArray& items) const {
-      return fmt::format("an array of {}", items.size());
+      std::string text = fmt::format("an array of {}", items.size());
+      const bool few = items.size() <= 4 && std::ranges::none_of(items, [](const TomlNode& item) {
+                         return std::holds_alternative<TomlArray>(item.value);
+                       });
+      for (std::size_t k = 0; few && k < items.size(); ++k) {
+        text += (k == 0 ? ": " : ", ") + describe(items[k]);
+      }
+      return text;
     }
     std::string operator()(const TomlTable&) const { return "a table"; }
   };

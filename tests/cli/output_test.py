@@ -59,6 +59,37 @@ class Output(program.Case):
         (self.folder / "folder.exr").mkdir()
         self.says(self.refused("render", "ball.toml", "-o", "folder.exr"), "folder")
 
+    def test_places_that_may_not_be_looked_into(self):
+        """What is read and may not be: code 2, as the call names it. What is written and may not be: 1. A name that is none: 2."""
+        self.folder.chmod(0o777)
+        self.done("render", "ball.toml", "-o", "p.exr", "--size", "8x8")
+        for name, mode in (("closed", 0), ("ro", 0o555)):
+            (self.folder / name).mkdir()
+            (self.folder / name).chmod(mode)
+            self.addCleanup((self.folder / name).chmod, 0o777)
+
+        def as_nobody():
+            if os.geteuid() == 0:
+                os.setgroups([])
+                os.setgid(65534)
+                os.setuid(65534)
+        long = "n" * 300
+        render, study = ["render", "ball.toml", "--camera", "A"], ["study", "visibility", "ball.toml", "-o"]
+        for code, call in ((2, ["degrade", "closed/p.exr", "-o", "x.png"]), (2, ["merge", "closed"]), (2, ["report", "closed"]),
+                           (2, [*render, "-o", "x.exr", "--solution", "closed/s.h5"]), (1, [*render, "-o", "closed/x.exr"]),
+                           (1, [*render, "-o", "ro/x.exr"]), (1, [*study, "ro"]), (1, [*study, "ro/d"]), (1, [*study, "closed/d"]),
+                           (1, ["degrade", "p.exr", "-o", "x.png", "--stages", "ro/s"]), (2, [*render, "-o", long + ".exr"]),
+                           (2, ["solve", "ball.toml", "--glb", long + ".glb"]), (2, [*study, long]), (2, [*study, "ball.toml/d"])):
+            try:
+                run = self.run_program(*call, preexec_fn=as_nobody)
+            except (OSError, subprocess.SubprocessError) as error:
+                self.skipTest(f"the program cannot be run as another user: {error}")
+            why = "Not a directory" if "ball.toml/d" in call else "File name too long" if code == 2 and long in "".join(call) else "Permission denied"
+            self.assertEqual(run.returncode, code, f"{call}: {run.stderr}")
+            self.says(run.stderr, why, "closed" if "closed" in "".join(call) else call[-1][:20])
+            self.assertNotIn("filesystem error", run.stderr)
+            self.assertNotIn("patches", run.stderr)  # before any work
+
     def test_old_picture_is_kept_when_the_run_fails(self):
         self.write("a.exr", "old")
         self.refused("render", "ball.toml", "-o", "a.exr", "--camera", "none")

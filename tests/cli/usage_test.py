@@ -81,7 +81,8 @@ class WrongCalls(program.Case):
             self.says(self.refused("inspect", "box.toml", option, value), "whole number")
         for size in ("512", "0x8", "8x", "x8", "8x8x8", "8X8", "-8x8", "99999x8"):
             self.says(self.refused("render", "box.toml", "-o", "a.exr", "--size", size), "--size")
-        self.refused("solve", "box.toml", "--error", "small")
+        for error in ("small", "0", "-1", "2", "0.1x", "nan"):
+            self.says(self.refused("solve", "box.toml", "--error", error), f'--error: "{error}" is not a number above 0 and at most 1')
         self.refused("render", "box.toml", "-o", "a.exr", "--distributed-lights", "0")
 
     def test_unknown_words_of_options(self):

@@ -28,6 +28,7 @@ TEST(NoiseText, MoreNoiseThanLightHasNoShareOfIt) {
 TEST(NoiseText, FiguresHaveTwoDigitsAndNoPowerOfTen) {
   EXPECT_EQ(scenes::two_digits(0.0), "0");
   EXPECT_EQ(scenes::two_digits(0.00001349), "0.000013");
+  EXPECT_EQ(scenes::two_digits(1e-298), "1e-298");  // not three hundred zeros
   EXPECT_EQ(scenes::two_digits(0.71), "0.71");
   EXPECT_EQ(scenes::two_digits(7.06), "7.1");
   EXPECT_EQ(scenes::two_digits(99.6), "100");
