@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/console.h"
+
 namespace earthshine::app {
 namespace {
 
@@ -103,6 +105,11 @@ void add_tone_options(CLI::App& command, ToneChoice& tone, const std::string& mo
       "With --exposure: shoulder (default; bright parts keep their differences), clip (linear up "
       "to white)")
       ->needs("--exposure");
+}
+
+void note_unused_curve(const ToneChoice& tone, bool quiet) {
+  if (quiet || tone.shared() || tone.curve == base::ToneCurve::Shoulder) return;
+  note("note: --curve has no effect: --exposure own shows each picture by a curve of its own");
 }
 
 void add_size_option(CLI::App& command, std::optional<Size>& size) {

@@ -40,6 +40,9 @@ inline constexpr double usual_percent = 99.5;  // of --exposure auto
 // else an option's help says.
 void add_tone_options(CLI::App& command, ToneChoice& tone, const std::string& more);
 
+// A note where --curve has nothing to bend.
+void note_unused_curve(const ToneChoice& tone, bool quiet);
+
 // The words between the commas, also empty ones.
 [[nodiscard]] std::vector<std::string> split_at_commas(const std::string& text);
 

@@ -100,6 +100,7 @@ void run(const AccuracyCall& call, const Common& common) {
     return patches_fit(loaded, solver, static_cast<std::size_t>(patches), false);
   };
   const AccuracyTask task{call, common, loaded, query, view, store};
+  note_unused_json(call.part, call.json, common.quiet);
   if (call.part.in_parts()) {
     PartCall part = call.part;
     share_accuracy(task, part);

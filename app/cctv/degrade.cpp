@@ -155,13 +155,6 @@ Json picture_json(const degrade::RadianceFile& file, const base::ExrHeader::Whol
 }
 
 void run(const DegradeCall& call, const Common& common) {
-  if ((call.list || !call.describe.empty()) && !(call.tape.inputs.empty() && call.output.empty()))
-    refuse("degrade", "--list and --describe make no picture",
-           "Leave out the picture and -o, or them");
-  if (call.list) return list_cameras(call.json);
-  if (!call.describe.empty()) {
-    return print_camera(camera_of_argument("--describe", call.describe), call.json);
-  }
   check_call(call);
   const std::vector<TapeFrame> tape = lay_out(call.tape);
   const Files inputs = inputs_of(call);
@@ -288,8 +281,13 @@ std::vector<Command> add_degrade(CLI::App& program) {
       ->type_name("CAMERA");
   parser->add_flag("--json", call->json, "Report as JSON on standard output");
   const Command certify = add_certify(*parser);
-  const auto picture = [call, certify](const Common& common) {
-    if (!certify.parser->parsed()) run(*call, common);
+  const auto picture = [parser, call, certify](const Common& common) {
+    if (certify.parser->parsed()) return refuse_beside("certify", *parser, {});
+    if (!call->list && call->describe.empty()) return run(*call, common);
+    const std::string asked = call->list ? "--list" : "--describe";
+    refuse_beside(asked, *parser, {asked, "--json"});
+    if (call->list) return list_cameras(call->json);
+    print_camera(camera_of_argument(asked, call->describe), call->json);
   };
   return {{parser, picture}, certify};
 }

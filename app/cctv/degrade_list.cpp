@@ -2,8 +2,10 @@
 #include "app/cctv/degrade_list.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <vector>
+#include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "app/cctv/cctv.h"
 #include "app/console.h"
@@ -168,6 +170,20 @@ degrade::ResolvedCamera of_preset(std::string_view option, const std::string& na
 }
 
 }  // namespace
+
+void refuse_beside(const std::string& asked, const CLI::App& degrade,
+                   std::vector<std::string> own) {
+  own.insert(own.end(), {"--threads", "--seed", "--max-memory", "--quiet"});
+  std::vector<std::string> others;
+  for (const CLI::Option* option : degrade.get_options()) {
+    if (option->count() == 0 || std::ranges::find(own, option->get_name()) != own.end()) continue;
+    others.push_back(option->get_name());
+  }
+  if (others.empty()) return;
+  throw Error(Blame::Input, "degrade",
+              fmt::format("{} makes no picture and takes no {}", asked, fmt::join(others, ", ")),
+              {}, "Leave out the one or the other");
+}
 
 Json camera_json(const degrade::ResolvedCamera& camera) {
   Json json = {{"name", camera.name}, {"about", camera.about}};

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "app/command.h"
 #include "degrade/settings/camera_file.h"
@@ -13,6 +14,10 @@ namespace earthshine::app {
 // All settings in use with unit and source, the noise in all forms, the monitor.
 [[nodiscard]] Json camera_json(const degrade::ResolvedCamera& camera);
 [[nodiscard]] std::string describe_camera(const degrade::ResolvedCamera& camera);
+
+// Throws base::Error (Input) where the call names more beside `asked`, which makes no picture, than
+// its `own` options and those of every command.
+void refuse_beside(const std::string& asked, const CLI::App& degrade, std::vector<std::string> own);
 
 void list_cameras(bool as_json);
 void print_camera(const degrade::ResolvedCamera& camera, bool as_json);

@@ -165,6 +165,11 @@ void add_part_options(CLI::App& command, PartCall& part) {
       ->needs("--part");
 }
 
+void note_unused_json(const PartCall& part, bool json, bool quiet) {
+  if (!json || quiet || !part.in_parts() || part.task == PartCall::Task::Merge) return;
+  note("note: --json has no effect: a part reports nothing, and merge --json all of it");
+}
+
 OutputWord output_in(std::vector<std::string>& arguments) {
   for (std::size_t k = 0; k < arguments.size(); ++k) {
     std::string& word = arguments[k];

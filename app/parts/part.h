@@ -37,6 +37,9 @@ inline constexpr const char* parts_file = "parts.json";
 // --part K/N, auto, auto/N, solve or merge; --wait SECONDS.
 void add_part_options(CLI::App& command, PartCall& part);
 
+// A note where a report is asked for of a part that has none.
+void note_unused_json(const PartCall& part, bool json, bool quiet);
+
 // The items from `first` to before `last` of a part.
 struct Share {
   std::size_t first = 0, last = 0;

@@ -71,6 +71,7 @@ void check_call(const RenderCall& call, bool quiet) {
   check_ending(call.range, "--range", ".exr");
   check_ending(call.report, "--report", ".json");
   check_over(call);
+  note_unused_curve(call.tone, quiet);
   if (call.tone.shared() && call.png.empty()) {
     throw Error(Blame::Input, "--exposure", "is how a PNG is shown, and none is written", {},
                 "Name one with --png, or leave --exposure out");
@@ -101,8 +102,9 @@ void check_call(const RenderCall& call, bool quiet) {
 }
 
 // What a part cannot do alone, or what depends on the process.
-void check_part(const RenderCall& call) {
+void check_part(const RenderCall& call, bool quiet) {
   if (!call.part.in_parts()) return;
+  note_unused_json(call.part, call.json, quiet);
   const std::array<std::pair<const char*, bool>, 6> not_in_parts = {
       {{call.pixel_option(), call.only_pixel},
        {"--time-limit", call.time_limit_s > 0.0},
@@ -169,7 +171,7 @@ std::vector<const scenes::Camera*> cameras_of(const std::vector<Wanted>& picture
 
 void run(RenderCall call, const Common& common) {
   check_call(call, common.quiet);
-  check_part(call);
+  check_part(call, common.quiet);
   StageTimes times;
   std::vector<Wanted> pictures;
   const LoadedScene loaded = times.measure("read", [&] {

@@ -69,7 +69,7 @@ void add_wanted_options(CLI::App& command, std::vector<std::string>& wanted,
 }
 
 studies::StudyFile study_of(const StudyCall& call, const std::vector<std::string>& wanted,
-                            const std::vector<std::string>& iris, bool quiet) {
+                            const std::vector<std::string>& iris) {
   studies::StudyFile study;
   study.scenes = {call.scene.path};
   study.name = std::filesystem::path(call.scene.path).stem().string();
@@ -80,9 +80,6 @@ studies::StudyFile study_of(const StudyCall& call, const std::vector<std::string
     study.rows = call.size->rows;
   }
   study.lamps = {studies::lamps_as_they_are()};
-  if (!iris.empty() && wanted.empty() && !quiet) {
-    note("note: --iris has no effect: it is what --wanted may choose, which is not there");
-  }
   study.iris = iris;
   std::sort(study.iris.begin(), study.iris.end());
   study.iris.erase(std::unique(study.iris.begin(), study.iris.end()), study.iris.end());

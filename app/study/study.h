@@ -37,7 +37,7 @@ void add_wanted_options(CLI::App& command, std::vector<std::string>& wanted,
 // The call as a study of one scene at its own place, with its lamps as they are.
 [[nodiscard]] studies::StudyFile study_of(const StudyCall& call,
                                           const std::vector<std::string>& wanted,
-                                          const std::vector<std::string>& iris, bool quiet);
+                                          const std::vector<std::string>& iris);
 
 [[nodiscard]] Command add_study_accuracy(CLI::App& study);
 [[nodiscard]] Command add_study_compare(CLI::App& study);

@@ -98,13 +98,12 @@ std::string visibility_text(const StudyResults& study) {
 }
 
 void run_visibility(const VisibilityCall& call, const Common& common) {
-  StudyTask task =
-      task_of(study_of(call.study, call.wanted, call.iris, common.quiet), call, "study visibility");
+  StudyTask task = task_of(study_of(call.study, call.wanted, call.iris), call, "study visibility");
   run_and_print(std::move(task), common, call.study.json, call.dry_run, visibility_text);
 }
 
 void run_orbit(const OrbitCall& call, const Common& common) {
-  studies::StudyFile study = study_of(call.study, call.wanted, call.iris, common.quiet);
+  studies::StudyFile study = study_of(call.study, call.wanted, call.iris);
   study.positions_deg = call.at.empty() ? studies::even_positions(static_cast<int>(call.positions))
                                         : positions_of(call.at);
   study.timeline = call.at.empty() && call.positions > 1;

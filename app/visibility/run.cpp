@@ -162,8 +162,27 @@ class Runner {
   std::vector<std::vector<ViewingConfiguration>> ways_;
 };
 
+void note_unused(const StudyTask& task) {
+  const studies::StudyFile& study = task.study;
+  for (const std::string& warning : study.warnings) note("warning: " + warning);
+  if (!study.iris.empty() && study.wanted.empty()) {
+    const std::string_view dashes = study.path.empty() ? "--" : "";
+    note(fmt::format(
+        "note: {0}iris has no effect: it is what {0}wanted may choose, which is not there",
+        dashes));
+  }
+  const bool placed = std::ranges::any_of(study.overrides, [](const std::string& setting) {
+    return setting.starts_with("orbit.position_deg=");
+  });
+  if (placed && !study.positions_deg.empty()) {
+    note("note: orbit.position_deg has no effect: the study goes to positions of its own");
+  }
+  note_unused_curve(task.tone, false);
+}
+
 // The scenes of the task, and its name and pictures where it says nothing of them.
 Parts prepare(StudyTask& task, const Common& common) {
+  if (!common.quiet) note_unused(task);
   Parts parts = prepare_parts(task.study, common);
   check_models(task.study, pointers(parts));
   const std::string& scene = parts.front()->loaded.scene.name;
@@ -226,6 +245,7 @@ void run_and_print(StudyTask task, const Common& common, bool json, bool dry_run
     const Json plan = plan_study(std::move(task), common);
     return print(json ? dump(plan) : plan_text(plan));
   }
+  note_unused_json(task.part, json, common.quiet);
   const std::optional<StudyResults> found = run_study(std::move(task), common);
   if (!found) return;  // a part has nothing to tell
   print(json ? dump(to_json(*found)) : text(*found));

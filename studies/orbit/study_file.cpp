@@ -141,7 +141,7 @@ LampSetting read_lamps(const TomlNode& node) {
   return setting;
 }
 
-PictureWish read_picture(const TomlNode& node) {
+PictureWish read_picture(const TomlNode& node, std::vector<std::string>& warnings) {
   TableReader table(node, "[[picture]]", picture_keys);
   PictureWish wish;
   wish.where = table.where();
@@ -155,6 +155,13 @@ PictureWish read_picture(const TomlNode& node) {
   wish.shows = static_cast<Shows>(found - std::begin(shows_words));
   wish.lights = table.whole("lights", 2, 65536).value_or(wish.lights);
   wish.cctv = table.text("cctv").value_or("");
+  const bool spreads = wish.shows == Shows::Distributed || wish.shows == Shows::DistributedCctv;
+  const bool films = wish.shows == Shows::Cctv || wish.shows == Shows::DistributedCctv;
+  for (const auto& [key, used] : {std::pair{"lights", spreads}, {"cctv", films}}) {
+    if (used || !table.has(key)) continue;
+    warnings.push_back(fmt::format("{}: \"{}\" in {} has no effect: it shows \"{}\"",
+                                   base::to_string(table.where(key)), key, table.label(), shows));
+  }
   return wish;
 }
 
@@ -162,7 +169,7 @@ void read_pictures(StudyFile& study, const TableReader& root) {
   const auto entries = scenes::named_entries(root, "picture");
   std::vector<std::string> names;
   for (const TomlNode* entry : entries) {
-    study.pictures.push_back(read_picture(*entry));
+    study.pictures.push_back(read_picture(*entry, study.warnings));
     names.push_back(study.pictures.back().name);
   }
   scenes::check_unique(names, entries, "[[picture]]");

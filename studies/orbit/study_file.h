@@ -58,6 +58,7 @@ struct StudyFile {
   std::map<std::string, base::Location> where;  // of the file's keys; none of a study without one
   double seen_probability = 0.5;                // from which on a target counts as seen
   BasisOptions basis;
+  std::vector<std::string> warnings;  // of keys without effect, with their places
 
   // Where a key stands, or its name.
   [[nodiscard]] base::Location place(const std::string& key) const;

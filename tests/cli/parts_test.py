@@ -296,6 +296,10 @@ rm filler
         self.says(self.refused(*CALL, "--part", "half"), "K/N")
         self.says(self.refused(*CALL, "--part", "auto"), "SLURM_ARRAY_TASK_ID", "K/N")
         self.says(self.refused("merge", "."), "parts.json")
+        for call in (CALL, ("study", "visibility", "ball.toml", "-o", "d", "--size", "8x8")):
+            run = self.run_program(*call, "--part", "1/2", "--json")
+            self.assertEqual((run.returncode, run.stdout), (0, ""))
+            self.says(run.stderr, "note: --json has no effect: a part reports nothing, and merge --json all of it")
 
 
 if __name__ == "__main__":

@@ -70,6 +70,24 @@ class Refused(Case):
         self.assertNotIn("--set", self.refused("study", "run", "bad.toml", "-o", "d"))
         self.says(self.refused_cleanly("study", "run", "gone.toml"), "gone.toml")
 
+    def test_what_has_no_effect_is_said(self):
+        def told(*call, more=()):
+            run = self.run_program("study", *call, "-o", "d", "--dry-run", *more)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            return run.stderr
+        self.write("idle.toml", STUDY.replace('wanted = ["box>=0.5"]', 'set = ["orbit.position_deg=30"]').replace(
+            "position_deg = 0\n\n", 'position_deg = 0\nlights = 8\ncctv = "ideal"\n\n').replace("lights = 4", 'lights = 4\ncctv = "ideal"'))
+        said = told("run", "idle.toml", more=("--exposure", "own", "--curve", "clip"))
+        self.says(said, "note: iris has no effect", "note: orbit.position_deg has no effect", "note: --curve has no effect")
+        self.assertRegex(said, r'idle.toml:2\d:1: "lights" in \[\[picture\]\] "noon" has no effect: it shows "clean"')
+        self.assertRegex(said, r'idle.toml:3\d:1: "cctv" in \[\[picture\]\] "few lights" has no effect: it shows "distributed"')
+        self.assertEqual(said.count('"cctv" in'), 2)
+        self.assertEqual(told("run", "s.toml"), "")
+        self.assertEqual(told("run", "idle.toml", more=("-q",)), "")
+        self.says(told("orbit", "bay.toml", "--at", "0", "--iris", "peak", "--set", "orbit.position_deg=30"),
+                  "note: --iris has no effect", "note: orbit.position_deg has no effect")
+        self.assertNotIn("position_deg", told("visibility", "bay.toml", "--set", "orbit.position_deg=30"))
+
     def test_folder_that_cannot_be(self):
         self.says(self.refused("study", "run", "s.toml", "-o", "bay.toml"), "bay.toml", "folder")
         (self.folder / "o" / "study.json").mkdir(parents=True)

@@ -115,7 +115,14 @@ class WrongCalls(program.Case):
         self.assertEqual(run.returncode, 0, run.stderr)
         self.says(run.stderr, "note: --time-limit has no effect: no error is asked for")
         self.says(self.refused("form-factors", "box.toml", "--method", "exact", "--raw"), "--raw")
-        self.says(self.refused("degrade", "a.exr", "-o", "a.png", "--list"), "--list", "-o")
+        run = self.run_program("render", "box.toml", "-o", "a.exr", "--png", "a.png", "--exposure", "own", "--curve", "clip")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.says(run.stderr, "note: --curve has no effect: --exposure own")
+        self.says(self.refused("degrade", "a.exr", "-o", "a.png", "--list"), "--list", "takes no IN, --output")
+        self.says(self.refused("degrade", "--list", "--describe", "sit-monochrome"), "--list", "takes no --describe")
+        self.says(self.refused("degrade", "--describe", "sit-monochrome", "--off", "lag"), "--describe", "takes no --off")
+        self.says(self.refused("degrade", "a.exr", "-o", "a.json", "certify", "sit-monochrome"), "certify", "takes no IN, --output")
+        self.done("degrade", "--list", "--json", "-q", "--seed", "3")
 
     def test_what_is_wrong_with_a_value_is_said(self):
         self.says(self.refused("render", "box.toml", "-o", "a.exr", "--time-limit", "1e300"), "up to 10000000")
