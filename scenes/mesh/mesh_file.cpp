@@ -66,6 +66,7 @@ Mesh read_mesh(const std::filesystem::path& path, const std::filesystem::path& s
   Mesh mesh;
   if (ending == ".obj") {
     mesh = parse_obj(bytes, path, folders, normals);
+    list_map_files(mesh, folders);
   } else if (ending == ".ply") {
     mesh = parse_ply(bytes, path, normals);
   } else if (ending == ".stl") {

@@ -240,25 +240,49 @@ void parse_mtl(std::string_view text, const std::filesystem::path& path,
   MtlReader(text, path, folders, mesh).read();
 }
 
+namespace {
+
+// A name with spaces, if there is such a file, else several names.
+std::vector<std::filesystem::path> paths_of(const MaterialLibrary& library, const Mesh& mesh,
+                                            std::span<const std::filesystem::path> folders) {
+  const std::filesystem::path folder = mesh.path.parent_path();
+  std::vector<std::filesystem::path> paths{
+      confined_path(folder, library.named, folders, library.where)};
+  std::error_code ignored;
+  if (!std::filesystem::exists(paths.front(), ignored) &&
+      library.named.find_first_of(" \t") != std::string::npos) {
+    paths.clear();
+    TextLines words(library.named, {}, TextLines::Style::Plain);
+    while (words.next()) {
+      for (const Word& word : words.words()) {
+        paths.push_back(confined_path(folder, word.text, folders, library.where));
+      }
+    }
+  }
+  return paths;
+}
+
+}  // namespace
+
+void list_map_files(Mesh& mesh, std::span<const std::filesystem::path> folders) {
+  std::vector<std::filesystem::path> found;
+  for (const MaterialLibrary& library : mesh.libraries) {
+    try {
+      for (const auto& path : paths_of(library, mesh, folders)) {
+        list_map_files(base::read_input_file(path, max_library_bytes, library.where), path, folders,
+                       found);
+      }
+    } catch (const Error&) {  // said once it is read, if ever it is
+    }
+  }
+  mesh.files.insert(mesh.files.end(), found.begin(), found.end());
+}
+
 void read_material_libraries(Mesh& mesh, std::span<const std::filesystem::path> folders) {
   const std::vector<MaterialLibrary> libraries = std::move(mesh.libraries);
   mesh.libraries.clear();
-  const std::filesystem::path folder = mesh.path.parent_path();
   for (const MaterialLibrary& library : libraries) {
-    // A name with spaces, if there is such a file, else several names.
-    std::vector<std::string> names{library.named};
-    std::error_code ignored;
-    if (!std::filesystem::exists(confined_path(folder, library.named, folders, library.where),
-                                 ignored) &&
-        library.named.find_first_of(" \t") != std::string::npos) {
-      names.clear();
-      TextLines words(library.named, {}, TextLines::Style::Plain);
-      while (words.next()) {
-        for (const Word& word : words.words()) names.emplace_back(word.text);
-      }
-    }
-    for (const std::string& name : names) {
-      const auto path = confined_path(folder, name, folders, library.where);
+    for (const std::filesystem::path& path : paths_of(library, mesh, folders)) {
       mesh.files.push_back(path);
       parse_mtl(base::read_input_file(path, max_library_bytes, library.where), path, folders, mesh);
     }

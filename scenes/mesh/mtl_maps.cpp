@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "base/input/input_file.h"
 #include "scenes/mesh.h"
@@ -81,6 +82,36 @@ bool MtlMaps::read(const TextLines& line, bool is_mask, TextureMap& map) {
   transform.shift = {shift.x, 1.0 - shift.y - scale.y};
   map.transform = std::make_shared<const TextureTransform>(transform);
   return true;
+}
+
+void list_map_files(std::string_view text, const std::filesystem::path& library,
+                    std::span<const std::filesystem::path> folders,
+                    std::vector<std::filesystem::path>& files) {
+  constexpr std::string_view others[] = {"bump", "norm", "disp", "decal", "refl"};
+  constexpr std::size_t most_words = 64;  // options and a name with blanks
+  std::set<std::string, std::less<>> seen;
+  TextLines lines(text, library.string(), TextLines::Style::Wavefront);
+  while (lines.next()) {
+    const auto& words = lines.words();
+    const std::string_view keyword = words.front().text;
+    const bool names_picture =
+        keyword.starts_with("map_") || std::ranges::find(others, keyword) != std::end(others);
+    if (!names_picture || !seen.emplace(lines.argument()).second) continue;
+    // The name is behind options, and may have blanks.
+    for (std::size_t k = 1; k < std::min(words.size(), most_words); ++k) {
+      const char* const last = words.back().text.data() + words.back().text.size();
+      std::string name(words[k].text.data(), last);
+      std::replace(name.begin(), name.end(), '\\', '/');
+      std::error_code ignored;
+      const std::filesystem::path path = library.parent_path() / name;
+      if (!std::filesystem::is_regular_file(path, ignored)) continue;
+      try {
+        files.push_back(confined_path(library.parent_path(), name, folders, lines.where()));
+      } catch (const base::Error&) {  // leads elsewhere: nothing that the scene has
+      }
+      break;
+    }
+  }
 }
 
 }  // namespace earthshine::scenes

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenes/scene.h"
@@ -32,5 +33,10 @@ class MtlMaps {
   std::vector<std::filesystem::path>& files_;  // those that were asked for
   PictureShelf shelf_;
 };
+
+// Adds the files that there are of all lines that name a picture: bump maps and the like, too.
+void list_map_files(std::string_view text, const std::filesystem::path& library,
+                    std::span<const std::filesystem::path> folders,
+                    std::vector<std::filesystem::path>& files);
 
 }  // namespace earthshine::scenes

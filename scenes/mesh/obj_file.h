@@ -24,6 +24,10 @@ namespace earthshine::scenes {
 void parse_mtl(std::string_view text, const std::filesystem::path& path,
                std::span<const std::filesystem::path> folders, Mesh& mesh);
 
+// Adds the pictures that lines of mesh.libraries name to mesh.files, whether they are read here or
+// not: nobody wants them written over.
+void list_map_files(Mesh& mesh, std::span<const std::filesystem::path> folders);
+
 // Reads mesh.libraries into mesh.materials and empties the list.
 void read_material_libraries(Mesh& mesh, std::span<const std::filesystem::path> folders);
 

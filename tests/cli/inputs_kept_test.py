@@ -57,6 +57,18 @@ class InputsKept(program.Case):
         for name in INPUTS:
             self.kept("solve", "scene.toml", "-o", name, name=name)
 
+    def test_pictures_of_materials_that_are_not_read(self):
+        """Bump maps, and all maps of a mesh whose material is the scene's."""
+        names = ("skin of a.png", "bump.png", "shine.png")
+        for name in names:
+            self.write(name, "not read")
+        self.write("a.mtl", "newmtl red\nKd 0.5 0.1 0.1\nmap_Bump -bm 0.3 bump.png\nmap_Ks ./shine.png\nmap_Kd -s 2 2 skin of a.png\n")
+        self.write("own.toml", SCENE.replace('mesh = "a.obj"', 'mesh = "a.obj"\nmaterial = "white"'))
+        self.before = self.digests()
+        for scene in ("scene.toml", "own.toml"):
+            for name in names:
+                self.kept("render", scene, "-o", "fresh.exr", "--png", name, name=name)
+
     def test_by_links_of_both_kinds_and_other_spellings(self):
         os.link(self.folder / "a.obj", self.folder / "hard.h5")
         os.symlink("a.bin", self.folder / "soft.exr")
