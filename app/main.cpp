@@ -69,6 +69,7 @@ int run(std::vector<std::string> arguments, const Workers& workers);
 int study_in_ranks(const std::vector<std::string>& arguments, base::Ranks& ranks) {
   const auto task = [&](const std::string& part, const Workers& workers) {
     std::vector<std::string> call = arguments;
+    if (part != "merge") std::erase(call, "--json");  // which alone has a report
     call.insert(call.end(), {"--part", part});
     return run(std::move(call), workers);
   };

@@ -129,8 +129,10 @@ void add_origin(base::ExrHeader& result, const scenes::Scene& scene,
   header.text("seed", std::to_string(seed));
 }
 
-HeaderTexts partial_mark(bool stopped) {
-  return stopped ? HeaderTexts{{"earthshine:partial", "yes"}} : HeaderTexts{};
+HeaderTexts partial_mark(const base::ExrHeader& header) {
+  const std::pair<std::string, std::string> mark{"earthshine:partial", "yes"};
+  return std::ranges::find(header.text, mark) != header.text.end() ? HeaderTexts{mark}
+                                                                   : HeaderTexts{};
 }
 
 base::ExrHeader provenance_header(const Provenance& p) {

@@ -25,8 +25,9 @@ struct Provenance {
   const raytrace::RenderReport& render;
 };
 
-// Of a PNG that was stopped: "earthshine:partial", as every header of an EXR says; else nothing.
-[[nodiscard]] HeaderTexts partial_mark(bool stopped);
+// For what is made of a picture that was stopped, by its header: "earthshine:partial"; else
+// nothing.
+[[nodiscard]] HeaderTexts partial_mark(const base::ExrHeader& header);
 
 [[nodiscard]] std::string indirect_name(raytrace::Indirect indirect);
 

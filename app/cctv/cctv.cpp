@@ -100,20 +100,22 @@ degrade::Result run_chain(const CctvSetup& setup, const base::Image& radiance) {
 
 namespace {
 
-HeaderTexts provenance(const CctvSetup& setup, const degrade::Result& result) {
-  return {{"Software", "earthshine " EARTHSHINE_VERSION},
-          {"earthshine:cctv", setup.name},
-          {"earthshine:seed", std::to_string(setup.chain.options.seed)},
-          {"earthshine:frame", std::to_string(setup.chain.options.frame)},
-          {"earthshine:cctv.report", cctv_json(setup, result).dump()}};
+HeaderTexts provenance(const CctvSetup& setup, const degrade::Result& result,
+                       const HeaderTexts& more) {
+  HeaderTexts texts = {{"Software", "earthshine " EARTHSHINE_VERSION},
+                       {"earthshine:cctv", setup.name},
+                       {"earthshine:seed", std::to_string(setup.chain.options.seed)},
+                       {"earthshine:frame", std::to_string(setup.chain.options.frame)},
+                       {"earthshine:cctv.report", cctv_json(setup, result).dump()}};
+  texts.insert(texts.end(), more.begin(), more.end());
+  return texts;
 }
 
 }  // namespace
 
 void write_cctv(const std::string& path, const CctvSetup& setup, const degrade::Result& result,
                 const HeaderTexts& more) {
-  HeaderTexts texts = provenance(setup, result);
-  texts.insert(texts.end(), more.begin(), more.end());
+  const HeaderTexts texts = provenance(setup, result, more);
   if (path.ends_with(".exr")) {
     base::write_exr(path, result.viewed, {texts, {}});
   } else {
@@ -122,8 +124,8 @@ void write_cctv(const std::string& path, const CctvSetup& setup, const degrade::
 }
 
 void write_twin(const std::string& path, const CctvSetup& setup, const degrade::Twin& twin,
-                const degrade::Result& noisy) {
-  base::write_exr(path, degrade::to_image(twin, noisy), {provenance(setup, noisy), {}});
+                const degrade::Result& noisy, const HeaderTexts& more) {
+  base::write_exr(path, degrade::to_image(twin, noisy), {provenance(setup, noisy, more), {}});
 }
 
 Json twin_json(const degrade::Twin& twin) {

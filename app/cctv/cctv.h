@@ -55,7 +55,7 @@ void write_cctv(const std::string& path, const CctvSetup& setup, const degrade::
                 const HeaderTexts& more = {});
 
 void write_twin(const std::string& path, const CctvSetup& setup, const degrade::Twin& twin,
-                const degrade::Result& noisy);
+                const degrade::Result& noisy, const HeaderTexts& more = {});
 // Medians over the resels, and the share of the picture where a target is seen as often as not.
 [[nodiscard]] Json twin_json(const degrade::Twin& twin);
 

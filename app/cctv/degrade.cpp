@@ -12,6 +12,7 @@
 #include "app/console.h"
 #include "app/options.h"
 #include "app/output.h"
+#include "app/provenance.h"
 #include "base/error.h"
 #include "base/files/exr_reader.h"
 #include "degrade/settings/radiance_file.h"
@@ -174,6 +175,7 @@ void run(const DegradeCall& call, const Common& common) {
   degrade::Memory memory, twin_memory;
   memory.f_number = twin_memory.f_number = call.f_number;
   Json reports = Json::array();
+  const HeaderTexts mark = partial_mark(header);
   if (header.whole.columns > 0 && !common.quiet) {
     note("note: the picture is a crop: iris and glare see only this part of the view");
   }
@@ -200,7 +202,7 @@ void run(const DegradeCall& call, const Common& common) {
     }
     memory = result.memory;
     result.report.negative_pixels += reader.file.negative_pixels;
-    if (is_own) write_cctv(numbered(call.output, frame.number), setup, result);
+    if (is_own) write_cctv(numbered(call.output, frame.number), setup, result, mark);
     Json report = cctv_json(setup, result);
     report["picture"] = picture_json(reader.file, header.whole);
     if (!call.twin.empty()) {
@@ -208,7 +210,7 @@ void run(const DegradeCall& call, const Common& common) {
                                                setup.chain.camera, setup.chain.monitor, options,
                                                {static_cast<int>(call.target_resels)}, twin_memory);
       twin_memory = twin.memory;
-      if (is_own) write_twin(numbered(call.twin, frame.number), setup, twin, result);
+      if (is_own) write_twin(numbered(call.twin, frame.number), setup, twin, result, mark);
       report["twin"] = twin_json(twin);
     }
     if (!is_own) continue;

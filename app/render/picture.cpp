@@ -206,7 +206,7 @@ Picture take_picture(const Studio& studio, const scenes::Camera& camera, const P
   add_errors(header, drawn);
   if (call.timings) add_times(header, times);
   times.measure("write", [&] {
-    const HeaderTexts mark = partial_mark(frame.report.stopped);
+    const HeaderTexts mark = partial_mark(header);
     if (tone) base::write_png(files.png, frame.image.width, frame.image.height, 3, tone->rgb, mark);
     if (screen) write_cctv(files.cctv, *cctv, *screen, mark);
     if (!files.output.empty()) base::write_exr(files.output, frame.image, header);

@@ -10,6 +10,7 @@
 #include "app/console.h"
 #include "app/options.h"
 #include "app/output.h"
+#include "app/provenance.h"
 #include "base/error.h"
 #include "base/files/exr_file.h"
 #include "base/files/png_file.h"
@@ -123,7 +124,8 @@ void run(const RelightCall& call, const Common& common) {
   if (!call.output.empty()) base::write_exr(call.output, file.image, file.header);
   if (!call.png.empty()) {
     const base::ToneMapped tone = base::tone_map(file.image);
-    base::write_png(call.png, file.image.width, file.image.height, 3, tone.rgb);
+    base::write_png(call.png, file.image.width, file.image.height, 3, tone.rgb,
+                    partial_mark(file.header));
   }
   if (call.json) {
     print(dump(report_of(file.image, file.header, factors)));

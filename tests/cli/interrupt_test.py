@@ -68,7 +68,9 @@ class BrokenOff(program.Case):
         self.write("photo.png", (self.folder / "a.png").read_bytes())
         _, _, err, _ = self.stopped("render", "ball.toml", "--camera", "A", "--over", "photo.png", "--over-style", "both", "--png", "o.png", *LONG)
         self.says(err, "in o.png, which says it is partial")
-        for png in (*pngs, "o.png"):
+        self.done("degrade", "a.exr", "-o", "d.png", "--twin", "t.exr")
+        self.assertEqual(exr.read(self.folder / "t.exr")[0]["earthshine:partial"], "yes")
+        for png in (*pngs, "o.png", "d.png"):
             self.assertIn(mark, (self.folder / png).read_bytes())
 
     def test_it_says_what_is_missing(self):

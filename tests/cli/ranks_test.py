@@ -175,6 +175,9 @@ class Results(OfRanks):
             self.assertEqual(*(self.without_program(self.study(folder)) for folder in (f"o{count}", "w")))
             for path in (self.folder / "w" / "pictures").iterdir():
                 self.assertEqual((self.folder / f"o{count}" / "pictures" / path.name).read_bytes(), path.read_bytes())
+        run = self.ranks(2, "study", "visibility", "bay.toml", "-o", "j", "--size", "8x8", "--json")  # the merge alone reports
+        self.assertEqual(json.loads(run.stdout)["study"], "visibility")
+        self.assertNotIn("--json has no effect", run.stderr)
 
 
 
