@@ -63,14 +63,15 @@ class BrokenOff(program.Case):
         pngs = ("a.png", "c.png")
         for png in pngs:
             self.assertNotIn(mark, (self.folder / png).read_bytes())
-        _, _, err, _ = self.stopped(*self.call, "--png", "a.png", "--cctv", "c.png")
+        _, _, err, _ = self.stopped(*self.call, "--png", "a.png", "--cctv", "c.png", "--per-light")
         self.says(err, "a.exr, a.png, c.png, which say they are partial")
         self.write("photo.png", (self.folder / "a.png").read_bytes())
         _, _, err, _ = self.stopped("render", "ball.toml", "--camera", "A", "--over", "photo.png", "--over-style", "both", "--png", "o.png", *LONG)
         self.says(err, "in o.png, which says it is partial")
         self.done("degrade", "a.exr", "-o", "d.png", "--twin", "t.exr")
         self.assertEqual(exr.read(self.folder / "t.exr")[0]["earthshine:partial"], "yes")
-        for png in (*pngs, "o.png", "d.png"):
+        self.done("relight", "a.exr", "--set", "lamp=0.5", "--png", "r.png")
+        for png in (*pngs, "o.png", "d.png", "r.png"):
             self.assertIn(mark, (self.folder / png).read_bytes())
 
     def test_it_says_what_is_missing(self):
