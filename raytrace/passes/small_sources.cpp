@@ -13,7 +13,8 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr double wanted_hits = 64.0;
-constexpr double large_px2 = 1.0;  // from there on the first few samples meet it
+constexpr double large_px2 = 1.0;   // from there on the first few samples meet it
+constexpr double least_px2 = 1e-6;  // what sums leave of nothing is less
 constexpr double most_for_one = 65536.0, least_budget = 1048576.0, budget_per_pixel = 4.0;
 constexpr double far_m = 1e9;  // stands for infinity
 
@@ -22,37 +23,93 @@ struct Source {
   double area_m2 = 0.0, radius_m = 0.0;
 };
 
-// Of a source, px: its middle, and how far about it pixels' centres show some of it.
+// Of a source as a pinhole shows it, px.
 struct Image {
   Source source;
-  glm::dvec2 film{0.0};
-  double reach = 0.0;
-  float area_px2 = 0.0F;
+  glm::dvec2 middle{0.0};
+  double radius = 0.0, blur = 0.0;  // that a lens makes of each of its points
+  double area_px2 = 0.0;
+};
+
+// Area per pixel of the picture. What is added to a rectangle is kept at its corners until it is
+// summed up, since a lens spreads each of a million sources over thousands of pixels.
+class AreaMap {
+ public:
+  AreaMap(int columns, int rows)
+      : columns_(columns),
+        rows_(rows),
+        values_(static_cast<std::size_t>(columns + 1) * static_cast<std::size_t>(rows + 1), 0.0) {}
+
+  // To pixels whose centres are within `reach` of the place, across and down.
+  void add(const glm::dvec2& middle, double reach, double area) {
+    const int x0 = edge(middle.x - reach, columns_), x1 = edge(middle.x + reach, columns_);
+    const int y0 = edge(middle.y - reach, rows_), y1 = edge(middle.y + reach, rows_);
+    at(x0, y0) += area;
+    at(x1, y1) += area;
+    at(x1, y0) -= area;
+    at(x0, y1) -= area;
+  }
+  void sum_up() {
+    for (int y = 0; y < rows_; ++y) {
+      for (int x = 1; x < columns_; ++x) at(x, y) += at(x - 1, y);
+    }
+    for (int y = 1; y < rows_; ++y) {
+      for (int x = 0; x < columns_; ++x) at(x, y) += at(x, y - 1);
+    }
+  }
+  [[nodiscard]] double operator()(int x, int y) const { return values_[index(x, y)]; }
+  // At a place of the picture and in the pixels beside it.
+  [[nodiscard]] double most_about(const glm::dvec2& place) const {
+    const int x = static_cast<int>(std::clamp(place.x, 0.0, columns_ - 1.0));
+    const int y = static_cast<int>(std::clamp(place.y, 0.0, rows_ - 1.0));
+    double most = 0.0;
+    for (int ny = std::max(0, y - 1); ny <= std::min(rows_ - 1, y + 1); ++ny) {
+      for (int nx = std::max(0, x - 1); nx <= std::min(columns_ - 1, x + 1); ++nx) {
+        most = std::max(most, (*this)(nx, ny));
+      }
+    }
+    return most;
+  }
+
+ private:
+  // The first pixel whose centre lies behind it.
+  static int edge(double film, int count) {
+    return static_cast<int>(std::clamp(std::ceil(film - 0.5), 0.0, double(count)));
+  }
+  [[nodiscard]] std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_ + 1) +
+           static_cast<std::size_t>(x);
+  }
+  double& at(int x, int y) { return values_[index(x, y)]; }
+
+  int columns_, rows_;
+  std::vector<double> values_;
 };
 
 class Finder {
  public:
   Finder(const ShadingScene& shared, const CameraModel& camera)
-      : shared_(shared),
-        camera_(camera),
-        all_px2_(static_cast<std::size_t>(camera.columns) * static_cast<std::size_t>(camera.rows),
-                 0.0F),
-        seen_px2_(all_px2_.size(), 0.0F) {
+      : shared_(shared), camera_(camera), seen_(camera.columns, camera.rows) {
     add_all();
-    // A fine mesh has millions that are small: rays go to those alone that others do not make
-    // large.
+    AreaMap sharp(camera.columns, camera.rows);
     for (const Image& image : images_) {
-      const auto x = static_cast<int>(std::clamp(image.film.x, 0.0, camera_.columns - 1.0));
-      const auto y = static_cast<int>(std::clamp(image.film.y, 0.0, camera_.rows - 1.0));
-      if (!is_of_large(x, y) && !is_hidden(image.source)) spread(image, seen_px2_);
+      sharp.add(image.middle, image.radius + 0.5, image.area_px2);
     }
+    sharp.sum_up();
+    const double width = std::max(1.0, shared.filter.width_px());
+    for (const Image& image : images_) {
+      // A fine mesh has millions that are small and together large.
+      if (sharp.most_about(image.middle) >= large_px2 || is_hidden(image.source)) continue;
+      const double spread_px2 = std::max(width * width, base::pi * image.blur * image.blur);
+      seen_.add(image.middle, image.radius + image.blur + 0.5 * width, image.area_px2 / spread_px2);
+    }
+    seen_.sum_up();
   }
 
   // Of a pixel of the picture; 0: none more.
   [[nodiscard]] double wanted(int x, int y) const {
-    const double area = double(seen_px2_[index(x, y)]);
-    if (area <= 0.0 || is_of_large(x, y)) return 0.0;
-    return std::min(most_for_one, wanted_hits / area);
+    const double area = seen_(x, y);
+    return area < least_px2 || area >= large_px2 ? 0.0 : std::min(most_for_one, wanted_hits / area);
   }
 
  private:
@@ -74,11 +131,6 @@ class Finder {
     }
   }
 
-  [[nodiscard]] std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.columns) +
-           static_cast<std::size_t>(x);
-  }
-
   void add_sun(const scenes::Sun& sun) {
     const double radius = far_m * std::tan(base::radians(sun.angular_radius_deg));
     add({camera_.position + far_m * sun.direction, -sun.direction, base::pi * radius * radius,
@@ -97,56 +149,25 @@ class Finder {
     add({middle, normal / twice_area, 0.5 * twice_area, radius});
   }
 
-  // Its image's area to all pixels that show some of it.
   void add(const Source& source) {
     const Vec3 way = source.middle - camera_.position;
     const double depth = glm::dot(way, camera_.forward);
     if (depth <= source.radius_m) return;
-    const double seen_px2 =
+    Image image{source};
+    image.area_px2 =
         source.area_m2 * camera_.film_per_m2(camera_.position, source.middle, source.normal);
-    const Vec3 rim = camera_.lens_radius_m * camera_.right;
-    const glm::dvec2 film = camera_.film_from(camera_.position, source.middle);
-    const double blur =
-        glm::length(camera_.film_from(camera_.position + rim, source.middle) - film);
-    const double width = std::max(1.0, shared_.filter.width_px());
-    const double area = seen_px2 / std::max(width * width, base::pi * blur * blur);
-    if (area <= 0.0 || area >= large_px2) return;
+    if (image.area_px2 >= large_px2) return;
+    image.middle = camera_.film_from(camera_.position, source.middle);
+    const Vec3 rim = camera_.position + camera_.lens_radius_m * camera_.right;
+    image.blur = glm::length(camera_.film_from(rim, source.middle) - image.middle);
     // Across the line of sight a tangent grows by the square of the secant of the angle to the
     // axis.
-    const double radius = source.radius_m * glm::length(way) / (depth * depth) * camera_.rows /
-                          (2.0 * camera_.half_height);
-    const double reach = radius + blur + 0.5 * width;
-    if (end(film.x + reach, camera_.columns) <= first(film.x - reach)) return;
-    if (end(film.y + reach, camera_.rows) <= first(film.y - reach)) return;
-    const Image image{source, film, reach, static_cast<float>(area)};
-    images_.push_back(image);
-    spread(image, all_px2_);
-  }
-
-  void spread(const Image& image, std::vector<float>& area_px2) const {
-    const auto& [source, film, reach, area] = image;
-    for (int y = first(film.y - reach); y < end(film.y + reach, camera_.rows); ++y) {
-      for (int x = first(film.x - reach); x < end(film.x + reach, camera_.columns); ++x) {
-        area_px2[index(x, y)] += area;
-      }
-    }
-  }
-
-  // Pixels whose centres lie there.
-  static int first(double film) {
-    return static_cast<int>(std::clamp(std::ceil(film - 0.5), 0.0, 1e6));
-  }
-  static int end(double film, int count) {
-    return static_cast<int>(std::clamp(std::floor(film - 0.5) + 1.0, 0.0, double(count)));
-  }
-
-  [[nodiscard]] bool is_of_large(int x, int y) const {
-    for (int ny = std::max(0, y - 1); ny <= std::min(camera_.rows - 1, y + 1); ++ny) {
-      for (int nx = std::max(0, x - 1); nx <= std::min(camera_.columns - 1, x + 1); ++nx) {
-        if (double(all_px2_[index(nx, ny)]) >= large_px2) return true;
-      }
-    }
-    return false;
+    image.radius = source.radius_m * glm::length(way) / (depth * depth) * camera_.rows /
+                   (2.0 * camera_.half_height);
+    const double reach = image.radius + image.blur + shared_.filter.width_px();
+    const glm::dvec2 beyond =
+        glm::max(-image.middle, image.middle - glm::dvec2(camera_.columns, camera_.rows));
+    if (std::max(beyond.x, beyond.y) <= reach) images_.push_back(image);
   }
 
   // By five rays, to the middle and to what is about it.
@@ -170,9 +191,8 @@ class Finder {
   const ShadingScene& shared_;
   const CameraModel& camera_;
   std::vector<Image> images_;
-  // Of all that is in front of the camera and of what no surface hides, over what a pixel's samples
-  // and the lens spread it over; per pixel of the picture.
-  std::vector<float> all_px2_, seen_px2_;
+  AreaMap
+      seen_;  // of what no surface hides, over what a pixel's samples and the lens spread it over
 };
 
 }  // namespace
