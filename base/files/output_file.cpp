@@ -149,7 +149,8 @@ OutputFile::OutputFile(const fs::path& target) : target_(follow_links(target)) {
   }
   const fs::path folder = folder_of(target_);
   if (!fs::is_directory(folder, ignored)) {
-    throw Error(Blame::Input, name, "cannot be written: there is no folder " + folder.string(), {},
+    throw Error(Blame::Input, name,
+                "cannot be written: there is no folder \"" + folder.string() + "\"", {},
                 "Make the folder first");
   }
   if (fs::exists(status) && ::access(target_.c_str(), W_OK) != 0) {

@@ -74,7 +74,7 @@ class Passes {
     expected_ =
         static_cast<double>(sampling.camera_samples) * static_cast<double>(window_.pixel_count());
     first_round(everywhere(sampling.camera_samples));
-    if (!ends()) shade(wanted_for_small_sources(shared_, camera_, *sums_));
+    shade_small_sources();
     report_.gather_rays = sampling.camera_samples * sampling.gather_rays;
   }
 
@@ -111,7 +111,7 @@ class Passes {
     first_round(everywhere(how.least_samples));
     shared_.dimmest.clear();
     if (!ends()) shade(wanted_for_the_eye(*sums_, sums_->scatter));
-    if (!ends()) shade(wanted_for_small_sources(shared_, camera_, *sums_));
+    shade_small_sources();
     for (int round = 1; round < most_rounds && !ends() && per_deviation > 0.0; ++round) {
       shade(wanted_samples(*sums_, per_deviation, pilot.bright(), how.least_samples,
                            how.most_samples));
@@ -141,7 +141,7 @@ class Passes {
     first_round(by_edges(least, std::max(std::min(2, least), least / 2)));
     reserve_s_ = 0.0;
     if (!ends()) shade(wanted_for_the_eye(*sums_, scatter_of_samples(*sums_)));
-    if (!ends()) shade(wanted_for_small_sources(shared_, camera_, *sums_));
+    shade_small_sources();
     covered = covered && !ends();
     Rounds rounds(options_.error);
     reserve_s_ = sharing_s_;
@@ -259,6 +259,11 @@ class Passes {
     shade_samples(
         shared_, camera_, wanted, *sums_, report_.rays, [&] { return ends(); },
         [&](std::uint64_t samples) { tell(static_cast<double>(samples)); });
+  }
+
+  void shade_small_sources() {
+    const auto stop = [this] { return ends(); };
+    if (!stop()) shade(wanted_for_small_sources(shared_, camera_, *sums_, stop));
   }
 
   void tell(double more) {

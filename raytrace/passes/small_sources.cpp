@@ -16,7 +16,8 @@ constexpr double wanted_hits = 64.0;
 constexpr double large_px2 = 1.0;   // from there on the first few samples meet it
 constexpr double least_px2 = 1e-6;  // what sums leave of nothing is less
 constexpr double most_for_one = 65536.0, least_budget = 1048576.0, budget_per_pixel = 4.0;
-constexpr double far_m = 1e9;  // stands for infinity
+constexpr std::size_t stop_asked_after = 256;  // sources
+constexpr double far_m = 1e9;                  // stands for infinity
 
 struct Source {
   Vec3 middle{0.0}, normal{0.0};
@@ -88,7 +89,7 @@ class AreaMap {
 
 class Finder {
  public:
-  Finder(const ShadingScene& shared, const CameraModel& camera)
+  Finder(const ShadingScene& shared, const CameraModel& camera, const std::function<bool()>& stop)
       : shared_(shared), camera_(camera), seen_(camera.columns, camera.rows) {
     add_all();
     AreaMap sharp(camera.columns, camera.rows);
@@ -97,7 +98,9 @@ class Finder {
     }
     sharp.sum_up();
     const double width = std::max(1.0, shared.filter.width_px());
-    for (const Image& image : images_) {
+    for (std::size_t k = 0; k < images_.size(); ++k) {
+      if (k % stop_asked_after == 0 && stop()) break;
+      const Image& image = images_[k];
       // A fine mesh has millions that are small and together large.
       if (sharp.most_about(image.middle) >= large_px2 || is_hidden(image.source)) continue;
       const double spread_px2 = std::max(width * width, base::pi * image.blur * image.blur);
@@ -199,8 +202,9 @@ class Finder {
 
 std::vector<std::uint32_t> wanted_for_small_sources(const ShadingScene& shared,
                                                     const CameraModel& camera,
-                                                    const PixelSums& sums) {
-  const Finder finder(shared, camera);
+                                                    const PixelSums& sums,
+                                                    const std::function<bool()>& stop) {
+  const Finder finder(shared, camera, stop);
   // Of the whole picture, so that a crop's pixels get as many.
   double all = 0.0;
   for (int y = 0; y < camera.rows; ++y) {

@@ -14,19 +14,13 @@
 #include "scenes/mesh/stl_file.h"
 #include "scenes/text/confined_path.h"
 #include "scenes/text/message_text.h"
+#include "scenes/text/text_lines.h"
 
 namespace earthshine::scenes {
 namespace {
 
 using base::Blame;
 using base::Error;
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return text;
-}
 
 // The readers check as they go; this is the wall that the rest of the program relies on.
 void check_mesh(const Mesh& mesh) {

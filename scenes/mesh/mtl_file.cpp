@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
 
@@ -269,8 +270,7 @@ void list_map_files(Mesh& mesh, std::span<const std::filesystem::path> folders) 
   for (const MaterialLibrary& library : mesh.libraries) {
     try {
       for (const auto& path : paths_of(library, mesh, folders)) {
-        list_map_files(base::read_input_file(path, max_library_bytes, library.where), path, folders,
-                       found);
+        list_map_files(base::read_input_file(path, max_library_bytes, library.where), path, found);
       }
     } catch (const Error&) {  // said once it is read, if ever it is
     }
@@ -281,8 +281,10 @@ void list_map_files(Mesh& mesh, std::span<const std::filesystem::path> folders) 
 void read_material_libraries(Mesh& mesh, std::span<const std::filesystem::path> folders) {
   const std::vector<MaterialLibrary> libraries = std::move(mesh.libraries);
   mesh.libraries.clear();
+  std::set<std::filesystem::path> read;  // some programs name one with every object
   for (const MaterialLibrary& library : libraries) {
     for (const std::filesystem::path& path : paths_of(library, mesh, folders)) {
+      if (!read.insert(path.lexically_normal()).second) continue;
       mesh.files.push_back(path);
       parse_mtl(base::read_input_file(path, max_library_bytes, library.where), path, folders, mesh);
     }

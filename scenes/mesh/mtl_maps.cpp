@@ -40,6 +40,8 @@ bool MtlMaps::read(const TextLines& line, bool is_mask, TextureMap& map) {
         std::find_if(std::begin(options), std::end(options),
                      [&](const Option& known) { return known.name == words[at].text; });
     if (option == std::end(options)) return false;
+    // No word is left for the option's value and a file's name.
+    if (at + option->least + 1 >= words.size()) return false;
     std::vector<double> numbers;
     std::size_t used = 1;
     // Numbers as long as there are some: "-s 2 floor.png" has one.
@@ -52,10 +54,11 @@ bool MtlMaps::read(const TextLines& line, bool is_mask, TextureMap& map) {
     };
     if (option->name == "-s") scale = {component(0, 1.0), component(1, 1.0)};
     if (option->name == "-o") shift = {component(0, 0.0), component(1, 0.0)};
-    if (option->name == "-clamp" && at + 1 < words.size()) {
+    if (option->name == "-clamp") {
       const Word& word = words[at + 1];
-      if (word.text == "on") reading.wrap_u = reading.wrap_v = Wrap::Clamp;
-      if (word.text != "on" && word.text != "off") {
+      const std::string value = lower_case(std::string(word.text));
+      if (value == "on") reading.wrap_u = reading.wrap_v = Wrap::Clamp;
+      if (value != "on" && value != "off") {
         throw base::Error(base::Blame::Input, line.where(word),
                           fmt::format("\"-clamp\" is {}", in_quotes(word.text)),
                           "allowed are on and off");
@@ -85,7 +88,6 @@ bool MtlMaps::read(const TextLines& line, bool is_mask, TextureMap& map) {
 }
 
 void list_map_files(std::string_view text, const std::filesystem::path& library,
-                    std::span<const std::filesystem::path> folders,
                     std::vector<std::filesystem::path>& files) {
   constexpr std::string_view others[] = {"bump", "norm", "disp", "decal", "refl"};
   constexpr std::size_t most_words = 64;  // options and a name with blanks
@@ -93,7 +95,7 @@ void list_map_files(std::string_view text, const std::filesystem::path& library,
   TextLines lines(text, library.string(), TextLines::Style::Wavefront);
   while (lines.next()) {
     const auto& words = lines.words();
-    const std::string_view keyword = words.front().text;
+    const std::string keyword = lower_case(std::string(words.front().text));
     const bool names_picture =
         keyword.starts_with("map_") || std::ranges::find(others, keyword) != std::end(others);
     if (!names_picture || !seen.emplace(lines.argument()).second) continue;
@@ -102,13 +104,11 @@ void list_map_files(std::string_view text, const std::filesystem::path& library,
       const char* const last = words.back().text.data() + words.back().text.size();
       std::string name(words[k].text.data(), last);
       std::replace(name.begin(), name.end(), '\\', '/');
+      std::erase(name, '"');
       std::error_code ignored;
       const std::filesystem::path path = library.parent_path() / name;
       if (!std::filesystem::is_regular_file(path, ignored)) continue;
-      try {
-        files.push_back(confined_path(library.parent_path(), name, folders, lines.where()));
-      } catch (const base::Error&) {  // leads elsewhere: nothing that the scene has
-      }
+      files.push_back(path);
       break;
     }
   }

@@ -34,9 +34,9 @@ class MtlMaps {
   PictureShelf shelf_;
 };
 
-// Adds the files that there are of all lines that name a picture: bump maps and the like, too.
+// Adds the files that there are of all lines that name a picture, wherever they lie: bump maps and
+// the like, too.
 void list_map_files(std::string_view text, const std::filesystem::path& library,
-                    std::span<const std::filesystem::path> folders,
                     std::vector<std::filesystem::path>& files);
 
 }  // namespace earthshine::scenes

@@ -51,7 +51,7 @@ void read_header_line(const TextLines& lines, Header& header, bool& has_format) 
   const std::string_view keyword = words[0].text;
   if (keyword == "format") {
     const auto encoding = words.size() >= 2 ? ply_encoding(words[1].text) : std::nullopt;
-    const bool other_version = words.size() > 2 && words[2].text != "1.0";
+    const bool other_version = words.size() > 2 && words[2].text != "1.0" && words[2].text != "1";
     if (!encoding || other_version)
       bad_header(lines, "format ascii, binary_little_endian or binary_big_endian, and 1.0");
     header.encoding = *encoding;

@@ -20,6 +20,9 @@ struct Word {
   int column = 0;
 };
 
+// Of its letters A to Z.
+[[nodiscard]] std::string lower_case(std::string text);
+
 class TextLines {
  public:
   // `file` is for messages; the text begins after lines_before lines of it. In OBJ and MTL, '#' at

@@ -59,10 +59,11 @@ class InputsKept(program.Case):
 
     def test_pictures_of_materials_that_are_not_read(self):
         """Bump maps, and all maps of a mesh whose material is the scene's."""
-        names = ("skin of a.png", "bump.png", "shine.png")
+        names = ("skin of a.png", "bump.png", "shine.png", "quoted.png", "elsewhere.png")
         for name in names:
             self.write(name, "not read")
-        self.write("a.mtl", "newmtl red\nKd 0.5 0.1 0.1\nmap_Bump -bm 0.3 bump.png\nmap_Ks ./shine.png\nmap_Kd -s 2 2 skin of a.png\n")
+        self.write("a.mtl", "newmtl red\nKd 0.5 0.1 0.1\nmap_Bump -bm 0.3 bump.png\nmap_Ks ./shine.png\nmap_Kd -s 2 2 skin of a.png\n"
+                            f'MAP_KE "quoted.png"\nbump -bm 2 {self.folder.resolve()}/elsewhere.png\n')
         self.write("own.toml", SCENE.replace('mesh = "a.obj"', 'mesh = "a.obj"\nmaterial = "white"'))
         self.before = self.digests()
         for scene in ("scene.toml", "own.toml"):

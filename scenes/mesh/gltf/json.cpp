@@ -99,7 +99,10 @@ class Values {
       if (entry.key() == "extras" || entry.key().empty() || value.is_null()) continue;
       const std::string below = keys.empty() ? entry.key() : keys + "/" + entry.key();
       const std::string here = place.empty() ? entry.key() : place + "." + entry.key();
-      if (const GltfRule* rule = rule_for(below)) check_value(*rule, value, here);
+      const GltfRule* rule = rule_for(below);
+      if (rule != nullptr) check_value(*rule, value, here);
+      const bool is_extension = keys == "extensions" || keys.ends_with("/extensions");
+      if (is_extension && rule == nullptr) continue;  // what it holds is its own affair
       if (value.is_object()) check(value, below, here);
       for (std::size_t i = 0; value.is_array() && i < value.size(); ++i) {
         if (value[i].is_object()) check(value[i], below, fmt::format("{}[{}]", here, i));
@@ -196,9 +199,14 @@ class Values {
         range.holds(number) || range.holds(number - rounding) || range.holds(number + rounding);
     if (is_listed && is_in_range) return;
     if (rule.otherwise.empty()) refuse(rule, value, place);
+    const std::string found = described(value);
+    if (rule.otherwise == gltf_rules::none) {
+      value = -1;  // tinygltf's none; what it cuts out of a large number may be an entry
+      rewritten_ = true;
+    }
     Note& note = notes_[&rule];
     if (note.count++ > 0) return;
-    note.first = fmt::format("{} is {}", place, described(value));
+    note.first = fmt::format("{} is {}", place, found);
     note.allowed = allowed(rule);
   }
 

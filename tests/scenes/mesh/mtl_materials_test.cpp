@@ -108,7 +108,8 @@ TEST(MtlMaterials, ValuesOfTextureOptionsAreRefusedWhereTheyAreNone) {
   EXPECT_TRUE(holds(refusal("-s nan"), {"a.mtl:2:11", "\"nan\""}));
   EXPECT_TRUE(holds(refusal("-s abc"), {"a.mtl:2:11", "\"abc\" is not a number"}));
   EXPECT_TRUE(holds(refusal("-o 1 1e300"), {"a.mtl:2:13", "\"1e300\""}));
-  EXPECT_TRUE(holds(refusal("-clamp ON"), {"a.mtl:2:15", "\"ON\"", "on and off"}));
+  EXPECT_TRUE(holds(refusal("-clamp yes"), {"a.mtl:2:15", "\"yes\"", "on and off"}));
+  EXPECT_EQ(refusal("-s"), "was not refused");  // a.png is no value, and no file is left
 }
 
 TEST(MtlMaterials, OfMaterialsOfOneNameTheFirstCounts) {
@@ -148,7 +149,7 @@ TEST(MtlMaterials, CornersWithoutCoordinatesAreNamed) {
   base::write_png(folder.path() / "a.png", 1, 1, 3, std::vector<std::uint8_t>(3, 255));
   folder.put("a.obj",
              "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 0.5 0.25\nusemtl m\n"
-             "f 1/-1 2/1 3/7\nf 3 2 1\n");
+             "f 1/-1 2/1 3/7\nf 3 2 1\nmtllib ./a.mtl\n");  // named with every object by some
   folder.put("a.mtl", "newmtl m\nKd 0.5\nmap_Kd a.png\n");
   const Scene scene =
       folder.read("format = 1\n[[object]]\nname = \"o\"\nmesh = \"a.obj\"\norient = \"as-is\"\n");

@@ -69,6 +69,14 @@ TEST_F(GltfValues, ValuesOutOfRangeAreNamedOnceWithWhatIsDone) {
                            R"(, "extensions": {"XYZ_all": {"scene": "x", "materials": 2}})");
   EXPECT_TRUE(other.warnings.empty());
   EXPECT_TRUE(named(textured, {"nodes[0].camera is -1", "taken as none"}));
+  const Scene foreign = read(R"({"extensions": {"XYZ_toon": {"KHR_texture_transform": 5}}})");
+  EXPECT_TRUE(foreign.warnings.empty());
+  // 2^32 is not entry 0.
+  const Scene plain =
+      read(R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 4294967296}}})",
+           R"(, "textures": [{"source": 0}], "images": [{"uri": "none.png"}])");
+  EXPECT_TRUE(named(plain, {"baseColorTexture.index is 4294967296", "taken as none"}));
+  EXPECT_EQ(plain.warnings.size(), 1U);
 }
 
 TEST_F(GltfValues, WholeNumbersMayBeWrittenWithAPoint) {
