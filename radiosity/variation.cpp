@@ -7,6 +7,7 @@
 
 #include "base/numbers/random.h"
 #include "base/ranks/ranks.h"
+#include "radiosity/patches/patch_offset.h"
 #include "radiosity/patches/split.h"
 #include "scenes/sky/sky.h"
 #include "scenes/sky/sky_cells.h"
@@ -69,9 +70,11 @@ class Looks {
 class ShadowQueue {
  public:
   ShadowQueue(const scenes::RayQuery& query, Looks& looks) : query_(query), looks_(looks) {}
-  void add(const Vec3& at, const Vec3& origin, const scenes::LightSample& sample, const Rgb& value,
+  void add(const SurfacePoint& from, const scenes::LightSample& sample, const Rgb& value,
            std::size_t point, std::size_t set, std::size_t group) {
-    const scenes::ShadowWay way = scenes::shadow_way(sample, at, origin, query_.surface_offset_m());
+    const Vec3 origin = lifted(from, query_);
+    const scenes::ShadowWay way =
+        scenes::shadow_way(sample, from.position, origin, query_.offset_m(from.triangle));
     if (base::luminance(value) <= 0.0 || way.reach_m <= 0.0) return;
     query_.set(packet_, count_, origin, way.direction, way.reach_m);
     mirror_[count_] = sample.mirror;
@@ -157,8 +160,7 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
     std::vector<scenes::LightSample> taken;
     for (std::size_t point = 0; point < looks.points(); ++point) {
       const auto p = where.point2(static_cast<std::uint32_t>(point));
-      const auto [at, normal] = patches.at(patch, p[0], p[1]);
-      const Vec3 lift = normal * world_.query.surface_offset_m();
+      const SurfacePoint from = patches.at(patch, p[0], p[1]);
       looks.place(point, p[0], p[1]);
       for (std::size_t k = 0; k < sources_.size(); ++k) {
         const Source& source = sources_[k].source;
@@ -167,13 +169,14 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
           const base::SobolOwen4 toward(key.with(2 * k + set));
           for (std::size_t m = 0; m < samples; ++m) {
             const auto u = toward.point2(static_cast<std::uint32_t>(m));
-            take_samples(source, world_.query.ways().mirrors(), at, normal, u[0], u[1], taken);
+            take_samples(source, world_.query.ways().mirrors(), from.position, from.normal, u[0],
+                         u[1], taken);
             for (const scenes::LightSample& sample : taken) {
-              const double cosine = glm::dot(sample.direction, normal);
+              const double cosine = glm::dot(sample.direction, from.normal);
               const double weight =
                   cosine * light.scale[source.group] / static_cast<double>(samples);
-              queue.add(at, at + lift, sample, weight * rho * sample.normal_illuminance_lx, point,
-                        set, source.group);
+              queue.add(from, sample, weight * rho * sample.normal_illuminance_lx, point, set,
+                        source.group);
             }
           }
         }
@@ -198,9 +201,9 @@ std::vector<Unevenness> Variation::find(const Patches& patches,
         }
         for (std::size_t point = 0; point < indirect_points; ++point) {
           const double x = point < 2 ? 0.25 : 0.75, y = point % 2 == 0 ? 0.25 : 0.75;
-          const auto [at, normal] = patches.at(patch, x, y);
-          const base::Frame3 frame = base::frame_around(normal);
-          const Vec3 origin = at + frame.normal * world_.query.surface_offset_m();
+          const SurfacePoint from = patches.at(patch, x, y);
+          const base::Frame3 frame = base::frame_around(from.normal);
+          const Vec3 origin = lifted(from, world_.query);
           std::array<Vec3, RayPacket::width> directions;
           looks.place(point, x, y);
           for (std::size_t k = 0; k < RayPacket::width; ++k) {

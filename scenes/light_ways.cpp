@@ -17,7 +17,7 @@ constexpr double least_part = 0.02;  // of all that reflects
 // Triangles are of one plane if their normals and distances agree to these; an image is off by no
 // more than twice the one times the distance.
 constexpr double same_normal = 1e-4;
-constexpr double same_distance = 1e-5;  // of the scene's extent
+constexpr double same_distance = 1e-5;  // of the object's extent
 
 // One side of a plane, while its triangles are counted.
 struct Plane {
@@ -29,17 +29,14 @@ struct Plane {
 
 class Planes {
  public:
-  explicit Planes(const Scene& scene) : scene_(scene) {
-    const Box box = box_around(scene.vertices);
-    low_ = box.low;
-    step_m_ = same_distance * std::max(box.diagonal(), 1e-6);
-  }
+  explicit Planes(const Scene& scene) : scene_(scene), low_(box_around(scene.vertices).low) {}
 
   // side: 1 the front, -1 the back.
   void add(std::uint32_t triangle, double side, double share) {
     const auto& v = scene_.triangles[triangle].vertex;
     const Vec3 normal = side * triangle_normal(scene_, triangle);
     const Vec3& corner = scene_.vertices[v[0]];
+    find_step(scene_.triangles[triangle].object);
     // Rounding may put two halves of a square into cells side by side.
     std::size_t& at = last_[side > 0.0 ? 0 : 1];
     if (at >= planes.size() || !agrees(planes[at], normal, corner)) {
@@ -59,10 +56,25 @@ class Planes {
   std::vector<Plane> planes;
 
  private:
-  [[nodiscard]] std::array<std::int64_t, 4> key_of(const Vec3& normal, const Vec3& corner) const {
+  using Key = std::array<std::int64_t, 5>;
+  [[nodiscard]] Key key_of(const Vec3& normal, const Vec3& corner) const {
     const Vec3 n = normal / same_normal;
-    return {std::llround(n.x), std::llround(n.y), std::llround(n.z),
+    return {std::llround(n.x), std::llround(n.y), std::llround(n.z), step_exponent_,
             std::llround(glm::dot(normal, corner - low_) / step_m_)};
+  }
+  // A power of two, so that objects of much the same size share planes.
+  void find_step(std::uint32_t object) {
+    if (object == object_) return;
+    object_ = object;
+    const Object& of = scene_.objects[object];
+    Box box;
+    for (std::uint32_t t = 0; t < of.triangle_count; ++t) {
+      const Corners p = corners_of(scene_, of.first_triangle + t);
+      box.add(p.a), box.add(p.b), box.add(p.c);
+    }
+    const double step_m = same_distance * std::max(box.diagonal(), 1e-6);
+    step_exponent_ = std::lround(std::log2(step_m));
+    step_m_ = std::exp2(static_cast<double>(step_exponent_));
   }
   [[nodiscard]] bool agrees(const Plane& plane, const Vec3& normal, const Vec3& corner) const {
     return glm::length(plane.normal - normal) < same_normal &&
@@ -71,8 +83,10 @@ class Planes {
 
   const Scene& scene_;
   Vec3 low_;
-  double step_m_ = 0.0;
-  std::map<std::array<std::int64_t, 4>, std::size_t> known_;
+  double step_m_ = 0.0;  // of object_
+  std::int64_t step_exponent_ = 0;
+  std::uint32_t object_ = ~0U;
+  std::map<Key, std::size_t> known_;
   std::size_t last_[2] = {~std::size_t{0}, ~std::size_t{0}};  // plane of the triangle before
 };
 
@@ -102,7 +116,7 @@ std::optional<Vec3> straight_through(const Scene& scene, std::uint32_t triangle,
   return behind;
 }
 
-LightWays::LightWays(const Scene& scene) {
+LightWays::LightWays(const Scene& scene, const SurfaceOffsets& offsets) {
   const auto sends_on = [](const Material& material) {
     return is_straight_glass(material) || base::max_component(material.mirror) > 0.0;
   };
@@ -112,15 +126,17 @@ LightWays::LightWays(const Scene& scene) {
     const Material& material = scene.materials[scene.triangles[t].material];
     if (!sends_on(material)) continue;
     number_[t] = static_cast<std::uint32_t>(faces_.size());
-    faces_.push_back({triangle_normal(scene, t),
+    const Vec3 normal = triangle_normal(scene, t);
+    faces_.push_back({normal,
+                      glm::dot(normal, corners_of(scene, t).a),
                       is_straight_glass(material) ? material.transmit : Rgb(0.0),
                       material.mirror,
                       {no_mirror, no_mirror}});
   }
-  if (!faces_.empty()) find_mirrors(scene);
+  if (!faces_.empty()) find_mirrors(scene, offsets);
 }
 
-void LightWays::find_mirrors(const Scene& scene) {
+void LightWays::find_mirrors(const Scene& scene, const SurfaceOffsets& offsets) {
   Planes found(scene);
   double all = 0.0;
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
@@ -137,13 +153,15 @@ void LightWays::find_mirrors(const Scene& scene) {
                    [](const Plane& a, const Plane& b) { return a.reflecting > b.reflecting; });
   for (const Plane& plane : planes) {
     if (mirrors_.size() == most_mirrors || plane.reflecting < least_part * all) break;
+    double offset_m = 0.0;
     for (const std::uint32_t t : plane.triangles) {
+      offset_m = std::max(offset_m, offsets.of(t));
       Face& face = faces_[number_[t]];
       face.mirror[glm::dot(face.normal, plane.normal) > 0.0 ? 0 : 1] =
           static_cast<std::uint32_t>(mirrors_.size());
     }
     mirrors_.push_back({plane.point, plane.normal, 0.5 * (plane.low + plane.high),
-                        0.5 * glm::length(plane.high - plane.low)});
+                        0.5 * glm::length(plane.high - plane.low), offset_m});
   }
 }
 

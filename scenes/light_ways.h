@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scenes/scene.h"
+#include "scenes/surface_offset.h"
 
 namespace earthshine::scenes {
 
@@ -21,6 +22,7 @@ struct FlatMirror {
   Vec3 point{0.0}, normal{0.0, 0.0, 1.0};  // of the plane; unit, toward the side that reflects
   Vec3 centre{0.0};                        // } of a ball around it
   double radius_m = 0.0;                   // }
+  double offset_m = 0.0;                   // that rays start off it (surface_offset.h)
 
   [[nodiscard]] double height_m(const Vec3& p) const { return glm::dot(p - point, normal); }
   [[nodiscard]] Vec3 image(const Vec3& p) const { return p - 2.0 * height_m(p) * normal; }
@@ -47,7 +49,7 @@ struct FlatMirror {
 class LightWays {
  public:
   LightWays() = default;
-  explicit LightWays(const Scene& scene);
+  LightWays(const Scene& scene, const SurfaceOffsets& offsets);
 
   // No glass that light goes through, no mirror.
   [[nodiscard]] bool empty() const { return faces_.empty(); }
@@ -55,10 +57,12 @@ class LightWays {
 
   // What a triangle does to a shadow ray; null: it ends there.
   struct Face {
-    Vec3 normal{0.0};    // unit, of the front
-    Rgb through{0.0};    // share that goes straight on
-    Rgb reflected{0.0};  // } share that a flat mirror throws, and its number
+    Vec3 normal{0.0};      // unit, of the front
+    double plane_m = 0.0;  // of its points, along the normal
+    Rgb through{0.0};      // share that goes straight on
+    Rgb reflected{0.0};    // } share that a flat mirror throws, and its number
     std::uint32_t mirror[2] = {no_mirror, no_mirror};  // } by front, back
+    [[nodiscard]] double height_m(const Vec3& p) const { return glm::dot(p, normal) - plane_m; }
   };
   [[nodiscard]] const Face* face(std::uint32_t triangle) const {
     if (faces_.empty() || number_[triangle] == no_mirror) return nullptr;
@@ -70,7 +74,7 @@ class LightWays {
   [[nodiscard]] Rgb kept(std::uint32_t triangle, bool front) const;
 
  private:
-  void find_mirrors(const Scene& scene);
+  void find_mirrors(const Scene& scene, const SurfaceOffsets& offsets);
 
   std::vector<std::uint32_t> number_;  // per triangle
   std::vector<Face> faces_;

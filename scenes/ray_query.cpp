@@ -87,10 +87,20 @@ std::uint32_t hidden_bits(const RTCRay8& rays, std::size_t count) {
   return bits;
 }
 
+// Times as far as the farthest surface: rays from there start at the scene's bounds.
+constexpr double far_extents = 2.0;
+// Of a point's distance from the centre: a few roundings of its coordinates.
+constexpr double point_offset = 0x1p-21;
+// Flatter than this rays keep the point that the ray structure found.
+constexpr double least_fall = 1e-6;
+
 }  // namespace
 
 RayQuery::RayQuery(const Scene& source)
-    : embree_(std::make_unique<Embree>()), ways_(source), coincident_(source) {
+    : embree_(std::make_unique<Embree>()),
+      offsets_(source),
+      ways_(source, offsets_),
+      coincident_(source) {
   embree_->device = rtcNewDevice(nullptr);
   if (embree_->device == nullptr) Embree::fail("Embree could not start");
   embree_->scene = embree_->new_scene();
@@ -114,14 +124,12 @@ RayQuery::RayQuery(const Scene& source)
   }
   base::check_room(built * bytes_per_triangle, source.path.string());
   if (!source.triangles.empty()) {
-    // The centre is rounded to what single precision holds, so that subtracting it is exact for
-    // near points.
-    centre_ = Vec3(box_around(source.vertices).middle_in_single());
-    embree_->offset_m = scenes::surface_offset_m(source);
+    for (const Vec3& vertex : source.vertices) bounds_.add(vertex - centre());
+    far_m_ = far_extents * glm::length(glm::max(-bounds_.low, bounds_.high));
     embree_->masks = OpacityMasks(source);
     embree_->any_ways = !ways_.empty();
-    embree_->add_triangles(embree_->scene, source, 0, own_triangles, 0, own_vertices, centre_);
-    embree_->add_instances(source, centre_);
+    embree_->add_triangles(embree_->scene, source, 0, own_triangles, 0, own_vertices, centre());
+    embree_->add_instances(source, centre());
   }
   rtcCommitScene(embree_->scene);
   if (const RTCError error = rtcGetDeviceError(embree_->device); error != RTC_ERROR_NONE) {
@@ -133,11 +141,24 @@ RayQuery::~RayQuery() = default;
 RayQuery::RayQuery(RayQuery&&) noexcept = default;
 RayQuery& RayQuery::operator=(RayQuery&&) noexcept = default;
 
-double RayQuery::surface_offset_m() const { return embree_->offset_m; }
+double RayQuery::offset_at_m(const Vec3& point) const {
+  const Vec3 from = glm::abs(point - centre());
+  return point_offset * std::max({from.x, from.y, from.z});
+}
 
-double surface_offset_m(const Scene& scene) {
-  if (scene.vertices.empty()) return 0.0;
-  return 4e-6 * std::max(box_around(scene.vertices).diagonal(), 1e-6);
+double RayQuery::way_to_bounds_m(const Vec3& from, const Vec3& direction) const {
+  const double margin = 1e-3 * far_m_;
+  double first = 0.0, last = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = (bounds_.low[axis] - margin - from[axis]) / direction[axis],
+                 high = (bounds_.high[axis] + margin - from[axis]) / direction[axis];
+    // Not a number where the ray runs in the plane of a face: no bound.
+    if (low < high || high < low) {
+      first = std::max(first, std::min(low, high));
+      last = std::min(last, std::max(low, high));
+    }
+  }
+  return first <= last ? first : std::max(0.0, -glm::dot(from, direction));
 }
 
 void RayQuery::closest(const RayPacket& rays, std::size_t count, HitPacket& hits) const {
@@ -152,15 +173,15 @@ void RayQuery::closest(const RayPacket& rays, std::size_t count, HitPacket& hits
     hits.triangle[k] = hit ? embree_->triangle(instance, query.hit.primID[k]) : no_triangle;
     hits.u[k] = query.hit.u[k];
     hits.v[k] = query.hit.v[k];
-    hits.t[k] = query.ray.tfar[k];
+    hits.t[k] = query.ray.tfar[k] + rays.start[k];
     const bool front =
         embree_->is_front(instance, {query.hit.Ng_x[k], query.hit.Ng_y[k], query.hit.Ng_z[k]},
                           {query.ray.dir_x[k], query.ray.dir_y[k], query.ray.dir_z[k]});
     hits.front[k] = front ? 1U : 0U;
     if (coincident_.empty() || !hit) continue;
     const Vec3 way(rays.direction_x[k], rays.direction_y[k], rays.direction_z[k]);
-    const Vec3 at = centre_ + Vec3(rays.origin_x[k], rays.origin_y[k], rays.origin_z[k]) +
-                    double(hits.t[k]) * way;
+    const Vec3 at = centre() + Vec3(rays.origin_x[k], rays.origin_y[k], rays.origin_z[k]) +
+                    double(query.ray.tfar[k]) * way;
     if (const auto first = coincident_.first_met(hits.triangle[k], at, way)) {
       hits.triangle[k] = first->triangle;
       hits.u[k] = static_cast<float>(first->u);
@@ -172,7 +193,10 @@ void RayQuery::closest(const RayPacket& rays, std::size_t count, HitPacket& hits
 
 Hit RayQuery::closest(const Vec3& origin, const Vec3& direction) const {
   RTCRayHit query{};
-  const glm::vec3 o(origin - centre_), d(direction);
+  Vec3 from = origin - centre();
+  const double start = is_far(from) ? way_to_bounds_m(from, direction) : 0.0;
+  from += start * direction;
+  const glm::vec3 o(from), d(direction);
   query.ray.org_x = o.x;
   query.ray.org_y = o.y;
   query.ray.org_z = o.z;
@@ -189,7 +213,7 @@ Hit RayQuery::closest(const Vec3& origin, const Vec3& direction) const {
   const bool front =
       embree_->is_front(instance, {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z}, d);
   const Hit found{embree_->triangle(instance, query.hit.primID), query.hit.u, query.hit.v,
-                  query.ray.tfar, front};
+                  start + double(query.ray.tfar), front};
   if (coincident_.empty()) return found;
   const auto first = coincident_.first_met(found.triangle, origin + found.t * direction, direction);
   return first ? Hit{first->triangle, first->u, first->v, found.t, first->front} : found;
@@ -208,6 +232,21 @@ Vec3 hit_position(const Scene& scene, const Hit& hit) {
   return (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
 }
 
+Vec3 hit_position(const Scene& scene, const Hit& hit, const Vec3& origin, const Vec3& direction) {
+  const Corners p = corners_of(scene, hit.triangle);
+  const Vec3 normal = p.normal();
+  const double fall = glm::dot(normal, direction);
+  if (std::abs(fall) <= least_fall * glm::length(normal)) return hit_position(scene, hit);
+  const Vec3 at = origin + glm::dot(normal, p.a - origin) / fall * direction;
+  Barycentric b = barycentric(at, p.a, p.b - p.a, p.c - p.a);
+  // Where rounding has put it past an edge, back onto it.
+  if (b.u < 0.0 || b.v < 0.0 || b.u + b.v > 1.0) {
+    b.u = std::clamp(b.u, 0.0, 1.0);
+    b.v = std::clamp(b.v, 0.0, 1.0 - b.u);
+  }
+  return (1.0 - b.u - b.v) * p.a + b.u * p.b + b.v * p.c;
+}
+
 Vec3 triangle_normal(const Scene& scene, std::uint32_t triangle) {
   return glm::normalize(corners_of(scene, triangle).normal());
 }
@@ -224,15 +263,15 @@ void RayQuery::light_shares(const RayPacket& rays, const std::uint32_t* mirrors,
   context.ways = ways_.empty() ? nullptr : &ways_;
   std::array<Vec3, RayPacket::width> origin, direction;
   for (std::size_t k = 0; k < count && context.ways != nullptr; ++k) {
-    origin[k] = centre_ + Vec3(rays.origin_x[k], rays.origin_y[k], rays.origin_z[k]);
+    origin[k] = centre() + Vec3(rays.origin_x[k], rays.origin_y[k], rays.origin_z[k]);
     direction[k] = Vec3(rays.direction_x[k], rays.direction_y[k], rays.direction_z[k]);
     if (mirrors[k] == no_mirror) continue;
     // Only what is before the mirror stands in the way.
     const FlatMirror& mirror = ways_.mirrors()[mirrors[k]];
     const double fall = -glm::dot(direction[k], mirror.normal);
-    const double to_mirror = mirror.height_m(origin[k]) / std::max(fall, 1e-12);
-    query.tfar[k] = std::min(
-        query.tfar[k], static_cast<float>(std::max(0.0, to_mirror - 2.0 * embree_->offset_m)));
+    const double to_mirror =
+        (mirror.height_m(origin[k]) - 2.0 * mirror.offset_m) / std::max(fall, 1e-12);
+    query.tfar[k] = std::min(query.tfar[k], static_cast<float>(std::max(0.0, to_mirror)));
   }
   occluded8(valid_lanes[count].data(), embree_->scene, query, context);
   const std::uint32_t hidden = hidden_bits(query, count);

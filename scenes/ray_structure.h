@@ -40,7 +40,6 @@ struct ShadowContext : EmbreeContext {
 struct RayQuery::Embree {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
-  double offset_m = 0.0;
   OpacityMasks masks;
   bool any_ways = false;  // some faces let shadow rays go on
   // Instances have the structure of their original's triangles, once; by the number of their

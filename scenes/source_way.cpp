@@ -14,14 +14,14 @@ Rgb SourceWay::follow(Hit hit) {
     if (face == nullptr) return Rgb(0.0);
     if (mirror_ != no_mirror && face->mirror[hit.front ? 0 : 1] == mirror_) {
       share_ *= face->reflected;
-      leave(hit.t, hit.front ? face->normal : -face->normal);
+      leave(hit, *face, hit.front);
       const FlatMirror& mirror = query_.ways().mirrors()[mirror_];
       direction_ = mirror.turned(direction_);
       end_ = mirror.image(end_);
       mirror_ = no_mirror;
     } else {
       share_ *= face->through;
-      leave(hit.t, hit.front ? -face->normal : face->normal);
+      leave(hit, *face, !hit.front);
     }
     if (base::max_component(share_) <= 0.0) return Rgb(0.0);
     aim_again();
@@ -30,9 +30,11 @@ Rgb SourceWay::follow(Hit hit) {
   return Rgb(0.0);
 }
 
-// Off the surface that was met at the distance t, to the side that the normal shows.
-void SourceWay::leave(double t, const Vec3& normal) {
-  origin_ += t * direction_ + query_.surface_offset_m() * normal;
+// Off the surface that was met, on its front or back.
+void SourceWay::leave(const Hit& hit, const LightWays::Face& face, bool on_front) {
+  origin_ += hit.t * direction_;
+  const double off_m = (on_front ? 1.0 : -1.0) * query_.offset_m(hit.triangle);
+  origin_ += (off_m - face.height_m(origin_)) * face.normal;
 }
 
 // At the end of the way: beside its line a ray would meet a slanted source before it is there.

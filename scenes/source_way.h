@@ -24,7 +24,7 @@ class SourceWay {
   [[nodiscard]] Rgb follow(Hit hit);
 
  private:
-  void leave(double t, const Vec3& normal);
+  void leave(const Hit& hit, const LightWays::Face& face, bool on_front);
   void aim_again();
 
   const RayQuery& query_;

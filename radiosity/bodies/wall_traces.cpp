@@ -8,7 +8,7 @@
 
 #include "radiosity/bodies/closed_parts.h"
 #include "scenes/health/box_join.h"
-#include "scenes/ray_query.h"
+#include "scenes/surface_offset.h"
 #include "scenes/triangle_point.h"
 
 namespace earthshine::radiosity {
@@ -49,10 +49,7 @@ std::optional<std::array<Vec3, 2>> meeting(const Corners& wall, const Vec3& corn
 class WallFinder {
  public:
   WallFinder(const scenes::Scene& scene, const Patches& patches)
-      : scene_(scene),
-        patches_(patches),
-        touch_m_(scenes::surface_offset_m(scene)),
-        by_facet_(patches.facets.size()) {}
+      : scene_(scene), patches_(patches), offsets_(scene), by_facet_(patches.facets.size()) {}
 
   Traces find() {
     std::vector<scenes::LabelledBox> boxes;
@@ -65,8 +62,9 @@ class WallFinder {
       const bool apart = !patches_.facets[facet].is_cluster();
       any = any || apart;
       const auto [a, b, c] = scenes::corners_of(scene_, t).seen_from(centre);
-      boxes.push_back({glm::vec3(glm::min(a, glm::min(b, c)) - 2.0 * touch_m_),
-                       glm::vec3(glm::max(a, glm::max(b, c)) + 2.0 * touch_m_),
+      const double touch_m = offsets_.contact(t);
+      boxes.push_back({glm::vec3(glm::min(a, glm::min(b, c)) - 2.0 * touch_m),
+                       glm::vec3(glm::max(a, glm::max(b, c)) + 2.0 * touch_m),
                        apart ? facet + 1 : 0, t});
     }
     if (!any) return Traces(std::move(by_facet_));
@@ -86,15 +84,16 @@ class WallFinder {
     const scenes::Material& material = scene_.materials[scene_.triangles[wall].material];
     if (facet.is_cluster() || material.lets_light_through()) return;
     const Corners corners = scenes::corners_of(scene_, wall);
+    const double touch_m = offsets_.contact(ground, wall);
     const auto ends =
-        meeting(corners, facet.corner, facet.normal, facet.first_back != no_patch, touch_m_);
+        meeting(corners, facet.corner, facet.normal, facet.first_back != no_patch, touch_m);
     if (!ends) return;
     const Vec3 along = (*ends)[1] - (*ends)[0];
-    if (glm::length(along) <= touch_m_) return;
+    if (glm::length(along) <= touch_m) return;
     Vec3 front = glm::normalize(glm::cross(facet.normal, along));
     if (glm::dot(front, corners.normal()) < 0.0) front = -front;
     Trace trace{in_plane(facet, (*ends)[0]), in_plane(facet, (*ends)[1]), {}, 0.0, front, false};
-    if (!clip(facet, scenes::corners_of(scene_, ground), trace)) return;
+    if (!clip(facet, scenes::corners_of(scene_, ground), touch_m, trace)) return;
     trace.way = {glm::dot(front, facet.a), glm::dot(front, facet.b)};
     trace.reach = glm::dot(trace.way, 0.5 * (trace.from + trace.to));
     by_facet_[number].push_back(trace);
@@ -108,7 +107,7 @@ class WallFinder {
   }
 
   // To the triangle of the facet; false where nothing is left within the facet.
-  bool clip(const Facet& facet, const Corners& ground, Trace& trace) const {
+  bool clip(const Facet& facet, const Corners& ground, double touch_m, Trace& trace) const {
     std::array<PlanePoint, 3> p{in_plane(facet, ground.a), in_plane(facet, ground.b),
                                 in_plane(facet, ground.c)};
     const PlanePoint way = trace.to - trace.from;
@@ -131,14 +130,14 @@ class WallFinder {
     trace.to = from + high * way;
     const double length =
         glm::length((trace.to.x - trace.from.x) * facet.a + (trace.to.y - trace.from.y) * facet.b);
-    return length > touch_m_ && !along_edge(facet, trace);
+    return length > touch_m && !along_edge(facet, touch_m, trace);
   }
 
-  [[nodiscard]] bool along_edge(const Facet& facet, const Trace& trace) const {
+  [[nodiscard]] static bool along_edge(const Facet& facet, double touch_m, const Trace& trace) {
     const double area = glm::length(glm::cross(facet.a, facet.b));
     // Heights over an edge of that length.
     const auto near = [&](double from, double to, double edge_m) {
-      return std::max(std::abs(from), std::abs(to)) * area / edge_m <= 2.0 * touch_m_;
+      return std::max(std::abs(from), std::abs(to)) * area / edge_m <= 2.0 * touch_m;
     };
     const PlanePoint &p = trace.from, &q = trace.to;
     const double a = glm::length(facet.a), b = glm::length(facet.b);
@@ -169,6 +168,7 @@ class WallFinder {
     std::vector<Trace>& traces = by_facet_[f];
     if (traces.size() < 2) return;
     const Facet& facet = patches_.facets[f];
+    const double touch_m = offsets_.contact(facet.triangle);
     const Vec3 x = glm::normalize(facet.a), y = glm::cross(facet.normal, x);
     struct Piece {
       Trace trace;
@@ -196,7 +196,7 @@ class WallFinder {
       if (glm::dot(at(t.to) - at(t.from), along) < 0.0) std::swap(t.from, t.to);
       const double round = 1e-6;
       pieces.push_back({t, std::round(std::atan2(glm::dot(front, y), glm::dot(front, x)) / round),
-                        std::round(glm::dot(front, at(0.5 * (t.from + t.to))) / (4.0 * touch_m_)),
+                        std::round(glm::dot(front, at(0.5 * (t.from + t.to))) / (4.0 * touch_m)),
                         glm::dot(along, at(t.from)), glm::dot(along, at(t.to))});
     }
     std::sort(pieces.begin(), pieces.end());
@@ -206,7 +206,7 @@ class WallFinder {
     for (const Piece& piece : pieces) {
       const bool same = last != nullptr && last->trace.of_body == piece.trace.of_body &&
                         last->angle == piece.angle && last->height == piece.height &&
-                        piece.from <= end + 2.0 * touch_m_;
+                        piece.from <= end + 2.0 * touch_m;
       if (!same) {
         traces.push_back(piece.trace);
         end = piece.to;
@@ -226,7 +226,7 @@ class WallFinder {
 
   const scenes::Scene& scene_;
   const Patches& patches_;
-  double touch_m_;
+  scenes::SurfaceOffsets offsets_;
   std::vector<std::vector<Trace>> by_facet_;
   std::vector<OneSided> of_bodies_;
 };

@@ -112,7 +112,7 @@ class SourceRays {
       return;
     }
     const Vec3 at = scenes::hit_position(scene_, hit);
-    const Vec3 lift = (hit.front ? 1.0 : -1.0) * query_.surface_offset_m() * face->normal;
+    const Vec3 lift = (hit.front ? 1.0 : -1.0) * query_.offset_m(hit.triangle) * face->normal;
     if (base::max_component(through) > 0.0) {
       follow(at - lift, direction, through, panes + 1, thrown, part);
     }
@@ -146,7 +146,7 @@ void find_shares(const scenes::Scene& scene, const scenes::RayQuery& query, cons
           const scenes::EmittedRay ray = emit(p[0], p[1], p[2], p[3]);
           if (ray.weight <= 0.0) continue;
           part.all += ray.weight;
-          const Vec3 origin = ray.origin + ray.direction * query.surface_offset_m();
+          const Vec3 origin = ray.origin + ray.direction * query.offset_at_m(ray.origin);
           source_rays.follow(origin, ray.direction, ray.weight * colour, 0, false, part);
         }
         return part;

@@ -7,6 +7,7 @@
 
 #include "base/numbers/random.h"
 #include "radiosity/bodies/closed_bodies.h"
+#include "radiosity/patches/patch_offset.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -27,12 +28,12 @@ class Receiver {
         sum_(sources, Rgb(0.0)),
         by_point_(static_cast<std::size_t>(points) * sources, 0.0) {}
 
-  void add(std::size_t source, int point, const Vec3& at, const Vec3& normal,
-           const LightSample& sample) {
-    const double cosine = glm::dot(sample.direction, normal);
+  void add(std::size_t source, int point, const SurfacePoint& from, const LightSample& sample) {
+    const double cosine = glm::dot(sample.direction, from.normal);
     if (cosine <= 0.0 || base::max_component(sample.normal_illuminance_lx) <= 0.0) return;
-    const Vec3 origin = at + normal * query_.surface_offset_m();
-    const scenes::ShadowWay way = scenes::shadow_way(sample, at, origin, query_.surface_offset_m());
+    const double offset_m = query_.offset_m(from.triangle);
+    const Vec3 origin = from.position + offset_m * from.normal;
+    const scenes::ShadowWay way = scenes::shadow_way(sample, from.position, origin, offset_m);
     if (way.reach_m <= 0.0) return;
     query_.set(packet_, count_, origin, way.direction, way.reach_m);
     mirror_[count_] = sample.mirror;
@@ -158,7 +159,8 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
       }
       if (shining.empty()) continue;
       std::vector<std::uint32_t> near;
-      if (share < 1.0) near = open.bodies->near(patches, patch, 2.0 * query.surface_offset_m());
+      if (share < 1.0)
+        near = open.bodies->near(patches, patch, 2.0 * patch_offset_m(patches, query, patch));
       const base::SobolOwen4 sobol(
           base::Key(seed, base::Stream::DirectLight, i).with(sources.front().key));
       const int points = points_for(sources.front(), patches, patch);
@@ -166,12 +168,14 @@ Sampled sample_patches(const scenes::RayQuery& query, const Patches& patches, co
       int taken = 0;
       for (int k = 0; taken < points && k < most_draws * points; ++k) {
         const auto p = sobol.point(static_cast<std::uint32_t>(k));
-        const auto [at, normal] = patches.at(patch, p[0], p[1]);
-        const Vec3 lift = normal * query.surface_offset_m();
-        if (!near.empty() && open.bodies->cover(at + lift - open.bodies->centre(), near)) continue;
+        const SurfacePoint from = patches.at(patch, p[0], p[1]);
+        if (!near.empty() &&
+            open.bodies->cover(lifted(from, query) - open.bodies->centre(), near)) {
+          continue;
+        }
         for (const std::size_t s : shining) {
-          take_samples(sources[s], mirrors, at, normal, p[2], p[3], samples);
-          for (const LightSample& one : samples) receiver.add(s, taken, at, normal, one);
+          take_samples(sources[s], mirrors, from.position, from.normal, p[2], p[3], samples);
+          for (const LightSample& one : samples) receiver.add(s, taken, from, one);
         }
         ++taken;
       }

@@ -9,6 +9,7 @@
 #include "base/numbers/random.h"
 #include "base/parallel.h"
 #include "radiosity/exact/open_share.h"
+#include "radiosity/patches/patch_offset.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -51,7 +52,6 @@ Open cast_open(const scenes::RayQuery& query, const Patches& patches, std::uint3
   Open open;
   const base::SobolOwen4 sobol(base::Key(seed, base::Stream::ExactOpening, patch));
   const base::Frame3 frame = base::frame_around(patches.normal(patch));
-  const Vec3 lift = frame.normal * query.surface_offset_m();
   // Off the patch's edges, where rounding could put the origin behind a neighbour.
   const auto inset = [](float x) { return 1e-4 + (1.0 - 2e-4) * double(x); };
   scenes::RayPacket packet;
@@ -64,7 +64,8 @@ Open cast_open(const scenes::RayQuery& query, const Patches& patches, std::uint3
       const double r = std::sqrt(double(p[0])), phi = 2.0 * base::pi * double(p[1]);
       directions[k] =
           frame.to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0 - double(p[0]))});
-      query.set(packet, k, patches.point(patch, inset(p[2]), inset(p[3])) + lift, directions[k]);
+      query.set(packet, k, lifted(patches.at(patch, inset(p[2]), inset(p[3])), query),
+                directions[k]);
     }
     query.closest(packet, count, hits);
     for (std::uint32_t k = 0; k < count; ++k) {

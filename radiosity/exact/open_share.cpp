@@ -7,6 +7,7 @@
 
 #include "base/numbers/random.h"
 #include "base/parallel.h"
+#include "radiosity/patches/patch_offset.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -17,15 +18,14 @@ constexpr std::uint32_t all_points = 1U << 22, most_patch_points = 1U << 20,
 
 void measure(const ClosedBodies& bodies, const scenes::RayQuery& query, const Patches& patches,
              std::uint32_t patch, std::uint32_t points, std::uint64_t seed, PatchCover& cover) {
-  const Vec3 lift = patches.normal(patch) * query.surface_offset_m() - bodies.centre();
   double sum = 0.0, squares = 0.0;
   for (std::uint32_t r = 0; r < replicates; ++r) {
     const base::SobolOwen4 sobol(base::Key(seed, base::Stream::ExactOpening, patch).with(r));
     std::uint32_t open = 0;
     for (std::uint32_t k = 0; k < points / replicates; ++k) {
       const auto p = sobol.point(k);
-      const Vec3 at = patches.point(patch, double(p[0]), double(p[1])) + lift;
-      open += bodies.cover(at, cover.near) ? 0 : 1;
+      const Vec3 at = lifted(patches.at(patch, double(p[0]), double(p[1])), query);
+      open += bodies.cover(at - bodies.centre(), cover.near) ? 0 : 1;
     }
     const double share = double(open) / (points / replicates);
     sum += share;
@@ -44,7 +44,7 @@ std::vector<PatchCover> measure_cover(const ClosedBodies& bodies, const scenes::
   std::vector<PatchCover> covers(patches.count());
   std::vector<std::uint32_t> asked;
   for (const std::uint32_t patch : maybe) {
-    covers[patch].near = bodies.near(patches, patch, 2.0 * query.surface_offset_m());
+    covers[patch].near = bodies.near(patches, patch, 2.0 * patch_offset_m(patches, query, patch));
     if (!covers[patch].near.empty()) asked.push_back(patch);
   }
   const std::uint32_t share =

@@ -8,6 +8,7 @@
 
 #include "base/turn.h"
 #include "radiosity/patches/cluster_members.h"
+#include "radiosity/patches/patch_offset.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -58,7 +59,8 @@ PatchRays::Sender PatchRays::sender(std::uint32_t patch, base::Key key) const {
   const double low = flat ? r.s0 : r.s0 * r.s0, high = flat ? r.s1 : r.s1 * r.s1;
   const double s_inset = inset * (high - low), t_inset = inset * (r.t1 - r.t0);
   return {base::SobolSet4::Scramble(key),
-          glm::vec3(facet.corner + frame.normal * query_.surface_offset_m() - query_.centre()),
+          glm::vec3(facet.corner + frame.normal * patch_offset_m(patches_, query_, patch) -
+                    query_.centre()),
           glm::vec3(facet.a),
           glm::vec3(flat ? facet.b : facet.b - facet.a),
           glm::vec3(frame.tangent),
@@ -81,7 +83,7 @@ void PatchRays::make_of_several(std::uint32_t patch, const base::SobolSet4::Poin
     const float radius = std::sqrt(p.x[0][k]), height = std::sqrt(1.0F - p.x[0][k]);
     const Vec3 direction =
         base::frame_around(at.normal).to_world({radius * way.cosine, radius * way.sine, height});
-    query_.set(rays, k, at.position + query_.surface_offset_m() * at.normal, direction);
+    query_.set(rays, k, lifted(at, query_), direction);
   }
 }
 

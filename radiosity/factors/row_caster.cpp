@@ -3,6 +3,7 @@
 
 #include "base/numbers/random.h"
 #include "radiosity/patches/parted_cell.h"
+#include "radiosity/patches/patch_offset.h"
 #include "scenes/reflect/specular.h"
 
 namespace earthshine::radiosity {
@@ -127,7 +128,7 @@ std::shared_ptr<const ClosedBodies> RowCaster::bodies() const {
 }
 
 std::vector<std::uint32_t> RowCaster::bodies_near(std::uint32_t patch) const {
-  return bodies()->near(patches_, patch, 2.0 * query_.surface_offset_m());
+  return bodies()->near(patches_, patch, 2.0 * patch_offset_m(patches_, query_, patch));
 }
 
 void RowCaster::count_hits(const RayPacket& packet, const HitPacket& hits,
@@ -150,7 +151,7 @@ void RowCaster::count_hits(const RayPacket& packet, const HitPacket& hits,
     std::uint32_t to = targets_.find(triangle, hits.u[k], hits.v[k], front);
     if (to != no_patch && patches_.is_part(to)) {
       to = find_before(patches_, {triangle, double(hits.u[k]), double(hits.v[k])}, front,
-                       direction(packet, k), query_.surface_offset_m());
+                       direction(packet, k), query_.offset_m(triangle));
     }
     if (to == no_patch) {
       row.black += 1.0;
@@ -199,7 +200,7 @@ void RowCaster::follow(const RayPacket& packet, std::size_t lane, scenes::Hit hi
       return;
     }
     const scenes::SpecularStep on =
-        scenes::specular_step(scene_, hit, way, query_.surface_offset_m());
+        scenes::specular_step(scene_, hit, way, query_.offset_m(hit.triangle));
     way = on.direction;
     hit = query_.closest(on.origin, way);
     ++row.rays;

@@ -233,7 +233,9 @@ std::pair<Vec3, Vec3> Patches::box(std::uint32_t patch) const {
 
 SurfacePoint Patches::at(std::uint32_t patch, double x, double y) const {
   const auto [f, where] = holder_of(*this, patch, x, y);
-  return {on_facet(f, where.s, where.t), is_back[patch] != 0 ? -f.normal : f.normal};
+  const bool second = f.parallelogram && where.s < where.t;
+  return {on_facet(f, where.s, where.t), is_back[patch] != 0 ? -f.normal : f.normal,
+          f.triangle + (second ? 1U : 0U)};
 }
 
 TrianglePlace Patches::on_triangle(std::uint32_t patch, double x, double y) const {

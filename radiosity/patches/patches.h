@@ -60,6 +60,7 @@ struct TrianglePlace {
 
 struct SurfacePoint {
   Vec3 position, normal;  // unit, on the patch's own side
+  std::uint32_t triangle = 0;
 };
 
 struct ClusterMembers;

@@ -18,7 +18,7 @@ constexpr double margin_px = 1.0;    // around the picture
 constexpr double near_share = 1e-6;  // of the edge's length: what is behind the camera is cut there
 constexpr double least_stretch_px = 1.5;  // of an edge that is hidden elsewhere
 constexpr double depth_slack_px = 1;      // widths of a pixel that an occluder must be in front
-constexpr double offset_slack = 4.0;      // or units of RayQuery::surface_offset_m
+constexpr double offset_slack = 4.0;      // or offsets of rays from points on the edge
 
 // ---- edges of the surface
 
@@ -175,8 +175,10 @@ class Prober {
     const double distance = glm::length(p);
     const Vec3 direction =
         (p.x * camera_.right + p.y * camera_.up + p.z * camera_.forward) / distance;
-    const double slack = std::max(depth_slack_px * p.z * 2.0 * camera_.half_height / camera_.rows,
-                                  offset_slack * query_.surface_offset_m());
+    const double slack =
+        std::max(depth_slack_px * p.z * 2.0 * camera_.half_height / camera_.rows,
+                 offset_slack * (query_.offset_at_m(camera_.position + distance * direction) +
+                                 query_.distance_error_m(distance)));
     query_.set(rays, lane, camera_.position, direction, std::max(0.0, distance - slack));
   }
 

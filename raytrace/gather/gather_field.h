@@ -45,7 +45,7 @@ using GatherSurface = std::function<bool(const scenes::Hit&, GatherRequest&)>;
 
 // A place of a surface as the camera sees it: what is seen in a mirror is behind it.
 struct Sighting {
-  glm::vec3 position, normal;  // relative to the camera, m; unit
+  glm::vec3 position, normal;  // relative to RayQuery::near() of the camera, m; unit
   bool in_mirror = false;
 };
 [[nodiscard]] inline Sighting sighting_of(const GatherPoint& point) {
@@ -179,6 +179,8 @@ class GatherField {
   // Finds more points whose rays must start all over their pixel, by the length of all their rays,
   // and casts anew there as many as they had.
   void classify_origins(std::uint32_t round, const std::function<bool()>& stop);
+  // How far the corners of a pixel's footprint on the surface are from its point, m.
+  [[nodiscard]] float footprint_radius(const GatherPoint& point) const;
   // How far about a point its surface is its pixel's, whatever is near, m.
   [[nodiscard]] float own_radius(std::size_t point) const;
   // Where so many rays of a point start, other places for each `turn`.
@@ -211,6 +213,8 @@ class GatherField {
   const IncomingLight& incoming_;
   GatherSurface surface_;
   CameraModel camera_;
+  Vec3 origin_;    // of the points' positions: RayQuery::near() of the camera
+  glm::vec3 eye_;  // the camera, relative to it
   Window window_;
   Setting setting_;
   std::size_t grid_;  // points that are pixels' centres

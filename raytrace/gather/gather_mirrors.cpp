@@ -23,13 +23,15 @@ bool GatherField::place_mirrored(const Ray& ray, const scenes::Hit& hit, GatherP
     return false;
   }
   const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
-  const MirrorPlane mirror{scenes::hit_position(scene, hit), hit.front ? outward : -outward};
-  const Ray thrown{mirror.place + mirror.normal * world_.query.surface_offset_m(),
+  const MirrorPlane mirror{scenes::hit_position(scene, hit, ray.origin, ray.direction),
+                           hit.front ? outward : -outward};
+  const Ray thrown{mirror.place + mirror.normal * world_.query.offset_m(hit.triangle),
                    glm::reflect(ray.direction, mirror.normal)};
   const scenes::Hit shown = world_.query.closest(thrown.origin, thrown.direction);
   if (!place(thrown, shown, point, start)) return false;
   point.spacing_m *= static_cast<float>((hit.t + shown.t) / shown.t);
-  point.position = glm::vec3(mirror.image(scenes::hit_position(scene, shown)) - camera_.position);
+  const Vec3 met = scenes::hit_position(scene, shown, thrown.origin, thrown.direction);
+  point.position = glm::vec3(mirror.image(met) - origin_);
   point.normal = glm::reflect(point.normal, glm::vec3(mirror.normal));
   point.reflectance *= static_cast<float>(reflectance);
   point.lobe *= static_cast<float>(reflectance);

@@ -15,16 +15,15 @@ constexpr float alike_share = 0.1F;
 // A point of the next pixel, over the way from a pixel's middle to its corner.
 constexpr float beside = 3.0F;
 
-// How far the corners of a pixel's footprint on the surface are from its point.
-float footprint_radius(const GatherPoint& point) {
+}  // namespace
+
+float GatherField::footprint_radius(const GatherPoint& point) const {
   constexpr float half_diagonal = 0.7072F;
-  const float distance = glm::length(point.position);
-  const float cosine =
-      std::abs(glm::dot(point.position, point.normal)) / std::max(distance, 1e-20F);
+  const glm::vec3 view = point.position - eye_;
+  const float distance = glm::length(view);
+  const float cosine = std::abs(glm::dot(view, point.normal)) / std::max(distance, 1e-20F);
   return half_diagonal * point.spacing_m / std::max(cosine, 0.05F);
 }
-
-}  // namespace
 
 void GatherField::classify_origins(std::uint32_t round, const std::function<bool()>& stop) {
   Estimate& estimate = estimate_[number(Gathered::Solution)];

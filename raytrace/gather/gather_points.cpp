@@ -64,7 +64,8 @@ bool GatherField::place(const Ray& ray, const scenes::Hit& hit, GatherPoint& poi
   GatherRequest wanted;
   if (hit.missed() || !surface_(hit, wanted)) return false;
   const double pixel_m = 2.0 * camera_.half_height / camera_.rows;  // at unit distance
-  point.position = glm::vec3(wanted.position - camera_.position);
+  wanted.position = scenes::hit_position(world_.scene, hit, ray.origin, ray.direction);
+  point.position = glm::vec3(wanted.position - origin_);
   point.normal = glm::vec3(wanted.normal);
   point.spacing_m = static_cast<float>(hit.t * pixel_m);
   point.reach_m = std::numeric_limits<float>::max();
@@ -72,7 +73,7 @@ bool GatherField::place(const Ray& ray, const scenes::Hit& hit, GatherPoint& poi
   point.lobe = static_cast<float>(wanted.lobe);
   point.material = wanted.material;
   point.triangle = hit.triangle;
-  start = {wanted.position + wanted.normal * world_.query.surface_offset_m(), point.normal,
+  start = {wanted.position + wanted.normal * world_.query.offset_m(hit.triangle), point.normal,
            glm::vec3(ray.direction)};
   return true;
 }

@@ -38,7 +38,7 @@ void IncomingLight::follow_specular(scenes::Hit hit, Vec3 direction, const RaySh
     if (!material.passes_light_on() || !(hit.front || material.two_sided || glass)) return;
     weight *= material.mirror + material.transmit;
     const scenes::SpecularStep on =
-        scenes::specular_step(scene_, hit, direction, query_.surface_offset_m(), aimed);
+        scenes::specular_step(scene_, hit, direction, query_.offset_m(hit.triangle), aimed);
     straight = straight && scenes::goes_straight_on(direction, on.direction);
     if (aimed && !straight) return;
     direction = on.direction;

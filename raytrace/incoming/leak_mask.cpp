@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "base/parallel.h"
+#include "radiosity/patches/patch_offset.h"
 #include "raytrace/incoming/radiance_table.h"
 
 namespace earthshine::raytrace {
@@ -55,7 +56,8 @@ void look_across(const scenes::RayQuery& query, const radiosity::Patches& patche
       const Vec3 from = patches.point(first + low, 0.5, 0.5);
       const Vec3 way = patches.point(first + high, 0.5, 0.5) - from;
       const double length = glm::length(way);
-      const double lift = std::max(query.surface_offset_m(), lift_per_length * length);
+      const double lift = std::max(radiosity::patch_offset_m(patches, query, first + low),
+                                   lift_per_length * length);
       query.set(packet, k, from + lift * patches.normal(first + low), way / length, length);
     }
     const std::uint32_t hidden = query.occluded(packet, count);

@@ -18,8 +18,9 @@ constexpr int most_rays = 256;
 
 }  // namespace
 
-Footprint::Footprint(const PixelView& pixel, const Ray& ray, const Vec3& point, const Vec3& normal)
-    : pixel_(pixel), lens_(ray.origin), point_(point), normal_(normal) {
+Footprint::Footprint(const PixelView& pixel, const Ray& ray, const Vec3& point, const Vec3& normal,
+                     double offset_m)
+    : pixel_(pixel), lens_(ray.origin), point_(point), normal_(normal), offset_m_(offset_m) {
   const double height = glm::dot(point - lens_, normal);
   const Vec3 flat = ray.direction - glm::dot(ray.direction, normal) * normal;
   const double slope = glm::length(flat);
@@ -52,7 +53,7 @@ bool Footprint::is_near(const Vec3& lamp) const {
 bool Footprint::is_seen(const scenes::RayQuery& query, const Vec3& direction) const {
   const scenes::Hit hit = query.closest(lens_, direction);
   const double height = glm::dot(lens_ + hit.t * direction - point_, normal_);
-  return !hit.missed() && std::abs(height) <= 4.0 * query.surface_offset_m();
+  return !hit.missed() && std::abs(height) <= 4.0 * (offset_m_ + query.distance_error_m(hit.t));
 }
 
 Footprint::Places Footprint::toward(const Vec3& lamp, const scenes::RayQuery& query,

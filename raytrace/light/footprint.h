@@ -20,8 +20,9 @@ struct PixelView {
 
 class Footprint {
  public:
-  // point, normal: what the ray met, on the viewer's side.
-  Footprint(const PixelView& pixel, const Ray& ray, const Vec3& point, const Vec3& normal);
+  // point, normal: what the ray met, on the viewer's side; offset_m: of rays that leave it.
+  Footprint(const PixelView& pixel, const Ray& ray, const Vec3& point, const Vec3& normal,
+            double offset_m);
 
   // Whether the lamp is that near, and not behind the surface.
   [[nodiscard]] bool is_near(const Vec3& lamp) const;
@@ -43,6 +44,7 @@ class Footprint {
 
   PixelView pixel_;
   Vec3 lens_, point_, normal_;
+  double offset_m_;
   Vec3 corner_{0.0}, along_{0.0}, across_{0.0};  // of a rectangle about all that the filter reaches
   double longest_m_ = 0.0;                       // 0: the plane is not seen all over it
 };

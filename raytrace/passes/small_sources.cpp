@@ -183,8 +183,9 @@ class Finder {
       const Vec3 way = to - camera_.position;
       const double distance = glm::length(way);
       const scenes::Hit hit = shared_.query.closest(camera_.position, way / distance);
-      if (hit.missed() || hit.t >= distance * (1.0 - 1e-6) - shared_.query.surface_offset_m())
+      if (hit.missed() || hit.t >= distance * (1.0 - 1e-6) - shared_.query.offset_m(hit.triangle)) {
         return false;
+      }
       const scenes::Scene& scene = shared_.scene;
       if (scene.materials[scene.triangles[hit.triangle].material].passes_light_on()) return false;
     }

@@ -57,13 +57,14 @@ PathWalker::Surface PathWalker::surface_at(const scenes::Hit& hit) const {
   const scenes::Material& material = scene.materials[scene.triangles[hit.triangle].material];
   const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
   return {material,
-          scenes::hit_position(scene, hit),
+          scenes::hit_position(scene, hit, ray_.origin, ray_.direction),
           outward,
           hit.front ? outward : -outward,
           glm::reflect(ray_.direction, outward),
           hit.front || material.two_sided,
           scenes::diffuse_at(scene, material, hit),
-          hit.triangle};
+          hit.triangle,
+          world_.query.offset_m(hit.triangle)};
 }
 
 bool PathWalker::is_black(const Surface& surface) {
@@ -142,8 +143,7 @@ bool PathWalker::see_lamp(const scenes::Hit& hit) {
 // One shadow ray to every source that is reached so: L = (E cos / pi) (k_d + k_s cos^n alpha).
 void PathWalker::light_directly(const Surface& surface) {
   constexpr std::size_t width = scenes::RayPacket::width;
-  const double offset = world_.query.surface_offset_m();
-  const Vec3 origin = surface.position + surface.normal * offset;
+  const Vec3 origin = surface.lifted();
   scenes::RayPacket packet;
   std::array<Rgb, width> value;
   std::array<std::size_t, width> group{};
@@ -176,7 +176,8 @@ void PathWalker::light_directly(const Surface& surface) {
           reflectance +=
               surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
         }
-        const scenes::ShadowWay way = scenes::shadow_way(light, surface.position, origin, offset);
+        const scenes::ShadowWay way =
+            scenes::shadow_way(light, surface.position, origin, surface.offset_m);
         if (way.reach_m <= 0.0) return;
         value[count] = reflectance * light.normal_illuminance_lx * (cosine / pi);
         group[count] = world_.lights.group(k);
@@ -214,10 +215,9 @@ bool PathWalker::go_on(const Surface& surface, const IncomingLight* solution) {
   }
 
   if (way == Diffuse && solution != nullptr) {
-    const Vec3 origin = surface.position + surface.normal * world_.query.surface_offset_m();
     weight_ *= surface.diffuse;
     const double u = rng_->next(), v = rng_->next();
-    if (!turn_diffusely(*solution, origin, surface.normal, u, v)) return false;
+    if (!turn_diffusely(*solution, surface.lifted(), surface.normal, u, v)) return false;
   } else if (way == Mirror || way == Glass) {
     pass_on(surface, way == Glass);
   } else {
@@ -237,8 +237,7 @@ bool PathWalker::shadow_rays_follow(const Surface& surface, bool through) {
 
 void PathWalker::pass_on(const Surface& surface, bool through) {
   weight_ *= through ? surface.material.transmit : surface.material.mirror;
-  const double offset_m = world_.query.surface_offset_m();
-  Vec3 lift = surface.normal * offset_m;
+  Vec3 lift = surface.normal * surface.offset_m;
   Vec3 direction = surface.mirrored;
   if (through) {
     const scenes::Refraction refraction =
@@ -249,7 +248,7 @@ void PathWalker::pass_on(const Surface& surface, bool through) {
   ray_ = {surface.position + lift, direction};
   if (goes_straight_on_ && share_.aimed_at != radiosity::no_patch) {
     ray_.origin = scenes::straight_through(world_.scene, surface.triangle, surface.position,
-                                           direction, offset_m)
+                                           direction, surface.offset_m)
                       .value_or(ray_.origin);
   }
   straight_ = straight_ && shadow_rays_follow(surface, through);
@@ -271,7 +270,7 @@ void PathWalker::scatter(const Surface& surface, bool by_lobe) {
   } else {
     weight_ *= surface.diffuse;
   }
-  ray_ = {surface.position + surface.normal * world_.query.surface_offset_m(), direction};
+  ray_ = {surface.lifted(), direction};
   sees_sampled_ = from_camera_ = false;
   turn();
   ++(by_lobe ? rays_.lobe : rays_.gather);

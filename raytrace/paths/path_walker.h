@@ -64,6 +64,8 @@ class PathWalker {
     bool shines;    // reflects and emits: false inside glass
     Rgb diffuse;    // k_d there
     std::uint32_t triangle;
+    double offset_m;  // of rays that leave it
+    [[nodiscard]] Vec3 lifted() const { return position + offset_m * normal; }
     [[nodiscard]] bool reflects() const { return shines && material.reflects(); }
   };
 

@@ -154,10 +154,13 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
   if (!hit.front && !material.two_sided && !glass) return;  // the black back
 
   const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
-  const Surface surface{
-      material,       scenes::hit_position(scene, hit),
-      outward,        hit.front ? outward : -outward,
-      -ray.direction, scenes::diffuse_at(scene, material, hit, hit.t * shared_.texture_rad)};
+  const Surface surface{material,
+                        scenes::hit_position(scene, hit, ray.origin, ray.direction),
+                        outward,
+                        hit.front ? outward : -outward,
+                        -ray.direction,
+                        scenes::diffuse_at(scene, material, hit, hit.t * shared_.texture_rad),
+                        shared_.query.offset_m(hit.triangle)};
   const bool shines = hit.front || material.two_sided;
   if (depth == 0 && ((shines && material.reflects()) || material.passes_light_on())) {
     source_.reflecting += 1.0;
@@ -184,7 +187,6 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
 }
 
 void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weight, int depth) {
-  const double offset = shared_.query.surface_offset_m();
   const Vec3 mirrored =
       2.0 * glm::dot(surface.view, surface.normal) * surface.normal - surface.view;
   const base::Key light_key =
@@ -212,8 +214,8 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
     }
     const Rgb incident = weight * light.normal_illuminance_lx * (share * cosine / pi);
     const Rgb value = incident * (surface.diffuse + highlight);
-    const Vec3 start = point + surface.normal * offset;
-    const scenes::ShadowWay way = scenes::shadow_way(light, point, start, offset);
+    const Vec3 start = point + surface.normal * surface.offset_m;
+    const scenes::ShadowWay way = scenes::shadow_way(light, point, start, surface.offset_m);
     if (!base::is_lit(value) || way.reach_m <= 0.0) return;
     queue_shadow({start, way.direction, way.reach_m, k, value, incident * highlight,
                   shared_.layer[shared_.lights.group(k)], sample_, depth == 0,
@@ -225,7 +227,7 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
     if (const Vec3* lamp = depth == 0 ? shared_.lights.lamp_point(k) : nullptr) {
       if (!footprint) {
         footprint.emplace(PixelView{*camera_, shared_.filter, pixel_x_, pixel_y_}, ray,
-                          surface.position, surface.normal);
+                          surface.position, surface.normal, surface.offset_m);
       }
       if (footprint->is_near(*lamp)) {
         places = footprint->toward(*lamp, shared_.query, light_point(k), rng_);
@@ -242,7 +244,7 @@ void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
   const Vec3 mirrored =
       2.0 * glm::dot(surface.view, surface.normal) * surface.normal - surface.view;
   const base::Frame3 frame = base::frame_around(mirrored);
-  const Vec3 origin = surface.position + surface.normal * shared_.query.surface_offset_m();
+  const Vec3 origin = surface.lifted();
   const int count = depth == 0 ? lobe_rays : 1;
   for (int k = 0; k < count; ++k) {
     // Density (n + 1) / (2 pi) cos^n alpha; L = integral L_in (k_s / pi) cos^n cos_theta.
@@ -264,7 +266,7 @@ void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
 
 void PixelShader::mirror_and_glass(const Ray& ray, const Surface& surface, const Rgb& weight,
                                    int depth, Seen seen) {
-  const Vec3 lift = surface.normal * shared_.query.surface_offset_m();
+  const Vec3 lift = surface.normal * surface.offset_m;
   Rgb reflected = weight * surface.material.mirror, through(0.0);
   Vec3 bent(0.0);
   if (base::is_lit(surface.material.transmit)) {

@@ -41,8 +41,8 @@ struct ShadingScene : scenes::World {
   // nullptr: there is no solution.
   const PathWorld* world = nullptr;
   DiffuseSource diffuse = DiffuseSource::Gather;
-  const GatherField* field = nullptr;  // with DiffuseSource::Field
-  Vec3 camera_position{0.0};
+  const GatherField* field = nullptr;      // with DiffuseSource::Field
+  Vec3 sighting_origin{0.0};               // of Sighting::position
   double texture_rad = 0.0;                // angle that a camera sample looks at a texture with
   PixelFilter filter{scenes::Camera{}};    // of the camera samples
   int gather_rays = 16;                    // per camera sample
@@ -101,10 +101,12 @@ class PixelShader {
   struct Surface {
     const scenes::Material& material;
     Vec3 position;
-    Vec3 outward;  // unit normal of the front
-    Vec3 normal;   // the same on the side of the viewer
-    Vec3 view;     // unit, toward the viewer
-    Rgb diffuse;   // k_d there
+    Vec3 outward;     // unit normal of the front
+    Vec3 normal;      // the same on the side of the viewer
+    Vec3 view;        // unit, toward the viewer
+    Rgb diffuse;      // k_d there
+    double offset_m;  // of rays that leave it
+    [[nodiscard]] Vec3 lifted() const { return position + offset_m * normal; }
   };
 
   // counter: the kind of ray it is.

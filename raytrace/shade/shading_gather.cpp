@@ -47,7 +47,7 @@ std::size_t PixelShader::find_point(const Surface& surface, Gathered kind) const
   const GatherField& field = *shared_.field;
   const Vec3 seen = mirror_ ? mirror_->image(surface.position) : surface.position;
   const Vec3 normal = mirror_ ? glm::reflect(surface.normal, mirror_->normal) : surface.normal;
-  const Sighting place{glm::vec3(seen - shared_.camera_position), glm::vec3(normal),
+  const Sighting place{glm::vec3(seen - shared_.sighting_origin), glm::vec3(normal),
                        mirror_.has_value()};
   const std::size_t own = field.find(x_, y_, place);
   return own != no_point || sample_ >= samples_beside ? own
@@ -89,7 +89,7 @@ bool PixelShader::read_lobe(const Surface& surface, const Rgb& weight) {
 
 void PixelShader::gather(const Surface& surface, const Rgb& weight, int depth) {
   const base::Frame3 frame = base::frame_around(surface.normal);
-  const Vec3 origin = surface.position + surface.normal * shared_.query.surface_offset_m();
+  const Vec3 origin = surface.lifted();
   const int count = depth > 0       ? rays_behind_mirror
                     : shared_.field ? rays_without_point
                                     : shared_.gather_rays;

@@ -46,7 +46,7 @@ inline constexpr std::uint32_t seen_straight = 0xffffffffU;
 
 // What is seen in a mirror lies where the camera sees it, behind the mirror.
 struct GatherPoint {
-  glm::vec3 position{0.0F};  // m, relative to the camera
+  glm::vec3 position{0.0F};  // m, as of Sighting
   float reach_m =
       -1.0F;  // harmonic mean length of rays that end on surfaces; negative: none are cast
   glm::vec3 normal{0.0F};    // unit, on the camera's side

@@ -14,7 +14,7 @@
 
 #include "base/free_memory.h"
 #include "scenes/health/box_join.h"
-#include "scenes/ray_query.h"
+#include "scenes/surface_offset.h"
 #include "scenes/text/message_text.h"
 #include "scenes/triangle_point.h"
 
@@ -22,7 +22,10 @@ namespace earthshine::scenes {
 namespace {
 
 constexpr double parallel_sine = 1e-3;  // a first look; heights decide
-constexpr double tie_share = 0.02;  // of the offset: as much as single precision of a file leaves
+constexpr double tie_share = 0.02;      // of contact: as much as single precision of a file leaves
+// Rays that start off surfaces by more than this may miss a gap. Its height in offsets: less, and
+// 5 % and more of it are passed by.
+constexpr double coarse_m = 1e-5, narrow_gap = 20.0;
 constexpr std::size_t asked_every = 1U << 20;  // pairs, for whose room is asked
 
 struct Overlap {
@@ -47,7 +50,7 @@ Polygon clipped(const Polygon& polygon, const Vec3& from, const Vec3& to) {
   return kept;
 }
 
-std::optional<Overlap> overlap_of(const Corners& first, const Corners& second, double offset_m) {
+std::optional<Overlap> overlap_of(const Corners& first, const Corners& second, double contact_m) {
   const Vec3 n = first.normal(), m = second.normal();
   const Vec3 across = glm::cross(n, m);
   if (glm::dot(across, across) > parallel_sine * parallel_sine * glm::dot(n, n) * glm::dot(m, m)) {
@@ -67,23 +70,20 @@ std::optional<Overlap> overlap_of(const Corners& first, const Corners& second, d
   double twice_area = 0.0, perimeter = 0.0, height = 0.0;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const Vec3 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
-    if (std::abs(p.z) > offset_m) return std::nullopt;
+    if (std::abs(p.z) > contact_m) return std::nullopt;
     twice_area += p.x * q.y - p.y * q.x;
     perimeter += std::hypot(q.x - p.x, q.y - p.y);
     height += p.z / static_cast<double>(polygon.size());
   }
   const double area = 0.5 * std::abs(twice_area);
-  if (area <= offset_m * perimeter) return std::nullopt;
+  if (area <= contact_m * perimeter) return std::nullopt;
   return Overlap{area, height};
 }
 
 class Coincidence {
  public:
   Coincidence(Scene& scene, const FaceParts& parts)
-      : scene_(scene),
-        parts_(parts),
-        offset_m_(surface_offset_m(scene)),
-        centre_(scene.vertices.front()) {}
+      : scene_(scene), parts_(parts), offsets_(scene), centre_(scene.vertices.front()) {}
 
   void find() {
     if (parts_.kind.size() < 2) return;
@@ -112,16 +112,21 @@ class Coincidence {
     std::uint32_t triangle;
     auto operator<=>(const Rank&) const = default;
   };
+  struct Gap {
+    double height_m = 0.0, offset_m = 0.0;
+    double away_m = 0.0;  // from the centre
+  };
   // What was a guess, m2.
   struct Decided {
     double over_m2 = 0.0, sides_m2 = 0.0;  // one over the other, back to back
   };
 
-  // A little larger than it is: neither a gap of the offset nor rounding parts two that touch.
+  // A little larger than it is: neither a gap nor rounding parts two that touch.
   [[nodiscard]] std::pair<glm::vec3, glm::vec3> box_of(std::uint32_t t) const {
     const Corners p = corners_of(scene_, t);
-    const Vec3 low = glm::min(p.a, glm::min(p.b, p.c)) - offset_m_ - centre_,
-               high = glm::max(p.a, glm::max(p.b, p.c)) + offset_m_ - centre_;
+    const double contact_m = reach_m(t);
+    const Vec3 low = glm::min(p.a, glm::min(p.b, p.c)) - contact_m - centre_,
+               high = glm::max(p.a, glm::max(p.b, p.c)) + contact_m - centre_;
     return {glm::vec3(low), glm::vec3(high)};
   }
   [[nodiscard]] const Material& material(std::uint32_t t) const {
@@ -139,8 +144,9 @@ class Coincidence {
                glass_b = material(b).lets_light_through();
     if (glass_a && glass_b) return;
     const Corners first = corners_of(scene_, a), second = corners_of(scene_, b);
-    const std::optional<Overlap> overlap = overlap_of(first, second, offset_m_);
-    if (!overlap) return;
+    const double contact_m = offsets_.contact(a, b);
+    const std::optional<Overlap> overlap = overlap_of(first, second, contact_m);
+    if (!overlap) return note_gap(a, b, first, second);
     if (glass_a || glass_b) {
       add({a, b, false, false});
       return;
@@ -150,7 +156,7 @@ class Coincidence {
     const bool wall = !same_way && !material(a).two_sided && !material(b).two_sided &&
                       (kind(a) == FaceParts::Kind::Body || kind(b) == FaceParts::Kind::Body) &&
                       !look_at_each_other(a, b);
-    const bool tie = wall || std::abs(overlap->height_m) < tie_share * offset_m_;
+    const bool tie = wall || std::abs(overlap->height_m) < tie_share * contact_m;
     const bool b_before = tie ? is_before(a, b, same_way) : overlap->height_m > 0.0;
     const bool a_before = same_way != b_before;
     add({a, b, b_before, a_before});
@@ -165,6 +171,23 @@ class Coincidence {
     Decided& decided =
         decided_[b_over ? std::pair(object(a), object(b)) : std::pair(object(b), object(a))];
     (same_way || sheet ? decided.over_m2 : decided.sides_m2) += overlap->area_m2;
+  }
+
+  // How far from a triangle others are looked for.
+  [[nodiscard]] double reach_m(std::uint32_t t) const {
+    return offsets_.of(t) > coarse_m ? narrow_gap * offsets_.of(t) : offsets_.contact(t);
+  }
+
+  // Faces one over the other, so near that the offset of rays is a good part of the distance.
+  void note_gap(std::uint32_t a, std::uint32_t b, const Corners& first, const Corners& second) {
+    const double offset_m = std::max(offsets_.of(a), offsets_.of(b));
+    if (offset_m <= coarse_m) return;
+    const auto gap = overlap_of(first, second, narrow_gap * offset_m);
+    if (!gap) return;
+    Gap& widest = gaps_[std::minmax(object(a), object(b))];
+    if (offset_m > widest.offset_m) {
+      widest = {std::abs(gap->height_m), offset_m, glm::length(first.a - offsets_.centre())};
+    }
   }
 
   void add(const FacePair& pair) {
@@ -193,7 +216,7 @@ class Coincidence {
     // The walls of a house are a body and what is in it; what a body stands on, or in, reaches
     // beyond it.
     const auto &house = part_box(parts_.of[a]), &other = part_box(parts_.of[b]);
-    const glm::vec3 reach(static_cast<float>(4.0 * offset_m_));
+    const glm::vec3 reach(static_cast<float>(4.0 * offsets_.contact(a, b)));
     return glm::any(glm::lessThan(other.first, house.first - reach)) ||
            glm::any(glm::greaterThan(other.second, house.second + reach));
   }
@@ -212,6 +235,15 @@ class Coincidence {
   }
 
   void say() {
+    for (const auto& [objects, gap] : gaps_) {
+      scene_.warnings.push_back(fmt::format(
+          "faces of {} and {} are {:.2g} m apart, {:.3g} m from the scene's centre of detail, "
+          "where "
+          "single precision makes rays start {:.2g} m off surfaces: light and shadow between them "
+          "are wrong. Leave out what is far away, or render that part as a scene of its own",
+          in_quotes(scene_.objects[objects.first].name),
+          in_quotes(scene_.objects[objects.second].name), gap.height_m, gap.away_m, gap.offset_m));
+    }
     for (const auto& [objects, decided] : decided_) {
       if (scene_.objects[objects.first].orient == Orient::AsIs ||
           scene_.objects[objects.second].orient == Orient::AsIs) {
@@ -236,8 +268,9 @@ class Coincidence {
 
   Scene& scene_;
   const FaceParts& parts_;
-  double offset_m_;
+  SurfaceOffsets offsets_;
   Vec3 centre_;  // of what is held in single precision
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Gap> gaps_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, Decided> decided_;  // objects: under, over
   std::vector<std::pair<glm::vec3, glm::vec3>> part_boxes_;
 };

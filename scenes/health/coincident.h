@@ -20,8 +20,8 @@ struct FaceParts {
 void add_instances(FaceParts& parts, const Scene& scene);
 
 // Fills scene.coincident: triangles of two parts, one of them opaque and the other without holes,
-// that overlap by more than rays are lifted off surfaces (RayQuery::surface_offset_m) and are
-// nearer to each other than that. Of glass and what is opaque this one is met, from both sides: a
+// that overlap by more than a contact's length (SurfaceOffsets::contact) and are nearer to each
+// other than that. Of glass and what is opaque this one is met, from both sides: a
 // ray that went on from the glass would begin beyond it. Of two that are opaque, where one is
 // before the other by a fiftieth of that or more, so it is seen. Otherwise
 //   a body's face and another that look at each other hide each other, unless the other's part is
@@ -33,6 +33,8 @@ void add_instances(FaceParts& parts, const Scene& scene);
 // What only the order of the scene decided, of open faces of two materials, is named in
 // scene.warnings, as are two sides of a sheet; but not of objects with Orient::AsIs. Of bodies that
 // stick in each other nothing is said: most of their faces in one plane are in one of them.
+// Gaps and steps between faces that are narrower than twenty offsets of rays are named, too, where
+// these are more than 10 um.
 void find_coincident_faces(Scene& scene, const FaceParts& parts);
 
 }  // namespace earthshine::scenes

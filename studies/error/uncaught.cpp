@@ -131,7 +131,7 @@ class Finder {
     const Vec3 at = scenes::hit_position(study_.scene, hit);
     const Vec3 normal =
         (side.front ? 1.0 : -1.0) * scenes::triangle_normal(study_.scene, side.triangle);
-    const double offset = study_.query.surface_offset_m();
+    const double offset = study_.query.offset_m(side.triangle);
     const Vec3 origin = at + offset * normal;
     std::vector<scenes::LightChoice> chosen;
     lights_.choose({at, normal, normal, 1.0, 0.0, 0.0}, base::uniform(key, 2), chosen);

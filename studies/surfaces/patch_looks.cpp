@@ -41,8 +41,7 @@ void PatchLooks::look_at(const radiosity::Source& source, const LookingPoint& fr
 void PatchLooks::add_shadow_ray(const LookingPoint& from, const scenes::LightSample& sample,
                                 const Rgb& lx, std::size_t look, std::size_t group, bool twice) {
   const Vec3 origin = from.at + from.lift;
-  const scenes::ShadowWay way =
-      scenes::shadow_way(sample, from.at, origin, scene_.query.surface_offset_m());
+  const scenes::ShadowWay way = scenes::shadow_way(sample, from.at, origin, from.offset_m);
   if (base::max_component(lx) <= 0.0 || way.reach_m <= 0.0) return;
   scene_.query.set(packet_, count_, origin, way.direction, way.reach_m);
   mirror_[count_] = sample.mirror;
@@ -119,8 +118,8 @@ void PatchLooks::aim(const LookingPoint& from, const std::array<float, 4>& u,
     }
     const std::uint32_t m = scene_.scene.triangles[hit.triangle].material;
     const scenes::Material& material = scene_.scene.materials[m];
-    const scenes::SpecularStep on = scenes::specular_step(scene_.scene, hit, aimed.direction,
-                                                          scene_.query.surface_offset_m(), true);
+    const scenes::SpecularStep on = scenes::specular_step(
+        scene_.scene, hit, aimed.direction, scene_.query.offset_m(hit.triangle), true);
     if (!scenes::goes_straight_on(aimed.direction, on.direction)) return;
     if (hit.front || material.two_sided) weight *= 1.0 - kept_[m];
     origin = on.origin;
@@ -149,7 +148,7 @@ void PatchLooks::follow(scenes::Hit hit, Vec3 way, const raytrace::RayShare& sha
     if (front) weight *= 1.0 - kept_[m];
     if (weight <= 0.0) return;
     const scenes::SpecularStep on =
-        scenes::specular_step(scene_.scene, hit, way, scene_.query.surface_offset_m());
+        scenes::specular_step(scene_.scene, hit, way, scene_.query.offset_m(hit.triangle));
     aimed_come = aimed_come && scenes::goes_straight_on(way, on.direction);
     way = on.direction;
     hit = scene_.query.closest(on.origin, way);

@@ -6,6 +6,7 @@
 
 #include "base/numbers/random.h"
 #include "radiosity/bodies/closed_bodies.h"
+#include "radiosity/patches/patch_offset.h"
 #include "radiosity/patches/split.h"
 #include "scenes/reflect/energy.h"
 #include "scenes/sky/sky_cells.h"
@@ -162,7 +163,8 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
       const base::SobolOwen4 where(key);
       near.clear();
       if (bodies != nullptr) {
-        near = bodies->near(patches, patch, 2.0 * scene_.query.surface_offset_m());
+        near = bodies->near(patches, patch,
+                            2.0 * radiosity::patch_offset_m(patches, scene_.query, patch));
       }
       looks.start(work.points);
       sums.start(work.points);
@@ -173,13 +175,14 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
       std::uint32_t open = 0;
       for (std::uint32_t n_try = 0; n_try < tries; ++n_try) {
         const auto p = where.point2(n_try);
-        const auto [at, normal] = patches.at(patch, double(p[0]), double(p[1]));
-        const Vec3 lift = normal * scene_.query.surface_offset_m();
+        const auto [at, normal, triangle] = patches.at(patch, double(p[0]), double(p[1]));
+        const double offset_m = scene_.query.offset_m(triangle);
+        const Vec3 lift = offset_m * normal;
         if (!near.empty() && bodies->cover(at + lift - bodies->centre(), near)) continue;
         ++open;
         if (residual.taken == work.points) continue;
         const std::size_t point = residual.taken++;
-        places[point] = {at, normal, lift};
+        places[point] = {at, normal, lift, offset_m};
         for (std::size_t k = 0; k < sources_.size(); ++k) {
           const radiosity::Source& source = sources_[k].source;
           const std::size_t wide = source.points > source_points ? wide_source_samples : 1;

@@ -37,7 +37,7 @@ LastBounce LastBounces::of(std::span<const SeenPoint> points, int rays) const {
   for (std::size_t p = 0; p < points.size(); ++p) {
     const SeenPoint& point = points[p];
     const base::Frame3 frame = base::frame_around(point.normal);
-    const Vec3 origin = point.position + query_.surface_offset_m() * point.normal;
+    const Vec3 origin = point.lifted();
     for (std::size_t k = 0; k < static_cast<std::size_t>(rays); ++k) {
       const glm::dvec2 place = base::even_point(p * static_cast<std::size_t>(rays) + k);
       const scenes::Hit hit =

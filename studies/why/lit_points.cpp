@@ -33,7 +33,7 @@ Reach reach_of(const scenes::Scene& scene, const scenes::RayQuery& query,
   std::map<std::uint32_t, std::size_t> between;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const SeenPoint& point = points[i];
-    const Vec3 origin = point.position + query.surface_offset_m() * point.normal;
+    const Vec3 origin = point.lifted();
     for (int k = 0; k < count; ++k) {
       const Beam light = beam(point, k);
       const double cosine = glm::dot(light.direction, point.normal);
@@ -41,8 +41,8 @@ Reach reach_of(const scenes::Scene& scene, const scenes::RayQuery& query,
       const double luminance = point.reflectance * light.illuminance_lx * cosine / base::pi;
       reach.facing[i] = 1;
       reach.unshadowed += luminance;
-      const scenes::ShadowWay way = scenes::shadow_way(
-          {light.direction, light.distance_m}, point.position, origin, query.surface_offset_m());
+      const scenes::ShadowWay way = scenes::shadow_way({light.direction, light.distance_m},
+                                                       point.position, origin, point.offset_m);
       const scenes::Hit hit = query.closest(origin, way.direction);
       // A lamp's own surface, at the end of the way, is not in it.
       if (!hit.missed() && hit.t < way.reach_m * (1.0 - 1e-4)) {
@@ -90,11 +90,12 @@ std::vector<SeenPoint> seen_points(const scenes::Scene& scene, const scenes::Ray
     const Rgb diffuse = scenes::diffuse_at(scene, material, hit);
     const double reflectance = base::luminance(diffuse);
     const bool shines = hit.front || material.two_sided;
-    points.push_back(
-        {scenes::hit_position(scene, hit), hit.front ? normal : -normal, shines ? reflectance : 0.0,
-         !hit.front && material.has_black_back() ? reflectance : 0.0, shines ? diffuse : Rgb(0.0),
-         shines ? scenes::emit_at(scene, material, hit) / base::pi : Rgb(0.0),
-         scene.triangles[hit.triangle].material});
+    points.push_back({scenes::hit_position(scene, hit, ray.origin, ray.direction),
+                      hit.front ? normal : -normal, shines ? reflectance : 0.0,
+                      !hit.front && material.has_black_back() ? reflectance : 0.0,
+                      shines ? diffuse : Rgb(0.0),
+                      shines ? scenes::emit_at(scene, material, hit) / base::pi : Rgb(0.0),
+                      scene.triangles[hit.triangle].material, query.offset_m(hit.triangle)});
   }
   return points;
 }

@@ -23,6 +23,8 @@ struct SeenPoint {
   Rgb diffuse{0.0};          // as reflectance, in colour
   Rgb emitted{0.0};          // its own light, cd/m^2
   std::uint32_t material = 0;
+  double offset_m = 0.0;  // of rays that leave it
+  [[nodiscard]] Vec3 lifted() const { return position + offset_m * normal; }
 };
 
 // Of at most `most` of the pixels, spread evenly over them: what the rays through their centres hit

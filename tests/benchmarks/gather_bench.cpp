@@ -67,7 +67,7 @@ std::vector<TilePoints> tiles() {
           raytrace::GatherRequest at;
           if (hit.missed() || !surface(hit, at)) continue;
           raytrace::RayOrigins origins;
-          origins.add({at.position + at.normal * s.bay.query.surface_offset_m(),
+          origins.add({at.position + at.normal * s.bay.query.offset_m(hit.triangle),
                        glm::vec3(at.normal), glm::vec3(ray.direction)});
           tile.add(tile.count, static_cast<std::uint64_t>(y * edge_px + x), origins,
                    s.bay.query.centre());

@@ -37,7 +37,7 @@ std::vector<scenes::Hit> open_points(const scenes::Scene& scene, const scenes::R
   std::vector<scenes::Hit> open;
   for (const scenes::Hit& hit : all) {
     const std::uint32_t patch = patches.find(hit.triangle, hit.u, hit.v, hit.front);
-    const double lift = query.surface_offset_m();
+    const double lift = query.offset_m(hit.triangle);
     const Vec3 at = scenes::hit_position(scene, hit) + lift * patches.normal(patch);
     if (!bodies.cover(at - bodies.centre(), bodies.near(patches, patch, 2.0 * lift))) {
       open.push_back(hit);

@@ -59,7 +59,7 @@ TEST(PatchRays, LeaveFromTheirPatchCosineDistributedAboutItsNormal) {
         side += way / double(count);
         const Vec3 from = query.centre() +
                           Vec3(packet.origin_x[k], packet.origin_y[k], packet.origin_z[k]) -
-                          normal * query.surface_offset_m();
+                          normal * query.offset_m(0);
         centre += from / double(count);
         const Facet& facet = patches.facets[patches.facet[i]];
         ASSERT_NEAR(glm::dot(from - facet.corner, normal), 0.0, 2e-6);

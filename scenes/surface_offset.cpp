@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/surface_offset.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace earthshine::scenes {
+namespace {
+
+constexpr double unit_roundoff = 0x1p-24;  // of single precision
+constexpr double safety = 2.0;
+// Of a triangle's extent: lifts rays off a plane through the centre, where nothing is rounded.
+constexpr double least_share = 1e-12;
+constexpr double contact_share = 1e-5, most_contact_m = 2e-5;
+
+Vec3 extent_of(const Corners& p) {
+  return glm::max(p.a, glm::max(p.b, p.c)) - glm::min(p.a, glm::min(p.b, p.c));
+}
+
+// Terms of one component of a cross product.
+double products(const Vec3& a, const Vec3& b, int i) {
+  const int j = (i + 1) % 3, k = (i + 2) % 3;
+  return std::abs(a[j] * b[k]) + std::abs(a[k] * b[j]);
+}
+
+// An instance's coordinates are turned in single precision: the error has no preferred axis.
+double instance_offset_m(const Corners& p) {
+  const double away = std::max({glm::length(p.a), glm::length(p.b), glm::length(p.c)});
+  return safety * unit_roundoff * (6.0 * away + 8.0 * glm::length(extent_of(p)));
+}
+
+struct Weighted {
+  double at, weight;
+};
+
+double weighted_median(std::vector<Weighted>& values) {
+  std::sort(values.begin(), values.end(),
+            [](const Weighted& a, const Weighted& b) { return a.at < b.at; });
+  double all = 0.0, sum = 0.0;
+  for (const Weighted& value : values) all += value.weight;
+  for (const Weighted& value : values) {
+    sum += value.weight;
+    if (sum >= 0.5 * all) return value.at;
+  }
+  return 0.0;
+}
+
+// Out of line: in line GCC 12 drops the rounding of components that it handles as a vector.
+[[gnu::noinline]] float in_single(double x) { return static_cast<float>(x); }
+
+// The median of the objects' places. Small objects that are near a camera weigh most: rounding
+// errors are small where they would show most.
+Vec3 centre_of(const Scene& scene) {
+  std::array<std::vector<Weighted>, 3> values;
+  for (const Object& object : scene.objects) {
+    if (object.triangle_count == 0) continue;
+    Box box;
+    for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
+      const Corners p = corners_of(scene, object.first_triangle + t);
+      box.add(p.a), box.add(p.b), box.add(p.c);
+    }
+    const double size = box.diagonal();
+    double weight = scene.cameras.empty() ? 1.0 / size : 0.0;
+    for (const Camera& camera : scene.cameras) {
+      const Vec3 nearest = glm::clamp(camera.position, box.low, box.high);
+      weight = std::max(weight, 1.0 / (size * (glm::length(camera.position - nearest) + size)));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      values[static_cast<std::size_t>(axis)].push_back({box.middle()[axis], weight});
+    }
+  }
+  Vec3 centre;
+  for (int axis = 0; axis < 3; ++axis) {
+    centre[axis] = double(in_single(weighted_median(values[static_cast<std::size_t>(axis)])));
+  }
+  return centre;
+}
+
+}  // namespace
+
+double rounding_offset_m(const Corners& p) {
+  const Vec3 extent = extent_of(p);
+  const Vec3 most = glm::max(glm::abs(p.a), glm::max(glm::abs(p.b), glm::abs(p.c)));
+  const Vec3 normal = p.normal();
+  const double area2 = glm::length(normal);
+  const double least = least_share * glm::length(extent);
+  if (!(area2 > 0.0)) return least;
+  double error = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    // Corners and origin are rounded to single precision, half a unit in the last place each; the
+    // differences, products and sums of the distance by as much of the triangle's extent.
+    error += std::abs(normal[i]) / area2 * (2.0 * most[i] + 6.0 * extent[i]);
+    // The normal is a cross product of two edges; Embree takes those with the smaller terms.
+    const double terms =
+        std::min(products(p.b - p.a, p.c - p.a, i), products(p.c - p.b, p.c - p.a, i));
+    error += 2.0 * terms / area2 * extent[i];
+  }
+  return std::max(least, safety * unit_roundoff * error);
+}
+
+SurfaceOffsets::SurfaceOffsets(const Scene& scene) {
+  if (scene.triangles.empty()) return;
+  centre_ = centre_of(scene);
+  offset_m_.reserve(scene.triangles.size());
+  contact_m_.reserve(scene.triangles.size());
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    const Corners p = corners_of(scene, t).seen_from(centre_);
+    const bool placed = scene.objects[scene.triangles[t].object].instance.has_value();
+    const double offset =
+        placed ? std::max(instance_offset_m(p), rounding_offset_m(p)) : rounding_offset_m(p);
+    offset_m_.push_back(static_cast<float>(offset));
+    contact_m_.push_back(static_cast<float>(
+        std::max(offset, std::min(most_contact_m, contact_share * glm::length(extent_of(p))))));
+  }
+}
+
+double SurfaceOffsets::contact(std::uint32_t a, std::uint32_t b) const {
+  return double(std::max({offset_m_[a], offset_m_[b], std::min(contact_m_[a], contact_m_[b])}));
+}
+
+}  // namespace earthshine::scenes
