@@ -73,8 +73,7 @@ class ShadowQueue {
   void add(const SurfacePoint& from, const scenes::LightSample& sample, const Rgb& value,
            std::size_t point, std::size_t set, std::size_t group) {
     const Vec3 origin = lifted(from, query_);
-    const scenes::ShadowWay way =
-        scenes::shadow_way(sample, from.position, origin, query_.offset_m(from.triangle));
+    const scenes::ShadowWay way = scenes::shadow_way(sample, from.position, origin);
     if (base::luminance(value) <= 0.0 || way.reach_m <= 0.0) return;
     query_.set(packet_, count_, origin, way.direction, way.reach_m);
     mirror_[count_] = sample.mirror;

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double unit_roundoff = 0x1p-24;  // of single precision
 constexpr double safety = 2.0;
+constexpr double double_rounding = 0x1p-50;
 // Of a triangle's extent: lifts rays off a plane through the centre, where nothing is rounded.
 constexpr double least_share = 1e-12;
 constexpr double contact_share = 1e-5, most_contact_m = 2e-5;
@@ -49,34 +50,6 @@ double weighted_median(std::vector<Weighted>& values) {
 // Out of line: in line GCC 12 drops the rounding of components that it handles as a vector.
 [[gnu::noinline]] float in_single(double x) { return static_cast<float>(x); }
 
-// The median of the objects' places. Small objects that are near a camera weigh most: rounding
-// errors are small where they would show most.
-Vec3 centre_of(const Scene& scene) {
-  std::array<std::vector<Weighted>, 3> values;
-  for (const Object& object : scene.objects) {
-    if (object.triangle_count == 0) continue;
-    Box box;
-    for (std::uint32_t t = 0; t < object.triangle_count; ++t) {
-      const Corners p = corners_of(scene, object.first_triangle + t);
-      box.add(p.a), box.add(p.b), box.add(p.c);
-    }
-    const double size = box.diagonal();
-    double weight = scene.cameras.empty() ? 1.0 / size : 0.0;
-    for (const Camera& camera : scene.cameras) {
-      const Vec3 nearest = glm::clamp(camera.position, box.low, box.high);
-      weight = std::max(weight, 1.0 / (size * (glm::length(camera.position - nearest) + size)));
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      values[static_cast<std::size_t>(axis)].push_back({box.middle()[axis], weight});
-    }
-  }
-  Vec3 centre;
-  for (int axis = 0; axis < 3; ++axis) {
-    centre[axis] = double(in_single(weighted_median(values[static_cast<std::size_t>(axis)])));
-  }
-  return centre;
-}
-
 }  // namespace
 
 double rounding_offset_m(const Corners& p) {
@@ -99,19 +72,59 @@ double rounding_offset_m(const Corners& p) {
   return std::max(least, safety * unit_roundoff * error);
 }
 
+// The median of the objects' places. Small objects that are near a camera weigh most: rounding
+// errors are small where they would show most.
+Vec3 centre_of_detail(const Scene& scene) {
+  // By the triangles' own numbers: a scene may be a part of another, with all of its objects.
+  std::vector<Box> boxes;
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    const std::uint32_t object = scene.triangles[t].object;
+    if (object >= boxes.size()) boxes.resize(object + std::size_t{1});
+    const Corners p = corners_of(scene, t);
+    boxes[object].add(p.a), boxes[object].add(p.b), boxes[object].add(p.c);
+  }
+  std::array<std::vector<Weighted>, 3> values;
+  for (const Box& box : boxes) {
+    if (!(box.low.x <= box.high.x)) continue;
+    const double size = box.diagonal();
+    double weight = scene.cameras.empty() ? 1.0 / size : 0.0;
+    for (const Camera& camera : scene.cameras) {
+      const Vec3 nearest = glm::clamp(camera.position, box.low, box.high);
+      weight = std::max(weight, 1.0 / (size * (glm::length(camera.position - nearest) + size)));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      values[static_cast<std::size_t>(axis)].push_back({box.middle()[axis], weight});
+    }
+  }
+  Vec3 centre;
+  for (int axis = 0; axis < 3; ++axis) {
+    centre[axis] = double(in_single(weighted_median(values[static_cast<std::size_t>(axis)])));
+  }
+  return centre;
+}
+
+double surface_offset_m(const Scene& scene, std::uint32_t triangle, const Vec3& centre) {
+  const Corners in_scene = corners_of(scene, triangle), p = in_scene.seen_from(centre);
+  const std::uint32_t object = scene.triangles[triangle].object;
+  const bool placed = object < scene.objects.size() && scene.objects[object].instance;
+  // Points are lifted in the scene's coordinates, in double precision.
+  const Vec3 far =
+      glm::max(glm::abs(in_scene.a), glm::max(glm::abs(in_scene.b), glm::abs(in_scene.c)));
+  const double least = double_rounding * std::max({far.x, far.y, far.z});
+  return std::max({least, placed ? instance_offset_m(p) : 0.0, rounding_offset_m(p)});
+}
+
 SurfaceOffsets::SurfaceOffsets(const Scene& scene) {
   if (scene.triangles.empty()) return;
-  centre_ = centre_of(scene);
+  centre_ = centre_of_detail(scene);
   offset_m_.reserve(scene.triangles.size());
   contact_m_.reserve(scene.triangles.size());
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
-    const Corners p = corners_of(scene, t).seen_from(centre_);
-    const bool placed = scene.objects[scene.triangles[t].object].instance.has_value();
-    const double offset =
-        placed ? std::max(instance_offset_m(p), rounding_offset_m(p)) : rounding_offset_m(p);
+    const double offset = surface_offset_m(scene, t, centre_),
+                 size = glm::length(extent_of(corners_of(scene, t)));
     offset_m_.push_back(static_cast<float>(offset));
-    contact_m_.push_back(static_cast<float>(
-        std::max(offset, std::min(most_contact_m, contact_share * glm::length(extent_of(p))))));
+    contact_m_.push_back(
+        static_cast<float>(std::max(offset, std::min(most_contact_m, contact_share * size))));
   }
 }
 

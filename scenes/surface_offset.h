@@ -38,7 +38,11 @@ class SurfaceOffsets {
   std::vector<float> offset_m_, contact_m_;  // per triangle
 };
 
-// The bound for one triangle whose corners are relative to the centre.
+// SurfaceOffsets::centre(), and of() for one triangle.
+[[nodiscard]] Vec3 centre_of_detail(const Scene& scene);
+[[nodiscard]] double surface_offset_m(const Scene& scene, std::uint32_t triangle,
+                                      const Vec3& centre);
+// The bound for a triangle of no instance whose corners are relative to the centre.
 [[nodiscard]] double rounding_offset_m(const Corners& about_centre);
 
 }  // namespace earthshine::scenes

@@ -146,7 +146,8 @@ void find_shares(const scenes::Scene& scene, const scenes::RayQuery& query, cons
           const scenes::EmittedRay ray = emit(p[0], p[1], p[2], p[3]);
           if (ray.weight <= 0.0) continue;
           part.all += ray.weight;
-          const Vec3 origin = ray.origin + ray.direction * query.offset_at_m(ray.origin);
+          const Vec3 origin =
+              ray.origin + ray.lift_m + ray.direction * query.offset_at_m(ray.origin);
           source_rays.follow(origin, ray.direction, ray.weight * colour, 0, false, part);
         }
         return part;

@@ -31,9 +31,8 @@ class Receiver {
   void add(std::size_t source, int point, const SurfacePoint& from, const LightSample& sample) {
     const double cosine = glm::dot(sample.direction, from.normal);
     if (cosine <= 0.0 || base::max_component(sample.normal_illuminance_lx) <= 0.0) return;
-    const double offset_m = query_.offset_m(from.triangle);
-    const Vec3 origin = from.position + offset_m * from.normal;
-    const scenes::ShadowWay way = scenes::shadow_way(sample, from.position, origin, offset_m);
+    const Vec3 origin = lifted(from, query_);
+    const scenes::ShadowWay way = scenes::shadow_way(sample, from.position, origin);
     if (way.reach_m <= 0.0) return;
     query_.set(packet_, count_, origin, way.direction, way.reach_m);
     mirror_[count_] = sample.mirror;

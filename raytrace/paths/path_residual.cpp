@@ -57,7 +57,7 @@ std::span<const Rgb> PathWalker::residual_at(const IncomingLight& solution, cons
 // behind it send, each with its own part.
 void PathWalker::follow(const IncomingLight& solution, scenes::Hit hit) {
   for (std::uint32_t turns = 1; !hit.missed(); ++turns) {
-    const Surface surface = surface_at(hit);
+    const Surface surface = surface_at(hit, scenes::hit_position(world_.scene, hit));
     if (kept_ <= 0.0 && !scenes::is_straight_glass(surface.material)) return;
     solution.add(hit, ray_.direction, share_, -weight_, radiance_, rays_);
     if (is_black(surface)) return;

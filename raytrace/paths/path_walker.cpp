@@ -52,12 +52,12 @@ std::span<const Rgb> PathWalker::walk(const Ray& start, base::Rng& rng) {
   return finished();
 }
 
-PathWalker::Surface PathWalker::surface_at(const scenes::Hit& hit) const {
+PathWalker::Surface PathWalker::surface_at(const scenes::Hit& hit, const Vec3& position) const {
   const scenes::Scene& scene = world_.scene;
   const scenes::Material& material = scene.materials[scene.triangles[hit.triangle].material];
   const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
   return {material,
-          scenes::hit_position(scene, hit, ray_.origin, ray_.direction),
+          position,
           outward,
           hit.front ? outward : -outward,
           glm::reflect(ray_.direction, outward),
@@ -79,7 +79,8 @@ bool PathWalker::step() {
     see_sky();
     return false;
   }
-  const Surface surface = surface_at(hit);
+  const Surface surface =
+      surface_at(hit, scenes::hit_position(world_.scene, hit, ray_.origin, ray_.direction));
   if (is_black(surface)) return false;
   if (at_first_) met_surface_ = surface.reflects() || surface.material.passes_light_on();
   shine(surface, hit);
@@ -176,8 +177,7 @@ void PathWalker::light_directly(const Surface& surface) {
           reflectance +=
               surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
         }
-        const scenes::ShadowWay way =
-            scenes::shadow_way(light, surface.position, origin, surface.offset_m);
+        const scenes::ShadowWay way = scenes::shadow_way(light, surface.position, origin);
         if (way.reach_m <= 0.0) return;
         value[count] = reflectance * light.normal_illuminance_lx * (cosine / pi);
         group[count] = world_.lights.group(k);

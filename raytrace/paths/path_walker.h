@@ -72,7 +72,7 @@ class PathWalker {
   void begin(const Ray& start, base::Rng& rng);
   std::span<const Rgb> finished();
   bool step();
-  [[nodiscard]] Surface surface_at(const scenes::Hit& hit) const;
+  [[nodiscard]] Surface surface_at(const scenes::Hit& hit, const Vec3& position) const;
   [[nodiscard]] static bool is_black(const Surface& surface);
   void shine(const Surface& surface, const scenes::Hit& hit);
   bool survives(int bounce);

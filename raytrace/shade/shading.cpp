@@ -215,7 +215,7 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
     const Rgb incident = weight * light.normal_illuminance_lx * (share * cosine / pi);
     const Rgb value = incident * (surface.diffuse + highlight);
     const Vec3 start = point + surface.normal * surface.offset_m;
-    const scenes::ShadowWay way = scenes::shadow_way(light, point, start, surface.offset_m);
+    const scenes::ShadowWay way = scenes::shadow_way(light, point, start);
     if (!base::is_lit(value) || way.reach_m <= 0.0) return;
     queue_shadow({start, way.direction, way.reach_m, k, value, incident * highlight,
                   shared_.layer[shared_.lights.group(k)], sample_, depth == 0,

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -12,28 +13,34 @@
 #include "scenes/health/topology.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/ray_query.h"
+#include "scenes/surface_offset.h"
 #include "scenes/text/message_text.h"
 #include "scenes/triangle_point.h"
 
 namespace earthshine::scenes {
 namespace {
 
-// Of the surfaces' extent: four times what rays are lifted off surfaces (RayQuery), and what no
-// scene means.
-constexpr double least_lamp_share = 1.6e-5, rounding_share = 1e-12;
+// A lamp's distance from a surface in contact's lengths (surface_offset.h): that it has at least,
+// and what no scene means.
+constexpr double least_contacts = 8.0, rounding_contacts = 1e-6;
 constexpr int most_lifts = 8;
 
 struct Nearest {
   double distance_m = std::numeric_limits<double>::infinity();
   Vec3 point{0.0};
   std::uint32_t triangle = 0;
+  double reach_m = 0.0;  // that a lamp has at least from that triangle
+  bool on_it = false;
+  [[nodiscard]] bool found() const { return distance_m < reach_m; }
 };
 
-// The nearest point of the surfaces, if there is one within reach.
-Nearest nearest_surface(const Scene& scene, const Vec3& position, double reach) {
+// The nearest point of those surfaces that are nearer than a lamp may be, if there is one.
+Nearest nearest_surface(const Scene& scene, const SurfaceOffsets& offsets, const Vec3& position) {
+  constexpr double rounding = 1e-6;  // of a lamp that was lifted off the surface
   Nearest nearest;
   for (std::uint32_t k = 0; k < scene.triangles.size(); ++k) {
     const auto [a, b, c] = corners_of(scene, k);
+    const double reach = least_contacts * offsets.contact(k);
     // Most triangles are farther than that along one axis.
     const Vec3 from = glm::min(a, glm::min(b, c)) - reach, to = glm::max(a, glm::max(b, c)) + reach;
     if (glm::any(glm::lessThan(position, from)) || glm::any(glm::greaterThan(position, to))) {
@@ -41,7 +48,9 @@ Nearest nearest_surface(const Scene& scene, const Vec3& position, double reach) 
     }
     const Vec3 point = nearest_on_triangle(position, a, b, c);
     const double distance = glm::length(point - position);
-    if (distance < nearest.distance_m) nearest = {distance, point, k};
+    if (distance < std::min(nearest.distance_m, reach * (1.0 - rounding))) {
+      nearest = {distance, point, k, reach, distance < rounding_contacts * offsets.contact(k)};
+    }
   }
   return nearest;
 }
@@ -58,27 +67,28 @@ bool goes_through(const Scene& scene, const Vec3& from, const Vec3& to, double r
 }
 
 // Off one surface after another, as many as meet in a corner; nothing if that has no end.
-std::optional<Vec3> lifted(const Scene& scene, const Vec3& start, double extent) {
+std::optional<Vec3> lifted(const Scene& scene, const SurfaceOffsets& offsets, const Vec3& start) {
   Vec3 position = start;
-  const double reach = least_lamp_share * extent;
+  double most_m = 0.0;
   for (int k = 0; k < most_lifts; ++k) {
-    const Nearest found = nearest_surface(scene, position, reach * (1.0 - 1e-6));
-    if (found.distance_m >= reach * (1.0 - 1e-6)) {
-      if (goes_through(scene, start, position, reach)) return std::nullopt;
+    const Nearest near = nearest_surface(scene, offsets, position);
+    if (!near.found()) {
+      if (goes_through(scene, start, position, most_m)) return std::nullopt;
       return position;
     }
-    const bool on_it = found.distance_m < rounding_share * extent;
-    const Vec3 away = on_it ? triangle_normal(scene, found.triangle)
-                            : (position - found.point) / found.distance_m;
-    position = found.point + reach * away;
+    const Vec3 away = near.on_it ? triangle_normal(scene, near.triangle)
+                                 : (position - near.point) / near.distance_m;
+    position = near.point + near.reach_m * away;
+    most_m = std::max(most_m, near.reach_m);
   }
   return std::nullopt;
 }
 
 // Lamps with a front are often mounted flush: of those that shine away from what they stand on no
 // light is lost, but rays from the camera must meet them first.
-bool shines_at(const Scene& scene, const Lamp& lamp, const Nearest& found, bool on_it) {
-  const Vec3 toward = on_it ? -triangle_normal(scene, found.triangle) : found.point - lamp.position;
+bool shines_at(const Scene& scene, const Lamp& lamp, const Nearest& near) {
+  const Vec3 toward =
+      near.on_it ? -triangle_normal(scene, near.triangle) : near.point - lamp.position;
   return glm::dot(toward, lamp.axis) > 0.0;
 }
 
@@ -109,35 +119,35 @@ FaceParts mend_surfaces(Scene& scene) {
 
 void lift_lamps(Scene& scene) {
   if (scene.vertices.empty()) return;
-  const double extent = box_around(scene.vertices).diagonal(), reach = least_lamp_share * extent;
+  if (scene.lamps.empty()) return;
+  const SurfaceOffsets offsets(scene);
   for (Lamp& lamp : scene.lamps) {
-    const Nearest first = nearest_surface(scene, lamp.position, reach);
-    if (first.distance_m >= reach) continue;
-    const bool on_it = first.distance_m < rounding_share * extent;
-    if (is_wide(lamp.kind) && !shines_at(scene, lamp, first, on_it)) {
-      const Vec3 free = lamp.position + (reach - first.distance_m) * lamp.axis;
-      if (!goes_through(scene, lamp.position, free, reach)) lamp.position = free;
+    const Nearest first = nearest_surface(scene, offsets, lamp.position);
+    if (!first.found()) continue;
+    if (is_wide(lamp.kind) && !shines_at(scene, lamp, first)) {
+      const Vec3 free = lamp.position + (first.reach_m - first.distance_m) * lamp.axis;
+      if (!goes_through(scene, lamp.position, free, first.reach_m)) lamp.position = free;
       continue;
     }
     const std::string name = in_quotes(lamp.name),
                       object =
                           in_quotes(scene.objects[scene.triangles[first.triangle].object].name);
-    const std::optional<Vec3> free = lifted(scene, lamp.position, extent);
+    const std::optional<Vec3> free = lifted(scene, offsets, lamp.position);
     if (!free) {
       scene.warnings.push_back(
           fmt::format("lamp {} stands between surfaces of the object {} and others that are less "
                       "than {:.2g} mm apart: single precision cannot tell where its light goes; "
                       "move it",
-                      name, object, 2000.0 * reach));
+                      name, object, 2000.0 * first.reach_m));
       continue;
     }
     const std::string where =
-        on_it ? "on" : fmt::format("{:.2g} mm from", 1000.0 * first.distance_m);
+        first.on_it ? "on" : fmt::format("{:.2g} mm from", 1000.0 * first.distance_m);
     scene.warnings.push_back(
         fmt::format("lamp {} is {} the object {}, nearer than single precision tells apart: taken "
                     "to be {:.2g} mm {}",
                     name, where, object, 1000.0 * glm::length(*free - lamp.position),
-                    on_it ? "in front of it" : "farther off"));
+                    first.on_it ? "in front of it" : "farther off"));
     lamp.position = *free;
   }
 }

@@ -34,6 +34,7 @@ bool joins(FlatEmitter& first, const FlatEmitter& second) {
   FlatEmitter both = first;
   both.edge2 = second.edge2;
   both.area_m2 += second.area_m2;
+  both.offset_m = std::max(both.offset_m, second.offset_m);
   both.shape = FlatShape::Parallelogram;
   if (!is_rectangle(both)) return false;
   first = both;
@@ -110,7 +111,8 @@ LightSample sample_flat(const FlatEmitter& emitter, const Vec3& point, double u,
                      emitter.exitance, emitter.area_m2);
 }
 
-EmitterSet::EmitterSet(const Scene& scene, std::size_t material) : scene_(&scene) {
+EmitterSet::EmitterSet(const Scene& scene, std::size_t material)
+    : scene_(&scene), centre_(centre_of_detail(scene)) {
   for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
     if (scene.triangles[t].material == material) add(scene, static_cast<std::uint32_t>(t));
   }
@@ -137,7 +139,8 @@ void EmitterSet::add(const Scene& scene, std::uint32_t triangle) {
                           material.emit,
                           material.two_sided,
                           FlatShape::Triangle,
-                          FlatEmitter::none};
+                          FlatEmitter::none,
+                          surface_offset_m(scene, triangle, centre_)};
   if (material.maps && (material.maps->emit.texture || material.has_holes())) {
     pieces_.push_back(piece);
     pieces_.back().exitance = mean_emit(scene, triangle);
@@ -178,6 +181,11 @@ Rgb EmitterSet::relative_exitance(const FlatEmitter& emitter, const Vec3& point)
   return relative;
 }
 
+void EmitterSet::lift(LightSample& sample, const FlatEmitter& emitter) {
+  const double side = glm::dot(sample.direction, emitter.normal) < 0.0 ? 1.0 : -1.0;
+  sample.lift_m = side * emitter.offset_m * emitter.normal;
+}
+
 void EmitterSet::vary(LightSample& sample, const FlatEmitter& emitter,
                       const Vec3& seen_from) const {
   if (emitter.textured_triangle == FlatEmitter::none) return;
@@ -194,10 +202,12 @@ LightSample EmitterSet::sample(const Vec3& point, double u, double v, Spread spr
     sample = sample_flat(pieces_[pick->light], point, pick->rest, v, spread);
     probability = pick->probability;
     vary(sample, pieces_[pick->light], point);
+    lift(sample, pieces_[pick->light]);
   } else {
     const FlatEmitter& emitter = choose(u, probability);
     sample = sample_flat(emitter, point, u, v, spread);
     vary(sample, emitter, point);
+    lift(sample, emitter);
   }
   sample.normal_illuminance_lx /= probability;
   return sample;
@@ -217,7 +227,8 @@ EmittedRay EmitterSet::emit(double u, double v, double x, double y) const {
     weight = base::luminance(relative_exitance(emitter, from) * emitter.exitance) /
              base::luminance(emitter.exitance);
   }
-  return {from, cosine_direction(base::frame_around(normal), x, y), weight};
+  return {from, cosine_direction(base::frame_around(normal), x, y), weight,
+          emitter.offset_m * normal};
 }
 
 }  // namespace earthshine::scenes

@@ -22,6 +22,7 @@ struct FlatEmitter {
   FlatShape shape = FlatShape::Triangle;
   std::uint32_t textured_triangle = none;  // of the scene, where the exitance is a mean
   static constexpr std::uint32_t none = 0xFFFFFFFFU;
+  double offset_m = 0.0;  // of rays that leave it (surface_offset.h)
 };
 
 [[nodiscard]] Vec3 point_on(const FlatEmitter& emitter, double u, double v);
@@ -57,10 +58,12 @@ class EmitterSet {
  private:
   void add(const Scene& scene, std::uint32_t triangle);
   [[nodiscard]] const FlatEmitter& choose(double& u, double& probability) const;
+  static void lift(LightSample& sample, const FlatEmitter& emitter);
   void vary(LightSample& sample, const FlatEmitter& emitter, const Vec3& seen_from) const;
   [[nodiscard]] Rgb relative_exitance(const FlatEmitter& emitter, const Vec3& point) const;
 
   const Scene* scene_ = nullptr;
+  Vec3 centre_{0.0};  // of detail
   std::vector<FlatEmitter> pieces_;
   std::vector<double> cumulative_;  // luminous flux, running sum
   LightTree tree_{{}};

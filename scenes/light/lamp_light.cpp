@@ -73,14 +73,14 @@ double relative_intensity(const Lamp& lamp, const Vec3& direction) {
 
 }  // namespace
 
-ShadowWay shadow_way(const LightSample& sample, const Vec3& point, const Vec3& origin,
-                     double offset_m) {
+ShadowWay shadow_way(const LightSample& sample, const Vec3& point, const Vec3& origin) {
   constexpr double short_of_it = 1e-5;
   if (!std::isfinite(sample.distance_m)) return {sample.direction, sample.distance_m};
-  const Vec3 way = point + sample.distance_m * sample.direction - origin;
+  const Vec3 way = point + sample.distance_m * sample.direction + sample.lift_m - origin;
   const double length_m = glm::length(way);
-  if (length_m <= 0.0) return {sample.direction, -1.0};
-  return {way / length_m, length_m * (1.0 - short_of_it) - 2.0 * offset_m};
+  // What lies between the offsets of both surfaces: they touch there.
+  if (glm::dot(way, sample.direction) <= 0.0) return {sample.direction, 0.0};
+  return {way / length_m, length_m * (1.0 - short_of_it)};
 }
 
 double field_cosine(const Lamp& lamp) { return std::cos(base::radians(lamp.field_deg / 2)); }
@@ -221,7 +221,8 @@ LightSample thrown(const LightSample& sample, const FlatMirror& mirror, std::uin
   if (glm::dot(from_centre, from_centre) > mirror.radius_m * mirror.radius_m * (1.0 + 1e-9)) {
     return {};
   }
-  return {mirror.turned(sample.direction), sample.distance_m, sample.normal_illuminance_lx, number};
+  return {mirror.turned(sample.direction), sample.distance_m, sample.normal_illuminance_lx, number,
+          mirror.turned(sample.lift_m)};
 }
 
 // Light from d, within the angle a of the disc's middle s, meets the mirror's plane at h d / (d n)

@@ -18,17 +18,18 @@ struct LightSample {
   Rgb normal_illuminance_lx{
       0.0};  // on a plane facing `direction`, divided by the sample's density; nothing in between
   std::uint32_t mirror = no_mirror;  // that throws it; the distance is that of the whole way
+  Vec3 lift_m{0.0};  // of a surface: off it, by its offset (surface_offset.h), toward the point
 };
 
-// The shadow ray of a point's sample that starts at `origin`, offset_m off the surface: it goes to
+// The shadow ray of a point's sample that starts at `origin`, off the point's surface: it goes to
 // the same place of the source, or its image in a mirror, and stops short of it, which may be a
-// surface of the scene. reach_m may be below 0: the source is at the point.
+// surface of the scene. reach_m is 0 where the source is at the point.
 struct ShadowWay {
   Vec3 direction{0.0};
   double reach_m = 0.0;
 };
-[[nodiscard]] ShadowWay shadow_way(const LightSample& sample, const Vec3& point, const Vec3& origin,
-                                   double offset_m);
+[[nodiscard]] ShadowWay shadow_way(const LightSample& sample, const Vec3& point,
+                                   const Vec3& origin);
 
 // The cosine of half the field, beyond which a spot lamp sends nothing.
 [[nodiscard]] double field_cosine(const Lamp& lamp);
@@ -60,6 +61,7 @@ enum class Spread { Best, OverArea };
 struct EmittedRay {
   Vec3 origin, direction;
   double weight = 1.0;
+  Vec3 lift_m{0.0};  // of a surface: off it, by its offset (surface_offset.h)
 };
 [[nodiscard]] EmittedRay emit_from_lamp(const Lamp& lamp, double u, double v, double x, double y);
 

@@ -142,7 +142,7 @@ class Finder {
       const scenes::LightSample sample =
           lights_.sample(light, at, base::uniform(own, 0), base::uniform(own, 1));
       const double cosine = glm::dot(sample.direction, normal);
-      const scenes::ShadowWay way = scenes::shadow_way(sample, at, origin, offset);
+      const scenes::ShadowWay way = scenes::shadow_way(sample, at, origin);
       if (cosine <= 0.0 || way.reach_m <= 0.0) continue;
       RayPacket packet;
       std::array<std::uint32_t, RayPacket::width> mirror{sample.mirror};

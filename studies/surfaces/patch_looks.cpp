@@ -41,7 +41,7 @@ void PatchLooks::look_at(const radiosity::Source& source, const LookingPoint& fr
 void PatchLooks::add_shadow_ray(const LookingPoint& from, const scenes::LightSample& sample,
                                 const Rgb& lx, std::size_t look, std::size_t group, bool twice) {
   const Vec3 origin = from.at + from.lift;
-  const scenes::ShadowWay way = scenes::shadow_way(sample, from.at, origin, from.offset_m);
+  const scenes::ShadowWay way = scenes::shadow_way(sample, from.at, origin);
   if (base::max_component(lx) <= 0.0 || way.reach_m <= 0.0) return;
   scene_.query.set(packet_, count_, origin, way.direction, way.reach_m);
   mirror_[count_] = sample.mirror;

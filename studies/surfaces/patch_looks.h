@@ -17,7 +17,6 @@ namespace earthshine::studies {
 // Where rays start: `lift` above the surface.
 struct LookingPoint {
   Vec3 at, normal, lift;
-  double offset_m;  // the length of `lift`
 };
 
 // Rays of one patch, and what they bring to its points: per point, half and group.

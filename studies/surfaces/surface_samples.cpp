@@ -176,13 +176,12 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
       for (std::uint32_t n_try = 0; n_try < tries; ++n_try) {
         const auto p = where.point2(n_try);
         const auto [at, normal, triangle] = patches.at(patch, double(p[0]), double(p[1]));
-        const double offset_m = scene_.query.offset_m(triangle);
-        const Vec3 lift = offset_m * normal;
+        const Vec3 lift = scene_.query.offset_m(triangle) * normal;
         if (!near.empty() && bodies->cover(at + lift - bodies->centre(), near)) continue;
         ++open;
         if (residual.taken == work.points) continue;
         const std::size_t point = residual.taken++;
-        places[point] = {at, normal, lift, offset_m};
+        places[point] = {at, normal, lift};
         for (std::size_t k = 0; k < sources_.size(); ++k) {
           const radiosity::Source& source = sources_[k].source;
           const std::size_t wide = source.points > source_points ? wide_source_samples : 1;

@@ -41,8 +41,8 @@ Reach reach_of(const scenes::Scene& scene, const scenes::RayQuery& query,
       const double luminance = point.reflectance * light.illuminance_lx * cosine / base::pi;
       reach.facing[i] = 1;
       reach.unshadowed += luminance;
-      const scenes::ShadowWay way = scenes::shadow_way({light.direction, light.distance_m},
-                                                       point.position, origin, point.offset_m);
+      const scenes::ShadowWay way =
+          scenes::shadow_way({light.direction, light.distance_m}, point.position, origin);
       const scenes::Hit hit = query.closest(origin, way.direction);
       // A lamp's own surface, at the end of the way, is not in it.
       if (!hit.missed() && hit.t < way.reach_m * (1.0 - 1e-4)) {

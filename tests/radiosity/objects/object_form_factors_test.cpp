@@ -172,14 +172,15 @@ TEST(ObjectFormFactor, ReplicatesThatAllFindTheSameAreStillInDoubtByOneHit) {
 }
 
 TEST(ObjectFormFactor, TwoEstimatesThatDisagreeWidenTheError) {
-  // A plate with another 3 um above it, which hides it. Rays start 4e-6 of the diagonal, 7 um,
-  // above their patch (docs/theory.md, "Known limit"): the hidden plate sees the ceiling, 0.1998,
+  // A plate with another 15 um above it, which hides it, 100 m from the centre of detail, a plate
+  // of 1 mm. Rays start 24 um above their patch there: the hidden plate sees the ceiling, 0.1998,
   // the ceiling does not see it. The truth is 0.
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));
-  builder.plate(m, 1.0, 0.0, true);
-  builder.plate(m, 1.0, 3e-6, true);
-  builder.plate(m, 1.0, 1.0, false);
+  builder.plate(m, 1.0, 100.0, true);
+  builder.plate(m, 1.0, 100.0 + 1.5e-5, true);
+  builder.plate(m, 1.0, 101.0, false);
+  builder.plate(m, 1e-3, 0.0, false);
   const scenes::RayQuery query(builder.scene);
   ObjectFactorReport report;
   const ObjectFormFactors o = object_form_factors_by_rays(

@@ -34,6 +34,7 @@ TEST(LastBounce, InAFurnaceSharesAreFormFactors) {
   SeenPoint point;
   point.position = Vec3(0.5, 0.5, 0.0);
   point.normal = Vec3(0, 0, 1);
+  point.offset_m = prepared.query.offset_m(8);
   point.diffuse = Rgb(0.5);
   point.reflectance = 0.5;
   point.emitted = Rgb(1.0 / base::pi);
