@@ -154,10 +154,9 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
   if (!hit.front && !material.two_sided && !glass) return;  // the black back
 
   const Vec3 outward = scenes::triangle_normal(scene, hit.triangle);
-  const Surface surface{
-      material,       scenes::hit_position(scene, hit),
-      outward,        hit.front ? outward : -outward,
-      -ray.direction, scenes::diffuse_at(scene, material, hit, hit.t * shared_.texture_rad)};
+  const Surface surface{material,       scenes::hit_position(scene, hit),
+                        outward,        hit.front ? outward : -outward,
+                        -ray.direction, scenes::diffuse_at(scene, material, hit)};
   const bool shines = hit.front || material.two_sided;
   if (depth == 0 && ((shines && material.reflects()) || material.passes_light_on())) {
     source_.reflecting += 1.0;
@@ -165,8 +164,7 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
   const bool shows_emission = seen == Seen::ByCamera || !shared_.sampled_emitter[triangle.material];
   if (shines && shows_emission && shared_.groups.material[triangle.material] != no_group) {
     see_source(shared_.groups.material[triangle.material],
-               weight * scenes::emit_at(scene, material, hit, hit.t * shared_.texture_rad) / pi,
-               depth);
+               weight * scenes::emit_at(scene, material, hit) / pi, depth);
   }
   if (shines) {
     if (material.reflects()) direct(ray, surface, weight, depth);

@@ -43,7 +43,6 @@ struct ShadingScene : scenes::World {
   DiffuseSource diffuse = DiffuseSource::Gather;
   const GatherField* field = nullptr;  // with DiffuseSource::Field
   Vec3 camera_position{0.0};
-  double texture_rad = 0.0;                // angle that a camera sample looks at a texture with
   PixelFilter filter{scenes::Camera{}};    // of the camera samples
   int gather_rays = 16;                    // per camera sample
   std::uint64_t seed = 1;                  // of camera and gather rays

@@ -15,8 +15,8 @@
 namespace earthshine::raytrace {
 namespace {
 
-constexpr int columns = 32, rows = 24;
-constexpr double radiance = 1000.0;  // of every source here, cd/m^2
+constexpr int across = 32, down = 24;
+constexpr double shown_cd_m2 = 1000.0;  // of every source here, cd/m^2
 
 using Shows = std::function<bool(const Ray&)>;  // whether a ray meets the source
 
@@ -30,18 +30,18 @@ Errors errors_of(const scenes::Scene& scene, const scenes::Camera& camera, const
                  const RenderOptions& how) {
   const tests::Prepared prepared(scene);
   RenderOptions options = how;
-  options.columns = columns, options.rows = rows;
+  options.columns = across, options.rows = down;
   options.gather_rays = 16;
   radiosity::SolveOptions solve;
   solve.patch_edge_m = 1.0;
   solve.form_factor_rays = 16;
   const Frame frame = render(prepared, prepared.solve(solve), camera, options);
   const std::vector<float>& light = frame.image.find("G")->values;
-  const CameraModel model = make_camera_model(camera, columns, rows);
+  const CameraModel model = make_camera_model(camera, across, down);
   Errors errors;
   constexpr int fine = 64;
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < columns; ++x) {
+  for (int y = 0; y < down; ++y) {
+    for (int x = 0; x < across; ++x) {
       int met = 0;
       for (int k = 0; k < fine * fine; ++k) {
         const double u = (k % fine + 0.5) / fine, v = (k / fine + 0.5) / fine;
@@ -49,7 +49,7 @@ Errors errors_of(const scenes::Scene& scene, const scenes::Camera& camera, const
       }
       if (met == 0 || met == fine * fine) continue;
       const double share = double(met) / (fine * fine);
-      const double off = double(light[std::size_t(y * columns + x)]) / radiance - share;
+      const double off = double(light[std::size_t(y * across + x)]) / shown_cd_m2 - share;
       errors.rms += off * off;
       errors.worst = std::max(errors.worst, std::abs(off));
       ++errors.pixels;
@@ -100,7 +100,7 @@ tests::SceneBuilder with_earth() {
   earth.direction = Vec3(0.0, 0.0, -1.0);
   earth.half_angle_deg = 84.0;  // the limb lies 6 degrees under the middle of the picture
   earth.model = scenes::EarthModel::Uniform;
-  earth.radiance = Rgb(radiance);
+  earth.radiance = Rgb(shown_cd_m2);
   builder.scene.earth = earth;
   return builder;
 }
@@ -121,7 +121,7 @@ TEST(SourceEdges, TheSunsDiscDoes) {
   sun.direction = glm::normalize(Vec3(1.0, 0.02, 0.03));
   sun.angular_radius_deg = 9.0;
   const double sine = std::sin(base::radians(sun.angular_radius_deg));
-  sun.illuminance_lx = Rgb(radiance * base::pi * sine * sine);
+  sun.illuminance_lx = Rgb(shown_cd_m2 * base::pi * sine * sine);
   builder.scene.sun = sun;
   expect_shares(builder.scene, along_x(10.0), [&](const Ray& ray) {
     return glm::dot(ray.direction, sun.direction) >= std::cos(base::radians(9.0));
@@ -153,13 +153,13 @@ TEST(SourceEdges, EmittersAndLampsDo) {
   lamp.position = Vec3(2.0, 0.1, 0.05);
   lamp.axis = Vec3(-1.0, 0.0, 0.0);
   lamp.radius_m = 0.35;
-  lamp.exitance = Rgb(radiance * base::pi);
+  lamp.exitance = Rgb(shown_cd_m2 * base::pi);
   lamps.scene.lamps.push_back(lamp);
   expect_shares(lamps.scene, along_x(0.0), in_disc);
 
   tests::SceneBuilder emitters;
   emitters.plate(emitters.material(tests::grey(0.5)), 0.2, -0.5, true);
-  const std::uint32_t bright = emitters.material(tests::grey(0.0, radiance * base::pi));
+  const std::uint32_t bright = emitters.material(tests::grey(0.0, shown_cd_m2 * base::pi));
   emitters.quad(bright, {2.0, 0.4, -0.3}, {2.0, -0.3, -0.4}, {2.0, -0.4, 0.3}, {2.0, 0.3, 0.4});
   const scenes::RayQuery query(emitters.scene);
   expect_shares(emitters.scene, along_x(0.0), [&](const Ray& ray) {
