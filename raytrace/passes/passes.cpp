@@ -113,7 +113,7 @@ class Passes {
     shared_.dimmest = pilot.dimmest;
     first_round(everywhere(how.least_samples));
     shared_.dimmest.clear();
-    if (!ends()) shade(wanted_for_the_eye(*sums_, sums_->scatter));
+    if (!ends()) shade(wanted_for_the_eye(*sums_, sums_->scatter, dimmest_share * pilot.luminance));
     shade_sources();
     for (int round = 1; round < most_rounds && !ends() && per_deviation > 0.0; ++round) {
       shade(wanted_samples(*sums_, per_deviation, pilot.bright(), how.least_samples,
@@ -143,7 +143,10 @@ class Passes {
     const int least = options_.shared.least_samples;
     first_round(by_edges(least, std::max(std::min(2, least), least / 2)));
     reserve_s_ = 0.0;
-    if (!ends()) shade(wanted_for_the_eye(*sums_, scatter_of_samples(*sums_)));
+    if (!ends()) {
+      const double dimmest = dimmest_of(*sums_);
+      shade(wanted_for_the_eye(*sums_, scatter_of_samples(*sums_, dimmest), dimmest));
+    }
     shade_sources();
     covered = covered && !ends();
     Rounds rounds(options_.error);

@@ -65,12 +65,17 @@ void shade_samples(const ShadingScene& shared, const CameraModel& camera,
                                                         double bright, int least, int most);
 
 // Up to four times as many as there are where samples of a neighbour scatter by more than a third
-// of its luminance, or of a twentieth of the picture's mean: the eye sees stairs and grain on dim
-// surfaces too, which the picture's error has little of. Neighbours, as above.
+// of its luminance, or of `dimmest`, or where neighbours differ from each other by as much: the eye
+// sees stairs and grain on dim surfaces too, which the picture's error has little of. All samples
+// of a pixel may miss the little that an edge leaves in it, and so may those of the pixels beside
+// it have nothing else. Neighbours, as above.
 [[nodiscard]] std::vector<std::uint32_t> wanted_for_the_eye(const PixelSums& sums,
-                                                            std::span<const float> scatter);
+                                                            std::span<const float> scatter,
+                                                            double dimmest);
 inline constexpr double dimmest_share = 0.05;  // of the picture's mean
+// That share of the mean of the pixels that count.
+[[nodiscard]] double dimmest_of(const PixelSums& sums);
 // Of all light together.
-[[nodiscard]] std::vector<float> scatter_of_samples(const PixelSums& sums);
+[[nodiscard]] std::vector<float> scatter_of_samples(const PixelSums& sums, double dimmest);
 
 }  // namespace earthshine::raytrace

@@ -43,7 +43,8 @@ TEST(PixelSamples, TheEyeGetsMoreSamplesWhereDimNeighboursScatter) {
     const std::size_t middle = sums.window.index(3, 3);
     sums.luminance[middle] = 4.0 * luminance;
     sums.luminance2[middle] = 4.0 * luminance * luminance + 3.0 * deviation * deviation;
-    const auto wanted = wanted_for_the_eye(sums, scatter_of_samples(sums));
+    const double dimmest = dimmest_of(sums);
+    const auto wanted = wanted_for_the_eye(sums, scatter_of_samples(sums, dimmest), dimmest);
     EXPECT_EQ(wanted[middle], 4U);
     EXPECT_EQ(wanted[sums.window.index(1, 3)], 4U);
     return wanted[sums.window.index(2, 4)];
