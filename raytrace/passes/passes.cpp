@@ -246,8 +246,8 @@ class Passes {
   }
 
   // What was not reached when it was stopped gets two samples all the same, which tell what they
-  // are off by: by twice as much as is true of two that are spread evenly (a room of 64 x 64
-  // pixels), so that where no edge is near one pixel of four is enough for it.
+  // are off by. Where no edge is near, that is one pixel of four; the others get one sample, and
+  // what that is off by is told by the pixel with two (PixelSums::squared_error).
   void first_round(const std::vector<std::uint32_t>& samples) {
     report_.least_camera_samples = static_cast<int>(*std::ranges::min_element(samples));
     shade(samples);

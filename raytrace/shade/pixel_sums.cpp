@@ -126,6 +126,12 @@ bool PixelSums::counts(std::size_t pixel) const {
   return samples[pixel] > 0 && source[pixel].counts(samples[pixel]);
 }
 
+std::size_t PixelSums::corner_of(std::size_t pixel) const {
+  const auto columns = static_cast<std::size_t>(window.columns);
+  const std::size_t x = pixel % columns, y = pixel / columns;
+  return (y - y % 2) * columns + x - x % 2;
+}
+
 double PixelSums::sample_variance(std::size_t pixel) const {
   const double n = samples[pixel];
   if (n < 2.0) return 0.0;
@@ -143,7 +149,11 @@ double PixelSums::deviation(std::size_t pixel, double bright) const {
 }
 
 double PixelSums::squared_error(std::size_t pixel) const {
-  if (samples[pixel] < 2) return 0.0;
+  if (samples[pixel] == 1) {
+    const std::size_t corner = corner_of(pixel);
+    return corner != pixel ? samples[corner] * squared_error(corner) : 0.0;
+  }
+  if (samples[pixel] == 0) return 0.0;
   // Of few pixels the halves tell little: there their samples' spread, which is an upper bound.
   if (window.pixel_count() < few_pixels) return sample_variance(pixel);
   const double off = half_difference[pixel] / samples[pixel];

@@ -41,6 +41,8 @@ struct PixelSums {
   // take all samples.
   [[nodiscard]] double deviation(std::size_t pixel, double bright) const;
   // The squared error of the mean, from the pixel's two halves alone: right on average over pixels.
+  // A single sample has no halves: it takes those of the pixel at the upper left of its square of
+  // four (Passes::first_round), by as much as fewer samples are further off.
   [[nodiscard]] double squared_error(std::size_t pixel) const;
   // Whether the pixel shows a surface that reflects and no edge of a source itself.
   [[nodiscard]] bool counts(std::size_t pixel) const;
@@ -48,6 +50,10 @@ struct PixelSums {
   void pass(std::size_t pixel, base::Parcel& parcel);
   // Samples into the sums of a pixel.
   void add(std::size_t pixel, const PixelShader& shader, std::uint32_t first, std::uint32_t count);
+
+ private:
+  // The pixel at the upper left of its square of four.
+  [[nodiscard]] std::size_t corner_of(std::size_t pixel) const;
 };
 
 // Brings every pixel up to wanted[pixel] samples. Sample k of a pixel is the same whatever came
