@@ -11,8 +11,9 @@
 namespace earthshine::scenes {
 namespace {
 
-// Of a triangle for its mean, along each side: sixteen samples to a texel, within these bounds.
-constexpr int fewest_samples = 4, most_samples = 64;
+// Of a triangle for its mean, along each side: sixteen samples to a texel, within the first two
+// bounds, but no less than one, up to the last.
+constexpr int fewest_samples = 4, most_samples = 64, most_of_many_texels = 256;
 
 glm::dvec2 uv_at(const Scene& scene, const SurfacePlace& place) {
   const auto& vertex = scene.triangles[place.triangle].vertex;
@@ -21,8 +22,7 @@ glm::dvec2 uv_at(const Scene& scene, const SurfacePlace& place) {
   return (1.0 - place.u - place.v) * a + place.u * b + place.v * c;
 }
 
-// Texels to a metre of the triangle, by their areas.
-double texels_per_m(const Scene& scene, const TextureMap& map, std::uint32_t triangle) {
+double texels_per_m_of(const Scene& scene, const TextureMap& map, std::uint32_t triangle) {
   const auto& vertex = scene.triangles[triangle].vertex;
   const glm::dvec2 a(scene.vertex_uv[vertex[0]]);
   const glm::dvec2 ab = glm::dvec2(scene.vertex_uv[vertex[1]]) - a,
@@ -34,11 +34,7 @@ double texels_per_m(const Scene& scene, const TextureMap& map, std::uint32_t tri
 }
 
 glm::dvec4 look_up(const Scene& scene, const TextureMap& map, const SurfacePlace& place) {
-  double level = 0.0;
-  if (place.width_m > 0.0) {
-    level = std::log2(std::max(1.0, place.width_m * texels_per_m(scene, map, place.triangle)));
-  }
-  return map.texture->at(map.transform->apply(uv_at(scene, place)), level);
+  return map.texture->at(map.transform->apply(uv_at(scene, place)));
 }
 
 Rgb relative(const Scene& scene, const TextureMap& map, const SurfacePlace& place) {
@@ -54,14 +50,11 @@ struct Sums {
 void add_triangle(const Scene& scene, std::uint32_t triangle, const MaterialMaps& maps,
                   Sums& sums) {
   const double area = triangle_area(scene, triangle);
-  double texels = 1.0;
-  for (const TextureMap* map : {&maps.diffuse, &maps.emit, &maps.opacity}) {
-    if (!map->texture) continue;
-    texels = std::max(texels, texels_per_m(scene, *map, triangle) * std::sqrt(area));
-  }
-  const int n = std::clamp(static_cast<int>(std::ceil(16.0 * std::min(texels, 1e6))),
-                           fewest_samples, most_samples);
-  SurfacePlace place{triangle, 0.0, 0.0, std::sqrt(area) / n};
+  const double texels = std::clamp(texels_per_m(scene, triangle) * std::sqrt(area), 1.0, 1e6);
+  const int n =
+      std::max(std::clamp(static_cast<int>(std::ceil(16.0 * texels)), fewest_samples, most_samples),
+               std::min(static_cast<int>(std::ceil(texels)), most_of_many_texels));
+  SurfacePlace place{triangle, 0.0, 0.0};
   const double share = area / (double(n) * n);
   for (int k = 0; k < n * n; ++k) {
     const glm::dvec2 square = base::even_point(static_cast<std::size_t>(k));
@@ -84,6 +77,17 @@ void settle(const Rgb& sum, double area, TextureMap& map, Rgb& factor) {
 
 }  // namespace
 
+double texels_per_m(const Scene& scene, std::uint32_t triangle) {
+  const Material& material = scene.materials[scene.triangles[triangle].material];
+  double most = 0.0;
+  if (!material.maps) return most;
+  for (const TextureMap* map :
+       {&material.maps->diffuse, &material.maps->emit, &material.maps->opacity}) {
+    if (map->texture) most = std::max(most, texels_per_m_of(scene, *map, triangle));
+  }
+  return most;
+}
+
 Rgb textured_diffuse(const Scene& scene, const Material& material, const SurfacePlace& place) {
   if (!material.maps || !material.maps->diffuse.texture) return material.diffuse;
   return material.diffuse * relative(scene, material.maps->diffuse, place);
@@ -96,7 +100,7 @@ Rgb textured_emit(const Scene& scene, const Material& material, const SurfacePla
 
 bool is_there(const Scene& scene, std::uint32_t triangle, double u, double v) {
   const Material& material = scene.materials[scene.triangles[triangle].material];
-  return !material.maps || is_opaque(*material.maps, uv_at(scene, {triangle, u, v, 0.0}));
+  return !material.maps || is_opaque(*material.maps, uv_at(scene, {triangle, u, v}));
 }
 
 Rgb mean_emit(const Scene& scene, std::uint32_t triangle) {

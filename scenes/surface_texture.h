@@ -12,12 +12,10 @@
 
 namespace earthshine::scenes {
 
-// A point of a triangle by the weights u, v of its second and third vertex, and how wide the place
-// is that is looked at, m; 0: a point.
+// A point of a triangle by the weights u, v of its second and third vertex.
 struct SurfacePlace {
   std::uint32_t triangle = 0;
   double u = 0.0, v = 0.0;
-  double width_m = 0.0;
 };
 
 // k_d and exitance there; without a texture those of the material.
@@ -26,16 +24,17 @@ struct SurfacePlace {
 [[nodiscard]] Rgb textured_emit(const Scene& scene, const Material& material,
                                 const SurfacePlace& place);
 
-[[nodiscard]] inline Rgb diffuse_at(const Scene& scene, const Material& material, const Hit& hit,
-                                    double width_m = 0.0) {
+[[nodiscard]] inline Rgb diffuse_at(const Scene& scene, const Material& material, const Hit& hit) {
   if (!material.maps) return material.diffuse;
-  return textured_diffuse(scene, material, {hit.triangle, hit.u, hit.v, width_m});
+  return textured_diffuse(scene, material, {hit.triangle, hit.u, hit.v});
 }
-[[nodiscard]] inline Rgb emit_at(const Scene& scene, const Material& material, const Hit& hit,
-                                 double width_m = 0.0) {
+[[nodiscard]] inline Rgb emit_at(const Scene& scene, const Material& material, const Hit& hit) {
   if (!material.maps) return material.emit;
-  return textured_emit(scene, material, {hit.triangle, hit.u, hit.v, width_m});
+  return textured_emit(scene, material, {hit.triangle, hit.u, hit.v});
 }
+
+// Texels to a metre of the triangle, by their areas, of the finest texture of its material; 0: none.
+[[nodiscard]] double texels_per_m(const Scene& scene, std::uint32_t triangle);
 
 // The mean exitance of a triangle over its whole area, holes included.
 [[nodiscard]] Rgb mean_emit(const Scene& scene, std::uint32_t triangle);

@@ -123,12 +123,20 @@ CctvSetup setup_for(const DegradeCall& call, const Common& common, const base::E
 
 // What a sequence goes through: the picture read last, so that a still is read once.
 struct Reader {
+  bool quiet = false;
+  bool noted_crop = false;
   std::string path;
   degrade::RadianceFile file;
+  base::ExrHeader::Whole whole;
   const base::Image& read(const std::string& wanted, const degrade::Setup& setup) {
     if (wanted != path) {
       base::ExrReader reader(wanted);
       file = degrade::read_radiance(reader, setup);
+      whole = reader.header().whole;
+      if (whole.columns > 0 && !quiet && !noted_crop) {
+        note("note: " + wanted + " is a crop: iris and glare see only this part of the view");
+        noted_crop = true;
+      }
     }
     path = wanted;
     return file.image;
@@ -161,6 +169,7 @@ void run(const DegradeCall& call, const Common& common) {
   const Files inputs = inputs_of(call);
   check_files(call, tape, inputs);
   Reader reader;
+  reader.quiet = common.quiet;
   const base::ExrHeader header = base::ExrReader(tape.front().inputs.front()).header();
   CctvSetup setup = setup_for(call, common, header, tape);
   degrade::Options& options = setup.chain.options;
@@ -176,9 +185,6 @@ void run(const DegradeCall& call, const Common& common) {
   memory.f_number = twin_memory.f_number = call.f_number;
   Json reports = Json::array();
   const HeaderTexts mark = partial_mark(header);
-  if (header.whole.columns > 0 && !common.quiet) {
-    note("note: the picture is a crop: iris and glare see only this part of the view");
-  }
   std::optional<FrameParts> parts;
   Share own = {0, tape.size()};
   if (call.part.in_parts()) {
@@ -204,7 +210,7 @@ void run(const DegradeCall& call, const Common& common) {
     result.report.negative_pixels += reader.file.negative_pixels;
     if (is_own) write_cctv(numbered(call.output, frame.number), setup, result, mark);
     Json report = cctv_json(setup, result);
-    report["picture"] = picture_json(reader.file, header.whole);
+    report["picture"] = picture_json(reader.file, reader.whole);
     if (!call.twin.empty()) {
       const degrade::Twin twin = degrade::twin(reader.read(frame.inputs[0], setup.chain),
                                                setup.chain.camera, setup.chain.monitor, options,

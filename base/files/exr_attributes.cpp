@@ -137,24 +137,6 @@ float white_luminance(const std::filesystem::path& path, const Imf::Header& head
               "it is the luminance of (1, 1, 1) in cd/m^2 and must be positive");
 }
 
-Imath::Box2i picture_window(const Imf::Header& header) {
-  const Imath::Box2i& data = header.dataWindow();
-  const Imath::Box2i& display = header.displayWindow();
-  const bool overscan = !display.isEmpty() && data.min.x < display.min.x &&
-                        data.min.y < display.min.y && data.max.x > display.max.x &&
-                        data.max.y > display.max.y;
-  return overscan ? display : data;
-}
-
-void tell_crop(ExrHeader& header, const Imath::Box2i& window, const Imath::Box2i& display) {
-  if (window == display || display.isEmpty() || !display.intersects(window.min) ||
-      !display.intersects(window.max)) {
-    return;
-  }
-  header.whole = {display.max.x - display.min.x + 1, display.max.y - display.min.y + 1,
-                  window.min.x - display.min.x, window.min.y - display.min.y};
-}
-
 ExrPicture find_picture(const Names& channels) {
   if (ExrPicture whole = in_layer(channels, ""); whole.kind != ExrPicture::Kind::None) {
     return whole;

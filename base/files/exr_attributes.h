@@ -23,12 +23,6 @@ void set_exr_attributes(Imf::Header& header, const ExrHeader& attributes);
 // 1 unless the file says otherwise. Throws base::Error (Input) when it is not positive.
 [[nodiscard]] float white_luminance(const std::filesystem::path& path, const Imf::Header& header);
 
-// What of the data window is the picture: of one that reaches beyond all borders of the display
-// window the display window, because overscan is not seen.
-[[nodiscard]] Imath::Box2i picture_window(const Imf::Header& header);
-// Fills header.whole where the window lies within the display window and is not all of it.
-void tell_crop(ExrHeader& header, const Imath::Box2i& window, const Imath::Box2i& display);
-
 // Each throws base::Error (Input): for a file that is not there, no file on disk, or announces more
 // than it holds; one of deep data; one whose value i, in rows of `columns` from row `first` on, is
 // NaN or infinite.

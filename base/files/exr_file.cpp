@@ -8,7 +8,6 @@
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfInputFile.h>
-#include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
@@ -22,6 +21,7 @@
 
 #include "base/error.h"
 #include "base/files/exr_attributes.h"
+#include "base/files/exr_window.h"
 #include "base/files/output_file.h"
 #include "base/free_memory.h"
 #include "base/input/input_file.h"
@@ -218,20 +218,17 @@ ExrFile read_exr(const std::filesystem::path& path) {
     }
     white = white_luminance(path, header);
     result.header = exr_attributes(header);
-    const Imath::Box2i& window = header.dataWindow();
-    Image& image = result.image;
-    image.width = window.max.x - window.min.x + 1;
-    image.height = window.max.y - window.min.y + 1;
-    std::uint64_t channels = 0;
-    for (auto c = header.channels().begin(); c != header.channels().end(); ++c) ++channels;
-    check_room(image.pixel_count() * channels * sizeof(float), path.string());
-    Imf::FrameBuffer buffer;
+    const Imath::Box2i window = picture_window(path, header);
+    result.header.whole = whole_of(header, window);
+    std::vector<std::string> channels;
     for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
-      buffer.insert(c.name(), Imf::Slice::Make(Imf::FLOAT, image.add(c.name()).data(), window));
+      channels.emplace_back(c.name());
     }
-    Imf::InputPart part(file, 0);
-    part.setFrameBuffer(buffer);
-    part.readPixels(window.min.y, window.max.y);
+    const Imath::V2i size = header.dataWindow().size() + Imath::V2i(1, 1);
+    check_room(static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) *
+                   channels.size() * sizeof(float),
+               path.string());
+    result.image = read_window(file, 0, channels, window, 0, window.max.y - window.min.y + 1);
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading and writing OpenEXR. The only user of the library, with exr_attributes.
+// Reading and writing OpenEXR. The only user of the library, with exr_reader and their helpers.
 #pragma once
 
 #include <array>
@@ -42,9 +42,10 @@ struct ExrFile {
 void write_exr(const std::filesystem::path& path, const Image& image, const ExrHeader& header = {});
 
 // Reads every channel of a scan-line or tiled file as float (of a multi-part file the first part);
-// the data window becomes the image. A whiteLuminance attribute is applied to R, G, B and Y, so
+// the pixels of the data window that lie in the display window become the image, and header.whole
+// says of which picture they are a part. A whiteLuminance attribute is applied to R, G, B and Y, so
 // that they are cd/m^2. Channel names are kept. Throws base::Error (Input) for a missing, broken,
-// incomplete, deep or larger than 16384 x 16384 file, and when R, G, B or Y has a pixel that is NaN
+// incomplete, deep or larger than 16384 x 16384 file, where no pixel lies in the display window, and when R, G, B or Y has a pixel that is NaN
 // or infinite (with the first pixel's position).
 [[nodiscard]] ExrFile read_exr(const std::filesystem::path& path);
 

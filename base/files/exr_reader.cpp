@@ -6,9 +6,7 @@
 #include <ImathMatrix.h>
 #include <ImfChannelList.h>
 #include <ImfChromaticities.h>
-#include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfStandardAttributes.h>
 
@@ -18,6 +16,7 @@
 
 #include "base/error.h"
 #include "base/files/exr_attributes.h"
+#include "base/files/exr_window.h"
 #include "base/input/input_file.h"
 
 namespace earthshine::base {
@@ -153,45 +152,13 @@ struct ExrReader::Open {
     }
     white = white_luminance(path, own);
     to_rec709 = colour_matrix(path, own, picture.kind);
-    window = picture_window(own);
+    window = picture_window(path, own);
     header = exr_attributes(own);
-    tell_crop(header, window, own.displayWindow());
+    header.whole = whole_of(own, window);
   }
 
   [[nodiscard]] int width() const { return window.max.x - window.min.x + 1; }
   [[nodiscard]] int height() const { return window.max.y - window.min.y + 1; }
-
-  // Every column of the data window, as the library wants it.
-  [[nodiscard]] Image read_lines(int first, int count) {
-    const Imath::Box2i& data = file.header(part).dataWindow();
-    Image lines{data.max.x - data.min.x + 1, count, {}};
-    Imf::FrameBuffer buffer;
-    const int y = window.min.y + first;
-    lines.channels.reserve(picture.channels.size());
-    for (const std::string& name : picture.channels) {
-      float* const values = lines.add(name).data();
-      buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, values, Imath::V2i(data.min.x, y),
-                                           lines.width, count));
-    }
-    Imf::InputPart input(file, part);
-    input.setFrameBuffer(buffer);
-    input.readPixels(y, y + count - 1);
-    return lines;
-  }
-
-  [[nodiscard]] Image without_overscan(Image lines) const {
-    if (lines.width == width()) return lines;
-    Image cut{width(), lines.height, {}};
-    const std::ptrdiff_t left = window.min.x - file.header(part).dataWindow().min.x;
-    for (const Channel& channel : lines.channels) {
-      std::vector<float>& values = cut.add(channel.name);
-      for (std::ptrdiff_t y = 0; y < lines.height; ++y) {
-        const auto from = channel.values.begin() + y * lines.width + left;
-        std::copy(from, from + cut.width, values.begin() + y * cut.width);
-      }
-    }
-    return cut;
-  }
 
   void check_finite(const Image& rows, int first) const {
     for (const Channel& channel : rows.channels) {
@@ -243,7 +210,8 @@ const ExrHeader& ExrReader::header() const { return open_->header; }
 
 Image ExrReader::read_rows(int first, int count) {
   try {
-    Image rows = open_->without_overscan(open_->read_lines(first, count));
+    Image rows =
+        read_window(open_->file, open_->part, open_->picture.channels, open_->window, first, count);
     open_->check_finite(rows, first);
     open_->scale(rows);
     return rows;

@@ -20,14 +20,14 @@ namespace earthshine::base {
 //   colours   chromaticities other than Rec. 709 and XYZ are brought to Rec. 709 by their matrix,
 //             without adapting the white
 //   unit      cd/m^2: values times whiteLuminance
-//   window    the data window; of one that reaches beyond all borders of the display window
-//             (overscan) the display window. header().whole tells a crop from a whole picture.
+//   window    the pixels of the data window that lie in the display window (exr_window.h).
+//             header().whole tells a crop from a whole picture.
 // Half, float and whole numbers, scan lines or tiles, any compression of the library.
 class ExrReader {
  public:
   // Reads the header alone, and makes sure that the pixels are there. Throws base::Error (Input):
   // missing, broken, incomplete, deep; no such channels (with those that it has) or several layers
-  // of them; channels of reduced resolution; pixels that are not square; more than 65536 on an edge
+  // of them; channels of reduced resolution; no pixel in the display window; pixels that are not square; more than 65536 on an edge
   // or 2^30 pixels.
   explicit ExrReader(const std::filesystem::path& path);
   ~ExrReader();

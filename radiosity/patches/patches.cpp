@@ -82,7 +82,8 @@ Holder holder_of(const Patches& patches, std::uint32_t patch, double x, double y
   return {member, parameters_at(member, span.part, x, y)};
 }
 
-constexpr int samples = 24;  // along each way of a patch, each as wide as its part of it
+// Along each way of a patch: one to a texel, within these bounds.
+constexpr int fewest_samples = 24, most_samples = 96;
 
 using ColourAt = Rgb (*)(const scenes::Scene&, const scenes::Material&,
                          const scenes::SurfacePlace&);
@@ -90,7 +91,10 @@ using ColourAt = Rgb (*)(const scenes::Scene&, const scenes::Material&,
 Rgb mean_over(const scenes::Scene& scene, const Patches& patches, std::uint32_t patch,
               ColourAt colour_at) {
   const scenes::Material& material = scene.materials[patches.material(patch)];
-  const double width = std::sqrt(patches.area_m2[patch]) / samples;
+  const double texels = scenes::texels_per_m(scene, patches.on_triangle(patch, 0.5, 0.5).triangle) *
+                        std::sqrt(patches.area_m2[patch]);
+  const int samples =
+      static_cast<int>(std::clamp(std::ceil(texels), double(fewest_samples), double(most_samples)));
   Rgb sum(0.0), with_holes(0.0);
   int there = 0;
   for (int i = 0; i < samples; ++i) {
@@ -99,7 +103,7 @@ Rgb mean_over(const scenes::Scene& scene, const Patches& patches, std::uint32_t 
       const double y = (j + 0.5) / samples;
       const double x = (i + glm::fract(0.5 + j * 0.6180339887498949)) / samples;
       const TrianglePlace at = patches.on_triangle(patch, x, y);
-      const Rgb colour = colour_at(scene, material, {at.triangle, at.u, at.v, width});
+      const Rgb colour = colour_at(scene, material, {at.triangle, at.u, at.v});
       with_holes += colour;
       if (!scenes::is_there(scene, at.triangle, at.u, at.v)) continue;
       sum += colour;

@@ -9,6 +9,7 @@
 #include "raytrace/passes/pilot_pass.h"
 #include "raytrace/passes/rounds.h"
 #include "raytrace/passes/small_sources.h"
+#include "raytrace/passes/source_edges.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -22,6 +23,8 @@ constexpr std::array<Gathered, gathered_kinds> every_kind = {Gathered::Solution,
 // What must follow a gather field's points, at the least, over the time that finding them takes
 // (payload bay: 6 by day, 9 by night); and what must follow sharing.
 constexpr double after_points = 9.0, after_sharing = 4.0;
+// For the edges of sources, at the most: samples, and of the time that a limit leaves.
+constexpr double most_edge_samples = 1048576.0, edge_samples_per_pixel = 4.0, time_for_edges = 0.25;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -74,7 +77,7 @@ class Passes {
     expected_ =
         static_cast<double>(sampling.camera_samples) * static_cast<double>(window_.pixel_count());
     first_round(everywhere(sampling.camera_samples));
-    shade_small_sources();
+    shade_sources();
     report_.gather_rays = sampling.camera_samples * sampling.gather_rays;
   }
 
@@ -110,8 +113,8 @@ class Passes {
     shared_.dimmest = pilot.dimmest;
     first_round(everywhere(how.least_samples));
     shared_.dimmest.clear();
-    if (!ends()) shade(wanted_for_the_eye(*sums_, sums_->scatter));
-    shade_small_sources();
+    if (!ends()) shade(wanted_for_the_eye(*sums_, sums_->scatter, dimmest_share * pilot.luminance));
+    shade_sources();
     for (int round = 1; round < most_rounds && !ends() && per_deviation > 0.0; ++round) {
       shade(wanted_samples(*sums_, per_deviation, pilot.bright(), how.least_samples,
                            how.most_samples));
@@ -140,8 +143,11 @@ class Passes {
     const int least = options_.shared.least_samples;
     first_round(by_edges(least, std::max(std::min(2, least), least / 2)));
     reserve_s_ = 0.0;
-    if (!ends()) shade(wanted_for_the_eye(*sums_, scatter_of_samples(*sums_)));
-    shade_small_sources();
+    if (!ends()) {
+      const double dimmest = dimmest_of(*sums_);
+      shade(wanted_for_the_eye(*sums_, scatter_of_samples(*sums_, dimmest), dimmest));
+    }
+    shade_sources();
     covered = covered && !ends();
     Rounds rounds(options_.error);
     reserve_s_ = sharing_s_;
@@ -240,8 +246,8 @@ class Passes {
   }
 
   // What was not reached when it was stopped gets two samples all the same, which tell what they
-  // are off by: by twice as much as is true of two that are spread evenly (a room of 64 x 64
-  // pixels), so that where no edge is near one pixel of four is enough for it.
+  // are off by. Where no edge is near, that is one pixel of four; the others get one sample, and
+  // what that is off by is told by the pixel with two (PixelSums::squared_error).
   void first_round(const std::vector<std::uint32_t>& samples) {
     report_.least_camera_samples = static_cast<int>(*std::ranges::min_element(samples));
     shade(samples);
@@ -264,6 +270,29 @@ class Passes {
   void shade_small_sources() {
     const auto stop = [this] { return ends(); };
     if (!stop()) shade(wanted_for_small_sources(shared_, camera_, *sums_, stop));
+  }
+
+  // Samples. A picture without a wanted error or a time limit has no bound, so that a crop has the
+  // pixels of the whole.
+  [[nodiscard]] double most_for_edges() const {
+    double most = std::numeric_limits<double>::infinity();
+    if (options_.error > 0.0) most = std::max(most_edge_samples, edge_samples_per_pixel * pixels());
+    if (options_.time_limit_s <= 0.0) return most;
+    const SampleCosts each = sample_costs(field());
+    double samples = 0.0, cost = 0.0;
+    for (std::size_t p = 0; p < sums_->samples.size(); ++p) {
+      samples += sums_->samples[p];
+      cost += each.camera * sums_->samples[p] + each.camera_ray * double(sums_->rays[p]);
+    }
+    const double left = affordable(spent(*sums_, field(), each));
+    return std::min(most, time_for_edges * left * samples / std::max(cost, 1.0));
+  }
+
+  // What the camera sees of sources themselves.
+  void shade_sources() {
+    shade_small_sources();
+    if (ends()) return;
+    shade(wanted_for_source_edges(*sums_, samples_for_edges(options_.error), most_for_edges()));
   }
 
   void tell(double more) {

@@ -41,6 +41,8 @@ struct PixelSums {
   // take all samples.
   [[nodiscard]] double deviation(std::size_t pixel, double bright) const;
   // The squared error of the mean, from the pixel's two halves alone: right on average over pixels.
+  // A single sample has no halves: it takes those of the pixel at the upper left of its square of
+  // four (Passes::first_round), by as much as fewer samples are further off.
   [[nodiscard]] double squared_error(std::size_t pixel) const;
   // Whether the pixel shows a surface that reflects and no edge of a source itself.
   [[nodiscard]] bool counts(std::size_t pixel) const;
@@ -48,6 +50,10 @@ struct PixelSums {
   void pass(std::size_t pixel, base::Parcel& parcel);
   // Samples into the sums of a pixel.
   void add(std::size_t pixel, const PixelShader& shader, std::uint32_t first, std::uint32_t count);
+
+ private:
+  // The pixel at the upper left of its square of four.
+  [[nodiscard]] std::size_t corner_of(std::size_t pixel) const;
 };
 
 // Brings every pixel up to wanted[pixel] samples. Sample k of a pixel is the same whatever came
@@ -65,12 +71,17 @@ void shade_samples(const ShadingScene& shared, const CameraModel& camera,
                                                         double bright, int least, int most);
 
 // Up to four times as many as there are where samples of a neighbour scatter by more than a third
-// of its luminance, or of a twentieth of the picture's mean: the eye sees stairs and grain on dim
-// surfaces too, which the picture's error has little of. Neighbours, as above.
+// of its luminance, or of `dimmest`, or where neighbours differ from each other by as much: the eye
+// sees stairs and grain on dim surfaces too, which the picture's error has little of. All samples
+// of a pixel may miss the little that an edge leaves in it, and so may those of the pixels beside
+// it have nothing else. Neighbours, as above.
 [[nodiscard]] std::vector<std::uint32_t> wanted_for_the_eye(const PixelSums& sums,
-                                                            std::span<const float> scatter);
+                                                            std::span<const float> scatter,
+                                                            double dimmest);
 inline constexpr double dimmest_share = 0.05;  // of the picture's mean
+// That share of the mean of the pixels that count.
+[[nodiscard]] double dimmest_of(const PixelSums& sums);
 // Of all light together.
-[[nodiscard]] std::vector<float> scatter_of_samples(const PixelSums& sums);
+[[nodiscard]] std::vector<float> scatter_of_samples(const PixelSums& sums, double dimmest);
 
 }  // namespace earthshine::raytrace

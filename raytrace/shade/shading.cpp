@@ -159,7 +159,7 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
                         outward,
                         hit.front ? outward : -outward,
                         -ray.direction,
-                        scenes::diffuse_at(scene, material, hit, hit.t * shared_.texture_rad),
+                        scenes::diffuse_at(scene, material, hit),
                         shared_.query.offset_m(hit.triangle)};
   const bool shines = hit.front || material.two_sided;
   if (depth == 0 && ((shines && material.reflects()) || material.passes_light_on())) {
@@ -168,8 +168,7 @@ void PixelShader::shade(const Ray& ray, const scenes::Hit& hit, const Rgb& weigh
   const bool shows_emission = seen == Seen::ByCamera || !shared_.sampled_emitter[triangle.material];
   if (shines && shows_emission && shared_.groups.material[triangle.material] != no_group) {
     see_source(shared_.groups.material[triangle.material],
-               weight * scenes::emit_at(scene, material, hit, hit.t * shared_.texture_rad) / pi,
-               depth);
+               weight * scenes::emit_at(scene, material, hit) / pi, depth);
   }
   if (shines) {
     if (material.reflects()) direct(ray, surface, weight, depth);

@@ -89,8 +89,6 @@ ShadingSetup::ShadingSetup(const scenes::World& world, const radiosity::Solution
   if (reads(solution, options)) shared_.world = &world_;
   shared_.seed = shared_.lamp_seed = options.seed;
   shared_.sighting_origin = shared_.query.near(camera_.position);
-  // Half a pixel: samples lie closer than pixels, and what is finer they resolve together.
-  shared_.texture_rad = camera_.half_height / camera_.rows;
   shared_.filter = PixelFilter(camera);
 }
 

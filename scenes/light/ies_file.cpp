@@ -206,7 +206,7 @@ Luminaire parse_ies(std::string_view bytes, const std::string& file) {
     candela.push_back(
         factor * numbers.not_negative(fmt::format("candela value {} of {}", k + 1, rows * planes)));
   }
-  numbers.expect_end();
+  luminaire.warning = numbers.rest();
   const double peak = *std::max_element(candela.begin(), candela.end());
   if (!(peak > 0.0) || !std::isfinite(peak)) {
     throw Error(Blame::Input, here,

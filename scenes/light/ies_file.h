@@ -26,6 +26,7 @@ struct Luminaire {
   std::optional<TiltTable> tilt;            // of TILT=INCLUDE
   double opening_m = 0.0;                   // longest side of the luminous opening
   std::shared_ptr<const Photometry> light;  // candela multiplier and ballast factors applied
+  std::string warning;                      // of content that is not used; may be empty
 };
 
 inline constexpr std::size_t max_ies_bytes = std::size_t{16} << 20;

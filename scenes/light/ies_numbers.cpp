@@ -63,12 +63,19 @@ std::vector<double> IesNumbers::angles(std::size_t count, std::string_view what)
   return list;
 }
 
-void IesNumbers::expect_end() {
-  if (find()) {
+std::string IesNumbers::rest() {
+  if (!find()) return {};
+  if (number_in(word_.text)) {
     fail(fmt::format("{} follows the last candela value", in_quotes(word_.text)),
          "a file of IES LM-63 holds as many numbers as its counts announce",
          "Check the counts of angles");
   }
+  // Some programs close a file with a line END.
+  while (lower_case(std::string(word_.text)) == "end") {
+    if (!find()) return {};
+  }
+  return fmt::format("{}: {} follows the last candela value and is not read",
+                     base::to_string(lines_.where(word_)), in_quotes(word_.text));
 }
 
 void IesNumbers::fail(std::string_view found, std::string_view allowed,

@@ -27,7 +27,9 @@ class IesNumbers {
   [[nodiscard]] double not_negative(std::string_view what);
   // Each greater than the one before.
   [[nodiscard]] std::vector<double> angles(std::size_t count, std::string_view what);
-  void expect_end();
+  // Nothing, or the first word after the last number, which no mark of a file's end explains, and
+  // its place. Throws base::Error (Input) where it is a number: then a count is wrong.
+  [[nodiscard]] std::string rest();
 
   // At the last number that was read.
   [[noreturn]] void fail(std::string_view found, std::string_view allowed,

@@ -26,7 +26,12 @@ using base::Error;
 void check_mesh(const Mesh& mesh) {
   const base::Location where{mesh.path.string()};
   if (mesh.polygons.empty()) {
-    throw Error(Blame::Input, where, "the mesh has no faces", "a mesh holds triangles or polygons");
+    std::string holds;
+    for (const auto& [what, count] : mesh.unused) {
+      holds += fmt::format("{}{} {}", holds.empty() ? "; it holds " : ", ", count, what);
+    }
+    throw Error(Blame::Input, where, "the mesh has no faces",
+                "a mesh holds triangles or polygons" + holds);
   }
   for (const std::uint32_t index : mesh.indices) {
     if (index >= mesh.vertices.size()) {

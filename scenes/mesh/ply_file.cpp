@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -14,6 +15,8 @@ namespace {
 
 using base::Blame;
 using base::Error;
+
+constexpr const char* strips_named = "tristrips";
 
 struct Property {
   std::string name;
@@ -120,9 +123,10 @@ class PlyReader {
       }
       if (element.properties.empty()) continue;
       for (std::uint64_t i = 0; i < element.count; ++i) {
-        element.name == "vertex" ? read_vertex(element)
-        : element.name == "face" ? read_face(element)
-                                 : pass_over(element);
+        element.name == "vertex"       ? read_vertex(element)
+        : element.name == "face"       ? read_face(element)
+        : element.name == strips_named ? read_strips(element)
+                                       : pass_over(element);
       }
       count_unused(element);
     }
@@ -151,10 +155,11 @@ class PlyReader {
            (property.name == "vertex_indices" || property.name == "vertex_index");
   }
 
-  // Edges and strips, colours and whatever else.
+  // Edges, colours and whatever else.
   void count_unused(const Element& element) {
     if (element.count == 0) return;
-    const bool of_vertex = element.name == "vertex", of_face = element.name == "face";
+    const bool of_vertex = element.name == "vertex";
+    const bool of_face = element.name == "face" || element.name == strips_named;
     if (!of_vertex && !of_face) mesh_.unused[element.name] += element.count;
     for (const Property& property : element.properties) {
       const bool unused = of_vertex ? !is_position(property) && !is_normal(property)
@@ -205,19 +210,60 @@ class PlyReader {
       corners_.clear();
       for (int k = 0; k < static_cast<int>(count); ++k)
         corners_.push_back(vertex_index(property.type));
-      if (mesh_.indices.size() + corners_.size() >= no_index) {
-        throw Error(Blame::Input, values_.where(), "too many corners",
-                    "a mesh has fewer than 2^32");
+      add_face(corners_);
+    }
+  }
+
+  template <class Corners>
+  void add_face(const Corners& corners) {
+    if (mesh_.indices.size() + corners.size() >= no_index) {
+      throw Error(Blame::Input, values_.where(), "too many corners", "a mesh has fewer than 2^32");
+    }
+    add_polygon(mesh_, corners, 0, no_index, values_.line());
+    if (reads_normals_) {
+      mesh_.normal_indices.insert(mesh_.normal_indices.end(), corners.begin(), corners.end());
+    }
+  }
+
+  void read_strips(const Element& element) {
+    for (const Property& property : element.properties) {
+      if (!is_corners(property)) {
+        pass_over(property);
+        continue;
       }
-      add_polygon(mesh_, corners_, 0, no_index, values_.line());
-      if (reads_normals_) {
-        mesh_.normal_indices.insert(mesh_.normal_indices.end(), corners_.begin(), corners_.end());
+      const double count = list_length(property);
+      std::array<std::uint32_t, 2> last{};
+      std::size_t corners_so_far = 0;
+      for (double k = 0.0; k < count; k += 1.0) {
+        const double index = values_.next(property.type);
+        if (begins_strip(index, property.type)) {
+          corners_so_far = 0;
+          continue;
+        }
+        const std::uint32_t corner = checked_index(index);
+        const auto [a, b] = last;
+        const bool turned = corners_so_far % 2 == 1;
+        if (++corners_so_far > 2 && a != b && b != corner && corner != a) {
+          add_face(turned ? std::array{b, a, corner} : std::array{a, b, corner});
+        }
+        last = {b, corner};
       }
     }
   }
 
-  std::uint32_t vertex_index(PlyType type) {
-    const double index = values_.next(type);
+  // -1, also as a type without sign stores it; the latter may be a vertex if there are so many.
+  [[nodiscard]] bool begins_strip(double index, PlyType type) const {
+    const double minus_one = type == PlyType::Uint32   ? 0xFFFFFFFFU
+                             : type == PlyType::Uint16 ? 0xFFFFU
+                             : type == PlyType::Uint8  ? 0xFFU
+                                                       : -1.0;
+    return index == minus_one &&
+           (index < 0.0 || index >= static_cast<double>(mesh_.vertices.size()));
+  }
+
+  std::uint32_t vertex_index(PlyType type) { return checked_index(values_.next(type)); }
+
+  [[nodiscard]] std::uint32_t checked_index(double index) const {
     if (index >= 0.0 && index < static_cast<double>(mesh_.vertices.size()) &&
         index == std::floor(index)) {
       return static_cast<std::uint32_t>(index);
@@ -233,11 +279,15 @@ class PlyReader {
   }
 
   void pass_over(const Property& property) {
-    const double count = property.count_type ? values_.next(*property.count_type) : 1.0;
-    if (!(count >= 0.0 && count <= 1e9)) {
-      throw Error(Blame::Input, values_.where(), fmt::format("a list of {} entries", count));
-    }
+    const double count = property.count_type ? list_length(property) : 1.0;
     for (double k = 0.0; k < count; k += 1.0) values_.next(property.type);
+  }
+
+  [[nodiscard]] double list_length(const Property& property) {
+    const double count = values_.next(*property.count_type);
+    if (count >= 0.0 && count <= 1e9 && count == std::floor(count)) return count;
+    throw Error(Blame::Input, values_.where(), fmt::format("a list of {} entries", count),
+                "a list has a whole number of entries, up to 1e9");
   }
 
   PlyValues values_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stanford PLY: ascii and binary, polygons.
+// Stanford PLY: ascii and binary, polygons and strips of triangles.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,11 @@
 
 namespace earthshine::scenes {
 
-// Reads x, y, z (and nx, ny, nz) of element "vertex" and vertex_indices (or vertex_index) of
-// element "face"; passes over other elements and properties. PLY has neither parts nor materials.
+// Reads x, y, z (and nx, ny, nz) of element "vertex" and vertex_indices (or vertex_index) of the
+// elements "face" and "tristrips"; passes over other elements and properties. In a list of
+// "tristrips", -1 begins a new strip. The first triangle of a strip has the winding of its corners,
+// every second one the opposite; one with the same corner twice joins strips and is left out. PLY
+// has neither parts nor materials.
 [[nodiscard]] Mesh parse_ply(std::string_view bytes, const std::filesystem::path& path,
                              VertexNormals normals = VertexNormals::Ignored);
 

@@ -79,7 +79,7 @@ bool PlyValues::has_more() {
   if (encoding_ == PlyEncoding::Ascii) {
     if (word_ < lines_.words().size()) return true;
     word_ = 0;
-    return lines_.next() && lines_.words().front().text != "\x1a";  // an old mark of the end
+    return lines_.next();
   }
   constexpr std::string_view padding{"\0 \r\n\t", 5};
   return bytes_.find_first_not_of(padding, position_) != std::string_view::npos;

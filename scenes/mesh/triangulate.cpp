@@ -137,6 +137,28 @@ void judge(std::span<const Vec3> corners, std::span<const Point> points, double 
                                            : PolygonKind::Sound;
 }
 
+// Cuts a quadrilateral whose edges pass each other at a distance; a flat one stays as it is judged.
+void cut_twisted(std::span<const Vec3> corners, std::span<const std::uint32_t> ring,
+                 Triangulation& result) {
+  constexpr double flat_share = 1e-3;  // its height over its longest diagonal
+  if (ring.size() != 4) return;
+  const auto at = [&](std::size_t k) { return corners[ring[k % 4]]; };
+  // The halves (k, k+1, k+2) and (k, k+2, k+3).
+  const auto halves = [&](std::size_t k) {
+    return triangle_area(at(k), at(k + 1), at(k + 2)) + triangle_area(at(k), at(k + 2), at(k + 3));
+  };
+  const double first = halves(0), second = halves(1);
+  const std::size_t k = second < first ? 1 : 0;
+  const double area = std::min(first, second);
+  const double longest = std::max(glm::length(at(2) - at(0)), glm::length(at(3) - at(1)));
+  const double volume = std::abs(glm::dot(glm::cross(at(1) - at(0), at(2) - at(0)), at(3) - at(0)));
+  if (volume <= flat_share * longest * area) return;
+  result.triangles = {{ring[k], ring[k + 1], ring[k + 2]},
+                      {ring[k], ring[k + 2], ring[(k + 3) % 4]}};
+  result.triangle_area = area;
+  result.kind = PolygonKind::Sound;
+}
+
 }  // namespace
 
 Vec3 vector_area(std::span<const Vec3> corners) {
@@ -174,6 +196,7 @@ void triangulate(std::span<const Vec3> corners, double smallest_area, Triangulat
     }
     const double threshold = smallest_area * static_cast<double>(n);
     result.kind = unsigned_area > threshold ? PolygonKind::Crossing : PolygonKind::Degenerate;
+    if (result.kind == PolygonKind::Crossing) cut_twisted(corners, ring, result);
     return;
   }
   const base::Frame3 frame = base::frame_around(area / result.area);
@@ -196,6 +219,7 @@ void triangulate(std::span<const Vec3> corners, double smallest_area, Triangulat
     EarClipper(points, ring, flat).run(result.triangles);
   }
   judge(corners, points, smallest_area, result);
+  if (result.kind == PolygonKind::Crossing) cut_twisted(corners, ring, result);
 }
 
 }  // namespace earthshine::scenes

@@ -15,7 +15,8 @@ namespace earthshine::scenes {
 enum class PolygonKind { Sound, Degenerate, Crossing };
 
 // Corner numbers of the triangles, in the polygon's own sense of rotation. Triangles without area
-// are left out. A convex quadrilateral gives (0,1,2), (0,2,3).
+// are left out. A quadrilateral that is convex seen along its normal, flat or not, gives (0,1,2),
+// (0,2,3).
 struct Triangulation {
   PolygonKind kind = PolygonKind::Degenerate;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -28,7 +29,9 @@ struct Triangulation {
 
 // Ear clipping in the plane of Newell's normal, O(n^2). Degenerate: less area than smallest_area,
 // or fewer than three different corners in a row. Crossing: the triangles, seen along the normal,
-// do not add up to the polygon's area to 1e-4, so its outline crosses itself.
+// do not add up to the polygon's area to 1e-4, so its outline crosses itself. A quadrilateral so
+// twisted that it crosses itself only as seen along the normal is cut by the diagonal that leaves
+// the smaller area, by (0,1,2), (0,2,3) where both leave the same.
 void triangulate(std::span<const Vec3> corners, double smallest_area, Triangulation& result);
 
 }  // namespace earthshine::scenes

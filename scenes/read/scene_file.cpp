@@ -136,6 +136,7 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   });
   const auto tables = luminaires.files();
   scene.files.insert(scene.files.end(), tables.begin(), tables.end());
+  for (std::string& warning : luminaires.warnings()) scene.warnings.push_back(std::move(warning));
   read_sky(scene, plain_table(root, "sun"), plain_table(root, "earth"), plain_table(root, "orbit"));
   if (const TomlNode* node = plain_table(root, "ambient")) {
     const TableReader table(*node, "[ambient]", ambient_keys);

@@ -35,6 +35,13 @@ class LuminaireShelf {
     for (const auto& [file, luminaire] : luminaires_) files.push_back(file);
     return files;
   }
+  [[nodiscard]] std::vector<std::string> warnings() const {
+    std::vector<std::string> warnings;
+    for (const auto& [file, luminaire] : luminaires_) {
+      if (!luminaire.warning.empty()) warnings.push_back(luminaire.warning);
+    }
+    return warnings;
+  }
 
  private:
   std::filesystem::path scene_folder_;

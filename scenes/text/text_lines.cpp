@@ -29,6 +29,14 @@ std::string lower_case(std::string text) {
   return text;
 }
 
+std::string_view without_end_mark(std::string_view text) {
+  constexpr char mark = '\x1a';
+  constexpr std::string_view filling{"\x1a\0 \t\r\n", 6};
+  const std::size_t last = text.find_last_not_of(filling);
+  const std::size_t end = text.find(mark, last == std::string_view::npos ? 0 : last);
+  return text.substr(0, end);
+}
+
 bool TextLines::next() {
   words_.clear();
   while (words_.empty() && position_ < text_.size()) read_line();

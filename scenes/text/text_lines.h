@@ -23,14 +23,17 @@ struct Word {
 // Of its letters A to Z.
 [[nodiscard]] std::string lower_case(std::string text);
 
+// Without DOS's mark of a file's end, 0x1A, and the zeros and blanks that follow it.
+[[nodiscard]] std::string_view without_end_mark(std::string_view text);
+
 class TextLines {
  public:
   // `file` is for messages; the text begins after lines_before lines of it. In OBJ and MTL, '#' at
   // the start of a word opens a comment and a backslash before the line's end joins the next line.
   enum class Style { Plain, Wavefront };
   TextLines(std::string_view text, std::string file, Style style, int lines_before = 0)
-      : text_(text),
-        nul_(text.find('\0')),
+      : text_(without_end_mark(text)),
+        nul_(text_.find('\0')),
         file_(std::move(file)),
         style_(style),
         line_(lines_before) {}

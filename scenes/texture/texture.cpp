@@ -40,9 +40,8 @@ int wrapped(std::int64_t x, int size, Wrap wrap) {
 }  // namespace
 
 Texture::Texture(const base::Pixels& pixels, TextureReading reading)
-    : reading_(std::move(reading)) {
+    : reading_(std::move(reading)), width_(pixels.width), height_(pixels.height) {
   const auto colour = decoding(reading_.is_srgb), plain = decoding(false);
-  levels_.push_back({pixels.width, pixels.height, 0});
   const std::size_t count = pixels.rgba.size() / 4;
   texels_.resize(4 * count);
   bool has_alpha = false;
@@ -61,78 +60,37 @@ Texture::Texture(const base::Pixels& pixels, TextureReading reading)
     digest.add(static_cast<std::uint64_t>(part));
   }
   digest_ = digest.value();
-  while (levels_.back().width > 1 || levels_.back().height > 1) add_half();
-}
-
-// Means over the texels below each new one, in proportion to how much of them it covers: the mean
-// of the picture stays the same whatever its size.
-void Texture::add_half() {
-  const Level from = levels_.back();
-  const Level to{std::max(1, from.width / 2), std::max(1, from.height / 2), texels_.size()};
-  texels_.resize(texels_.size() + 4 * std::size_t(to.width) * std::size_t(to.height));
-  const double step_x = double(from.width) / to.width, step_y = double(from.height) / to.height;
-  const auto cover = [](int k, double begin, double end) {
-    return std::min(end, k + 1.0) - std::max(begin, double(k));
-  };
-  for (int y = 0; y < to.height; ++y) {
-    const double y0 = y * step_y, y1 = y0 + step_y;
-    for (int x = 0; x < to.width; ++x) {
-      const double x0 = x * step_x, x1 = x0 + step_x;
-      glm::dvec4 sum(0.0);
-      for (int j = int(y0); j < std::min(from.height, int(std::ceil(y1 - 1e-9))); ++j) {
-        for (int i = int(x0); i < std::min(from.width, int(std::ceil(x1 - 1e-9))); ++i) {
-          sum += cover(i, x0, x1) * cover(j, y0, y1) * texel(from, i, j);
-        }
-      }
-      sum /= step_x * step_y;
-      const std::size_t at =
-          to.first + 4 * (std::size_t(y) * std::size_t(to.width) + std::size_t(x));
-      for (int c = 0; c < 4; ++c) {
-        texels_[at + std::size_t(c)] = static_cast<std::uint16_t>(std::lround(full * sum[c]));
-      }
-    }
+  std::array<std::uint64_t, 4> sum{};
+  for (std::size_t k = 0; k < texels_.size(); ++k) sum[k % 4] += texels_[k];
+  for (int c = 0; c < 4; ++c) {
+    mean_[c] = static_cast<double>(sum[static_cast<std::size_t>(c)]) / full / double(count);
   }
-  levels_.push_back(to);
 }
 
-glm::dvec4 Texture::texel(const Level& level, int x, int y) const {
-  const std::uint16_t* const t = texels_.data() + level.first +
-                                 4 * (std::size_t(y) * std::size_t(level.width) + std::size_t(x));
+glm::dvec4 Texture::texel(int x, int y) const {
+  const std::uint16_t* const t =
+      texels_.data() + 4 * (std::size_t(y) * std::size_t(width_) + std::size_t(x));
   return glm::dvec4(t[0], t[1], t[2], t[3]) / full;
 }
 
-glm::dvec4 Texture::in_level(const Level& level, const glm::dvec2& uv, bool crisp) const {
+glm::dvec4 Texture::at(const glm::dvec2& uv) const {
+  const bool is_number = !std::isnan(uv.x) && !std::isnan(uv.y);
   // Far-away coordinates repeat long before they leave whole numbers.
-  const double x = std::clamp(uv.x * level.width, -1e15, 1e15);
-  const double y = std::clamp(uv.y * level.height, -1e15, 1e15);
+  const double x = is_number ? std::clamp(uv.x * width_, -1e15, 1e15) : 0.0;
+  const double y = is_number ? std::clamp(uv.y * height_, -1e15, 1e15) : 0.0;
   const auto column = [&](double k) {
-    return wrapped(static_cast<std::int64_t>(k), level.width, reading_.wrap_u);
+    return wrapped(static_cast<std::int64_t>(k), width_, reading_.wrap_u);
   };
   const auto row = [&](double k) {
-    return wrapped(static_cast<std::int64_t>(k), level.height, reading_.wrap_v);
+    return wrapped(static_cast<std::int64_t>(k), height_, reading_.wrap_v);
   };
-  if (crisp) return texel(level, column(std::floor(x)), row(std::floor(y)));
+  if (reading_.is_crisp) return texel(column(std::floor(x)), row(std::floor(y)));
   const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
   const double fx = x - 0.5 - left, fy = y - 0.5 - top;
   const int x0 = column(left), x1 = column(left + 1.0), y0 = row(top), y1 = row(top + 1.0);
-  return (1.0 - fy) * ((1.0 - fx) * texel(level, x0, y0) + fx * texel(level, x1, y0)) +
-         fy * ((1.0 - fx) * texel(level, x0, y1) + fx * texel(level, x1, y1));
+  return (1.0 - fy) * ((1.0 - fx) * texel(x0, y0) + fx * texel(x1, y0)) +
+         fy * ((1.0 - fx) * texel(x0, y1) + fx * texel(x1, y1));
 }
-
-glm::dvec4 Texture::at(const glm::dvec2& uv, double level) const {
-  const bool is_number = !std::isnan(uv.x) && !std::isnan(uv.y);
-  const glm::dvec2 place = is_number ? uv : glm::dvec2(0.0);
-  if (!(level > 0.0)) return in_level(levels_.front(), place, reading_.is_crisp);
-  const double last = static_cast<double>(levels_.size() - 1);
-  const double wanted = std::min(level, last);
-  const auto lower = static_cast<std::size_t>(wanted);
-  const double share = wanted - std::floor(wanted);
-  const glm::dvec4 fine = in_level(levels_[lower], place, lower == 0 && reading_.is_crisp);
-  if (share <= 0.0) return fine;
-  return (1.0 - share) * fine + share * in_level(levels_[lower + 1], place, false);
-}
-
-glm::dvec4 Texture::mean() const { return texel(levels_.back(), 0, 0); }
 
 std::shared_ptr<const Texture> PictureShelf::take(const TextureReading& reading,
                                                   const std::function<std::string()>& read) {

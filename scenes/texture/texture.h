@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture on a surface: its colours by place, linear, and the same picture at half the size, a
-// quarter, and so on (Williams, "Pyramidal parametrics", SIGGRAPH 1983), for places seen from afar.
+// A picture on a surface: its colours by place, linear. There are no smaller copies for places seen
+// from afar: their texels mix colours of neighbouring parts of an atlas, which the samples of a
+// pixel do not know of. Samples of the picture itself are right on average, and their scatter says
+// how far they are off.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +24,7 @@ struct TextureReading {
   std::string name;       // of the file, for reports
   bool is_srgb = true;    // colours are decoded to linear ones (IEC 61966-2-1)
   bool is_mask = false;   // opacity: the picture's alpha, or its grey where it has none
-  bool is_crisp = false;  // nearest texel, not between four, where texels are large
+  bool is_crisp = false;  // nearest texel, not between four
   Wrap wrap_u = Wrap::Repeat, wrap_v = Wrap::Repeat;
   bool operator==(const TextureReading&) const = default;
 };
@@ -32,28 +34,22 @@ class Texture {
   Texture(const base::Pixels& pixels, TextureReading reading);
 
   // Linear colour and opacity, in [0, 1]. u to the right, v down from the upper left corner, 1 at
-  // the far edges. level: log2 of the texels that the place is wide, 0 the picture itself; values
-  // between are mixed.
-  [[nodiscard]] glm::dvec4 at(const glm::dvec2& uv, double level = 0.0) const;
-  [[nodiscard]] glm::dvec4 mean() const;  // of the whole picture
+  // the far edges.
+  [[nodiscard]] glm::dvec4 at(const glm::dvec2& uv) const;
+  [[nodiscard]] const glm::dvec4& mean() const { return mean_; }  // of the whole picture
   [[nodiscard]] const std::string& name() const { return reading_.name; }
-  [[nodiscard]] int width() const { return levels_.front().width; }
-  [[nodiscard]] int height() const { return levels_.front().height; }
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] std::size_t bytes() const { return texels_.size() * sizeof(std::uint16_t); }
   [[nodiscard]] std::uint64_t digest() const { return digest_; }  // of all that at() depends on
 
  private:
-  struct Level {
-    int width = 1, height = 1;
-    std::size_t first = 0;  // into texels_
-  };
-  [[nodiscard]] glm::dvec4 texel(const Level& level, int x, int y) const;
-  [[nodiscard]] glm::dvec4 in_level(const Level& level, const glm::dvec2& uv, bool crisp) const;
-  void add_half();
+  [[nodiscard]] glm::dvec4 texel(int x, int y) const;
 
   TextureReading reading_;
-  std::vector<Level> levels_;
+  int width_, height_;
   std::vector<std::uint16_t> texels_;  // 4 a texel, 65535 is 1: fine enough for sRGB's darkest step
+  glm::dvec4 mean_{0.0};
   std::uint64_t digest_ = 0;
 };
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """degrade on EXR files of every kind: an answer, or one clear error."""
+import json
 import math
 import struct
 import time
@@ -56,7 +57,7 @@ class DegradeInputs(program.Case):
         self.assertAlmostEqual(self.metered(5, 4, {"Y": 0.5}, more=white), 125, delta=1e-2)
 
     def test_windows(self):
-        """The data window is the picture wherever it lies; overscan on all sides is not seen."""
+        """The picture is what the data window has of the display window; overscan on any side is not metered."""
         for corner in ((-70, 5), (0, 0), (12, -300)):
             self.assertAlmostEqual(self.metered(5, 4, {"Y": 3}, corner=corner), 3, delta=1e-4)
         frame = [9 if x in (0, 7) or y in (0, 5) else 2 for y in range(6) for x in range(8)]
@@ -64,13 +65,33 @@ class DegradeInputs(program.Case):
         self.assertAlmostEqual(report["metered_cd_m2"], 2, delta=1e-4)
         self.assertEqual((report["picture"]["columns"], report["picture"]["rows"]), (6, 4))
         self.assertNotIn("crop_of", report["picture"])
+        # 2 cd/m2 in the display window (0, 0) to (9, 5), 90 in the overscan; x0, x1, y0, y1 of the data window.
+        for x0, x1, y0, y1 in ((-4, 13, 0, 5), (0, 9, -3, 8), (-1, 9, 0, 5), (-4, 13, -3, 4), (-4, 5, 0, 5), (3, 20, 2, 9)):
+            light = [2 if 0 <= x <= 9 and 0 <= y <= 5 else 90 for y in range(y0, y1 + 1) for x in range(x0, x1 + 1)]
+            data = exr.pack(x1 - x0 + 1, y1 - y0 + 1, {"Y": light}, corner=(x0, y0), display=(0, 0, 9, 5))
+            report = self.answer(data)
+            self.assertAlmostEqual(report["metered_cd_m2"], 2, delta=1e-4, msg=(x0, x1, y0, y1))
+            left, top, right, bottom = max(x0, 0), max(y0, 0), min(x1, 9), min(y1, 5)
+            picture = report["picture"]
+            self.assertEqual((picture["columns"], picture["rows"]), (right - left + 1, bottom - top + 1))
+            whole = (left, top, right, bottom) == (0, 0, 9, 5)
+            self.assertEqual(picture.get("crop_of"), None if whole else {"columns": 10, "rows": 6, "x": left, "y": top})
 
     def test_a_crop_says_so(self):
         data = exr.pack(8, 6, {"Y": 3}, corner=(20, 10), display=(0, 0, 99, 49))
         crop = self.answer(data)["picture"]["crop_of"]
         self.assertEqual(crop, {"columns": 100, "rows": 50, "x": 20, "y": 10})
         run = self.run_program("degrade", "in.exr", "-o", "out.png", "--preset", "ideal")
-        self.says(run.stderr, "a crop", "only this part")
+        self.says(run.stderr, "in.exr is a crop", "only this part")
+
+    def test_pictures_of_a_sequence_have_windows_of_their_own(self):
+        self.write("a.exr", exr.pack(8, 6, {"Y": 3}))
+        self.write("b.exr", exr.pack(8, 6, {"Y": 3}, display=(0, 0, 9, 9)))
+        run = self.run_program("degrade", "a.exr", "b.exr", "-o", "o#.png", "--preset", "ideal", "--json")
+        self.says(run.stderr, "b.exr is a crop")
+        frames = json.loads(run.stdout)["frames"]
+        self.assertNotIn("crop_of", frames[0]["picture"])
+        self.assertEqual(frames[1]["picture"]["crop_of"], {"columns": 10, "rows": 10, "x": 0, "y": 0})
 
     def test_sizes(self):
         for width, height, sensor in ((1, 1, [300, 300]), (1, 700, [1, 300]), (700, 1, [400, 1]), (3, 4, [225, 300])):
@@ -109,6 +130,7 @@ class DegradeInputs(program.Case):
         self.error(exr.pack(4, 4, {"a.R": 1, "a.G": 1, "a.B": 1, "b.R": 1, "b.G": 1, "b.B": 1}), '"a", "b"', "layers")
         self.error(exr.pack(4, 4, {"R": 1, "G": 1}), '"G", "R"')
         self.error(exr.pack(4, 4, {"Z": 1}), '"Z"')
+        self.error(exr.pack(5, 4, {"Y": 3}, corner=(10, 0), display=(0, 0, 9, 5)), "outside of the picture", "(10, 0) to (14, 3)")
         self.error(exr.pack(4, 4, {"Y": 1, "RY": 1, "BY": 1}), "chroma", '"RY"')
         self.error(exr.pack(4, 4, {"Y": 1}, sampling=2, pixels=False), "reduced resolution")
         wide = [("pixelAspectRatio", "float", struct.pack("<f", 2))]

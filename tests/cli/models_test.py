@@ -146,7 +146,7 @@ class Models(program.Case):
         report = self.json("inspect", "hall.toml")
         texture, = next(m["textures"] for m in report["materials"] if m["name"] == "floor")
         self.assertEqual((texture["use"], texture["size"]), ("diffuse", [2, 2]))
-        self.assertAlmostEqual(report["texture_mib"] * 2**20, 8 * 5)  # 8 bytes each of 2 x 2 and 1 x 1 texels
+        self.assertAlmostEqual(report["texture_mib"] * 2**20, 8 * 4)  # 8 bytes each of 2 x 2 texels
         self.assertIn("textures", self.json("plan", "hall.toml")["memory"]["parts_mib"])
         self.put(models.crate())
         self.write("crate.toml", OBJECT.format("crate.obj") + "[sun]\ndirection = [-1, -2, 3]\n" +

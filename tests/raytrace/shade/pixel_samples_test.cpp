@@ -31,26 +31,51 @@ TEST(PixelSamples, SamplesGoWhereNeighboursScatter) {
   EXPECT_EQ(wanted_samples(sums, 0.3, 0.5, 4, 256)[sums.window.index(2, 3)], 8U);
 }
 
+// Pixels of 4 samples: columns 0 to 6 of one luminance, 7 to 14 of 1.
+PixelSums dim_and_bright(double dim) {
+  PixelSums sums(Window{0, 0, 15, 7}, 1, false);
+  for (std::size_t p = 0; p < sums.samples.size(); ++p) {
+    const double luminance = p % 15 < 7 ? dim : 1.0;
+    sums.samples[p] = 4;
+    sums.source[p].reflecting = 4.0;
+    sums.luminance[p] = 4.0 * luminance;
+    sums.luminance2[p] = 4.0 * luminance * luminance;
+  }
+  return sums;
+}
+
+std::vector<std::uint32_t> wanted_by_eye(const PixelSums& sums) {
+  const double dimmest = dimmest_of(sums);
+  return wanted_for_the_eye(sums, scatter_of_samples(sums, dimmest), dimmest);
+}
+
 TEST(PixelSamples, TheEyeGetsMoreSamplesWhereDimNeighboursScatter) {
-  // Mean luminance 1 - 0.9 / 49; samples of the pixel at (3, 3) have the deviation 0.06 about 0.1:
-  // more than a third. About 1 they are less, and about 0.01 less than a third of a twentieth.
+  // Samples of the pixel at (3, 3) have the deviation 0.06 about 0.1: more than a third. About 1
+  // they are less, and 0.005 about 0.01 less than a third of a twentieth of the mean, 0.54.
   const auto of_neighbour = [](double luminance, double deviation) {
-    PixelSums sums(Window{0, 0, 7, 7}, 1, false);
-    for (std::size_t p = 0; p < sums.samples.size(); ++p) {
-      sums.samples[p] = 4;
-      sums.luminance[p] = sums.luminance2[p] = sums.source[p].reflecting = 4.0;
-    }
+    PixelSums sums = dim_and_bright(luminance);
     const std::size_t middle = sums.window.index(3, 3);
-    sums.luminance[middle] = 4.0 * luminance;
-    sums.luminance2[middle] = 4.0 * luminance * luminance + 3.0 * deviation * deviation;
-    const auto wanted = wanted_for_the_eye(sums, scatter_of_samples(sums));
+    sums.luminance2[middle] += 3.0 * deviation * deviation;
+    const auto wanted = wanted_by_eye(sums);
     EXPECT_EQ(wanted[middle], 4U);
     EXPECT_EQ(wanted[sums.window.index(1, 3)], 4U);
     return wanted[sums.window.index(2, 4)];
   };
   EXPECT_EQ(of_neighbour(0.1, 0.06), 16U);
   EXPECT_EQ(of_neighbour(1.0, 0.06), 4U);
-  EXPECT_EQ(of_neighbour(0.01, 0.01), 4U);
+  EXPECT_EQ(of_neighbour(0.01, 0.005), 4U);
+}
+
+TEST(PixelSamples, TheEyeGetsMoreSamplesAtEdgesWhoseSamplesAgree) {
+  // n = (0.27 c / 0.02)^(4/3), c the contrast: 32 beside black, 28 -> 32 for 0.9, 13 -> 16 for 0.5.
+  for (const auto& [dim, samples] : {std::pair{0.0, 32U}, {0.1, 32U}, {0.5, 16U}, {0.8, 4U}}) {
+    const PixelSums sums = dim_and_bright(dim);
+    const auto wanted = wanted_by_eye(sums);
+    for (int x = 0; x < 15; ++x) {
+      EXPECT_EQ(wanted[sums.window.index(x, 3)], x == 6 || x == 7 ? samples : 4U)
+          << dim << ' ' << x;
+    }
+  }
 }
 
 TEST(PixelSamples, LightInANarrowGapIsGatheredOncePerPixel) {

@@ -5,7 +5,6 @@
 #include <sys/stat.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "base/numbers/random.h"
 #include "tests/scenes/scene_text.h"
@@ -14,7 +13,7 @@
 namespace earthshine::scenes {
 namespace {
 
-using std::numbers::pi;
+using base::pi;
 using tests::IesText;
 using tests::steps;
 
@@ -148,6 +147,43 @@ TEST(IesFile, CommasAndOddLineBreaksSeparateToo) {
   EXPECT_NEAR(parse_ies(text, "a").light->peak_cd(), 100.0, 1e-12);
 }
 
+// 100 cd over a hemisphere are 628.32 lm, whatever marks the end of the file.
+TEST(IesFile, MarksOfAFilesEndAreNoNumbers) {
+  const std::string good = IesText().text();
+  const std::string whole = good.substr(0, good.find_last_not_of(" \n") + 1);
+  using namespace std::string_literals;
+  for (const std::string& end : {""s, "\n"s, "\r\n\r\n"s, "\x1a"s, "\n\x1a"s, "\r\n\x1a\r\n"s,
+                                 "\x1a\0\0\0"s, "\n\x1a\x1a\x1a"s, "\nEND\n"s, " END"s, "\nend"s,
+                                 "\r\nEND\r\n\x1a"s, "\nEND\nEND\n"s, ",\n\n"s}) {
+    const Luminaire luminaire = parse_ies(whole + end, "a");
+    EXPECT_NEAR(flux(luminaire), 628.3185, 1e-3);
+    EXPECT_EQ(luminaire.warning, "") << end;
+  }
+}
+
+TEST(IesFile, OtherWordsAfterTheNumbersAreNamed) {
+  const std::string good = IesText().text();
+  for (const std::string more :
+       {"made by hand 7\n", "[MORE] 1\n", "END\n[MORE] 1\n", "\x1a\n7 lm\n"}) {
+    const Luminaire luminaire = parse_ies(good + more, "lamp.ies");
+    EXPECT_NEAR(flux(luminaire), 628.3185, 1e-3);
+    EXPECT_TRUE(test::holds(luminaire.warning,
+                            {"lamp.ies:1", "follows the last candela value", "not read"}));
+  }
+  const test::SceneFolder folder;
+  folder.put("lamp.ies", good + "made by hand\n");
+  std::string toml =
+      "format = 1\n[[material]]\nname = \"w\"\n[[object]]\nname = \"o\"\nshape = \"box\"\nmin = "
+      "[0, 0, 0]\nmax = [1, 1, 1]\nmaterial = \"w\"\n";
+  for (const char* name : {"a", "b"}) {
+    toml += std::string("[[light]]\ntype = \"ies\"\nname = \"") + name +
+            "\"\nfile = \"lamp.ies\"\nposition = [0, 0, 5]\naim = [0, 0, 0]\n";
+  }
+  const Scene scene = folder.read(toml);
+  ASSERT_EQ(scene.warnings.size(), 1U);  // once for both lamps
+  EXPECT_TRUE(test::holds(scene.warnings[0], {"lamp.ies:10:1", "\"made\""}));
+}
+
 TEST(IesFile, BrokenFilesAreRefusedWithTheirPlace) {
   const std::string good = IesText().text();
   const auto changed = [&](auto change) {
@@ -166,7 +202,7 @@ TEST(IesFile, BrokenFilesAreRefusedWithTheirPlace) {
   const Row rows[] = {
       {"", {"lamp.ies", "no line TILT="}},
       {"#VRML V2.0\n1 2 3\n", {"lamp.ies", "no line TILT=", "not IES"}},
-      {std::string("\x89PNG\r\n\x1a\n\0\0", 10), {"lamp.ies:3:1", "NUL"}},
+      {std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16), {"lamp.ies:3:1", "NUL"}},
       {with("2002", "2050"), {"lamp.ies:1", "LM-63-2050", "IESNA91"}},
       {with("TILT=NONE", "TILT=lamp.tlt"), {"lamp.ies:4", "lamp.tlt", "TILT=INCLUDE"}},
       {good.substr(0, good.find("TILT")), {"no line TILT="}},

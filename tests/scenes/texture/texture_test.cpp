@@ -29,8 +29,7 @@ TEST(Texture, ColoursAreDecodedFromSrgbAndDataIsNot) {
   EXPECT_NEAR(Texture(picture(2, 1, {0, 255}), {}).mean().r, 0.5, 1e-5);
 }
 
-TEST(Texture, EveryLevelHasTheMeanOfThePicture) {
-  // 5 x 3: no edge halves evenly.
+TEST(Texture, MeanIsThatOfAllTexels) {
   std::vector<int> greys;
   for (int k = 0; k < 15; ++k) greys.push_back((37 * k * k) % 256);
   TextureReading plain;
@@ -38,15 +37,14 @@ TEST(Texture, EveryLevelHasTheMeanOfThePicture) {
   const Texture texture(picture(5, 3, greys), plain);
   double mean = 0.0;
   for (const int grey : greys) mean += grey / 255.0 / 15.0;
-  EXPECT_NEAR(texture.mean().r, mean, 1e-4);
-  EXPECT_NEAR(texture.at({0.3, 0.9}, 20.0).r, mean, 1e-4);
+  EXPECT_NEAR(texture.mean().r, mean, 1e-9);
 }
 
 TEST(Texture, PlacesLieBetweenTexelCentresAndWrapAsAsked) {
   TextureReading reading;
   reading.is_srgb = false;
-  const auto at = [&](double u, double level = 0.0) {
-    return Texture(picture(2, 1, {0, 255}), reading).at({u, 0.5}, level).r;
+  const auto at = [&](double u) {
+    return Texture(picture(2, 1, {0, 255}), reading).at({u, 0.5}).r;
   };
   EXPECT_NEAR(at(0.25), 0.0, 1e-9);
   EXPECT_NEAR(at(0.75), 1.0, 1e-9);
@@ -54,7 +52,6 @@ TEST(Texture, PlacesLieBetweenTexelCentresAndWrapAsAsked) {
   EXPECT_NEAR(at(0.0), 0.5, 1e-9);   // half way to the last texel of the one before
   EXPECT_NEAR(at(7.75), 1.0, 1e-9);  // repeats
   EXPECT_NEAR(at(-0.25), 1.0, 1e-9);
-  EXPECT_NEAR(at(0.75, 0.5), 0.75, 1e-4);  // half the picture, half its mean
   reading.wrap_u = Wrap::Clamp;
   EXPECT_NEAR(at(-3.0), 0.0, 1e-9);
   EXPECT_NEAR(at(9.0), 1.0, 1e-9);
