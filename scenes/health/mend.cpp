@@ -111,6 +111,7 @@ void lift_lamps(Scene& scene) {
   if (scene.vertices.empty()) return;
   const double extent = box_around(scene.vertices).diagonal(), reach = least_lamp_share * extent;
   for (Lamp& lamp : scene.lamps) {
+    if (lamp.is_distant()) continue;
     const Nearest first = nearest_surface(scene, lamp.position, reach);
     if (first.distance_m >= reach) continue;
     const bool on_it = first.distance_m < rounding_share * extent;
