@@ -80,7 +80,8 @@ void note_faint_light(const LoadedScene& loaded) {
   const scenes::Scene& scene = loaded.scene;
   double most = base::max_component(scene.ambient_radiance);
   for (const scenes::Lamp& lamp : scene.lamps) {
-    most = std::max(most, base::max_component(scenes::lamp_flux_lm(lamp)));
+    most = std::max({most, base::max_component(scenes::lamp_flux_lm(lamp)),
+                     base::max_component(lamp.illuminance_lx)});
   }
   for (const scenes::Material& material : scene.materials) {
     most = std::max(most, base::max_component(material.emit));

@@ -51,7 +51,7 @@ class LampCuts {
  public:
   explicit LampCuts(const scenes::Scene& scene) {
     for (scenes::Lamp lamp : scene.lamps) {
-      if (base::max_component(lamp.intensity_cd + lamp.exitance) <= 0.0) continue;
+      if (lamp.is_distant() || !base::is_lit(lamp.strength())) continue;
       lamp.intensity_cd = lamp.exitance = Rgb(1.0);
       lamps_.push_back(lamp);
     }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ struct MaterialLibrary {
 // What Mesh::unused calls lamps and cameras, which objects take over when they ask for them.
 inline constexpr const char* lamps_of_file = "lights";
 inline constexpr const char* cameras_of_file = "cameras";
+// Beside these, what nobody can take over.
+inline constexpr const char* unknown_lamps_of_file = "lights of an unknown type";
+inline constexpr const char* flat_cameras_of_file = "orthographic cameras";
 
 // A lamp or a camera among the faces, in the file's own coordinates; names may be empty or
 // repeated.
@@ -54,11 +58,17 @@ enum class VertexNormals { Ignored, Read };
 
 struct Mesh {
   std::filesystem::path path;  // empty for a shape
+  std::optional<double> metres;  // of its unit of length; nothing: the scene's unit
+  bool is_y_up = false;          // by its format; false: the format does not say
+  bool is_own = false;           // this program wrote it, and turned z up to y up
   std::vector<Vec3> vertices;
   std::vector<std::uint32_t> indices;         // counter-clockwise seen from the front
   std::vector<glm::vec2> uv;                  // texture coordinates, v down from the upper edge
   std::vector<std::uint32_t> uv_indices;      // into uv, one for each of `indices`; no_index: none.
                                               // Empty: no corner has any
+  // Beside uv, and as long, or empty: a second set, and what multiplies the diffuse colour.
+  std::vector<glm::vec2> second_uv;
+  std::vector<glm::vec3> colours;
   std::vector<glm::vec3> normals;             // of the surface, where they are asked for
   std::vector<std::uint32_t> normal_indices;  // as uv_indices
   std::vector<MeshPolygon> polygons;
@@ -67,6 +77,10 @@ struct Mesh {
   std::vector<std::string> material_names;
   std::vector<Material> materials;              // those that the file itself or a library defines
   std::vector<base::Location> material_places;  // of each of these
+  std::vector<std::vector<std::string>> material_lacks;  // what of each is not used, though the
+                                                         // picture would change by it; may be shorter
+  // Materials that the file has in another colour under the name on the right.
+  std::map<std::string, std::string> variant_of;
   std::vector<MaterialLibrary> libraries;
   std::vector<std::filesystem::path> files;  // that it was read from, or that it names
   std::vector<MeshLamp> lamps;
@@ -74,6 +88,8 @@ struct Mesh {
   std::vector<std::string> warnings;
   // What the file holds besides that nothing here reads, and how often.
   std::map<std::string, std::size_t> unused;
+  // What of it would change the picture: of materials only what some object wears.
+  std::map<std::string, std::size_t> lacking;
 };
 
 // Appends a polygon; its corners are vertices of the mesh.

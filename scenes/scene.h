@@ -25,12 +25,18 @@ struct TextureTransform;  // of the vertices' coordinates
 struct TextureMap {
   std::shared_ptr<const Texture> texture;  // null: none
   std::shared_ptr<const TextureTransform> transform;
-  Rgb over_mean{1.0};  // 1 / the texture's mean over what wears the material; 0 where that is 0
+  bool by_second = false;  // by Scene::second_uv
+  // 1 / the mean over what wears the material of the texture, times the vertices' colours if they
+  // vary it; 0 where that is 0.
+  Rgb over_mean{1.0};
 };
 struct MaterialMaps {
   TextureMap diffuse, emit;
   TextureMap opacity;  // by its alpha: nothing is there where that is below the cutoff
   double cutoff = 0.5;
+  bool by_vertex = false;  // Scene::vertex_colour multiplies the diffuse colour
+
+  [[nodiscard]] bool vary_diffuse() const { return diffuse.texture || by_vertex; }
 };
 
 // Surface reflectance as the 1990 report has it: pi f = diffuse + specular cos^n(alpha), n =
@@ -46,6 +52,10 @@ struct Material {
   Rgb emit{0.0};            // exitance, lm/m^2
   std::string light_group;  // of what it emits; the material's name unless the scene says otherwise
   bool two_sided = false;   // false: the back is black
+  // The lobe over the larger of the cosines of both directions to the normal, which makes up for
+  // what it loses toward the horizon (Neumann, Neumann and Szirmay-Kalos, "Compact metallic
+  // reflectance models", Computer Graphics Forum 18(3), 1999). Of metals of glTF files.
+  bool even_lobe = false;
   std::shared_ptr<const MaterialMaps> maps;  // null: no textures. diffuse and emit are the means
 
   [[nodiscard]] bool emits() const { return base::max_component(emit) > 0.0; }
@@ -126,14 +136,15 @@ struct Object {
 
 class Photometry;
 
-enum class LampKind { Point, Spot, Rectangle, Disk, Measured };
+enum class LampKind { Point, Spot, Rectangle, Disk, Measured, Distant };
 
 struct Lamp {
   std::string name;
   std::string group;
   LampKind kind = LampKind::Point;
-  Vec3 position{0.0};             // m; the centre of a rectangle or disk
-  Vec3 axis{0.0, 0.0, 1.0};       // unit: toward the aim; the normal of a rectangle or disk
+  Vec3 position{0.0};             // m; the centre of a rectangle or disk; distant: none
+  // Unit: toward the aim; the normal of a rectangle or disk; distant: the way that light goes.
+  Vec3 axis{0.0, 0.0, 1.0};
   Rgb intensity_cd{0.0};          // point; spot: on the axis; measured: where it is greatest
   double beam_deg = 0.0;          // spot: full angle of the cone of full intensity
   double field_deg = 0.0;         // spot: full angle beyond which there is none
@@ -143,6 +154,16 @@ struct Lamp {
   Vec3 c0{1.0, 0.0, 0.0};  // measured: unit, across the axis, in the plane C0; C90: c0 x axis
   std::shared_ptr<const Photometry> photometry;  // measured
   std::string source;                            // measured: the file, as the scene names it
+  Rgb illuminance_lx{0.0};  // distant: on a plane that faces it, nothing in front of it
+
+  [[nodiscard]] bool is_distant() const { return kind == LampKind::Distant; }
+  // 0 where it gives no light; in the unit of its kind.
+  [[nodiscard]] Rgb strength() const { return intensity_cd + exitance + illuminance_lx; }
+  void dim(const Rgb& times) {
+    intensity_cd *= times;
+    exitance *= times;
+    illuminance_lx *= times;
+  }
 };
 
 // A rectangle that lights may be spread over (Indirect::Distributed). It is not there: no ray meets
@@ -262,6 +283,8 @@ struct Scene {
   std::string name;
   std::vector<Vec3> vertices;
   std::vector<glm::vec2> vertex_uv;  // u, v down, of each; empty: no surface has a texture
+  std::vector<glm::vec2> second_uv;      // the same of emission's own set; empty: none
+  std::vector<glm::vec3> vertex_colour;  // linear; empty: none
   std::vector<Triangle> triangles;
   std::vector<Material> materials;
   std::vector<Object> objects;

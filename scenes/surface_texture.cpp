@@ -15,18 +15,28 @@ namespace {
 // bounds, but no less than one, up to the last.
 constexpr int fewest_samples = 4, most_samples = 64, most_of_many_texels = 256;
 
-glm::dvec2 uv_at(const Scene& scene, const SurfacePlace& place) {
+// What stands at the vertices, there.
+template <class Value, class OfVertex>
+Value mixed(const Scene& scene, const std::vector<OfVertex>& of_vertex, const SurfacePlace& place) {
   const auto& vertex = scene.triangles[place.triangle].vertex;
-  const glm::dvec2 a(scene.vertex_uv[vertex[0]]), b(scene.vertex_uv[vertex[1]]),
-      c(scene.vertex_uv[vertex[2]]);
+  const Value a(of_vertex[vertex[0]]), b(of_vertex[vertex[1]]), c(of_vertex[vertex[2]]);
   return (1.0 - place.u - place.v) * a + place.u * b + place.v * c;
 }
 
+const std::vector<glm::vec2>& coordinates(const Scene& scene, const TextureMap& map) {
+  return map.by_second ? scene.second_uv : scene.vertex_uv;
+}
+
+glm::dvec2 uv_at(const Scene& scene, const SurfacePlace& place) {
+  return mixed<glm::dvec2>(scene, scene.vertex_uv, place);
+}
+
+// Texels to a metre of the triangle, by their areas.
 double texels_per_m_of(const Scene& scene, const TextureMap& map, std::uint32_t triangle) {
   const auto& vertex = scene.triangles[triangle].vertex;
-  const glm::dvec2 a(scene.vertex_uv[vertex[0]]);
-  const glm::dvec2 ab = glm::dvec2(scene.vertex_uv[vertex[1]]) - a,
-                   ac = glm::dvec2(scene.vertex_uv[vertex[2]]) - a;
+  const auto& uv = coordinates(scene, map);
+  const glm::dvec2 a(uv[vertex[0]]);
+  const glm::dvec2 ab = glm::dvec2(uv[vertex[1]]) - a, ac = glm::dvec2(uv[vertex[2]]) - a;
   const double in_texture =
       0.5 * std::abs((ab.x * ac.y - ab.y * ac.x) * glm::determinant(map.transform->turn)) *
       map.texture->width() * map.texture->height();
@@ -34,11 +44,16 @@ double texels_per_m_of(const Scene& scene, const TextureMap& map, std::uint32_t 
 }
 
 glm::dvec4 look_up(const Scene& scene, const TextureMap& map, const SurfacePlace& place) {
-  return map.texture->at(map.transform->apply(uv_at(scene, place)));
+  const auto uv = mixed<glm::dvec2>(scene, coordinates(scene, map), place);
+  return map.texture->at(map.transform->apply(uv));
 }
 
-Rgb relative(const Scene& scene, const TextureMap& map, const SurfacePlace& place) {
-  return Rgb(look_up(scene, map, place)) * map.over_mean;
+// What multiplies the material's own diffuse colour there.
+Rgb diffuse_factor(const Scene& scene, const MaterialMaps& maps, const SurfacePlace& place) {
+  Rgb factor(1.0);
+  if (maps.diffuse.texture) factor = Rgb(look_up(scene, maps.diffuse, place));
+  if (maps.by_vertex) factor *= mixed<Rgb>(scene, scene.vertex_colour, place);
+  return factor;
 }
 
 // Sums over the surfaces of a material, by area.
@@ -50,6 +65,12 @@ struct Sums {
 void add_triangle(const Scene& scene, std::uint32_t triangle, const MaterialMaps& maps,
                   Sums& sums) {
   const double area = triangle_area(scene, triangle);
+  if (!maps.diffuse.texture && !maps.emit.texture && !maps.opacity.texture) {
+    // Vertices' colours alone are linear: their mean is that of the middle.
+    sums.area += area;
+    sums.diffuse += area * diffuse_factor(scene, maps, {triangle, 1.0 / 3.0, 1.0 / 3.0});
+    return;
+  }
   const double texels = std::clamp(texels_per_m(scene, triangle) * std::sqrt(area), 1.0, 1e6);
   const int n =
       std::max(std::clamp(static_cast<int>(std::ceil(16.0 * texels)), fewest_samples, most_samples),
@@ -63,14 +84,14 @@ void add_triangle(const Scene& scene, std::uint32_t triangle, const MaterialMaps
     place.v = root * square.y;
     if (!is_opaque(maps, uv_at(scene, place))) continue;
     sums.area += share;
-    if (maps.diffuse.texture) sums.diffuse += share * Rgb(look_up(scene, maps.diffuse, place));
+    if (maps.vary_diffuse()) sums.diffuse += share * diffuse_factor(scene, maps, place);
     if (maps.emit.texture) sums.emit += share * Rgb(look_up(scene, maps.emit, place));
   }
 }
 
 void settle(const Rgb& sum, double area, TextureMap& map, Rgb& factor) {
-  if (!map.texture) return;
-  const Rgb mean = area > 0.0 ? sum / area : Rgb(map.texture->mean());
+  const Rgb plain = map.texture ? Rgb(map.texture->mean()) : Rgb(1.0);
+  const Rgb mean = area > 0.0 ? sum / area : plain;
   for (int c = 0; c < 3; ++c) map.over_mean[c] = mean[c] > 0.0 ? 1.0 / mean[c] : 0.0;
   factor *= mean;
 }
@@ -89,13 +110,15 @@ double texels_per_m(const Scene& scene, std::uint32_t triangle) {
 }
 
 Rgb textured_diffuse(const Scene& scene, const Material& material, const SurfacePlace& place) {
-  if (!material.maps || !material.maps->diffuse.texture) return material.diffuse;
-  return material.diffuse * relative(scene, material.maps->diffuse, place);
+  if (!material.maps || !material.maps->vary_diffuse()) return material.diffuse;
+  return material.diffuse * diffuse_factor(scene, *material.maps, place) *
+         material.maps->diffuse.over_mean;
 }
 
 Rgb textured_emit(const Scene& scene, const Material& material, const SurfacePlace& place) {
   if (!material.maps || !material.maps->emit.texture) return material.emit;
-  return material.emit * relative(scene, material.maps->emit, place);
+  const TextureMap& map = material.maps->emit;
+  return material.emit * Rgb(look_up(scene, map, place)) * map.over_mean;
 }
 
 bool is_there(const Scene& scene, std::uint32_t triangle, double u, double v) {
@@ -115,7 +138,10 @@ Rgb mean_emit(const Scene& scene, std::uint32_t triangle) {
 
 void settle_textures(Scene& scene) {
   if (scene.vertex_uv.empty()) return;
-  scene.vertex_uv.resize(scene.vertices.size(), glm::vec2(0.0F));
+  const std::size_t count = scene.vertices.size();
+  scene.vertex_uv.resize(count, glm::vec2(0.0F));
+  if (!scene.second_uv.empty()) scene.second_uv.resize(count, glm::vec2(0.0F));
+  if (!scene.vertex_colour.empty()) scene.vertex_colour.resize(count, glm::vec3(1.0F));
   std::vector<Sums> sums(scene.materials.size());
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
     const std::uint32_t m = scene.triangles[t].material;
@@ -125,8 +151,10 @@ void settle_textures(Scene& scene) {
     Material& material = scene.materials[m];
     if (!material.maps) continue;
     auto maps = std::make_shared<MaterialMaps>(*material.maps);
-    settle(sums[m].diffuse, sums[m].area, maps->diffuse, material.diffuse);
-    settle(sums[m].emit, sums[m].area, maps->emit, material.emit);
+    if (maps->vary_diffuse()) {
+      settle(sums[m].diffuse, sums[m].area, maps->diffuse, material.diffuse);
+    }
+    if (maps->emit.texture) settle(sums[m].emit, sums[m].area, maps->emit, material.emit);
     material.maps = std::move(maps);
   }
 }

@@ -59,7 +59,7 @@ Json scene_cache_key(const LoadedScene& loaded) {
   base::Digest lobes;
   for (const scenes::Triangle& triangle : loaded.scene.triangles) {
     const auto& [name, diffuse, specular, shininess, mirror, transmit, ior, emit, group, sheet,
-                 maps] = loaded.scene.materials[triangle.material];
+                 even_lobe, maps] = loaded.scene.materials[triangle.material];
     lobes.add(specular);
     lobes.add(shininess);
   }

@@ -98,6 +98,7 @@ Json materials_of(const scenes::Scene& scene) {
                          {"emit_lm_m2", to_json(m.emit)},
                          {"light_group", m.emits() ? Json(m.light_group) : Json()},
                          {"two_sided", m.two_sided},
+                         {"even_lobe", m.even_lobe},
                          {"area_m2", area_m2[k]},
                          {"reflected_share", to_json(scenes::reflected_share(m))}});
     if (m.maps) materials.back()["textures"] = textures_of(*m.maps);
@@ -112,8 +113,11 @@ Json lights_of(const scenes::Scene& scene) {
                      {"group", lamp.group},
                      {"type", std::string(scenes::row_of(lamp.kind).type)},
                      {"source", lamp.source.empty() ? Json() : Json(lamp.source)},
-                     {"position_m", to_json(lamp.position)},
-                     {"flux_lm", to_json(scenes::lamp_flux_lm(lamp))}});
+                     {"position_m", lamp.is_distant() ? Json() : to_json(lamp.position)},
+                     {"flux_lm", lamp.is_distant() ? Json() : to_json(scenes::lamp_flux_lm(lamp))}});
+    if (!lamp.is_distant()) continue;
+    lamps.back()["direction"] = to_json(-lamp.axis);
+    lamps.back()["illuminance_lx"] = to_json(lamp.illuminance_lx);
   }
   return lamps;
 }

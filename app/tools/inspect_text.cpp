@@ -88,6 +88,12 @@ std::string lights_table(const Json& report) {
   std::string text;
   for (const Json& lamp : report["lamps"]) {
     const Json& source = lamp["source"];
+    if (lamp["flux_lm"].is_null()) {
+      text += fmt::format("lamp {}: {}, group {}, {} lx, toward {}\n", lamp["name"], lamp["type"],
+                          lamp["group"], numbers(lamp["illuminance_lx"]),
+                          direction(lamp["direction"]));
+      continue;
+    }
     text += fmt::format(
         "lamp {}: {}{}, group {}, {} lm ({:.6g} by luminance), at {}\n", lamp["name"], lamp["type"],
         source.is_null() ? "" : " (" + source.get<std::string>() + ")", lamp["group"],

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "radiosity/bodies/closed_parts.h"
+#include "scenes/light/lamp_light.h"
 #include "scenes/triangle_point.h"
 
 namespace earthshine::radiosity {
@@ -157,7 +158,8 @@ void ClosedBodies::leave_out_lit(const scenes::Scene& scene) {
   for (auto b = static_cast<std::uint32_t>(bodies_.size()); b-- > 0;) {
     const bool lit =
         std::any_of(scene.lamps.begin(), scene.lamps.end(), [&](const scenes::Lamp& lamp) {
-          return cover(lamp.position - centre_, std::span<const std::uint32_t>(&b, 1));
+          return !lamp.is_distant() &&
+                 cover(lamp.position - centre_, std::span<const std::uint32_t>(&b, 1));
         });
     if (lit) bodies_.erase(bodies_.begin() + b);
   }
@@ -173,7 +175,7 @@ bool ClosedBodies::in_room(const Vec3& point) const {
 bool ClosedBodies::light_is_in_rooms(const scenes::Scene& scene,
                                      const std::vector<std::uint32_t>& part_of,
                                      const std::vector<char>& walls) const {
-  if (scene.sun || scene.earth) return false;
+  if (scenes::has_light_outside(scene)) return false;
   for (const scenes::Lamp& lamp : scene.lamps) {
     if (!in_room(lamp.position - centre_)) return false;
   }

@@ -155,7 +155,9 @@ scenes::HiddenLights hidden_lights(const scenes::Scene& scene,
   if (cameras.empty()) return hidden;
   std::vector<Vec3> around;
   for (const scenes::Camera* camera : cameras) around.push_back(camera->position);
-  for (const scenes::Lamp& lamp : scene.lamps) around.push_back(lamp.position);
+  for (const scenes::Lamp& lamp : scene.lamps) {
+    if (!lamp.is_distant()) around.push_back(lamp.position);
+  }
   const Walls walls(scene, around);
   std::vector<Ball> lenses;
   for (const scenes::Camera* camera : cameras) {
@@ -166,6 +168,8 @@ scenes::HiddenLights hidden_lights(const scenes::Scene& scene,
   };
   hidden.sky = all([&](const Ball& lens) { return walls.keep_out_sky(lens); });
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
+    hidden.lamps[k] = hidden.sky;
+    if (scene.lamps[k].is_distant()) continue;
     const Ball lamp = walls.ball(scene.lamps[k].position, radius_of(scene.lamps[k]));
     hidden.lamps[k] = all([&](const Ball& lens) { return walls.keep_apart(lamp, lens); });
   }

@@ -88,6 +88,20 @@ LightSource lamp_source(const scenes::Lamp& lamp, std::uint64_t key, std::size_t
           }};
 }
 
+// One direction, and no flux of its own.
+LightSource distant_source(const scenes::Lamp& lamp, std::uint64_t key, std::size_t group,
+                           int points) {
+  Source source;
+  source.key = key;
+  source.group = group;
+  source.points = points;
+  source.has_size = false;
+  source.sample = [&lamp](const Vec3& point, double u, double v) {
+    return scenes::sample_lamp(lamp, point, u, v);
+  };
+  return {{}, std::move(source), Rgb(0.0), {}};
+}
+
 LightSource emitter_source(const scenes::Scene& scene, std::size_t material, std::uint64_t key,
                            std::size_t group, int points) {
   const auto emitters = std::make_shared<const scenes::EmitterSet>(scene, material);
@@ -190,7 +204,7 @@ std::vector<LightSource> find_sources(const scenes::World& world, int points) {
   std::uint64_t next_key = 16;
   for (const scenes::ShiningLight& light : lights) {
     if (light.kind != Kind::Lamp) continue;
-    lamps[light.group].push_back(light.index);
+    if (!scene.lamps[light.index].is_distant()) lamps[light.group].push_back(light.index);
     key[light.index] = next_key++;
   }
   std::vector<LightSource> sky, clusters, alone;
@@ -215,7 +229,10 @@ std::vector<LightSource> find_sources(const scenes::World& world, int points) {
         add(sky, earth_source(scene, group, points), scenes::LightKind::Earth);
         break;
       case Kind::Lamp:
-        if (lamps[group].size() < fewest_in_cluster) {
+        if (scene.lamps[k].is_distant()) {
+          add(sky, distant_source(scene.lamps[k], key[k], group, points),
+              scenes::LightKind::DistantLamp);
+        } else if (lamps[group].size() < fewest_in_cluster) {
           add(alone, lamp_source(scene.lamps[k], key[k], group, points),
               scenes::kind_of(scene.lamps[k].kind));
         } else if (k == lamps[group].front()) {

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "radiosity/exact/open_share.h"
 #include "radiosity/patches/patch_offset.h"
+#include "scenes/light/lamp_light.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -174,7 +175,7 @@ void close_row(FormFactors& factors, std::size_t i, const Open& open, double cre
 std::vector<PatchCover> find_cover(const scenes::Scene& scene, const scenes::RayQuery& query,
                                    const Patches& patches, const std::vector<Open>& open,
                                    std::uint64_t seed, OpenParts& parts) {
-  const bool dark_sky = !scene.sun && !scene.earth;
+  const bool dark_sky = !scenes::has_light_outside(scene);
   std::vector<std::uint32_t> maybe;
   for (std::uint32_t i = 0; i < open.size(); ++i) {
     if (open[i].black > 0 || (open[i].sky > 0 && dark_sky) ||

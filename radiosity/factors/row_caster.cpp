@@ -4,6 +4,7 @@
 #include "base/numbers/random.h"
 #include "radiosity/patches/parted_cell.h"
 #include "radiosity/patches/patch_offset.h"
+#include "scenes/light/lamp_light.h"
 #include "scenes/reflect/specular.h"
 
 namespace earthshine::radiosity {
@@ -48,7 +49,7 @@ RowCaster::RowCaster(const scenes::Scene& scene, const scenes::RayQuery& query,
       seed_(options.seed),
       replicate_(options.replicate),
       leave_out_covered_(options.leave_out_covered),
-      dark_sky_(!scene.sun && !scene.earth),
+      dark_sky_(!scenes::has_light_outside(scene)),
       rays_(patches, query, rays),
       targets_(patches, materials_that_pass_on(scene)) {}
 

@@ -267,7 +267,7 @@ bool Patches::is_several(std::uint32_t patch) const {
 
 Rgb patch_diffuse(const scenes::Scene& scene, const Patches& patches, std::uint32_t patch) {
   const scenes::Material& material = scene.materials[patches.material(patch)];
-  if (!material.maps || !material.maps->diffuse.texture) return material.diffuse;
+  if (!material.maps || !material.maps->vary_diffuse()) return material.diffuse;
   return mean_over(scene, patches, patch, scenes::textured_diffuse);
 }
 

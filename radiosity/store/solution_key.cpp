@@ -25,6 +25,11 @@ std::uint64_t geometry(const Scene& scene) {
       if (scene.vertex_uv.empty() || !scene.materials[material].maps) continue;
       digest.add(double(scene.vertex_uv[v].x));
       digest.add(double(scene.vertex_uv[v].y));
+      if (!scene.second_uv.empty()) {
+        digest.add(double(scene.second_uv[v].x));
+        digest.add(double(scene.second_uv[v].y));
+      }
+      if (!scene.vertex_colour.empty()) digest.add(Vec3(scene.vertex_colour[v]));
     }
     digest.add(std::uint64_t{object});
     digest.add(std::uint64_t{polygon});
@@ -47,6 +52,7 @@ std::uint64_t of_map(const scenes::TextureMap& map) {
   Digest digest;
   if (!map.texture) return digest.value();
   digest.add(map.texture->digest());
+  digest.add(std::uint64_t{map.by_second});
   const auto& [turn, shift] = *map.transform;
   for (const double x : {turn[0].x, turn[0].y, turn[1].x, turn[1].y, shift.x, shift.y}) {
     digest.add(x);
@@ -57,7 +63,7 @@ std::uint64_t of_map(const scenes::TextureMap& map) {
 std::uint64_t surfaces(const Scene& scene) {
   return of_worn(scene, [&](std::size_t m) {
     const auto& [name, diffuse, specular, shininess, mirror, transmit, ior, emit, group, sheet,
-                 maps] = scene.materials[m];
+                 even_lobe, maps] = scene.materials[m];
     Digest digest;
     digest.add(diffuse);
     digest.add(specular);
@@ -66,10 +72,12 @@ std::uint64_t surfaces(const Scene& scene) {
     digest.add(transmit);
     digest.add(ior);
     digest.add(std::uint64_t{sheet});
+    digest.add(std::uint64_t{even_lobe});
     if (maps) {
       digest.add(of_map(maps->diffuse));
       digest.add(of_map(maps->opacity));
       digest.add(maps->cutoff);
+      digest.add(std::uint64_t{maps->by_vertex});
     }
     return digest.value();
   });
@@ -80,10 +88,11 @@ std::uint64_t lights(const Scene& scene, const scenes::LightGroups& groups) {
   for (const std::string& name : groups.names) digest.add(std::string_view(name));
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
     const auto& [name, group, kind, position, axis, intensity_cd, beam_deg, field_deg, edge_u,
-                 edge_v, radius_m, exitance, c0, photometry, source] = scene.lamps[k];
+                 edge_v, radius_m, exitance, c0, photometry, source, illuminance_lx] = scene.lamps[k];
     digest.add(std::uint64_t{groups.lamp[k]});
     digest.add(static_cast<std::uint64_t>(kind));
-    for (const Vec3& v : {position, axis, intensity_cd, edge_u, edge_v, exitance}) digest.add(v);
+    for (const Vec3& v : {position, axis, intensity_cd, edge_u, edge_v, exitance, illuminance_lx})
+      digest.add(v);
     for (const double x : {beam_deg, field_deg, radius_m}) digest.add(x);
     if (photometry) {
       digest.add(c0);

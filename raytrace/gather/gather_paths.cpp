@@ -7,6 +7,7 @@
 #include "base/ranks/ranks.h"
 #include "raytrace/gather/gather_field.h"
 #include "raytrace/gather/gather_tiles.h"
+#include "scenes/reflect/specular.h"
 
 namespace earthshine::raytrace {
 
@@ -92,7 +93,8 @@ void GatherField::lobe_sample(std::uint32_t material, const RayStart& start,
                               const std::array<float, 2>& u, PathWalker& walker, base::Rng& rng,
                               std::vector<Rgb>& sum, RayCounts& counts) const {
   const Vec3 origin = start.position, normal(start.normal);
-  const double n = world_.scene.materials[material].shininess;
+  const scenes::Material& worn = world_.scene.materials[material];
+  const double n = worn.shininess;
   const double cos_alpha = std::pow(1.0 - double(u[0]), 1.0 / (n + 1.0));
   const double sine = std::sqrt(std::max(0.0, 1.0 - cos_alpha * cos_alpha));
   const double phi = 2.0 * pi * double(u[1]);
@@ -100,7 +102,7 @@ void GatherField::lobe_sample(std::uint32_t material, const RayStart& start,
   const Vec3 direction = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cos_alpha});
   const double cosine = glm::dot(direction, normal);
   if (cosine <= 0.0) return;
-  const Rgb weight(2.0 * cosine / (n + 1.0));
+  const Rgb weight(scenes::lobe_weight(worn, -glm::dot(Vec3(start.along), normal), cosine));
   ++counts.lobe;
   const scenes::Hit hit = world_.query.closest(origin, direction);
   incoming_.add(hit, direction, {}, weight, sum, counts);

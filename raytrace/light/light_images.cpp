@@ -21,7 +21,10 @@ void LightSampler::find_one_rays() {
   one_rays_.resize(count());
   for (std::size_t k = 0; k < count(); ++k) {
     const Light& light = lights_[k];
-    if (light.kind != Kind::Lamp || scenes::is_wide(scene_.lamps[light.index].kind)) continue;
+    if (light.kind != Kind::Lamp || scenes::is_wide(scene_.lamps[light.index].kind) ||
+        scene_.lamps[light.index].is_distant()) {
+      continue;
+    }
     const scenes::FlatMirror* mirror = light.mirror;
     const scenes::Lamp& lamp = scene_.lamps[light.index];
     OneRay& ray = one_rays_[k];

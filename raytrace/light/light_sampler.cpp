@@ -83,7 +83,8 @@ LightSampler::LightSampler(const scenes::World& world, Indirect indirect, int di
 void LightSampler::gather_clusters(bool per_group) {
   std::map<std::size_t, std::vector<std::size_t>> lamps;
   for (std::size_t k = 0; k < lights_.size(); ++k) {
-    const bool lamp = lights_[k].kind == Kind::Lamp && !distributed_;
+    const bool lamp = lights_[k].kind == Kind::Lamp && !distributed_ &&
+                      !scene_.lamps[lights_[k].index].is_distant();
     if (lamp) lamps[per_group ? lights_[k].group : 0].push_back(k);
     if (!lamp) always_.push_back(k);
   }

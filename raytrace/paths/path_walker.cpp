@@ -175,7 +175,9 @@ void PathWalker::light_directly(const Surface& surface) {
         const double cos_alpha = glm::dot(light.direction, surface.mirrored);
         if (base::is_lit(surface.material.specular) && cos_alpha > 0.0) {
           reflectance +=
-              surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
+              surface.material.specular *
+              scenes::lobe_at(surface.material, cos_alpha, cosine,
+                              glm::dot(surface.mirrored, surface.normal));
         }
         const scenes::ShadowWay way = scenes::shadow_way(light, surface.position, origin);
         if (way.reach_m <= 0.0) return;
@@ -266,7 +268,8 @@ void PathWalker::scatter(const Surface& surface, bool by_lobe) {
   const Vec3 direction = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cos_axis});
   if (by_lobe) {
     const double cosine = std::max(0.0, glm::dot(direction, surface.normal));
-    weight_ *= surface.material.specular * (2.0 * cosine / (n + 1.0));
+    const double seen = glm::dot(surface.mirrored, surface.normal);
+    weight_ *= surface.material.specular * scenes::lobe_weight(surface.material, seen, cosine);
   } else {
     weight_ *= surface.diffuse;
   }

@@ -195,9 +195,12 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
   };
   const auto choice = light_point(shared_.lights.count());
   chosen_.clear();
+  const double seen = glm::dot(surface.view, surface.normal);
+  // A bound of an even lobe, whose light may come steeper than it is seen.
+  const double most = surface.material.even_lobe ? 1.0 / std::max(seen, 1e-3) : 1.0;
   shared_.lights.choose(
       {surface.position, surface.normal, mirrored, base::max_component(surface.diffuse),
-       base::max_component(surface.material.specular), surface.material.shininess},
+       most * base::max_component(surface.material.specular), surface.material.shininess},
       double(choice[0]) + 0x1p-24 * double(choice[1]), chosen_);
   const auto reflect = [&](std::size_t k, const Vec3& point, double share) {
     if (share <= 0.0 || !shared_.lights.may_reach(k, point, surface.normal)) return;
@@ -209,7 +212,8 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
     Rgb highlight(0.0);
     const double cos_alpha = glm::dot(light.direction, mirrored);
     if (cos_alpha > 0.0 && base::is_lit(surface.material.specular)) {
-      highlight = surface.material.specular * std::pow(cos_alpha, surface.material.shininess);
+      highlight = surface.material.specular *
+                  scenes::lobe_at(surface.material, cos_alpha, cosine, seen);
     }
     const Rgb incident = weight * light.normal_illuminance_lx * (share * cosine / pi);
     const Rgb value = incident * (surface.diffuse + highlight);
@@ -253,7 +257,9 @@ void PixelShader::lobe(const Surface& surface, const Rgb& weight, int depth) {
     const Vec3 direction = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cos_alpha});
     const double cosine = glm::dot(direction, surface.normal);
     if (cosine <= 0.0) continue;
-    const Rgb value = weight * surface.material.specular * (2.0 * cosine / ((n + 1.0) * count));
+    const double seen = glm::dot(surface.view, surface.normal);
+    const Rgb value = weight * surface.material.specular *
+                      (scenes::lobe_weight(surface.material, seen, cosine) / count);
     if (n >= sharp_lobe) {
       trace({origin, direction}, value, depth + 1, Seen::ByLobe, rays_.lobe);
     } else {

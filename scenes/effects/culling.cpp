@@ -49,6 +49,7 @@ class CullingPass {
 
   [[nodiscard]] bool lights_nothing(const Lamp& lamp,
                                     const std::vector<const Camera*>& cameras) const {
+    if (lamp.is_distant()) return below_every_horizon(-lamp.axis, 0.0);
     if (is_wide(lamp.kind) &&
         std::any_of(cameras.begin(), cameras.end(), [&](const Camera* camera) {
           return glm::dot(lamp.axis, camera->position - lamp.position) >

@@ -40,9 +40,10 @@ enum class LightKind {
   RectangleLamp,
   DiskLamp,
   MeasuredLamp,
+  DistantLamp,
   Emitter
 };
-inline constexpr std::size_t light_kinds = 8, lamp_kinds = lamp_rows.size();
+inline constexpr std::size_t light_kinds = 9, lamp_kinds = lamp_rows.size();
 [[nodiscard]] constexpr LightKind kind_of(LampKind kind) {
   return static_cast<LightKind>(static_cast<int>(LightKind::PointLamp) + static_cast<int>(kind));
 }

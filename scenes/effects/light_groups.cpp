@@ -38,7 +38,7 @@ LightGroups find_light_groups(const Scene& scene) {
   groups.lamp.assign(scene.lamps.size(), no_group);
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
     const Lamp& lamp = scene.lamps[k];
-    if (base::max_component(lamp.intensity_cd) + base::max_component(lamp.exitance) > 0.0) {
+    if (base::is_lit(lamp.strength())) {
       groups.lamp[k] = index_of(lamp.group);
     }
   }

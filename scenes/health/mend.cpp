@@ -122,6 +122,7 @@ void lift_lamps(Scene& scene) {
   if (scene.lamps.empty()) return;
   const SurfaceOffsets offsets(scene);
   for (Lamp& lamp : scene.lamps) {
+    if (lamp.is_distant()) continue;
     const Nearest first = nearest_surface(scene, offsets, lamp.position);
     if (!first.found()) continue;
     if (is_wide(lamp.kind) && !shines_at(scene, lamp, first)) {

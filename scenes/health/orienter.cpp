@@ -159,6 +159,7 @@ Orienter::Inside Orienter::what_is_inside(std::size_t number, std::size_t p) {
     if (solid_angle_of(scene_, part, camera.position) > on_it) return Inside::Camera;
   }
   for (const Lamp& lamp : scene_.lamps) {
+    if (lamp.is_distant()) continue;
     if (solid_angle_of(scene_, part, lamp.position) > on_it) return Inside::Things;
   }
   if (is_window_or_lamp_in_part(part)) return Inside::Things;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scenes/light/emitters.h"
 #include "scenes/light/photometry.h"
@@ -122,6 +123,9 @@ LightSample sample_spot(const Lamp& lamp, const SpotCone& cone, const Vec3& poin
 }
 
 LightSample sample_lamp(const Lamp& lamp, const Vec3& point, double u, double v, Spread spread) {
+  if (lamp.is_distant()) {
+    return {-lamp.axis, std::numeric_limits<double>::infinity(), lamp.illuminance_lx};
+  }
   if (lamp.kind == LampKind::Rectangle) return sample_flat(rectangle(lamp), point, u, v, spread);
   if (lamp.kind == LampKind::Disk) return sample_disk(lamp, point, u, v, spread);
   return sample_point(lamp, point,
@@ -137,6 +141,8 @@ Rgb lamp_flux_lm(const Lamp& lamp) {
              (2.0 * pi * (1.0 - 0.5 * (beam_cosine(lamp) + field_cosine(lamp))));
     case LampKind::Measured:
       return lamp.intensity_cd * lamp.photometry->solid_angle_sr();
+    case LampKind::Distant:
+      return Rgb(0.0);
     case LampKind::Rectangle:
     case LampKind::Disk:
       break;
@@ -208,6 +214,12 @@ Vec3 Cone::sample(double u, double v) const {
 double cone_solid_angle_sr(double half_angle_rad) {
   const double s = std::sin(half_angle_rad / 2);
   return 4.0 * pi * s * s;
+}
+
+bool has_light_outside(const Scene& scene) {
+  return scene.sun || scene.earth ||
+         std::any_of(scene.lamps.begin(), scene.lamps.end(),
+                     [](const Lamp& lamp) { return lamp.is_distant(); });
 }
 
 LightSample thrown(const LightSample& sample, const FlatMirror& mirror, std::uint32_t number,

@@ -55,9 +55,10 @@ enum class Spread { Best, OverArea };
 // The same of a spot lamp, whose cone is `cone`.
 [[nodiscard]] LightSample sample_spot(const Lamp& lamp, const SpotCone& cone, const Vec3& point);
 
+// Of a distant lamp 0: how much of its light is caught depends on the surfaces.
 [[nodiscard]] Rgb lamp_flux_lm(const Lamp& lamp);
 
-// A ray leaving the lamp, and its share of the flux relative to the mean ray (1 on average).
+// Not of a distant lamp. A ray leaving the lamp, and its share of the flux relative to the mean ray (1 on average).
 struct EmittedRay {
   Vec3 origin, direction;
   double weight = 1.0;
@@ -93,6 +94,9 @@ class Cone {
 }
 [[nodiscard]] double cone_solid_angle_sr(double half_angle_rad);
 
+// Whether light may come from outside of all surfaces: Sun, Earth or a distant lamp.
+[[nodiscard]] bool has_light_outside(const Scene& scene);
+
 // Light of a source that a flat mirror throws onto a point: that of the source's image.
 
 // sample: of the source itself, as the mirror's image of `point` sees it. What comes out is seen
@@ -118,7 +122,7 @@ struct LampRow {
   double (*radius)(const Lamp&);
 };
 // In LampKind's order.
-inline constexpr std::array<LampRow, 5> lamp_rows = {{
+inline constexpr std::array<LampRow, 6> lamp_rows = {{
     {"point", nullptr, nullptr},
     {"spot", nullptr, nullptr},
     {"rectangle",
@@ -130,6 +134,7 @@ inline constexpr std::array<LampRow, 5> lamp_rows = {{
     {"disk", [](const Lamp& lamp) { return base::pi * lamp.radius_m * lamp.radius_m; },
      [](const Lamp& lamp) { return lamp.radius_m; }},
     {"ies", nullptr, nullptr},
+    {"distant", nullptr, nullptr},
 }};
 
 [[nodiscard]] constexpr const LampRow& row_of(LampKind kind) {

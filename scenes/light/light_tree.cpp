@@ -86,6 +86,7 @@ LightBounds bounds_of(const Lamp& lamp) {
   bounds.intensity_cd = base::max_component(lamp.intensity_cd);
   switch (lamp.kind) {
     case LampKind::Point:
+    case LampKind::Distant:  // stands in no tree
       break;
     case LampKind::Spot:
       bounds.reach_rad = base::radians(lamp.field_deg / 2);

@@ -77,11 +77,14 @@ Vertices vertices_of(const Scene& scene, std::uint32_t number) {
 
 void copy_vertices(Scene& scene, const TableReader& table, const Vertices& of,
                    const Instance& instance) {
-  if (!scene.vertex_uv.empty()) {
-    scene.vertex_uv.resize(scene.vertices.size() + of.count, glm::vec2(0.0F));
-    std::copy_n(scene.vertex_uv.begin() + of.first, of.count,
-                scene.vertex_uv.begin() + instance.first_vertex);
-  }
+  const auto copy = [&](auto& list, const auto& otherwise) {
+    if (list.empty()) return;
+    list.resize(scene.vertices.size() + of.count, otherwise);
+    std::copy_n(list.begin() + of.first, of.count, list.begin() + instance.first_vertex);
+  };
+  copy(scene.vertex_uv, glm::vec2(0.0F));
+  copy(scene.second_uv, glm::vec2(0.0F));
+  copy(scene.vertex_colour, glm::vec3(1.0F));
   for (std::uint32_t k = 0; k < of.count; ++k) {
     const Vec3 p = instance.linear * scene.vertices[of.first + k] + instance.offset_m;
     for (int c = 0; c < 3; ++c) {

@@ -21,6 +21,7 @@ constexpr std::string_view rectangle_keys[] = {"name",   "group",  "type",     "
                                                "edge_u", "edge_v", "exitance", "flux"};
 constexpr std::string_view disk_keys[] = {"name",   "group",  "type",     "center",
                                           "normal", "radius", "exitance", "flux"};
+constexpr std::string_view distant_keys[] = {"name", "group", "type", "direction", "illuminance"};
 constexpr std::string_view ies_keys[] = {"name", "group", "type", "file",  "position",
                                          "aim",  "up",    "flux", "color", "tilt_deg"};
 
@@ -153,6 +154,14 @@ void read_measured(Lamp& lamp, const TableReader& table, double unit_m, Luminair
   lamp.intensity_cd *= *color / base::luminance(*color);
 }
 
+void read_distant(Lamp& lamp, const TableReader& table, double, LuminaireShelf&) {
+  // As of the Sun: toward the light.
+  lamp.axis = -table.required(table.direction("direction"), "direction",
+                              "direction = [x, y, z], toward the light");
+  lamp.illuminance_lx =
+      table.required(table.colour("illuminance"), "illuminance", "illuminance = ... (lx)");
+}
+
 struct LampReader {
   KeyList keys;
   void (*read)(Lamp&, const TableReader&, double unit_m, LuminaireShelf&);
@@ -162,7 +171,8 @@ constexpr std::array<LampReader, lamp_rows.size()> readers = {{{point_keys, read
                                                                {spot_keys, read_spot},
                                                                {rectangle_keys, read_rectangle},
                                                                {disk_keys, read_disk},
-                                                               {ies_keys, read_measured}}};
+                                                               {ies_keys, read_measured},
+                                                               {distant_keys, read_distant}}};
 
 // Those of all types.
 std::vector<std::string_view> all_keys() {
@@ -210,10 +220,6 @@ Vec3 placed(const Placement& placement, const Vec3& point, const base::Location&
   return result;
 }
 
-Vec3 direction(const Placement& placement, const Vec3& along) {
-  return glm::normalize(placement.rotation * (placement.scale * along));
-}
-
 }  // namespace
 
 Area read_area(const TomlNode& node, double unit_m) {
@@ -244,7 +250,7 @@ Lamp read_lamp(const TomlNode& node, double unit_m, LuminaireShelf& shelf) {
                  [](const LampRow& row) { return row.type; });
   const std::string type =
       table.required(table.choice("type", types), "type",
-                     "type = \"point\", \"spot\", \"rectangle\", \"disk\" or \"ies\"");
+                     "type = \"point\", \"spot\", \"rectangle\", \"disk\", \"ies\" or \"distant\"");
   const auto kind = std::find(types.begin(), types.end(), type) - types.begin();
   lamp.kind = static_cast<LampKind>(kind);
   const LampReader& reader = readers[static_cast<std::size_t>(kind)];
@@ -265,8 +271,8 @@ void add_file_lamps(Scene& scene, const std::string& object, const Mesh& mesh, s
     if (!belongs(mesh, of_file.part_set, part)) continue;
     Lamp lamp = of_file.lamp;
     lamp.name = lamp.group = new_name(scene.lamps, object, lamp.name, "lamp");
-    lamp.position = placed(placement, lamp.position, where);
-    lamp.axis = direction(placement, lamp.axis);
+    if (!lamp.is_distant()) lamp.position = placed(placement, lamp.position, where);
+    lamp.axis = placement.turned(lamp.axis);
     scene.lamps.push_back(std::move(lamp));
   }
 }
@@ -276,11 +282,11 @@ void add_file_cameras(Scene& scene, const std::string& object, const Mesh& mesh,
   for (const MeshCamera& of_file : mesh.cameras) {
     if (!belongs(mesh, of_file.part_set, part)) continue;
     Camera camera = of_file.camera;
-    const Vec3 along = direction(placement, camera.look_at - camera.position);
+    const Vec3 along = placement.turned(camera.look_at - camera.position);
     camera.name = new_name(scene.cameras, object, camera.name, "camera");
     camera.position = placed(placement, camera.position, where);
     camera.look_at = camera.position + placement.unit_m * along;
-    camera.up = direction(placement, camera.up);
+    camera.up = placement.turned(camera.up);
     camera.where = where;
     scene.cameras.push_back(std::move(camera));
   }

@@ -19,7 +19,8 @@ std::vector<std::string> names_of(const std::vector<Material>& materials, std::s
 bool same_values(const Material& a, const Material& b) {
   return a.diffuse == b.diffuse && a.specular == b.specular && a.shininess == b.shininess &&
          a.mirror == b.mirror && a.transmit == b.transmit && a.ior == b.ior && a.emit == b.emit &&
-         a.light_group == b.light_group && a.two_sided == b.two_sided && a.maps == b.maps;
+         a.light_group == b.light_group && a.two_sided == b.two_sided &&
+         a.even_lobe == b.even_lobe && a.maps == b.maps;
 }
 
 constexpr std::string_view keys[] = {"name",     "diffuse", "specular", "shininess", "mirror",
@@ -77,7 +78,9 @@ std::uint32_t MaterialChoice::own_material(const std::string& name) const {
 }
 
 std::uint32_t MaterialChoice::find(const std::string& name, const base::Location& place) {
-  const std::uint32_t own = own_material(name);
+  const auto& variants = shelved_.mesh.variant_of;
+  const auto variant = variants.find(name);
+  const std::uint32_t own = own_material(variant == variants.end() ? name : variant->second);
   if (own != no_index) return own;
   const std::uint32_t of_mesh = find_mesh_material(shelved_.mesh, name, scene_.path.parent_path());
   if (of_mesh != no_index) return add_to_scene(of_mesh);
@@ -99,6 +102,11 @@ std::uint32_t MaterialChoice::add_to_scene(std::uint32_t mesh_material) {
   std::uint32_t& number = shelved_.scene_material[mesh_material];
   if (number != no_index) return number;
   Material material = shelved_.mesh.materials[mesh_material];
+  if (mesh_material < shelved_.mesh.material_lacks.size()) {
+    for (const std::string& what : shelved_.mesh.material_lacks[mesh_material]) {
+      ++shelved_.mesh.lacking[what];
+    }
+  }
   // Files of materials do not know the bound; a picture with light from nowhere helps nobody.
   if (const double sum = conserve_energy(material); sum > 1.0) {
     scene_.warnings.push_back(fmt::format(

@@ -18,11 +18,12 @@ constexpr std::string_view object_keys[] = {
     "name",   "mesh",     "part",       "shape",     "material",    "translate", "rotate",
     "scale",  "target",   "inward",     "corners",   "min",         "max",       "center",
     "radius", "segments", "from",       "to",        "caps",        "normal",    "orient",
-    "lights", "cameras",  "smooth_deg", "round_deg", "instance_of", "velocity"};
+    "lights", "cameras",  "smooth_deg", "round_deg", "instance_of", "velocity", "axes"};
 constexpr std::string_view shapes[] = {"quad", "box", "sphere", "cylinder", "disk"};
 constexpr std::string_view common_keys[] = {"name",   "material", "translate", "rotate",  "scale",
                                             "target", "inward",   "orient",    "velocity"};
 constexpr std::string_view orients[] = {"outward", "as-is", "two-sided"};
+constexpr std::string_view axes_known[] = {"y-up", "as-is"};
 constexpr Range lengths{-largest_length, largest_length};
 
 void allow_keys(const TableReader& table, std::initializer_list<std::string_view> own,
@@ -149,8 +150,38 @@ Orient read_orient(const TableReader& table, const Placement& placement) {
   return Orient::Outward;
 }
 
+// From the coordinates of a mesh's file to the scene's: its unit, and y up to z up where the object
+// asks for it or the file is one of this program's, which had z up before. Names a file whose
+// format has another axis up than scenes have, where nobody says what is to be done about it.
+void take_axes(const TableReader& table, Mesh& mesh, Placement& placement) {
+  const auto asked = table.choice("axes", axes_known);
+  if (mesh.metres) placement.from_file *= *mesh.metres / placement.unit_m;
+  if (asked ? *asked == "y-up" : mesh.is_own) {
+    placement.from_file *= glm::dmat3(1, 0, 0, 0, 0, 1, 0, -1, 0);  // (x, y, z) to (x, -z, y)
+  }
+  if (asked || mesh.is_own || !mesh.is_y_up) return;
+  mesh.warnings.push_back(
+      fmt::format("{}: +Y is up in this format, +Z in scenes; it is read as it stands. Say axes = "
+                  "\"y-up\" at the object to stand it upright, or axes = \"as-is\"",
+                  mesh.path.string()));
+  mesh.is_y_up = false;  // said once
+}
+
+void name_lacking(Mesh& mesh) {
+  std::string list;
+  for (const auto& [what, count] : mesh.lacking) {
+    list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", what, count);
+  }
+  if (!list.empty()) {
+    mesh.warnings.push_back(
+        fmt::format("{}: not used, and the picture would change by it: {}", mesh.path.string(),
+                    list));
+  }
+  mesh.lacking.clear();
+}
+
 // What of the mesh's file besides faces goes into the scene, and the names of what does not.
-void take_extras(Scene& scene, const TableReader& table, const Mesh& mesh, std::uint32_t part,
+void take_extras(Scene& scene, const TableReader& table, Mesh& mesh, std::uint32_t part,
                  const Placement& placement) {
   const std::string object = scene.objects.back().name;
   const bool lights = table.flag("lights").value_or(false);
@@ -161,6 +192,13 @@ void take_extras(Scene& scene, const TableReader& table, const Mesh& mesh, std::
   if (cameras) {
     add_file_cameras(scene, object, mesh, part, placement, table.where("cameras"));
   }
+  const auto miss = [&](bool wanted, const char* what) {
+    const auto found = mesh.unused.find(what);
+    if (wanted && found != mesh.unused.end()) mesh.lacking[what] = found->second;
+  };
+  miss(lights, unknown_lamps_of_file);
+  miss(cameras, flat_cameras_of_file);
+  name_lacking(mesh);
   std::string& unused = scene.objects.back().unused;
   for (const auto& [what, count] : mesh.unused) {
     if ((lights && what == lamps_of_file) || (cameras && what == cameras_of_file)) continue;
@@ -172,8 +210,6 @@ void take_extras(Scene& scene, const TableReader& table, const Mesh& mesh, std::
 
 Placement read_placement(const TableReader& table, double unit_m) {
   Placement placement;
-  // Of meshes too: glTF means metres by its specification, but here the scene's unit rules whatever
-  // the format, so that one key says what every number of the scene means.
   placement.unit_m = unit_m;
   if (table.has("scale")) placement.scale = *table.scale("scale", {0.0, 1e6, true});
   if (const auto degrees = table.vector("rotate", {-1e6, 1e6})) {
@@ -214,7 +250,7 @@ Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShe
                   "mesh = \"FILE\", shape = \"quad\", \"box\", \"sphere\", ... or instance_of = "
                   "\"OBJECT\"");
   }
-  const Placement placement = read_placement(table, unit_m);
+  Placement placement = read_placement(table, unit_m);
   object.orient = read_orient(table, placement);
   ShelvedMesh made;
   ShelvedMesh* shelved = &made;
@@ -224,11 +260,12 @@ Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShe
     made.mesh = read_shape(table, *shape);
     object.source = *shape;
   } else {
-    allow_keys(table, {"mesh", "part", "lights", "cameras", "smooth_deg", "round_deg"},
+    allow_keys(table, {"mesh", "part", "lights", "cameras", "smooth_deg", "round_deg", "axes"},
                "an object with a mesh");
     rounding = read_rounding(table);
     shelved = &shelf.take(*named, table.where("mesh"),
                           rounding ? VertexNormals::Read : VertexNormals::Ignored);
+    take_axes(table, shelved->mesh, placement);
     object.source = *named;
     if (const auto part_name = table.text("part")) {
       part = find_part(shelved->mesh, *part_name, table.where("part"));

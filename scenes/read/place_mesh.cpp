@@ -186,9 +186,17 @@ class Placer {
     const auto [entry, fresh] = textured_at_.emplace(
         (std::uint64_t{corner} << 32U) | uv, static_cast<std::uint32_t>(scene_.vertices.size()));
     if (fresh) {
-      scene_.vertex_uv.resize(scene_.vertices.size(), glm::vec2(0.0F));
-      scene_.vertices.push_back(placement_.apply(mesh_.vertices[corner]));
+      const std::size_t place = scene_.vertices.size();
+      const auto append = [&](auto& list, const auto& own, const auto& otherwise) {
+        if (list.empty() && own.empty()) return;
+        list.resize(place, otherwise);
+        list.push_back(uv < own.size() ? own[uv] : otherwise);
+      };
+      scene_.vertex_uv.resize(place, glm::vec2(0.0F));
       scene_.vertex_uv.push_back(uv == no_index ? glm::vec2(0.0F) : mesh_.uv[uv]);
+      append(scene_.second_uv, mesh_.second_uv, glm::vec2(0.0F));
+      append(scene_.vertex_colour, mesh_.colours, glm::vec3(1.0F));
+      scene_.vertices.push_back(placement_.apply(mesh_.vertices[corner]));
     }
     return entry->second;
   }

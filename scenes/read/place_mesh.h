@@ -10,16 +10,21 @@
 
 namespace earthshine::scenes {
 
-// v -> unit (R_z R_y R_x (scale v) + translate), metres.
+// v -> unit (R_z R_y R_x (scale (from_file v)) + translate), metres.
 struct Placement {
   double unit_m = 1.0;
+  glm::dmat3 from_file{1.0};  // to the scene's axes and unit
   Vec3 scale{1.0};
   glm::dmat3 rotation{1.0};
   Vec3 translate{0.0};  // in the file's unit
   bool inward = false;  // fronts become backs
 
   [[nodiscard]] Vec3 apply(const Vec3& v) const {
-    return unit_m * (rotation * (scale * v) + translate);
+    return unit_m * (rotation * (scale * (from_file * v)) + translate);
+  }
+  // Of a direction of the file, unit.
+  [[nodiscard]] Vec3 turned(const Vec3& along) const {
+    return glm::normalize(rotation * (scale * (from_file * along)));
   }
 };
 

@@ -52,11 +52,26 @@ void check_energy(const Material& material, const base::Location& where, const s
   }
 }
 
+namespace {
+
+// Over the turn, the cosine a + b cos t over the larger of it and cos_in: the midpoint rule.
+double mean_even_weight(double a, double b, double cos_in) {
+  constexpr int steps = 48;
+  double sum = 0.0;
+  for (int k = 0; k < steps; ++k) {
+    const double cos_out = a + b * std::cos(base::pi * (k + 0.5) / steps);
+    if (cos_out > 0.0) sum += cos_out / std::max(cos_in, cos_out);
+  }
+  return sum / steps;
+}
+
+}  // namespace
+
 // Directions out have the density (n + 1) cos^n / (2 pi) about the mirrored direction, those in
 // cos / pi about the normal, in both as equal shares of probability: the midpoint rule. Over the
 // turn about the mirrored direction the cosine to the normal is a + b cos t, of which what is above
 // the surface counts: t up to acos(-a / b).
-double mean_lobe_reflectance(double n) {
+double mean_lobe_reflectance(double n, bool even) {
   constexpr std::size_t steps = 48;
   const auto share = [](std::size_t k) { return (static_cast<double>(k) + 0.5) / steps; };
   double sum = 0.0;
@@ -65,6 +80,10 @@ double mean_lobe_reflectance(double n) {
     const double sin_off = std::sqrt(std::max(0.0, 1.0 - cos_off * cos_off));
     for (std::size_t i = 0; i < steps; ++i) {
       const double a = cos_off * std::sqrt(1.0 - share(i)), b = sin_off * std::sqrt(share(i));
+      if (even) {
+        sum += mean_even_weight(a, b, std::sqrt(1.0 - share(i)));
+        continue;
+      }
       sum += a >= b ? a : (a * std::acos(-a / b) + std::sqrt(b * b - a * a)) / base::pi;
     }
   }
@@ -76,7 +95,7 @@ std::vector<Rgb> bihemispherical_albedos(const Scene& scene) {
   for (const Material& material : scene.materials) {
     Rgb reflectance = material.diffuse;
     if (base::max_component(material.specular) > 0.0) {
-      reflectance += material.specular * mean_lobe_reflectance(material.shininess);
+      reflectance += material.specular * mean_lobe_reflectance(material.shininess, material.even_lobe);
     }
     all.push_back(reflectance);
   }

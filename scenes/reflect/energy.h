@@ -26,8 +26,9 @@ double conserve_energy(Material& material);
 // Of light that comes evenly from all over the hemisphere, the share that a Phong lobe of k_s = 1
 // reflects (docs/theory.md, "Lobes in the radiosity"):
 //   (1/pi) integral over both directions of cos^n(alpha) cos(in) cos(out) / pi,
-// 5/6 for n = 0 and 4 / (3 (n + 2)) for large n; within 1e-3 of it, relative. n >= 0.
-[[nodiscard]] double mean_lobe_reflectance(double n);
+// 5/6 for n = 0 and 4 / (3 (n + 2)) for large n; within 1e-3 of it, relative. n >= 0. Of an even
+// lobe (Material::even_lobe) with the larger cosine below the fraction: 2 / (n + 2) for large n.
+[[nodiscard]] double mean_lobe_reflectance(double n, bool even = false);
 
 // Per material: k_d and the mean of its lobe.
 [[nodiscard]] std::vector<Rgb> bihemispherical_albedos(const Scene& scene);

@@ -2,6 +2,9 @@
 // Where light goes on from a mirror or glass.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "scenes/ray_query.h"
 #include "scenes/scene.h"
 
@@ -36,26 +39,18 @@ struct SpecularStep {
 [[nodiscard]] SpecularStep specular_step(const Scene& scene, const Hit& hit, const Vec3& direction,
                                          double offset_m, bool aimed = false);
 
-// Phong lobes for the microfacet highlights of other programs' materials.
-
-// The GGX highlight of glTF 2.0 (appendix B.3) for a reflectance F of the facets of 1:
-//   f = D V,  D = a^2 / (pi ((n h)^2 (a^2 - 1) + 1)^2),  a = roughness^2,
-//   V = 1 / ((n l + sqrt(a^2 + (1 - a^2)(n l)^2)) (n v + sqrt(a^2 + (1 - a^2)(n v)^2))), V of
-// uncorrelated heights. In 1/sr; cosines above 0, a in (0, 1].
-[[nodiscard]] double ggx_brdf(double a, double cos_light, double cos_view, double cos_half);
-
-// What it reflects of light that arrives along the normal: the integral of f cos over the
-// hemisphere, in (0, 1]; below 1 because light between the facets is lost, as in the source.
-[[nodiscard]] double ggx_albedo(double a);
-
-// pi f = peak cos^shininess(alpha), times F.
-struct PhongLobe {
-  double peak = 0.0;
-  double shininess = 0.0;
-};
-
-// The lobe with the same radiance along the mirror direction of the normal, 1 / (4 a^2), and the
-// same albedo there, 2 peak / (shininess + 2) = ggx_albedo(a).
-[[nodiscard]] PhongLobe phong_of_ggx(double a);
+// The lobe's shape, times k_s: cos^n alpha, over the larger cosine to the normal where the material
+// has an even lobe. cos_in, cos_out: of the two directions, above 0.
+[[nodiscard]] inline double lobe_at(const Material& material, double cos_alpha, double cos_in,
+                                    double cos_out) {
+  const double lobe = std::pow(cos_alpha, material.shininess);
+  return material.even_lobe ? lobe / std::max(cos_in, cos_out) : lobe;
+}
+// The lobe times the cosine of the direction drawn by the density (n + 1) cos^n alpha / (2 pi), over
+// that density and pi: what a ray along it weighs.
+[[nodiscard]] inline double lobe_weight(const Material& material, double cos_in, double cos_out) {
+  const double cosine = material.even_lobe ? cos_out / std::max(cos_in, cos_out) : cos_out;
+  return 2.0 * cosine / (material.shininess + 1.0);
+}
 
 }  // namespace earthshine::scenes

@@ -182,6 +182,14 @@ class Rounder {
     glm::dvec2 mixed(0.0);
     for (std::size_t k = 0; k < 3; ++k) mixed += share[k] * glm::dvec2(mesh_.uv[uv[k]]);
     made_.uv.emplace_back(mixed);
+    const auto mix = [&](auto& list) {
+      if (list.empty()) return;
+      auto sum = 0.0F * list.front();
+      for (std::size_t k = 0; k < 3; ++k) sum += float(share[k]) * list[uv[k]];
+      list.push_back(sum);
+    };
+    mix(made_.second_uv);
+    mix(made_.colours);
     return made;
   }
 

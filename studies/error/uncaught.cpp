@@ -161,6 +161,7 @@ class Finder {
       case scenes::LightKind::PointLamp:
       case scenes::LightKind::SpotLamp:
       case scenes::LightKind::MeasuredLamp:
+      case scenes::LightKind::DistantLamp:
         return true;
       case scenes::LightKind::Sun:
         return study_.scene.sun->angular_radius_deg <= 0.0;

@@ -115,7 +115,7 @@ void LightBasis::split_lamps() {
   std::vector<scenes::Lamp*> split;
   for (scenes::Lamp& lamp : scene_.lamps) {
     if (!ever_on(lamp.name, lamp.group)) {
-      lamp.intensity_cd = lamp.exitance = Rgb(0.0);
+      lamp.dim(Rgb(0.0));
     } else if (named.contains(lamp.name)) {
       lamp.group = lamp.name;
       split.push_back(&lamp);

@@ -57,9 +57,14 @@ Vec3 onto_disc(const scenes::Earth& earth, const Vec3& direction) {
 // Mean illuminance that the scene's lamps could give: their flux over all surfaces.
 double lamp_level_lx(const scenes::Scene& scene) {
   double flux = 0.0, area = 0.0;
-  for (const scenes::Lamp& lamp : scene.lamps) flux += base::luminance(scenes::lamp_flux_lm(lamp));
+  double distant_lx = 0.0;
+  for (const scenes::Lamp& lamp : scene.lamps) {
+    flux += base::luminance(scenes::lamp_flux_lm(lamp));
+    distant_lx += base::luminance(lamp.illuminance_lx);
+  }
   for (const scenes::Object& object : scene.objects) area += object.area_m2;
-  return flux > 0.0 && area > 0.0 ? flux / area : 1000.0;
+  const double level_lx = distant_lx + (area > 0.0 ? flux / area : 0.0);
+  return level_lx > 0.0 ? level_lx : 1000.0;
 }
 
 }  // namespace
@@ -144,8 +149,7 @@ scenes::Scene LightBasis::scene_at(std::size_t place, std::size_t setting) const
   }
   for (scenes::Lamp& lamp : scene.lamps) {
     const Rgb times = factor(settings_[setting], lamp.name, lamp.group);
-    lamp.intensity_cd *= times;
-    lamp.exitance *= times;
+    lamp.dim(times);
   }
   for (scenes::Material& material : scene.materials) {
     if (!material.emits()) continue;

@@ -33,7 +33,7 @@ class Model:
         return len(self.json["bufferViews"]) - 1
 
     def accessor(self, rows, letter="f", normalized=False):
-        kind = {1: "SCALAR", 2: "VEC2", 3: "VEC3"}[len(rows[0])]
+        kind = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}[len(rows[0])]
         size = struct.calcsize(letter) * len(rows[0])
         stride = size + -size % 4 if kind != "SCALAR" else size
         data = b"".join(struct.pack("<" + letter * len(row), *row).ljust(stride, b"\0") for row in rows)

@@ -116,15 +116,15 @@ int components_of(const tinygltf::Accessor& accessor) {
   return tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
 }
 
-// The first `components` numbers; the rest are 0.
-Vec3 vector_at(const unsigned char* bytes, const tinygltf::Accessor& accessor,
-               std::string_view attribute, const std::filesystem::path& path) {
-  Vec3 v(0.0);
+// The accessor's numbers; the rest are 0, and a fourth one is 1.
+glm::dvec4 vector_at(const unsigned char* bytes, const tinygltf::Accessor& accessor,
+                     const GltfAttribute& attribute, const std::filesystem::path& path) {
+  glm::dvec4 v(0.0, 0.0, 0.0, 1.0);
   for (int c = 0; c < components_of(accessor); ++c) {
     v[c] = number_at(bytes + number_bytes(accessor) * static_cast<std::size_t>(c),
-                     accessor.componentType, accessor.normalized);
+                     accessor.componentType, accessor.normalized || attribute.is_share);
     if (std::abs(v[c]) <= largest_coordinate) continue;
-    gltf_fail(path, fmt::format("the {} of a vertex has {}", attribute, v[c]),
+    gltf_fail(path, fmt::format("the {} of a vertex has {}", attribute.name, v[c]),
               fmt::format("its numbers are finite and at most {}", largest_coordinate));
   }
   return v;
@@ -156,35 +156,80 @@ void each_sparse(const GltfModel& model, const tinygltf::Accessor& accessor, std
 
 }  // namespace
 
-std::vector<Vec3> read_gltf_vectors(const GltfModel& model, int number, int components,
-                                    std::string_view attribute, const std::filesystem::path& path) {
+namespace {
+
+template <class Vector>
+std::vector<Vector> read_vectors(const GltfModel& model, int number, const GltfAttribute& attribute,
+                                 const std::filesystem::path& path) {
   const tinygltf::Accessor& accessor = accessor_at(model, number, path);
-  const int type = accessor.componentType;
+  const int type = accessor.componentType, components = components_of(accessor);
   const bool is_number =
       (type >= TINYGLTF_COMPONENT_TYPE_BYTE && type <= TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) ||
       type == TINYGLTF_COMPONENT_TYPE_FLOAT;
-  if (components_of(accessor) != components || !is_number) {
-    gltf_fail(path, fmt::format("{} that is not {} numbers", attribute, components),
-              fmt::format("{} is VEC{} of floats, or of quantised bytes or shorts", attribute,
-                          components));
+  const bool fits = components >= attribute.least && components <= attribute.most;
+  if (!fits || !is_number) {
+    const std::string wanted = attribute.least == attribute.most
+                                   ? fmt::format("{}", attribute.most)
+                                   : fmt::format("{} or {}", attribute.least, attribute.most);
+    gltf_fail(path, fmt::format("{} that is not {} numbers", attribute.name, wanted),
+              fmt::format("{} is VEC{} of floats, or of quantised bytes or shorts", attribute.name,
+                          wanted));
   }
   const std::size_t size = static_cast<std::size_t>(components) * number_bytes(accessor);
-  std::vector<Vec3> vectors;
-  base::check_room(accessor.count * sizeof(Vec3), path.string());
+  std::vector<Vector> vectors;
+  base::check_room(accessor.count * sizeof(Vector), path.string());
   if (accessor.bufferView != -1) {
     const Elements elements = view_elements(model, accessor.bufferView, accessor.byteOffset,
                                             accessor.count, size, true, path);
     vectors.reserve(accessor.count);
     for (std::size_t i = 0; i < accessor.count; ++i) {
-      vectors.push_back(vector_at(elements[i], accessor, attribute, path));
+      vectors.emplace_back(vector_at(elements[i], accessor, attribute, path));
     }
   } else {
-    vectors.assign(accessor.count, Vec3(0.0));  // zeros by the specification, unless sparse
+    vectors.assign(accessor.count, Vector(0.0));  // zeros by the specification, unless sparse
   }
   each_sparse(model, accessor, size, path, [&](std::size_t i, const unsigned char* bytes) {
-    vectors[i] = vector_at(bytes, accessor, attribute, path);
+    vectors[i] = Vector(vector_at(bytes, accessor, attribute, path));
   });
   return vectors;
+}
+
+}  // namespace
+
+std::vector<Vec3> read_gltf_vectors(const GltfModel& model, int number, int components,
+                                    std::string_view name, const std::filesystem::path& path) {
+  return read_vectors<Vec3>(model, number, {name, components, components}, path);
+}
+
+std::vector<glm::dvec4> read_gltf_fours(const GltfModel& model, int number,
+                                        const GltfAttribute& attribute,
+                                        const std::filesystem::path& path) {
+  return read_vectors<glm::dvec4>(model, number, attribute, path);
+}
+
+std::vector<glm::dmat4> read_gltf_matrices(const GltfModel& model, int number,
+                                           const std::filesystem::path& path) {
+  const tinygltf::Accessor& accessor = accessor_at(model, number, path);
+  if (accessor.type != TINYGLTF_TYPE_MAT4 ||
+      accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT || accessor.bufferView == -1) {
+    gltf_fail(path, "inverse bind matrices that are none", "they are MAT4 of floats");
+  }
+  constexpr std::size_t size = 16 * sizeof(float);
+  base::check_room(accessor.count * sizeof(glm::dmat4), path.string());
+  const Elements elements = view_elements(model, accessor.bufferView, accessor.byteOffset,
+                                          accessor.count, size, true, path);
+  std::vector<glm::dmat4> matrices(accessor.count);
+  for (std::size_t i = 0; i < accessor.count; ++i) {
+    for (int k = 0; k < 16; ++k) {
+      const double x = number_at(elements[i] + sizeof(float) * static_cast<std::size_t>(k),
+                                 accessor.componentType, false);
+      if (!(std::abs(x) <= largest_coordinate)) {
+        gltf_fail(path, fmt::format("an inverse bind matrix has {}", x), "its numbers are finite");
+      }
+      matrices[i][k / 4][k % 4] = x;
+    }
+  }
+  return matrices;
 }
 
 std::vector<std::uint32_t> read_gltf_indices(const GltfModel& model, int number,

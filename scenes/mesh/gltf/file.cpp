@@ -8,8 +8,10 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "scenes/mesh/gltf/deform.h"
 #include "scenes/mesh/gltf/model.h"
 #include "scenes/mesh/gltf/punctual.h"
+#include "scenes/mesh/gltf/writer.h"
 #include "scenes/text/message_text.h"
 
 namespace earthshine::scenes {
@@ -23,11 +25,16 @@ class GltfReader {
         reads_normals_(normals == VertexNormals::Read),
         visited_(model.file.nodes.size(), 0) {
     mesh_.path = path;
+    mesh_.metres = 1.0;  // glTF 2.0, 3.4
+    mesh_.is_y_up = true;
+    mesh_.is_own = model.file.asset.generator == own_generator;
   }
 
   Mesh read() {
     name_materials();
     mesh_.unused = model_.unused;
+    mesh_.lacking = model_.lacking;
+    mesh_.material_lacks = model_.lacks;
     mesh_.warnings = model_.warnings;
     for (const int root : roots()) visit(root, glm::dmat4(1.0), {}, 1);
     for (std::size_t i = 0; i < visited_.size(); ++i) {
@@ -36,6 +43,9 @@ class GltfReader {
       if (visited_[i] == 0 && holds) ++mesh_.unused["nodes outside the scene that is read"];
     }
     if (!mesh_.uv.empty()) mesh_.uv_indices.resize(mesh_.indices.size(), no_index);
+    if (!mesh_.second_uv.empty()) mesh_.second_uv.resize(mesh_.uv.size(), glm::vec2(0.0F));
+    if (!mesh_.colours.empty()) mesh_.colours.resize(mesh_.uv.size(), glm::vec3(1.0F));
+    name_missing_coordinates();
     if (reads_normals_) mesh_.unused.erase("NORMAL");
     return std::move(mesh_);
   }
@@ -45,11 +55,16 @@ class GltfReader {
     std::unordered_set<std::string> names;
     for (std::size_t i = 0; i < model_.materials.size(); ++i) {
       Material material = model_.materials[i];
+      const std::uint32_t base = model_.variant_of[i];
+      if (base != no_index) {
+        material.name = fmt::format("{} ({})", mesh_.material_names[base], material.name);
+      }
       if (material.name.empty()) material.name = fmt::format("material {}", i);
       // Materials are told apart by name from here on.
       if (!names.insert(material.name).second) material.name += fmt::format(" ({})", i);
       names.insert(material.name);
-      material.light_group = material.name;
+      material.light_group = base == no_index ? material.name : mesh_.material_names[base];
+      if (base != no_index) mesh_.variant_of[material.name] = mesh_.material_names[base];
       mesh_.material_names.push_back(material.name);
       mesh_.materials.push_back(std::move(material));
       mesh_.material_places.push_back({path_.string()});
@@ -96,7 +111,7 @@ class GltfReader {
     const tinygltf::Node& node = model_.file.nodes[static_cast<std::size_t>(number)];
     const glm::dmat4 matrix = parent * node_matrix(node, path_);
     if (!node.name.empty()) parts.push_back(number_of(node.name, mesh_.part_names, part_numbers_));
-    if (node.mesh >= 0) add_mesh(node.mesh, matrix, parts);
+    if (node.mesh >= 0) add_mesh(node, matrix, parts);
     add_lamp(node, matrix, parts);
     add_camera(node, matrix, parts);
     for (const int child : node.children) visit(child, matrix, parts, depth + 1);
@@ -124,7 +139,7 @@ class GltfReader {
     if (!lamp.is_lamp) return;
     MeshLamp made{lamp.lamp, add_parts(parts)};
     if (!node.name.empty()) made.lamp.name = node.name;
-    made.lamp.position = Vec3(matrix[3]);
+    if (!made.lamp.is_distant()) made.lamp.position = Vec3(matrix[3]);
     made.lamp.axis = turned(matrix, made.lamp.axis);
     mesh_.lamps.push_back(std::move(made));
   }
@@ -150,18 +165,27 @@ class GltfReader {
     return glm::normalize(made);
   }
 
-  void add_mesh(int number, const glm::dmat4& matrix, std::vector<std::uint32_t> parts) {
-    if (static_cast<std::size_t>(number) >= model_.file.meshes.size()) {
-      gltf_fail(path_, fmt::format("mesh {} does not exist", number),
-                fmt::format("the file has {}", model_.file.meshes.size()));
-    }
-    const tinygltf::Mesh& mesh = model_.file.meshes[static_cast<std::size_t>(number)];
+  void add_mesh(const tinygltf::Node& node, const glm::dmat4& matrix,
+                std::vector<std::uint32_t> parts) {
+    const tinygltf::Mesh& mesh = at(model_.file.meshes, node.mesh, "mesh");
     if (!mesh.name.empty()) parts.push_back(number_of(mesh.name, mesh_.part_names, part_numbers_));
     part_set_ = add_parts(parts);
-    for (const tinygltf::Primitive& primitive : mesh.primitives) add_primitive(primitive, matrix);
+    const auto number = static_cast<std::size_t>(node.mesh);
+    for (std::size_t k = 0; k < mesh.primitives.size(); ++k) {
+      add_primitive(mesh.primitives[k], model_.worn[number][k],
+                    {node, node.weights.empty() ? mesh.weights : node.weights, matrix});
+    }
   }
 
-  void add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& matrix) {
+  // Where a mesh hangs.
+  struct Hung {
+    const tinygltf::Node& node;
+    const std::vector<double>& weights;  // of its morph targets
+    const glm::dmat4& matrix;            // of the node
+  };
+
+  void add_primitive(const tinygltf::Primitive& primitive, std::uint32_t material,
+                     const Hung& hung) {
     const int mode = primitive.mode == -1 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
     const bool has_faces = mode == TINYGLTF_MODE_TRIANGLES ||
                            mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
@@ -171,16 +195,9 @@ class GltfReader {
       ++mesh_.unused[has_faces ? "primitives without positions" : "points or lines"];
       return;
     }
-    std::uint32_t material = no_index;
-    if (primitive.material >= 0) {
-      material = static_cast<std::uint32_t>(primitive.material);
-      if (material >= model_.materials.size()) {
-        gltf_fail(path_, fmt::format("material {} does not exist", material),
-                  fmt::format("the file has {}", model_.materials.size()));
-      }
-    }
-    const std::vector<Vec3> positions =
+    std::vector<Vec3> positions =
         read_gltf_vectors(model_, position->second, 3, "POSITION", path_);
+    add_morph_targets(model_, primitive, hung.weights, "POSITION", positions, path_);
     std::vector<std::uint32_t> indices;
     if (primitive.indices >= 0) {
       indices = read_gltf_indices(model_, primitive.indices, path_);
@@ -193,6 +210,19 @@ class GltfReader {
                   fmt::format("the primitive has {} vertices", positions.size()));
       }
     }
+    if (hung.node.skin >= 0) {
+      add_vertices(primitive, material, hung, mode, positions, indices,
+                   skin_poses(model_, hung.node.skin, primitive, positions.size(), path_));
+      return;
+    }
+    for (const glm::dmat4& pose : instance_poses(model_, hung.node, hung.matrix, path_)) {
+      add_vertices(primitive, material, hung, mode, positions, indices, VertexPoses(pose));
+    }
+  }
+
+  void add_vertices(const tinygltf::Primitive& primitive, std::uint32_t material, const Hung& hung,
+                    int mode, const std::vector<Vec3>& positions,
+                    const std::vector<std::uint32_t>& indices, const VertexPoses& poses) {
     const std::size_t total = std::max(mesh_.vertices.size() + positions.size(),
                                        mesh_.indices.size() + 3 * indices.size());
     if (total > 3 * max_gltf_triangles) {
@@ -201,11 +231,12 @@ class GltfReader {
           fmt::format("at most {} triangles are read from one glTF file", max_gltf_triangles));
     }
     const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
-    for (const Vec3& p : positions) mesh_.vertices.emplace_back(matrix * glm::dvec4(p, 1.0));
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      mesh_.vertices.emplace_back(poses[i] * glm::dvec4(positions[i], 1.0));
+    }
     const First starts{first, add_coordinates(primitive, material, positions.size()),
-                       add_normals(primitive, matrix, positions.size())};
-    const bool mirrored = glm::determinant(glm::dmat3(matrix)) < 0.0;
-    add_triangles(mode, indices, starts, material, mirrored);
+                       add_normals(primitive, hung, poses, positions.size())};
+    add_triangles(mode, indices, starts, material, poses);
   }
 
   // Where a primitive's begin in the mesh's lists; no_index: it has none.
@@ -214,38 +245,76 @@ class GltfReader {
   };
 
   // Where they are asked for.
-  std::uint32_t add_normals(const tinygltf::Primitive& primitive, const glm::dmat4& matrix,
-                            std::size_t count) {
+  std::uint32_t add_normals(const tinygltf::Primitive& primitive, const Hung& hung,
+                            const VertexPoses& poses, std::size_t count) {
     const auto normal = primitive.attributes.find("NORMAL");
     const bool has_normals = normal != primitive.attributes.end() && normal->second >= 0;
     if (!reads_normals_ || !has_normals) return no_index;
-    const auto normals = read_gltf_vectors(model_, normal->second, 3, "NORMAL", path_);
+    auto normals = read_gltf_vectors(model_, normal->second, 3, "NORMAL", path_);
     if (normals.size() < count) gltf_fail(path_, "fewer normals than vertices");
+    add_morph_targets(model_, primitive, hung.weights, "NORMAL", normals, path_);
     const auto first = static_cast<std::uint32_t>(mesh_.normals.size());
-    const glm::dmat3 turn = glm::transpose(glm::inverse(glm::dmat3(matrix)));
-    for (const Vec3& n : normals) mesh_.normals.emplace_back(glm::normalize(turn * n));
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::dmat3 turn = glm::transpose(glm::inverse(glm::dmat3(poses[i])));
+      mesh_.normals.emplace_back(glm::normalize(turn * normals[i]));
+    }
     return first;
   }
 
-  // Of a primitive with a texture, where they begin in the mesh's; no_index: it has none.
-  std::uint32_t add_coordinates(const tinygltf::Primitive& primitive, std::uint32_t material,
+  // TEXCOORD_n of a primitive; empty: it has none.
+  std::vector<Vec3> coordinates(const tinygltf::Primitive& primitive, int number,
                                 std::size_t count) {
-    if (material == no_index || !model_.materials[material].maps) return no_index;
-    const int number = model_.coordinates[material];
     const auto set = primitive.attributes.find(fmt::format("TEXCOORD_{}", number));
-    if (number > 9 || set == primitive.attributes.end()) return no_index;
-    const std::vector<Vec3> uv = read_gltf_vectors(model_, set->second, 2, "TEXCOORD", path_);
+    if (set == primitive.attributes.end() || set->second < 0) {
+      ++without_coordinates_;
+      return {};
+    }
+    std::vector<Vec3> uv = read_gltf_vectors(model_, set->second, 2, "TEXCOORD", path_);
     if (uv.size() < count) {
       gltf_fail(path_, fmt::format("{} texture coordinates", uv.size()),
                 fmt::format("the primitive has {} vertices", count));
     }
+    uv.resize(count);
+    return uv;
+  }
+
+  // Of a primitive whose material varies over it, where its places in textures and its colours
+  // begin in the mesh's; no_index: it does not vary.
+  std::uint32_t add_coordinates(const tinygltf::Primitive& primitive, std::uint32_t material,
+                                std::size_t count) {
+    const auto& maps = model_.materials[material].maps;
+    if (!maps) return no_index;
     const auto first = static_cast<std::uint32_t>(mesh_.uv.size());
-    for (const Vec3& place : uv) mesh_.uv.emplace_back(place.x, place.y);
+    const auto append = [&](auto& list, const auto& values, const auto& otherwise) {
+      list.resize(first, otherwise);
+      for (const auto& v : values) list.emplace_back(v);
+      list.resize(first + count, otherwise);
+    };
+    const CoordinateSets& sets = model_.coordinates[material];
+    const glm::vec2 corner(0.0F);
+    append(mesh_.uv,
+           sets.first ? coordinates(primitive, *sets.first, count) : std::vector<Vec3>(), corner);
+    if (sets.second) {
+      append(mesh_.second_uv, coordinates(primitive, *sets.second, count), corner);
+    }
+    if (maps->by_vertex) {
+      std::vector<glm::dvec4> colours = read_gltf_colours(model_, primitive, path_);
+      colours.resize(count, glm::dvec4(1.0));
+      append(mesh_.colours, colours, glm::vec3(1.0F));
+    }
     return first;
   }
 
+  void name_missing_coordinates() {
+    if (without_coordinates_ == 0) return;
+    mesh_.warnings.push_back(
+        fmt::format("{}: {} primitives lack the texture coordinates of their material; they take "
+                    "the texture's upper left corner",
+                    path_.string(), without_coordinates_));
+  }
+
   void add_triangles(int mode, const std::vector<std::uint32_t>& indices, First first,
-                     std::uint32_t material, bool mirrored) {
+                     std::uint32_t material, const VertexPoses& poses) {
     const auto begin = [&](std::uint32_t start, std::vector<std::uint32_t>& list) {
       if (start != no_index) list.resize(mesh_.indices.size(), no_index);
     };
@@ -259,7 +328,7 @@ class GltfReader {
         corners = {indices[0], indices[i + 1], indices[i + 2]};
       // Every second triangle of a strip runs the other way round, and so does a mirrored mesh.
       const bool odd = mode == TINYGLTF_MODE_TRIANGLE_STRIP && i % 2 == 1;
-      if (odd != mirrored) std::swap(corners[1], corners[2]);
+      if (odd != poses.mirrors(corners[0])) std::swap(corners[1], corners[2]);
       for (std::uint32_t& corner : corners) {
         if (first.uv != no_index) mesh_.uv_indices.push_back(first.uv + corner);
         if (first.normal != no_index) mesh_.normal_indices.push_back(first.normal + corner);
@@ -275,6 +344,7 @@ class GltfReader {
   Mesh mesh_;
   std::vector<int> visited_;
   std::uint32_t part_set_ = 0;
+  std::size_t without_coordinates_ = 0;  // sets that primitives lack
   std::unordered_map<std::string, std::uint32_t> part_numbers_;
 };
 

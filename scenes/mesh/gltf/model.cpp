@@ -126,7 +126,12 @@ constexpr std::string_view known[] = {
     "KHR_mesh_quantization",      "KHR_lights_punctual",    "KHR_materials_emissive_strength",
     "KHR_materials_ior",          "KHR_materials_specular", "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_transmission", "KHR_materials_volume",   "KHR_materials_unlit",
-    "KHR_texture_transform"};
+    "KHR_texture_transform",      "EXT_mesh_gpu_instancing"};
+// Those that change nothing of what is there.
+constexpr std::string_view harmless[] = {"KHR_materials_variants", "KHR_xmp", "KHR_xmp_json_ld",
+                                         "KHR_animation_pointer", "MSFT_lod"};
+constexpr std::string_view compressions[] = {"KHR_draco_mesh_compression",
+                                             "EXT_meshopt_compression", "KHR_meshopt_compression"};
 
 template <std::size_t N>
 bool among(const std::string& name, const std::string_view (&names)[N]) {
@@ -136,50 +141,103 @@ bool among(const std::string& name, const std::string_view (&names)[N]) {
 // glTF-Transform's commands (gltf-transform.dev, in the npm registry).
 std::string remedy_for(const std::string& extension) {
   constexpr const char* run = "npx @gltf-transform/cli";
-  if (extension == "KHR_draco_mesh_compression" || extension == "EXT_meshopt_compression") {
+  if (among(extension, compressions)) {
     return fmt::format("Decompress it: {} copy IN.glb OUT.glb", run);
   }
   return "Export it without";
 }
 
-bool has_texture(const tinygltf::Model& model, int material) {
-  if (material < 0 || static_cast<std::size_t>(material) >= model.materials.size()) return false;
-  const tinygltf::Material& found = model.materials[static_cast<std::size_t>(material)];
-  return found.pbrMetallicRoughness.baseColorTexture.index >= 0 ||
-         found.emissiveTexture.index >= 0 ||
-         found.extensions.count("KHR_materials_pbrSpecularGlossiness") > 0;
+// Whether an attribute of a vertex is read, or is of no use without what is read.
+bool is_read(const std::string& name, const tinygltf::Primitive& primitive) {
+  const auto has = [&](const char* other) { return primitive.attributes.count(other) > 0; };
+  if (name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_")) {
+    return has("JOINTS_0") && has("WEIGHTS_0");
+  }
+  return name == "POSITION" || name == "COLOR_0";
 }
 
-// Vertex attributes but for positions and coordinates of textures, morph targets, lamps, cameras,
-// skins, animations, extensions that nothing here knows.
-std::map<std::string, std::size_t> unused_of(const tinygltf::Model& model) {
-  std::map<std::string, std::size_t> unused;
+// The numbers of the sets of coordinates that the material of a primitive reads.
+bool is_coordinates(const std::string& name, const CoordinateSets& sets) {
+  const auto is = [&](const std::optional<int>& set) {
+    return set && name == fmt::format("TEXCOORD_{}", *set);
+  };
+  return is(sets.first) || is(sets.second);
+}
+
+// What nothing here reads, and what of that would change the picture: vertex attributes, morph
+// targets of other attributes, lights, cameras, animations, extensions.
+void count_unused(GltfModel& model) {
+  const tinygltf::Model& file = model.file;
   const auto count = [&](const std::string& what, std::size_t number) {
-    if (number > 0) unused[what] += number;
+    if (number > 0) model.unused[what] += number;
+  };
+  const auto lack = [&](const std::string& what, std::size_t number) {
+    count(what, number);
+    if (number > 0) model.lacking[what] += number;
+  };
+  for (std::size_t m = 0; m < file.meshes.size(); ++m) {
+    for (std::size_t p = 0; p < file.meshes[m].primitives.size(); ++p) {
+      const tinygltf::Primitive& primitive = file.meshes[m].primitives[p];
+      const std::uint32_t worn = model.worn[m][p];
+      const CoordinateSets sets =
+          worn < model.coordinates.size() ? model.coordinates[worn] : CoordinateSets{};
+      for (const auto& [name, accessor] : primitive.attributes) {
+        if (!is_read(name, primitive) && !is_coordinates(name, sets)) count(name, 1);
+      }
+      for (const auto& target : primitive.targets) {
+        for (const auto& [name, accessor] : target) {
+          if (name == "POSITION" || name == "NORMAL" || name == "TANGENT") continue;
+          lack("morph targets of " + name, 1);
+        }
+      }
+    }
+  }
+  for (const tinygltf::Light& light : file.lights) {
+    const bool is_lamp =
+        light.type == "point" || light.type == "spot" || light.type == "directional";
+    count(is_lamp ? lamps_of_file : unknown_lamps_of_file, 1);
+  }
+  count(cameras_of_file, file.cameras.size());
+  count("animations", file.animations.size());
+  for (const std::string& extension : file.extensionsUsed) {
+    if (among(extension, known) || extension.starts_with("KHR_materials_")) continue;
+    const bool is_seen = !among(extension, harmless) && !among(extension, of_textures) &&
+                         !among(extension, compressions);
+    is_seen ? lack(extension, 1) : count(extension, 1);
+  }
+  for (const auto& lacks : model.lacks) {
+    for (const std::string& what : lacks) count(what, 1);
+  }
+}
+
+// Throws base::Error (Input) where the numbers of a mesh are there in compressed form alone: an
+// extension that the file does not call required may be so all the same.
+void check_compression(const tinygltf::Model& model, const std::filesystem::path& path) {
+  const auto refuse = [&](const std::string& extension) {
+    throw Error(Blame::Input, base::Location{path.string()},
+                fmt::format("holds meshes compressed by the glTF extension {} alone",
+                            in_quotes(extension)),
+                "meshes are read uncompressed", remedy_for(extension));
   };
   for (const tinygltf::Mesh& mesh : model.meshes) {
     for (const tinygltf::Primitive& primitive : mesh.primitives) {
-      const bool textured = has_texture(model, primitive.material);
-      for (const auto& [name, accessor] : primitive.attributes) {
-        if (name != "POSITION" && !(textured && name == "TEXCOORD_0")) count(name, 1);
-      }
-      count("morph targets", primitive.targets.size());
+      const auto position = primitive.attributes.find("POSITION");
+      if (primitive.extensions.count("KHR_draco_mesh_compression") == 0) continue;
+      const auto number = position == primitive.attributes.end()
+                              ? model.accessors.size()
+                              : static_cast<std::size_t>(position->second);
+      if (number >= model.accessors.size()) continue;
+      const tinygltf::Accessor& accessor = model.accessors[number];
+      if (accessor.bufferView < 0 && !accessor.sparse.isSparse) refuse("KHR_draco_mesh_compression");
     }
   }
-  for (const tinygltf::Light& light : model.lights) {
-    const bool is_lamp = light.type == "point" || light.type == "spot";
-    count(is_lamp                       ? lamps_of_file
-          : light.type == "directional" ? "directional lights (say [sun])"
-                                        : "lights of an unknown type",
-          1);
+  for (const tinygltf::BufferView& view : model.bufferViews) {
+    const auto buffer = static_cast<std::size_t>(view.buffer);
+    const bool has_data = buffer < model.buffers.size() && !model.buffers[buffer].data.empty();
+    for (const char* extension : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+      if (view.extensions.count(extension) > 0 && !has_data) refuse(extension);
+    }
   }
-  count(cameras_of_file, model.cameras.size());
-  count("skins", model.skins.size());
-  count("animations", model.animations.size());
-  for (const std::string& extension : model.extensionsUsed) {
-    if (!among(extension, known)) count(extension, 1);
-  }
-  return unused;
 }
 
 // Throws base::Error (Input) for an extension that the file cannot be read without, with what
@@ -197,7 +255,6 @@ GltfModel convert(tinygltf::Model&& source, FileAccess& files, std::vector<std::
   GltfModel model;
   model.warnings = std::move(warnings);
   model.file = std::move(source);
-  model.unused = unused_of(model.file);
   GltfTextures textures(
       model.file, files.path,
       [&](const std::string& uri) {
@@ -206,11 +263,8 @@ GltfModel convert(tinygltf::Model&& source, FileAccess& files, std::vector<std::
                                      base::Location{files.path.string()});
       },
       model.warnings);
-  for (const auto& material : model.file.materials) {
-    GltfMaterial made = phong_material(material, textures, model.unused);
-    model.materials.push_back(std::move(made.material));
-    model.coordinates.push_back(made.coordinates);
-  }
+  find_worn_materials(model, textures, files.path);
+  count_unused(model);
   model.file.images.clear();
   read_punctual(model);
   return model;
@@ -252,6 +306,7 @@ GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& p
   }
   check_required_extensions(model, path);
   if (!loaded) refuse_unsound(path, problem);
+  check_compression(model, path);
   GltfModel converted = convert(std::move(model), files, std::move(warnings));
   converted.files = std::move(files.found);
   return converted;

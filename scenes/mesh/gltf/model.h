@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,7 +21,7 @@ namespace earthshine::scenes {
 // As its table has it: at the origin, toward -z.
 struct GltfLamp {
   Lamp lamp;
-  bool is_lamp = true;  // false: light from everywhere along one direction
+  bool is_lamp = true;  // false: of a type that the extension does not have
 };
 
 struct GltfCamera {
@@ -28,15 +29,26 @@ struct GltfCamera {
   bool is_camera = true;  // false: without perspective
 };
 
+// TEXCOORD_n of a material's textures: of most, and of emission where that has another one.
+struct CoordinateSets {
+  std::optional<int> first, second;
+};
+
 struct GltfModel {
   tinygltf::Model file;                      // without its images
   std::vector<Material> materials;           // names may be empty or repeated
   std::vector<std::filesystem::path> files;  // that the file names
-  std::vector<int> coordinates;              // of each material: TEXCOORD_n of its textures
+  std::vector<CoordinateSets> coordinates;   // of each material
+  // Of each material: the one that it is in another colour; no_index: a material of the file. The
+  // name of a variant says its colour alone.
+  std::vector<std::uint32_t> variant_of;
+  std::vector<std::vector<std::uint32_t>> worn;  // the material of each mesh's primitives
+  std::vector<std::vector<std::string>> lacks;   // of each material, as Mesh::material_lacks
   std::vector<GltfLamp> lamps;
   std::vector<GltfCamera> cameras;
   std::vector<std::string> warnings;
-  std::map<std::string, std::size_t> unused;  // what nothing here reads, as Mesh::unused
+  std::map<std::string, std::size_t> unused;   // what nothing here reads, as Mesh::unused
+  std::map<std::string, std::size_t> lacking;  // of it, but for materials', as Mesh::lacking
 };
 
 // Throws base::Error (Input) at the file.
@@ -58,6 +70,25 @@ struct GltfModel {
 [[nodiscard]] std::vector<Vec3> read_gltf_vectors(const GltfModel& model, int accessor,
                                                   int components, std::string_view attribute,
                                                   const std::filesystem::path& path);
+
+// COLOR_0 of a primitive's vertices, in [0, 1]; empty: it has none.
+[[nodiscard]] std::vector<glm::dvec4> read_gltf_colours(const GltfModel& model,
+                                                        const tinygltf::Primitive& primitive,
+                                                        const std::filesystem::path& path);
+
+// What an attribute may be, for the readers below.
+struct GltfAttribute {
+  std::string_view name;  // for messages
+  int least = 4, most = 4;  // components
+  // Whole numbers stand for shares of the largest, even where the file leaves out "normalized".
+  bool is_share = false;
+};
+// The same of up to four components; a fourth one that is not there is 1.
+[[nodiscard]] std::vector<glm::dvec4> read_gltf_fours(const GltfModel& model, int accessor,
+                                                      const GltfAttribute& attribute,
+                                                      const std::filesystem::path& path);
+[[nodiscard]] std::vector<glm::dmat4> read_gltf_matrices(const GltfModel& model, int accessor,
+                                                         const std::filesystem::path& path);
 [[nodiscard]] std::vector<std::uint32_t> read_gltf_indices(const GltfModel& model, int accessor,
                                                            const std::filesystem::path& path);
 

@@ -16,9 +16,11 @@ GltfLamp lamp_of(const tinygltf::Light& source, GltfModel& model) {
   Lamp& lamp = made.lamp;
   lamp.name = source.name;
   lamp.axis = {0.0, 0.0, -1.0};
-  const double intensity_cd = in_range(source.intensity, strongest_lamp);
-  lamp.intensity_cd = colour_of(source.color, 1.0) * intensity_cd;
-  if (source.type == "spot") {
+  const Rgb strength = colour_of(source.color, 1.0) * in_range(source.intensity, strongest_lamp);
+  (source.type == "directional" ? lamp.illuminance_lx : lamp.intensity_cd) = strength;
+  if (source.type == "directional") {
+    lamp.kind = LampKind::Distant;
+  } else if (source.type == "spot") {
     lamp.kind = LampKind::Spot;
     const auto full = [](double half_angle) {
       return 2.0 * degrees * in_range(half_angle, base::pi / 2.0);
@@ -38,7 +40,7 @@ GltfCamera camera_of(const tinygltf::Camera& source, GltfModel& model) {
   camera.name = source.name;
   made.is_camera = source.type == "perspective" && source.perspective.yfov > 0.0 &&
                    source.perspective.yfov < base::pi;
-  if (source.type == "orthographic") ++model.unused["orthographic cameras"];
+  if (source.type == "orthographic") ++model.unused[flat_cameras_of_file];
   if (!made.is_camera) return made;
   camera.fov_deg = source.perspective.yfov * degrees;
   const double aspect = source.perspective.aspectRatio;

@@ -94,7 +94,7 @@ std::string make_glb(const std::string& name, std::span<const GltfPart> parts,
                      std::span<const GltfNote> notes) {
   tinygltf::Model model;
   model.asset.version = "2.0";
-  model.asset.generator = "earthshine";
+  model.asset.generator = own_generator;
   model.extensionsUsed = {"KHR_materials_unlit"};
   model.materials.push_back(unlit_material());
   tinygltf::Node root;

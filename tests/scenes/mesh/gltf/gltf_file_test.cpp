@@ -13,7 +13,8 @@ namespace {
 using test::holds;
 
 const std::string toml =
-    "format = 1\n[[material]]\nname = \"m\"\n[[object]]\nname = \"o\"\nmesh = \"a.gltf\"\n";
+    "format = 1\n[[material]]\nname = \"m\"\n[[object]]\nname = \"o\"\nmesh = \"a.gltf\"\n"
+    "axes = \"as-is\"\n";
 
 template <class T>
 void append(std::string& bytes, T value) {
@@ -143,13 +144,13 @@ TEST_F(Gltf, WhatIsNotUsedIsNamed) {
   Parts parts;
   parts.primitive =
       R"({"attributes": {"POSITION": 0, "NORMAL": 0, "TEXCOORD_0": 0}, "indices": 1, "material": 0,
-          "targets": [{"POSITION": 0}]}, {"attributes": {"POSITION": 0}, "mode": 1})";
+          "targets": [{"POSITION": 0}, {"TEXCOORD_0": 0}]}, {"attributes": {"POSITION": 0}, "mode": 1})";
   parts.nodes = R"([{"name": "root", "children": [1]}, {"mesh": 0}, {"mesh": 0}, {}])";
   parts.materials +=
       R"(, "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 1}}],
       "extensionsUsed": ["KHR_materials_sheen", "KHR_materials_ior"])";
   EXPECT_EQ(read(parts).objects.at(0).unused,
-            "1 KHR_materials_sheen, 1 NORMAL, 1 TEXCOORD_0, 1 cameras, 1 morph targets, "
+            "1 NORMAL, 1 TEXCOORD_0, 1 cameras, 1 morph targets of TEXCOORD_0, "
             "1 nodes outside the scene that is read, 1 points or lines");
   EXPECT_EQ(read({}).objects.at(0).unused, "");
 }

@@ -7,7 +7,7 @@
 
 #include "base/files/png_file.h"
 #include "scenes/reflect/energy.h"
-#include "scenes/reflect/specular.h"
+#include "scenes/reflect/ggx_lobes.h"
 #include "scenes/texture/texture.h"
 #include "tests/scenes/mesh/gltf/gltf_triangle.h"
 
@@ -18,17 +18,22 @@ using test::holds;
 
 using GltfMaterials = test::GltfTriangle;
 
-TEST_F(GltfMaterials, MetalIsALobeWithThePeakAndTheAlbedoOfItsFacets) {
+TEST_F(GltfMaterials, MetalIsAnEvenLobeOverADiffusePart) {
   const Material metal = material(
       R"({"pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.6, 0.4, 1], "roughnessFactor": 0.5}})");
   const PhongLobe lobe = phong_of_ggx(0.25);
-  EXPECT_EQ(metal.diffuse, Rgb(0.0));
+  EXPECT_NEAR(metal.diffuse.g, 0.6 * lobe.diffuse, 1e-12);
   EXPECT_NEAR(metal.specular.r, 0.8 * lobe.peak, 1e-12);
   EXPECT_NEAR(metal.shininess, lobe.shininess, 1e-12);
-  EXPECT_NEAR(reflected_share(metal).b, 0.4 * ggx_albedo(0.25), 1e-12);
+  EXPECT_TRUE(metal.even_lobe);
   const Material mirror = material(
       R"({"pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.6, 0.4, 1], "roughnessFactor": 0}})");
   EXPECT_EQ(mirror.mirror, Rgb(0.8, 0.6, 0.4));
+  // The roughest, which is the format's default, has GGX's albedo and no cap: 0.3767 = (2 (1 - ln
+  // 2))^2, the integral of 1 / ((1 + x)(1 + y)) over both cosines squared.
+  const Material rough = material("{}");
+  EXPECT_NEAR(rough.diffuse.r, std::pow(2.0 * (1.0 - std::log(2.0)), 2), 1e-3);
+  EXPECT_EQ(rough.specular, Rgb(0.0));
 }
 
 TEST_F(GltfMaterials, DielectricsReflectByTheirIndex) {
@@ -36,7 +41,9 @@ TEST_F(GltfMaterials, DielectricsReflectByTheirIndex) {
       R"("pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.4, "baseColorFactor": [0.5, 0.5, 0.5, 1]})";
   const PhongLobe lobe = phong_of_ggx(0.16);
   const Material usual = material("{" + pbr + "}");
-  EXPECT_NEAR(usual.diffuse.r, 0.96 * 0.5, 1e-12);  // F0 = ((1.5 - 1) / (1.5 + 1))^2
+  // F0 = ((1.5 - 1) / (1.5 + 1))^2; the lobe's own diffuse part stays with the base colour.
+  const double taken = 0.04 * lobe.albedo() / (lobe.albedo() + lobe.diffuse);
+  EXPECT_NEAR(usual.diffuse.r, (1.0 - taken) * 0.5, 1e-12);
   EXPECT_NEAR(usual.specular.r, 0.04 * lobe.peak, 1e-12);
   const Material dense =
       material("{" + pbr + R"(, "extensions": {"KHR_materials_ior": {"ior": 2}}})");
@@ -45,7 +52,7 @@ TEST_F(GltfMaterials, DielectricsReflectByTheirIndex) {
       {"specularFactor": 0.5, "specularColorFactor": [2, 1, 0]}}})");
   EXPECT_NEAR(tinted.specular.r, 0.04 * lobe.peak, 1e-12);
   EXPECT_NEAR(tinted.specular.g, 0.02 * lobe.peak, 1e-12);
-  EXPECT_NEAR(tinted.diffuse.b, 0.96 * 0.5, 1e-12);
+  EXPECT_NEAR(tinted.diffuse.b, (1.0 - taken) * 0.5, 1e-12);
   // Wide and weak: left with the diffuse light.
   const Material rough = material(
       R"({"pbrMetallicRoughness": {"metallicFactor": 0, "baseColorFactor": [0.5, 0.5, 0.5, 1]}})");
@@ -61,8 +68,10 @@ TEST_F(GltfMaterials, SpecularGlossinessEmissionAndUnlit) {
                             R"(, "extensionsUsed": ["KHR_materials_pbrSpecularGlossiness"],
       "extensionsRequired": ["KHR_materials_pbrSpecularGlossiness"])");
   const Material& made = glossy.materials.at(0);
-  EXPECT_NEAR(made.diffuse.r, 0.8 * 0.4, 1e-12);
-  EXPECT_NEAR(made.specular.r, 0.2 * phong_of_ggx(0.0625).peak, 1e-12);
+  const PhongLobe lobe = phong_of_ggx(0.0625);
+  const double taken = 0.2 * lobe.albedo() / (lobe.albedo() + lobe.diffuse);
+  EXPECT_NEAR(made.diffuse.r, (1.0 - taken) * 0.4, 1e-12);
+  EXPECT_NEAR(made.specular.r, 0.2 * lobe.peak, 1e-12);
   EXPECT_NEAR(made.emit.r, 20.0 * base::pi, 1e-9);
   EXPECT_NEAR(made.emit.g, 10.0 * base::pi, 1e-9);
   EXPECT_EQ(glossy.objects.at(0).unused, "");
@@ -122,9 +131,15 @@ TEST_F(GltfMaterials, TexturesAreTurnedCounterClockwiseAndMetalHasTheirMean) {
   const Scene half =
       read(R"({"pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 0}}})", more);
   const Material& made = half.materials.at(0);
-  EXPECT_NEAR(made.shininess, phong_of_ggx(0.25).shininess, 1e-3);
-  EXPECT_NEAR(made.diffuse.r, 0.5 * 0.96, 1e-4);
-  EXPECT_NEAR(made.specular.r, (0.5 + 0.5 * 0.04) * phong_of_ggx(0.25).peak, 1e-3);
+  const PhongLobe lobe = phong_of_ggx(0.25);
+  // The dielectric's own highlight, k_s = 0.02 * 3.664 = 0.073, fades between 0.05 and 0.1.
+  const double kept = 0.5 * 0.04 * lobe.peak / 0.05 - 1.0;
+  const double taken = 0.04 * kept * lobe.albedo() / (lobe.albedo() + lobe.diffuse);
+  EXPECT_NEAR(made.shininess, lobe.shininess, 1e-3);
+  EXPECT_NEAR(made.diffuse.r, 0.5 * (1.0 - taken) + 0.5 * lobe.diffuse, 1e-3);
+  EXPECT_NEAR(made.specular.r, (0.5 + 0.5 * 0.04 * kept) * lobe.peak, 1e-3);
+  ASSERT_EQ(half.warnings.size(), 1U);
+  EXPECT_TRUE(holds(half.warnings[0], {"a.gltf: not used", "metallic-roughness maps, but for"}));
 }
 
 TEST_F(GltfMaterials, TexturesThatAreNotThereAreNamed) {
@@ -159,9 +174,9 @@ TEST_F(GltfMaterials, LampsAndCamerasComeWhenAskedFor) {
       "extensions": {"KHR_lights_punctual": {"light": 0}})";
   const Scene none = read("{}", more, node);
   EXPECT_TRUE(none.lamps.empty() && none.cameras.empty());
-  EXPECT_EQ(none.objects.at(0).unused, "1 cameras, 1 directional lights (say [sun]), 1 lights");
+  EXPECT_EQ(none.objects.at(0).unused, "1 cameras, 2 lights");
   const Scene both = read("{}", more, node, "lights = true\ncameras = true\nscale = 2.0\n");
-  EXPECT_EQ(both.objects.at(0).unused, "1 directional lights (say [sun])");
+  EXPECT_EQ(both.objects.at(0).unused, "");
   const Lamp& lamp = both.lamps.at(0);
   EXPECT_EQ(lamp.name, "o.thing");
   EXPECT_EQ(lamp.group, "o.thing");
@@ -191,6 +206,7 @@ TEST_F(GltfMaterials, LampsThatCannotBeAreNamed) {
   EXPECT_EQ(sound.objects.at(0).unused, "");
   const Scene laser = lit(R"({"type": "laser", "intensity": 5})");
   EXPECT_TRUE(holds(laser.objects.at(0).unused, {"1 lights of an unknown"}));
+  EXPECT_TRUE(holds(laser.warnings.at(0), {"not used", "lights of an unknown type (1)"}));
   const Scene dark = lit(R"({"type": "point", "intensity": -5})");
   EXPECT_EQ(dark.warnings.size(), sound.warnings.size() + 1);
   EXPECT_TRUE(holds(dark.warnings.at(0), {"lights[0].intensity is -5", "from 0 to 1e+15"}));
