@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenes/scene.h"
@@ -49,8 +50,12 @@ struct MeshCamera {
   std::uint32_t part_set = 0;
 };
 
-// Whether the normals of vertices are read: few meshes need them.
-enum class VertexNormals { Ignored, Read };
+// What the normals of vertices are for: to tell fronts from backs, where a faulty one is none, or
+// to round the surface by, where it is an error.
+enum class VertexNormals { Sides, Shape };
+
+// How OBJ, PLY and glTF files call them, in Mesh::unused.
+inline constexpr std::string_view normals_of_file[] = {"vn", "nx", "ny", "nz", "NORMAL"};
 
 struct Mesh {
   std::filesystem::path path;  // empty for a shape
@@ -59,7 +64,7 @@ struct Mesh {
   std::vector<glm::vec2> uv;                  // texture coordinates, v down from the upper edge
   std::vector<std::uint32_t> uv_indices;      // into uv, one for each of `indices`; no_index: none.
                                               // Empty: no corner has any
-  std::vector<glm::vec3> normals;             // of the surface, where they are asked for
+  std::vector<glm::vec3> normals;             // of the surface; 0 where the file's is faulty
   std::vector<std::uint32_t> normal_indices;  // as uv_indices
   std::vector<MeshPolygon> polygons;
   std::vector<std::string> part_names;                // groups, objects, nodes, meshes, solids

@@ -12,6 +12,6 @@ namespace earthshine::scenes {
 // Reads x, y, z (and nx, ny, nz) of element "vertex" and vertex_indices (or vertex_index) of
 // element "face"; passes over other elements and properties. PLY has neither parts nor materials.
 [[nodiscard]] Mesh parse_ply(std::string_view bytes, const std::filesystem::path& path,
-                             VertexNormals normals = VertexNormals::Ignored);
+                             VertexNormals normals = VertexNormals::Sides);
 
 }  // namespace earthshine::scenes

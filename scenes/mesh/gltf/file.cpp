@@ -20,7 +20,7 @@ class GltfReader {
   GltfReader(const GltfModel& model, const std::filesystem::path& path, VertexNormals normals)
       : model_(model),
         path_(path),
-        reads_normals_(normals == VertexNormals::Read),
+        shaped_by_normals_(normals == VertexNormals::Shape),
         visited_(model.file.nodes.size(), 0) {
     mesh_.path = path;
   }
@@ -36,7 +36,7 @@ class GltfReader {
       if (visited_[i] == 0 && holds) ++mesh_.unused["nodes outside the scene that is read"];
     }
     if (!mesh_.uv.empty()) mesh_.uv_indices.resize(mesh_.indices.size(), no_index);
-    if (reads_normals_) mesh_.unused.erase("NORMAL");
+    if (shaped_by_normals_) mesh_.unused.erase("NORMAL");
     return std::move(mesh_);
   }
 
@@ -213,12 +213,22 @@ class GltfReader {
     std::uint32_t vertex, uv, normal;
   };
 
-  // Where they are asked for.
+  // Faulty ones are an error where the shape depends on them.
   std::uint32_t add_normals(const tinygltf::Primitive& primitive, const glm::dmat4& matrix,
                             std::size_t count) {
+    try {
+      return read_normals(primitive, matrix, count);
+    } catch (const base::Error&) {
+      if (shaped_by_normals_) throw;
+      return no_index;
+    }
+  }
+
+  std::uint32_t read_normals(const tinygltf::Primitive& primitive, const glm::dmat4& matrix,
+                             std::size_t count) {
     const auto normal = primitive.attributes.find("NORMAL");
     const bool has_normals = normal != primitive.attributes.end() && normal->second >= 0;
-    if (!reads_normals_ || !has_normals) return no_index;
+    if (!has_normals) return no_index;
     const auto normals = read_gltf_vectors(model_, normal->second, 3, "NORMAL", path_);
     if (normals.size() < count) gltf_fail(path_, "fewer normals than vertices");
     const auto first = static_cast<std::uint32_t>(mesh_.normals.size());
@@ -271,7 +281,7 @@ class GltfReader {
 
   const GltfModel& model_;
   const std::filesystem::path& path_;
-  bool reads_normals_;
+  bool shaped_by_normals_;
   Mesh mesh_;
   std::vector<int> visited_;
   std::uint32_t part_set_ = 0;
