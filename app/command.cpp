@@ -122,6 +122,15 @@ LoadedScene load(const SceneInput& input, bool quiet, const AskEffects& ask) {
   return loaded;
 }
 
+scenes::RayQuery ray_query(LoadedScene& loaded, const scenes::SceneUse& use, bool quiet) {
+  scenes::RayQuery query(loaded.scene);
+  for (std::string& warning : scenes::implausible_input(loaded.scene, query, use)) {
+    if (!quiet) note("warning: " + warning);
+    loaded.scene.warnings.push_back(std::move(warning));
+  }
+  return query;
+}
+
 bool SceneInput::wants_error() const {
   return std::any_of(overrides.begin(), overrides.end(), [](const std::string& setting) {
     return setting.starts_with("quality.error=");

@@ -16,6 +16,7 @@
 #include "radiosity/solution.h"
 #include "scenes/effects/culling.h"
 #include "scenes/effects/world.h"
+#include "scenes/plausible/plausible.h"
 #include "scenes/scene.h"
 
 namespace CLI {
@@ -109,6 +110,11 @@ struct WantedEffects {
 using AskEffects = std::function<WantedEffects(const scenes::Scene&)>;
 // Warnings go to standard error unless `quiet`. The only place where a call's effects are decided.
 [[nodiscard]] LoadedScene load(const SceneInput& input, bool quiet, const AskEffects& ask = {});
+
+// The rays of what was read. Adds to its warnings what in it is surely a mistake
+// (scenes/plausible), on standard error too unless `quiet`: every command comes by its rays here.
+[[nodiscard]] scenes::RayQuery ray_query(LoadedScene& loaded, const scenes::SceneUse& use,
+                                         bool quiet);
 
 // Both throw base::Error (Input) where there is none. named_at: where a file or an option names it.
 [[nodiscard]] const scenes::Camera& first_camera(const scenes::Scene& scene);

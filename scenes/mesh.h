@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenes/scene.h"
@@ -53,8 +54,12 @@ struct MeshCamera {
   std::uint32_t part_set = 0;
 };
 
-// Whether the normals of vertices are read: few meshes need them.
-enum class VertexNormals { Ignored, Read };
+// What the normals of vertices are for: to tell fronts from backs, where a faulty one is none, or
+// to round the surface by, where it is an error.
+enum class VertexNormals { Sides, Shape };
+
+// How OBJ, PLY and glTF files call them, in Mesh::unused.
+inline constexpr std::string_view normals_of_file[] = {"vn", "nx", "ny", "nz", "NORMAL"};
 
 struct Mesh {
   std::filesystem::path path;  // empty for a shape
@@ -69,7 +74,7 @@ struct Mesh {
   // Beside uv, and as long, or empty: a second set, and what multiplies the diffuse colour.
   std::vector<glm::vec2> second_uv;
   std::vector<glm::vec3> colours;
-  std::vector<glm::vec3> normals;             // of the surface, where they are asked for
+  std::vector<glm::vec3> normals;             // of the surface; 0 where the file's is faulty
   std::vector<std::uint32_t> normal_indices;  // as uv_indices
   std::vector<MeshPolygon> polygons;
   std::vector<std::string> part_names;                // groups, objects, nodes, meshes, solids

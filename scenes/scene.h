@@ -94,7 +94,7 @@ struct FacePair {
 };
 
 // Which way the faces of a mesh are turned (scenes/health).
-enum class Orient { Mended, Outward, AsIs, TwoSided };
+enum class Orient { Mended, Outward, Inward, AsIs, TwoSided };
 
 // Of an object that repeats the faces of another, p -> linear p + offset_m of the other's: its own
 // triangles, in the same order, stand after those of all objects that are no instances, its

@@ -16,7 +16,7 @@ import sys
 # folder.
 ROOMS = {
     "base": [".", "numbers", "ranks", "input", "files", "pixels"],
-    "scenes": ["texture", ".", "text", "reflect", "light", "mesh/gltf", "mesh", "sky", "effects", "health", "round", "read"],
+    "scenes": ["texture", ".", "text", "reflect", "light", "mesh/gltf", "mesh", "sky", "effects", "health", "round", "plausible", "read"],
     "radiosity": ["patches", "bodies", "factors", "objects", "direct", ".", "store", "exact/polygon",
                   "exact/occlusion", "exact"],
     "raytrace": ["camera", "frame", "light", "incoming", "paths", "share", "gather", "shade", "passes",

@@ -211,6 +211,7 @@ Json accuracy_json(const AccuracyTask& task, const AccuracyResult& result) {
             {"resolution", measured ? Json(result.resolution) : Json()},
             {"wanted_resolution", measured ? Json(result.wanted_resolution) : Json()},
             {"cpu_seconds", result.reference_cpu_seconds}}},
+          {"warnings", task.loaded.scene.warnings},
           {"limits", limits},
           {"points", points},
           {"front", front},

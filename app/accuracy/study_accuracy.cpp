@@ -69,7 +69,7 @@ void check_part(const AccuracyCall& call) {
 
 void run(const AccuracyCall& call, const Common& common) {
   check_part(call);
-  const LoadedScene loaded = load(call.scene, common.quiet);
+  LoadedScene loaded = load(call.scene, common.quiet);
   const scenes::Camera& camera = camera_of(call, loaded.scene, common.quiet);
   prepare_folder(call.folder, file_names(), loaded.scene.files);
   refuse_inputs_in(fs::path(call.folder) / points_folder, loaded.scene.files);
@@ -82,7 +82,7 @@ void run(const AccuracyCall& call, const Common& common) {
                     "out too where you use a setting from here",
                     fmt::join(replaced, ", quality.")));
   }
-  const scenes::RayQuery query(loaded.scene);
+  const scenes::RayQuery query = ray_query(loaded, {{&camera}}, common.quiet);
   raytrace::check_camera(loaded.scene, query, camera);
 
   std::optional<Interrupt> interrupt(std::in_place);

@@ -19,8 +19,12 @@ constexpr int magnified_to = 512;  // px: small pictures, by a whole number
 
 std::string percent(double share) { return figure(share, Form::Percent) + " %"; }
 
-std::string findings_html(const studies::Comparison& comparison) {
+std::string findings_html(const studies::Comparison& comparison,
+                          const std::vector<std::string>& warnings) {
   std::string html = "<ul>\n";
+  for (const std::string& warning : warnings) {
+    html += "<li>Found on loading: " + escaped(warning) + "</li>\n";
+  }
   for (const std::string& finding : findings(comparison)) {
     html += "<li>" + escaped(finding) + "</li>\n";
   }
@@ -83,6 +87,7 @@ std::vector<std::string> picture_files(const studies::Method& method) {
 }
 
 std::string page_of(const std::string& scene, const std::string& camera,
+                    const std::vector<std::string>& warnings,
                     const studies::Comparison& comparison) {
   const std::string title = escaped(scene) + ", camera " + escaped(camera);
   // Nothing but the pictures beside the page may be loaded, and no script may run.
@@ -96,7 +101,7 @@ std::string page_of(const std::string& scene, const std::string& camera,
       "img {{ height: auto; image-rendering: pixelated; }}\n"
       "</style>\n</head>\n<body>\n<h1>{0}</h1>\n<p>Study compare, by earthshine {2}.</p>\n",
       title, report_style(), EARTHSHINE_VERSION);
-  html += findings_html(comparison) + "<h2>Methods</h2>\n" + methods_html(comparison) +
+  html += findings_html(comparison, warnings) + "<h2>Methods</h2>\n" + methods_html(comparison) +
           "<h2>Pictures</h2>\n<p>Left the picture, all with the reference’s exposure; right its "
           "luminance over the reference’s:</p>\n" +
           legend_html();

@@ -15,8 +15,10 @@ inline constexpr const char* compare_page = "compare.html";
 // picture alone, which would differ from itself by nothing.
 [[nodiscard]] std::vector<std::string> picture_files(const studies::Method& method);
 
-// The whole page; the pictures are named, not put in. scene, camera: names, any text.
+// The whole page; the pictures are named, not put in. scene, camera: names, any text. warnings: of
+// the scene.
 [[nodiscard]] std::string page_of(const std::string& scene, const std::string& camera,
+                                  const std::vector<std::string>& warnings,
                                   const studies::Comparison& comparison);
 
 }  // namespace earthshine::app

@@ -117,7 +117,7 @@ void write_pictures(const std::filesystem::path& folder, const studies::Comparis
 }
 
 void run(const CompareCall& call, const Common& common) {
-  const LoadedScene loaded = load(call.scene, common.quiet);
+  LoadedScene loaded = load(call.scene, common.quiet);
   const scenes::Camera& camera = camera_of(call, loaded.scene, common.quiet);
   (void)raytrace::earth_area(loaded.scene, call.area);  // a wrong one is refused before the folder
   prepare_folder(call.folder, file_names(call.lights, call.area), loaded.scene.files);
@@ -138,13 +138,14 @@ void run(const CompareCall& call, const Common& common) {
   options.error = loaded.scene.quality.error.value_or(0.0);
   options.solver = studies::picture_solver(loaded.scene, loaded.scene.quality, common.seed);
   options.seed = common.seed;
-  const scenes::RayQuery query(loaded.scene);
+  const scenes::RayQuery query = ray_query(loaded, {{&camera}}, common.quiet);
   raytrace::check_camera(loaded.scene, query, camera);
   const studies::Comparison comparison =
       studies::compare(loaded.world(query), camera, options, progress_of_stages(common));
 
   const base::ToneReport exposure = base::tone_map(comparison.reference().frame.image).report;
-  const Json json = json_of(call, camera, options, comparison, exposure);
+  Json json = json_of(call, camera, options, comparison, exposure);
+  json["warnings"] = loaded.scene.warnings;
   const std::filesystem::path folder = call.folder;
   write_pictures(folder, comparison, exposure);
   base::write_text(folder / methods_csv, csv_of(json["methods"]));
@@ -152,8 +153,8 @@ void run(const CompareCall& call, const Common& common) {
   base::write_text(folder / lights_csv, csv_of(json["lights"]));
   base::write_text(folder / compare_file, dump(json));
   const std::string& name = loaded.scene.name;
-  base::write_text(folder / compare_page,
-                   page_of(name.empty() ? call.scene.path : name, camera.name, comparison));
+  base::write_text(folder / compare_page, page_of(name.empty() ? call.scene.path : name,
+                                                  camera.name, loaded.scene.warnings, comparison));
   print(call.json ? dump(json) : summary(comparison));
 }
 

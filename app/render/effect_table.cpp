@@ -173,6 +173,7 @@ Json report_json(const LoadedScene& loaded, const RenderCall& call, const Expect
   }
   return {{"scene", loaded.scene.path.string()},
           {"name", loaded.scene.name},
+          {"warnings", loaded.scene.warnings},
           {"solution", call.solution.empty() ? Json(nullptr) : Json(call.solution)},
           {"effects", rows},
           {"expected",

@@ -70,10 +70,7 @@ Solved solve_or_take(const LightCall& wanted, StageTimes& times) {
   Solved light;
   light.solver = solver_of(call, loaded.scene, wanted.common);
   if (call.indirect != raytrace::Indirect::Radiosity) return light;
-  if (!loaded.effects.solution && call.solution.empty()) {
-    if (loaded.groups.count() == 0) note("note: nothing gives light, the picture is black");
-    return light;
-  }
+  if (!loaded.effects.solution && call.solution.empty()) return light;
   if (call.time_limit_s > 0.0 && call.solution.empty() &&
       !says_how_to_solve(loaded.scene.quality)) {
     return solve_within(wanted, call.time_limit_s, times);

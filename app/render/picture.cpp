@@ -45,6 +45,7 @@ Json json_of(const Studio& studio, const scenes::Camera& camera, const raytrace:
                {"columns", frame.image.width},
                {"rows", frame.image.height},
                {"seconds", times.json()},
+               {"warnings", studio.loaded.scene.warnings},
                {"peak_memory_mib", peak_memory_mib()},
                {"patches", solved.patches},
                {"iterations", solved.iterations},

@@ -151,7 +151,7 @@ void add_seconds(Json& report, const LoadedScene& loaded, const RenderCall& call
 }
 
 Json report_of(const RenderCall& call, const Common& common, int ranks) {
-  const LoadedScene loaded = load(call.scene, common.quiet, [&](const scenes::Scene& scene) {
+  LoadedScene loaded = load(call.scene, common.quiet, [&](const scenes::Scene& scene) {
     return wanted_effects(call, planned_cameras(call, scene));
   });
   const scenes::QualityKnobs knobs = scenes::resolve_quality(loaded.scene);
@@ -183,9 +183,10 @@ Json report_of(const RenderCall& call, const Common& common, int ranks) {
   report["right_hand_sides"] = 3 * loaded.groups.count();
   report["images"] = images_of(loaded.scene, call, loaded.asked,
                                solves ? static_cast<std::uint64_t>(knobs.gather_rays) : 0);
-  const scenes::RayQuery query(loaded.scene);
+  const scenes::RayQuery query = ray_query(loaded, {loaded.asked.cameras}, common.quiet);
   const RankBytes bytes = add_memory(report, loaded, call, common, query, ranks, patches);
   add_seconds(report, loaded, call, common, query, ranks, bytes);
+  report["warnings"] = loaded.scene.warnings;
   return report;
 }
 

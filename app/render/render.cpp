@@ -174,14 +174,14 @@ void run(RenderCall call, const Common& common) {
   check_part(call, common.quiet);
   StageTimes times;
   std::vector<Wanted> pictures;
-  const LoadedScene loaded = times.measure("read", [&] {
+  LoadedScene loaded = times.measure("read", [&] {
     return load(call.scene, common.quiet, [&](const scenes::Scene& scene) {
       pictures = wanted_pictures(call, scene, common.quiet);
       return wanted_effects(call, cameras_of(pictures));
     });
   });
-  const scenes::RayQuery query =
-      times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
+  const scenes::RayQuery query = times.measure(
+      "build", [&] { return ray_query(loaded, {cameras_of(pictures)}, common.quiet); });
   for (const Wanted& picture : pictures) {
     raytrace::check_camera(loaded.scene, query, *picture.camera);
   }

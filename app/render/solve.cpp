@@ -219,13 +219,13 @@ Solved solve_alone(const SolveCall& call, const Common& common, const LoadedScen
 void run(const SolveCall& call, const Common& common) {
   check_call(call);
   StageTimes times;
-  const LoadedScene loaded = times.measure("read", [&] { return load(call.scene, common.quiet); });
+  LoadedScene loaded = times.measure("read", [&] { return load(call.scene, common.quiet); });
   Files inputs = loaded.scene.files;
   inputs.emplace_back(call.solution);
   check_outputs({call.output, call.mesh}, inputs);
   refuse_other_kind("-o", call.output, {".h5", ".json"});
   const scenes::RayQuery query =
-      times.measure("build", [&] { return scenes::RayQuery(loaded.scene); });
+      times.measure("build", [&] { return ray_query(loaded, {}, common.quiet); });
   const radiosity::SolveOptions options = solve_options(loaded.scene, common);
   const std::optional<double> error = loaded.scene.quality.error;
   const bool steers = error && call.solution.empty();

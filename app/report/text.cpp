@@ -14,18 +14,57 @@
 namespace earthshine::app {
 namespace {
 
-constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
+constexpr std::string_view replacement = "\xEF\xBF\xBD";           // U+FFFD
+constexpr std::string_view first_strong_isolate = "\xE2\x81\xA8";  // U+2068
+constexpr std::string_view pop_isolate = "\xE2\x81\xA9";           // U+2069
+
+// Of a UTF-8 character of two or three bytes.
+unsigned code_of(std::string_view character) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(character[k]); };
+  if (character.size() == 2) return (byte(0) & 0x1FU) << 6U | (byte(1) & 0x3FU);
+  if (character.size() != 3) return 0;
+  return (byte(0) & 0x0FU) << 12U | (byte(1) & 0x3FU) << 6U | (byte(2) & 0x3FU);
+}
+
+// What an isolate does not hold: the characters that end a paragraph (UAX #9, class B).
+bool ends_paragraph(unsigned code) { return (code >= 0x80 && code <= 0x9F) || code == 0x2029; }
+
+// U+2066 to U+2068 begin an isolate.
+bool begins_isolate(unsigned code) { return code >= 0x2066 && code <= 0x2068; }
+
+// Whether the text may be written from right to left: marks, embeddings, overrides and isolates;
+// letters from Hebrew to Arabic Extended-A and their presentation forms; all of four bytes, where
+// the old scripts of the Near East are.
+bool may_turn(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = std::max<std::size_t>(1, base::utf8_length(text.substr(at)));
+    const unsigned code = code_of(text.substr(at, length));
+    const bool turns = length == 4 || (code >= 0x590 && code <= 0x8FF) ||
+                       (code >= 0x200E && code <= 0x200F) || (code >= 0x202A && code <= 0x202E) ||
+                       (code >= 0x2066 && code <= 0x2069) || (code >= 0xFB1D && code <= 0xFEFC);
+    if (turns) return true;
+    at += length;
+  }
+  return false;
+}
 
 }  // namespace
 
 std::string escaped(std::string_view text) {
   std::string html;
   html.reserve(text.size() + text.size() / 8);
+  const bool isolated = may_turn(text);
+  if (isolated) html += first_strong_isolate;
+  std::size_t open = 0;  // isolates of the text's own
   for (std::size_t at = 0; at < text.size();) {
     const char c = text[at];
     const auto code = static_cast<unsigned char>(c);
     const std::size_t length = base::utf8_length(text.substr(at));
-    if (length == 0 || code == 0x7F || (code < 0x20 && c != '\t' && c != '\n')) {
+    const std::string_view character = text.substr(at, std::max<std::size_t>(1, length));
+    const unsigned wide = code_of(character);
+    const bool pops = character == pop_isolate;
+    if (length == 0 || code == 0x7F || (code < 0x20 && c != '\t' && c != '\n') ||
+        (length > 1 && ends_paragraph(wide)) || (pops && open == 0)) {
       html += replacement;
     } else if (c == '&') {
       html += "&amp;";
@@ -38,10 +77,15 @@ std::string escaped(std::string_view text) {
     } else if (c == '\'') {
       html += "&#39;";
     } else {
-      html += text.substr(at, length);
+      if (begins_isolate(wide)) ++open;
+      if (pops) --open;
+      html += character;
     }
-    at += length == 0 ? 1 : length;
+    at += character.size();
   }
+  if (!isolated) return html;
+  for (; open > 0; --open) html += pop_isolate;
+  html += pop_isolate;
   return html;
 }
 

@@ -12,7 +12,9 @@
 namespace earthshine::app {
 
 // Any text as HTML that shows it and does nothing else, between tags and inside quotes. What is no
-// UTF-8, and control characters, become U+FFFD.
+// UTF-8, and control characters, become U+FFFD. Text that may be written from right to left, or
+// that turns the direction of writing, stands between U+2068 and U+2069 (UAX #9): what follows keeps
+// its own direction.
 [[nodiscard]] std::string escaped(std::string_view text);
 
 // JSON for a <script type="application/json">: nothing in it can end the element.

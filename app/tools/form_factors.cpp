@@ -103,11 +103,11 @@ Found find(const FactorsCall& call, const Common& common) {
     throw base::Error(base::Blame::Input, "--raw", "is of rays, and --method exact casts none", {},
                       "Leave one of the two out");
   }
-  const LoadedScene loaded = load(call.scene, common.quiet);
+  LoadedScene loaded = load(call.scene, common.quiet);
   const scenes::Scene& scene = loaded.scene;
   const scenes::QualityKnobs knobs = scenes::resolve_quality(scene);
   const auto start = std::chrono::steady_clock::now();
-  const scenes::RayQuery query(scene);
+  const scenes::RayQuery query = ray_query(loaded, {{}, false, false}, common.quiet);
   const radiosity::Patches facets =
       radiosity::subdivide(scene, std::numeric_limits<double>::infinity());
   Found found;

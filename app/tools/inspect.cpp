@@ -9,6 +9,7 @@
 #include "app/options.h"
 #include "app/tools/inspect_text.h"
 #include "scenes/effects/effects.h"
+#include "scenes/health/crossings.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/ray_query.h"
 #include "scenes/reflect/energy.h"
@@ -40,28 +41,43 @@ Json objects_of(const scenes::Scene& scene) {
     }
     std::set<std::string> materials;
     for (const std::uint32_t m : worn) materials.insert(scene.materials[m].name);
-    objects.push_back({{"name", object.name},
-                       {"source", object.source},
-                       {"polygons", object.polygon_count},
-                       {"triangles", object.triangle_count},
-                       {"degenerate", object.degenerate_count},
-                       {"area_m2", object.area_m2},
-                       {"materials", materials},
-                       {"target", object.target},
-                       {"surface",
-                        {{"parts", object.surface.parts},
-                         {"closed_parts", object.surface.closed_parts},
-                         {"inward_parts", object.surface.inward_parts},
-                         {"open_edges", object.surface.open_edges},
-                         {"non_manifold_edges", object.surface.non_manifold_edges},
-                         {"mixed_edges", object.surface.mixed_edges},
-                         {"triangles_on_others", on_others[o].size()}}},
-                       {"unused", object.unused}});
+    const scenes::Box bounds = scenes::bounds_of(scene, object);
+    objects.push_back(
+        {{"name", object.name},
+         {"source", object.source},
+         {"polygons", object.polygon_count},
+         {"triangles", object.triangle_count},
+         {"degenerate", object.degenerate_count},
+         {"area_m2", object.area_m2},
+         {"bounds", {{"min_m", to_json(bounds.low)}, {"max_m", to_json(bounds.high)}}},
+         {"materials", materials},
+         {"target", object.target},
+         {"surface",
+          {{"parts", object.surface.parts},
+           {"closed_parts", object.surface.closed_parts},
+           {"inward_parts", object.surface.inward_parts},
+           {"open_edges", object.surface.open_edges},
+           {"non_manifold_edges", object.surface.non_manifold_edges},
+           {"mixed_edges", object.surface.mixed_edges},
+           {"triangles_on_others", on_others[o].size()}}},
+         {"unused", object.unused}});
     if (object.instance) {
       objects.back()["instance_of"] = scene.objects[object.instance->object].name;
     }
   }
   return objects;
+}
+
+// Objects that run through one another, by pairs.
+Json crossings_of(const scenes::Scene& scene) {
+  const scenes::Crossings found = scenes::find_crossings(scene);
+  Json pairs = Json::array();
+  for (const scenes::Crossing& pair : found.pairs) {
+    pairs.push_back({{"objects", {scene.objects[pair.a].name, scene.objects[pair.b].name}},
+                     {"triangles", pair.triangles},
+                     {"line_m", pair.line_m}});
+  }
+  return {{"pairs", pairs}, {"complete", found.complete}};
 }
 
 // What each texture is for, its file and size.
@@ -188,6 +204,7 @@ Json report_of(const LoadedScene& loaded) {
   report["area_m2"] = area_m2;
   report["bounding_box"] = bounding_box_of(scene);
   report["objects"] = objects_of(scene);
+  report["crossings"] = crossings_of(scene);
   report["materials"] = materials_of(scene);
   report["lamps"] = lights_of(scene);
   report["areas"] = areas_of(scene);
@@ -211,7 +228,11 @@ Command add_inspect(CLI::App& program) {
   add_scene_options(*parser, call->scene);
   parser->add_flag("--json", call->json, "JSON on standard output");
   return {parser, [call](const Common&) {
-            const Json report = report_of(load(call->scene, true));
+            LoadedScene loaded = load(call->scene, true);
+            scenes::SceneUse use;
+            use.shows_facts = true;
+            (void)ray_query(loaded, use, true);
+            const Json report = report_of(loaded);
             print(call->json ? dump(report) : inspect_text(report));
           }};
 }

@@ -44,6 +44,26 @@ std::string objects_table(const Json& report) {
   return text;
 }
 
+std::string bounds_table(const Json& report) {
+  std::string text = fmt::format("\n{:<24} {:<32} {}\n", "bounds", "from m", "to m");
+  for (const Json& o : report["objects"]) {
+    text += fmt::format("{:<24} {:<32} {}\n", o["name"], numbers(o["bounds"]["min_m"]),
+                        numbers(o["bounds"]["max_m"]));
+  }
+  for (const Json& pair : report["crossings"]["pairs"]) {
+    const auto triangles = pair["triangles"].get<std::size_t>();
+    text += fmt::format(
+        "{} and {} run through one another: {}\n", pair["objects"][0], pair["objects"][1],
+        triangles == 0
+            ? "with faces in the same planes"
+            : fmt::format("{} triangles, along {:.3g} m", triangles, pair["line_m"].get<double>()));
+  }
+  if (!report["crossings"]["complete"].get<bool>()) {
+    text += "too many triangles lie close together: other objects may run through one another\n";
+  }
+  return text;
+}
+
 std::string surfaces_table(const Json& report) {
   std::string text = fmt::format(
       "\n{:<24} {:>7} {:>7} {:>7} {:>10} {:>12} {:>11} {:>9}  {}\n", "surface", "parts", "closed",
@@ -140,8 +160,8 @@ std::string inspect_text(const Json& report) {
     text += fmt::format(", from {} to {} m", numbers(report["bounding_box"]["min_m"]),
                         numbers(report["bounding_box"]["max_m"]));
   }
-  text += "\n" + objects_table(report) + surfaces_table(report) + materials_table(report) + "\n" +
-          lights_table(report);
+  text += "\n" + objects_table(report) + bounds_table(report) + surfaces_table(report) +
+          materials_table(report) + "\n" + lights_table(report);
   for (const Json& warning : report["warnings"]) {
     text += "warning: " + warning.get<std::string>() + "\n";
   }

@@ -74,8 +74,9 @@ void check_wanted(const studies::StudyFile& study, const StudyPart& part) {
   }
 }
 
-void find_cameras(const studies::StudyFile& study, const Common& common, StudyPart& part) {
-  const scenes::Scene& scene = part.loaded.scene;
+// Those that the study names, or all.
+std::vector<const scenes::Camera*> chosen_cameras(const studies::StudyFile& study,
+                                                  const scenes::Scene& scene) {
   std::vector<const scenes::Camera*> chosen, named;
   if (study.where.contains("cameras")) {
     for (const std::string& name : study.cameras) {
@@ -91,6 +92,12 @@ void find_cameras(const studies::StudyFile& study, const Common& common, StudyPa
     (void)first_camera(scene);  // refuses a scene without any
     for (const scenes::Camera& camera : scene.cameras) chosen.push_back(&camera);
   }
+  return chosen;
+}
+
+void find_cameras(const studies::StudyFile& study, const std::vector<const scenes::Camera*>& chosen,
+                  const Common& common, StudyPart& part) {
+  const scenes::Scene& scene = part.loaded.scene;
   for (const scenes::Camera* camera : chosen) {
     raytrace::check_camera(scene, *part.query, *camera);
     StudyCamera& made = part.cameras.emplace_back();
@@ -127,6 +134,26 @@ std::vector<studies::SkyPlace> find_places(const studies::StudyFile& study, Stud
   return places;
 }
 
+// Of a scene that has light, where no condition of the study has any.
+void name_darkness(StudyPart& part, bool quiet) {
+  const studies::LightBasis& basis = *part.basis;
+  for (std::size_t place = 0; place < basis.places().size(); ++place) {
+    for (std::size_t setting = 0; setting < basis.settings().size(); ++setting) {
+      const std::vector<Rgb> weights = basis.weights(place, setting).weight;
+      if (std::any_of(weights.begin(), weights.end(),
+                      [](const Rgb& weight) { return base::max_component(weight) > 0.0; })) {
+        return;
+      }
+    }
+  }
+  if (scenes::find_light_groups(part.loaded.scene).count() == 0) return;  // named on loading
+  std::string warning =
+      "no condition of the study has any light: its lamp settings and positions leave all dark; "
+      "look at [[lamps]] and [orbit] of the study";
+  if (!quiet) note("warning: " + warning);
+  part.loaded.scene.warnings.push_back(std::move(warning));
+}
+
 }  // namespace
 
 std::unique_ptr<StudyPart> prepare_part(const studies::StudyFile& study, std::size_t index,
@@ -147,10 +174,15 @@ std::unique_ptr<StudyPart> prepare_part(const studies::StudyFile& study, std::si
     if (object.target) part->targets.push_back(object.name);
   }
   check_wanted(study, *part);
-  part->query = std::make_unique<const scenes::RayQuery>(scene);
-  find_cameras(study, common, *part);
+  scenes::SceneUse use;
+  use.cameras = chosen_cameras(study, scene);
+  use.moves_along_orbit = !study.positions_deg.empty();
+  part->query =
+      std::make_unique<const scenes::RayQuery>(ray_query(part->loaded, use, common.quiet));
+  find_cameras(study, use.cameras, common, *part);
   part->basis = std::make_unique<const studies::LightBasis>(scene, find_places(study, *part),
                                                             study.lamps, study.basis);
+  name_darkness(*part, common.quiet);
   scenes::Asked asked;
   for (const StudyCamera& camera : part->cameras) asked.cameras.push_back(camera.camera);
   asked.per_light = true;

@@ -29,7 +29,8 @@ enum class Stream : std::uint32_t {
   RangeNoise,
   ErrorBudget,
   Residual,
-  GatherOrigin
+  GatherOrigin,
+  ShutInLight
 };
 
 // A 64-bit mix of the key's parts (SplitMix64 finaliser, Steele et al. 2014).

@@ -29,9 +29,7 @@ class Rows {
     row("sun", e_.sun, sun());
     row("penumbra", e_.penumbra, penumbra());
     row("earth", e_.earth, earth());
-    row("lamps", e_.lamps,
-        scene_.lamps.empty() ? "the scene has no [[light]]"
-                             : pick(e_.lamps, "a lamp is lit", "every lamp is off"));
+    row("lamps", e_.lamps, lamps());
     for (std::size_t kind = 0; kind < lamp_kinds; ++kind) lamps_of(kind);
     row("emitting surfaces", e_.emitters,
         material("emit", [](const Material& m) { return m.emit; }));
@@ -81,11 +79,31 @@ class Rows {
                : fmt::format("no camera names a {}", what);
   }
 
+  // Some lamps have a strength, and are in no group: their light was found not to matter.
+  [[nodiscard]] bool leaves_lamps_out() const {
+    for (std::size_t k = 0; k < scene_.lamps.size(); ++k) {
+      const bool strong = base::max_component(lamp_flux_lm(scene_.lamps[k])) > 0.0;
+      if (strong && groups_.lamp[k] == no_group) return true;
+    }
+    return false;
+  }
+
+  std::string lamps() {
+    if (scene_.lamps.empty()) return "the scene has no [[light]]";
+    if (e_.lamps) return "a lamp is lit";
+    return pick(leaves_lamps_out(), "no lamp that is on matters: see the rows of their types",
+                "every lamp is off");
+  }
+
+  std::string no_source() {
+    return pick(leaves_lamps_out(), "no source is left that matters", "no source gives light");
+  }
+
   std::string interreflection() {
     if (asked_.paths == LightPaths::Straight || asked_.paths == LightPaths::Distributed) {
       return "the call asks for light straight from the sources";
     }
-    if (!e_.sun && !e_.earth && !e_.lamps && !e_.emitters) return "no source gives light";
+    if (!e_.sun && !e_.earth && !e_.lamps && !e_.emitters) return no_source();
     return e_.interreflection ? "light falls on diffuse surfaces: " +
                                     material("diffuse", [](const Material& m) { return m.diffuse; })
                               : material("diffuse", [](const Material& m) { return m.diffuse; });
@@ -137,7 +155,7 @@ class Rows {
     for (std::size_t m = 0; m < worn_.size(); ++m) {
       shiny |= worn_[m] && base::max_component(scene_.materials[m].specular) > 0.0;
     }
-    if (shiny && !e_.phong) return "no source gives light";
+    if (shiny && !e_.phong) return no_source();
     return material("specular", [](const Material& m) { return m.specular; });
   }
 

@@ -94,7 +94,7 @@ bool shines_at(const Scene& scene, const Lamp& lamp, const Nearest& near) {
 
 }  // namespace
 
-FaceParts mend_surfaces(Scene& scene) {
+FaceParts mend_surfaces(Scene& scene, const FileFronts& fronts) {
   Sheets sheets(scene);
   for (const Object& object : scene.objects) {
     if (object.orient != Orient::TwoSided) continue;
@@ -104,13 +104,13 @@ FaceParts mend_surfaces(Scene& scene) {
     }
   }
   const std::vector<std::uint32_t> ids = welded(scene.vertices);
-  std::optional<Orienter> orienter(std::in_place, scene, ids);
+  std::optional<Orienter> orienter(std::in_place, scene, ids, fronts);
   const DoubledFaces doubled = find_doubled_faces(scene, ids);
   if (!doubled.empty()) {
     // Bodies first: where one that is inside out touches another, their faces look alike.
     orienter->orient_all(true);
     if (mend_doubled_faces(scene, doubled, sheets, orienter->parts())) {
-      orienter.emplace(scene, ids);
+      orienter.emplace(scene, ids, fronts);
     }
   }
   orienter->orient_all(false);

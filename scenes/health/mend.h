@@ -4,6 +4,7 @@
 
 #include "base/units.h"
 #include "scenes/health/coincident.h"
+#include "scenes/health/file_fronts.h"
 #include "scenes/scene.h"
 
 namespace earthshine::scenes {
@@ -18,11 +19,13 @@ namespace earthshine::scenes {
 //     Not those that have a camera, a lamp or a surface in them, a window or a shining face (rooms;
 //     around a camera faces wound both ways are turned inward, else to the side of most of the
 //     area), nor those that stand in a body of the same object (cavities).
-//   Open surfaces whose faces are wound both ways, and surfaces without two sides: named, and left,
+//   Open surfaces whose file has vertex normals (fronts), nearly all on one side: that is the front.
+//     The same of rooms. Not of other bodies: their front is outside.
+//   Other open surfaces whose faces are wound both ways, and surfaces without two sides: named, and left,
 //     unless all of them is two-sided; Object::orient decides.
 // Throws base::Error (Input) for an object all of whose faces stand, turned alike, in objects
 // before it. Fills Object::surface and gives the parts of what there is then.
-FaceParts mend_surfaces(Scene& scene);
+FaceParts mend_surfaces(Scene& scene, const FileFronts& fronts);
 
 // Lamps that stand on a surface, or nearer to it than rays can tell.
 

@@ -78,7 +78,6 @@ void Orienter::orient_all(bool bodies_alone) {
 void Orienter::orient(std::size_t number, bool bodies_alone) {
   const Object& object = scene_.objects[number];
   if (object.orient == Orient::AsIs || object.orient == Orient::TwoSided) return;
-  const bool told = object.orient == Orient::Outward;
   const std::size_t count = parts_of(number).all.size();
   Counts counts;
   for (std::size_t p = 0; p < count; ++p) {
@@ -89,25 +88,87 @@ void Orienter::orient(std::size_t number, bool bodies_alone) {
       ++counts.one_sided;
       continue;
     }
-    if (!told && !part.is_body()) {
-      counts.mixed_edges += part.mixed_edges;
+    if (object.orient != Orient::Mended) {
+      const bool cavity = object.orient == Orient::Outward && is_cavity(number, p);
+      if (!cavity) turn_as_told(part, object.orient, counts);
       continue;
     }
-    const double edge = glm::length(part.high - part.low);
-    const double volume = part.closed() ? part.volume_m3 : cup_volume(part);
-    const bool inward = volume < -SurfacePart::flat_share * edge * edge * edge;
-    if (!inward && part.mixed_edges == 0) continue;
+    const Front front = front_by_normals(part);
+    const bool against = front == Front::Opposite;
+    if (!part.is_body()) {
+      if (front == Front::Unknown) {
+        counts.mixed_edges += part.mixed_edges;
+        if (part.mixed_edges > 0) counts.seen_inside += seen_from_inside(part);
+      } else if (against || part.mixed_edges > 0) {
+        counts.by_normals += turn(part, against);
+      }
+      continue;
+    }
+    const bool inward = part.volume_m3 < 0.0;
+    if (!inward && !against && part.mixed_edges == 0) continue;
     if (is_cavity(number, p)) continue;
-    const Inside inside = told ? Inside::Nothing : what_is_inside(number, p);
-    if (part.mixed_edges == 0 && inside != Inside::Nothing) continue;
-    // What a camera stands in is a room; with something else in it most of the area decides.
-    const bool keeps_side = inside == Inside::Things || inward == (inside == Inside::Camera);
-    turn(part, !keeps_side, counts);
+    const Inside inside = what_is_inside(number, p);
+    if (inside == Inside::Nothing) {
+      if (inward || part.mixed_edges > 0) tally(part, turn(part, inward), counts);
+    } else if (front != Front::Unknown) {
+      if (against || part.mixed_edges > 0) counts.by_normals += turn(part, against);
+    } else if (part.mixed_edges > 0) {
+      // What a camera stands in is a room; with something else in it most of the area decides.
+      const bool keeps_side = inside == Inside::Things || inward;
+      tally(part, turn(part, !keeps_side), counts);
+    }
   }
   say(object, counts);
 }
 
-void Orienter::turn(SurfacePart& part, bool all, Counts& counts) {
+// By orient = "outward" or "inward"; what is flat has neither side, and has its faces alike.
+void Orienter::turn_as_told(SurfacePart& part, Orient word, Counts& counts) {
+  const double edge = glm::length(part.high - part.low);
+  const double volume = part.closed() ? part.volume_m3 : cup_volume(part);
+  const bool flat = std::abs(volume) <= SurfacePart::flat_share * edge * edge * edge;
+  const bool all = !flat && (volume < 0.0) == (word == Orient::Outward);
+  if (all || part.mixed_edges > 0) tally(part, turn(part, all), counts);
+}
+
+void Orienter::tally(const SurfacePart& part, std::size_t turned, Counts& counts) {
+  if (turned == part.triangles.size()) {
+    ++counts.bodies;
+  } else {
+    counts.triangles += turned;
+  }
+}
+
+Orienter::Front Orienter::front_by_normals(const SurfacePart& part) const {
+  constexpr double most = 0.5, nearly_all = 0.95;
+  double all = 0.0, along = 0.0, against = 0.0;
+  for (std::size_t k = 0; k < part.triangles.size(); ++k) {
+    const std::uint32_t t = part.triangles[k];
+    const Vec3 normal = (part.turned[k] != 0 ? -1.0 : 1.0) * corners_of(scene_, t).normal();
+    const double area = glm::length(normal);
+    const double side = glm::dot(normal, fronts_.of(scene_.triangles[t].polygon));
+    all += area;
+    if (side > 0.0) along += area;
+    if (side < 0.0) against += area;
+  }
+  const double said = along + against;
+  if (said < most * all || std::max(along, against) < nearly_all * said) return Front::Unknown;
+  return along > against ? Front::Oriented : Front::Opposite;
+}
+
+// The solid angles of its faces, those whose inside is seen counted above 0.
+double Orienter::seen_from_inside(const SurfacePart& part) const {
+  const double outward = cup_volume(part) < 0.0 ? -1.0 : 1.0;
+  double sum = 0.0;
+  for (const Camera& camera : scene_.cameras) {
+    for (std::size_t k = 0; k < part.triangles.size(); ++k) {
+      const Corners at = corners_of(scene_, part.triangles[k]).seen_from(camera.position);
+      sum += (part.turned[k] != 0 ? -outward : outward) * at.solid_angle();
+    }
+  }
+  return sum;
+}
+
+std::size_t Orienter::turn(SurfacePart& part, bool all) {
   std::size_t turned = 0;
   for (std::size_t k = 0; k < part.triangles.size(); ++k) {
     if ((part.turned[k] != 0) == all) continue;
@@ -120,11 +181,7 @@ void Orienter::turn(SurfacePart& part, bool all, Counts& counts) {
   if (all) part.volume_m3 = -part.volume_m3;
   std::fill(part.turned.begin(), part.turned.end(), char{0});
   part.mixed_edges = 0;
-  if (turned == part.triangles.size()) {
-    ++counts.bodies;
-  } else {
-    counts.triangles += turned;
-  }
+  return turned;
 }
 
 // (0,1,2), (0,2,3) of a parallelogram have become (0,2,1), (0,3,2), and stand the other way about.
@@ -238,10 +295,14 @@ void Orienter::say(const Object& object, const Counts& counts) {
   const std::string name = in_quotes(object.name);
   auto& warnings = scene_.warnings;
   if (counts.bodies > 0) {
-    warnings.push_back(fmt::format(
-        "object {}: {} inside out, turned outward; where it is a room, say orient = \"as-is\"",
-        name,
-        counts.bodies == 1 ? "a surface was" : fmt::format("{} surfaces were", counts.bodies)));
+    const std::string surfaces =
+        counts.bodies == 1 ? "a surface was" : fmt::format("{} surfaces were", counts.bodies);
+    warnings.push_back(
+        object.orient == Orient::Inward
+            ? fmt::format("object {}: {} turned inward, as orient says", name, surfaces)
+            : fmt::format("object {}: {} inside out, turned outward; where it is a room, say "
+                          "orient = \"as-is\"",
+                          name, surfaces));
   }
   if (counts.triangles > 0) {
     warnings.push_back(
@@ -249,12 +310,22 @@ void Orienter::say(const Object& object, const Counts& counts) {
                     "orient = \"as-is\" leaves them",
                     name, counts.triangles, object.triangle_count));
   }
+  if (counts.by_normals > 0) {
+    warnings.push_back(
+        fmt::format("object {}: {} of {} triangles were wound against the file's vertex normals, "
+                    "whose side is the front; turned. orient = \"as-is\" leaves them",
+                    name, counts.by_normals, object.triangle_count));
+  }
   if (counts.mixed_edges > 0) {
+    // Fronts are wanted where the cameras are.
+    const char* const sides = counts.seen_inside > 0.0   ? "\"inward\", the side that cameras see,"
+                              : counts.seen_inside < 0.0 ? "\"outward\", the side that cameras see,"
+                                                         : "\"inward\", \"outward\"";
     warnings.push_back(fmt::format(
         "object {}: at {} of its surfaces the faces on both sides are wound against each other; "
-        "backs "
-        "are black. Say orient = \"outward\" or \"two-sided\", or \"as-is\"",
-        name, counts.mixed_edges == 1 ? "an edge" : fmt::format("{} edges", counts.mixed_edges)));
+        "backs are black. Say orient = {} or \"two-sided\", or \"as-is\"",
+        name, counts.mixed_edges == 1 ? "an edge" : fmt::format("{} edges", counts.mixed_edges),
+        sides));
   }
   if (counts.one_sided > 0) {
     warnings.push_back(fmt::format(

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scenes/health/coincident.h"
+#include "scenes/health/file_fronts.h"
 #include "scenes/health/topology.h"
 #include "scenes/scene.h"
 
@@ -18,7 +19,9 @@ namespace earthshine::scenes {
 class Orienter {
  public:
   // ids: as welded() gives them, and as long as the Orienter is there.
-  Orienter(Scene& scene, std::span<const std::uint32_t> ids) : scene_(scene), ids_(ids) {}
+  // fronts: likewise.
+  Orienter(Scene& scene, std::span<const std::uint32_t> ids, const FileFronts& fronts)
+      : scene_(scene), ids_(ids), fronts_(fronts) {}
 
   // bodies_alone: closed parts only, and nothing is said of others.
   void orient_all(bool bodies_alone);
@@ -39,12 +42,22 @@ class Orienter {
   };
   struct Counts {
     std::size_t bodies = 0, triangles = 0, mixed_edges = 0, one_sided = 0;
+    std::size_t by_normals = 0;  // triangles
+    double seen_inside = 0.0;    // of surfaces with mixed edges: see seen_from_inside
   };
   enum class Inside { Nothing, Things, Camera };
+  // As a part's orientation has it; none where the file does not say.
+  enum class Front { Unknown, Oriented, Opposite };
 
   void orient(std::size_t object, bool bodies_alone);
   [[nodiscard]] Parts& parts_of(std::size_t object);
-  void turn(SurfacePart& part, bool all, Counts& counts);
+  // How many triangles it turned.
+  std::size_t turn(SurfacePart& part, bool all);
+  void turn_as_told(SurfacePart& part, Orient word, Counts& counts);
+  static void tally(const SurfacePart& part, std::size_t turned, Counts& counts);
+  [[nodiscard]] Front front_by_normals(const SurfacePart& part) const;
+  // Above 0 where the cameras see more of its inside than of its outside.
+  [[nodiscard]] double seen_from_inside(const SurfacePart& part) const;
   void keep_parallelograms(const SurfacePart& part, bool all);
   [[nodiscard]] Inside what_is_inside(std::size_t object, std::size_t part);
   [[nodiscard]] bool is_cavity(std::size_t object, std::size_t part);
@@ -57,6 +70,7 @@ class Orienter {
 
   Scene& scene_;
   std::span<const std::uint32_t> ids_;
+  const FileFronts& fronts_;
   std::map<std::size_t, Parts> parts_;
 };
 

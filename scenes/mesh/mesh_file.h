@@ -16,7 +16,7 @@ namespace earthshine::scenes {
 [[nodiscard]] Mesh read_mesh(const std::filesystem::path& path,
                              const std::filesystem::path& scene_folder,
                              const base::Location& asked_at,
-                             VertexNormals normals = VertexNormals::Ignored);
+                             VertexNormals normals = VertexNormals::Sides);
 
 // The number of the part of that name.
 // Throws base::Error (Input) at asked_at, with the nearest name and the list, if there is none.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <unordered_map>
@@ -33,7 +34,7 @@ class ObjReader {
             std::span<const std::filesystem::path> folders, VertexNormals normals)
       : lines_(text, path.string(), TextLines::Style::Wavefront),
         folders_(folders),
-        reads_normals_(normals == VertexNormals::Read) {
+        shaped_by_normals_(normals == VertexNormals::Shape) {
     mesh_.path = path;
   }
 
@@ -60,8 +61,8 @@ class ObjReader {
         note_library();
       } else if (keyword == "vt" && !mesh_.libraries.empty()) {
         read_coordinates();
-      } else if (keyword == "vn" && reads_normals_) {
-        mesh_.normals.emplace_back(lines_.vector());
+      } else if (keyword == "vn") {
+        read_normal();
       } else if (std::find(std::begin(passed_over), std::end(passed_over), keyword) ==
                  std::end(passed_over)) {
         warn_once(keyword);
@@ -88,6 +89,21 @@ class ObjReader {
     if (mesh_.vertices.size() >= no_index) {
       throw Error(Blame::Input, lines_.where(), "too many vertices", "a mesh has fewer than 2^32");
     }
+  }
+
+  void read_normal() {
+    if (shaped_by_normals_) {
+      mesh_.normals.emplace_back(lines_.vector());
+      return;
+    }
+    count_unused("vn");
+    glm::vec3 normal(0.0F);
+    for (std::size_t c = 0; c < 3 && c + 1 < lines_.words().size(); ++c) {
+      const auto number = number_in(lines_.words()[c + 1].text);
+      normal[static_cast<int>(c)] = number ? static_cast<float>(*number) : std::nanf("");
+    }
+    const bool sound = std::isfinite(glm::length(normal));
+    mesh_.normals.push_back(sound ? normal : glm::vec3(0.0F));
   }
 
   // Of use only with a library, whose materials may have textures. v runs up in these files.
@@ -201,7 +217,7 @@ class ObjReader {
 
   TextLines lines_;
   std::span<const std::filesystem::path> folders_;
-  bool reads_normals_;
+  bool shaped_by_normals_;
   Mesh mesh_;
   std::string last_keyword_;
   std::size_t* last_unused_ = nullptr;  // of that keyword, in mesh_

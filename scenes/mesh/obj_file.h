@@ -16,7 +16,7 @@ namespace earthshine::scenes {
 // their paths must stay in the folders.
 [[nodiscard]] Mesh parse_obj(std::string_view text, const std::filesystem::path& path,
                              std::span<const std::filesystem::path> folders,
-                             VertexNormals normals = VertexNormals::Ignored);
+                             VertexNormals normals = VertexNormals::Sides);
 
 // Kd, Ks, Ns, Ke, d, Tr, Tf, Ni and illum as docs/models.md maps them; whatever else would change
 // the picture is named in one warning, the rest is passed over. Textures (mtl_maps.h) lie beside

@@ -107,7 +107,8 @@ class PlyReader {
   PlyReader(std::string_view bytes, const std::filesystem::path& path, const Header& header,
             VertexNormals normals)
       : values_(bytes.substr(header.bytes), path.string(), header.encoding, header.lines),
-        reads_normals_(normals == VertexNormals::Read) {
+        reads_normals_(has_normals(header)),
+        shaped_by_normals_(normals == VertexNormals::Shape) {
     mesh_.path = path;
     mesh_.part_sets.emplace_back();
   }
@@ -145,9 +146,16 @@ class PlyReader {
            property.name[0] <= 'z';
   }
 
-  [[nodiscard]] bool is_normal(const Property& property) const {
-    return reads_normals_ && !property.count_type && property.name.size() == 2 &&
-           property.name[0] == 'n' && property.name[1] >= 'x' && property.name[1] <= 'z';
+  [[nodiscard]] static bool has_normals(const Header& header) {
+    return std::any_of(header.elements.begin(), header.elements.end(), [](const Element& element) {
+      return element.name == "vertex" &&
+             std::any_of(element.properties.begin(), element.properties.end(), is_normal);
+    });
+  }
+
+  [[nodiscard]] static bool is_normal(const Property& property) {
+    return !property.count_type && property.name.size() == 2 && property.name[0] == 'n' &&
+           property.name[1] >= 'x' && property.name[1] <= 'z';
   }
 
   [[nodiscard]] static bool is_corners(const Property& property) {
@@ -162,8 +170,9 @@ class PlyReader {
     const bool of_face = element.name == "face" || element.name == strips_named;
     if (!of_vertex && !of_face) mesh_.unused[element.name] += element.count;
     for (const Property& property : element.properties) {
-      const bool unused = of_vertex ? !is_position(property) && !is_normal(property)
-                                    : of_face && !is_corners(property);
+      const bool shapes = shaped_by_normals_ && is_normal(property);
+      const bool unused =
+          of_vertex ? !is_position(property) && !shapes : of_face && !is_corners(property);
       if (unused) mesh_.unused[property.name] += element.count;
     }
   }
@@ -291,7 +300,7 @@ class PlyReader {
   }
 
   PlyValues values_;
-  bool reads_normals_;
+  bool reads_normals_, shaped_by_normals_;
   Mesh mesh_;
   std::vector<std::uint32_t> corners_;
 };

@@ -15,6 +15,6 @@ namespace earthshine::scenes {
 // every second one the opposite; one with the same corner twice joins strips and is left out. PLY
 // has neither parts nor materials.
 [[nodiscard]] Mesh parse_ply(std::string_view bytes, const std::filesystem::path& path,
-                             VertexNormals normals = VertexNormals::Ignored);
+                             VertexNormals normals = VertexNormals::Sides);
 
 }  // namespace earthshine::scenes

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -22,7 +23,7 @@ constexpr std::string_view object_keys[] = {
 constexpr std::string_view shapes[] = {"quad", "box", "sphere", "cylinder", "disk"};
 constexpr std::string_view common_keys[] = {"name",   "material", "translate", "rotate",  "scale",
                                             "target", "inward",   "orient",    "velocity"};
-constexpr std::string_view orients[] = {"outward", "as-is", "two-sided"};
+constexpr std::string_view orients[] = {"outward", "inward", "as-is", "two-sided"};
 constexpr std::string_view axes_known[] = {"y-up", "as-is"};
 constexpr Range lengths{-largest_length, largest_length};
 
@@ -145,9 +146,10 @@ Orient read_orient(const TableReader& table, const Placement& placement) {
   if (*orient == "as-is") return Orient::AsIs;
   if (*orient == "two-sided") return Orient::TwoSided;
   if (placement.inward) {
-    table.fail("orient", "is \"outward\" beside inward = true", "an object is one of the two");
+    table.fail("orient", fmt::format("is \"{}\" beside inward = true", *orient),
+               "one of the two says which way the faces are turned", "Leave inward out");
   }
-  return Orient::Outward;
+  return *orient == "outward" ? Orient::Outward : Orient::Inward;
 }
 
 // From the coordinates of a mesh's file to the scene's: its unit, and y up to z up where the object
@@ -200,10 +202,14 @@ void take_extras(Scene& scene, const TableReader& table, Mesh& mesh, std::uint32
   miss(cameras, flat_cameras_of_file);
   name_lacking(mesh);
   std::string& unused = scene.objects.back().unused;
+  bool normals = false;
   for (const auto& [what, count] : mesh.unused) {
     if ((lights && what == lamps_of_file) || (cameras && what == cameras_of_file)) continue;
     unused += fmt::format("{}{} {}", unused.empty() ? "" : ", ", count, what);
+    normals |= std::find(std::begin(normals_of_file), std::end(normals_of_file), what) !=
+               std::end(normals_of_file);
   }
+  if (normals) unused += "; round_deg rounds the surface by the normals";
 }
 
 }  // namespace
@@ -236,7 +242,8 @@ Vec3 read_velocity(const TableReader& table) {
   return table.vector("velocity", {-1e4, 1e4}).value_or(Vec3(0.0));
 }
 
-Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& shelf) {
+Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& shelf,
+                      FileFronts& fronts) {
   TableReader table(node, "[[object]]", object_keys);
   Object object;
   object.name = table.read_name();
@@ -264,7 +271,7 @@ Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShe
                "an object with a mesh");
     rounding = read_rounding(table);
     shelved = &shelf.take(*named, table.where("mesh"),
-                          rounding ? VertexNormals::Read : VertexNormals::Ignored);
+                          rounding ? VertexNormals::Shape : VertexNormals::Sides);
     take_axes(table, shelved->mesh, placement);
     object.source = *named;
     if (const auto part_name = table.text("part")) {
@@ -281,9 +288,9 @@ Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShe
     }
     round = rounded(shelved->mesh, *rounding, table.where("round_deg"));
   }
-  place_mesh(scene, std::move(object), rounding ? round : shelved->mesh, part, placement,
-             table.where(),
-             [&](const MeshPolygon& polygon) { return choice.material_of(polygon); });
+  place_mesh(
+      scene, std::move(object), rounding ? round : shelved->mesh, part, placement, table.where(),
+      [&](const MeshPolygon& polygon) { return choice.material_of(polygon); }, fronts);
   take_extras(scene, table, shelved->mesh, part, placement);
   // Said once, by the first object that uses the file.
   auto& warnings = shelved->mesh.warnings;

@@ -108,10 +108,76 @@ std::vector<TomlTable*> entries_named(TomlTable& root, std::string_view kind, st
   return found;
 }
 
+bool is_entry(const TomlTable& root, std::string_view kind, std::string_view name) {
+  const TomlEntry* entry = find_entry(root, kind);
+  const auto* items = entry == nullptr ? nullptr : std::get_if<TomlArray>(&entry->node.value);
+  return items != nullptr && std::any_of(items->begin(), items->end(), [&](const TomlNode& item) {
+           const auto* table = std::get_if<TomlTable>(&item.value);
+           const TomlEntry* named = table == nullptr ? nullptr : find_entry(*table, "name");
+           const auto* text =
+               named == nullptr ? nullptr : std::get_if<std::string>(&named->node.value);
+           return text != nullptr && *text == name;
+         });
+}
+
+// Whether any object takes over the lamps of its mesh.
+bool meshes_have_lamps(const TomlTable& root) {
+  const TomlEntry* entry = find_entry(root, "object");
+  const auto* items = entry == nullptr ? nullptr : std::get_if<TomlArray>(&entry->node.value);
+  return items != nullptr && std::any_of(items->begin(), items->end(), [](const TomlNode& item) {
+           const auto* table = std::get_if<TomlTable>(&item.value);
+           const TomlEntry* lights = table == nullptr ? nullptr : find_entry(*table, "lights");
+           const auto* flag = lights == nullptr ? nullptr : std::get_if<bool>(&lights->node.value);
+           return flag != nullptr && *flag;
+         });
+}
+
+constexpr std::string_view strength_keys[] = {"intensity", "exitance", "flux"};
+
+bool is_zero(const TomlNode& value) {
+  if (const auto* whole = std::get_if<std::int64_t>(&value.value)) return *whole == 0;
+  if (const auto* number = std::get_if<double>(&value.value)) return *number == 0.0;
+  const auto* items = std::get_if<TomlArray>(&value.value);
+  return items != nullptr && !items->empty() && std::all_of(items->begin(), items->end(), is_zero);
+}
+
+bool turns_lamps_off(std::string_view key, const TomlNode& value) {
+  return among(key, strength_keys) && is_zero(value);
+}
+
+// The strength of a [[light]] of any type, by the key that gives it. One that has it from a file of
+// candelas gets a flux, which all types know and which is no hue.
+void set_dark(TomlTable& light, const base::Location& where) {
+  const TomlNode none{where, std::int64_t{0}};
+  for (const std::string_view key : strength_keys) {
+    if (find_entry(light, key) == nullptr) continue;
+    set(light, key, none, where);
+    return;
+  }
+  std::erase_if(light, [](const TomlEntry& entry) { return entry.key == "color"; });
+  set(light, "flux", none, where);
+}
+
 }  // namespace
 
+void turn_off(Scene& scene, const std::vector<LampOff>& off) {
+  for (const LampOff& wanted : off) {
+    const auto lamp = std::find_if(scene.lamps.begin(), scene.lamps.end(),
+                                   [&](const Lamp& one) { return one.name == wanted.name; });
+    if (lamp == scene.lamps.end()) {
+      std::vector<std::string> names;
+      for (const Lamp& one : scene.lamps) names.push_back(one.name);
+      throw Error(Blame::Input, wanted.where,
+                  fmt::format("no light is named {}", in_quotes(wanted.name)),
+                  names.empty() ? "the scene has none" : "the scene has: " + listed(names),
+                  did_you_mean(wanted.name, names));
+    }
+    lamp->intensity_cd = lamp->exitance = Rgb(0.0);
+  }
+}
+
 void apply_override(TomlNode& root, const std::string& setting,
-                    const std::optional<base::Location>& asked_at) {
+                    const std::optional<base::Location>& asked_at, std::vector<LampOff>& off) {
   const std::string origin = asked_at ? base::to_string(*asked_at) + ": set " : "--set ";
   const base::Location where{origin + printable(setting, 200)};
   const std::size_t equals = setting.find('=');
@@ -142,8 +208,18 @@ void apply_override(TomlNode& root, const std::string& setting,
                   fmt::format("keys of [[{0}]] are set as {0}.NAME.KEY=VALUE", head));
     }
     const std::string_view name = path.substr(first_dot + 1, last_dot - first_dot - 1);
+    const bool turns_off = head == "light" && turns_lamps_off(path.substr(last_dot + 1), value);
+    if (turns_off && meshes_have_lamps(table) && !is_entry(table, head, name)) {
+      off.push_back({std::string(name), where});
+      return;
+    }
     for (TomlTable* entry : entries_named(table, head, name, where)) {
-      set(*entry, path.substr(last_dot + 1), value, where);
+      const std::string_view key = path.substr(last_dot + 1);
+      if (turns_off && find_entry(*entry, key) == nullptr) {
+        set_dark(*entry, where);
+      } else {
+        set(*entry, key, value, where);
+      }
     }
   } else {
     std::vector<std::string> known;

@@ -30,8 +30,13 @@ constexpr double warp_worth_a_warning = 1e-4;
 class Placer {
  public:
   Placer(Scene& scene, Object& object, const Mesh& mesh, const Placement& placement,
-         const base::Location& where)
-      : scene_(scene), object_(object), mesh_(mesh), placement_(placement), where_(where) {}
+         const base::Location& where, FileFronts& fronts)
+      : scene_(scene),
+        object_(object),
+        mesh_(mesh),
+        placement_(placement),
+        where_(where),
+        fronts_(fronts) {}
 
   void choose(std::uint32_t part) {
     std::vector<char> wanted(mesh_.part_sets.size(), part == no_index ? 1 : 0);
@@ -96,6 +101,7 @@ class Placer {
         continue;
       }
       judge(p, pieces);
+      note_front(polygon, corners);
       add(pieces, polygon, material_of(polygon));
     }
     object_.triangle_count =
@@ -171,6 +177,35 @@ class Placer {
     }
   }
 
+  // corners: of the polygon, placed.
+  void note_front(const MeshPolygon& polygon, const std::vector<Vec3>& corners) {
+    constexpr double least_cosine = 0.05;  // of a normal to the polygon's own
+    if (mesh_.normal_indices.empty() || object_.orient != Orient::Mended) return;
+    const auto indices = corners_of(polygon);
+    const auto corner = [&](std::size_t k) { return mesh_.vertices[indices[k]]; };
+    Vec3 own(0.0), placed(0.0);
+    for (std::size_t k = 1; k + 1 < indices.size(); ++k) {
+      own += glm::cross(corner(k) - corner(0), corner(k + 1) - corner(0));
+      placed += glm::cross(corners[k] - corners[0], corners[k + 1] - corners[0]);
+    }
+    const double length = glm::length(own);
+    int along = 0, against = 0;
+    for (std::size_t k = 0; k < indices.size(); ++k) {
+      const std::size_t index = polygon.first + k;
+      const std::uint32_t n =
+          index < mesh_.normal_indices.size() ? mesh_.normal_indices[index] : no_index;
+      if (n == no_index) return;
+      const Vec3 normal(mesh_.normals[n]);
+      const double cosine = glm::dot(normal, own) / (glm::length(normal) * length);
+      along += cosine > least_cosine ? 1 : 0;
+      against += cosine < -least_cosine ? 1 : 0;
+    }
+    const auto all = static_cast<int>(indices.size());
+    if (along == all || against == all) {
+      fronts_.set(next_polygon_, against == all ? -placed : placed);
+    }
+  }
+
   std::uint32_t plain_vertex(std::uint32_t corner) {
     if (placed_at_[corner] == no_index) {
       placed_at_[corner] = static_cast<std::uint32_t>(scene_.vertices.size());
@@ -237,6 +272,7 @@ class Placer {
   const Mesh& mesh_;
   const Placement& placement_;
   const base::Location& where_;
+  FileFronts& fronts_;
   std::vector<std::size_t> chosen_;
   std::vector<std::uint32_t> placed_at_;                          // scene vertex per mesh vertex
   std::unordered_map<std::uint64_t, std::uint32_t> textured_at_;  // the same by (vertex, uv)
@@ -264,8 +300,9 @@ glm::dmat3 rotation_xyz(const Vec3& degrees) {
 
 void place_mesh(Scene& scene, Object object, const Mesh& mesh, std::uint32_t part,
                 const Placement& placement, const base::Location& where,
-                const std::function<std::uint32_t(const MeshPolygon&)>& material_of) {
-  Placer placer(scene, object, mesh, placement, where);
+                const std::function<std::uint32_t(const MeshPolygon&)>& material_of,
+                FileFronts& fronts) {
+  Placer placer(scene, object, mesh, placement, where, fronts);
   placer.choose(part);
   placer.transform();
   placer.triangulate_all(material_of);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/health/file_fronts.h"
 #include "scenes/mesh.h"
 
 namespace earthshine::scenes {
@@ -37,11 +38,13 @@ inline constexpr std::size_t max_scene_triangles = std::size_t{1} << 27;
 // Appends the polygons of `mesh` that belong to `part` (no_index: all) as the object's triangles
 // and fills its counts. material_of gives the scene's material of a mesh material (or of no_index,
 // for a polygon at mesh.path:line that has none). Polygons without area are left out and counted,
-// with a warning in the scene. Throws base::Error (Input), at the polygon's line where known, for
+// with a warning in the scene. Where the mesh has normals, `fronts` gets their sides, unless the
+// object says its own. Throws base::Error (Input), at the polygon's line where known, for
 // outlines that cross themselves, polygons of more than 1024 corners or far from flat, and vertices
 // out of range; at `where` for an object without area.
 void place_mesh(Scene& scene, Object object, const Mesh& mesh, std::uint32_t part,
                 const Placement& placement, const base::Location& where,
-                const std::function<std::uint32_t(const MeshPolygon&)>& material_of);
+                const std::function<std::uint32_t(const MeshPolygon&)>& material_of,
+                FileFronts& fronts);
 
 }  // namespace earthshine::scenes

@@ -69,12 +69,13 @@ void read_cctv(Scene& scene, const TableReader& root) {
   }
 }
 
-// A bay of ten kilometres, or of a millimetre, is one whose unit was forgotten.
+// A bay of ten kilometres is one whose unit was forgotten; small ones are judged by what cameras see
+// (scenes/plausible).
 void check_size(Scene& scene) {
-  constexpr double large_m = 300.0, small_m = 0.01;
+  constexpr double large_m = 300.0;
   if (scene.vertices.empty()) return;
   const double across = box_around(scene.vertices).diagonal();
-  if (across <= large_m && across >= small_m) return;
+  if (across <= large_m) return;
   scene.warnings.push_back(fmt::format(
       "the surfaces are {:.3g} m across; are unit, and scale of the objects, right?", across));
 }
@@ -114,7 +115,8 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
                  const std::optional<base::Location>& overrides_at) {
   TomlNode tree = read_toml(path);
   refuse_study(tree);
-  for (const std::string& setting : overrides) apply_override(tree, setting, overrides_at);
+  std::vector<LampOff> off;
+  for (const std::string& setting : overrides) apply_override(tree, setting, overrides_at, off);
 
   const TableReader root(tree, "the scene", root_keys);
   check_format(root);
@@ -154,15 +156,17 @@ Scene read_scene(const std::filesystem::path& path, std::span<const std::string>
   // Objects last: their meshes take the longest to read, and a slip elsewhere shows at once.
   MeshShelf shelf(path.parent_path(), scene.materials.size());
   InstanceReader instances;
+  FileFronts fronts;
   read_named(root, "object", [&](const TomlNode& node) {
     if (const auto name = instances.take(node)) return *name;
-    const Placement placement = read_object(scene, node, unit_m, shelf);
+    const Placement placement = read_object(scene, node, unit_m, shelf, fronts);
     instances.know(scene.objects.back().name, placement);
     return scene.objects.back().name;
   });
+  turn_off(scene, off);
   constexpr std::size_t mending_bytes = 56;  // per triangle, measured on spheres
   base::check_room(scene.triangles.size() * mending_bytes, path.string());
-  FaceParts parts = mend_surfaces(scene);
+  FaceParts parts = mend_surfaces(scene, fronts);
   instances.finish(scene, unit_m, shelf.own_material_count());
   check_size(scene);
   settle_textures(scene);

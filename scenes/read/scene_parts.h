@@ -94,9 +94,10 @@ class MeshShelf {
 // velocity of an object, m/s.
 [[nodiscard]] Vec3 read_velocity(const TableReader& table);
 
-// Adds the object's triangles, and the materials that only its mesh defines, to the scene. Says how
-// it is placed.
-Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& shelf);
+// Adds the object's triangles, and the materials that only its mesh defines, to the scene, and to
+// `fronts` the sides that the mesh's normals say are fronts. Says how it is placed.
+Placement read_object(Scene& scene, const TomlNode& node, double unit_m, MeshShelf& shelf,
+                      FileFronts& fronts);
 
 // Lamps and cameras that stand in a mesh file, as a scene's own: appends those of the part
 // (no_index: all), placed as the object's faces are; strengths do not

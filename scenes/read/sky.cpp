@@ -137,8 +137,9 @@ void read_attitude(Scene& scene, Orbit& orbit, const TableReader& table) {
                  "the attitude is given by one of the two");
     }
     orbit.attitude.clear();
-    orbit.table = std::make_shared<const AttitudeTable>(read_attitudes(
-        scene.files.emplace_back(scene.path.parent_path() / *file), table.where("attitude_table")));
+    orbit.table = std::make_shared<const AttitudeTable>(
+        read_attitudes(scene.files.emplace_back(scene.path.parent_path() / *file),
+                       table.where("attitude_table"), scene.warnings));
   }
   if (attitude) orbit.attitude = *attitude;
   if (orbit.attitude != inertial_attitude) {

@@ -34,6 +34,7 @@ class Rounder {
     made_.indices.clear();
     made_.polygons.clear();
     made_.uv_indices.clear();
+    made_.normal_indices.clear();
     std::size_t triangles = 0;
     for (std::size_t p = 0; p < mesh.polygons.size(); ++p) {
       cut(p);
@@ -107,6 +108,12 @@ class Rounder {
            const MeshPolygon& polygon) {
     add_polygon(made_, corners, polygon.part_set, polygon.material, polygon.line);
     made_.uv_indices.insert(made_.uv_indices.end(), uv.begin(), uv.end());
+    // Only the side that it is on counts from here on.
+    if (polygon.first < mesh_.normal_indices.size()) {
+      made_.normal_indices.resize(made_.indices.size() - corners.size(), no_index);
+      made_.normal_indices.insert(made_.normal_indices.end(), corners.size(),
+                                  mesh_.normal_indices[polygon.first]);
+    }
     if (made_.polygons.size() <= most_round_triangles) return;
     throw base::Error(base::Blame::Input, where_, "the rounded mesh is too large",
                       fmt::format("it has at most {} triangles", most_round_triangles),

@@ -19,6 +19,7 @@ using base::Blame;
 using base::Error;
 
 constexpr std::size_t max_attitude_bytes = std::size_t{16} << 20;
+constexpr double same_deg = 1e-3;      // of angles with six digits
 constexpr double length_slack = 0.01;  // quaternions are often given with three digits
 constexpr const char* wanted_columns =
     "a header names time_s or position_deg, and qw, qx, qy, qz or yaw_deg, pitch_deg, roll_deg";
@@ -62,7 +63,7 @@ class AttitudeReader {
     table_.file = std::move(file);
   }
 
-  AttitudeTable read() {
+  AttitudeTable read(std::vector<std::string>& warnings) {
     if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
     bool headed = false;
     for (int number = 1; !text_.empty(); ++number) {
@@ -82,6 +83,7 @@ class AttitudeReader {
       throw Error(Blame::Input, table_.file, "has a header and no rows", {},
                   "Give one row for an attitude that is kept, or several");
     }
+    name_wide_steps(warnings);
     return std::move(table_);
   }
 
@@ -152,6 +154,7 @@ class AttitudeReader {
                       kinds[table_.by_time ? TimeS : PositionDeg].name, at, table_.at.back()),
           "it rises from row to row", "Sort the rows, and keep one of those at one time");
     }
+    rows_.push_back({{value[Yaw], value[Pitch], value[Roll]}, fields[0].where.line});
     table_.at.push_back(at);
     table_.turns.push_back(by_quaternion_ ? quaternion(value, fields[0].where.line)
                                           : turn_by_angles(value));
@@ -177,6 +180,81 @@ class AttitudeReader {
            about({1, 0, 0}, value[Roll]);
   }
 
+  // Of a row: yaw, pitch and roll, deg.
+  struct Row {
+    std::array<double, 3> angle_deg;
+    int line;
+  };
+
+  // From one row to the next the angle of the turn, the shorter way, deg.
+  [[nodiscard]] double turn_deg(std::size_t row) const {
+    const double cosine = std::abs(glm::dot(table_.turns[row], table_.turns[row + 1]));
+    return 2.0 * base::degrees(std::acos(std::min(cosine, 1.0)));
+  }
+
+  // As the angle is written, and the shorter way.
+  [[nodiscard]] double step_deg(std::size_t row, std::size_t angle) const {
+    return rows_[row + 1].angle_deg[angle] - rows_[row].angle_deg[angle];
+  }
+  [[nodiscard]] double short_step_deg(std::size_t row, std::size_t angle) const {
+    return std::remainder(step_deg(row, angle), 360.0);
+  }
+
+  // Whether the step before or after goes on like this one, taken the shorter way: then the angle
+  // has but passed from 360 to 0, or from 180 to -180.
+  [[nodiscard]] bool only_wraps(std::size_t row, std::size_t angle) const {
+    constexpr double jitter_deg = 5.0, alike = 3.0;
+    const double step = short_step_deg(row, angle);
+    if (std::abs(step) < same_deg) return false;
+    const auto goes_on = [&](std::size_t other) {
+      const double next = short_step_deg(other, angle);
+      return (next * step > 0.0 && std::abs(step) <= alike * std::abs(next)) ||
+             (std::abs(step) <= jitter_deg && std::abs(next) <= jitter_deg);
+    };
+    return (row > 0 && goes_on(row - 1)) || (row + 2 < rows_.size() && goes_on(row + 1));
+  }
+
+  // Yaw and roll both turn over where the nose passes the zenith: another name for a small turn.
+  [[nodiscard]] bool passes_zenith(std::size_t row) const {
+    const auto over = [](double step) { return std::abs(step) >= 90.0 && std::abs(step) <= 270.0; };
+    return turn_deg(row) < 90.0 && over(step_deg(row, 0)) && over(step_deg(row, 2));
+  }
+
+  // The angle that makes a step of half a turn or more; none: its number is that of the angles.
+  [[nodiscard]] std::size_t wide_angle(std::size_t row) const {
+    std::size_t angle = 0;
+    while (angle < 3 && (std::abs(step_deg(row, angle)) < 180.0 - same_deg ||
+                         only_wraps(row, angle) || passes_zenith(row))) {
+      ++angle;
+    }
+    return angle;
+  }
+
+  void name_wide_steps(std::vector<std::string>& warnings) const {
+    std::size_t first = 0, count = 0;
+    for (std::size_t row = 0; row + 1 < rows_.size(); ++row) {
+      const bool wide =
+          turn_deg(row) > 180.0 - same_deg || (!by_quaternion_ && wide_angle(row) < 3);
+      if (wide && count++ == 0) first = row;
+    }
+    if (count == 0) return;
+    const std::size_t angle = by_quaternion_ ? 3 : wide_angle(first);
+    const std::string step =
+        angle < 3 ? fmt::format("{} goes from {:g} to {:g}", kinds[Yaw + angle].name,
+                                rows_[first].angle_deg[angle], rows_[first + 1].angle_deg[angle])
+                  : "they are half a turn apart";
+    const double taken = turn_deg(first);
+    const std::string way = taken < same_deg ? "none at all"
+                            : taken > 180.0 - same_deg
+                                ? "either way round"
+                                : fmt::format("the shorter one, of {:.4g} deg", taken);
+    warnings.push_back(fmt::format(
+        "{}: lines {} and {}: {}, and the turn that is taken between rows is {}{}; give rows less "
+        "than 180 deg apart, as every 120 deg",
+        table_.file, rows_[first].line, rows_[first + 1].line, step, way,
+        count > 1 ? fmt::format(" ({} more such)", count - 1) : std::string()));
+  }
+
   [[nodiscard]] bool has(Column column) const {
     return std::find(columns_.begin(), columns_.end(), column) != columns_.end();
   }
@@ -187,15 +265,17 @@ class AttitudeReader {
 
   std::string_view text_;
   AttitudeTable table_;
+  std::vector<Row> rows_;
   std::vector<Column> columns_;
   bool by_quaternion_ = false;
 };
 
 }  // namespace
 
-AttitudeTable read_attitudes(const std::filesystem::path& path, const base::Location& asked_at) {
+AttitudeTable read_attitudes(const std::filesystem::path& path, const base::Location& asked_at,
+                             std::vector<std::string>& warnings) {
   const std::string text = base::read_input_file(path, max_attitude_bytes, asked_at);
-  return AttitudeReader(text, path.string()).read();
+  return AttitudeReader(text, path.string()).read(warnings);
 }
 
 }  // namespace earthshine::scenes

@@ -15,9 +15,12 @@
 // is roll 180, tail-down yaw 180 and pitch 90.
 //
 // Between rows the turn goes by slerp (Shoemake 1985), the shorter way; one row holds everywhere.
+// Rows half a turn or more apart are named: their angles say another way than the one that is taken.
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "scenes/scene.h"
 
@@ -26,8 +29,11 @@ namespace earthshine::scenes {
 // asked_at is the place that names the file. Throws base::Error (Input) there if it cannot be read
 // or has more than 16 MiB, and at the file's line and column for what is wrong in it: columns,
 // rows without them, what is no number, times that do not rise, quaternions whose length is more
-// than 1 % from 1.
+// than 1 % from 1. warnings: gets a line for the first two rows half a turn or more apart, be it by
+// the turn between them or by an angle that does not just pass from 360 to 0, or from 180 to -180
+// deg, as its neighbours go on.
 [[nodiscard]] AttitudeTable read_attitudes(const std::filesystem::path& path,
-                                           const base::Location& asked_at);
+                                           const base::Location& asked_at,
+                                           std::vector<std::string>& warnings);
 
 }  // namespace earthshine::scenes

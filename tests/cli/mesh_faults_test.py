@@ -118,7 +118,7 @@ class MeshFaults(program.Case):
                   "a texture is left out", "a.mtl:6:8", '"wood.png"', "No such file")
         for neutral in ("Tr", "Tf", "map_Ka"):
             self.assertNotIn(neutral, " ".join(report["warnings"]))
-        self.assertEqual(report["objects"][0]["unused"], "1 Pr, 1 bump, 1 vn, 1 vt")
+        self.assertEqual(report["objects"][0]["unused"], "1 Pr, 1 bump, 1 vn, 1 vt; round_deg rounds the surface by the normals")
 
     def read(self, ending, data):
         """What inspect says of a mesh: its refusal, or its warnings and what is not used of it."""

@@ -163,6 +163,25 @@ class Safety(Report):
         self.assertEqual([sorted(a) for _, a in evil.elements], [sorted(a) for _, a in plain.elements])
         self.assertIn(EVIL, evil.text)
 
+    def test_a_name_that_turns_the_direction_of_writing_is_isolated(self):
+        # UAX #9: what U+2068 begins, U+2069 ends, overrides in it included; one of the name's own ends nothing.
+        text = json.dumps(report_sample.study(positions=4))
+        plain = self.study(json.loads(text))
+        self.assertNotIn("\u2068", plain)
+        for camera, target in (("\u202eB", "flag"), ("a\u2067b", "flag"), ("B", "\u05d0\u05d1")):
+            study = json.loads(text.replace('"B"', json.dumps(camera)).replace('"eureca"', json.dumps(target)))
+            page = self.study(study)
+            name = camera if camera != "B" else target
+            shown = page.split('<script type="application/json"')[0]
+            texts = [text for text in re.split('[<>"]', shown) if name in text]
+            self.assertGreater(len(texts), 2)
+            for piece in texts:
+                self.assertEqual(re.search("[\u0590-\u08ff\u202a-\u202e\u2066-\u2069]", piece).group(), "\u2068", piece)
+                self.assertEqual(len(re.findall("[\u2067\u2068]", piece)), piece.count("\u2069"), piece)
+        study = json.loads(text)
+        study["name"] = "x\u202epay\u2069load"
+        self.assertIn("<h1>\u2068x\u202epay\ufffdload\u2069</h1>", self.study(study))
+
     def test_broken_text_and_control_characters(self):
         study = report_sample.study(positions=4)
         study["name"] = "a\u0000b\u001bc\ud800"

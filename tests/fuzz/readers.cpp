@@ -89,7 +89,8 @@ constexpr Reader all_readers[] = {
      }},
     {"attitudes", ".csv",
      [](const fs::path& f) {
-       static_cast<void>(scenes::read_attitudes(f, {"scene.toml", 1, 1}));
+       std::vector<std::string> warnings;
+       static_cast<void>(scenes::read_attitudes(f, {"scene.toml", 1, 1}, warnings));
      }},
     {"reflectance", ".csv",
      [](const fs::path& f) { static_cast<void>(scenes::read_reflectance(f)); }},

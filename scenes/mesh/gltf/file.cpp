@@ -22,7 +22,7 @@ class GltfReader {
   GltfReader(const GltfModel& model, const std::filesystem::path& path, VertexNormals normals)
       : model_(model),
         path_(path),
-        reads_normals_(normals == VertexNormals::Read),
+        shaped_by_normals_(normals == VertexNormals::Shape),
         visited_(model.file.nodes.size(), 0) {
     mesh_.path = path;
     mesh_.metres = 1.0;  // glTF 2.0, 3.4
@@ -46,7 +46,7 @@ class GltfReader {
     if (!mesh_.second_uv.empty()) mesh_.second_uv.resize(mesh_.uv.size(), glm::vec2(0.0F));
     if (!mesh_.colours.empty()) mesh_.colours.resize(mesh_.uv.size(), glm::vec3(1.0F));
     name_missing_coordinates();
-    if (reads_normals_) mesh_.unused.erase("NORMAL");
+    if (shaped_by_normals_) mesh_.unused.erase("NORMAL");
     return std::move(mesh_);
   }
 
@@ -244,12 +244,22 @@ class GltfReader {
     std::uint32_t vertex, uv, normal;
   };
 
-  // Where they are asked for.
+  // Faulty ones are an error where the shape depends on them.
   std::uint32_t add_normals(const tinygltf::Primitive& primitive, const Hung& hung,
                             const VertexPoses& poses, std::size_t count) {
+    try {
+      return read_normals(primitive, hung, poses, count);
+    } catch (const base::Error&) {
+      if (shaped_by_normals_) throw;
+      return no_index;
+    }
+  }
+
+  std::uint32_t read_normals(const tinygltf::Primitive& primitive, const Hung& hung,
+                             const VertexPoses& poses, std::size_t count) {
     const auto normal = primitive.attributes.find("NORMAL");
     const bool has_normals = normal != primitive.attributes.end() && normal->second >= 0;
-    if (!reads_normals_ || !has_normals) return no_index;
+    if (!has_normals) return no_index;
     auto normals = read_gltf_vectors(model_, normal->second, 3, "NORMAL", path_);
     if (normals.size() < count) gltf_fail(path_, "fewer normals than vertices");
     add_morph_targets(model_, primitive, hung.weights, "NORMAL", normals, path_);
@@ -340,7 +350,7 @@ class GltfReader {
 
   const GltfModel& model_;
   const std::filesystem::path& path_;
-  bool reads_normals_;
+  bool shaped_by_normals_;
   Mesh mesh_;
   std::vector<int> visited_;
   std::uint32_t part_set_ = 0;

@@ -21,6 +21,6 @@ inline constexpr std::size_t max_gltf_triangles = std::size_t{1} << 24;
 // textures: materials.h.
 [[nodiscard]] Mesh parse_gltf(std::string_view bytes, const std::filesystem::path& path,
                               std::span<const std::filesystem::path> folders,
-                              VertexNormals normals = VertexNormals::Ignored);
+                              VertexNormals normals = VertexNormals::Sides);
 
 }  // namespace earthshine::scenes

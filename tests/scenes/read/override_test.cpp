@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scenes/light/lamp_light.h"
 #include "tests/scenes/scene_text.h"
 
 namespace earthshine::scenes {
@@ -28,6 +29,60 @@ TEST(Override, SetsKeysOfTheSceneOfTablesAndOfNamedEntries) {
   EXPECT_EQ(scene.quality.gather_rays, 64);
   EXPECT_EQ(scene.quality.error, 0.2);  // the last one wins
   EXPECT_EQ(std::get<std::string>(scene.monitor->settings.at(0).value), "sinc");
+}
+
+// However its strength is given. 0 of what has another key than intensity is the one value that all
+// know.
+TEST(Override, AnIntensityOfZeroTurnsOffALightOfAnyType) {
+  const std::string at = "position = [0, 0, 1]\n", aim = at + "aim = [0, 0, 0]\n",
+                    cone = aim + "beam_deg = 20\nfield_deg = 40\n",
+                    side = "center = [0, 0, 1]\nedge_u = [1, 0, 0]\nedge_v = [0, 1, 0]\n",
+                    disk = "center = [0, 0, 1]\nnormal = [0, 0, 1]\nradius = 1\n";
+  const test::SceneFolder folder;
+  folder.put("l.ies",
+             "IESNA:LM-63-1995\nTILT=NONE\n1 1000 1 2 1 1 2 0 0 0\n1 1 10\n0 90\n0\n100 100\n");
+  for (const std::string& light :
+       {"type = \"point\"\nintensity = 5\n" + at, "type = \"point\"\nflux = [5, 1, 2]\n" + at,
+        "type = \"spot\"\nintensity = 5\n" + cone, "type = \"spot\"\nflux = 5\n" + cone,
+        "type = \"rectangle\"\nexitance = 5\n" + side, "type = \"rectangle\"\nflux = 5\n" + side,
+        "type = \"disk\"\nexitance = 5\n" + disk, "type = \"disk\"\nflux = 5\n" + disk,
+        "type = \"ies\"\nfile = \"l.ies\"\n" + aim,
+        "type = \"ies\"\nfile = \"l.ies\"\ncolor = [1, 0, 0]\n" + aim}) {
+    const std::string text = "format = 1\n[[light]]\nname = \"l\"\n" + light;
+    EXPECT_GT(base::max_component(lamp_flux_lm(folder.read(text).lamps.at(0))), 0.0) << light;
+    for (const char* off :
+         {"intensity=0", "intensity=0.0", "intensity=[0, 0, 0]", "flux=0", "exitance=0"}) {
+      const Scene scene = folder.read(text, {std::string("light.l.") + off});
+      EXPECT_EQ(lamp_flux_lm(scene.lamps.at(0)), Rgb(0.0)) << light << off;
+    }
+  }
+  // Any other strength is what its type has.
+  EXPECT_TRUE(holds(folder.refusal("format = 1\n[[light]]\nname = \"l\"\ntype = \"disk\"\n"
+                                   "exitance = 5\n" +
+                                       disk,
+                                   {"light.l.intensity=1"}),
+                    {"\"intensity\"", "does not belong"}));
+}
+
+// A lamp of a glTF file has no [[light]].
+TEST(Override, AnIntensityOfZeroTurnsOffALightOfAMesh) {
+  const test::SceneFolder folder;
+  folder.put("m.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+    "extensionsUsed": ["KHR_lights_punctual"],
+    "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "name": "bulb", "intensity": 7}]}},
+    "nodes": [{"mesh": 0}, {"extensions": {"KHR_lights_punctual": {"light": 0}}}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                   "min": [0, 0, 0], "max": [1, 1, 0]}]})");
+  const std::string text =
+      "format = 1\n[[material]]\nname = \"w\"\n[[object]]\nname = \"o\"\nmesh = \"m.gltf\"\n"
+      "material = \"w\"\nlights = true\n";
+  EXPECT_EQ(folder.read(text).lamps.at(0).intensity_cd, Rgb(7.0));
+  EXPECT_EQ(folder.read(text, {"light.o.bulb.intensity=0"}).lamps.at(0).intensity_cd, Rgb(0.0));
+  EXPECT_TRUE(holds(folder.refusal(text, {"light.o.bulp.intensity=0"}),
+                    {"no light is named \"o.bulp\"", "\"o.bulb\"?"}));
 }
 
 TEST(Override, IsCheckedLikeTheFileAndNamedInTheMessage) {

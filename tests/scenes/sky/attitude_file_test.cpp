@@ -34,6 +34,40 @@ class AttitudeFile : public ::testing::Test {
   test::SceneFolder folder;
 };
 
+// A full roll in two rows is none: slerp takes the shorter way. Rows that only pass from 360 to 0 or
+// from 180 to -180 deg, or name a small turn otherwise near the zenith, are as they are meant.
+TEST_F(AttitudeFile, RowsHalfATurnApartAreNamed) {
+  const auto warnings = [&](const std::string& rows) {
+    std::string csv = "position_deg, yaw_deg, pitch_deg, roll_deg\n";
+    int at = 0;
+    for (std::size_t begin = 0; begin < rows.size(); at += 60) {
+      const std::size_t end = std::min(rows.find(';', begin), rows.size());
+      csv += std::to_string(at) + "," + rows.substr(begin, end - begin) + "\n";
+      begin = end + 1;
+    }
+    folder.put("turns.csv", csv);
+    return folder.read(scene_text).warnings;
+  };
+  for (const char* wide : {"0,0,0;0,0,360", "0,0,0;0,0,180", "0,0,0;0,0,270", "0,0,0;0,0,-200",
+                           "0,0,0;0,0,350", "0,0,0;300,0,0", "0,0,0;0,200,0", "-180,0,0;180,0,0",
+                           "0,0,0;0,0,0;360,0,0;360,0,0", "0,0,0;0,0,10;0,0,200"}) {
+    const std::vector<std::string> found = warnings(wide);
+    ASSERT_EQ(found.size(), 1U) << wide;
+    EXPECT_TRUE(holds(found[0], {"turns.csv", "lines", "less than 180 deg"})) << found[0];
+  }
+  for (const char* meant :
+       {"0,0,0;0,0,179", "0,0,0;0,0,120;0,0,240;0,0,360", "0,0,160;0,0,170;0,0,-180;0,0,-170",
+        "350,0,0;0,0,0;10,0,0", "20,0,0;10,0,0;0,0,0;350,0,0", "0,0,0;0,0,120;0,0,-120;0,0,0",
+        "0,80,0;180,85,180", "0,0,179.9;0,0,-179.9;0,0,179.8", "120,0,170"}) {
+    EXPECT_TRUE(warnings(meant).empty()) << meant;
+  }
+  // By quaternions only the turn itself tells; q and -q are one attitude.
+  folder.put("turns.csv", "time_s,qw,qx,qy,qz\n0,1,0,0,0\n6000,0,1,0,0\n");
+  ASSERT_EQ(folder.read(scene_text).warnings.size(), 1U);
+  folder.put("turns.csv", "time_s,qw,qx,qy,qz\n0,1,0,0,0\n6000,-1,0,0,0\n");
+  EXPECT_TRUE(folder.read(scene_text).warnings.empty());
+}
+
 TEST_F(AttitudeFile, NamedAttitudesAreTurnsOfTheLocalVertical) {
   struct Row {
     const char* attitude;

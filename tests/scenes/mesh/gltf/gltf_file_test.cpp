@@ -151,7 +151,8 @@ TEST_F(Gltf, WhatIsNotUsedIsNamed) {
       "extensionsUsed": ["KHR_materials_sheen", "KHR_materials_ior"])";
   EXPECT_EQ(read(parts).objects.at(0).unused,
             "1 NORMAL, 1 TEXCOORD_0, 1 cameras, 1 morph targets of TEXCOORD_0, "
-            "1 nodes outside the scene that is read, 1 points or lines");
+            "1 nodes outside the scene that is read, 1 points or lines; round_deg rounds the "
+            "surface by the normals");
   EXPECT_EQ(read({}).objects.at(0).unused, "");
 }
 

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/plausible/views.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "scenes/text/message_text.h"
+
+namespace earthshine::scenes {
+namespace {
+
+constexpr std::size_t grid = 24;  // rays each way
+constexpr int most_panes_passed = 8;
+constexpr double near_share = 0.9;  // of the rays
+// A picture that is all of one surface, nearer than that share of the distance looked to.
+constexpr double near_of_way = 0.05;
+constexpr double most_backs = 0.5;
+// A bay of 15 m whose unit is taken for mm is 15 mm; the smallest that a camera looks into has
+// decimetres.
+constexpr double small_m = 0.1;
+// Fields that people choose. A number of radians in this range is below 2.7 degrees.
+constexpr double usual_fields_from_deg = 15.0, usual_fields_to_deg = 150.0;
+
+struct Frame {
+  Vec3 forward, right, up;
+  double half_width, half_height;
+
+  explicit Frame(const Camera& camera)
+      : forward(glm::normalize(camera.look_at - camera.position)),
+        right(glm::normalize(glm::cross(forward, camera.up))),
+        up(glm::cross(right, forward)),
+        half_width(0.0),
+        half_height(std::tan(base::radians(camera.fov_deg / 2.0))) {
+    half_width = half_height * camera.columns / camera.rows;
+  }
+  // x, y from -1 to 1, y up.
+  [[nodiscard]] Vec3 direction(double x, double y) const {
+    return glm::normalize(forward + x * half_width * right + y * half_height * up);
+  }
+  [[nodiscard]] bool shows(const Vec3& from_camera) const {
+    const double depth = glm::dot(from_camera, forward);
+    return depth > 0.0 && std::abs(glm::dot(from_camera, right)) <= half_width * depth &&
+           std::abs(glm::dot(from_camera, up)) <= half_height * depth;
+  }
+};
+
+// A closer look at what is in a narrow picture: whether any object of it is in it as a whole, as in
+// a picture by a long lens.
+bool shows_a_whole_object(const Scene& scene, const View& view) {
+  const Frame frame(*view.camera);
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    if (view.hits_of[o] == 0) continue;
+    const Object& object = scene.objects[o];
+    bool whole = true;
+    for (std::uint32_t t = 0; t < object.triangle_count && whole; ++t) {
+      for (const std::uint32_t v : scene.triangles[object.first_triangle + t].vertex) {
+        whole = whole && frame.shows(scene.vertices[v] - view.camera->position);
+      }
+    }
+    if (whole) return true;
+  }
+  return false;
+}
+
+std::size_t most_of(const std::vector<std::size_t>& counts) {
+  return static_cast<std::size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin());
+}
+
+// 1 where a face at `point`, whose back is seen, turns that to the middle of the object's box, -1
+// where away; 0 on a flat object. normal: of the front.
+std::ptrdiff_t turns_inward(const Box& box, const Vec3& point, const Vec3& normal) {
+  constexpr double flat = 1e-6;  // of the box
+  const double inward = glm::dot(box.middle() - point, -normal);
+  if (std::abs(inward) <= flat * box.diagonal()) return 0;
+  return inward > 0.0 ? 1 : -1;
+}
+
+double share(std::size_t part, std::size_t all) {
+  return static_cast<double>(part) / static_cast<double>(all);
+}
+
+// From here on, so many decimals, as people say lengths.
+std::string length_text(double metres) {
+  if (metres < 1.0) return fmt::format("{:.2g} mm", 1000.0 * metres);
+  return fmt::format("{:.3g} m", metres);
+}
+
+std::string blocked_text(const Scene& scene, const View& view) {
+  const double way = glm::length(view.camera->look_at - view.camera->position);
+  const std::size_t object = most_of(view.hits_of);
+  return fmt::format(
+      "camera {} is inside or right behind the object {}: that fills {:.0f} % of its picture from "
+      "{} away, and the camera looks at a point {} away; move the camera in front of that object",
+      in_quotes(view.camera->name), in_quotes(scene.objects[object].name),
+      100.0 * share(view.hits_of[object], view.rays), length_text(view.farthest_near_m),
+      length_text(way));
+}
+
+std::optional<std::string> backs_text(const Scene& scene, const View& view) {
+  if (view.back_share() <= most_backs) return std::nullopt;
+  const std::size_t number = most_of(view.backs_of);
+  const Object& object = scene.objects[number];
+  const std::ptrdiff_t inner = view.inner_backs_of[number];
+  const char* const turn = object.orient == Orient::AsIs || inner == 0
+                               ? "turn its faces over (inward)"
+                           : inner > 0 ? "say orient = \"inward\" there"
+                                       : "say orient = \"outward\" there";
+  return fmt::format(
+      "most of what camera {} sees ({:.0f} %) is back faces, which are black, the most of them of "
+      "the object {}; {}, or orient = \"two-sided\", or move the camera to the other side",
+      in_quotes(view.camera->name), 100.0 * view.back_share(), in_quotes(object.name), turn);
+}
+
+std::optional<std::string> field_text(const Scene& scene, const View& view) {
+  const double field = view.camera->fov_deg, if_radians = base::degrees(field);
+  if (if_radians < usual_fields_from_deg || if_radians > usual_fields_to_deg) return std::nullopt;
+  if (shows_a_whole_object(scene, view)) return std::nullopt;
+  return fmt::format(
+      "camera {}: fov_deg = {:g} is narrow, and no object is in the picture as a whole; {:g} "
+      "radians are {:.3g} degrees: write fov_deg = {:.3g} where those are meant",
+      in_quotes(view.camera->name), field, field, if_radians, if_radians);
+}
+
+}  // namespace
+
+bool View::is_blocked() const {
+  const double way = glm::length(camera->look_at - camera->position);
+  return farthest_near_m < near_of_way * way &&
+         share(*std::max_element(hits_of.begin(), hits_of.end()), rays) >= near_share;
+}
+
+View look(const Scene& scene, const RayQuery& query, const Camera& camera,
+          const std::vector<Box>& bounds) {
+  View view;
+  view.camera = &camera;
+  view.hits_of.resize(scene.objects.size());
+  view.backs_of.resize(scene.objects.size());
+  view.inner_backs_of.resize(scene.objects.size());
+  const Frame frame(camera);
+  const double offset_m = query.surface_offset_m();
+  std::vector<double> distances;
+  for (std::size_t k = 0; k < grid * grid; ++k) {
+    ++view.rays;
+    const auto place = [](std::size_t n) {
+      return (2.0 * static_cast<double>(n) + 1.0) / static_cast<double>(grid) - 1.0;
+    };
+    const Vec3 direction = frame.direction(place(k % grid), place(k / grid));
+    Vec3 origin = camera.position;
+    for (int panes = 0; panes < most_panes_passed; ++panes) {
+      const Hit hit = query.closest(origin, direction);
+      if (hit.missed()) break;
+      const Vec3 point = hit_position(scene, hit);
+      const Triangle& triangle = scene.triangles[hit.triangle];
+      const Material& material = scene.materials[triangle.material];
+      if (base::max_component(material.transmit) > 0.0) {
+        origin = point + 2.0 * offset_m * direction;
+        continue;
+      }
+      ++view.hits;
+      ++view.hits_of[triangle.object];
+      if (!hit.front && material.has_black_back()) {
+        ++view.backs;
+        ++view.backs_of[triangle.object];
+        view.inner_backs_of[triangle.object] +=
+            turns_inward(bounds[triangle.object], point, triangle_normal(scene, hit.triangle));
+      }
+      view.seen.add(point);
+      distances.push_back(glm::length(point - camera.position));
+      break;
+    }
+  }
+  const auto nearest = static_cast<std::size_t>(std::ceil(near_share * double(view.rays))) - 1;
+  view.farthest_near_m = std::numeric_limits<double>::infinity();
+  if (distances.size() > nearest) {
+    const auto at = distances.begin() + static_cast<std::ptrdiff_t>(nearest);
+    std::nth_element(distances.begin(), at, distances.end());
+    view.farthest_near_m = *at;
+  }
+  return view;
+}
+
+std::vector<std::string> implausible_views(const Scene& scene, const std::vector<View>& views) {
+  std::vector<std::string> found;
+  for (const View& view : views) {
+    if (view.is_blocked()) {
+      found.push_back(blocked_text(scene, view));
+      continue;
+    }
+    if (const auto backs = backs_text(scene, view)) found.push_back(*backs);
+    if (const auto field = field_text(scene, view)) found.push_back(*field);
+  }
+  return found;
+}
+
+std::vector<std::string> implausible_size(const Scene& scene, const std::vector<View>& views) {
+  if (scene.vertices.empty()) return {};
+  double widest = 0.0;  // of what cameras see, themselves included
+  const View* widest_view = nullptr;
+  for (const View& view : views) {
+    if (view.hits == 0 || view.is_blocked()) continue;
+    Box with_camera = view.seen;
+    with_camera.add(view.camera->position);
+    if (with_camera.diagonal() <= widest) continue;
+    widest = with_camera.diagonal();
+    widest_view = &view;
+  }
+  Box all = box_around(scene.vertices);
+  for (const View& view : views) all.add(view.camera->position);
+  const double across = widest_view == nullptr ? all.diagonal() : widest;
+  if (across >= small_m) return {};
+  const std::string what = widest_view == nullptr
+                               ? "the scene is"
+                               : fmt::format("what camera {} sees is, with itself,",
+                                             in_quotes(widest_view->camera->name));
+  return {fmt::format("{} {} across; are unit, and scale of the objects, right?", what,
+                      length_text(across))};
+}
+
+}  // namespace earthshine::scenes
