@@ -105,7 +105,7 @@ void fill_solution(const scenes::World& world, const FormFactors& factors, bool 
                              light.emitted, light.direct, light.indirect, light.radiosity};
     close_energy(ledger, balanced, light.radiosity, light.indirect);
     SolveReport& report = solution.report;
-    report.groups = energy_ledger(ledger, world.groups.names, report.sources);
+    report.groups = energy_ledger(ledger, world, report.sources);
     report.objects = object_means(world.scene, patches, ledger);
   }
   base::release(light.reflectance);
@@ -148,9 +148,20 @@ void fill_solution(const scenes::World& world, const FormFactors& factors, bool 
   tell(solution.indirect_lx, copy_of(light.indirect));
 }
 
-std::vector<GroupLedger> energy_ledger(const LedgerInput& in,
-                                       const std::vector<std::string>& group_names,
+std::vector<bool> sky_groups(const scenes::World& world) {
+  std::vector<bool> is_sky(world.groups.count(), false);
+  const auto mark = [&](std::size_t first, std::size_t count) {
+    for (std::size_t k = 0; first != scenes::no_group && k < count; ++k) is_sky[first + k] = true;
+  };
+  mark(world.groups.sun, 1);
+  mark(world.groups.earth, scenes::earth_parts(world.scene));
+  mark(world.groups.sun_parts, world.scene.sky_parts ? world.scene.sky_parts->suns.size() : 0);
+  return is_sky;
+}
+
+std::vector<GroupLedger> energy_ledger(const LedgerInput& in, const scenes::World& world,
                                        std::span<const SourceFlux> sources) {
+  const std::vector<std::string>& group_names = world.groups.names;
   enum { Emitted, Landed, Absorbed, Escaped, Lines };
   const std::vector<double> sums =
       sums_over_patches(in, in.columns * Lines, [&](std::size_t i, std::size_t row, double* all) {
@@ -187,13 +198,29 @@ std::vector<GroupLedger> energy_ledger(const LedgerInput& in,
       }
     }
   }
-  for (const SourceFlux& source : sources) {
-    ledger[source.group].escaped_at_once_lm += source.escaped_lm();
-    ledger[source.group].lost_at_once_lm += source.lost_lm();
+  std::vector<Rgb> of_sky(ledger.size());  // landed
+  for (std::size_t g = 0; g < ledger.size(); ++g) {
+    of_sky[g] = ledger[g].landed_lm;
+    ledger[g].given_lm = ledger[g].emitted_lm;
   }
-  for (GroupLedger& line : ledger) {
-    line.given_lm =
-        line.emitted_lm + line.landed_lm + line.escaped_at_once_lm + line.lost_at_once_lm;
+  for (const SourceFlux& source : sources) {
+    GroupLedger& line = ledger[source.group];
+    line.escaped_at_once_lm += source.escaped_lm();
+    line.lost_at_once_lm += source.lost_lm();
+    line.given_lm += source.emitted_lm;
+    of_sky[source.group] -= source.landed_lm;
+  }
+  const std::vector<bool> is_sky = sky_groups(world);
+  for (std::size_t g = 0; g < ledger.size(); ++g) {
+    GroupLedger& line = ledger[g];
+    if (is_sky[g]) line.given_lm += of_sky[g];
+    const Rgb found =
+        line.escaped_at_once_lm + line.lost_at_once_lm + line.emitted_lm + line.landed_lm;
+    for (int c = 0; c < 3; ++c) {
+      if (line.given_lm[c] <= 0.0) continue;
+      line.imbalance =
+          std::max(line.imbalance, std::abs(line.given_lm[c] - found[c]) / line.given_lm[c]);
+    }
   }
   return ledger;
 }

@@ -36,7 +36,8 @@ void fill_solution(const scenes::World& world, const FormFactors& factors, bool 
 
 // Where the energy went. With F balanced (form_factors.h) every line adds up to rounding and the
 // solver's residual:
-//   given   = emitted + landed + what sources lose at once (direct.h)
+//   given   = emitted + landed + what sources lose at once (direct.h), where given is the photometric
+//             flux
 //   emitted = sum A M            patches that shine through F
 //   landed  = sum A d E0         direct light, as computed
 //   absorbed = sum A ((a - rho) F B + (d - rho) E0) + sum A B lost
@@ -56,8 +57,11 @@ struct LedgerInput {
   std::span<const double> radiosity;    // B
 };
 
+// Whether the Sun or the Earth shines in each group.
+[[nodiscard]] std::vector<bool> sky_groups(const scenes::World& world);
+
 [[nodiscard]] std::vector<GroupLedger> energy_ledger(const LedgerInput& input,
-                                                     const std::vector<std::string>& group_names,
+                                                     const scenes::World& world,
                                                      std::span<const SourceFlux> sources);
 
 // Scales each column of B and of F B so that its energy adds up to rounding. Summed with the areas

@@ -9,8 +9,9 @@
 namespace earthshine::radiosity {
 
 // As subdivide(), and then halves patches that lamps shine at until none is longer than a
-// quarter of its distance from the lamp's centre, or of half of the lamp, or they are about twice
-// as many. Dimmed lamps count like others: a sum of lamps' lights is that of the scene with all of
+// quarter of its distance from the lamp's centre, or of half of the lamp, and none holds more than
+// a 32nd of a narrow beam, by rays of its lamp past nothing; or until they are about twice as many.
+// Dimmed lamps count like others: a sum of lamps' lights is that of the scene with all of
 // them. Lamps without any light cost nothing.
 [[nodiscard]] Patches subdivide_near_lamps(const scenes::Scene& scene, double edge_m);
 

@@ -50,7 +50,8 @@ struct RefineRound {
 // Where the energy of one light group went, lm per channel.
 //   given = escaped at once + lost at once + emitted + landed
 //   emitted (by patches through F) + landed (directly, as computed) = absorbed + escaped
-// Of the sky only what lands is counted as given. What escapes at once is `escaped_at_once_lm`,
+// Given is the photometric flux of lamps and emitting surfaces; of the sky only what lands is counted
+// as given. What escapes at once is `escaped_at_once_lm`,
 // `escaped_lm` is what does so after it was reflected or sent by a patch.
 struct GroupLedger {
   std::string name;
@@ -61,8 +62,9 @@ struct GroupLedger {
   Rgb landed_lm{0.0};
   Rgb absorbed_lm{0.0};
   Rgb escaped_lm{0.0};
-  double imbalance =
-      0.0;  // |emitted + landed - absorbed - escaped| / (emitted + landed), worst channel
+  // The worse of both equations' defects, in the worst channel: of the first over given, of the
+  // second over emitted + landed.
+  double imbalance = 0.0;
 };
 
 struct ObjectLight {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/render/light.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -154,11 +156,29 @@ studies::Wanted wanted_error(const LoadedScene& loaded, const Common& common, do
 
 Solved find_light(const LightCall& wanted, StageTimes& times) {
   Solved light = solve_or_take(wanted, times);
-  if (light.solved && !wanted.common.quiet) note_backs(light.solution.report);
+  if (light.solved && !wanted.common.quiet) {
+    note_backs(light.solution.report);
+    note_lost_flux(light.solution.report);
+  }
   if (light.broken_off && !wanted.common.quiet) {
     note("note: the solve was broken off: the picture finds light between surfaces by paths alone");
   }
   return light;
+}
+
+void note_lost_flux(const radiosity::SolveReport& report) {
+  constexpr double least = 1e-6;
+  for (const radiosity::GroupLedger& group : report.groups) {
+    const double given = base::luminance(group.given_lm);
+    const double found = base::luminance(group.landed_lm + group.emitted_lm +
+                                         group.escaped_at_once_lm + group.lost_at_once_lm);
+    if (std::abs(given - found) <= least * given) continue;
+    note(fmt::format(
+        "warning: light group \"{}\" gives {:.6g} lm, and samples found {:.6g} lm: it shines "
+        "where no point of a patch is. Lower quality.patch_edge or raise "
+        "quality.max_patches",
+        group.name, given, found));
+  }
 }
 
 void add_solution_option(CLI::App& command, std::string& path) {

@@ -45,6 +45,9 @@ struct ExactCall {
 [[nodiscard]] studies::Wanted wanted_error(const LoadedScene& loaded, const Common& common,
                                            double time_limit_s, const StageTimes& times);
 
+// Names light groups whose flux is not where samples found it, by more than a millionth.
+void note_lost_flux(const radiosity::SolveReport& report);
+
 // The solution as the commands have it: solved, or read from a file that --solution names.
 
 void add_solution_option(CLI::App& command, std::string& path);

@@ -238,7 +238,10 @@ void run(const SolveCall& call, const Common& common) {
                nullptr, call.solution.empty());
   const Solved light = solve_alone(call, common, loaded, query, options, times);
   const radiosity::Solution& solution = light.solution;
-  if (!common.quiet) note_backs(solution.report);
+  if (!common.quiet) {
+    note_backs(solution.report);
+    note_lost_flux(solution.report);
+  }
   const bool writes_report = is_json(call.output);
   if (!call.output.empty() && !writes_report) {
     times.measure("write", [&] { write_solution(call.output, solution, loaded, options); });

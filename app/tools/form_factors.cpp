@@ -77,23 +77,25 @@ void find_exactly(const scenes::Scene& scene, const scenes::RayQuery& query,
   radiosity::ObjectFormFactors& o = found.between;
   // Sky and black backs share what is left of a row, as rays found them; what is open of a face is
   // found by points.
-  std::vector<double> split(o.F.size(), 0.0), open(o.F.size(), 0.0);
+  std::vector<double> split(o.F.size(), 0.0), open(o.F.size(), 0.0), apart(o.F.size(), 0.0);
   for (std::uint32_t i = 0; i < facets.count(); ++i) {
-    const double apart = facets.area_m2[i] * exact.report.split_std_error[i];
+    const double shared = facets.area_m2[i] * exact.report.split_std_error[i];
     const double points = facets.area_m2[i] * exact.report.open_std_error[i];
-    split[facets.object(i)] += apart * apart;
+    split[facets.object(i)] += shared * shared;
+    apart[facets.object(i)] += facets.area_m2[i] * exact.report.disagreement[i];
     open[facets.object(i)] += points * points;
   }
   for (std::size_t i = 0; i < o.F.size(); ++i) {
     if (o.open_area_m2[i] <= 0.0) continue;
     const double of_area = std::sqrt(open[i]) / o.open_area_m2[i];
+    const double of_row = std::hypot(exact.report.estimated_error, apart[i] / o.open_area_m2[i]);
     const auto error_of = [&](double f) {
-      return std::hypot(std::hypot(exact.report.estimated_error, area_rule_error * f), of_area * f);
+      return std::hypot(std::hypot(of_row, area_rule_error * f), of_area * f);
     };
     std::transform(o.F[i].begin(), o.F[i].end(), o.std_error[i].begin(), error_of);
     const double rest = o.sky[i] + o.black[i];
     o.sky_std_error[i] = o.black_std_error[i] =
-        std::hypot(std::hypot(exact.report.estimated_error, area_rule_error * rest),
+        std::hypot(std::hypot(of_row, area_rule_error * rest),
                    std::hypot(std::sqrt(split[i]) / o.open_area_m2[i], of_area * (1.0 - rest)));
   }
 }
@@ -125,6 +127,13 @@ Found find(const FactorsCall& call, const Common& common) {
     found.patches = patches.count();
     found.between = radiosity::object_form_factors_by_rays(
         scene, query, patches, {knobs.form_factor_rays, common.seed, call.raw}, found.rays);
+  }
+  if (found.exact.disagreeing_rows > 0 && !common.quiet) {
+    note(
+        fmt::format("warning: of {} faces the exact factors leave more or less open than rays find "
+                    "open, beyond "
+                    "the errors of both; the errors are widened. Compare with --method rays",
+                    found.exact.disagreeing_rows));
   }
   if (found.rays.disagreeing_pairs > 0 && !common.quiet) {
     note(

@@ -52,9 +52,9 @@ double landing_scale(const Sampled& sampled, const Landing& landing, double land
     landed_variance += area * area * sampled.variance[i] * share * share;
   }
   const double all = base::luminance(flux.emitted_lm);
-  const double expected = all * (1.0 - flux.escaped_share - flux.back_share);
+  const double expected = base::luminance(flux.expected_lm());
   if (landed <= 0.0 || expected <= 0.0) return 1.0;
-  const double expected_variance = std::pow(all * flux.share_std_error, 2);
+  const double expected_variance = std::pow(flux.expected_error_lm(), 2);
   const double both = landed_variance + expected_variance;
   if (both <= 0.0) return expected / landed;  // both are exact: the flux is
   const double found = (landed * expected_variance + expected * landed_variance) / both;
@@ -238,12 +238,25 @@ class DirectStage {
 
 }  // namespace
 
-Rgb SourceFlux::escaped_lm() const {
-  const double ended = escaped_share + back_share;
-  return ended > 0.0 ? (escaped_share / ended) * (emitted_lm - landed_lm) : Rgb(0.0);
+bool SourceFlux::is_accounted_for() const {
+  constexpr double errors_apart = 6.0, rounding = 1e-9;
+  const double off = std::abs(base::luminance(landed_lm - expected_lm()));
+  return off <= errors_apart * expected_error_lm() + rounding * base::luminance(emitted_lm);
 }
 
-Rgb SourceFlux::lost_lm() const { return emitted_lm - landed_lm - escaped_lm(); }
+Rgb SourceFlux::escaped_lm() const {
+  const double ended = escaped_share + back_share;
+  if (ended <= 0.0) return Rgb(0.0);
+  return is_accounted_for() ? (escaped_share / ended) * (emitted_lm - landed_lm)
+                            : escaped_share * emitted_lm;
+}
+
+Rgb SourceFlux::lost_lm() const {
+  const double ended = escaped_share + back_share;
+  if (ended <= 0.0) return Rgb(0.0);
+  return is_accounted_for() ? (back_share / ended) * (emitted_lm - landed_lm)
+                            : back_share * emitted_lm;
+}
 
 DirectLight direct_light(const scenes::World& world, const Patches& patches,
                          const FormFactors& factors, const DirectOptions& options) {

@@ -26,10 +26,19 @@ struct SourceFlux {
   double scale = 1.0;            // applied to the patches' sampled illuminance
   Rgb landed_lm{0.0};            // on patches, scaled; never more luminance than emitted
 
+  // What the rays shot from the source found to land, lm, and the standard error by luminance.
+  [[nodiscard]] Rgb expected_lm() const { return emitted_lm * (1.0 - escaped_share - back_share); }
+  [[nodiscard]] double expected_error_lm() const {
+    return base::luminance(emitted_lm) * share_std_error;
+  }
+  // Whether landed_lm is what those rays leave, but for their noise: six standard errors.
+  [[nodiscard]] bool is_accounted_for() const;
+
   // What did not land, by where the rays shot from the source went. In luminance never negative; of
   // many lamps of different colours in one cluster, a channel may be, by the noise of their choice.
+  // Flux that is not accounted for is in none of the two.
   [[nodiscard]] Rgb escaped_lm() const;
-  [[nodiscard]] Rgb lost_lm() const;  // on black backs, or where no patch's samples found it
+  [[nodiscard]] Rgb lost_lm() const;  // on black backs
 };
 
 // What finding the light of one kind of source took.

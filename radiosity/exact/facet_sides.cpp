@@ -44,7 +44,7 @@ FacetSides::FacetSides(const Patches& patches) {
       high = glm::max(high, p);
     }
   }
-  const Vec3 origin = 0.5 * (low + high);
+  origin = 0.5 * (low + high);
   const double largest = base::max_component(glm::max(glm::abs(low), glm::abs(high)));
   margin_m =
       1e-12 * glm::length(high - low) + 4.0 * std::numeric_limits<double>::epsilon() * largest;

@@ -51,6 +51,7 @@ struct PatchShape {
 struct FacetSides {
   explicit FacetSides(const Patches& patches);
 
+  Vec3 origin{0.0};                // in the scene
   std::vector<Side> sides;         // ordered by first patch
   std::vector<PatchShape> shapes;  // per patch
   PointColumns points;

@@ -8,9 +8,8 @@
 
 #include "base/numbers/random.h"
 #include "base/parallel.h"
-#include "radiosity/exact/open_share.h"
+#include "radiosity/exact/open_parts.h"
 #include "radiosity/patches/patch_offset.h"
-#include "scenes/light/lamp_light.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -43,14 +42,15 @@ constexpr std::uint32_t gap_rays = 1U << 16;
 
 // Where the rays of a patch end that meet no patch. Those from covered points do not count.
 struct Open {
-  int sky = 0, black = 0;
+  int sky = 0, black = 0, all = 0;
   Rgb radiance{0.0};  // sum over the rays to the sky
 };
 
 Open cast_open(const scenes::RayQuery& query, const Patches& patches, std::uint32_t patch,
                std::uint32_t rays, std::uint64_t seed, const SkyRadiance& sky,
-               const ClosedBodies* bodies = nullptr, std::span<const std::uint32_t> near = {}) {
+               const ClosedBodies* bodies, std::span<const PatchCover> covers) {
   Open open;
+  const bool is_whole = covers.empty() || covers[patch].is_whole();
   const base::SobolOwen4 sobol(base::Key(seed, base::Stream::ExactOpening, patch));
   const base::Frame3 frame = base::frame_around(patches.normal(patch));
   // Off the patch's edges, where rounding could put the origin behind a neighbour.
@@ -71,14 +71,17 @@ Open cast_open(const scenes::RayQuery& query, const Patches& patches, std::uint3
     query.closest(packet, count, hits);
     for (std::uint32_t k = 0; k < count; ++k) {
       const Vec3 origin(packet.origin_x[k], packet.origin_y[k], packet.origin_z[k]);
-      if (bodies != nullptr && bodies->cover(origin, near)) continue;
+      if (!is_whole && bodies->cover(origin, covers[patch].near)) continue;
+      ++open.all;
       if (hits.triangle[k] == scenes::no_triangle) {
         ++open.sky;
         if (sky) open.radiance += sky(directions[k]);
-      } else if (patches.find(hits.triangle[k], double(hits.u[k]), double(hits.v[k]),
-                              hits.front[k] != 0) == no_patch) {
-        ++open.black;
+        continue;
       }
+      const std::uint32_t met =
+          patches.find(hits.triangle[k], double(hits.u[k]), double(hits.v[k]), hits.front[k] != 0);
+      // A wholly covered patch takes nothing.
+      if (met == no_patch || (!covers.empty() && covers[met].open <= 0.0)) ++open.black;
     }
   }
   return open;
@@ -136,6 +139,21 @@ double credible_defect(double row_square_error) {
   return 1e-6 + 20.0 * std::sqrt(row_square_error);
 }
 
+// What a row leaves open is what rays find open, or one of the two is wrong: the factors' faults
+// would else end in the sky's share, where no row sum shows them.
+void check_row(std::size_t i, double landed, const Open& open, double credible,
+               ExactReport& report) {
+  constexpr double errors_apart = 6.0;
+  if (open.all == 0) return;
+  const double share = double(open.sky + open.black) / open.all;
+  // Binomial, and never less than one ray gone the other way.
+  const double error = std::max(std::sqrt(share * (1.0 - share) / open.all), 1.0 / open.all);
+  const double apart = std::abs(1.0 - landed - share);
+  if (apart <= errors_apart * error + credible) return;
+  report.disagreement[i] = apart;
+  ++report.disagreeing_rows;
+}
+
 // Shares of sky and black backs, and the scale that makes the row close to the last digit.
 void close_row(FormFactors& factors, std::size_t i, const Open& open, double credible,
                ExactReport& report) {
@@ -145,6 +163,7 @@ void close_row(FormFactors& factors, std::size_t i, const Open& open, double cre
   }
   const double landed = landed_share(factors, i), defect = std::abs(1.0 - landed);
   const int open_rays = open.sky + open.black;
+  check_row(i, landed, open, credible, report);
   double rest = 0.0;
   if (landed == 0.0) {
     rest = 1.0;  // sees no patch, whatever single rays say
@@ -170,23 +189,13 @@ void close_row(FormFactors& factors, std::size_t i, const Open& open, double cre
     factors.sky_illuminance[i] = open.radiance * (base::pi * factors.sky[i] / open.sky);
 }
 
-// Covered points lie behind black backs, look past everything where no sky shines, or have another
-// face on them: only such patches are asked about. None: nothing is covered.
+// Empty: nothing is covered.
 std::vector<PatchCover> find_cover(const scenes::Scene& scene, const scenes::RayQuery& query,
-                                   const Patches& patches, const std::vector<Open>& open,
-                                   std::uint64_t seed, OpenParts& parts) {
-  const bool dark_sky = !scenes::has_light_outside(scene);
-  std::vector<std::uint32_t> maybe;
-  for (std::uint32_t i = 0; i < open.size(); ++i) {
-    if (open[i].black > 0 || (open[i].sky > 0 && dark_sky) ||
-        is_covered_by_faces(query.coincident(), patches, i)) {
-      maybe.push_back(i);
-    }
-  }
-  if (maybe.empty()) return {};
+                                   const Patches& patches, const FacetSides& sides,
+                                   OpenParts& parts) {
   const auto bodies = std::make_shared<const ClosedBodies>(scene, query.centre());
-  std::vector<PatchCover> covers = measure_cover(*bodies, query, patches, maybe, seed);
-  if (std::all_of(covers.begin(), covers.end(), [](const auto& c) { return c.open == 1.0; })) {
+  std::vector<PatchCover> covers = find_open_parts(*bodies, query, patches, sides);
+  if (std::all_of(covers.begin(), covers.end(), [](const auto& c) { return c.is_whole(); })) {
     return {};
   }
   parts.bodies = bodies;
@@ -215,38 +224,35 @@ ExactFormFactors exact_form_factors(const scenes::Scene& scene, const scenes::Ra
   }
   factors.sky_illuminance.assign(count, Rgb(0.0));
 
-  std::vector<PatchCover> covers;
+  const FacetSides sides(patches);
+  const std::vector<PatchCover> covers = find_cover(scene, query, patches, sides, factors.open);
+  const PairExchange pairs = exchange_of_pairs(patches, sides, covers, options.tolerance);
+  fill_rows(pairs, open_areas(factors.open, patches.area_m2), factors);
   std::vector<Open> open(count);
   std::vector<double> credible(count);
-  const auto look_out = [&](std::size_t i, std::uint32_t ray_count) {
-    const auto patch = static_cast<std::uint32_t>(i);
-    const bool whole = covers.empty() || covers[i].open == 1.0;
-    open[i] = cast_open(query, patches, patch, ray_count, options.seed, sky,
-                        whole ? nullptr : factors.open.bodies.get(),
-                        whole ? std::span<const std::uint32_t>() : covers[i].near);
-  };
-  base::parallel_chunks(count, 1, [&](std::size_t i, std::size_t) { look_out(i, rays); });
-  covers = find_cover(scene, query, patches, open, options.seed, factors.open);
-
-  const PairExchange pairs = exchange_of_pairs(patches, options.tolerance);
-  fill_rows(pairs, open_areas(factors.open, patches.area_m2), factors);
   result.report.open_std_error.assign(count, 0.0);
   base::parallel_chunks(count, 1, [&](std::size_t i, std::size_t) {
     credible[i] = credible_defect(pairs.row_square_error[i]);
-    if (!covers.empty() && covers[i].open < 1.0) {
-      look_out(i, rays);
+    if (!covers.empty() && !covers[i].is_whole()) {
+      if (covers[i].open <= 0.0) return;
       result.report.open_std_error[i] = covers[i].std_error;
-      credible[i] += 4.0 * covers[i].std_error / std::max(covers[i].open, covers[i].std_error);
+      credible[i] += 4.0 * covers[i].std_error / covers[i].open;
     }
+    const auto look_out = [&](std::uint32_t ray_count) {
+      open[i] = cast_open(query, patches, static_cast<std::uint32_t>(i), ray_count, options.seed,
+                          sky, factors.open.bodies.get(), covers);
+    };
+    look_out(rays);
     // Open by more than errors can be, through a gap that few rays find.
     const bool found_none = open[i].sky + open[i].black == 0;
     if (found_none && 1.0 - landed_share(factors, i) > credible[i] && rays < gap_rays) {
-      look_out(i, gap_rays);
+      look_out(gap_rays);
     }
   });
   result.report.pairs = count < 2 ? 0 : std::uint64_t{count} * (count - 1) / 2;
   result.report.counts = pairs.counts;
   result.report.split_std_error.assign(count, 0.0);
+  result.report.disagreement.assign(count, 0.0);
   for (std::size_t i = 0; i < count; ++i) {
     close_row(factors, i, open[i], credible[i], result.report);
     result.report.estimated_error =

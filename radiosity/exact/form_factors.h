@@ -35,8 +35,12 @@ struct ExactReport {
   std::vector<double> open_std_error;  // per patch, of factors.open.share, which points find
   std::size_t closed_rows = 0;
   double max_closed_defect = 0.0;  // greatest |1 - sum_j F_ij| of closed rows before scaling
-  std::size_t overfull_rows = 0;   // open rows with sum_j F_ij > 1, scaled to 1
-  double max_overfull = 0.0;       // the greatest sum_j F_ij - 1 among them
+  // Per patch: how far 1 - sum_j F_ij is from the share of the patch's rays that ends on the sky or
+  // on black backs, where that is more than six standard errors of both; else 0.
+  std::vector<double> disagreement;
+  std::size_t disagreeing_rows = 0;
+  std::size_t overfull_rows = 0;  // open rows with sum_j F_ij > 1, scaled to 1
+  double max_overfull = 0.0;      // the greatest sum_j F_ij - 1 among them
 };
 
 struct ExactFormFactors {

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int most_points = 20000;
 constexpr int deepest = 20;  // halvings of one cell
+constexpr double corner_inset = 1e-6;
 // The 3-point rule's error across a kink, over what the four corners are off the parabola through
 // its points: at most about this (worked out for kinks along one side).
 constexpr double error_per_corner = 0.05;
@@ -57,7 +58,9 @@ void HiddenFactor::sample(Cell& cell) {
     bend_x += rule.weight[k] * std::abs(g[0][k] - 2.0 * g[1][k] + g[2][k]);
     bend_y += rule.weight[k] * std::abs(g[k][0] - 2.0 * g[k][1] + g[k][2]);
   }
-  // Off the biquadratic through the nine points, at the corners.
+  // Off the biquadratic through the nine points, at the corners, but for a hair: on the border of
+  // a patch, in the planes of faces that stand there, shadows change at one blow.
+  const double inset_x = corner_inset * width, inset_y = corner_inset * height;
   double off[2][2];
   double off_sum = 0.0;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -67,7 +70,9 @@ void HiddenFactor::sample(Cell& cell) {
         expected += to_border[i == 0 ? k / 3 : 2 - k / 3] * to_border[j == 0 ? k % 3 : 2 - k % 3] *
                     g[k / 3][k % 3];
       }
-      off[i][j] = at(quad, i == 0 ? cell.x0 : cell.x1, j == 0 ? cell.y0 : cell.y1) - expected;
+      off[i][j] = at(quad, i == 0 ? cell.x0 + inset_x : cell.x1 - inset_x,
+                     j == 0 ? cell.y0 + inset_y : cell.y1 - inset_y) -
+                  expected;
       off_sum += std::abs(off[i][j]);
     }
   }
@@ -124,11 +129,12 @@ void HiddenFactor::set_up(const ConvexPolygon& receiver, const ConvexPolygon& ta
   const TargetFrame& frame = frame_.emplace(target);
   blockers_.clear();
   for (const Blocker* blocker : blockers) {
-    const bool known = blocker->body != nullptr &&
-                       std::any_of(blockers_.begin(), blockers_.end(),
-                                   [&](const Blocker& b) { return b.body == blocker->body; });
+    const bool known = blocker->whole_body &&
+                       std::any_of(blockers_.begin(), blockers_.end(), [&](const Blocker& b) {
+                         return b.whole_body && b.body == blocker->body;
+                       });
     if (known) continue;
-    blockers_.push_back({frame.polygon(blocker->shape), blocker->front_only, blocker->body});
+    blockers_.push_back({frame.polygon(blocker->shape), blocker->body, blocker->whole_body});
   }
   target_ = frame.polygon(target);
   put_largest_shadow_first(frame.point(ball.centre), margin_m);

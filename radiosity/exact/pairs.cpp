@@ -2,10 +2,10 @@
 #include "radiosity/exact/pairs.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 #include "base/parallel.h"
-#include "radiosity/exact/facet_sides.h"
 #include "radiosity/exact/hidden_factor.h"
 #include "radiosity/exact/occlusion/convex_bodies.h"
 #include "radiosity/exact/polygon/polygon_factor.h"
@@ -67,7 +67,8 @@ Extent shadow_cover(const ConvexPolygon& blocker, const ConvexPolygon& receiver)
 // One unit of work and the memory it needs, kept from one to the next.
 class Worker {
  public:
-  void run(const FacetSides& sides, double tolerance, Work& work, PairExchange& out) {
+  void run(const FacetSides& sides, std::span<const PatchCover> covers, double tolerance,
+           Work& work, PairExchange& out) {
     const Side& first = sides.sides[work.first];
     const Side& second = sides.sides[work.second];
     margin_m_ = sides.margin_m;
@@ -77,14 +78,30 @@ class Worker {
     }
     find_blockers(sides, first, second);
     for (std::uint32_t i = work.begin; i < work.end; ++i) {
-      const ConvexPolygon* a = in_front(sides.shapes[i], second, cut_first_, clipped_first_);
+      const ConvexPolygon* a =
+          in_front(sides.shapes[i].polygon, second, cut_first_, clipped_first_);
       if (a == nullptr) {
         work.counts.facing_away += second.patch_count;
         continue;
       }
       narrow_blockers(*a, second);
       for (std::uint32_t k = 0; k < second.patch_count; ++k) {
-        pair(sides, tolerance, first, i, *a, second.first_patch + k, work, out);
+        const std::uint32_t j = second.first_patch + k;
+        const ConvexPolygon* b =
+            in_front(sides.shapes[j].polygon, first, cut_second_, clipped_second_);
+        if (b == nullptr) {
+          ++work.counts.facing_away;
+          continue;
+        }
+        find_between(sides.shapes[j].cover);
+        HiddenExchange found;
+        if (covers.empty() || (covers[i].is_whole() && covers[j].is_whole())) {
+          found = exchange(*a, *b, unoccluded(sides, sides.shapes[i], *a, sides.shapes[j], *b),
+                           tolerance);
+        } else {
+          found = exchange_of_parts(first, covers[i], *a, second, covers[j], *b, tolerance);
+        }
+        store(found, i, j, work, out);
       }
     }
   }
@@ -109,10 +126,10 @@ class Worker {
   }
 
   // The patch's part in front of the other side's plane; nullptr if there is none.
-  const ConvexPolygon* in_front(const PatchShape& shape, const Side& other, bool cut,
+  const ConvexPolygon* in_front(const ConvexPolygon& polygon, const Side& other, bool cut,
                                 ConvexPolygon& room) const {
-    if (!cut) return &shape.polygon;
-    room = clip(shape.polygon, {other.polygon[0], other.polygon.normal}, margin_m_);
+    if (!cut) return &polygon;
+    room = clip(polygon, {other.polygon[0], other.polygon.normal}, margin_m_);
     return room.count >= 3 ? &room : nullptr;
   }
 
@@ -122,7 +139,7 @@ class Worker {
     const Box both{glm::min(one.low, two.low), glm::max(one.high, two.high)};
     const Shaft shaft(front_first_, front_second_, margin_m_);
     std::uint32_t last_body = no_body;
-    Blocker last;
+    bool is_whole = false;
     for (const std::uint32_t f : sides.hiding) {
       if (f == first.facet || f == second.facet || !both.meets(sides.blocker_box[f], margin_m_)) {
         continue;
@@ -132,29 +149,19 @@ class Worker {
       if (part.count < 3) continue;
       part = clip(part, {second.polygon[0], second.polygon.normal}, margin_m_);
       if (part.count < 3 || !shaft.may_hide(part)) continue;
-      blockers_.push_back({part, false, nullptr});
-      const std::uint32_t body = sides.bodies.of_polygon[f];
-      if (body == no_body) continue;
-      if (body != last_body) {
-        last_body = body;
-        last = as_body(sides.bodies.bodies[body], first, second);
+      const std::uint32_t number = sides.bodies.of_polygon[f];
+      if (number == no_body) {
+        blockers_.push_back({part});
+        continue;
       }
-      blockers_.back().front_only = last.front_only;
-      blockers_.back().body = last.body;
+      const ConvexBody& body = sides.bodies.bodies[number];
+      if (number != last_body) {
+        last_body = number;
+        is_whole = body.is_before({first.polygon[0], first.polygon.normal}, margin_m_) &&
+                   body.is_before({second.polygon[0], second.polygon.normal}, margin_m_);
+      }
+      blockers_.push_back({part, &body, is_whole});
     }
-  }
-
-  // What a face may leave to its body in this pair.
-  [[nodiscard]] Blocker as_body(const ConvexBody& body, const Side& first,
-                                const Side& second) const {
-    Blocker blocker;
-    blocker.front_only =
-        body.is_outside(front_first_, margin_m_) && body.is_outside(front_second_, margin_m_);
-    if (blocker.front_only && body.is_before({first.polygon[0], first.polygon.normal}, margin_m_) &&
-        body.is_before({second.polygon[0], second.polygon.normal}, margin_m_)) {
-      blocker.body = &body;
-    }
-    return blocker;
   }
 
   // Those that can stand between one patch and the other side, and where their shadows fall on it.
@@ -172,35 +179,65 @@ class Worker {
     }
   }
 
-  void pair(const FacetSides& sides, double tolerance, const Side& first, std::uint32_t i,
-            const ConvexPolygon& a, std::uint32_t j, Work& work, PairExchange& out) {
-    const PatchShape &from = sides.shapes[i], &to = sides.shapes[j];
-    const ConvexPolygon* b = in_front(to, first, cut_second_, clipped_second_);
-    if (b == nullptr) {
-      ++work.counts.facing_away;
-      return;
-    }
+  void find_between(const Extent& target) {
     between_.clear();
     for (std::size_t k = 0; k < narrow_.size(); ++k) {
-      if (covers_[k].meets(to.cover)) between_.push_back(narrow_[k]);
+      if (covers_[k].meets(target)) between_.push_back(narrow_[k]);
     }
+  }
+
+  // Of polygons in front of each other, past those of between_ that may hide one from the other.
+  HiddenExchange exchange(const ConvexPolygon& a, const ConvexPolygon& b, double unoccluded_m2,
+                          double tolerance) {
+    here_.clear();
     if (!between_.empty()) {
-      const Shaft shaft(a, *b, margin_m_);
-      std::erase_if(between_, [&](const Blocker* k) { return !shaft.may_hide(k->shape); });
+      const Shaft shaft(a, b, margin_m_);
+      std::copy_if(between_.begin(), between_.end(), std::back_inserter(here_),
+                   [&](const Blocker* k) { return shaft.may_hide(k->shape); });
     }
-    double exchange = unoccluded(sides, from, a, to, *b);
-    if (between_.empty()) {
-      ++work.counts.unoccluded;
-    } else {
-      const HiddenExchange hidden = hidden_.exchange(
-          a, *b, between_, exchange, tolerance * std::min(area_m2(a), area_m2(*b)), margin_m_);
-      exchange = hidden.exchange_m2;
-      work.counts.points += static_cast<std::uint64_t>(hidden.points);
-      ++(hidden.any_visible ? hidden.any_hidden ? work.counts.partly_hidden : work.counts.unoccluded
-                            : work.counts.wholly_hidden);
-      if (hidden.error_m2 > 0.0) work.errors.push_back({i, j, hidden.error_m2});
+    if (here_.empty()) return {.exchange_m2 = unoccluded_m2, .any_visible = true};
+    return hidden_.exchange(a, b, here_, unoccluded_m2,
+                            tolerance * std::min(area_m2(a), area_m2(b)), margin_m_);
+  }
+
+  // Between what is open of both patches.
+  HiddenExchange exchange_of_parts(const Side& first, const PatchCover& cover_a,
+                                   const ConvexPolygon& a, const Side& second,
+                                   const PatchCover& cover_b, const ConvexPolygon& b,
+                                   double tolerance) {
+    const auto parts = [](const PatchCover& cover, const ConvexPolygon& whole) {
+      return cover.is_whole() ? std::span<const ConvexPolygon>(&whole, 1)
+                              : std::span<const ConvexPolygon>(cover.parts);
+    };
+    const auto of_a = parts(cover_a, a), of_b = parts(cover_b, b);
+    HiddenExchange sum;
+    ConvexPolygon clipped_a, clipped_b;
+    for (const ConvexPolygon& whole_a : of_a) {
+      const ConvexPolygon* part_a = in_front(whole_a, second, cut_first_, clipped_a);
+      if (part_a == nullptr) continue;
+      for (const ConvexPolygon& whole_b : of_b) {
+        const ConvexPolygon* part_b = in_front(whole_b, first, cut_second_, clipped_b);
+        if (part_b == nullptr) continue;
+        const HiddenExchange found =
+            exchange(*part_a, *part_b, exchange_m2(*part_a, *part_b, margin_m_),
+                     tolerance / double(std::min(of_a.size(), of_b.size())));
+        sum.exchange_m2 += found.exchange_m2;
+        sum.error_m2 += found.error_m2;
+        sum.any_hidden = sum.any_hidden || found.any_hidden;
+        sum.any_visible = sum.any_visible || found.any_visible;
+        sum.points += found.points;
+      }
     }
-    out.upper_m2[out.index(i, j)] = exchange;
+    return sum;
+  }
+
+  static void store(const HiddenExchange& found, std::uint32_t i, std::uint32_t j, Work& work,
+                    PairExchange& out) {
+    work.counts.points += static_cast<std::uint64_t>(found.points);
+    ++(found.any_visible ? found.any_hidden ? work.counts.partly_hidden : work.counts.unoccluded
+                         : work.counts.wholly_hidden);
+    if (found.error_m2 > 0.0) work.errors.push_back({i, j, found.error_m2});
+    out.upper_m2[out.index(i, j)] = found.exchange_m2;
   }
 
   double unoccluded(const FacetSides& sides, const PatchShape& from, const ConvexPolygon& a,
@@ -219,7 +256,7 @@ class Worker {
   ConvexPolygon front_first_, front_second_, clipped_first_, clipped_second_;
   bool cut_first_ = false, cut_second_ = false;
   std::vector<Blocker> blockers_;
-  std::vector<const Blocker*> narrow_, between_;
+  std::vector<const Blocker*> narrow_, between_, here_;
   std::vector<Extent> covers_;
   HiddenFactor hidden_;
   double margin_m_ = 0.0;
@@ -227,17 +264,18 @@ class Worker {
 
 }  // namespace
 
-PairExchange exchange_of_pairs(const Patches& patches, double tolerance) {
+PairExchange exchange_of_pairs(const Patches& patches, const FacetSides& sides,
+                               std::span<const PatchCover> covers, double tolerance) {
   PairExchange result;
   result.count = patches.count();
   result.row_square_error.assign(result.count, 0.0);
   if (result.count < 2) return result;
   result.upper_m2.assign(result.count * (result.count - 1) / 2, 0.0);
-  const FacetSides sides(patches);
   std::vector<Work> works = share_out(sides);
   base::parallel_chunks(works.size(), 1, [&](std::size_t begin, std::size_t end) {
     thread_local Worker worker;
-    for (std::size_t k = begin; k < end; ++k) worker.run(sides, tolerance, works[k], result);
+    for (std::size_t k = begin; k < end; ++k)
+      worker.run(sides, covers, tolerance, works[k], result);
   });
   for (const Side& side : sides.sides) {
     result.counts.facing_away += std::uint64_t{side.patch_count} * (side.patch_count - 1) / 2;

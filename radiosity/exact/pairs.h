@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "radiosity/patches/patches.h"
+#include "radiosity/exact/facet_sides.h"
+#include "radiosity/exact/open_parts.h"
 
 namespace earthshine::radiosity {
 
@@ -29,7 +31,9 @@ struct PairExchange {
   }
 };
 
-// tolerance: of each partly hidden F_ij, absolute. The same bytes for any number of threads.
-[[nodiscard]] PairExchange exchange_of_pairs(const Patches& patches, double tolerance);
+// Between the parts that `covers` leaves open, one a patch; empty: nothing is covered. tolerance:
+// of each partly hidden F_ij, absolute. The same bytes for any number of threads.
+[[nodiscard]] PairExchange exchange_of_pairs(const Patches& patches, const FacetSides& sides,
+                                             std::span<const PatchCover> covers, double tolerance);
 
 }  // namespace earthshine::radiosity

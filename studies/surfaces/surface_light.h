@@ -56,7 +56,8 @@ class LightOnSurfaces {
 
   struct Finished {
     radiosity::Solution solution;
-    double lacks = 0.0;  // of the mean radiosity, luminance, before the ledger was closed
+    double lacks =
+        0.0;  // of the mean radiosity or the flux, luminance, before the ledger was closed
   };
   [[nodiscard]] Finished finished() const;
 
@@ -69,6 +70,8 @@ class LightOnSurfaces {
   [[nodiscard]] std::vector<double> means_of(const std::vector<double>& residual,
                                              std::size_t columns) const;
   [[nodiscard]] double close_energy(radiosity::PatchLight& found) const;
+  [[nodiscard]] double close_flux(radiosity::PatchLight& found,
+                                  std::vector<radiosity::SourceFlux>& sources) const;
 
   scenes::World scene_;
   SurfaceLight light_;

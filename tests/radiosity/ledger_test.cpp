@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "radiosity/fill_solution.h"
+#include "radiosity/near_lamps.h"
+#include "scenes/light/lamp_light.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::radiosity {
@@ -119,6 +121,72 @@ TEST(Ledger, ManyLampsOfTwoColoursInAClosedRoomLandTheFluxOfEachChannel) {
     EXPECT_NEAR(line.escaped_at_once_lm[c] + line.lost_at_once_lm[c], 0.0, 1e-9);
   }
   expect_closed(line);
+}
+
+// A closed cube of 1 m: whatever the lamp, its flux lands, and nothing else does. Spots of half a
+// degree and less shine on a few mm of a wall that no point of a patch of 0.25 m meets.
+TEST(Ledger, EveryLampInAClosedRoomGivesAndLandsItsFlux) {
+  std::vector<scenes::Lamp> lamps;
+  for (const double field_deg : {0.1, 0.5, 1.0, 2.0, 5.0, 60.0}) {
+    scenes::Lamp spot = point_lamp("spot", {0.4, 0.55, 0.9}, Rgb(1000.0, 2000.0, 500.0));
+    spot.kind = scenes::LampKind::Spot;
+    spot.axis = glm::normalize(Vec3(0.13, 0.07, -0.8));
+    spot.beam_deg = 0.5 * field_deg;
+    spot.field_deg = field_deg;
+    lamps.push_back(spot);
+  }
+  for (const Vec3& place :
+       {Vec3(0.5, 0.5, 0.5), Vec3(0.5, 0.5, 1e-3), Vec3(1e-3, 2e-3, 1e-3), Vec3(0.1, 0.93, 0.4)}) {
+    lamps.push_back(point_lamp("point", place, Rgb(10.0, 20.0, 30.0)));
+  }
+  scenes::Lamp disk = point_lamp("disk", {0.5, 0.5, 0.999}, Rgb(0.0));
+  disk.kind = scenes::LampKind::Disk;
+  disk.axis = Vec3(0, 0, -1);
+  disk.radius_m = 0.5;  // to the walls
+  disk.exitance = Rgb(100.0);
+  lamps.push_back(disk);
+  scenes::Lamp rectangle = disk;
+  rectangle.name = "rectangle";
+  rectangle.kind = scenes::LampKind::Rectangle;
+  rectangle.edge_u = Vec3(1, 0, 0);
+  rectangle.edge_v = Vec3(0, -1, 0);
+  lamps.push_back(rectangle);
+  for (const scenes::Lamp& lamp : lamps) {
+    tests::SceneBuilder builder;
+    const std::uint32_t m = builder.material(tests::grey(0.5));
+    builder.room({m, m, m, m, m, m});
+    builder.scene.lamps.push_back(lamp);
+    SolveOptions options;
+    options.patch_edge_m = 0.25;
+    const tests::Prepared prepared(builder.scene);
+    const GroupLedger line =
+        solve(prepared, options, subdivide_near_lamps(builder.scene, 0.25)).report.groups.at(0);
+    const Rgb flux = scenes::lamp_flux_lm(lamp);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(line.given_lm[c] / flux[c], 1.0, 1e-9) << lamp.name << " " << lamp.field_deg;
+      EXPECT_NEAR(line.landed_lm[c] / flux[c], 1.0, 1e-9) << lamp.name << " " << lamp.field_deg;
+    }
+    EXPECT_LT(line.imbalance, 1e-9) << lamp.name << " " << lamp.field_deg;
+  }
+}
+
+// The same spot on patches that no beam has cut: no sample finds its light, and the ledger says so.
+TEST(Ledger, FluxThatNoSampleFindsIsAnImbalance) {
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  builder.room({m, m, m, m, m, m});
+  scenes::Lamp spot = point_lamp("spot", {0.4, 0.55, 0.9}, Rgb(1000.0));
+  spot.kind = scenes::LampKind::Spot;
+  spot.axis = Vec3(0, 0, -1);
+  spot.beam_deg = 0.01;
+  spot.field_deg = 0.02;
+  builder.scene.lamps.push_back(spot);
+  const tests::Prepared prepared(builder.scene);
+  const GroupLedger line =
+      solve(prepared, SolveOptions{}, subdivide(builder.scene, 1.0)).report.groups.at(0);
+  EXPECT_NEAR(line.given_lm.g / scenes::lamp_flux_lm(spot).g, 1.0, 1e-9);
+  EXPECT_EQ(line.landed_lm.g, 0.0);
+  EXPECT_NEAR(line.imbalance, 1.0, 1e-9);
 }
 
 }  // namespace

@@ -37,6 +37,31 @@ scenes::Scene floor_under_lamp(double height, scenes::LampKind kind = scenes::La
 
 Patches cut(const scenes::Scene& scene) { return subdivide_near_lamps(scene, start_edge); }
 
+// A spot of half a degree 1 m over the floor lights 8.7 mm of it: by area pi (4.4 mm)^2, smooth
+// toward its border, so that a patch of 1/32 of the flux is about 1.4 mm wide.
+TEST(NearLamps, NoPatchHoldsMuchOfANarrowBeam) {
+  for (const double field_deg : {0.1, 0.5, 5.0}) {
+    scenes::Scene scene = floor_under_lamp(1.0, scenes::LampKind::Spot);
+    scene.lamps[0].axis = glm::normalize(Vec3(0.1, 0.2, -1.0));
+    scene.lamps[0].beam_deg = 0.5 * field_deg;
+    scene.lamps[0].field_deg = field_deg;
+    const Patches patches = cut(scene);
+    const double radius = std::tan(base::radians(field_deg / 2));
+    const Vec3 middle = scene.lamps[0].position + scene.lamps[0].axis / -scene.lamps[0].axis.z;
+    double smallest = 1.0, longest_inside = 0.0;
+    for (std::uint32_t i = 0; i < patches.count(); ++i) {
+      const CellSize size = cell_size(patches, i);
+      smallest = std::min(smallest, std::min(size.s_m, size.t_m));
+      if (glm::length(patches.point(i, 0.5, 0.5) - middle) > 0.5 * radius) continue;
+      longest_inside = std::max(longest_inside, std::max(size.s_m, size.t_m));
+    }
+    EXPECT_GT(longest_inside, 0.0) << field_deg;
+    EXPECT_LT(longest_inside, 0.6 * radius) << field_deg;
+    EXPECT_GT(smallest, 0.05 * radius) << field_deg;
+    EXPECT_LT(patches.count(), 64U + 600U) << field_deg;
+  }
+}
+
 TEST(NearLamps, NoPatchIsLongerThanAQuarterOfItsDistance) {
   for (const double height : {1e-3, 0.03}) {
     const scenes::Scene scene = floor_under_lamp(height);

@@ -95,17 +95,6 @@ bool is_convex(std::span<const ConvexPolygon> polygons, std::span<const std::uin
 
 }  // namespace
 
-bool ConvexBody::is_outside(const ConvexPolygon& polygon, double margin_m) const {
-  for (const Plane& face : faces) {
-    bool before = true;
-    for (int k = 0; k < polygon.count && before; ++k) {
-      before = face.height(polygon[k]) >= -margin_m;
-    }
-    if (before) return true;
-  }
-  return false;
-}
-
 bool ConvexBody::is_before(const Plane& plane, double margin_m) const {
   return std::all_of(edges.begin(), edges.end(), [&](const Edge& edge) {
     return plane.height(edge.from) >= -margin_m && plane.height(edge.to) >= -margin_m;

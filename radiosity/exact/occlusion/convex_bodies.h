@@ -23,8 +23,6 @@ struct ConvexBody {
   std::vector<Plane> faces;  // normals outwards
   std::vector<Edge> edges;
 
-  // No point of the polygon is inside the body.
-  [[nodiscard]] bool is_outside(const ConvexPolygon& polygon, double margin_m) const;
   // The whole body is in front of the plane.
   [[nodiscard]] bool is_before(const Plane& plane, double margin_m) const;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "radiosity/exact/occlusion/shadow_clip.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "radiosity/direct/lambert.h"
@@ -40,11 +41,12 @@ void ShadowClip::add_line(const Vec3& from, const Vec3& to, double turn) {
 
 bool ShadowClip::make_lines(const Blocker& blocker) {
   lines_.clear();
-  if (blocker.body != nullptr) return make_outline(*blocker.body);
+  if (blocker.whole_body) return make_outline(*blocker.body);
   const ConvexPolygon& face = blocker.shape;
   const double side = glm::dot(face.normal, point_ - face[0]);
-  // Edge-on it has no width; what hides from behind, the rest of its body hides.
-  if (std::abs(side) <= margin_m_ || (blocker.front_only && side < 0.0)) return false;
+  // Edge-on it has no width.
+  if (std::abs(side) <= margin_m_) return false;
+  if (side < 0.0 && blocker.body != nullptr && is_outside(*blocker.body)) return false;
   Vec3 from = face[face.count - 1] - point_;
   for (int k = 0; k < face.count; ++k) {
     const Vec3 to = face[k] - point_;
@@ -52,6 +54,12 @@ bool ShadowClip::make_lines(const Blocker& blocker) {
     from = to;
   }
   return true;
+}
+
+bool ShadowClip::is_outside(const ConvexBody& body) const {
+  const Vec3 from_here = frame_->to_scene(point_);
+  return std::any_of(body.faces.begin(), body.faces.end(),
+                     [&](const Plane& face) { return face.height(from_here) > margin_m_; });
 }
 
 // The edges between faces towards the point and faces away from it.
@@ -132,6 +140,11 @@ void ShadowClip::cut(const Vec3& point) {
   hidden_.clear();
   for (const Blocker& blocker : blockers_) {
     if (visible_.empty()) break;
+    if (blocker.whole_body && !is_outside(*blocker.body)) {
+      hidden_.insert(hidden_.end(), visible_.begin(), visible_.end());
+      visible_.clear();
+      break;
+    }
     if (!make_lines(blocker)) continue;
     std::size_t first = 0;
     while (first < visible_.size() && clear_of_lines(visible_[first])) ++first;
@@ -213,7 +226,7 @@ void ShadowKinks::find(const Vec3& corner, const Vec3& side, const Vec3& along,
     collect(target[k], target.next(k), lookout, of_target_);
   }
   for (const Blocker& blocker : blockers) {
-    if (blocker.body != nullptr) {
+    if (blocker.whole_body) {
       if (blocker.body->edges.size() > most_edges) continue;
       for (const ConvexBody::Edge& edge : blocker.body->edges) {
         collect(frame.point(edge.from), frame.point(edge.to), lookout, of_blockers_);

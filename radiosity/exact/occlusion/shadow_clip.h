@@ -11,13 +11,13 @@
 namespace earthshine::radiosity {
 
 // A face of a closed convex body hides nothing from behind that the body's other faces do not hide,
-// as long as the view starts outside the body.
+// as long as the view starts outside the body. In the body, and where a face of it lies on the
+// receiver, every face hides.
 struct Blocker {
   ConvexPolygon shape;
-  bool front_only = false;
-  // The body, if all of it is in front of both polygons: its outline stands for all its faces. In
-  // the scene's coordinates.
-  const ConvexBody* body = nullptr;
+  const ConvexBody* body = nullptr;  // that it is a face of, in the scene's coordinates
+  // All of the body is in front of both polygons: its outline is the shadow of all its faces.
+  bool whole_body = false;
 };
 
 // The target's own frame: (u, v) in its plane from its first corner, h the height above it.
@@ -69,6 +69,7 @@ class ShadowClip {
 
   [[nodiscard]] bool make_lines(const Blocker& blocker);
   [[nodiscard]] bool make_outline(const ConvexBody& body);
+  [[nodiscard]] bool is_outside(const ConvexBody& body) const;
   void add_line(const Vec3& from, const Vec3& to, double turn);
   void subtract(const Piece& piece);
   [[nodiscard]] bool clear_of_lines(const Piece& piece) const;

@@ -136,8 +136,9 @@ TEST(ExactFormFactors, CubeWithABoxClosesBeforeAnyRowIsScaled) {
 
 TEST(ExactFormFactors, CubeWithABoxStaysWithinItsEstimatedError) {
   const tests::CutScene cut = tests::cube_and_box(8);
-  const PairExchange coarse = exchange_of_pairs(cut.patches, 1e-5);
-  const PairExchange fine = exchange_of_pairs(cut.patches, 1e-6);
+  const FacetSides sides(cut.patches);
+  const PairExchange coarse = exchange_of_pairs(cut.patches, sides, {}, 1e-5);
+  const PairExchange fine = exchange_of_pairs(cut.patches, sides, {}, 1e-6);
   EXPECT_LT(row_distance(cut.patches, coarse, fine), 2e-5);
   double estimated = 0.0;
   for (const double square : coarse.row_square_error) estimated += std::sqrt(square) / 408.0;

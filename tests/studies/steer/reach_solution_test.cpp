@@ -129,6 +129,35 @@ TEST(ReachSolution, OfALampOnTheFloorAllLightIsFoundThroughASheetOfGlassToo) {
   }
 }
 
+// A lamp gives its flux, whatever its samples found, and in a closed room all of it lands: 4 pi I,
+// and of a spot of half a degree I 2 pi (1 - (cos(beam / 2) + cos(field / 2)) / 2). The walls send
+// rho Phi / (1 - rho) in all.
+TEST(ReachSolution, OfSurfacesALampInAClosedRoomGivesAndLandsItsFlux) {
+  for (const double field_deg : {360.0, 5.0, 0.5}) {
+    scenes::Scene scene = lamp_on_the_floor(Pane::None);
+    scenes::Lamp& lamp = scene.lamps.front();
+    lamp.position = Vec3(0.4, 0.6, 0.9);
+    if (field_deg < 360.0) {
+      lamp.kind = scenes::LampKind::Spot;
+      lamp.axis = glm::normalize(Vec3(0.1, -0.2, -0.9));
+      lamp.beam_deg = 0.5 * field_deg;
+      lamp.field_deg = field_deg;
+    }
+    const double flux = scenes::lamp_flux_lm(lamp).g;
+    const SteeredSolution found = reached(scene, 0.05);
+    const radiosity::GroupLedger& line = found.solution.report.groups.front();
+    EXPECT_NEAR(line.given_lm.g / flux, 1.0, 1e-9) << field_deg;
+    EXPECT_NEAR(line.landed_lm.g / flux, 1.0, 1e-9) << field_deg;
+    EXPECT_NEAR(found.solution.report.sources.front().landed_lm.g / flux, 1.0, 1e-9) << field_deg;
+    EXPECT_LT(line.imbalance, 1e-9) << field_deg;
+    double sum = 0.0;
+    for (std::uint32_t i = 0; i < found.solution.patches.count(); ++i) {
+      sum += found.solution.patches.area_m2[i] * double(found.solution.radiosity[3 * i]);
+    }
+    EXPECT_NEAR(sum / (flux * 0.5 / (1.0 - 0.5)), 1.0, 1e-5) << field_deg;
+  }
+}
+
 // Aimed rays do not go by mirrors, which alone show one part of this floor to another. A closed
 // room has to keep all light: what is missing there is the least that the solution may be off by.
 TEST(ReachSolution, OfSurfacesTheErrorIsNoLessThanWhatTheLedgerLacks) {
