@@ -7,6 +7,7 @@
 
 #include "scenes/effects/light_groups.h"
 #include "scenes/health/crossings.h"
+#include "scenes/light/lamp_light.h"
 #include "scenes/plausible/shut_in.h"
 #include "scenes/plausible/views.h"
 #include "scenes/sky/orbit.h"
@@ -57,6 +58,11 @@ void name_hidden_sun(const Scene& scene, Texts& found) {
   if (!scene.sun || !(base::max_component(scene.sun->illuminance_lx) > 0.0)) return;
   const double hidden = 1.0 - visible_sun_share(scene);
   if (hidden < worth_a_word) return;
+  // A place on the orbit in full shadow, with lamps: night is meant.
+  const bool any_lamp = std::any_of(scene.lamps.begin(), scene.lamps.end(), [](const Lamp& lamp) {
+    return base::max_component(lamp_flux_lm(lamp)) > 0.0;
+  });
+  if (scene.orbit && hidden >= 1.0 && any_lamp) return;
   std::string advice = "turn one of the two where sunlight is meant, or leave out [sun]";
   if (scene.orbit) {
     advice = "take another position_deg where sunlight is meant";

@@ -11,6 +11,7 @@
 
 #include "base/numbers/random.h"
 #include "scenes/light/lamp_light.h"
+#include "scenes/plausible/views.h"
 #include "scenes/text/message_text.h"
 #include "scenes/triangle_point.h"
 
@@ -26,7 +27,7 @@ using Emit = std::function<EmittedRay(const std::array<float, 4>& at)>;
 class Tracer {
  public:
   Tracer(const Scene& scene, const RayQuery& query, const std::vector<const Camera*>& cameras)
-      : scene_(scene), query_(query), cameras_(cameras), offset_m_(query.surface_offset_m()) {}
+      : scene_(scene), query_(query), cameras_(cameras) {}
 
   // `what` names the light in a message. Empty: its light is of use.
   [[nodiscard]] std::string judge(const std::string& what, std::uint32_t rays, std::uint64_t number,
@@ -79,7 +80,7 @@ class Tracer {
     Hit hit = query_.closest(origin, direction);
     for (int panes = 0; panes < most_panes_passed && !hit.missed(); ++panes) {
       if (!(base::max_component(material_at(hit).transmit) > 0.0)) return hit;
-      origin = hit_position(scene_, hit) + 2.0 * offset_m_ * direction;
+      origin = leave_toward(scene_, query_, hit, direction);
       hit = query_.closest(origin, direction);
     }
     return hit;
@@ -92,8 +93,8 @@ class Tracer {
     for (const Camera* camera : cameras_) {
       const Vec3 way = camera->position - point;
       const double distance = glm::length(way);
-      if (!(distance > 2.0 * offset_m_)) return true;
-      query_.set(rays, 0, point, way / distance, distance - offset_m_);
+      if (!(distance > 0.0)) return true;
+      query_.set(rays, 0, point, way / distance, distance);
       Rgb share(0.0);
       query_.light_shares(rays, no_mirrors, 1, &share);
       if (base::max_component(share) > 0.0) return true;
@@ -113,7 +114,7 @@ class Tracer {
         const Hit hit = follow(origin, direction);
         if (hit.missed() || is_black_back(hit)) break;
         const Vec3 normal = (hit.front ? 1.0 : -1.0) * triangle_normal(scene_, hit.triangle);
-        origin = hit_position(scene_, hit) + offset_m_ * normal;
+        origin = leave_toward(scene_, query_, hit, normal);
         if (a_camera_sees(origin)) return true;
         const auto at = points.point(rays * static_cast<std::uint32_t>(n + 1) + k);
         direction = cosine_direction(base::frame_around(normal), at[2], at[3]);
@@ -125,14 +126,13 @@ class Tracer {
   const Scene& scene_;
   const RayQuery& query_;
   const std::vector<const Camera*>& cameras_;
-  double offset_m_;
 };
 
 // The emitting triangles of an object, chosen by their flux.
 class EmittingObject {
  public:
-  EmittingObject(const Scene& scene, const Object& object, double offset_m)
-      : scene_(scene), offset_m_(offset_m) {
+  EmittingObject(const Scene& scene, const RayQuery& query, const Object& object)
+      : scene_(scene), query_(query) {
     double flux = 0.0;
     for (std::uint32_t k = 0; k < object.triangle_count; ++k) {
       const std::uint32_t t = object.first_triangle + k;
@@ -165,13 +165,13 @@ class EmittingObject {
     const auto [a, b, c] = corners_of(scene_, t);
     const double root = std::sqrt(u);
     const Vec3 place = (1.0 - root) * a + root * (1.0 - at[1]) * b + root * at[1] * c;
-    return {place + offset_m_ * normal, cosine_direction(base::frame_around(normal), at[2], at[3]),
+    return {place + query_.offset_m(t) * normal, cosine_direction(base::frame_around(normal), at[2], at[3]),
             1.0};
   }
 
  private:
   const Scene& scene_;
-  double offset_m_;
+  const RayQuery& query_;
   std::vector<std::uint32_t> triangles_;
   std::vector<double> cumulative_;
 };
@@ -185,7 +185,7 @@ std::vector<std::string> shut_in_lights(const Scene& scene, const RayQuery& quer
   if (scene.triangles.empty()) return {};
   std::vector<std::pair<std::string, EmittingObject>> emitters;
   for (const Object& object : scene.objects) {
-    EmittingObject emitter(scene, object, query.surface_offset_m());
+    EmittingObject emitter(scene, query, object);
     if (emitter.empty()) continue;
     emitters.emplace_back("the emitting object " + in_quotes(object.name), std::move(emitter));
   }
@@ -202,7 +202,7 @@ std::vector<std::string> shut_in_lights(const Scene& scene, const RayQuery& quer
   };
   for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
     const Lamp& lamp = scene.lamps[k];
-    if (!is_lit(lamp)) continue;
+    if (lamp.is_distant() || !is_lit(lamp)) continue;
     judge("lamp " + in_quotes(lamp.name), k, [&lamp](const std::array<float, 4>& at) {
       return emit_from_lamp(lamp, at[0], at[1], at[2], at[3]);
     });

@@ -133,6 +133,13 @@ bool View::is_blocked() const {
          share(*std::max_element(hits_of.begin(), hits_of.end()), rays) >= near_share;
 }
 
+Vec3 leave_toward(const Scene& scene, const RayQuery& query, const Hit& hit,
+                  const Vec3& direction) {
+  const Vec3 normal = triangle_normal(scene, hit.triangle);
+  const double side = glm::dot(normal, direction) < 0.0 ? -1.0 : 1.0;
+  return hit_position(scene, hit) + side * query.offset_m(hit.triangle) * normal;
+}
+
 View look(const Scene& scene, const RayQuery& query, const Camera& camera,
           const std::vector<Box>& bounds) {
   View view;
@@ -141,7 +148,6 @@ View look(const Scene& scene, const RayQuery& query, const Camera& camera,
   view.backs_of.resize(scene.objects.size());
   view.inner_backs_of.resize(scene.objects.size());
   const Frame frame(camera);
-  const double offset_m = query.surface_offset_m();
   std::vector<double> distances;
   for (std::size_t k = 0; k < grid * grid; ++k) {
     ++view.rays;
@@ -157,7 +163,7 @@ View look(const Scene& scene, const RayQuery& query, const Camera& camera,
       const Triangle& triangle = scene.triangles[hit.triangle];
       const Material& material = scene.materials[triangle.material];
       if (base::max_component(material.transmit) > 0.0) {
-        origin = point + 2.0 * offset_m * direction;
+        origin = leave_toward(scene, query, hit, direction);
         continue;
       }
       ++view.hits;

@@ -12,6 +12,10 @@
 
 namespace earthshine::scenes {
 
+// Where a ray starts that goes on from a hit: off the surface, on the side of its direction.
+[[nodiscard]] Vec3 leave_toward(const Scene& scene, const RayQuery& query, const Hit& hit,
+                                const Vec3& direction);
+
 // Of one camera; rays go straight on through glass, to the first surface that is none.
 struct View {
   const Camera* camera = nullptr;

@@ -152,9 +152,9 @@ TEST(Plausible, ASunBehindTheEarthIsNamed) {
   expect_one(at(22.9), {"of the Sun"});
   expect_none(at(24.0));
   const std::string orbit = materials + plate("floor", 2, 0) + from_above +
-                            point_lamp("[0, 0, 2]") +
                             "[orbit]\naltitude_km = 400\nposition_deg = 180\n";
   expect_one(orbit, {"the Earth hides all of the Sun", "position_deg", "109.5 to 250.5"});
+  expect_none(orbit + point_lamp("[0, 0, 2]"));  // night is meant
   SceneUse along;
   along.moves_along_orbit = true;
   expect_none(orbit, along);
