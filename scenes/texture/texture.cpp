@@ -9,11 +9,13 @@
 
 #include "base/error.h"
 #include "base/numbers/digest.h"
+#include "base/parallel.h"
 
 namespace earthshine::scenes {
 namespace {
 
 constexpr double full = 65535.0;
+constexpr std::size_t texels_together = 65536;  // by one thread
 
 // IEC 61966-2-1.
 double linear(double encoded) {
@@ -44,15 +46,22 @@ Texture::Texture(const base::Pixels& pixels, TextureReading reading)
   const auto colour = decoding(reading_.is_srgb), plain = decoding(false);
   levels_.push_back({pixels.width, pixels.height, 0});
   const std::size_t count = pixels.rgba.size() / 4;
+  texels_.reserve(4 * (count + count / 3 + 64));  // with the smaller pictures
   texels_.resize(4 * count);
   bool has_alpha = false;
-  for (std::size_t k = 0; k < count; ++k) has_alpha = has_alpha || pixels.rgba[4 * k + 3] < 255;
-  base::Digest digest;
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::uint8_t* const rgba = pixels.rgba.data() + 4 * k;
-    for (std::size_t c = 0; c < 3; ++c) texels_[4 * k + c] = colour[rgba[c]];
-    texels_[4 * k + 3] = plain[reading_.is_mask && !has_alpha ? rgba[1] : rgba[3]];
+  for (std::size_t k = 0; reading_.is_mask && k < count && !has_alpha; ++k) {
+    has_alpha = pixels.rgba[4 * k + 3] < 255;
   }
+  const std::size_t opacity = reading_.is_mask && !has_alpha ? 1 : 3;
+  base::Digest digest;
+  base::parallel_chunks(count, texels_together, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint8_t* const rgba = pixels.rgba.data() + 4 * k;
+      std::uint16_t* const texel = texels_.data() + 4 * k;
+      for (std::size_t c = 0; c < 3; ++c) texel[c] = colour[rgba[c]];
+      texel[3] = plain[rgba[opacity]];
+    }
+  });
   digest.add(
       std::string_view(reinterpret_cast<const char*>(pixels.rgba.data()), pixels.rgba.size()));
   for (const int part : {pixels.width, pixels.height, int{reading_.is_srgb}, int{reading_.is_mask},
@@ -64,34 +73,62 @@ Texture::Texture(const base::Pixels& pixels, TextureReading reading)
   while (levels_.back().width > 1 || levels_.back().height > 1) add_half();
 }
 
+namespace {
+
+// How much of the texels of a row, from `first` on, lies in one of the next picture's: shares that
+// add up to 1.
+struct Cover {
+  std::size_t first = 0, count = 0;
+  std::array<float, 4> share{};
+};
+
+// A texel of half the picture covers two, of an odd size three or parts of four.
+std::vector<Cover> covers(int from, int to) {
+  const double step = double(from) / to;
+  std::vector<Cover> all(static_cast<std::size_t>(to));
+  for (int k = 0; k < to; ++k) {
+    const double begin = k * step, end = begin + step;
+    Cover& cover = all[static_cast<std::size_t>(k)];
+    const int first = int(begin), last = std::min({from, int(std::ceil(end - 1e-9)), first + 4});
+    cover.first = static_cast<std::size_t>(first);
+    cover.count = static_cast<std::size_t>(last - first);
+    for (int i = first; i < last; ++i) {
+      cover.share[static_cast<std::size_t>(i - first)] =
+          float((std::min(end, i + 1.0) - std::max(begin, double(i))) / step);
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
 // Means over the texels below each new one, in proportion to how much of them it covers: the mean
 // of the picture stays the same whatever its size.
 void Texture::add_half() {
   const Level from = levels_.back();
   const Level to{std::max(1, from.width / 2), std::max(1, from.height / 2), texels_.size()};
   texels_.resize(texels_.size() + 4 * std::size_t(to.width) * std::size_t(to.height));
-  const double step_x = double(from.width) / to.width, step_y = double(from.height) / to.height;
-  const auto cover = [](int k, double begin, double end) {
-    return std::min(end, k + 1.0) - std::max(begin, double(k));
-  };
-  for (int y = 0; y < to.height; ++y) {
-    const double y0 = y * step_y, y1 = y0 + step_y;
-    for (int x = 0; x < to.width; ++x) {
-      const double x0 = x * step_x, x1 = x0 + step_x;
-      glm::dvec4 sum(0.0);
-      for (int j = int(y0); j < std::min(from.height, int(std::ceil(y1 - 1e-9))); ++j) {
-        for (int i = int(x0); i < std::min(from.width, int(std::ceil(x1 - 1e-9))); ++i) {
-          sum += cover(i, x0, x1) * cover(j, y0, y1) * texel(from, i, j);
+  const std::vector<Cover> columns = covers(from.width, to.width),
+                           rows = covers(from.height, to.height);
+  const std::size_t rows_together = std::max<std::size_t>(1, texels_together / columns.size());
+  base::parallel_chunks(rows.size(), rows_together, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) {
+      std::uint16_t* made = texels_.data() + to.first + 4 * y * columns.size();
+      for (const Cover& column : columns) {
+        std::array<float, 4> sum{0.5F, 0.5F, 0.5F, 0.5F};  // rounds
+        for (std::size_t j = 0; j < rows[y].count; ++j) {
+          const std::uint16_t* t =
+              texels_.data() + from.first +
+              4 * ((rows[y].first + j) * std::size_t(from.width) + column.first);
+          for (std::size_t i = 0; i < column.count; ++i, t += 4) {
+            const float share = rows[y].share[j] * column.share[i];
+            for (std::size_t c = 0; c < 4; ++c) sum[c] += share * float(t[c]);
+          }
         }
-      }
-      sum /= step_x * step_y;
-      const std::size_t at =
-          to.first + 4 * (std::size_t(y) * std::size_t(to.width) + std::size_t(x));
-      for (int c = 0; c < 4; ++c) {
-        texels_[at + std::size_t(c)] = static_cast<std::uint16_t>(std::lround(full * sum[c]));
+        for (const float x : sum) *made++ = static_cast<std::uint16_t>(x);
       }
     }
-  }
+  });
   levels_.push_back(to);
 }
 
@@ -133,6 +170,33 @@ glm::dvec4 Texture::at(const glm::dvec2& uv, double level) const {
 }
 
 glm::dvec4 Texture::mean() const { return texel(levels_.back(), 0, 0); }
+
+void PictureShelf::prepare(const std::vector<Picture>& pictures) {
+  std::vector<const Picture*> fresh;
+  for (const Picture& picture : pictures) {
+    const auto is_same = [&](const auto& other) { return other.reading == picture.reading; };
+    if (std::any_of(shelved_.begin(), shelved_.end(), is_same) ||
+        std::any_of(fresh.begin(), fresh.end(),
+                    [&](const Picture* other) { return is_same(*other); })) {
+      continue;
+    }
+    fresh.push_back(&picture);
+  }
+  std::vector<std::shared_ptr<const Texture>> made(fresh.size());
+  base::parallel_chunks(fresh.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      try {
+        made[k] = std::make_shared<const Texture>(
+            base::read_pixels(fresh[k]->bytes, fresh[k]->reading.name), fresh[k]->reading);
+      } catch (const base::Error& error) {  // said by take()
+        if (error.blame() != base::Blame::Input) throw;
+      }
+    }
+  });
+  for (std::size_t k = 0; k < fresh.size(); ++k) {
+    if (made[k]) shelved_.push_back({fresh[k]->reading, made[k]});
+  }
+}
 
 std::shared_ptr<const Texture> PictureShelf::take(const TextureReading& reading,
                                                   const std::function<std::string()>& read) {
