@@ -62,15 +62,15 @@ enum class VertexNormals { Sides, Shape };
 inline constexpr std::string_view normals_of_file[] = {"vn", "nx", "ny", "nz", "NORMAL"};
 
 struct Mesh {
-  std::filesystem::path path;  // empty for a shape
+  std::filesystem::path path;    // empty for a shape
   std::optional<double> metres;  // of its unit of length; nothing: the scene's unit
   bool is_y_up = false;          // by its format; false: the format does not say
   bool is_own = false;           // this program wrote it, and turned z up to y up
   std::vector<Vec3> vertices;
-  std::vector<std::uint32_t> indices;         // counter-clockwise seen from the front
-  std::vector<glm::vec2> uv;                  // texture coordinates, v down from the upper edge
-  std::vector<std::uint32_t> uv_indices;      // into uv, one for each of `indices`; no_index: none.
-                                              // Empty: no corner has any
+  std::vector<std::uint32_t> indices;     // counter-clockwise seen from the front
+  std::vector<glm::vec2> uv;              // texture coordinates, v down from the upper edge
+  std::vector<std::uint32_t> uv_indices;  // into uv, one for each of `indices`; no_index: none.
+                                          // Empty: no corner has any
   // Beside uv, and as long, or empty: a second set, and what multiplies the diffuse colour.
   std::vector<glm::vec2> second_uv;
   std::vector<glm::vec3> colours;
@@ -83,7 +83,7 @@ struct Mesh {
   std::vector<Material> materials;              // those that the file itself or a library defines
   std::vector<base::Location> material_places;  // of each of these
   std::vector<std::vector<std::string>> material_lacks;  // what of each is not used, though the
-                                                         // picture would change by it; may be shorter
+      // picture would change by it; may be shorter
   // Materials that the file has in another colour under the name on the right.
   std::map<std::string, std::string> variant_of;
   std::vector<MaterialLibrary> libraries;

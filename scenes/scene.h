@@ -142,7 +142,7 @@ struct Lamp {
   std::string name;
   std::string group;
   LampKind kind = LampKind::Point;
-  Vec3 position{0.0};             // m; the centre of a rectangle or disk; distant: none
+  Vec3 position{0.0};  // m; the centre of a rectangle or disk; distant: none
   // Unit: toward the aim; the normal of a rectangle or disk; distant: the way that light goes.
   Vec3 axis{0.0, 0.0, 1.0};
   Rgb intensity_cd{0.0};          // point; spot: on the axis; measured: where it is greatest
@@ -282,7 +282,7 @@ struct Scene {
   std::vector<std::filesystem::path> files;  // that it was read from: itself, meshes, tables, ...
   std::string name;
   std::vector<Vec3> vertices;
-  std::vector<glm::vec2> vertex_uv;  // u, v down, of each; empty: no surface has a texture
+  std::vector<glm::vec2> vertex_uv;      // u, v down, of each; empty: no surface has a texture
   std::vector<glm::vec2> second_uv;      // the same of emission's own set; empty: none
   std::vector<glm::vec3> vertex_colour;  // linear; empty: none
   std::vector<Triangle> triangles;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/numbers/sobol_set.h"
+#include "base/parallel.h"
 #include "scenes/texture/texture.h"
 
 namespace earthshine::scenes {
@@ -14,6 +15,9 @@ namespace {
 // Of a triangle for its mean, along each side: sixteen samples to a texel, within the first two
 // bounds, but no less than one, up to the last.
 constexpr int fewest_samples = 4, most_samples = 64, most_of_many_texels = 256;
+// For the mean over all that wears a material: many small triangles need few samples each.
+constexpr std::size_t samples_of_material = std::size_t{1} << 20;
+constexpr std::size_t triangles_together = 1024;
 
 // What stands at the vertices, there.
 template <class Value, class OfVertex>
@@ -60,10 +64,18 @@ Rgb diffuse_factor(const Scene& scene, const MaterialMaps& maps, const SurfacePl
 struct Sums {
   double area = 0.0;
   Rgb diffuse{0.0}, emit{0.0};
+  Sums& operator+=(const Sums& other) {
+    area += other.area;
+    diffuse += other.diffuse;
+    emit += other.emit;
+    return *this;
+  }
 };
 
-void add_triangle(const Scene& scene, std::uint32_t triangle, const MaterialMaps& maps,
-                  Sums& sums) {
+// `most` samples, of the sequence of even points from `first` on, so that triangles that repeat a
+// pattern do not repeat its samples.
+void add_triangle(const Scene& scene, std::uint32_t triangle, const MaterialMaps& maps, Sums& sums,
+                  std::size_t most = SIZE_MAX, std::size_t first = 0) {
   const double area = triangle_area(scene, triangle);
   if (!maps.diffuse.texture && !maps.emit.texture && !maps.opacity.texture) {
     // Vertices' colours alone are linear: their mean is that of the middle.
@@ -75,10 +87,11 @@ void add_triangle(const Scene& scene, std::uint32_t triangle, const MaterialMaps
   const int n =
       std::max(std::clamp(static_cast<int>(std::ceil(16.0 * texels)), fewest_samples, most_samples),
                std::min(static_cast<int>(std::ceil(texels)), most_of_many_texels));
+  const std::size_t count = std::min(static_cast<std::size_t>(n) * std::size_t(n), most);
   SurfacePlace place{triangle, 0.0, 0.0};
-  const double share = area / (double(n) * n);
-  for (int k = 0; k < n * n; ++k) {
-    const glm::dvec2 square = base::even_point(static_cast<std::size_t>(k));
+  const double share = area / double(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const glm::dvec2 square = base::even_point(first + k);
     const double root = std::sqrt(square.x);  // even over the triangle
     place.u = root * (1.0 - square.y);
     place.v = root * square.y;
@@ -142,19 +155,27 @@ void settle_textures(Scene& scene) {
   scene.vertex_uv.resize(count, glm::vec2(0.0F));
   if (!scene.second_uv.empty()) scene.second_uv.resize(count, glm::vec2(0.0F));
   if (!scene.vertex_colour.empty()) scene.vertex_colour.resize(count, glm::vec3(1.0F));
-  std::vector<Sums> sums(scene.materials.size());
+  std::vector<std::vector<std::uint32_t>> worn(scene.materials.size());
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
     const std::uint32_t m = scene.triangles[t].material;
-    if (scene.materials[m].maps) add_triangle(scene, t, *scene.materials[m].maps, sums[m]);
+    if (scene.materials[m].maps) worn[m].push_back(t);
   }
-  for (std::size_t m = 0; m < sums.size(); ++m) {
+  for (std::size_t m = 0; m < worn.size(); ++m) {
     Material& material = scene.materials[m];
     if (!material.maps) continue;
     auto maps = std::make_shared<MaterialMaps>(*material.maps);
-    if (maps->vary_diffuse()) {
-      settle(sums[m].diffuse, sums[m].area, maps->diffuse, material.diffuse);
-    }
-    if (maps->emit.texture) settle(sums[m].emit, sums[m].area, maps->emit, material.emit);
+    const std::size_t most =
+        std::max<std::size_t>(1, samples_of_material / std::max<std::size_t>(1, worn[m].size()));
+    const Sums sums = base::ordered_sum(
+        worn[m].size(), triangles_together, Sums{}, [&](std::size_t begin, std::size_t end) {
+          Sums part;
+          for (std::size_t k = begin; k < end; ++k) {
+            add_triangle(scene, worn[m][k], *maps, part, most, k * most);
+          }
+          return part;
+        });
+    if (maps->vary_diffuse()) settle(sums.diffuse, sums.area, maps->diffuse, material.diffuse);
+    if (maps->emit.texture) settle(sums.emit, sums.area, maps->emit, material.emit);
     material.maps = std::move(maps);
   }
 }

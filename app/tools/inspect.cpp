@@ -125,12 +125,13 @@ Json materials_of(const scenes::Scene& scene) {
 Json lights_of(const scenes::Scene& scene) {
   Json lamps = Json::array();
   for (const scenes::Lamp& lamp : scene.lamps) {
-    lamps.push_back({{"name", lamp.name},
-                     {"group", lamp.group},
-                     {"type", std::string(scenes::row_of(lamp.kind).type)},
-                     {"source", lamp.source.empty() ? Json() : Json(lamp.source)},
-                     {"position_m", lamp.is_distant() ? Json() : to_json(lamp.position)},
-                     {"flux_lm", lamp.is_distant() ? Json() : to_json(scenes::lamp_flux_lm(lamp))}});
+    lamps.push_back(
+        {{"name", lamp.name},
+         {"group", lamp.group},
+         {"type", std::string(scenes::row_of(lamp.kind).type)},
+         {"source", lamp.source.empty() ? Json() : Json(lamp.source)},
+         {"position_m", lamp.is_distant() ? Json() : to_json(lamp.position)},
+         {"flux_lm", lamp.is_distant() ? Json() : to_json(scenes::lamp_flux_lm(lamp))}});
     if (!lamp.is_distant()) continue;
     lamps.back()["direction"] = to_json(-lamp.axis);
     lamps.back()["illuminance_lx"] = to_json(lamp.illuminance_lx);

@@ -109,9 +109,9 @@ std::string lights_table(const Json& report) {
   for (const Json& lamp : report["lamps"]) {
     const Json& source = lamp["source"];
     if (lamp["flux_lm"].is_null()) {
-      text += fmt::format("lamp {}: {}, group {}, {} lx, toward {}\n", lamp["name"], lamp["type"],
-                          lamp["group"], numbers(lamp["illuminance_lx"]),
-                          direction(lamp["direction"]));
+      text +=
+          fmt::format("lamp {}: {}, group {}, {} lx, toward {}\n", lamp["name"], lamp["type"],
+                      lamp["group"], numbers(lamp["illuminance_lx"]), direction(lamp["direction"]));
       continue;
     }
     text += fmt::format(

@@ -174,10 +174,9 @@ void PathWalker::light_directly(const Surface& surface) {
         Rgb reflectance = surface.diffuse;
         const double cos_alpha = glm::dot(light.direction, surface.mirrored);
         if (base::is_lit(surface.material.specular) && cos_alpha > 0.0) {
-          reflectance +=
-              surface.material.specular *
-              scenes::lobe_at(surface.material, cos_alpha, cosine,
-                              glm::dot(surface.mirrored, surface.normal));
+          reflectance += surface.material.specular *
+                         scenes::lobe_at(surface.material, cos_alpha, cosine,
+                                         glm::dot(surface.mirrored, surface.normal));
         }
         const scenes::ShadowWay way = scenes::shadow_way(light, surface.position, origin);
         if (way.reach_m <= 0.0) return;

@@ -212,8 +212,8 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
     Rgb highlight(0.0);
     const double cos_alpha = glm::dot(light.direction, mirrored);
     if (cos_alpha > 0.0 && base::is_lit(surface.material.specular)) {
-      highlight = surface.material.specular *
-                  scenes::lobe_at(surface.material, cos_alpha, cosine, seen);
+      highlight =
+          surface.material.specular * scenes::lobe_at(surface.material, cos_alpha, cosine, seen);
     }
     const Rgb incident = weight * light.normal_illuminance_lx * (share * cosine / pi);
     const Rgb value = incident * (surface.diffuse + highlight);

@@ -198,7 +198,7 @@ class Rows {
 
 std::string_view effect_of(LightKind kind) {
   constexpr std::array<std::string_view, light_kinds> names = {
-      "sun",        "earth",          "point lamps",      "spot lamps", "rectangle lamps",
+      "sun",        "earth",          "point lamps",   "spot lamps",       "rectangle lamps",
       "disk lamps", "measured lamps", "distant lamps", "emitting surfaces"};
   return names[static_cast<std::size_t>(kind)];
 }

@@ -19,7 +19,7 @@ constexpr std::string_view object_keys[] = {
     "name",   "mesh",     "part",       "shape",     "material",    "translate", "rotate",
     "scale",  "target",   "inward",     "corners",   "min",         "max",       "center",
     "radius", "segments", "from",       "to",        "caps",        "normal",    "orient",
-    "lights", "cameras",  "smooth_deg", "round_deg", "instance_of", "velocity", "axes"};
+    "lights", "cameras",  "smooth_deg", "round_deg", "instance_of", "velocity",  "axes"};
 constexpr std::string_view shapes[] = {"quad", "box", "sphere", "cylinder", "disk"};
 constexpr std::string_view common_keys[] = {"name",   "material", "translate", "rotate",  "scale",
                                             "target", "inward",   "orient",    "velocity"};
@@ -175,9 +175,8 @@ void name_lacking(Mesh& mesh) {
     list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", what, count);
   }
   if (!list.empty()) {
-    mesh.warnings.push_back(
-        fmt::format("{}: not used, and the picture would change by it: {}", mesh.path.string(),
-                    list));
+    mesh.warnings.push_back(fmt::format("{}: not used, and the picture would change by it: {}",
+                                        mesh.path.string(), list));
   }
   mesh.lacking.clear();
 }

@@ -95,7 +95,8 @@ std::vector<Rgb> bihemispherical_albedos(const Scene& scene) {
   for (const Material& material : scene.materials) {
     Rgb reflectance = material.diffuse;
     if (base::max_component(material.specular) > 0.0) {
-      reflectance += material.specular * mean_lobe_reflectance(material.shininess, material.even_lobe);
+      reflectance +=
+          material.specular * mean_lobe_reflectance(material.shininess, material.even_lobe);
     }
     all.push_back(reflectance);
   }

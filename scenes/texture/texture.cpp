@@ -9,11 +9,13 @@
 
 #include "base/error.h"
 #include "base/numbers/digest.h"
+#include "base/parallel.h"
 
 namespace earthshine::scenes {
 namespace {
 
 constexpr double full = 65535.0;
+constexpr std::size_t texels_together = 65536;  // by one thread
 
 // IEC 61966-2-1.
 double linear(double encoded) {
@@ -45,13 +47,19 @@ Texture::Texture(const base::Pixels& pixels, TextureReading reading)
   const std::size_t count = pixels.rgba.size() / 4;
   texels_.resize(4 * count);
   bool has_alpha = false;
-  for (std::size_t k = 0; k < count; ++k) has_alpha = has_alpha || pixels.rgba[4 * k + 3] < 255;
-  base::Digest digest;
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::uint8_t* const rgba = pixels.rgba.data() + 4 * k;
-    for (std::size_t c = 0; c < 3; ++c) texels_[4 * k + c] = colour[rgba[c]];
-    texels_[4 * k + 3] = plain[reading_.is_mask && !has_alpha ? rgba[1] : rgba[3]];
+  for (std::size_t k = 0; reading_.is_mask && k < count && !has_alpha; ++k) {
+    has_alpha = pixels.rgba[4 * k + 3] < 255;
   }
+  const std::size_t opacity = reading_.is_mask && !has_alpha ? 1 : 3;
+  base::Digest digest;
+  base::parallel_chunks(count, texels_together, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint8_t* const rgba = pixels.rgba.data() + 4 * k;
+      std::uint16_t* const texel = texels_.data() + 4 * k;
+      for (std::size_t c = 0; c < 3; ++c) texel[c] = colour[rgba[c]];
+      texel[3] = plain[rgba[opacity]];
+    }
+  });
   digest.add(
       std::string_view(reinterpret_cast<const char*>(pixels.rgba.data()), pixels.rgba.size()));
   for (const int part : {pixels.width, pixels.height, int{reading_.is_srgb}, int{reading_.is_mask},

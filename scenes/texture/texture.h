@@ -69,6 +69,14 @@ class PictureShelf {
   // `warnings` is the mesh's, and must outlive the shelf.
   explicit PictureShelf(std::vector<std::string>& warnings) : warnings_(warnings) {}
 
+  // A picture that will be taken, and its bytes.
+  struct Picture {
+    TextureReading reading;
+    std::string bytes;
+  };
+  // Makes many of them at once, on all threads. What fails is left to take().
+  void prepare(const std::vector<Picture>& pictures);
+
   // The texture of the bytes that `read` gives, which is called for each new key. Null, and a
   // warning, where that or the picture fails with base::Error (Input).
   [[nodiscard]] std::shared_ptr<const Texture> take(const TextureReading& reading,

@@ -51,15 +51,20 @@ class Wardrobe {
                                    [](const auto& primitive) { return primitive.material < 0; });
       if (any && default_number_ == no_index) add_default();
     }
+    std::vector<WantedTexture> wanted;
+    for (const tinygltf::Material& source : model.file.materials) {
+      const auto more = textures_of(source);
+      wanted.insert(wanted.end(), more.begin(), more.end());
+    }
+    textures.prepare(wanted);
     for (const tinygltf::Material& source : model.file.materials) {
       add(phong_material(source, {}, textures), no_index);
     }
   }
 
   std::uint32_t worn_by(const tinygltf::Primitive& primitive) {
-    const std::uint32_t material = primitive.material >= 0
-                                       ? static_cast<std::uint32_t>(primitive.material)
-                                       : default_number_;
+    const std::uint32_t material =
+        primitive.material >= 0 ? static_cast<std::uint32_t>(primitive.material) : default_number_;
     if (material >= model_.file.materials.size()) return material;  // refused where it is worn
     std::vector<glm::dvec4> colours = read_gltf_colours(model_, primitive, path_);
     if (colours.empty()) return material;
@@ -90,9 +95,9 @@ class Wardrobe {
   std::uint32_t add_variant(std::uint32_t material, const VertexColours& worn) {
     GltfMaterial made = phong_material(model_.file.materials[material], worn, textures_);
     const glm::dvec4& m = worn.mean;
-    made.material.name = fmt::format("{} {:.3g} {:.3g} {:.3g}",
-                                     worn.vary ? "vertex colours, mean" : "vertex colour", m.r,
-                                     m.g, m.b);
+    made.material.name =
+        fmt::format("{} {:.3g} {:.3g} {:.3g}", worn.vary ? "vertex colours, mean" : "vertex colour",
+                    m.r, m.g, m.b);
     add(std::move(made), material);
     return static_cast<std::uint32_t>(model_.materials.size() - 1);
   }

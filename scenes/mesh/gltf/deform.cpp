@@ -148,7 +148,8 @@ std::vector<glm::dmat4> instance_poses(const GltfModel& model, const tinygltf::N
     if (number < 0) return std::vector<glm::dvec4>();
     return read_gltf_fours(model, number, {name, components, components}, path);
   };
-  const auto shifts = read("TRANSLATION", 3), turns = read("ROTATION", 4), scales = read("SCALE", 3);
+  const auto shifts = read("TRANSLATION", 3), turns = read("ROTATION", 4),
+             scales = read("SCALE", 3);
   if (!attributes.Has("TRANSLATION") && !attributes.Has("ROTATION") && !attributes.Has("SCALE")) {
     return {matrix};
   }

@@ -195,8 +195,7 @@ class GltfReader {
       ++mesh_.unused[has_faces ? "primitives without positions" : "points or lines"];
       return;
     }
-    std::vector<Vec3> positions =
-        read_gltf_vectors(model_, position->second, 3, "POSITION", path_);
+    std::vector<Vec3> positions = read_gltf_vectors(model_, position->second, 3, "POSITION", path_);
     add_morph_targets(model_, primitive, hung.weights, "POSITION", positions, path_);
     std::vector<std::uint32_t> indices;
     if (primitive.indices >= 0) {
@@ -302,8 +301,8 @@ class GltfReader {
     };
     const CoordinateSets& sets = model_.coordinates[material];
     const glm::vec2 corner(0.0F);
-    append(mesh_.uv,
-           sets.first ? coordinates(primitive, *sets.first, count) : std::vector<Vec3>(), corner);
+    append(mesh_.uv, sets.first ? coordinates(primitive, *sets.first, count) : std::vector<Vec3>(),
+           corner);
     if (sets.second) {
       append(mesh_.second_uv, coordinates(primitive, *sets.second, count), corner);
     }

@@ -19,11 +19,14 @@ constexpr double blurred_through = 0.1;    // roughness from which glass is not 
 constexpr double largest_gltf_ior = 10.0;  // as materials of a scene file
 
 // Extensions of materials that are read, or that change nothing of a still picture's default look.
-constexpr std::string_view read_extensions[] = {
-    "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_specular",          "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_transmission",      "KHR_materials_volume",
-    "KHR_materials_unlit",             "KHR_materials_variants"};
+constexpr std::string_view read_extensions[] = {"KHR_materials_emissive_strength",
+                                                "KHR_materials_ior",
+                                                "KHR_materials_specular",
+                                                "KHR_materials_pbrSpecularGlossiness",
+                                                "KHR_materials_transmission",
+                                                "KHR_materials_volume",
+                                                "KHR_materials_unlit",
+                                                "KHR_materials_variants"};
 
 // What both of glTF's models come down to.
 struct Facets {
@@ -53,8 +56,8 @@ void reflect(const Facets& facets, Material& material) {
   const double peak = base::max_component(facet) * lobe.peak;
   const double in_lobe = lobe.albedo() / (lobe.albedo() + lobe.diffuse);
   const double kept = std::clamp(peak / least_highlight - 1.0, 0.0, 1.0);
-  material.diffuse = facets.base * (plain * (1.0 - taken * kept * in_lobe) +
-                                    facets.metallic * lobe.diffuse);
+  material.diffuse =
+      facets.base * (plain * (1.0 - taken * kept * in_lobe) + facets.metallic * lobe.diffuse);
   material.specular = (kept * facet + metal) * lobe.peak;
   if (!(base::max_component(material.specular) > 0.0)) return;
   material.shininess = lobe.shininess;
@@ -203,8 +206,8 @@ class Converter {
     // Without a thickness it is a sheet, and sheets do not bend light.
     const tinygltf::Value volume = extension("KHR_materials_volume");
     if (number_of(volume, "thicknessFactor", 0.0) > 0.0) {
-      material.ior = std::clamp(number_of(extension("KHR_materials_ior"), "ior", 1.5), 1.0,
-                                largest_gltf_ior);
+      material.ior =
+          std::clamp(number_of(extension("KHR_materials_ior"), "ior", 1.5), 1.0, largest_gltf_ior);
       if (volume.Has("attenuationDistance")) lack("what glass takes away by its thickness");
     }
     if (facets.roughness > blurred_through) lack("rough glass, taken as clear");
@@ -225,6 +228,26 @@ class Converter {
 };
 
 }  // namespace
+
+std::vector<WantedTexture> textures_of(const tinygltf::Material& source) {
+  const auto of = [&](const char* extension, const char* key) {
+    return slot_of(extension_of(source.extensions, extension), key);
+  };
+  std::vector<WantedTexture> wanted{
+      {slot_of(source.emissiveTexture), true},
+      {of("KHR_materials_transmission", "transmissionTexture"), false}};
+  constexpr const char* glossy = "KHR_materials_pbrSpecularGlossiness";
+  if (source.extensions.count(glossy) > 0) {
+    wanted.push_back({of(glossy, "diffuseTexture"), true});
+    wanted.push_back({of(glossy, "specularGlossinessTexture"), true});
+  } else {
+    wanted.push_back({slot_of(source.pbrMetallicRoughness.baseColorTexture), true});
+    wanted.push_back({slot_of(source.pbrMetallicRoughness.metallicRoughnessTexture), false});
+    wanted.push_back({of("KHR_materials_specular", "specularTexture"), false});
+    wanted.push_back({of("KHR_materials_specular", "specularColorTexture"), true});
+  }
+  return wanted;
+}
 
 GltfMaterial phong_material(const tinygltf::Material& source, const VertexColours& colours,
                             GltfTextures& textures) {

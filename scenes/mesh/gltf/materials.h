@@ -35,6 +35,8 @@ struct GltfMaterial {
   CoordinateSets coordinates;
   std::vector<std::string> lacks;  // what it has that Phong has not and that changes the picture
 };
+// The textures that a material's conversion reads.
+[[nodiscard]] std::vector<WantedTexture> textures_of(const tinygltf::Material& source);
 [[nodiscard]] GltfMaterial phong_material(const tinygltf::Material& source,
                                           const VertexColours& colours, GltfTextures& textures);
 

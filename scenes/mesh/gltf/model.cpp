@@ -205,8 +205,9 @@ void count_unused(GltfModel& model) {
                          !among(extension, compressions);
     is_seen ? lack(extension, 1) : count(extension, 1);
   }
-  for (const auto& lacks : model.lacks) {
-    for (const std::string& what : lacks) count(what, 1);
+  for (std::size_t m = 0; m < model.lacks.size(); ++m) {
+    if (model.variant_of[m] != no_index) continue;
+    for (const std::string& what : model.lacks[m]) count(what, 1);
   }
 }
 
@@ -214,10 +215,10 @@ void count_unused(GltfModel& model) {
 // extension that the file does not call required may be so all the same.
 void check_compression(const tinygltf::Model& model, const std::filesystem::path& path) {
   const auto refuse = [&](const std::string& extension) {
-    throw Error(Blame::Input, base::Location{path.string()},
-                fmt::format("holds meshes compressed by the glTF extension {} alone",
-                            in_quotes(extension)),
-                "meshes are read uncompressed", remedy_for(extension));
+    throw Error(
+        Blame::Input, base::Location{path.string()},
+        fmt::format("holds meshes compressed by the glTF extension {} alone", in_quotes(extension)),
+        "meshes are read uncompressed", remedy_for(extension));
   };
   for (const tinygltf::Mesh& mesh : model.meshes) {
     for (const tinygltf::Primitive& primitive : mesh.primitives) {
@@ -228,7 +229,8 @@ void check_compression(const tinygltf::Model& model, const std::filesystem::path
                               : static_cast<std::size_t>(position->second);
       if (number >= model.accessors.size()) continue;
       const tinygltf::Accessor& accessor = model.accessors[number];
-      if (accessor.bufferView < 0 && !accessor.sparse.isSparse) refuse("KHR_draco_mesh_compression");
+      if (accessor.bufferView < 0 && !accessor.sparse.isSparse)
+        refuse("KHR_draco_mesh_compression");
     }
   }
   for (const tinygltf::BufferView& view : model.bufferViews) {

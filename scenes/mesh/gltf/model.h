@@ -78,7 +78,7 @@ struct GltfModel {
 
 // What an attribute may be, for the readers below.
 struct GltfAttribute {
-  std::string_view name;  // for messages
+  std::string_view name;    // for messages
   int least = 4, most = 4;  // components
   // Whole numbers stand for shares of the largest, even where the file leaves out "normalized".
   bool is_share = false;

@@ -76,8 +76,7 @@ TextureSlot slot_of(const tinygltf::Value& table, const char* key) {
   return slot;
 }
 
-TextureMap GltfTextures::read(const TextureSlot& slot, bool is_srgb) {
-  if (slot.index < 0) return {};
+TextureReading GltfTextures::reading_of(const TextureSlot& slot, bool is_srgb) const {
   const bool exists = static_cast<std::size_t>(slot.index) < model_.textures.size();
   const tinygltf::Texture texture =
       exists ? model_.textures[static_cast<std::size_t>(slot.index)] : tinygltf::Texture();
@@ -98,19 +97,53 @@ TextureMap GltfTextures::read(const TextureSlot& slot, bool is_srgb) {
   } else {
     reading.name = fmt::format("{}, image {}", path_.string(), number);
   }
+  return reading;
+}
+
+const tinygltf::Image* GltfTextures::image_of(const TextureSlot& slot) const {
+  if (static_cast<std::size_t>(slot.index) >= model_.textures.size()) return nullptr;
+  const int source = model_.textures[static_cast<std::size_t>(slot.index)].source;
+  const auto number = static_cast<std::size_t>(source);
+  return source >= 0 && number < model_.images.size() ? &model_.images[number] : nullptr;
+}
+
+void GltfTextures::prepare(std::span<const WantedTexture> wanted) {
+  std::vector<PictureShelf::Picture> pictures;
+  for (const auto& [slot, is_srgb] : wanted) {
+    const tinygltf::Image* const image = slot.index < 0 ? nullptr : image_of(slot);
+    if (image == nullptr) continue;
+    PictureShelf::Picture picture{reading_of(slot, is_srgb), {}};
+    const bool known = std::any_of(pictures.begin(), pictures.end(), [&](const auto& other) {
+      return other.reading == picture.reading;
+    });
+    if (known) continue;
+    try {
+      picture.bytes = bytes_of(*image);
+    } catch (const base::Error&) {  // said by read()
+      continue;
+    }
+    pictures.push_back(std::move(picture));
+  }
+  shelf_.prepare(pictures);
+}
+
+TextureMap GltfTextures::read(const TextureSlot& slot, bool is_srgb) {
+  if (slot.index < 0) return {};
+  const bool exists = static_cast<std::size_t>(slot.index) < model_.textures.size();
+  const tinygltf::Image* const image = image_of(slot);
   TextureMap map;
-  map.texture = shelf_.take(reading, [&] {
+  map.texture = shelf_.take(reading_of(slot, is_srgb), [&] {
     if (!exists) {
       throw base::Error(base::Blame::Input, base::Location{path_.string()},
                         fmt::format("texture {} does not exist", slot.index),
                         fmt::format("the file has {}", model_.textures.size()));
     }
-    if (!has_image) {
+    if (image == nullptr) {
       throw base::Error(base::Blame::Input, base::Location{path_.string()},
                         fmt::format("texture {} has no image of a kind that is read", slot.index),
                         "images are PNG or JPEG");
     }
-    return bytes_of(model_.images[number]);
+    return bytes_of(*image);
   });
   if (map.texture) {
     map.transform = std::make_shared<const TextureTransform>(transform_of(slot.transform));

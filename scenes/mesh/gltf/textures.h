@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,16 +32,26 @@ struct TextureSlot {
 // Opens a picture that a file names, and gives its bytes. Throws base::Error (Input).
 using OpenPicture = std::function<std::string(const std::string& uri)>;
 
+struct WantedTexture {
+  TextureSlot slot;
+  bool is_srgb = true;
+};
+
 class GltfTextures {
  public:
   GltfTextures(const tinygltf::Model& model, std::filesystem::path path, OpenPicture open,
                std::vector<std::string>& warnings)
       : model_(model), path_(std::move(path)), open_(std::move(open)), shelf_(warnings) {}
 
+  // Makes those that read() will ask for, on all threads.
+  void prepare(std::span<const WantedTexture> wanted);
+
   // Without a texture where the slot has none or it cannot be read (a warning then).
   [[nodiscard]] TextureMap read(const TextureSlot& slot, bool is_srgb);
 
  private:
+  [[nodiscard]] TextureReading reading_of(const TextureSlot& slot, bool is_srgb) const;
+  [[nodiscard]] const tinygltf::Image* image_of(const TextureSlot& slot) const;
   [[nodiscard]] std::string bytes_of(const tinygltf::Image& image) const;
 
   const tinygltf::Model& model_;
