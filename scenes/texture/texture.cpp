@@ -100,6 +100,33 @@ glm::dvec4 Texture::at(const glm::dvec2& uv) const {
          fy * ((1.0 - fx) * texel(x0, y1) + fx * texel(x1, y1));
 }
 
+void PictureShelf::prepare(const std::vector<Picture>& pictures) {
+  std::vector<const Picture*> fresh;
+  for (const Picture& picture : pictures) {
+    const auto is_same = [&](const auto& other) { return other.reading == picture.reading; };
+    if (std::any_of(shelved_.begin(), shelved_.end(), is_same) ||
+        std::any_of(fresh.begin(), fresh.end(),
+                    [&](const Picture* other) { return is_same(*other); })) {
+      continue;
+    }
+    fresh.push_back(&picture);
+  }
+  std::vector<std::shared_ptr<const Texture>> made(fresh.size());
+  base::parallel_chunks(fresh.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      try {
+        made[k] = std::make_shared<const Texture>(
+            base::read_pixels(fresh[k]->bytes, fresh[k]->reading.name), fresh[k]->reading);
+      } catch (const base::Error& error) {  // said by take()
+        if (error.blame() != base::Blame::Input) throw;
+      }
+    }
+  });
+  for (std::size_t k = 0; k < fresh.size(); ++k) {
+    if (made[k]) shelved_.push_back({fresh[k]->reading, made[k]});
+  }
+}
+
 std::shared_ptr<const Texture> PictureShelf::take(const TextureReading& reading,
                                                   const std::function<std::string()>& read) {
   for (const Shelved& known : shelved_) {

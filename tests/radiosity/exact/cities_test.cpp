@@ -55,7 +55,7 @@ class City {
     if (number % 4 == 2) place(1e-3, Vec3(0.0), true);
     if (number % 4 == 3) place(1e3, Vec3(0.0), false);
     // As scene files are read: of faces that lie on each other, which is met.
-    scenes::find_coincident_faces(builder_.scene, scenes::mend_surfaces(builder_.scene));
+    scenes::find_coincident_faces(builder_.scene, scenes::mend_surfaces(builder_.scene, {}));
   }
   [[nodiscard]] const scenes::Scene& scene() const { return builder_.scene; }
   [[nodiscard]] double scale() const { return scale_; }
