@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 
-ROUGHNESS = (0.1, 0.3, 0.5, 0.7, 0.85, 1.0)
+ROUGHNESS = (0.3, 0.5, 0.7, 0.85, 1.0)
 ANGLES = (0, 60, 120)
 RINGS, SECTORS = 96, 192
 SIZE = 64
@@ -142,7 +142,8 @@ def main():
     theirs = json.loads(next(line for line in run.stdout.splitlines() if line.startswith("MEANS "))[6:])
     with tempfile.TemporaryDirectory() as temporary:
         means = ours(os.environ["EARTHSHINE_PROGRAM"], pathlib.Path(temporary))
-    print("| roughness | " + " | ".join(f"Sun at {a}°, single, multiple" for a in ANGLES) + " |\n| ---" * 1 + " |")
+    print("| roughness | " + " | ".join(f"Sun at {a}°: single, multiple" for a in ANGLES) + " |")
+    print("| --- |" + " --- |" * len(ANGLES))
     for roughness in ROUGHNESS:
         cells = []
         for angle in ANGLES:
