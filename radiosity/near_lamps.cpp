@@ -5,12 +5,12 @@
 #include <cmath>
 #include <limits>
 
-#include "base/numbers/random.h"
 #include "base/parallel.h"
 #include "radiosity/bodies/wall_traces.h"
 #include "radiosity/patches/cluster_members.h"
 #include "radiosity/patches/split.h"
 #include "scenes/light/lamp_light.h"
+#include "scenes/light/narrow_beams.h"
 #include "scenes/triangle_point.h"
 
 namespace earthshine::radiosity {
@@ -49,71 +49,11 @@ double radius(const scenes::Lamp& lamp) {
   return scenes::is_wide(lamp.kind) ? scenes::row_of(lamp.kind).radius(lamp) : 0.0;
 }
 
-// Rays of a lamp without size that sends much of its flux into a narrow beam. Points of large
-// patches would miss the beam, or weigh it wrongly.
-struct Beam {
-  struct Ray {
-    Vec3 direction;
-    double share;  // of the flux
-  };
-  Vec3 origin{0.0}, axis{0.0};
-  double half_angle_rad = 0.0;  // about the axis, of all rays
-  std::vector<Ray> rays;
-};
-
-constexpr int peak_rays = 64, beam_rays = 256;
-// A beam is narrow where a cone of that half angle about one of its rays holds that share of the
-// flux. Half of the flux of a diffuse luminaire needs 45 degrees, 5 degrees hold 0.8 % of it.
-constexpr double peak_half_angle_deg = 5.0, peak_share = 1.0 / 12.0;
 constexpr double rounding = 1e-6;               // of angles near 0 by their cosines, rad
 constexpr double most_beam_share = 1.0 / 32.0;  // of a beam's flux, on one patch
 
-std::vector<Beam::Ray> rays_of(const scenes::Lamp& lamp, int count) {
-  std::vector<Beam::Ray> rays;
-  double all = 0.0;
-  const base::SobolOwen4 sobol(base::Key(0, base::Stream::LampFlux, 0));
-  for (int k = 0; k < count; ++k) {
-    const auto p = sobol.point(static_cast<std::uint32_t>(k));
-    const scenes::EmittedRay ray = scenes::emit_from_lamp(lamp, p[0], p[1], p[2], p[3]);
-    if (ray.weight <= 0.0) continue;
-    rays.push_back({ray.direction, ray.weight});
-    all += ray.weight;
-  }
-  for (Beam::Ray& ray : rays) ray.share /= all;
-  return rays;
-}
-
-bool is_peaked(const std::vector<Beam::Ray>& rays) {
-  const double within = std::cos(base::radians(peak_half_angle_deg));
-  return std::any_of(rays.begin(), rays.end(), [&](const Beam::Ray& middle) {
-    double share = 0.0;
-    for (const Beam::Ray& ray : rays) {
-      if (glm::dot(ray.direction, middle.direction) >= within) share += ray.share;
-    }
-    return share >= peak_share;
-  });
-}
-
-std::vector<Beam> narrow_beams(const std::vector<scenes::Lamp>& lamps) {
-  std::vector<Beam> beams;
-  for (const scenes::Lamp& lamp : lamps) {
-    if (lamp.kind != scenes::LampKind::Spot && lamp.kind != scenes::LampKind::Measured) continue;
-    if (!is_peaked(rays_of(lamp, peak_rays))) continue;
-    Beam beam{lamp.position, Vec3(0.0), 0.0, rays_of(lamp, beam_rays)};
-    for (const Beam::Ray& ray : beam.rays) beam.axis += ray.share * ray.direction;
-    const double length = glm::length(beam.axis);
-    beam.axis = length > 0.0 ? beam.axis / length : lamp.axis;
-    for (const Beam::Ray& ray : beam.rays) {
-      const double angle = std::acos(std::clamp(glm::dot(ray.direction, beam.axis), -1.0, 1.0));
-      beam.half_angle_rad = std::max(beam.half_angle_rad, angle);
-    }
-    beams.push_back(std::move(beam));
-  }
-  return beams;
-}
-
 // Of the beam's flux, were nothing in its way.
-double share_on(const Beam& beam, const std::array<Vec3, 4>& corner, const Vec3& normal) {
+double share_on(const scenes::Beam& beam, const std::array<Vec3, 4>& corner, const Vec3& normal) {
   const double height = glm::dot(beam.origin - corner[0], normal);
   if (height <= 0.0) return 0.0;
   const Vec3 middle = 0.25 * (corner[0] + corner[1] + corner[2] + corner[3]) - beam.origin;
@@ -125,7 +65,7 @@ double share_on(const Beam& beam, const std::array<Vec3, 4>& corner, const Vec3&
     if (off > beam.half_angle_rad + std::asin(radius / distance) + rounding) return 0.0;
   }
   double share = 0.0;
-  for (const Beam::Ray& ray : beam.rays) {
+  for (const scenes::Beam::Ray& ray : beam.rays) {
     const double sink = -glm::dot(ray.direction, normal);
     if (sink <= 0.0) continue;
     const Vec3 at = beam.origin + height / sink * ray.direction;
@@ -147,7 +87,7 @@ class LampCuts {
       lamp.intensity_cd = lamp.exitance = Rgb(1.0);
       lamps_.push_back(lamp);
     }
-    beams_ = narrow_beams(lamps_);
+    beams_ = scenes::narrow_beams(lamps_);
   }
 
   [[nodiscard]] Cut cut(const Patches& patches, std::uint32_t patch) const {
@@ -166,7 +106,7 @@ class LampCuts {
     if (beams_.empty() || patches.is_several(patch)) return false;
     const auto corner = patches.corners(patch);
     const Vec3 normal = patches.normal(patch);
-    return std::any_of(beams_.begin(), beams_.end(), [&](const Beam& beam) {
+    return std::any_of(beams_.begin(), beams_.end(), [&](const scenes::Beam& beam) {
       return share_on(beam, corner, normal) > most_beam_share;
     });
   }
@@ -235,7 +175,7 @@ class LampCuts {
   }
 
   std::vector<scenes::Lamp> lamps_;  // of unit strength
-  std::vector<Beam> beams_;
+  std::vector<scenes::Beam> beams_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "base/numbers/random.h"
 #include "base/parallel.h"
+#include "radiosity/bodies/closed_bodies.h"
 #include "radiosity/direct/shadowed_samples.h"
 #include "radiosity/direct/sources.h"
 #include "scenes/light/lamp_light.h"
@@ -84,12 +85,13 @@ struct Shares {
 
 // Follows a ray from a source as shadow rays come the other way: straight on through glass, off
 // flat mirrors once. What comes to a second one counts as met by a black back, as what ends within
-// a body of glass does: no patch is lit by it. `weight` is what the ray carries in each
+// a body of glass or where faces cover a patch does: no patch is lit by it. `weight` is what the ray carries in each
 // channel, of a source of many colours that of their mean.
 class SourceRays {
  public:
-  SourceRays(const scenes::Scene& scene, const scenes::RayQuery& query)
-      : scene_(scene), query_(query) {}
+  SourceRays(const scenes::Scene& scene, const scenes::RayQuery& query, const Patches& patches,
+             const OpenParts& open)
+      : scene_(scene), query_(query), patches_(patches), open_(open) {}
 
   void follow(const Vec3& origin, const Vec3& direction, const Rgb& weight, int panes, bool thrown,
               Shares& part) const {
@@ -105,7 +107,7 @@ class SourceRays {
     const std::uint32_t mirror =
         face != nullptr ? face->mirror[hit.front ? 0 : 1] : scenes::no_mirror;
     const Rgb reflected = mirror != scenes::no_mirror ? weight * face->reflected : Rgb(0.0);
-    if (is_back) part.black += base::luminance(weight - through - reflected);
+    if (is_back || is_covered(hit)) part.black += base::luminance(weight - through - reflected);
     if (face == nullptr) return;
     if (panes == scenes::most_panes) {
       part.black += base::luminance(through + reflected);
@@ -126,14 +128,25 @@ class SourceRays {
   }
 
  private:
+  [[nodiscard]] bool is_covered(const scenes::Hit& hit) const {
+    if (open_.share.empty()) return false;
+    const std::uint32_t patch = patches_.find(hit.triangle, hit.u, hit.v, hit.front);
+    if (patch == no_patch || open_.share[patch] >= 1.0) return false;
+    const double offset_m = query_.surface_offset_m();
+    const Vec3 lift = offset_m * patches_.normal(patch);
+    return open_.bodies->cover(scenes::hit_position(scene_, hit) + lift - open_.bodies->centre(),
+                               open_.bodies->near(patches_, patch, 2.0 * offset_m));
+  }
+
   const scenes::Scene& scene_;
   const scenes::RayQuery& query_;
+  const Patches& patches_;
+  const OpenParts& open_;
 };
 
 // Shoots rays from a source of known flux to find what escapes and what falls on black backs.
-void find_shares(const scenes::Scene& scene, const scenes::RayQuery& query, const Emit& emit,
+void find_shares(const scenes::RayQuery& query, const SourceRays& source_rays, const Emit& emit,
                  std::uint64_t key, int rays, std::uint64_t seed, SourceFlux& flux) {
-  const SourceRays source_rays(scene, query);
   const double emitted = base::luminance(flux.emitted_lm);
   if (emitted <= 0.0) return;
   const Rgb colour = flux.emitted_lm / emitted;
@@ -183,7 +196,8 @@ class DirectStage {
     Sampled sampled = sample({&source, 1});
     Rgb scale(0.0);
     if (factors_.shares.joins()) {
-      find_shares(scene_, query_, emit, source.key, options_.flux_rays, options_.seed, flux);
+      find_shares(query_, {scene_, query_, patches_, factors_.open}, emit, source.key,
+                  options_.flux_rays, options_.seed, flux);
       light_.shadow_rays += static_cast<std::uint64_t>(options_.flux_rays);
       const Rgb landed = landed_as_sampled(sampled, landing_);
       flux.scale = landing_scale(sampled, landing_, base::luminance(landed), flux);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scenes/light/lamp_light.h"
+#include "scenes/light/narrow_beams.h"
 #include "scenes/sky/sky_cells.h"
 #include "scenes/triangle_point.h"
 
@@ -131,6 +132,24 @@ class Finder {
     for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
       const scenes::Material& material = scene.materials[scene.triangles[t].material];
       if (material.emits()) add_triangle(t, material.two_sided);
+    }
+    for (const scenes::Beam& beam : scenes::narrow_beams(scene.lamps)) add_lit(beam);
+  }
+
+  // What a beam lights, a piece for each of its rays.
+  void add_lit(const scenes::Beam& beam) {
+    const scenes::Scene& scene = shared_.scene;
+    for (const scenes::Beam::Ray& ray : beam.rays) {
+      const scenes::Hit hit = shared_.query.closest(beam.origin, ray.direction);
+      if (hit.missed()) continue;
+      const Vec3 normal = (hit.front ? 1.0 : -1.0) *
+                          glm::normalize(scenes::corners_of(scene, hit.triangle).normal());
+      const Vec3 at = scenes::hit_position(scene, hit);
+      const bool is_black =
+          !hit.front && !scene.materials[scene.triangles[hit.triangle].material].two_sided;
+      if (is_black || glm::dot(camera_.position - at, normal) <= 0.0) continue;
+      const double area_m2 = ray.solid_angle_sr * hit.t * hit.t / -glm::dot(ray.direction, normal);
+      add({at, normal, area_m2, std::sqrt(area_m2 / base::pi)});
     }
   }
 

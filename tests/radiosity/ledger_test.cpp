@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "radiosity/fill_solution.h"
 #include "radiosity/near_lamps.h"
+#include "scenes/health/mend.h"
 #include "scenes/light/lamp_light.h"
-#include "tests/support/scene_builder.h"
+#include "tests/support/boxes.h"
 
 namespace earthshine::radiosity {
 namespace {
@@ -170,7 +172,28 @@ TEST(Ledger, EveryLampInAClosedRoomGivesAndLandsItsFlux) {
   }
 }
 
-// The same spot on patches that no beam has cut: no sample finds its light, and the ledger says so.
+// A luminaire's closed housing that stands on a floor: the lamp in it lights nothing, and all of its
+// flux ends on black backs, on the floor under the housing too.
+TEST(Ledger, ALampInAHousingOnAFloorLosesAllOfItsFlux) {
+  tests::SceneBuilder builder;
+  const std::uint32_t m = builder.material(tests::grey(0.5));
+  builder.plate(m, 4.0, 0.0, true);
+  const std::size_t housing = builder.scene.objects.size();
+  tests::add_box(builder, m, {-0.5, -0.5, 0.0}, {0.5, 0.5, 1.0});
+  for (scenes::Triangle& triangle : builder.scene.triangles) {
+    triangle.object = std::min(triangle.object, static_cast<std::uint32_t>(housing));
+  }
+  builder.scene.objects.resize(housing + 1);
+  builder.scene.objects[housing].triangle_count = 12;
+  scenes::find_coincident_faces(builder.scene, scenes::mend_surfaces(builder.scene));
+  builder.scene.lamps.push_back(point_lamp("lamp", {0.1, 0.2, 0.5}, Rgb(100.0)));
+  const GroupLedger line = solve_at(builder.scene, 0.25).report.groups.at(0);
+  EXPECT_EQ(line.landed_lm.g, 0.0);
+  EXPECT_NEAR(line.lost_at_once_lm.g / flux_lm, 1.0, 1e-9);
+  EXPECT_LT(line.imbalance, 1e-9);
+}
+
+// A spot of 0.02 degrees on patches that no beam has cut: no sample finds its light, and the ledger says so.
 TEST(Ledger, FluxThatNoSampleFindsIsAnImbalance) {
   tests::SceneBuilder builder;
   const std::uint32_t m = builder.material(tests::grey(0.5));

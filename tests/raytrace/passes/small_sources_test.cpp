@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "raytrace/render.h"
+#include "scenes/light/lamp_light.h"
 #include "tests/support/scene_builder.h"
 
 namespace earthshine::raytrace {
@@ -123,6 +124,30 @@ TEST(SmallSources, LampsAndEmittersSendWhatTheirImagesHold) {
     tests::SceneBuilder builder = black_room();
     add_emitters(builder, 1, side_m);
     expect_sum(builder.scene, into_room(), expected, how);
+  }
+}
+
+// A spot of a fifth of a degree and less lights a few mm of a wall 0.8 m in front of the camera, whose
+// image is at most a hundredth of a pixel: a flux Phi leaves it as the intensity rho Phi / pi toward
+// the camera, and the picture has as many px^2 a square metre everywhere.
+TEST(SmallSources, NarrowBeamsSendWhatTheirSpotsHold) {
+  const double px_per_m = pixels_across / 2.0 / std::tan(base::radians(30.0)) / 0.8;
+  for (const double field_deg : {0.05, 0.2}) {
+    tests::SceneBuilder builder;
+    const std::uint32_t black = builder.material(tests::grey(0.0)),
+                        white = builder.material(tests::grey(0.5));
+    builder.room({black, white, black, black, black, black});
+    scenes::Lamp spot;
+    spot.name = spot.group = "spot";
+    spot.kind = scenes::LampKind::Spot;
+    spot.position = Vec3(0.3, 0.8, 0.6);
+    spot.axis = glm::normalize(Vec3(1.0, 0.507, 0.483) - spot.position);
+    spot.beam_deg = 0.5 * field_deg;
+    spot.field_deg = field_deg;
+    spot.intensity_cd = Rgb(1e6);
+    builder.scene.lamps.push_back(spot);
+    const double expected = 0.5 * scenes::lamp_flux_lm(spot).g / base::pi * px_per_m * px_per_m;
+    for (const auto& how : every_way()) expect_sum(builder.scene, into_room(), expected, how);
   }
 }
 
