@@ -91,6 +91,9 @@ std::uint32_t hidden_bits(const RTCRay8& rays, std::size_t count) {
 constexpr double far_extents = 2.0;
 // Of a point's distance from the centre: a few roundings of its coordinates.
 constexpr double point_offset = 0x1p-21;
+// Of a triangle: the rounding of (u, v). Points are drawn in from the edges by as much, where it
+// could put them behind a neighbour and let light leak from a closed room.
+constexpr double drawn_in = 0x1p-22;
 // Flatter than this rays keep the point that the ray structure found.
 constexpr double least_fall = 1e-6;
 
@@ -229,7 +232,9 @@ std::uint32_t RayQuery::occluded(const RayPacket& rays, std::size_t count) const
 
 Vec3 hit_position(const Scene& scene, const Hit& hit) {
   const auto [a, b, c] = corners_of(scene, hit.triangle);
-  return (1.0 - hit.u - hit.v) * a + hit.u * b + hit.v * c;
+  const double u = (1.0 - 3.0 * drawn_in) * hit.u + drawn_in,
+               v = (1.0 - 3.0 * drawn_in) * hit.v + drawn_in;
+  return (1.0 - u - v) * a + u * b + v * c;
 }
 
 Vec3 hit_position(const Scene& scene, const Hit& hit, const Vec3& origin, const Vec3& direction) {
@@ -239,11 +244,8 @@ Vec3 hit_position(const Scene& scene, const Hit& hit, const Vec3& origin, const 
   if (std::abs(fall) <= least_fall * glm::length(normal)) return hit_position(scene, hit);
   const Vec3 at = origin + glm::dot(normal, p.a - origin) / fall * direction;
   Barycentric b = barycentric(at, p.a, p.b - p.a, p.c - p.a);
-  // Where rounding has put it past an edge, back onto it.
-  if (b.u < 0.0 || b.v < 0.0 || b.u + b.v > 1.0) {
-    b.u = std::clamp(b.u, 0.0, 1.0);
-    b.v = std::clamp(b.v, 0.0, 1.0 - b.u);
-  }
+  b.u = std::clamp(b.u, drawn_in, 1.0 - 2.0 * drawn_in);
+  b.v = std::clamp(b.v, drawn_in, 1.0 - drawn_in - b.u);
   return (1.0 - b.u - b.v) * p.a + b.u * p.b + b.v * p.c;
 }
 

@@ -109,8 +109,10 @@ Texts implausible_input(const Scene& scene, const RayQuery& query, const SceneUs
       use.moves_along_orbit && scene.sun && base::max_component(scene.sun->illuminance_lx) > 0.0;
   // Along an orbit there is a night.
   const bool may_be_night = use.moves_along_orbit || (use.shows_facts && scene.orbit);
+  const std::size_t before = found.size();
   if (!may_be_night) name_hidden_sun(scene, found);
-  if (!meets_sun && !use.shows_facts) name_darkness(scene, found);
+  const bool sun_is_hidden = found.size() > before;
+  if (!meets_sun && !sun_is_hidden && !use.shows_facts) name_darkness(scene, found);
   add(shut_in_lights(scene, query, cameras));
   return found;
 }
