@@ -77,7 +77,7 @@ class Passes {
     expected_ =
         static_cast<double>(sampling.camera_samples) * static_cast<double>(window_.pixel_count());
     first_round(everywhere(sampling.camera_samples));
-    shade_sources();
+    shade_small_sources();
     report_.gather_rays = sampling.camera_samples * sampling.gather_rays;
   }
 

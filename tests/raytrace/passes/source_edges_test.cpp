@@ -62,19 +62,15 @@ Errors errors_of(const scenes::Scene& scene, const scenes::Camera& camera, const
 struct Way {
   const char* name;
   double error;  // wanted, and that of the edges; 0: the settings say how many samples
-  bool shared;
 };
-constexpr Way ways[] = {{"of 5 %", 0.05, true},
-                        {"of 1 %", 0.01, true},
-                        {"of 0.35 %", 0.0035, true},
-                        {"by settings", 0.0, true},
-                        {"each for itself", 0.0, false}};
+constexpr Way ways[] = {
+    {"of 5 %", 0.05}, {"of 1 %", 0.01}, {"of 0.35 %", 0.0035}, {"by settings", 0.0}};
 
 void expect_shares(const scenes::Scene& scene, const scenes::Camera& camera, const Shows& shows) {
   for (const Way& way : ways) {
     RenderOptions options;
     options.error = way.error;
-    options.shared.on = way.shared;
+    options.shared.on = true;
     const Errors errors = errors_of(scene, camera, shows, options);
     ASSERT_GT(errors.pixels, 20);
     // 0.27 / 64^(3/4) = 0.012; some tens of pixels tell an RMS to a fifth, twice.
