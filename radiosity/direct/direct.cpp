@@ -132,7 +132,7 @@ class SourceRays {
     if (open_.share.empty()) return false;
     const std::uint32_t patch = patches_.find(hit.triangle, hit.u, hit.v, hit.front);
     if (patch == no_patch || open_.share[patch] >= 1.0) return false;
-    const double offset_m = query_.surface_offset_m();
+    const double offset_m = query_.offset_m(hit.triangle);
     const Vec3 lift = offset_m * patches_.normal(patch);
     return open_.bodies->cover(scenes::hit_position(scene_, hit) + lift - open_.bodies->centre(),
                                open_.bodies->near(patches_, patch, 2.0 * offset_m));

@@ -165,8 +165,8 @@ class EmittingObject {
     const auto [a, b, c] = corners_of(scene_, t);
     const double root = std::sqrt(u);
     const Vec3 place = (1.0 - root) * a + root * (1.0 - at[1]) * b + root * at[1] * c;
-    return {place + query_.offset_m(t) * normal, cosine_direction(base::frame_around(normal), at[2], at[3]),
-            1.0};
+    return {place + query_.offset_m(t) * normal,
+            cosine_direction(base::frame_around(normal), at[2], at[3]), 1.0};
   }
 
  private:

@@ -185,7 +185,7 @@ TEST(Ledger, ALampInAHousingOnAFloorLosesAllOfItsFlux) {
   }
   builder.scene.objects.resize(housing + 1);
   builder.scene.objects[housing].triangle_count = 12;
-  scenes::find_coincident_faces(builder.scene, scenes::mend_surfaces(builder.scene));
+  scenes::find_coincident_faces(builder.scene, scenes::mend_surfaces(builder.scene, {}));
   builder.scene.lamps.push_back(point_lamp("lamp", {0.1, 0.2, 0.5}, Rgb(100.0)));
   const GroupLedger line = solve_at(builder.scene, 0.25).report.groups.at(0);
   EXPECT_EQ(line.landed_lm.g, 0.0);

@@ -181,8 +181,8 @@ TEST_F(GltfMaterials, LampsAndCamerasComeWhenAskedFor) {
   EXPECT_EQ(lamp.name, "o.thing");
   EXPECT_EQ(lamp.group, "o.thing");
   EXPECT_EQ(lamp.intensity_cd, Rgb(200, 100, 0));
-  // On the triangle's corner: lifted off it by 1.6e-5 of the scene's extent, 2 sqrt 2 (LiftLamps).
-  EXPECT_NEAR(glm::length(lamp.position - Vec3(2, 4, 6)), 1.6e-5 * std::sqrt(8.0), 1e-12);
+  // On the triangle's corner: lifted off it by 0.16 mm (LiftLamps).
+  EXPECT_NEAR(glm::length(lamp.position - Vec3(2, 4, 6)), 1.6e-4, 1e-10);
   EXPECT_NEAR(glm::length(lamp.axis - Vec3(0, 1, 0)), 0.0, 1e-12);
   EXPECT_NEAR(lamp.beam_deg, 2.0 * 0.2 * 180.0 / base::pi, 1e-9);
   EXPECT_NEAR(lamp.field_deg, 2.0 * 0.5 * 180.0 / base::pi, 1e-9);
