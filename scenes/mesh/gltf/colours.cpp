@@ -65,7 +65,7 @@ class Wardrobe {
   std::uint32_t worn_by(const tinygltf::Primitive& primitive) {
     const std::uint32_t material =
         primitive.material >= 0 ? static_cast<std::uint32_t>(primitive.material) : default_number_;
-    if (material >= model_.file.materials.size()) return material;  // refused where it is worn
+    if (material >= model_.file.materials.size()) return no_index;  // refused where it is worn
     std::vector<glm::dvec4> colours = read_gltf_colours(model_, primitive, path_);
     if (colours.empty()) return material;
     const tinygltf::Material& source = model_.file.materials[material];

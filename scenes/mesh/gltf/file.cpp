@@ -195,6 +195,9 @@ class GltfReader {
       ++mesh_.unused[has_faces ? "primitives without positions" : "points or lines"];
       return;
     }
+    if (material == no_index) {
+      gltf_fail(path_, fmt::format("material {} does not exist", primitive.material));
+    }
     std::vector<Vec3> positions = read_gltf_vectors(model_, position->second, 3, "POSITION", path_);
     add_morph_targets(model_, primitive, hung.weights, "POSITION", positions, path_);
     std::vector<std::uint32_t> indices;

@@ -213,13 +213,18 @@ void count_unused(GltfModel& model) {
 
 // Throws base::Error (Input) where the numbers of a mesh are there in compressed form alone: an
 // extension that the file does not call required may be so all the same.
-void check_compression(const tinygltf::Model& model, const std::filesystem::path& path) {
+void check_compression(const tinygltf::Model& model, bool loaded,
+                       const std::filesystem::path& path) {
   const auto refuse = [&](const std::string& extension) {
     throw Error(
         Blame::Input, base::Location{path.string()},
         fmt::format("holds meshes compressed by the glTF extension {} alone", in_quotes(extension)),
         "meshes are read uncompressed", remedy_for(extension));
   };
+  for (const std::string& extension : model.extensionsUsed) {
+    // A buffer without data, which the plain form would have, is no sound file to the library.
+    if (!loaded && among(extension, compressions)) refuse(extension);
+  }
   for (const tinygltf::Mesh& mesh : model.meshes) {
     for (const tinygltf::Primitive& primitive : mesh.primitives) {
       const auto position = primitive.attributes.find("POSITION");
@@ -303,12 +308,12 @@ GltfModel load_gltf_model(std::string_view bytes, const std::filesystem::path& p
   } catch (const std::exception& error) {
     problem = error.what();
   }
+  check_required_extensions(model, path);
+  check_compression(model, loaded, path);
   if (!loaded && !files.refused.empty() && problem.find("File not found") != std::string::npos) {
     throw Error(Blame::Input, std::string_view(), files.refused);
   }
-  check_required_extensions(model, path);
   if (!loaded) refuse_unsound(path, problem);
-  check_compression(model, path);
   GltfModel converted = convert(std::move(model), files, std::move(warnings));
   converted.files = std::move(files.found);
   return converted;

@@ -42,8 +42,10 @@ struct GltfModel {
   // Of each material: the one that it is in another colour; no_index: a material of the file. The
   // name of a variant says its colour alone.
   std::vector<std::uint32_t> variant_of;
-  std::vector<std::vector<std::uint32_t>> worn;  // the material of each mesh's primitives
-  std::vector<std::vector<std::string>> lacks;   // of each material, as Mesh::material_lacks
+  std::vector<std::vector<std::uint32_t>>
+      worn;  // the material of each mesh's primitives; no_index: one
+             // that does not exist
+  std::vector<std::vector<std::string>> lacks;  // of each material, as Mesh::material_lacks
   std::vector<GltfLamp> lamps;
   std::vector<GltfCamera> cameras;
   std::vector<std::string> warnings;

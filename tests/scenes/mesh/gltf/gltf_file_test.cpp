@@ -220,7 +220,6 @@ TEST_F(Gltf, WhatTheLibraryAcceptsAndShouldNotIsRefused) {
        {"SCALAR"}},
       {&Parts::primitive, R"({"attributes": {"POSITION": 0}, "material": 8})", {"material 8"}},
       {&Parts::primitive, R"({"attributes": {"POSITION": 0}, "mode": 0})", {"no faces"}},
-      {&Parts::primitive, R"({"attributes": {"POSITION": 0}})", {"scene.toml:4:1", "Add material"}},
       {&Parts::buffer,
        R"({"byteLength": 68, "uri": "../../../../etc/passwd"})",
        {"leads out of the scene's folder"}},

@@ -44,8 +44,9 @@ class GltfTriangle : public ::testing::Test {
                               R"(, "count": 3, "type": "VEC3"}],
       "materials": [)" + material +
                               "]" + more + "}");
-    return folder_.read(std::string("format = 1\n[[object]]\nname = \"o\"\nmesh = \"a.gltf\"\n") +
-                        (keys.find("axes") == keys.npos ? "axes = \"as-is\"\n" : "") + keys);
+    const bool says_axes = keys.find("axes") != std::string::npos;
+    return folder_.read("format = 1\n[[object]]\nname = \"o\"\nmesh = \"a.gltf\"\n" + keys +
+                        (says_axes ? "" : "axes = \"as-is\"\n"));
   }
   scenes::Material material(const std::string& text) const { return read(text).materials.at(0); }
 

@@ -67,10 +67,12 @@ TEST_F(GltfValues, ValuesOutOfRangeAreNamedOnceWithWhatIsDone) {
   const Scene other = read(R"({"extensions": {"XYZ_toon": {"shadeTexture": 3}}, "extras":
       {"alphaMode": 1}, "emissiveFactor": [1.0000001, 0, 0]})",
                            R"(, "extensions": {"XYZ_all": {"scene": "x", "materials": 2}})");
-  EXPECT_TRUE(other.warnings.empty());
+  ASSERT_EQ(other.warnings.size(), 1U);
+  EXPECT_TRUE(named(other, {"not used", "XYZ_toon (1)"}));
   EXPECT_TRUE(named(textured, {"nodes[0].camera is -1", "taken as none"}));
   const Scene foreign = read(R"({"extensions": {"XYZ_toon": {"KHR_texture_transform": 5}}})");
-  EXPECT_TRUE(foreign.warnings.empty());
+  ASSERT_EQ(foreign.warnings.size(), 1U);
+  EXPECT_TRUE(named(foreign, {"not used", "XYZ_toon (1)"}));
   // 2^32 is not entry 0.
   const Scene plain =
       read(R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 4294967296}}})",
