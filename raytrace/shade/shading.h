@@ -41,8 +41,8 @@ struct ShadingScene : scenes::World {
   // nullptr: there is no solution.
   const PathWorld* world = nullptr;
   DiffuseSource diffuse = DiffuseSource::Gather;
-  const GatherField* field = nullptr;  // with DiffuseSource::Field
-  Vec3 sighting_origin{0.0};           // of Sighting::position
+  const GatherField* field = nullptr;      // with DiffuseSource::Field
+  Vec3 sighting_origin{0.0};               // of Sighting::position
   PixelFilter filter{scenes::Camera{}};    // of the camera samples
   int gather_rays = 16;                    // per camera sample
   std::uint64_t seed = 1;                  // of camera and gather rays

@@ -42,9 +42,8 @@ struct GltfModel {
   // Of each material: the one that it is in another colour; no_index: a material of the file. The
   // name of a variant says its colour alone.
   std::vector<std::uint32_t> variant_of;
-  std::vector<std::vector<std::uint32_t>>
-      worn;  // the material of each mesh's primitives; no_index: one
-             // that does not exist
+  // The material of each mesh's primitives; no_index: one that does not exist.
+  std::vector<std::vector<std::uint32_t>> worn;
   std::vector<std::vector<std::string>> lacks;  // of each material, as Mesh::material_lacks
   std::vector<GltfLamp> lamps;
   std::vector<GltfCamera> cameras;
