@@ -91,9 +91,15 @@ std::uint32_t hidden_bits(const RTCRay8& rays, std::size_t count) {
 constexpr double far_extents = 2.0;
 // Of a point's distance from the centre: a few roundings of its coordinates.
 constexpr double point_offset = 0x1p-21;
-// Of a triangle: the rounding of (u, v). Points are drawn in from the edges by as much, where it
-// could put them behind a neighbour and let light leak from a closed room.
-constexpr double drawn_in = 0x1p-22;
+// The point of those weights, off the edges by their rounding, which could put it behind a neighbour
+// and let light leak from a closed room.
+Vec3 inside(const Corners& p, const Barycentric& at) {
+  constexpr double rounding = 0x1p-22;
+  const double u = std::clamp(at.u, rounding, 1.0 - 2.0 * rounding),
+               v = std::clamp(at.v, rounding, 1.0 - rounding - u);
+  return (1.0 - u - v) * p.a + u * p.b + v * p.c;
+}
+
 // Flatter than this rays keep the point that the ray structure found.
 constexpr double least_fall = 1e-6;
 
@@ -231,10 +237,7 @@ std::uint32_t RayQuery::occluded(const RayPacket& rays, std::size_t count) const
 }
 
 Vec3 hit_position(const Scene& scene, const Hit& hit) {
-  const auto [a, b, c] = corners_of(scene, hit.triangle);
-  const double u = (1.0 - 3.0 * drawn_in) * hit.u + drawn_in,
-               v = (1.0 - 3.0 * drawn_in) * hit.v + drawn_in;
-  return (1.0 - u - v) * a + u * b + v * c;
+  return inside(corners_of(scene, hit.triangle), {hit.u, hit.v});
 }
 
 Vec3 hit_position(const Scene& scene, const Hit& hit, const Vec3& origin, const Vec3& direction) {
@@ -243,10 +246,7 @@ Vec3 hit_position(const Scene& scene, const Hit& hit, const Vec3& origin, const 
   const double fall = glm::dot(normal, direction);
   if (std::abs(fall) <= least_fall * glm::length(normal)) return hit_position(scene, hit);
   const Vec3 at = origin + glm::dot(normal, p.a - origin) / fall * direction;
-  Barycentric b = barycentric(at, p.a, p.b - p.a, p.c - p.a);
-  b.u = std::clamp(b.u, drawn_in, 1.0 - 2.0 * drawn_in);
-  b.v = std::clamp(b.v, drawn_in, 1.0 - drawn_in - b.u);
-  return (1.0 - b.u - b.v) * p.a + b.u * p.b + b.v * p.c;
+  return inside(p, barycentric(at, p.a, p.b - p.a, p.c - p.a));
 }
 
 Vec3 triangle_normal(const Scene& scene, std::uint32_t triangle) {

@@ -268,6 +268,7 @@ TEST(Bill, EachKindOfRayGoesToItsEffect) {
                                               {"rectangle lamps", 0.0},
                                               {"disk lamps", 0.0},
                                               {"measured lamps", 600.0},
+                                              {"distant lamps", 0.0},
                                               {"emitting surfaces", 4000.0},
                                               {"glossy reflection", 60.0},
                                               {"mirror", 80.0},
