@@ -14,6 +14,7 @@
 #include "degrade/range/range_sensor.h"
 #include "degrade/settings/camera_file.h"
 #include "radiosity/bodies/walls.h"
+#include "raytrace/camera/camera.h"
 #include "scenes/effects/quality.h"
 #include "scenes/light/lamp_light.h"
 #include "scenes/read/scene_file.h"
@@ -122,8 +123,12 @@ LoadedScene load(const SceneInput& input, bool quiet, const AskEffects& ask) {
   return loaded;
 }
 
-scenes::RayQuery ray_query(LoadedScene& loaded, const scenes::SceneUse& use, bool quiet) {
+scenes::RayQuery ray_query(LoadedScene& loaded, const scenes::SceneUse& use, bool quiet,
+                           bool draws) {
   scenes::RayQuery query(loaded.scene);
+  for (const scenes::Camera* camera : use.cameras) {
+    if (draws) raytrace::check_camera(loaded.scene, query, *camera);
+  }
   for (std::string& warning : scenes::implausible_input(loaded.scene, query, use)) {
     if (!quiet) note("warning: " + warning);
     loaded.scene.warnings.push_back(std::move(warning));

@@ -113,8 +113,9 @@ using AskEffects = std::function<WantedEffects(const scenes::Scene&)>;
 
 // The rays of what was read. Adds to its warnings what in it is surely a mistake
 // (scenes/plausible), on standard error too unless `quiet`: every command comes by its rays here.
+// draws: its cameras are checked first (raytrace::check_camera), which may throw.
 [[nodiscard]] scenes::RayQuery ray_query(LoadedScene& loaded, const scenes::SceneUse& use,
-                                         bool quiet);
+                                         bool quiet, bool draws = false);
 
 // Both throw base::Error (Input) where there is none. named_at: where a file or an option names it.
 [[nodiscard]] const scenes::Camera& first_camera(const scenes::Scene& scene);

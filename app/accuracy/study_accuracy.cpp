@@ -18,7 +18,6 @@
 #include "app/study/plot.h"
 #include "app/study/study.h"
 #include "base/files/output_file.h"
-#include "raytrace/camera/camera.h"
 #include "studies/compare/compare.h"
 
 namespace earthshine::app {
@@ -82,8 +81,7 @@ void run(const AccuracyCall& call, const Common& common) {
                     "out too where you use a setting from here",
                     fmt::join(replaced, ", quality.")));
   }
-  const scenes::RayQuery query = ray_query(loaded, {{&camera}}, common.quiet);
-  raytrace::check_camera(loaded.scene, query, camera);
+  const scenes::RayQuery query = ray_query(loaded, {{&camera}}, common.quiet, true);
 
   std::optional<Interrupt> interrupt(std::in_place);
   studies::AccuracyView view =

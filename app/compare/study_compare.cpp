@@ -14,7 +14,6 @@
 #include "base/files/output_file.h"
 #include "base/files/png_file.h"
 #include "base/tone.h"
-#include "raytrace/camera/camera.h"
 #include "raytrace/light/distributed_area.h"
 #include "scenes/effects/quality.h"
 #include "studies/compare/compare.h"
@@ -138,8 +137,7 @@ void run(const CompareCall& call, const Common& common) {
   options.error = loaded.scene.quality.error.value_or(0.0);
   options.solver = studies::picture_solver(loaded.scene, loaded.scene.quality, common.seed);
   options.seed = common.seed;
-  const scenes::RayQuery query = ray_query(loaded, {{&camera}}, common.quiet);
-  raytrace::check_camera(loaded.scene, query, camera);
+  const scenes::RayQuery query = ray_query(loaded, {{&camera}}, common.quiet, true);
   const studies::Comparison comparison =
       studies::compare(loaded.world(query), camera, options, progress_of_stages(common));
 

@@ -181,10 +181,7 @@ void run(RenderCall call, const Common& common) {
     });
   });
   const scenes::RayQuery query = times.measure(
-      "build", [&] { return ray_query(loaded, {cameras_of(pictures)}, common.quiet); });
-  for (const Wanted& picture : pictures) {
-    raytrace::check_camera(loaded.scene, query, *picture.camera);
-  }
+      "build", [&] { return ray_query(loaded, {cameras_of(pictures)}, common.quiet, true); });
   if (call.over.asked()) {
     const scenes::Camera& camera = *pictures.front().camera;
     call.photo = read_photo(call.over, camera, common.quiet);

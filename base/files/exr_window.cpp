@@ -44,7 +44,7 @@ Imath::Box2i picture_window(const std::filesystem::path& path, const Imf::Header
   refuse_file(path,
               "has its pixels outside of the picture: data window " + corners(data) +
                   ", display window " + corners(display),
-              "the two windows have pixels in common",
+              "a picture has pixels in both windows",
               "Correct the display window, for example with oiiotool --fullpixels");
 }
 

@@ -38,7 +38,8 @@ void name_empty_materials(const Scene& scene, Texts& found) {
     if (std::min({through.r, through.g, through.b}) < nearly_all_through) continue;
     found.push_back(fmt::format(
         "the material {} neither reflects nor stops light: what wears it is not there (in MTL "
-        "files \"Tr 1\" and \"d 0\" say so); give it a reflectance and no transmit, in the file or "
+        "files \"Tr 1\" and \"d 0\" say so, in glTF an alpha of 0 or below the cutoff); give it a "
+        "reflectance and no transmit, in the file or "
         "as a [[material]] of that name",
         in_quotes(material.name)));
   }
@@ -68,8 +69,8 @@ void name_hidden_sun(const Scene& scene, Texts& found) {
     advice = "take another position_deg where sunlight is meant";
     const Eclipse eclipse = find_eclipse(*scene.orbit, scene.sun->angular_radius_deg);
     if (eclipse.penumbra) {
-      advice += fmt::format("; the shadow goes from {:.1f} to {:.1f}", eclipse.penumbra->begin_deg,
-                            eclipse.penumbra->end_deg);
+      advice += fmt::format("; the Earth covers part of it or all from {:.1f} to {:.1f}",
+                            eclipse.penumbra->begin_deg, eclipse.penumbra->end_deg);
     }
   }
   found.push_back(fmt::format("the Earth hides {} of the Sun; {}",

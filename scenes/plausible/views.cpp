@@ -93,7 +93,8 @@ std::string blocked_text(const Scene& scene, const View& view) {
   const double way = glm::length(view.camera->look_at - view.camera->position);
   const std::size_t object = most_of(view.hits_of);
   return fmt::format(
-      "camera {} is inside or right behind the object {}: that fills {:.0f} % of its picture from "
+      "camera {} is inside, right behind or right before the object {}: that fills {:.0f} % of its "
+      "picture from "
       "{} away, and the camera looks at a point {} away; move the camera in front of that object",
       in_quotes(view.camera->name), in_quotes(scene.objects[object].name),
       100.0 * share(view.hits_of[object], view.rays), length_text(view.farthest_near_m),

@@ -132,7 +132,7 @@ bool meshes_have_lamps(const TomlTable& root) {
          });
 }
 
-constexpr std::string_view strength_keys[] = {"intensity", "exitance", "flux"};
+constexpr std::string_view strength_keys[] = {"intensity", "exitance", "flux", "illuminance"};
 
 bool is_zero(const TomlNode& value) {
   if (const auto* whole = std::get_if<std::int64_t>(&value.value)) return *whole == 0;
