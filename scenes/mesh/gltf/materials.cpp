@@ -58,10 +58,12 @@ void reflect(const Facets& facets, Material& material) {
   const double kept = std::clamp(peak / least_highlight - 1.0, 0.0, 1.0);
   material.diffuse =
       facets.base * (plain * (1.0 - taken * kept * in_lobe) + facets.metallic * lobe.diffuse);
-  // What rough facets scatter evenly, where the diffuse light does not stand for it: all of a dark
-  // material's.
-  material.diffuse += glm::max(
-      Rgb(0.0), facet * lobe.diffuse - facets.base * (plain * taken * (1.0 - kept * in_lobe)));
+  // What rough facets scatter evenly, where no diffuse light stands for it: a dark material's. Of
+  // dielectrics, 0.04, that is next to nothing.
+  constexpr double next_to_nothing = 0.04;
+  const double counts = std::clamp(taken / next_to_nothing - 1.0, 0.0, 1.0);
+  const Rgb in_diffuse = facets.base * (plain * taken * (1.0 - kept * in_lobe));
+  material.diffuse += counts * glm::max(Rgb(0.0), facet * lobe.diffuse - in_diffuse);
   material.specular = (kept * facet + metal) * lobe.peak;
   if (!(base::max_component(material.specular) > 0.0)) return;
   material.shininess = lobe.shininess;
