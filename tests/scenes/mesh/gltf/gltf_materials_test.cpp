@@ -69,9 +69,16 @@ TEST_F(GltfMaterials, SpecularGlossinessEmissionAndUnlit) {
       "extensionsRequired": ["KHR_materials_pbrSpecularGlossiness"])");
   const Material& made = glossy.materials.at(0);
   const PhongLobe lobe = phong_of_ggx(0.0625);
-  const double taken = 0.2 * lobe.albedo() / (lobe.albedo() + lobe.diffuse);
-  EXPECT_NEAR(made.diffuse.r, (1.0 - taken) * 0.4, 1e-12);
+  // The lobe takes its share of F = 0.2 from the diffuse light. The facets' even part, F d, is there
+  // beyond what the diffuse light keeps for it.
+  const double in_lobe = lobe.albedo() / (lobe.albedo() + lobe.diffuse);
+  const double even = std::max(0.0, 0.2 * lobe.diffuse - 0.4 * 0.2 * (1.0 - in_lobe));
+  EXPECT_NEAR(made.diffuse.r, (1.0 - 0.2 * in_lobe) * 0.4 + even, 1e-12);
   EXPECT_NEAR(made.specular.r, 0.2 * lobe.peak, 1e-12);
+  // Black and as rough as can be: the even part alone.
+  const Scene rough = read(R"({"extensions": {"KHR_materials_pbrSpecularGlossiness": {
+      "diffuseFactor": [0, 0, 0, 1], "specularFactor": [0.25, 0.25, 0.25], "glossinessFactor": 0}}})");
+  EXPECT_NEAR(rough.materials.at(0).diffuse.r, 0.25 * phong_of_ggx(1.0).diffuse, 1e-12);
   EXPECT_NEAR(made.emit.r, 20.0 * base::pi, 1e-9);
   EXPECT_NEAR(made.emit.g, 10.0 * base::pi, 1e-9);
   EXPECT_EQ(glossy.objects.at(0).unused, "");
