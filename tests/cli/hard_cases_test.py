@@ -18,15 +18,20 @@ class HardCases(program.Case):
         report = self.json("render", "hard.toml", "--error", "0.1", "-o", name, *options, code=(0, 3))
         return report, error_truth.picture(self.folder / name)[0]
 
-    def holds(self, hard, paths, size="16x16", seed=1):
-        """The true error of the picture, by two runs of the path tracer, is within the bound that is stated."""
-        report, light = self.picture(hard, "--size", size, "--seed", seed)
-        references = []
+    def references(self, hard, paths, size):
+        """Luminances of two pictures of the path tracer."""
+        self.write("hard.toml", hard.text)
+        found = []
         for seed in (71, 72):
             self.done("render", "hard.toml", "--size", size, "--indirect", "paths", "--seed", seed,
                       "--set", f"quality.gather_rays={paths}", "-o", "paths.exr")
-            references.append(error_truth.picture(self.folder / "paths.exr")[0])
-        truth = error_truth.compare(light, *references)
+            found.append(error_truth.picture(self.folder / "paths.exr")[0])
+        return found
+
+    def holds(self, hard, paths, size="16x16"):
+        """The true error of the picture, by two runs of the path tracer, is within the bound that is stated."""
+        report, light = self.picture(hard, "--size", size)
+        truth = error_truth.compare(light, *self.references(hard, paths, size))
         error = report["error"]
         # The references' noise is in the square's standard error.
         self.assertLess(truth.error**2, error["bound_95"]**2 + 4 * truth.doubt, (truth.error, error))
@@ -53,10 +58,18 @@ class HardCases(program.Case):
         self.holds(hard_scenes.sun_spot(), 2048, "8x8")
 
     def test_a_room_lit_through_a_pinhole(self):
-        # Few paths find the hole: of pictures with seeds 1 to 8 two are off by more than their bound, which 95 in 100 should hold.
-        truth, _ = self.holds(hard_scenes.pinhole(), 4096, seed=2)
-        # What leaks along walls and floors into the dark room was 30 times what comes through the hole.
-        self.assertLess(abs(truth.bias), 0.25 + 4 * math.sqrt(truth.doubt))
+        """Of 16 pictures at most 4 pass their bound, which 95 in 100 hold: more have a chance of 9e-4."""
+        hard = hard_scenes.pinhole()
+        references, passed = self.references(hard, 4096, "16x16"), 0
+        for seed in range(1, 17):
+            report, light = self.picture(hard, "--size", "16x16", "--seed", seed)
+            truth, error = error_truth.compare(light, *references), report["error"]
+            # The references' noise is in the square's standard error.
+            passed += truth.error**2 >= error["bound_95"]**2 + 4 * truth.doubt
+            self.assertLess(error["estimate"], error["bound_95"])
+            # What leaks along walls and floors into the dark room was 30 times what comes through the hole.
+            self.assertLess(abs(truth.bias), 0.25 + 4 * math.sqrt(truth.doubt))
+        self.assertLess(passed, 5)
 
     def test_a_room_lit_through_a_pinhole_reaches_its_error(self):
         """Most samples find no light, so that what is stated rises again and again: some fifty rounds. Ends within a limit,
