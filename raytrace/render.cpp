@@ -71,35 +71,29 @@ void fold_field(Sampled& sampled, const Window& window) {
   sampled.field.reset();
 }
 
-// With places that are pixels of the picture in place of those that `pixel_of` finds in `from`.
-template <class PixelOf>
-LayerNoise placed(const LayerNoise& noise, const Window& from, const Window& picture,
-                  PixelOf pixel_of) {
+// Of the rows in the window, with places that are pixels of it.
+LayerNoise in_window(const LayerNoise& noise, const Window& window, int columns) {
   const std::size_t layers = noise.place.empty() ? 0 : noise.off.size() / noise.place.size();
-  LayerNoise placed;
+  LayerNoise inside;
+  inside.edge_px = noise.edge_px;
   for (std::size_t k = 0; k < noise.place.size(); ++k) {
-    const auto columns = static_cast<std::size_t>(from.columns);
-    const std::size_t pixel = pixel_of(std::size_t{noise.place[k]});
-    const int x = from.x + static_cast<int>(pixel % columns);
-    const int y = from.y + static_cast<int>(pixel / columns);
-    if (!picture.contains(x, y)) continue;
-    placed.add(picture.index(x, y), {&noise.off[k * layers], layers});
+    LayerNoise::Row row = noise.row(k);
+    const int x = static_cast<int>(row.place) % columns, y = static_cast<int>(row.place) / columns;
+    if (!window.contains(x, y)) continue;
+    row.place = window.index(x, y);
+    inside.add(row, {&noise.off[k * layers], layers});
   }
-  return placed;
+  return inside;
 }
 
-// As far as one round of samples tells it: later ones go where the sum of all needs them.
-std::vector<LayerNoise> noise_by_part(const Sampled& sampled, const Window& picture,
+std::vector<LayerNoise> noise_by_part(const Sampled& sampled, const Window& window,
                                       const RenderOptions& options) {
   std::vector<LayerNoise> noise;
-  if (!sampled.field || sampled.sums.image_layers < 2 || options.error > 0.0) return noise;
-  const GatherField& field = *sampled.field;
+  if (!sampled.field || sampled.sums.image_layers < 2) return noise;
   for (const Gathered kind : {Gathered::Solution, Gathered::Residual, Gathered::Lobe}) {
-    noise.push_back(placed(field.layer_noise(kind), field.window(), picture,
-                           [&](std::size_t point) { return field.pixel_of(point); }));
+    noise.push_back(in_window(sampled.field->layer_noise(kind), window, options.columns));
   }
-  noise.push_back(placed(sampled.sums.layer_noise(), sampled.sums.window, picture,
-                         [](std::size_t pixel) { return pixel; }));
+  noise.push_back(in_window(sampled.sums.layer_noise(options.columns), window, options.columns));
   return noise;
 }
 

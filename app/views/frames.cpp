@@ -14,8 +14,11 @@
 #include "app/views/kept_layers.h"
 #include "base/error.h"
 #include "radiosity/refine.h"
+#include "raytrace/frame/first_hit.h"
 #include "scenes/effects/quality.h"
 #include "scenes/sky/sky_cells.h"
+#include "studies/steer/wanted_error.h"
+#include "studies/targets/target_view.h"
 
 namespace earthshine::app {
 namespace {
@@ -46,6 +49,13 @@ void describe(Fields& fields, Either<StudyFrames::Frame> auto& frame) {
 
 namespace {
 
+// A condition's picture has a larger relative error than that of all lights together, of which it
+// shows a few: 1.1 to 1.25 times on the payload bay but for grazing Suns.
+constexpr double share_of_the_sum = 0.8;
+// Layers times pixels that a picture may have with a gather point for each of its pixels; beyond,
+// one serves four, and memory and time are a third.
+constexpr std::size_t most_values = std::size_t{1} << 23U;
+
 // Suns that the patches are cut for; the shadows of those between fall between theirs.
 constexpr std::size_t most_refined_suns = 4;
 
@@ -64,9 +74,27 @@ scenes::Scene scene_to_cut(const scenes::Scene& basis) {
 
 }  // namespace
 
+namespace {
+
+// Pixels that the verdicts of those targets follow from.
+std::vector<std::uint8_t> noted_pixels(const std::vector<studies::TargetView>& targets,
+                                       std::size_t count) {
+  std::vector<std::uint8_t> noted(count, 0U);
+  for (const studies::TargetView& target : targets) {
+    for (const std::vector<std::uint32_t>* pixels : {&target.measured, &target.surround}) {
+      for (const std::uint32_t pixel : *pixels) noted[pixel] = 1U;
+    }
+  }
+  return noted;
+}
+
+}  // namespace
+
 radiosity::SolveOptions study_solver(const scenes::Scene& scene, const Common& common) {
   constexpr double enough = 1e-4;
-  radiosity::SolveOptions solver = solve_options(scene, common);
+  scenes::Quality quality = scene.quality;
+  if (!quality.error) quality.error = scenes::default_error;
+  radiosity::SolveOptions solver = studies::picture_solver(scene, quality, common.seed);
   if (!scene.quality.solver_tolerance) solver.tolerance = enough;
   return solver;
 }
@@ -91,8 +119,28 @@ raytrace::RenderOptions StudyFrames::options(const StudyCamera& camera) const {
   options.seed = common_.seed;
   options.per_light = true;
   options.aovs = {"object"};
+  const double wanted = part_.basis_scene.scene.quality.error.value_or(scenes::default_error);
+  options.error = share_of_the_sum * wanted;
+  const std::size_t values = part_.basis->groups().count() *
+                             static_cast<std::size_t>(camera.columns) *
+                             static_cast<std::size_t>(camera.rows);
+  options.gather_step = values > most_values ? 2 : 1;
   options.stop = Interrupt::leave_or_go_on;
   return options;
+}
+
+std::vector<std::uint8_t> StudyFrames::noted_at(const StudyCamera& camera) const {
+  const scenes::Scene& scene = part_.basis_scene.scene;
+  base::Image objects;
+  objects.width = camera.columns;
+  objects.height = camera.rows;
+  objects.add("object");
+  const raytrace::Window all{0, 0, camera.columns, camera.rows};
+  raytrace::fill_first_hit(scene, *part_.query,
+                           raytrace::make_camera_model(*camera.camera, camera.columns, camera.rows),
+                           all, objects);
+  return noted_pixels(studies::find_targets(scene, *camera.camera, studies::object_map(objects)),
+                      all.pixel_count());
 }
 
 Json StudyFrames::cache_key(const StudyCamera& camera) const {
@@ -106,6 +154,7 @@ Json StudyFrames::cache_key(const StudyCamera& camera) const {
   cache_key["columns"] = how.columns;
   cache_key["rows"] = how.rows;
   cache_key["gather_rays"] = how.gather_rays;
+  cache_key["gather_step"] = how.gather_step;
   cache_key["shared"] = {how.shared.on, how.shared.smooth_share, how.error, how.shared.noise};
   cache_key["seed"] = how.seed;
   return cache_key;
@@ -200,9 +249,10 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
   }
   if (!said.empty()) note("note: " + said);
   const LoadedScene& basis = part_.basis_scene;
-  const raytrace::RenderOptions how = options(camera);
+  raytrace::RenderOptions how = options(camera);
   check_memory(basis, *part_.query, solver_, &how, !solution_.has_value());
   const radiosity::Solution& light = solution(costs);
+  how.noted = noted_at(camera);
   raytrace::Frame drawn;
   try {
     drawn = raytrace::render(basis.world(*part_.query), light, *camera.camera, how,
@@ -248,11 +298,43 @@ void StudyFrames::keep(const Json& cache_key, base::Image image, Frame& frame) c
   frame.errors.see(frame.image, part_.basis->groups().names);
 }
 
-studies::ConditionNoise StudyFrames::Frame::noise_of(const studies::GroupWeights& weights) const {
+std::vector<double> luminances(const studies::GroupWeights& weights) {
   std::vector<double> luminance;
   for (const Rgb& weight : weights.weight) luminance.push_back(base::luminance(weight));
-  const auto noise = errors.of(luminance);
+  return luminance;
+}
+
+studies::ConditionNoise StudyFrames::Frame::noise_of(const studies::GroupWeights& weights) const {
+  const auto noise = errors.of(luminances(weights));
   return noise ? studies::noise_of_condition(noise->rms, noise->mean) : studies::ConditionNoise();
+}
+
+namespace {
+
+// Target, surround, target, surround ...
+raytrace::RegionNoise noise_of_regions(const raytrace::LayerErrors& errors,
+                                       const studies::SightPlan& plan) {
+  std::vector<std::vector<std::uint32_t>> regions;
+  for (const studies::SightTarget& target : plan.targets) {
+    regions.push_back(target.view.measured);
+    regions.push_back(target.view.surround);
+  }
+  return {errors, regions, static_cast<std::size_t>(plan.map.columns)};
+}
+
+}  // namespace
+
+DifferenceNoise::DifferenceNoise(const raytrace::LayerErrors& errors,
+                                 const studies::SightPlan& plan)
+    : regions_(noise_of_regions(errors, plan)) {}
+
+std::vector<double> DifferenceNoise::of(const studies::GroupWeights& weights) const {
+  const std::vector<double> variances = regions_.variances(luminances(weights));
+  std::vector<double> deviation;
+  for (std::size_t k = 0; k + 1 < variances.size(); k += 2) {
+    deviation.push_back(std::sqrt(variances[k] + variances[k + 1]));
+  }
+  return deviation;
 }
 
 }  // namespace earthshine::app

@@ -10,6 +10,7 @@
 #include "base/image.h"
 #include "radiosity/store/solution_file.h"
 #include "studies/orbit/condition_noise.h"
+#include "studies/sight/sight.h"
 #include "studies/study.h"
 
 namespace earthshine::app {
@@ -19,6 +20,19 @@ namespace earthshine::app {
 // light groups at once each product of the solver takes its time.
 [[nodiscard]] radiosity::SolveOptions study_solver(const scenes::Scene& scene,
                                                    const Common& common);
+
+[[nodiscard]] std::vector<double> luminances(const studies::GroupWeights& weights);
+
+// Noise of the difference between each target and its surround.
+class DifferenceNoise {
+ public:
+  DifferenceNoise(const raytrace::LayerErrors& errors, const studies::SightPlan& plan);
+  // Standard errors in that sum, cd/m^2.
+  [[nodiscard]] std::vector<double> of(const studies::GroupWeights& weights) const;
+
+ private:
+  raytrace::RegionNoise regions_;
+};
 
 class StudyFrames {
  public:
@@ -66,6 +80,7 @@ class StudyFrames {
   // Keeps it and takes it as it will be read.
   void keep(const Json& cache_key, base::Image image, Frame& frame) const;
   [[nodiscard]] raytrace::RenderOptions options(const StudyCamera& camera) const;
+  [[nodiscard]] std::vector<std::uint8_t> noted_at(const StudyCamera& camera) const;
 
   [[nodiscard]] radiosity::Solution solve(StageTimes& times) const;
   // The file's, or a new one in place of one that cannot be read.

@@ -2,7 +2,9 @@
 #include "app/views/kept_layers.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 namespace earthshine::app {
@@ -12,6 +14,7 @@ constexpr int half_digits = 10;          // of a half's mantissa, after the poin
 constexpr int half_top = 15;             // the largest half is below 2^16
 constexpr int half_bottom = -14;         // exponent of the smallest half with all its digits
 constexpr const char* exact = "object";  // numbers, not light
+constexpr const char *cover_layer = "cover", *stands_for_layer = "stands for";
 
 // 2^exponent bounds the channel's values; 0 for a black one.
 int exponent_of(const base::Channel& channel) {
@@ -20,17 +23,29 @@ int exponent_of(const base::Channel& channel) {
   return most > 0.0F ? std::ilogb(most) + 1 : 0;
 }
 
+// To multiples of 2^step: x + c - c, c = 3 2^(step + 22), whose last digit is 2^step.
 void round_values(base::Channel& channel, int digits) {
   // One more than now: the largest value may be rounded up to the power of two above it.
   const int lowest = exponent_of(channel) + 1 - half_top + half_bottom;
   for (float& value : channel.values) {
     if (value == 0.0F) continue;
-    const int step = std::max(std::ilogb(value), lowest) - digits;
-    value = std::ldexp(std::nearbyint(std::ldexp(value, -step)), step);
+    const int exponent = static_cast<int>((std::bit_cast<std::uint32_t>(value) >> 23U) & 0xffU);
+    const int step = std::max(exponent - 127, lowest) - digits;
+    if (step < -126) {
+      value = std::ldexp(std::nearbyint(std::ldexp(value, -step)), step);
+      continue;
+    }
+    const float large = std::bit_cast<float>(static_cast<std::uint32_t>(step + 23 + 127) << 23U);
+    value = (value + 1.5F * large) - 1.5F * large;
   }
 }
 
 void scale(base::Channel& channel, int exponent) {
+  const auto factor = static_cast<float>(std::ldexp(1.0, exponent));
+  if (std::isnormal(factor)) {
+    for (float& value : channel.values) value *= factor;
+    return;
+  }
   for (float& value : channel.values) value = std::ldexp(value, exponent);
 }
 
@@ -81,11 +96,22 @@ CachedResult packed_noise(const raytrace::LayerErrors& errors) {
   const std::size_t row = std::max<std::size_t>(1, most);
   base::Image picture{
       static_cast<int>(row), static_cast<int>(std::max<std::size_t>(1, places.size())), {}};
-  std::vector<float>& place = picture.add(exact);
+  std::vector<int> edges;
+  std::vector<float> place(row * places.size()), cover(place), stands_for(place);
   for (std::size_t part = 0; part < places.size(); ++part) {
-    std::copy(errors.noise[part].place.begin(), errors.noise[part].place.end(),
-              place.begin() + static_cast<std::ptrdiff_t>(part * row));
+    const raytrace::LayerNoise& noise = errors.noise[part];
+    edges.push_back(noise.edge_px);
+    const auto to = static_cast<std::ptrdiff_t>(part * row);
+    std::copy(noise.place.begin(), noise.place.end(), place.begin() + to);
+    std::copy(noise.cover.begin(), noise.cover.end(), cover.begin() + to);
+    std::copy(noise.stands_for.begin(), noise.stands_for.end(), stands_for.begin() + to);
   }
+  place.resize(picture.pixel_count());
+  picture.add(exact) = std::move(place);
+  cover.resize(picture.pixel_count());
+  picture.add(cover_layer) = std::move(cover);
+  stands_for.resize(picture.pixel_count());
+  picture.add(stands_for_layer) = std::move(stands_for);
   for (std::size_t layer = 0; layer < layers; ++layer) {
     std::vector<float>& values = picture.add(std::to_string(layer));
     for (std::size_t part = 0; part < places.size(); ++part) {
@@ -95,11 +121,12 @@ CachedResult packed_noise(const raytrace::LayerErrors& errors) {
     }
     round_values(picture.channels.back(), half_digits);
   }
-  return packed_layers(std::move(picture), half_digits, {{"places", places}});
+  return packed_layers(std::move(picture), half_digits, {{"places", places}, {"edges", edges}});
 }
 
 void take_noise(CachedResult kept, raytrace::LayerErrors& errors) {
   const auto places = kept.facts.at("places").get<std::vector<std::size_t>>();
+  const auto edges = kept.facts.at("edges").get<std::vector<int>>();
   const base::Image picture = unpacked_layers(std::move(kept));
   const auto row = static_cast<std::size_t>(picture.width);
   // By name: a file has its channels in the order of their names.
@@ -108,13 +135,16 @@ void take_noise(CachedResult kept, raytrace::LayerErrors& errors) {
   while (const base::Channel* layer = picture.find(std::to_string(layers.size()))) {
     layers.push_back(&layer->values);
   }
+  const std::vector<float>& cover = picture.find(cover_layer)->values;
+  const std::vector<float>& stands_for = picture.find(stands_for_layer)->values;
   errors.noise.assign(places.size(), {});
   std::vector<float> off(layers.size());
   for (std::size_t part = 0; part < places.size(); ++part) {
+    errors.noise[part].edge_px = edges[part];
     for (std::size_t k = 0; k < places[part]; ++k) {
       const std::size_t at = part * row + k;
       for (std::size_t layer = 0; layer < layers.size(); ++layer) off[layer] = (*layers[layer])[at];
-      errors.noise[part].add(static_cast<std::size_t>(pixel[at]), off);
+      errors.noise[part].add({static_cast<std::size_t>(pixel[at]), cover[at], stands_for[at]}, off);
     }
   }
 }

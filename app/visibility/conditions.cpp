@@ -45,6 +45,15 @@ TargetFindings findings_of(const studies::Sight& sight, const studies::TargetOut
   return found;
 }
 
+studies::Enough enough_of(const studies::ConditionNoise& noise, const studies::CameraSight& sight,
+                          double wanted) {
+  if (noise.relative && *noise.relative <= wanted) return studies::Enough::Error;
+  const bool sure = std::all_of(sight.targets.begin(), sight.targets.end(), [](const auto& target) {
+    return target.verdict_low == target.verdict_high;
+  });
+  return sure ? studies::Enough::Verdict : studies::Enough::No;
+}
+
 using Batch = std::vector<std::vector<TargetFindings>>;
 
 }  // namespace
@@ -153,6 +162,8 @@ Judged StudyConditions::judge(const StudyCamera& camera, const studies::BasisVie
   std::optional<degrade::Setup> cctv;
   if (camera.cctv) cctv = camera.cctv->chain;
   Judged all(part_.conditions());
+  const double wanted = part_.basis_scene.scene.quality.error.value_or(scenes::default_error);
+  const DifferenceNoise noise_of_differences(frame.errors, view.plan);
   bool found = true;
   for (std::size_t batch = batches.first; batch < batches.last; ++batch) {
     const std::size_t first = conditions_of(batch).first, last = conditions_of(batch).last;
@@ -170,9 +181,12 @@ Judged StudyConditions::judge(const StudyCamera& camera, const studies::BasisVie
     std::vector<studies::ConditionAt> conditions;
     for (std::size_t k = first; k < last; ++k) conditions.push_back(condition_at(part_, k));
     std::vector<studies::Outcome> outcomes;
+    studies::ConditionOptions how = options();
+    how.deviation = [&](const studies::ConditionAt& at) {
+      return noise_of_differences.of(part_.basis->weights(at.place, at.setting));
+    };
     try {
-      outcomes =
-          studies::judge_conditions(*part_.basis, *part_.query, view, conditions, cctv, options());
+      outcomes = studies::judge_conditions(*part_.basis, *part_.query, view, conditions, cctv, how);
     } catch (const Interrupt::Left&) {
       break;
     }
@@ -180,7 +194,8 @@ Judged StudyConditions::judge(const StudyCamera& camera, const studies::BasisVie
     for (std::size_t k = first; k < last; ++k) {
       const studies::Outcome& outcome = outcomes[k - first];
       const auto [place, setting] = condition_at(part_, k);
-      const studies::ConditionNoise noise = frame.noise_of(part_.basis->weights(place, setting));
+      studies::ConditionNoise noise = frame.noise_of(part_.basis->weights(place, setting));
+      noise.enough = enough_of(noise, outcome.sight, wanted);
       for (std::size_t t = 0; t < outcome.targets.size(); ++t) {
         TargetFindings target = findings_of(outcome.sight.targets[t], outcome.targets[t]);
         target.noise = noise;

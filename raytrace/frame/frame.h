@@ -141,14 +141,24 @@ struct ErrorSums {
 [[nodiscard]] ErrorSums add_up(const StatedError& stated, std::span<const std::size_t> pixels);
 [[nodiscard]] ErrorSums add_up(const StatedError& stated);  // all
 
-// What layers are off by at some places of a picture, and how bright they are there.
+// Noise of layers at some places of a picture, in rows of one round of samples each: rounds are
+// independent, so that the squares of a place's rows add up.
 struct LayerNoise {
-  std::vector<std::uint32_t> place;  // its pixel in the picture
-  // place * layers: half of what the means of two independent halves of the samples there differ
-  // by, as far as the camera sees it, and the pixel's light; luminances, cd/m^2
+  int edge_px = 1;                   // of the square of pixels that a place serves
+  std::vector<std::uint32_t> place;  // the pixel of the picture in its middle
+  std::vector<float> cover;          // share of these pixels that it serves
+  std::vector<float> stands_for;     // as many places of the picture, of which this one is noted
+  // row * layers: half the difference of the means of two independent halves of the round's samples
+  // times their share of all samples there, as the camera sees it, and the pixel's light;
+  // luminances, cd/m^2
   std::vector<float> off, luminance;
 
-  void add(std::size_t at, std::span<const float> off_by);
+  struct Row {
+    std::size_t place = 0;
+    float cover = 1.0F, stands_for = 1.0F;
+  };
+  void add(const Row& row, std::span<const float> off_by);
+  [[nodiscard]] Row row(std::size_t k) const { return {place[k], cover[k], stands_for[k]}; }
 };
 
 // What the error of any weighted sum of a picture's layers follows from.
@@ -169,6 +179,27 @@ struct LayerErrors {
     [[nodiscard]] double relative() const { return rms / mean; }
   };
   [[nodiscard]] std::optional<OfSum> of(std::span<const double> weights) const;
+};
+// Variances of means over some pixels of weighted sums of layers. Rays of neighbouring points are
+// independent, and neighbours that share noise leave a mean over many pixels as it is.
+class RegionNoise {
+ public:
+  // region: pixels, ascending, of a picture with so many columns, where all places are noted
+  // (RenderOptions::noted).
+  RegionNoise(const LayerErrors& errors, std::span<const std::vector<std::uint32_t>> regions,
+              std::size_t columns);
+  // Of each region, (cd/m^2)^2, with these weights of the layers.
+  [[nodiscard]] std::vector<double> variances(std::span<const double> weights) const;
+
+ private:
+  struct Term {
+    std::size_t region;
+    double share;  // of the region's mean that the row's place gives
+  };
+  std::size_t layers_, regions_;
+  std::vector<std::size_t> first_term_;  // of each row, and behind the last
+  std::vector<Term> terms_;
+  std::vector<float> off_;  // row * layers
 };
 // Every so many pixels or gather points tell the noise of the layers.
 [[nodiscard]] inline std::size_t layer_noise_step(std::size_t count) {

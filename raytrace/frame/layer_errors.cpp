@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include "raytrace/frame/frame.h"
@@ -16,15 +17,17 @@ double noise_of(const LayerNoise& noise, std::span<const double> weights, double
       luminance += weights[layer] * double(noise.luminance[k + layer]);
     }
     const double counted = error_weight(luminance, mean) * off;
-    squares += counted * counted;
+    squares += double(noise.stands_for[k / weights.size()]) * counted * counted;
   }
   return squares;
 }
 
 }  // namespace
 
-void LayerNoise::add(std::size_t at, std::span<const float> off_by) {
-  place.push_back(static_cast<std::uint32_t>(at));
+void LayerNoise::add(const Row& row, std::span<const float> off_by) {
+  place.push_back(static_cast<std::uint32_t>(row.place));
+  cover.push_back(row.cover);
+  stands_for.push_back(row.stands_for);
   off.insert(off.end(), off_by.begin(), off_by.end());
 }
 
@@ -65,6 +68,47 @@ std::optional<LayerErrors::OfSum> LayerErrors::of(std::span<const double> weight
     if (per_noise[part] > 0.0) squares += per_noise[part] * noise_of(noise[part], weights, mean);
   }
   return OfSum{std::sqrt(squares), mean};
+}
+
+RegionNoise::RegionNoise(const LayerErrors& errors,
+                         std::span<const std::vector<std::uint32_t>> regions, std::size_t columns)
+    : layers_(errors.luminance.size()), regions_(regions.size()), first_term_(1, 0) {
+  for (const LayerNoise& part : errors.noise) {
+    const auto edge = static_cast<std::size_t>(part.edge_px);
+    for (std::size_t k = 0; k < part.place.size(); ++k) {
+      const std::size_t x = part.place[k] % columns - edge / 2;
+      const std::size_t y = part.place[k] / columns - edge / 2;
+      const std::size_t before = terms_.size();
+      for (std::size_t r = 0; r < regions.size(); ++r) {
+        const std::vector<std::uint32_t>& pixels = regions[r];
+        double served = 0.0;
+        for (std::size_t row = y; row < y + edge; ++row) {
+          const auto first = std::lower_bound(pixels.begin(), pixels.end(), row * columns + x);
+          served += double(std::lower_bound(first, pixels.end(), row * columns + x + edge) - first);
+        }
+        if (served <= 0.0) continue;
+        terms_.push_back({r, served * double(part.cover[k]) / double(pixels.size())});
+      }
+      if (terms_.size() == before) continue;
+      first_term_.push_back(terms_.size());
+      const auto off = part.off.begin() + static_cast<std::ptrdiff_t>(k * layers_);
+      off_.insert(off_.end(), off, off + static_cast<std::ptrdiff_t>(layers_));
+    }
+  }
+}
+
+std::vector<double> RegionNoise::variances(std::span<const double> weights) const {
+  std::vector<double> sums(regions_, 0.0);
+  for (std::size_t row = 0; row + 1 < first_term_.size(); ++row) {
+    double off = 0.0;
+    for (std::size_t layer = 0; layer < layers_; ++layer) {
+      off += weights[layer] * double(off_[row * layers_ + layer]);
+    }
+    for (std::size_t k = first_term_[row]; k < first_term_[row + 1]; ++k) {
+      sums[terms_[k].region] += terms_[k].share * terms_[k].share * off * off;
+    }
+  }
+  return sums;
 }
 
 }  // namespace earthshine::raytrace

@@ -47,9 +47,15 @@ struct RenderOptions {
   SharedGather shared = {};
   Indirect indirect = Indirect::Radiosity;
   PathSet paths = PathSet::All;
-  int distributed_lights = 64;   // N of Indirect::Distributed
+  int distributed_lights = 64;  // N of Indirect::Distributed
+  // Pixels along the edge of the square that a gather point serves, in the middle of which it lies;
+  // 1 where columns or rows are no multiple of it.
+  int gather_step = 1;
   std::string distributed_over;  // the [[area]] that the Earth's N lights lie on; empty: its disc
   bool per_light = false;
+  // Per pixel of the picture, with per_light: 1 where the layers' noise is noted at every gather
+  // point (LayerErrors::variance_of_mean); empty: at some places all over the picture alone.
+  std::vector<std::uint8_t> noted;
   std::vector<std::string> aovs;  // of aov_names()
   std::uint64_t seed = 1;
   // With SharedGather: samples of all kinds go where they help most until the picture's stated

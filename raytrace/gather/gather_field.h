@@ -71,16 +71,19 @@ class GatherField {
  public:
   struct Setting {
     std::size_t image_layers = 1;
+    int step = 1;  // pixels of the picture along the edge of one of the field's pixels
     bool keeps_sky_apart = false;  // one more layer: what came straight from the sky
     bool gathers_residual = true;
     bool shares = true;         // between neighbours
-    bool notes_layers = false;  // keeps how the layers' noise goes together, of the first round
+    bool notes_layers = false;  // keeps how the layers' noise goes together, round by round
+    std::span<const std::uint8_t> noted = {};  // RenderOptions::noted
     std::uint64_t seed = 1;
   };
-  // Finds the points: one for each pixel of the window, row by row, then the strays. `world` and
-  // `incoming` must outlive it.
+  // Finds the points: one for each pixel of the field, row by row, then the strays. camera: of the
+  // picture, whose columns and rows are multiples of the step. `world` and `incoming` must outlive
+  // it.
   GatherField(const PathWorld& world, const IncomingLight& incoming, const GatherSurface& surface,
-              const CameraModel& camera, const Window& window, const Setting& setting);
+              const CameraModel& camera, const Setting& setting);
 
   // Casts samples at every point: more[point], rounded down to fewest_samples(kind) times a power
   // of two; the `round`-th time.
@@ -98,17 +101,31 @@ class GatherField {
   // The least that can be asked for at once: two halves of the fewest.
   [[nodiscard]] static std::uint32_t fewest_samples(Gathered kind);
   [[nodiscard]] bool gathers(Gathered kind) const;
-  // Shares what was cast of a kind; find() and the values follow it. The residual comes after the
-  // solution. last: nothing more of that kind will be cast, and its samples are let go.
+  // Denoises what was cast of a kind: diffuse_sum() and lobe_sum() follow it. The residual comes
+  // after the solution. last: nothing more of that kind will be cast, its samples are let go, and
+  // diffuse() and lobe() have each layer.
   void share(Gathered kind, bool last);
 
-  // A point whose values may stand for the surface point that pixel (x, y) meets: one of the
+  // A point whose values may stand for the surface point that pixel (x, y) of the picture meets: one of the
   // pixel's own, on the same surface and near for its surroundings; no_point if there is none.
   [[nodiscard]] std::size_t find(int x, int y, const Sighting& place) const;
   // For what find() has no point: slivers of a pixel, and where a glossy surface turns fast. The
   // nearest point of the pixel and those about it on the same surface; for lobes one whose lobe
   // sees alike, too.
   [[nodiscard]] std::size_t find_beside(int x, int y, const Sighting& place, Gathered kind) const;
+  // What stands for a place whose point is `own`: with one point for several pixels, bilinear weights
+  // of the points about the pixel's middle that stand for the place, too; those of others go to
+  // `own`.
+  struct Reading {
+    std::array<std::size_t, 4> point{};
+    std::array<float, 4> weight{};
+    std::size_t count = 0;
+  };
+  [[nodiscard]] Reading reading(int x, int y, const Sighting& place, std::size_t own,
+                                Gathered kind) const;
+  // Of the image layers together.
+  [[nodiscard]] const glm::vec3& diffuse_sum(std::size_t point) const { return sums_[0][point]; }
+  [[nodiscard]] const glm::vec3& lobe_sum(std::size_t point) const { return sums_[1][point]; }
   // Radiance to be reflected by k_d, cd/m^2: image layers, then what came straight from the sky.
   [[nodiscard]] std::span<const glm::vec3> diffuse(std::size_t point) const {
     return {&diffuse_[point * layers_], layers_};
@@ -116,16 +133,23 @@ class GatherField {
   // Radiance to be reflected by k_s: image layers. Empty where no lobe is gathered for.
   [[nodiscard]] std::span<const glm::vec3> lobe(std::size_t point) const;
 
+  [[nodiscard]] int step() const { return setting_.step; }
+  // All of the field's pixels, and in which of them a point lies.
   [[nodiscard]] const Window& window() const { return window_; }
-  // Where a point lies in the window, and about how much of the pixel it stands for.
   [[nodiscard]] std::size_t pixel_of(std::size_t point) const {
     return point < grid_ ? point : strays_[point - grid_].pixel;
   }
+
+  // The pixel of the picture in the middle of a point's pixel.
+  [[nodiscard]] std::array<int, 2> picture_pixel(std::size_t point) const;
   [[nodiscard]] double cover_of(std::size_t point) const {
     return point < grid_ ? 1.0 : double(strays_[point - grid_].cover);
   }
-  // Whether the centres of a pixel and of those about it lie on one surface, or on none.
-  [[nodiscard]] bool is_even(int x, int y) const { return even_[window_.index(x, y)] != 0; }
+  // Whether the centres of the field's pixel that holds (x, y) of the picture, and of those about
+  // it, lie on one surface, or on none.
+  [[nodiscard]] bool is_even(int x, int y) const {
+    return even_[window_.index(x / setting_.step, y / setting_.step)] != 0;
+  }
   // Places that a point's rays start from, at most: 1, or all over its pixel.
   [[nodiscard]] std::size_t origins_at(std::size_t point) const {
     return over_pixel_[point] != 0 ? RayOrigins::most : 1;
@@ -140,8 +164,7 @@ class GatherField {
   [[nodiscard]] double error_of(Gathered kind, std::size_t point) const;
   // The factor from what is estimated to what the camera sees: k_d or k_s.
   [[nodiscard]] double reflected(Gathered kind, std::size_t point) const;
-  // Places: points.
-  [[nodiscard]] const LayerNoise& layer_noise(Gathered kind) const { return noise_[number(kind)]; }
+  [[nodiscard]] LayerNoise layer_noise(Gathered kind) const;
   [[nodiscard]] RayCounts rays() const;  // all
   [[nodiscard]] const RayCounts& rays_of(Gathered kind) const { return rays_of_[number(kind)]; }
 
@@ -179,6 +202,8 @@ class GatherField {
   // Finds more points whose rays must start all over their pixel, by the length of all their rays,
   // and casts anew there as many as they had.
   void classify_origins(std::uint32_t round, const std::function<bool()>& stop);
+  // find() by a pixel of the field.
+  [[nodiscard]] std::size_t find_in(int x, int y, const Sighting& place) const;
   // How far the corners of a pixel's footprint on the surface are from its point, m.
   [[nodiscard]] float footprint_radius(const GatherPoint& point) const;
   // How far about a point its surface is its pixel's, whatever is near, m.
@@ -192,15 +217,21 @@ class GatherField {
   [[nodiscard]] std::vector<std::size_t> points_of_tile(std::size_t tile) const;
   // Tells each point's random numbers apart, whatever the crop.
   [[nodiscard]] std::uint64_t random_number_of(std::size_t point) const;
-  // Whether the point tells the layers' noise; what its halves' sums differ by, half after half.
-  [[nodiscard]] bool notes(std::size_t point, std::uint32_t round) const {
-    return setting_.notes_layers && round == 0 && point % layer_noise_step(points_.size()) == 0;
-  }
+  // Whether the layers' noise is noted at a point, and for how many points it stands.
+  [[nodiscard]] bool notes(std::size_t point) const { return noted_weight(point) > 0.0F; }
+  [[nodiscard]] float noted_weight(std::size_t point) const;
+  // The difference of the sums of a round's halves, at points that are noted.
+  struct Notes {
+    std::vector<std::uint32_t> point;
+    std::vector<float> off;  // row * layers
+    void add(std::size_t at, std::span<const float> off_by);
+  };
   static void note_half(std::uint32_t half, std::span<const Rgb> sum, std::span<float> off);
-  // Keeps it, of a point that tells.
-  void finish_note(Gathered kind, std::size_t point, double samples, std::span<float> off,
-                   LayerNoise& notes) const;
-  void add_notes(Gathered kind, const std::vector<LayerNoise>& of_tiles);
+  void add_notes(Gathered kind, const std::vector<Notes>& of_tiles);
+  void drop_notes(Gathered kind, const std::vector<std::uint32_t>& anew);
+  [[nodiscard]] Shared share_among(Gathered kind, Estimate& estimate, bool in_place);
+  void add_totals(Gathered kind);  // into sums_
+  void add_layers(Gathered kind);  // the same
   void cast_solution(const std::vector<std::uint32_t>& more, std::uint32_t round,
                      const std::function<bool()>& stop);
   void cast_paths(Gathered kind, const std::vector<std::uint32_t>& more, std::uint32_t round,
@@ -228,9 +259,11 @@ class GatherField {
   std::vector<std::uint8_t> over_pixel_;  // per point, 1: rays start all over its pixel
   std::array<Estimate, gathered_kinds> estimate_;
   std::array<Shared, gathered_kinds> shared_;
-  std::vector<glm::vec3> diffuse_;  // point * layers
+  std::vector<glm::vec3> diffuse_;                            // point * layers
+  std::array<std::vector<glm::vec3>, gathered_kinds> total_;  // denoised, of several layers
+  std::array<std::vector<glm::vec3>, 2> sums_;  // of the image layers: of diffuse_, of lobes
   std::array<RayCounts, gathered_kinds> rays_of_;
-  std::array<LayerNoise, gathered_kinds> noise_;
+  std::array<Notes, gathered_kinds> notes_;
   std::vector<std::uint64_t> peers_;  // of a stray (Peers::masks)
   std::uint64_t camera_rays_ = 0;
   bool any_lobe_ = false;

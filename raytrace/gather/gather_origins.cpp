@@ -41,6 +41,7 @@ void GatherField::classify_origins(std::uint32_t round, const std::function<bool
     lengths_[p] = {};
     estimate.clear(p);
   }
+  drop_notes(Gathered::Solution, anew);
   cast_solution(anew, round, stop);
 }
 
@@ -78,7 +79,7 @@ RayOrigins GatherField::draw_origins(Gathered kind, std::size_t p, std::uint32_t
         // At a first look, which does not know yet what is near, that is the footprint.
         const bool far = points_[p].reach_m == std::numeric_limits<float>::max() &&
                          glm::length(found.position - points_[p].position) > own_radius(p);
-        if (far || find(x, y, sighting_of(found)) != p) continue;
+        if (far || find_in(x, y, sighting_of(found)) != p) continue;
         origins.add(start);
       }
     }
@@ -95,6 +96,10 @@ float GatherField::own_radius(std::size_t p) const {
 }
 
 std::size_t GatherField::find(int x, int y, const Sighting& place) const {
+  return find_in(x / setting_.step, y / setting_.step, place);
+}
+
+std::size_t GatherField::find_in(int x, int y, const Sighting& place) const {
   // Further off, as a lens out of focus looks, irradiance may be another.
   const auto if_near = [&](std::size_t index) {
     const GatherPoint& point = points_[index];
@@ -111,7 +116,38 @@ std::size_t GatherField::find(int x, int y, const Sighting& place) const {
   return no_point;
 }
 
+GatherField::Reading GatherField::reading(int x, int y, const Sighting& place, std::size_t own,
+                                          Gathered kind) const {
+  Reading read;
+  read.point[0] = own;
+  read.weight[0] = 1.0F;
+  read.count = 1;
+  if (setting_.step == 1 || own >= grid_) return read;
+  const auto [at_x, at_y] = place_of(own);
+  const auto step = static_cast<float>(setting_.step);
+  // From the point's middle, in the field's pixels.
+  const float dx = (static_cast<float>(x) + 0.5F) / step - static_cast<float>(at_x) - 0.5F;
+  const float dy = (static_cast<float>(y) + 0.5F) / step - static_cast<float>(at_y) - 0.5F;
+  const int to_x = dx < 0.0F ? -1 : 1, to_y = dy < 0.0F ? -1 : 1;
+  const float in_x = std::abs(dx), in_y = std::abs(dy);
+  const auto add = [&](int by_x, int by_y, float weight) {
+    if (!window_.contains(at_x + by_x, at_y + by_y)) return;
+    const std::size_t index = window_.index(at_x + by_x, at_y + by_y);
+    const GatherPoint& point = points_[index];
+    if (!stands_for(point, place) || reflected(kind, index) <= 0.0) return;
+    if (point.material != points_[own].material) return;
+    read.point[read.count] = index;
+    read.weight[read.count++] = weight;
+    read.weight[0] -= weight;
+  };
+  add(to_x, 0, in_x * (1.0F - in_y));
+  add(0, to_y, in_y * (1.0F - in_x));
+  add(to_x, to_y, in_x * in_y);
+  return read;
+}
+
 std::size_t GatherField::find_beside(int x, int y, const Sighting& place, Gathered kind) const {
+  x /= setting_.step, y /= setting_.step;
   std::size_t nearest = no_point;
   float distance = std::numeric_limits<float>::max();
   const auto consider = [&](std::size_t index) {

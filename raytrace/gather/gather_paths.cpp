@@ -22,7 +22,7 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
   Estimate& estimate = estimate_[number(kind)];
   const bool lobe = kind == Gathered::Lobe;
   std::vector<RayCounts> counts_of(tile_count(window_));
-  std::vector<LayerNoise> notes_of(counts_of.size());
+  std::vector<Notes> notes_of(counts_of.size());
   const auto cast_tile = [&](std::size_t t) {
     PathWalker walker(world_);
     RayCounts& counts = counts_of[t];
@@ -35,7 +35,7 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
       const auto first = static_cast<std::uint64_t>(estimate.samples[p]);
       if (point.reach_m <= 0.0F || each == 0) continue;
       if ((lobe ? point.lobe : point.reflectance) <= 0.0F) continue;
-      off.assign(notes(p, round) ? image_layers_ : 0, 0.0F);
+      off.assign(notes(p) ? image_layers_ : 0, 0.0F);
       for (std::uint32_t half = 0; half < 2; ++half) {
         std::vector<Rgb>& sum = sums[half];
         sum.assign(image_layers_, Rgb(0.0));
@@ -65,21 +65,19 @@ void GatherField::cast_paths(Gathered kind, const std::vector<std::uint32_t>& mo
         }
       }
       for (std::uint32_t half = 0; half < 2; ++half) {
-        for (std::size_t layer = 0; layer < image_layers_; ++layer) {
-          estimate.sum[p * image_layers_ + layer] += glm::vec3(sums[half][layer]);
-        }
+        estimate.add(p, sums[half]);
         note_half(half, sums[half], off);
       }
       estimate.add_luminance(p, static_cast<float>(luminance_of(sums[0])),
                              static_cast<float>(luminance_of(sums[1])));
-      finish_note(kind, p, 2.0 * each, off, notes_of[t]);
+      notes_of[t].add(p, off);
       estimate.samples[p] += static_cast<float>(2 * each);
     }
     counts += walker.rays();
   };
   base::share_loop(counts_of.size(), cast_tile, [&](std::size_t t, base::Parcel& parcel) {
     parcel.pass(counts_of[t]);
-    parcel.pass(notes_of[t].place);
+    parcel.pass(notes_of[t].point);
     parcel.pass(notes_of[t].off);
     for (const std::size_t p : points_of_tile(t)) estimate.pass(p, parcel);
   });

@@ -114,14 +114,14 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
     if ((classes & of_class) == 0) continue;
     const GatherRays rays(of_class);
     std::vector<RayCounts> counts(tile_count(window_));
-    std::vector<LayerNoise> notes_of(counts.size());
+    std::vector<Notes> notes_of(counts.size());
     const auto cast_tile = [&](std::size_t t) {
       if (stop && stop()) return;
       const auto cast = [&](std::span<const std::size_t> some, std::size_t origins) {
         std::vector<std::vector<float>> off(some.size());
         std::vector<std::array<float, 2>> luminance(some.size());
         for (std::size_t k = 0; k < some.size(); ++k) {
-          off[k].assign(notes(some[k], round) ? image_layers_ : 0, 0.0F);
+          off[k].assign(notes(some[k]) ? image_layers_ : 0, 0.0F);
         }
         for (std::uint32_t half = 0; half < 2; ++half) {
           TilePoints points(std::min<std::size_t>(origins, of_class));
@@ -135,9 +135,7 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
           for (std::size_t k = 0; k < points.count; ++k) {
             const std::size_t p = points.index[k];
             lengths_[p] += found.lengths[k];
-            for (std::size_t layer = 0; layer < layers_; ++layer) {
-              estimate.sum[p * layers_ + layer] += glm::vec3(found.sums[k * layers_ + layer]);
-            }
+            estimate.add(p, {&found.sums[k * layers_], layers_});
             luminance[k][half] =
                 static_cast<float>(luminance_of({&found.sums[k * layers_], image_layers_}));
             estimate.samples[p] += static_cast<float>(of_class);
@@ -147,7 +145,7 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
         }
         for (std::size_t k = 0; k < some.size(); ++k) {
           estimate.add_luminance(some[k], luminance[k][0], luminance[k][1]);
-          finish_note(Gathered::Solution, some[k], 2.0 * of_class, off[k], notes_of[t]);
+          notes_of[t].add(some[k], off[k]);
         }
       };
       for (const std::size_t origins : {std::size_t{1}, RayOrigins::most}) {
@@ -163,7 +161,7 @@ void GatherField::cast_solution(const std::vector<std::uint32_t>& more, std::uin
     };
     base::share_loop(counts.size(), cast_tile, [&](std::size_t t, base::Parcel& parcel) {
       parcel.pass(counts[t]);
-      parcel.pass(notes_of[t].place);
+      parcel.pass(notes_of[t].point);
       parcel.pass(notes_of[t].off);
       for (const std::size_t p : points_of_tile(t)) {
         parcel.pass(lengths_[p]);

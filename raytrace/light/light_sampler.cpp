@@ -20,6 +20,8 @@ constexpr std::size_t few_lamps = 32;
 // Lamps that may give more than this share of the light count as ones that matter.
 constexpr double smallest_share = 1.0 / 16.0;
 
+constexpr double rounding = 1e-9;
+
 double fraction(double x) { return x - std::floor(x); }
 // In the same order as x.
 double signed_square(double x) { return x * std::abs(x); }
@@ -49,7 +51,9 @@ LightSampler::LightSampler(const scenes::World& world, Indirect indirect, int di
       case Shines::SunPart: {
         const scenes::Sun& sun = scene_.sky_parts->suns[k];
         sun_parts_.push_back({scenes::sun_sample_illuminance(sun),
-                              {sun.direction, base::radians(sun.angular_radius_deg)}});
+                              {sun.direction, base::radians(sun.angular_radius_deg)},
+                              sun.direction,
+                              base::radians(sun.angular_radius_deg) + rounding});
         add({Kind::SunPart, group, k}, 1);
         break;
       }
@@ -183,25 +187,25 @@ void LightSampler::add(Light light, int copies) {
 
 namespace {
 
-bool sun_may_reach(const scenes::Sun& sun, const scenes::FlatMirror* mirror, const Vec3& point,
-                   const Vec3& normal) {
-  constexpr double rounding = 1e-9;
-  const double angle = base::radians(sun.angular_radius_deg) + rounding;
-  const Vec3 facing = mirror != nullptr ? mirror->turned(normal) : normal;
-  if (glm::dot(sun.direction, facing) < -angle) return false;
-  return mirror == nullptr || scenes::disc_may_be_thrown(sun.direction, angle, *mirror, point);
+bool sun_may_reach(const Vec3& direction, double angle_rad, const scenes::FlatMirror* mirror,
+                   const Vec3& point, const Vec3& normal) {
+  if (mirror == nullptr) return glm::dot(direction, normal) >= -angle_rad;
+  return glm::dot(direction, mirror->turned(normal)) >= -angle_rad &&
+         scenes::disc_may_be_thrown(direction, angle_rad, *mirror, point);
 }
 
 }  // namespace
 
 bool LightSampler::may_reach(std::size_t index, const Vec3& point, const Vec3& normal) const {
-  constexpr double rounding = 1e-9;
   const Light& light = lights_[index];
   const scenes::FlatMirror* mirror = light.mirror;
-  if (light.kind == Kind::Sun || light.kind == Kind::SunPart) {
-    const scenes::Sun& sun =
-        light.kind == Kind::Sun ? *scene_.sun : scene_.sky_parts->suns[light.index];
-    return sun_may_reach(sun, mirror, point, normal);
+  if (light.kind == Kind::SunPart) {
+    const SunPart& sun = sun_parts_[light.index];
+    return sun_may_reach(sun.direction, sun.angle_rad, mirror, point, normal);
+  }
+  if (light.kind == Kind::Sun) {
+    const double angle_rad = base::radians(scene_.sun->angular_radius_deg) + rounding;
+    return sun_may_reach(scene_.sun->direction, angle_rad, mirror, point, normal);
   }
   const OneRay& ray = one_rays_[index];
   const Vec3 way = ray.position - point;
@@ -227,6 +231,18 @@ scenes::LightSample LightSampler::sample(std::size_t index, const Vec3& point, d
   if (mirror->height_m(point) <= 0.0) return {};
   return scenes::thrown(sample_straight(lights_[index], mirror->image(point), u, v), *mirror,
                         static_cast<std::uint32_t>(mirror - mirrors_.data()), point);
+}
+
+scenes::LightSample LightSampler::sample_sun(std::size_t index, const Vec3& point,
+                                             const Vec3& place) const {
+  const SunPart& sun = sun_parts_[lights_[index].index];
+  const scenes::LightSample straight{sun.disc.at(place), std::numeric_limits<double>::infinity(),
+                                     sun.illuminance_lx};
+  const scenes::FlatMirror* mirror = lights_[index].mirror;
+  if (mirror == nullptr) return straight;
+  if (mirror->height_m(point) <= 0.0) return {};
+  return scenes::thrown(straight, *mirror, static_cast<std::uint32_t>(mirror - mirrors_.data()),
+                        point);
 }
 
 scenes::LightSample LightSampler::sample_straight(const Light& light, const Vec3& point, double u,

@@ -77,6 +77,16 @@ class LightSampler {
   }
   [[nodiscard]] scenes::LightSample sample(std::size_t light, const Vec3& point, double u,
                                            double v) const;
+  // The Suns of a sky in parts have discs of one size, so that a point of one, about its middle, is
+  // one of all: sun_place(u, v).
+  [[nodiscard]] bool is_sun_part(std::size_t light) const {
+    return lights_[light].kind == Kind::SunPart;
+  }
+  [[nodiscard]] Vec3 sun_place(double u, double v) const {
+    return sun_parts_.front().disc.local(u, v);
+  }
+  [[nodiscard]] scenes::LightSample sample_sun(std::size_t light, const Vec3& point,
+                                               const Vec3& place) const;
 
  private:
   enum class Kind { Sun, SunPart, Earth, EarthArea, Lamp, Emitters };
@@ -142,6 +152,8 @@ class LightSampler {
   struct SunPart {
     Rgb illuminance_lx;
     scenes::Cone disc;
+    Vec3 direction;
+    double angle_rad;  // of its radius, and rounding
   };
   std::vector<SunPart> sun_parts_;
   std::optional<scenes::EarthLight> earth_;

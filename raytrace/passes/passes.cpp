@@ -23,6 +23,8 @@ constexpr std::array<Gathered, gathered_kinds> every_kind = {Gathered::Solution,
 // What must follow a gather field's points, at the least, over the time that finding them takes
 // (payload bay: 6 by day, 9 by night); and what must follow sharing.
 constexpr double after_points = 9.0, after_sharing = 4.0;
+// Pictures of more layers are measured, not looked at: what the eye minds costs them most.
+constexpr std::size_t most_layers_looked_at = 8;
 // For the edges of sources, at the most: samples, and of the time that a limit leaves.
 constexpr double most_edge_samples = 1048576.0, edge_samples_per_pixel = 4.0, time_for_edges = 0.25;
 
@@ -73,7 +75,7 @@ class Passes {
     const PixelSamples sampling = share_out(options_.gather_rays, shared_.gathers);
     shared_.diffuse = DiffuseSource::Gather;
     shared_.gather_rays = sampling.gather_rays;
-    sums_.emplace(window_, shared_.layers, shared_.splits_parts);
+    sums_.emplace(window_, shared_.layers, shared_.splits_parts, options_.noted, camera_.columns);
     expected_ =
         static_cast<double>(sampling.camera_samples) * static_cast<double>(window_.pixel_count());
     first_round(everywhere(sampling.camera_samples));
@@ -109,7 +111,7 @@ class Passes {
       count_gather_rays();
       report_.gather_seconds += seconds_since(start);
     }
-    sums_.emplace(around, shared_.layers, shared_.splits_parts);
+    sums_.emplace(around, shared_.layers, shared_.splits_parts, options_.noted, camera_.columns);
     shared_.dimmest = pilot.dimmest;
     first_round(everywhere(how.least_samples));
     shared_.dimmest.clear();
@@ -123,7 +125,7 @@ class Passes {
 
   // As many of each as the wanted error takes, round by round, told by what is there.
   void run_to_error() {
-    sums_.emplace(window_, shared_.layers, shared_.splits_parts);
+    sums_.emplace(window_, shared_.layers, shared_.splits_parts, options_.noted, camera_.columns);
     expected_ = 1.0;
     bool covered = true;  // all over the picture there are as many samples as a first look takes
     if (shared_.gathers) {
@@ -143,7 +145,7 @@ class Passes {
     const int least = options_.shared.least_samples;
     first_round(by_edges(least, std::max(std::min(2, least), least / 2)));
     reserve_s_ = 0.0;
-    if (!ends()) {
+    if (!ends() && shared_.layers <= most_layers_looked_at) {
       const double dimmest = dimmest_of(*sums_);
       shade(wanted_for_the_eye(*sums_, scatter_of_samples(*sums_, dimmest), dimmest));
     }
@@ -172,6 +174,7 @@ class Passes {
       reserve_s_ = sharing_s_;
     }
     report_.gave_up = rounds.gave_up();
+    finish_layers();
     if (!covered || options_.error <= 0.0 || !(ends() || report_.gave_up)) return;
     const SampleCosts each = sample_costs(field());
     SamplePlanner planner(*sums_, field(), each);
@@ -195,10 +198,13 @@ class Passes {
                                                            GatherRequest& request) {
       return gathers_at(scene, hit, request);
     };
+    const bool even =
+        camera_.columns % options_.gather_step == 0 && camera_.rows % options_.gather_step == 0;
+    const int step = even ? options_.gather_step : 1;
     field_.emplace(
-        world_, shared_.incoming, surface, camera_, Window{0, 0, camera_.columns, camera_.rows},
-        GatherField::Setting{shared_.layers, shared_.splits_parts, shared_.world != nullptr,
-                             options_.shared.smooth_share > 0.0, shared_.layers > 1,
+        world_, shared_.incoming, surface, camera_,
+        GatherField::Setting{shared_.layers, step, shared_.splits_parts, shared_.world != nullptr,
+                             options_.shared.smooth_share > 0.0, shared_.layers > 1, options_.noted,
                              options_.seed});
     shared_.diffuse = DiffuseSource::Field;
     shared_.field = &*field_;
@@ -215,6 +221,12 @@ class Passes {
     for (const Gathered kind : every_kind) field_->share(kind, false);
     sharing_s_ = seconds_since(start);
     count_gather_rays();
+  }
+
+  // Rounds go by the sum of all layers; each of them follows at the end.
+  void finish_layers() {
+    if (!field_ || shared_.layers < 2) return;
+    for (const Gathered kind : every_kind) field_->share(kind, true);
   }
 
   void count_gather_rays() {

@@ -118,16 +118,14 @@ void SamplePlanner::look_at(std::size_t count, const Look& look) {
 // on no more than they state themselves.
 void SamplePlanner::look_at_field(double scale) {
   const Window& window = sums_.window;
-  const auto columns = static_cast<std::size_t>(field_->window().columns);
+  const double pixels = field_->step() * field_->step();  // that read a point
   for (std::size_t k = 0; k < gathered_kinds; ++k) {
     const auto kind = static_cast<Gathered>(k);
     if (!field_->gathers(kind)) continue;
     const Shared& shared = field_->shared(kind);
     const auto fewest = static_cast<float>(GatherField::fewest_samples(kind));
     const auto gain_of = [&](std::size_t p, double one, double two, double four) -> Gain {
-      const std::size_t pixel = field_->pixel_of(p);
-      const int x = field_->window().x + static_cast<int>(pixel % columns);
-      const int y = field_->window().y + static_cast<int>(pixel / columns);
+      const auto [x, y] = field_->picture_pixel(p);
       if (!window.contains(x, y)) return {};
       const double reflected = field_->reflected(kind, p);
       if (reflected <= 0.0) return {};
@@ -136,7 +134,7 @@ void SamplePlanner::look_at_field(double scale) {
       const double weight =
           error_weight(double(stated_.luminance[window.index(x, y)]), whole_.luminance) *
           reflected * field_->cover_of(p);
-      const double factor = weight * weight * scale;
+      const double factor = weight * weight * scale * pixels;
       if (factor * (one - four) <= 0.0) return {};
       return {static_cast<std::uint32_t>(p),
               static_cast<std::uint8_t>(k),

@@ -13,12 +13,6 @@ namespace {
 constexpr double rounding = 1e-6;  // of sums in single precision
 constexpr double one_sided_90 = 1.2816;
 
-double luminance_of(std::span<const glm::vec3> layers, const glm::vec3& factor) {
-  glm::vec3 sum(0.0F);
-  for (const glm::vec3& layer : layers) sum += layer;
-  return base::luminance(Rgb(sum * factor));
-}
-
 // Adds up what the pixel reads from gather points, and their errors: those of one kind are taken as
 // going the same way.
 class FieldOfPixel {
@@ -26,13 +20,12 @@ class FieldOfPixel {
   FieldOfPixel(const PixelSums& sums, const GatherField& field, std::size_t pixel) {
     for (const FieldTerm& term : sums.terms[pixel]) {
       const auto point = std::size_t{term.point};
-      const auto seen = field.diffuse(point).first(field.image_layers());
-      luminance += luminance_of(seen, term.diffuse);
+      luminance += base::luminance(Rgb(field.diffuse_sum(point) * term.diffuse));
       const double diffuse = base::luminance(Rgb(term.diffuse));
       off_[0] += diffuse * field.error_of(Gathered::Solution, point);
       off_[1] += diffuse * field.error_of(Gathered::Residual, point);
       if (base::luminance(Rgb(term.lobe)) <= 0.0) continue;
-      luminance += luminance_of(field.lobe(point), term.lobe);
+      luminance += base::luminance(Rgb(field.lobe_sum(point) * term.lobe));
       off_[2] += base::luminance(Rgb(term.lobe)) * field.error_of(Gathered::Lobe, point);
     }
   }

@@ -163,12 +163,23 @@ void PathWalker::light_directly(const Surface& surface) {
   // Each light has numbers of its own, so that a lamp that is switched off moves no other's light.
   const base::Key key(static_cast<std::uint64_t>(rng_->next() * 0x1p53), base::Stream::LightSample,
                       0);
+  std::optional<Vec3> on_sun;  // of the Suns of a sky in parts
+  const auto sample = [&](std::size_t k) {
+    if (world_.lights.is_sun_part(k)) {
+      if (!on_sun) {
+        on_sun =
+            world_.lights.sun_place(base::uniform(key.with(k), 0), base::uniform(key.with(k), 1));
+      }
+      return world_.lights.sample_sun(k, surface.position, *on_sun);
+    }
+    const bool chooses = world_.lights.has_extent(k);
+    const double u = chooses ? base::uniform(key.with(k), 0) : 0.0;
+    const double v = chooses ? base::uniform(key.with(k), 1) : 0.0;
+    return world_.lights.sample(k, surface.position, u, v);
+  };
   world_.lights.each_that_may_reach(
       surface.position, surface.normal, turn_of_suns_, [&](std::size_t k) {
-        const bool chooses = world_.lights.has_extent(k);
-        const double u = chooses ? base::uniform(key.with(k), 0) : 0.0;
-        const double v = chooses ? base::uniform(key.with(k), 1) : 0.0;
-        const scenes::LightSample light = world_.lights.sample(k, surface.position, u, v);
+        const scenes::LightSample light = sample(k);
         const double cosine = glm::dot(light.direction, surface.normal);
         if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) return;
         Rgb reflectance = surface.diffuse;

@@ -18,11 +18,11 @@ constexpr std::size_t few_pixels = 64;
 constexpr double most_scatter = 1.0 / 3.0, most_of_eight = 1.414 * most_scatter;
 
 void shade_pixel(const ShadingScene& shared, const CameraModel& camera, int x, int y,
-                 std::uint32_t first, std::uint32_t end, PixelShader& shader) {
+                 std::uint32_t first, std::uint32_t end, bool by_layer, PixelShader& shader) {
   const std::uint64_t number =
       static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(camera.columns) +
       static_cast<std::uint64_t>(x);
-  shader.begin_pixel(camera, x, y, first, end - first);
+  shader.begin_pixel(camera, x, y, first, end - first, by_layer);
   const PixelPoints points(shared.seed, number);
   scenes::RayPacket packet;
   scenes::HitPacket hits;
@@ -50,7 +50,8 @@ void shade_pixel(const ShadingScene& shared, const CameraModel& camera, int x, i
 
 }  // namespace
 
-PixelSums::PixelSums(const Window& of, std::size_t layers, bool splits_parts)
+PixelSums::PixelSums(const Window& of, std::size_t layers, bool splits_parts,
+                     std::span<const std::uint8_t> noted, int columns)
     : window(of),
       image_layers(layers),
       entries(layers + (splits_parts ? part_count : 0)),
@@ -63,27 +64,41 @@ PixelSums::PixelSums(const Window& of, std::size_t layers, bool splits_parts)
       source(of.pixel_count()),
       rays(of.pixel_count(), 0.0F),
       scatter(of.pixel_count(), 0.0F) {
+  if (layers < 2) return;
   const std::size_t step = layer_noise_step(samples.size());
-  if (layers > 1) layers_differ.assign((samples.size() + step - 1) / step * layers, 0.0F);
+  const Window picture{0, 0, columns, 0};
+  noted_row.assign(samples.size(), 0U);
+  for (int y = of.y; y < of.y + of.rows; ++y) {
+    for (int x = of.x; x < of.x + of.columns; ++x) {
+      const std::size_t pixel = of.index(x, y);
+      const bool all = !noted.empty() && noted[picture.index(x, y)] != 0;
+      if (!all && pixel % step != 0) continue;
+      stands_for.push_back(all ? 1.0F : static_cast<float>(step));
+      noted_row[pixel] = static_cast<std::uint32_t>(stands_for.size());
+    }
+  }
+  layers_differ.assign(stands_for.size() * layers, 0.0F);
 }
 
 std::span<float> PixelSums::layers_of(std::size_t pixel) {
-  const std::size_t step = layer_noise_step(samples.size());
-  if (layers_differ.empty() || pixel % step != 0) return {};
-  return {&layers_differ[pixel / step * image_layers], image_layers};
+  if (noted_row.empty() || noted_row[pixel] == 0) return {};
+  return {&layers_differ[(noted_row[pixel] - 1U) * image_layers], image_layers};
 }
 
-LayerNoise PixelSums::layer_noise() const {
+LayerNoise PixelSums::layer_noise(int columns) const {
   LayerNoise noise;
-  const std::size_t step = layer_noise_step(samples.size());
+  const Window picture{0, 0, columns, 0};
   std::vector<float> off(image_layers);
-  for (std::size_t k = 0; k < layers_differ.size(); k += image_layers) {
-    const std::size_t pixel = k / image_layers * step;
-    if (!counts(pixel)) continue;
-    for (std::size_t layer = 0; layer < image_layers; ++layer) {
-      off[layer] = layers_differ[k + layer] / static_cast<float>(samples[pixel]);
+  for (int y = window.y; y < window.y + window.rows; ++y) {
+    for (int x = window.x; x < window.x + window.columns; ++x) {
+      const std::size_t pixel = window.index(x, y);
+      if (noted_row[pixel] == 0 || !counts(pixel)) continue;
+      const std::size_t row = noted_row[pixel] - 1U;
+      for (std::size_t layer = 0; layer < image_layers; ++layer) {
+        off[layer] = layers_differ[row * image_layers + layer] / static_cast<float>(samples[pixel]);
+      }
+      noise.add({picture.index(x, y), 1.0F, stands_for[row]}, off);
     }
-    noise.add(pixel, off);
   }
   return noise;
 }
@@ -187,7 +202,8 @@ void shade_samples(const ShadingScene& shared, const CameraModel& camera,
       const std::uint32_t first = sums.samples[pixel];
       if (wanted[pixel] <= first || (stop && stop())) return;
       const std::uint64_t before = shader.rays().total();
-      shade_pixel(shared, camera, x, y, first, wanted[pixel], shader);
+      shade_pixel(shared, camera, x, y, first, wanted[pixel], !sums.layers_of(pixel).empty(),
+                  shader);
       sums.rays[pixel] += static_cast<float>(shader.rays().total() - before);
       sums.add(pixel, shader, first, wanted[pixel] - first);
       count += wanted[pixel] - first;

@@ -28,12 +28,17 @@ struct PixelSums {
   // Of the first samples in the light of one source (PixelShader::scatter); 0: nobody asked.
   std::vector<float> scatter;
 
-  std::vector<float> layers_differ;  // the same by layer, of every so many pixels
+  std::vector<float> layers_differ;  // the same by layer, of pixels that are noted
+  // Of a pixel: 1 + its row in layers_differ, 0 where it is not noted; for how many pixels it stands.
+  std::vector<std::uint32_t> noted_row;
+  std::vector<float> stands_for;  // by row
 
-  PixelSums(const Window& of, std::size_t image_layers, bool splits_parts);
+  // noted: RenderOptions::noted of a picture with so many columns.
+  PixelSums(const Window& of, std::size_t image_layers, bool splits_parts,
+            std::span<const std::uint8_t> noted = {}, int columns = 0);
   // Of a pixel that tells the noise of the layers (layer_noise_step).
   [[nodiscard]] std::span<float> layers_of(std::size_t pixel);
-  [[nodiscard]] LayerNoise layer_noise() const;  // places: pixels of the window
+  [[nodiscard]] LayerNoise layer_noise(int columns) const;
   // Of the mean luminance, from the spread of the samples alone.
   [[nodiscard]] double sample_variance(std::size_t pixel) const;
   // Standard deviation of one sample's luminance. Pixels brighter than `bright` are wanted as exact

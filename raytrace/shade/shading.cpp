@@ -39,7 +39,6 @@ PixelShader::PixelShader(const ShadingScene& shared)
     : shared_(shared),
       sums_(shared.layers + (shared.splits_parts ? part_count : 0)),
       scratch_(shared.layers),
-      halves_differ_(shared.layers, 0.0),
       gather_points_{base::SobolOwen4(base::Key(0, base::Stream::FinalGather, 0)),
                      base::SobolOwen4(base::Key(0, base::Stream::FinalGather, 0))},
       rng_(base::Key(0, base::Stream::Roulette, 0)) {
@@ -47,7 +46,7 @@ PixelShader::PixelShader(const ShadingScene& shared)
 }
 
 void PixelShader::begin_pixel(const CameraModel& camera, int x, int y, std::size_t first,
-                              std::size_t count) {
+                              std::size_t count, bool by_layer) {
   camera_ = &camera;
   pixel_x_ = x;
   pixel_y_ = y;
@@ -58,7 +57,7 @@ void PixelShader::begin_pixel(const CameraModel& camera, int x, int y, std::size
   terms_.clear();
   std::fill(sums_.begin(), sums_.end(), Rgb(0.0));
   sample_luminance_.assign(count, 0.0);
-  std::fill(halves_differ_.begin(), halves_differ_.end(), 0.0);
+  halves_differ_.assign(by_layer ? shared_.layers : 0, 0.0);
   by_light_.assign(shared_.dimmest.size() * count, 0.0);
   const base::Key key(shared_.seed, base::Stream::FinalGather, pixel_);
   gather_points_ = {base::SobolOwen4(key.with(0)), base::SobolOwen4(key.with(1))};
@@ -202,10 +201,21 @@ void PixelShader::direct(const Ray& ray, const Surface& surface, const Rgb& weig
       {surface.position, surface.normal, mirrored, base::max_component(surface.diffuse),
        most * base::max_component(surface.material.specular), surface.material.shininess},
       double(choice[0]) + 0x1p-24 * double(choice[1]), chosen_);
+  std::optional<Vec3> on_sun;  // of the Suns of a sky in parts
+  const auto sample = [&](std::size_t k, const Vec3& point) {
+    if (shared_.lights.is_sun_part(k)) {
+      if (!on_sun) {
+        const auto u = light_point(k);
+        on_sun = shared_.lights.sun_place(double(u[0]), double(u[1]));
+      }
+      return shared_.lights.sample_sun(k, point, *on_sun);
+    }
+    const auto u = shared_.lights.has_extent(k) ? light_point(k) : std::array<float, 2>{};
+    return shared_.lights.sample(k, point, double(u[0]), double(u[1]));
+  };
   const auto reflect = [&](std::size_t k, const Vec3& point, double share) {
     if (share <= 0.0 || !shared_.lights.may_reach(k, point, surface.normal)) return;
-    const auto u = shared_.lights.has_extent(k) ? light_point(k) : std::array<float, 2>{};
-    const scenes::LightSample light = shared_.lights.sample(k, point, u[0], u[1]);
+    const scenes::LightSample light = sample(k, point);
     const double cosine = glm::dot(light.direction, surface.normal);
     if (cosine <= 0.0 || !base::is_lit(light.normal_illuminance_lx)) return;
     // L = (E cos / pi) (k_d + k_s cos^n alpha): the measured Phong form.

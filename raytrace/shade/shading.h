@@ -67,8 +67,9 @@ class PixelShader {
   explicit PixelShader(const ShadingScene& shared);
 
   // Keys all random numbers to the pixel (its number in the whole picture) and clears the sums.
-  // Samples first .. first + count - 1 of the pixel follow.
-  void begin_pixel(const CameraModel& camera, int x, int y, std::size_t first, std::size_t count);
+  // Samples first .. first + count - 1 of the pixel follow. by_layer: fills halves_differ().
+  void begin_pixel(const CameraModel& camera, int x, int y, std::size_t first, std::size_t count,
+                   bool by_layer);
   // The pixel that the next sample falls into (a wide pixel filter puts some beside their own):
   // there the gather field is looked up.
   void look_near(int x, int y) {
@@ -124,7 +125,8 @@ class PixelShader {
   [[nodiscard]] bool has_points(int depth) const {
     return shared_.field != nullptr && depth == (mirror_ ? 1 : 0);
   }
-  [[nodiscard]] std::size_t find_point(const Surface& surface, Gathered kind) const;
+  [[nodiscard]] GatherField::Reading read_points(const Surface& surface, Gathered kind) const;
+  void count_read(const glm::vec3& sum, const Rgb& weight);
   bool read_field(const Surface& surface, const Rgb& weight);
   bool read_lobe(const Surface& surface, const Rgb& weight);
   FieldTerm& term_of(std::size_t point);
@@ -163,7 +165,9 @@ class PixelShader {
   void count_luminance(std::size_t layer, std::size_t sample, const Rgb& radiance) {
     const double luminance = base::luminance(radiance);
     sample_luminance_[sample - first_sample_] += luminance;
-    halves_differ_[layer] += sample % 2 == 0 ? luminance : -luminance;
+    if (!halves_differ_.empty()) {
+      halves_differ_[layer] += sample % 2 == 0 ? luminance : -luminance;
+    }
     if (by_light_.empty()) return;
     by_light_[shared_.light_of_layer[layer] * sample_luminance_.size() + sample - first_sample_] +=
         luminance;

@@ -43,15 +43,15 @@ void PixelShader::read_solution(const scenes::Hit& hit, const Rgb& weight, int d
   for (std::size_t k = 0; k < shared_.layers; ++k) add(k, sample_, part, scratch_[k]);
 }
 
-std::size_t PixelShader::find_point(const Surface& surface, Gathered kind) const {
+GatherField::Reading PixelShader::read_points(const Surface& surface, Gathered kind) const {
   const GatherField& field = *shared_.field;
   const Vec3 seen = mirror_ ? mirror_->image(surface.position) : surface.position;
   const Vec3 normal = mirror_ ? glm::reflect(surface.normal, mirror_->normal) : surface.normal;
   const Sighting place{glm::vec3(seen - shared_.sighting_origin), glm::vec3(normal),
                        mirror_.has_value()};
-  const std::size_t own = field.find(x_, y_, place);
-  return own != no_point || sample_ >= samples_beside ? own
-                                                      : field.find_beside(x_, y_, place, kind);
+  std::size_t own = field.find(x_, y_, place);
+  if (own == no_point && sample_ < samples_beside) own = field.find_beside(x_, y_, place, kind);
+  return own == no_point ? GatherField::Reading() : field.reading(x_, y_, place, own, kind);
 }
 
 FieldTerm& PixelShader::term_of(std::size_t point) {
@@ -61,28 +61,32 @@ FieldTerm& PixelShader::term_of(std::size_t point) {
   return terms_.emplace_back(FieldTerm{static_cast<std::uint32_t>(point)});
 }
 
+// sum: of the layers of a gather point's radiance; weight: what of it the camera sees.
+void PixelShader::count_read(const glm::vec3& sum, const Rgb& weight) {
+  sample_luminance_[sample_ - first_sample_] += base::luminance(weight * Rgb(sum));
+}
+
 bool PixelShader::read_field(const Surface& surface, const Rgb& weight) {
-  const std::size_t point = find_point(surface, Gathered::Solution);
-  if (point == no_point || shared_.field->points()[point].reflectance <= 0.0F) return false;
-  term_of(point).diffuse += glm::vec3(weight);
-  const std::span<const glm::vec3> radiance = shared_.field->diffuse(point);
-  for (std::size_t k = 0; k < shared_.layers; ++k) {
-    count_luminance(k, sample_, weight * Rgb(radiance[k]));
+  const GatherField::Reading read = read_points(surface, Gathered::Solution);
+  if (read.count == 0 || shared_.field->points()[read.point[0]].reflectance <= 0.0F) return false;
+  for (std::size_t k = 0; k < read.count; ++k) {
+    const Rgb part = weight * double(read.weight[k]);
+    term_of(read.point[k]).diffuse += glm::vec3(part);
+    count_read(shared_.field->diffuse_sum(read.point[k]), part);
   }
   return true;
 }
 
 bool PixelShader::read_lobe(const Surface& surface, const Rgb& weight) {
-  const std::size_t point = find_point(surface, Gathered::Lobe);
-  if (point == no_point) return false;
-  const std::uint32_t material = shared_.field->points()[point].material;
+  const GatherField::Reading read = read_points(surface, Gathered::Lobe);
+  if (read.count == 0) return false;
+  const std::uint32_t material = shared_.field->points()[read.point[0]].material;
   if (&shared_.scene.materials[material] != &surface.material) return false;
-  const std::span<const glm::vec3> radiance = shared_.field->lobe(point);
-  if (radiance.empty()) return false;
-  const Rgb reflected = weight * surface.material.specular;
-  term_of(point).lobe += glm::vec3(reflected);
-  for (std::size_t k = 0; k < radiance.size(); ++k) {
-    count_luminance(k, sample_, reflected * Rgb(radiance[k]));
+  if (shared_.field->points()[read.point[0]].lobe <= 0.0F) return false;
+  for (std::size_t k = 0; k < read.count; ++k) {
+    const Rgb part = weight * surface.material.specular * double(read.weight[k]);
+    term_of(read.point[k]).lobe += glm::vec3(part);
+    count_read(shared_.field->lobe_sum(read.point[k]), part);
   }
   return true;
 }

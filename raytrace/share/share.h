@@ -34,6 +34,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "base/ranks/ranks.h"
@@ -66,6 +67,7 @@ struct Estimate {
   std::size_t layers = 0;        // per point
   std::size_t image_layers = 0;  // the first of them, whose sum the eye sees
   std::vector<glm::vec3> sum;    // point * layers + layer
+  std::vector<glm::vec3> total;  // of the image layers; empty where there is one
   std::vector<float> luminance;  // of the image layers together
   std::vector<float> variance;   // of the luminance, as the halves of its rounds tell it
   std::vector<float> samples;
@@ -80,7 +82,26 @@ struct Estimate {
         samples(points, 0.0F) {}
   void clear(std::size_t point) {
     std::fill_n(sum.begin() + static_cast<std::ptrdiff_t>(point * layers), layers, glm::vec3(0.0F));
+    if (!total.empty()) total[point] = glm::vec3(0.0F);
     luminance[point] = variance[point] = samples[point] = 0.0F;
+  }
+  // Sums of some samples, by layer.
+  void add(std::size_t point, std::span<const Rgb> of_layers) {
+    for (std::size_t layer = 0; layer < layers; ++layer) {
+      const glm::vec3 more(of_layers[layer]);
+      sum[point * layers + layer] += more;
+      if (!total.empty() && layer < image_layers) total[point] += more;
+    }
+  }
+  // The same of the total alone.
+  [[nodiscard]] Estimate of_total() const {
+    Estimate one;
+    one.layers = one.image_layers = 1;
+    one.sum = total;
+    one.luminance = luminance;
+    one.variance = variance;
+    one.samples = samples;
+    return one;
   }
   // Of one round: what each half of the samples adds up to.
   void add_luminance(std::size_t point, float first, float second) {
@@ -97,6 +118,7 @@ struct Estimate {
   // A point's sums.
   void pass(std::size_t point, base::Parcel& parcel) {
     parcel.pass_range(&sum[point * layers], layers);
+    if (!total.empty()) parcel.pass(total[point]);
     parcel.pass(luminance[point]);
     parcel.pass(variance[point]);
     parcel.pass(samples[point]);

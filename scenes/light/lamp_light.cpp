@@ -203,12 +203,13 @@ Vec3 cosine_direction(const base::Frame3& frame, double x, double y) {
 Cone::Cone(const Vec3& axis, double half_angle_rad)
     : frame_(base::frame_around(axis)), most_(2.0 * std::pow(std::sin(half_angle_rad / 2), 2)) {}
 
-Vec3 Cone::sample(double u, double v) const {
+Vec3 Cone::sample(double u, double v) const { return glm::normalize(at(local(u, v))); }
+
+Vec3 Cone::local(double u, double v) const {
   const double one_minus_cos = u * most_;
   const double sine = std::sqrt(std::max(0.0, one_minus_cos * (2.0 - one_minus_cos)));
   const double phi = 2.0 * pi * v;
-  return glm::normalize(
-      frame_.to_world({sine * std::cos(phi), sine * std::sin(phi), 1.0 - one_minus_cos}));
+  return {sine * std::cos(phi), sine * std::sin(phi), 1.0 - one_minus_cos};
 }
 
 double cone_solid_angle_sr(double half_angle_rad) {

@@ -84,6 +84,9 @@ class Cone {
  public:
   Cone(const Vec3& axis, double half_angle_rad);
   [[nodiscard]] Vec3 sample(double u, double v) const;
+  // The same in two steps: coordinates about the axis, which cones as wide share, to a direction.
+  [[nodiscard]] Vec3 local(double u, double v) const;
+  [[nodiscard]] Vec3 at(const Vec3& local) const { return frame_.to_world(local); }
 
  private:
   base::Frame3 frame_;

@@ -72,7 +72,9 @@ Outcome look(const LightBasis& basis, const scenes::RayQuery& query, const Basis
   Outcome outcome;
   const GroupWeights weights = basis.weights(at.place, at.setting, options.lamps);
   outcome.radiance = weighted_sum(view.layers, basis.groups().names, weights);
-  outcome.sight = measure_sight(view.plan, outcome.radiance, cctv, options.why.sight);
+  const std::vector<double> deviation =
+      options.deviation ? options.deviation(at) : std::vector<double>();
+  outcome.sight = measure_sight(view.plan, outcome.radiance, cctv, options.why.sight, deviation);
   const SkyPlace& sky = basis.places()[at.place];
   outcome.sun_share = sun_share_of(sky);
   for (std::size_t t = 0; t < view.targets.size(); ++t) {

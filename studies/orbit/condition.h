@@ -58,17 +58,20 @@ struct Outcome {
   double sun_share = 0.0;              // of the Sun's disc, that the Earth leaves free
 };
 
+struct ConditionAt {
+  std::size_t place = 0, setting = 0;
+};
+
 struct ConditionOptions {
   double lamps = 1.0;  // times all lamps of the setting
   // For which targets TargetOutcome::why is filled: each costs about as much as ten conditions.
   enum class Explain { None, Unseen, NotIdentified } explain = Explain::NotIdentified;
   WhyNotOptions why;
+  // Of each target, what measure_sight is given in that condition; none: pictures are exact.
+  std::function<std::vector<double>(const ConditionAt&)> deviation = {};
   std::function<void()> before_each = {};  // condition, on many threads; what it throws ends all
 };
 
-struct ConditionAt {
-  std::size_t place = 0, setting = 0;
-};
 // Of conditions in their order. Reasons, which cost most, are worked out once per run of like ones:
 // of one setting, verdict and iris (a quarter of a stop), the same sources off for the same causes,
 // probabilities within 0.05, luminance of target and surround within a tenth, share in direct light

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -27,6 +28,11 @@ std::vector<std::size_t> ranked(std::span<const ConditionNoise> noise, Value val
 }
 
 }  // namespace
+
+std::string_view word_of(Enough enough) {
+  constexpr std::array<std::string_view, 3> words = {"error", "verdict", "no"};
+  return words[static_cast<std::size_t>(enough)];
+}
 
 ConditionNoise noise_of_condition(double rms, double mean) {
   ConditionNoise noise;

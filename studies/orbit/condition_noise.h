@@ -5,12 +5,23 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace earthshine::studies {
+
+// Why the samples of a condition's picture are enough.
+enum class Enough {
+  Error,    // its error is as asked
+  Verdict,  // it is larger, but with no target's verdict the other at the ends of its 95 % interval
+  No
+};
+// "error", "verdict", "no".
+[[nodiscard]] std::string_view word_of(Enough enough);
 
 struct ConditionNoise {
   std::optional<double> relative;  // over the picture's mean; none where it would be more than 1
   std::optional<double> cd_m2;     // rms over the pixels that count; none where nothing is known
+  Enough enough = Enough::Error;
 };
 
 // rms, mean: of the pixels that count, cd/m^2. A picture of more noise than light tells only that

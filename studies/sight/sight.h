@@ -7,6 +7,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -66,8 +67,15 @@ struct EyeSight {
   std::optional<Probability> probability;  // none without a surround
 };
 
+// Factors on the difference between target and surround: the ends of its 95 % interval over it.
+struct ContrastBounds {
+  double low = 1.0, high = 1.0;
+};
+
 struct Sight {
   Verdict verdict = Verdict::OutOfView;
+  // With the difference between target and surround at the ends of its 95 % interval.
+  Verdict verdict_low = Verdict::OutOfView, verdict_high = Verdict::OutOfView;
   // Of the monitor's viewer, or of the eye where there is no CCTV. None out of view, hidden
   // altogether, or where the target fills the picture: nothing is there to tell it from.
   std::optional<Probability> probability;
@@ -122,8 +130,13 @@ struct CameraSight {
 // is taken to have looked for long at a scene that is still but for targets that move. A target of
 // which black backs show is at best doubtful: how its real back looks is not known. Throws as
 // degrade::degrade does, and base::Error (Input) if the sizes differ.
+// deviation: of each target, the standard error of the difference of mean luminances, target less
+// surround, cd/m^2; empty: the picture is exact. The bounds are 1.96 of it off; where the target has
+// m parts, whose differences of m times that variance add up as squares, the lower one is
+// (1.96^2 + m)^(1/2) of it off.
 [[nodiscard]] CameraSight measure_sight(const SightPlan& plan, const base::Image& radiance,
                                         const std::optional<degrade::Setup>& cctv,
-                                        const SightOptions& options = {});
+                                        const SightOptions& options = {},
+                                        std::span<const double> deviation = {});
 
 }  // namespace earthshine::studies

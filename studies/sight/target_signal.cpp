@@ -85,6 +85,9 @@ std::optional<double> weber_of(double target, double surround) {
   return (target - surround) / surround;
 }
 
+// Upper bounds of a difference that is nothing are infinite.
+constexpr double most_factor = 1e6;
+
 // What the least modulation that is seen follows from.
 struct Needed {
   double delta = 0.0;       // of the line signal
@@ -138,7 +141,7 @@ void count_levels(const SightPlan& plan, const SightTarget& target, const CctvSi
 // The rest of the figures, where there is a surround.
 void compare(TargetSignal& out, const TargetResels& at, const ShownMoments& moments,
              const CctvSignal& line, const degrade::Setup& setup, const SightOptions& options,
-             int frames, const Extent& extent, const Trail& trail) {
+             int frames, const Extent& extent, const Trail& trail, const ContrastBounds& bounds) {
   SignalSight& s = out.signal;
   MonitorSight& m = out.monitor;
   s.surround = mean_of(moments.mean, at.surround);
@@ -174,17 +177,34 @@ void compare(TargetSignal& out, const TargetResels& at, const ShownMoments& mome
 
   const double in_time = 0.5 * (mean_of(moments.variance_in_time, at.measured) +
                                 mean_of(moments.variance_in_time, at.surround));
-  const Needed needed{*s.difference, mean_variance, in_time, light > 0.0 ? least / light : 1.0,
-                      out.lines};
-  s.limiting_frequency = limiting_frequency(setup, trail, extent.direction_rad, needed);
-  out.cycles = out.lines * *s.limiting_frequency;
-  // Of the parts together: each has its share of the whole's looks.
-  const double snr_d = over(*s.difference, difference_variance);
-  const double most = std::min(degrade::normal_probability(snr_d - options.even_chance_snr),
-                               seeing_probability(light / least, options.eye));
-  const Probability johnson = johnson_probability(*out.cycles, options.cycles);
-  out.probability = Probability{std::min(johnson.detect, most), std::min(johnson.recognise, most),
-                                std::min(johnson.identify, most)};
+  // With the difference between target and surround times a factor.
+  struct Seen {
+    double limiting_frequency;
+    Probability probability;
+  };
+  const auto seen_at = [&](double factor) -> Seen {
+    const double signal = factor * *s.difference, shown = factor * light;
+    const Needed needed{signal, mean_variance, in_time, shown > 0.0 ? least / shown : 1.0,
+                        out.lines};
+    const double frequency = limiting_frequency(setup, trail, extent.direction_rad, needed);
+    // Of the parts together: each has its share of the whole's looks.
+    const double snr_d = over(signal, difference_variance);
+    const double most = std::min(degrade::normal_probability(snr_d - options.even_chance_snr),
+                                 seeing_probability(shown / least, options.eye));
+    const Probability johnson = johnson_probability(out.lines * frequency, options.cycles);
+    return {frequency,
+            {std::min(johnson.detect, most), std::min(johnson.recognise, most),
+             std::min(johnson.identify, most)}};
+  };
+  const Seen seen = seen_at(1.0);
+  s.limiting_frequency = seen.limiting_frequency;
+  out.cycles = out.lines * seen.limiting_frequency;
+  out.probability = seen.probability;
+  const auto at_bound = [&](double factor) {
+    return factor == 1.0 ? seen.probability : seen_at(std::min(factor, most_factor)).probability;
+  };
+  out.probability_low = at_bound(bounds.low);
+  out.probability_high = at_bound(bounds.high);
 }
 
 Trail trail_of(const SightPlan& plan, const TargetView& view, const CctvSignal& line,
@@ -251,7 +271,8 @@ double chain_modulation(const degrade::Setup& setup, double direction_rad, doubl
 std::vector<std::optional<TargetSignal>> target_signals(const SightPlan& plan,
                                                         const CctvSignal& line,
                                                         const degrade::Setup& setup,
-                                                        const SightOptions& options) {
+                                                        const SightOptions& options,
+                                                        std::span<const ContrastBounds> bounds) {
   const int frames =
       std::max(1, static_cast<int>(std::lround(options.eye_integration_s / options.frame_s)));
   const auto weigh_here = [&](const std::vector<std::uint32_t>& pixels) {
@@ -287,7 +308,7 @@ std::vector<std::optional<TargetSignal>> target_signals(const SightPlan& plan,
     count_levels(plan, target, line, out);
     if (at[t].surround.empty()) continue;
     compare(out, at[t], moments, line, setup, options, frames, target.extent,
-            trail_of(plan, target.view, line, options));
+            trail_of(plan, target.view, line, options), bounds[t]);
   }
   return signals;
 }

@@ -12,17 +12,17 @@ namespace earthshine::studies {
 struct TargetSignal {
   SignalSight signal;
   MonitorSight monitor;
-  std::optional<double> cycles;            // none without a surround
-  std::optional<Probability> probability;  // none without a surround
+  std::optional<double> cycles;                                  // none without a surround
+  std::optional<Probability> probability;                        // none without a surround
+  std::optional<Probability> probability_low, probability_high;  // at the bounds of the contrast
   double saturated = 0.0, crushed = 0.0;
   double lines = 0.0;  // TV lines across the least extent
 };
 
 // Targets of which no pixel is seen get nothing.
-[[nodiscard]] std::vector<std::optional<TargetSignal>> target_signals(const SightPlan& plan,
-                                                                      const CctvSignal& line,
-                                                                      const degrade::Setup& setup,
-                                                                      const SightOptions& options);
+[[nodiscard]] std::vector<std::optional<TargetSignal>> target_signals(
+    const SightPlan& plan, const CctvSignal& line, const degrade::Setup& setup,
+    const SightOptions& options, std::span<const ContrastBounds> bounds);
 
 // What a tube's lag leaves of a target that moves by `speed` resels a field in `direction_rad`. The
 // signal of a field is (1 - lag) sum lag^k of the light k fields ago, when the target stood k speed

@@ -84,8 +84,7 @@ void gather(benchmark::State& state) {
   const std::vector<std::uint32_t> each(points, static_cast<std::uint32_t>(state.range(0)));
   double rays = 0.0;
   for (auto round : state) {
-    raytrace::GatherField field(s.world, s.incoming, surface, s.camera, {0, 0, edge_px, edge_px},
-                                {});
+    raytrace::GatherField field(s.world, s.incoming, surface, s.camera, {});
     field.cast(raytrace::Gathered::Solution, each, 0, {});
     rays = static_cast<double>(field.rays().gather);
     benchmark::DoNotOptimize(field.points().data());

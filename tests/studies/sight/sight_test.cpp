@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -226,6 +227,36 @@ TEST(Sight, WhatDoesNotExistIsEmptyAndAllElseFinite) {
 TEST(Sight, PicturesOfAnotherSizeAreRefused) {
   const auto picture = bright_disc();
   EXPECT_THROW((void)measure_sight(picture.plan, base::make_rgb_image(8, 8), {}), base::Error);
+}
+
+// A standard error of the difference from the surround, 20 cd/m^2, of 5 and of none: by the eye and
+// by a CCTV the verdicts at the bounds are those of pictures whose difference is 1 -+ 1.96 / 4 times
+// as large; without an error both are the verdict itself.
+TEST(Sight, BoundsOfAVerdictAreVerdictsAtTheEndsOfTheDifferencesInterval) {
+  const auto disc = [](double contrast) {
+    return discs_on(40.0, {{60.0, 60.0, 3.0, 40.0 + 20.0 * contrast}}, disc_edge, disc_edge);
+  };
+  const std::array<double, 1> deviation{5.0}, none{0.0};
+  const double low = 1.0 - 1.96 / 4.0, high = 1.0 + 1.96 / 4.0;
+  int moved = 0;
+  for (const double noise : {1e-4, 1e-2, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6}) {
+    const auto cctv = with_noise(plain_cctv(disc_edge, disc_edge, 100.0), noise, 0.0, 0.0);
+    const auto picture = disc(1.0);
+    ASSERT_TRUE(picture.plan.targets[0].parts.empty());
+    const auto verdict_at = [&](double contrast) {
+      const auto other = disc(contrast);
+      return measure_sight(other.plan, other.image, cctv).targets[0].verdict;
+    };
+    const Sight sure = measure_sight(picture.plan, picture.image, cctv, {}, none).targets[0];
+    EXPECT_EQ(sure.verdict_low, sure.verdict);
+    EXPECT_EQ(sure.verdict_high, sure.verdict);
+    const Sight sight = measure_sight(picture.plan, picture.image, cctv, {}, deviation).targets[0];
+    EXPECT_EQ(sight.verdict, sure.verdict);
+    EXPECT_EQ(sight.verdict_low, verdict_at(low)) << noise;
+    EXPECT_EQ(sight.verdict_high, verdict_at(high)) << noise;
+    moved += sight.verdict_low != sight.verdict_high ? 1 : 0;
+  }
+  EXPECT_GT(moved, 0);
 }
 
 }  // namespace
