@@ -60,7 +60,8 @@ Frame join(const std::vector<Frame>& parts, const Window& window) {
     }
     place(part.error.luminance, part.window, window, whole.error.luminance);
     place(part.error.squared, part.window, window, whole.error.squared);
-    place(part.error.counts, part.window, window, whole.error.counts);
+    place(part.error.source, part.window, window, whole.error.source);
+    place(part.error.shows, part.window, window, whole.error.shows);
   }
   whole.report.camera_samples = samples / static_cast<double>(pixels);
   whole.report.finished_share = finished / static_cast<double>(pixels);
