@@ -121,6 +121,11 @@ struct StatedError {
       : luminance(pixels, 0.0F), source(pixels, 0.0F), squared(pixels), shows(pixels) {}
   // Mean luminances are those of such pixels.
   [[nodiscard]] bool counts(std::size_t pixel) const { return shows[pixel] == Shows::Surface; }
+  [[nodiscard]] std::vector<bool> counted() const {  // all of these
+    std::vector<bool> all(shows.size());
+    for (std::size_t p = 0; p < all.size(); ++p) all[p] = counts(p);
+    return all;
+  }
   // error_weight() of all light of the pixel.
   [[nodiscard]] double weight(std::size_t pixel, double mean) const;
 };

@@ -14,9 +14,6 @@ namespace {
 
 constexpr int tile_edge_px = 16;
 constexpr std::size_t few_pixels = 64;
-// RMS error of the share of a pixel that an edge covers, times n^(3/4), by n samples, spread evenly:
-// of edges in all directions and places (measured).
-constexpr double error_of_edge = 0.27;
 // What the eye overlooks in a pixel of four samples, and of eight.
 constexpr double most_scatter = 1.0 / 3.0, most_of_eight = 1.414 * most_scatter;
 

@@ -12,6 +12,10 @@
 
 namespace earthshine::raytrace {
 
+// RMS error of the share of a pixel that an edge covers, times n^(3/4), by n samples, spread evenly:
+// of edges in all directions and places (law SourceEdges).
+inline constexpr double error_of_edge = 0.27;
+
 struct PixelSums {
   Window window;
   std::size_t image_layers = 0, entries = 0;  // with parts behind the layers

@@ -37,8 +37,8 @@ struct Facet {
 
 class ImageFinder {
  public:
-  ImageFinder(WitnessScene& scene, SpotMap& spots)
-      : scene_(scene), shared_(scene.shared), camera_(scene.camera), spots_(spots) {}
+  ImageFinder(WitnessScene& scene, SpotMap& images, SpotMap& lit)
+      : scene_(scene), shared_(scene.shared), camera_(scene.camera), images_(images), lit_(lit) {}
   void add_straight();
   void add_beams();
   void add_reflections();
@@ -47,10 +47,11 @@ class ImageFinder {
   [[nodiscard]] std::vector<Facet> find_facets() const;
   void reflect(const Facet& facet, const Source& source);
   void add_highlight(const Facet& facet, const Source& source, const Vec3& at);
-  void add_visible(const Facet& facet, const Source& source, const Vec3& at, Spot spot);
+  void add_visible(const Facet& facet, const Source& source, const Vec3& at, Spot spot,
+                   SpotMap& spots);
   [[nodiscard]] bool counts(const Spot& spot) const {
     return spot.area_px2 < large_px2 && spot.area_px2 * spot.luminance > scene_.least &&
-           spots_.contains(spot);
+           images_.contains(spot);
   }
   [[nodiscard]] double px2_per_sr(const Vec3& direction) const {
     return camera_.film_per_m2(camera_.position, camera_.position + direction, -direction);
@@ -60,7 +61,7 @@ class ImageFinder {
   WitnessScene& scene_;
   const ShadingScene& shared_;
   const CameraModel& camera_;
-  SpotMap& spots_;
+  SpotMap &images_, &lit_;  // of sources; of surfaces
 };
 
 std::vector<Source> list_sources(const ShadingScene& shared) {
@@ -148,7 +149,7 @@ void ImageFinder::add_straight() {
     const int x = std::clamp(static_cast<int>(image.spot.film.x), 0, camera_.columns - 1);
     const int y = std::clamp(static_cast<int>(image.spot.film.y), 0, camera_.rows - 1);
     if (sharp.at(x, y).light >= large_px2 || is_hidden(image.source)) continue;
-    spots_.add(image.spot);
+    images_.add(image.spot);
   }
 }
 
@@ -178,7 +179,7 @@ void ImageFinder::add_beams() {
       if (!counts(spot)) continue;
       const Vec3 start = at + shared_.query.offset_m(hit.triangle) * normal;
       const Vec3 way = camera_.position - start;
-      if (scene_.share(start, glm::normalize(way), glm::length(way)) > 0.0) spots_.add(spot);
+      if (scene_.share(start, glm::normalize(way), glm::length(way)) > 0.0) lit_.add(spot);
     }
   }
 }
@@ -257,7 +258,7 @@ void ImageFinder::reflect(const Facet& facet, const Source& source) {
       std::min(image_px2, facet.area_m2 * camera_.film_per_m2(camera_.position, at, n));
   spot.radius_px = std::sqrt(spot.area_px2 / pi);
   spot.luminance = source.luminance * base::luminance(facet.material->mirror);
-  add_visible(facet, source, at, spot);
+  add_visible(facet, source, at, spot, images_);
 }
 
 // Of the lobe cos^n, a Gaussian of variance 1 / n, widened by the source's disc of angular radius
@@ -288,10 +289,11 @@ void ImageFinder::add_highlight(const Facet& facet, const Source& source, const 
   spot.radius_px = std::sqrt(spot.area_px2 / pi);
   spot.luminance = source.illuminance(at) * cosine / pi * lobe *
                    base::luminance(facet.material->specular);
-  add_visible(facet, source, at, spot);
+  add_visible(facet, source, at, spot, lit_);
 }
 
-void ImageFinder::add_visible(const Facet& facet, const Source& source, const Vec3& at, Spot spot) {
+void ImageFinder::add_visible(const Facet& facet, const Source& source, const Vec3& at, Spot spot,
+                              SpotMap& spots) {
   if (!counts(spot)) return;
   // Off the edge, where the nearest point of a facet often lies.
   const Vec3 middle = (facet.corners.a + facet.corners.b + facet.corners.c) / 3.0;
@@ -302,7 +304,7 @@ void ImageFinder::add_visible(const Facet& facet, const Source& source, const Ve
   const double seen = scene_.share(start, glm::normalize(back), glm::length(back));
   if (seen <= 0.0) return;
   spot.luminance *= seen * scene_.share(start, glm::normalize(on), reach);
-  if (spot.luminance > 0.0) spots_.add(spot);
+  if (spot.luminance > 0.0) spots.add(spot);
 }
 
 // By five rays, to the middle and to what is about it.
@@ -370,8 +372,8 @@ double WitnessScene::share(const Vec3& from, const Vec3& direction, double reach
   return base::luminance(found);
 }
 
-void add_images(WitnessScene& scene, SpotMap& spots) {
-  ImageFinder finder(scene, spots);
+void add_images(WitnessScene& scene, SpotMap& images, SpotMap& lit) {
+  ImageFinder finder(scene, images, lit);
   finder.add_straight();
   finder.add_beams();
   finder.add_reflections();

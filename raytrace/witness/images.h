@@ -61,8 +61,8 @@ class WitnessScene {
   std::uint64_t rays_ = 0;
 };
 
-// Adds the visible images of sources that are smaller than a pixel: straight, in mirrors, as
-// highlights; and what narrow beams light.
-void add_images(WitnessScene& scene, SpotMap& spots);
+// Adds the visible images of sources that are smaller than a pixel, straight and in mirrors; and to
+// `lit` highlights and what narrow beams light.
+void add_images(WitnessScene& scene, SpotMap& images, SpotMap& lit);
 
 }  // namespace earthshine::raytrace

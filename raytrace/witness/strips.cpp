@@ -60,7 +60,7 @@ class SourceStrips {
     for (const WitnessSource& source : scene_.sources()) add_outline(source);
     const std::size_t stride = lines_.size() / most_probes + 1;
     for (std::size_t k = 0; k < lines_.size() && !scene_.stops(); k += stride) {
-      probe(lines_[k], static_cast<double>(stride) * step_px);
+      probe(lines_[k], static_cast<double>(stride) * lines_[k].length_px);
     }
   }
 
@@ -70,6 +70,7 @@ class SourceStrips {
   static constexpr int round_corners = 32, most_bounces = 8;
   struct Line {
     glm::dvec2 at, along;  // px; unit
+    double length_px;
   };
 
   // Pixels where a source may be seen.
@@ -142,7 +143,7 @@ class SourceStrips {
       const glm::dvec2 at = a + (first + (k + 0.5) * (last - first) / steps) * along;
       const int x = std::min(static_cast<int>(at.x), camera_.columns - 1);
       const int y = std::min(static_cast<int>(at.y), camera_.rows - 1);
-      if (x >= 0 && y >= 0 && pixels_[index(x, y)]) lines_.push_back({at, along});
+      if (x >= 0 && y >= 0 && pixels_[index(x, y)]) lines_.push_back({at, along, (last - first) / steps});
     }
   }
 
@@ -289,7 +290,7 @@ class LightStrips {
       }
     }
     const double pixels = double(camera_.columns) * camera_.rows;
-    const double most = std::clamp(pixels / 8.0, 2048.0, 8192.0);
+    const double most = std::clamp(pixels / 2.0, 4096.0, 32768.0);
     const double step_m = 2.0 * length_m / most;
     const auto stride = static_cast<std::size_t>(2.0 * double(outlines.size()) / most) + 1;
     double next_m = 0.5 * step_m, at_m = 0.0;

@@ -34,11 +34,28 @@ class Witness {
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
  private:
-  [[nodiscard]] double samples_at(int x, int y) const;
+  // Of a pixel whose spots count; zeros elsewhere.
+  struct Expected {
+    double samples = 0.0, light = 0.0;  // light: mean luminance, cd/m^2
+    double luminance = 0.0;             // of the spots themselves
+  };
+  [[nodiscard]] Expected expected(int x, int y) const;
+  [[nodiscard]] double samples_of_source(const SpotMap::Pixel& pixel) const;
+  [[nodiscard]] double samples_of_lit(const SpotMap::Pixel& pixel) const;
+  // Expected squared error, weighted, that a few samples leave of a pixel's spots, (cd/m^2)^2.
+  [[nodiscard]] double risk(const SpotMap::Pixel& pixel) const;
+  // RMS error that spots may leave in the picture, cd/m^2.
+  [[nodiscard]] double allowed() const;
+  void choose();
 
   const CameraModel& camera_;
   WitnessOptions options_;
-  SpotMap spots_;
+  // Whole images of sources, strips of them, and spots on surfaces. The same source may be in the
+  // first two.
+  SpotMap images_, slivers_, lit_;
+  // Spots on surfaces count where they risk so much: what the others risk together may be left. And
+  // how many of those pixels there are.
+  double least_risk_ = 0.0, chosen_ = 0.0;
   std::uint64_t rays_ = 0;
 };
 

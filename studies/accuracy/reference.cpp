@@ -34,10 +34,8 @@ std::optional<base::Image> trace_batch(const scenes::World& study, const Accurac
   for (const auto& parts : stated.squared) {
     variance.values.push_back(parts[static_cast<std::size_t>(raytrace::ErrorPart::Camera)]);
   }
-  base::Channel& counts = kept.channels.emplace_back(base::Channel{"counts", {}});
-  for (std::size_t p = 0; p < stated.shows.size(); ++p) {
-    counts.values.push_back(stated.counts(p) ? 1.0F : 0.0F);
-  }
+  const std::vector<bool> counted = stated.counted();
+  kept.channels.push_back({"counts", {counted.begin(), counted.end()}});
   return kept;
 }
 

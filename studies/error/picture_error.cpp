@@ -124,9 +124,7 @@ double resolution(const ReferencePair& truth, const std::vector<bool>& counted) 
 
 NoisyPicture reflected_light(const raytrace::Frame& frame) {
   const raytrace::StatedError& stated = frame.error;
-  NoisyPicture picture{{stated.luminance.begin(), stated.luminance.end()}, {}, {}};
-  for (std::size_t p = 0; p < stated.shows.size(); ++p) picture.counts.push_back(stated.counts(p));
-  return picture;
+  return {{stated.luminance.begin(), stated.luminance.end()}, {}, stated.counted()};
 }
 
 std::vector<bool> counted_pixels(const ReferencePair& truth) {
