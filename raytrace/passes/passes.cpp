@@ -34,6 +34,9 @@ Window widened(const Window& window, int pixels, const CameraModel& camera) {
   return {x0, y0, x1 - x0, y1 - y0};
 }
 
+// For the witness, at the most: samples, and of the time that a limit leaves.
+constexpr double witness_samples = 1048576.0, witness_per_pixel = 4.0, time_for_witness = 0.25;
+
 class Passes {
  public:
   Passes(ShadingScene& shared, const PathWorld& world, const CameraModel& camera,
@@ -265,10 +268,29 @@ class Passes {
         [&](std::uint64_t samples) { tell(static_cast<double>(samples)); });
   }
 
+  // Samples. A picture without a wanted error or a time limit has no bound, so that a crop has the
+  // pixels of the whole.
+  [[nodiscard]] double most_for_witness() const {
+    double most =
+        options_.error > 0.0 ? std::max(witness_samples, witness_per_pixel * pixels()) : 0.0;
+    if (options_.time_limit_s <= 0.0) return most;
+    const SampleCosts each = sample_costs(field());
+    double samples = 0.0, cost = 0.0;
+    for (std::size_t p = 0; p < sums_->samples.size(); ++p) {
+      samples += sums_->samples[p];
+      cost += each.camera * sums_->samples[p] + each.camera_ray * double(sums_->rays[p]);
+    }
+    const double left = affordable(spent(*sums_, field(), each));
+    const double in_time = time_for_witness * left * samples / std::max(cost, 1.0);
+    return std::max(1.0, most > 0.0 ? std::min(most, in_time) : in_time);
+  }
+
   // Light that few samples find. luminance: of the picture; error: wanted of it.
   void shade_witnessed(double error, double luminance) {
     if (ends()) return;
-    witness_.emplace(shared_, camera_, WitnessOptions{error, luminance, [this] { return ends(); }});
+    witness_.emplace(shared_, camera_,
+                     WitnessOptions{error, luminance, most_for_witness(), !options_.shared.on,
+                                    [this] { return ends(); }});
     report_.rays.planning += witness_->rays();
     sums_->spot_luminance = witness_->spot_luminance(*sums_);
     shade(witness_->wanted(*sums_));

@@ -134,8 +134,7 @@ void SamplePlanner::look_at_field(double scale) {
       // Points that others served until now have the fewest to begin with.
       const float samples = std::max(field_->samples(kind, p), fewest);
       const double weight =
-          stated_.weight(window.index(x, y), whole_.luminance) *
-          reflected * field_->cover_of(p);
+          stated_.weight(window.index(x, y), whole_.luminance) * reflected * field_->cover_of(p);
       const double factor = weight * weight * scale;
       if (factor * (one - four) <= 0.0) return {};
       return {static_cast<std::uint32_t>(p),

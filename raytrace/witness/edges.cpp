@@ -55,8 +55,7 @@ std::vector<SceneEdge> find_edges(const scenes::Scene& scene) {
   for (std::size_t k = 0; k < sides.size();) {
     std::size_t end = k + 1;
     while (end < sides.size() && sides[end].key == sides[k].key) ++end;
-    SceneEdge edge{scene.vertices[sides[k].key >> 32U],
-                   scene.vertices[sides[k].key & 0xFFFFFFFFU]};
+    SceneEdge edge{scene.vertices[sides[k].key >> 32U], scene.vertices[sides[k].key & 0xFFFFFFFFU]};
     const std::uint32_t first = sides[k].triangle, second = sides[end - 1].triangle;
     edge.is_border =
         end != k + 2 || scene.triangles[first].material != scene.triangles[second].material;

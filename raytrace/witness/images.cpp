@@ -20,8 +20,8 @@ constexpr double large_px2 = 1.0;  // from there on the first few samples meet i
 constexpr double far_m = 1e9;      // stands for infinity
 // Highlights of blunter lobes are larger than the bodies that show them are curved.
 constexpr double least_shininess = 50.0;
-constexpr double most_deviations2 = 16.0;   // of a lobe, beyond which it is dark
-constexpr double most_pairs = 4e6;          // of facets and emitting triangles
+constexpr double most_deviations2 = 16.0;  // of a lobe, beyond which it is dark
+constexpr double most_pairs = 4e6;         // of facets and emitting triangles
 constexpr std::size_t stop_asked_after = 1024;
 
 using Source = WitnessSource;
@@ -106,9 +106,9 @@ std::vector<Source> list_sources(const ShadingScene& shared) {
     source.middle = (corners.a + corners.b + corners.c) / 3.0;
     source.normal = corners.normal() / twice_area;
     source.area_m2 = 0.5 * twice_area;
-    source.radius_m = std::max({glm::length(corners.a - source.middle),
-                                glm::length(corners.b - source.middle),
-                                glm::length(corners.c - source.middle)});
+    source.radius_m =
+        std::max({glm::length(corners.a - source.middle), glm::length(corners.b - source.middle),
+                  glm::length(corners.c - source.middle)});
     source.luminance = base::luminance(material.emit) / pi;
     source.is_two_sided = material.two_sided;
     sources.push_back(source);
@@ -146,9 +146,7 @@ void ImageFinder::add_straight() {
   for (const Image& image : images) {
     if (++asked % stop_asked_after == 0 && scene_.stops()) return;
     // A fine mesh has millions that are small and together large.
-    const int x = std::clamp(static_cast<int>(image.spot.film.x), 0, camera_.columns - 1);
-    const int y = std::clamp(static_cast<int>(image.spot.film.y), 0, camera_.rows - 1);
-    if (sharp.at(x, y).light >= large_px2 || is_hidden(image.source)) continue;
+    if (sharp.most_around(image.spot.film) >= large_px2 || is_hidden(image.source)) continue;
     images_.add(image.spot);
   }
 }
@@ -164,8 +162,7 @@ void ImageFinder::add_beams() {
       const scenes::Hit hit = scene_.closest(beam.origin, ray.direction);
       if (hit.missed()) continue;
       const scenes::Material& material = scene.materials[scene.triangles[hit.triangle].material];
-      const Vec3 normal =
-          (hit.front ? 1.0 : -1.0) * scenes::triangle_normal(scene, hit.triangle);
+      const Vec3 normal = (hit.front ? 1.0 : -1.0) * scenes::triangle_normal(scene, hit.triangle);
       const Vec3 at = scenes::hit_position(scene, hit);
       if (!hit.front && !material.two_sided) continue;
       if (glm::dot(camera_.position - at, normal) <= 0.0) continue;
@@ -235,8 +232,8 @@ void ImageFinder::reflect(const Facet& facet, const Source& source) {
     view = way / image_m;
   }
   const Vec3 crossing = camera_.position - facet.height_m / glm::dot(view, n) * view;
-  const Vec3 at = scenes::nearest_on_triangle(crossing, facet.corners.a, facet.corners.b,
-                                              facet.corners.c);
+  const Vec3 at =
+      scenes::nearest_on_triangle(crossing, facet.corners.a, facet.corners.b, facet.corners.c);
   const Vec3 way = at - camera_.position;
   if (glm::dot(way, camera_.forward) <= 0.0) return;
   if (facet.is_glossy) add_highlight(facet, source, at);
@@ -250,12 +247,11 @@ void ImageFinder::reflect(const Facet& facet, const Source& source) {
   } else {
     const Vec3 turned = source.normal - 2.0 * glm::dot(source.normal, n) * n;
     if (!source.is_two_sided && glm::dot(view, turned) >= 0.0) return;
-    image_px2 = source.area_m2 * camera_.film_per_m2(camera_.position,
-                                                     camera_.position + image_m * view, turned);
+    image_px2 = source.area_m2 *
+                camera_.film_per_m2(camera_.position, camera_.position + image_m * view, turned);
   }
   Spot spot = scene_.spot_at(at, 0.0);
-  spot.area_px2 =
-      std::min(image_px2, facet.area_m2 * camera_.film_per_m2(camera_.position, at, n));
+  spot.area_px2 = std::min(image_px2, facet.area_m2 * camera_.film_per_m2(camera_.position, at, n));
   spot.radius_px = std::sqrt(spot.area_px2 / pi);
   spot.luminance = source.luminance * base::luminance(facet.material->mirror);
   add_visible(facet, source, at, spot, images_);
@@ -284,11 +280,11 @@ void ImageFinder::add_highlight(const Facet& facet, const Source& source, const 
   // Seen from the camera, the angle at the lobe turns by more than the view does.
   const double turn = 1.0 + camera_m / source_m;
   const double lobe_px2 = 2.0 * pi * variance / (turn * turn) * px2_per_sr(-out);
-  spot.area_px2 = std::min(
-      lobe_px2, facet.area_m2 * camera_.film_per_m2(camera_.position, at, facet.normal));
+  spot.area_px2 =
+      std::min(lobe_px2, facet.area_m2 * camera_.film_per_m2(camera_.position, at, facet.normal));
   spot.radius_px = std::sqrt(spot.area_px2 / pi);
-  spot.luminance = source.illuminance(at) * cosine / pi * lobe *
-                   base::luminance(facet.material->specular);
+  spot.luminance =
+      source.illuminance(at) * cosine / pi * lobe * base::luminance(facet.material->specular);
   add_visible(facet, source, at, spot, lit_);
 }
 
@@ -352,8 +348,7 @@ Spot WitnessScene::spot_at(const Vec3& point, double radius_m) const {
 double WitnessSource::illuminance(const Vec3& point) const {
   if (is_distant) return illuminance_lx;
   if (lamp != nullptr) {
-    return base::luminance(
-        scenes::sample_lamp(*lamp, point, 0.5, 0.5).normal_illuminance_lx);
+    return base::luminance(scenes::sample_lamp(*lamp, point, 0.5, 0.5).normal_illuminance_lx);
   }
   const Vec3 way = middle - point;
   const double distance2 = glm::dot(way, way);

@@ -18,7 +18,7 @@ struct WitnessSource {
   Vec3 middle{0.0};  // of a distant one: the unit direction toward it
   Vec3 normal{0.0};  // of a wide one
   double area_m2 = 0.0, radius_m = 0.0;
-  double luminance = 0.0;               // cd/m^2, of its surface; 0: a point
+  double luminance = 0.0;  // cd/m^2, of its surface; 0: a point
   const scenes::Lamp* lamp = nullptr;
   bool is_distant = false, is_two_sided = false;
   double angle_rad = 0.0;       // distant: of its disc's radius

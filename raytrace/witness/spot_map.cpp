@@ -17,6 +17,18 @@ bool SpotMap::contains(const Spot& spot) const {
   return std::max(beyond.x, beyond.y) <= spot.radius_px + spot.blur_px + 0.5 * filter_px_;
 }
 
+double SpotMap::most_around(const glm::dvec2& film) const {
+  const int x = static_cast<int>(std::clamp(film.x, 0.0, columns_ - 1.0));
+  const int y = static_cast<int>(std::clamp(film.y, 0.0, rows_ - 1.0));
+  double most = 0.0;
+  for (int ny = std::max(0, y - 1); ny <= std::min(rows_ - 1, y + 1); ++ny) {
+    for (int nx = std::max(0, x - 1); nx <= std::min(columns_ - 1, x + 1); ++nx) {
+      most = std::max(most, at(nx, ny).light);
+    }
+  }
+  return most;
+}
+
 void SpotMap::add(const Spot& spot) {
   constexpr double least_part = 1.0 / 32.0;  // of the largest that a pixel has, along an axis
   const double half = std::max(spot.radius_px + spot.blur_px, 1e-6), reach = 0.5 * filter_px_;

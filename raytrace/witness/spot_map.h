@@ -11,8 +11,8 @@ namespace earthshine::raytrace {
 
 // An image of a source, a highlight or a piece of lit surface, as a pinhole shows it.
 struct Spot {
-  glm::dvec2 film{0.0};                     // its middle, px
-  double radius_px = 0.0, blur_px = 0.0;    // blur: the radius that a lens makes of each point
+  glm::dvec2 film{0.0};                    // its middle, px
+  double radius_px = 0.0, blur_px = 0.0;   // blur: the radius that a lens makes of each point
   double area_px2 = 0.0, luminance = 0.0;  // cd/m^2
 };
 
@@ -30,6 +30,8 @@ class SpotMap {
   // Divides a spot among the pixels that see some of it, as if it were a square.
   void add(const Spot& spot);
   [[nodiscard]] const Pixel& at(int x, int y) const { return pixels_[index(x, y)]; }
+  // The most light of a pixel at that place of the film or beside it.
+  [[nodiscard]] double most_around(const glm::dvec2& film) const;
   [[nodiscard]] bool contains(const Spot& spot) const;
 
  private:

@@ -75,9 +75,8 @@ class SourceStrips {
 
   // Pixels where a source may be seen.
   void find_pixels() {
-    pixels_.assign(static_cast<std::size_t>(camera_.columns) *
-                       static_cast<std::size_t>(camera_.rows),
-                   false);
+    pixels_.assign(
+        static_cast<std::size_t>(camera_.columns) * static_cast<std::size_t>(camera_.rows), false);
     for (const WitnessSource& source : scene_.sources()) {
       if (source.luminance <= 0.0 || (source.is_distant && source.angle_rad <= 0.0)) continue;
       const Vec3 at = source.is_distant ? camera_.position + far_m * source.middle : source.middle;
@@ -143,7 +142,8 @@ class SourceStrips {
       const glm::dvec2 at = a + (first + (k + 0.5) * (last - first) / steps) * along;
       const int x = std::min(static_cast<int>(at.x), camera_.columns - 1);
       const int y = std::min(static_cast<int>(at.y), camera_.rows - 1);
-      if (x >= 0 && y >= 0 && pixels_[index(x, y)]) lines_.push_back({at, along, (last - first) / steps});
+      if (x >= 0 && y >= 0 && pixels_[index(x, y)])
+        lines_.push_back({at, along, (last - first) / steps});
     }
   }
 
@@ -163,8 +163,8 @@ class SourceStrips {
       const double radius = is_sun ? far_m * std::tan(source.angle_rad) : source.radius_m;
       for (int k = 0; k < round_corners; ++k) {
         const double phi = 2.0 * pi * k / round_corners;
-        corners.push_back(middle + radius * (std::cos(phi) * frame.tangent +
-                                             std::sin(phi) * frame.bitangent));
+        corners.push_back(
+            middle + radius * (std::cos(phi) * frame.tangent + std::sin(phi) * frame.bitangent));
       }
     }
     for (std::size_t k = 0; k < corners.size(); ++k) {
@@ -177,15 +177,13 @@ class SourceStrips {
       const glm::dvec2 across = side * glm::dvec2(-line.along.y, line.along.x);
       const double lit = luminance(line.at + beside_px * across);
       if (lit <= 0.0) continue;
-      const auto is_lit = [&](double off) {
-        return luminance(line.at + off * across) > 0.3 * lit;
-      };
+      const auto is_lit = [&](double off) { return luminance(line.at + off * across) > 0.3 * lit; };
+      if (is_lit(-beside_px)) continue;
       if (const auto width = width_of(wide_px, beside_px, is_lit)) {
         add(line.at + 0.5 * *width * across, *width, step, lit);
       }
       // Something thin before the source.
       const auto is_dark = [&](double off) { return !is_lit(-off); };
-      if (is_lit(-beside_px)) continue;
       if (const auto width = width_of(wide_px, beside_px, is_dark)) {
         add(line.at - 0.5 * *width * across, *width, step, lit);
       }
@@ -232,8 +230,7 @@ class SourceStrips {
         return 0.0;
       }
       share *= base::luminance(passes ? material.transmit : material.mirror);
-      const Vec3 normal =
-          (hit.front ? 1.0 : -1.0) * scenes::triangle_normal(scene, hit.triangle);
+      const Vec3 normal = (hit.front ? 1.0 : -1.0) * scenes::triangle_normal(scene, hit.triangle);
       const Vec3 lift = shared_.query.offset_m(hit.triangle) * normal;
       from = scenes::hit_position(scene, hit, from, direction) + (passes ? -lift : lift);
       if (!passes) direction = glm::reflect(direction, normal);
@@ -332,9 +329,9 @@ class LightStrips {
         const bool reaches = source.is_distant ? glm::dot(source.middle, mirror.normal) > 0.0
                                                : mirror.height_m(source.middle) > 0.0;
         if (reaches) {
-          views_.push_back({&source, &mirror, number, source.is_distant,
-                            source.is_distant ? mirror.turned(source.middle)
-                                              : mirror.image(source.middle)});
+          views_.push_back(
+              {&source, &mirror, number, source.is_distant,
+               source.is_distant ? mirror.turned(source.middle) : mirror.image(source.middle)});
         }
         ++number;
       }
@@ -386,8 +383,7 @@ class LightStrips {
         film.y > camera_.rows + 1.0) {
       return 0.0;
     }
-    const Vec3 source_sees =
-        view.mirror != nullptr ? view.mirror->image(at.position) : at.position;
+    const Vec3 source_sees = view.mirror != nullptr ? view.mirror->image(at.position) : at.position;
     const double light = view.source->illuminance(source_sees) * cosine / pi;
     const double cos_alpha = glm::dot(2.0 * seen * at.normal - out, in);
     double reflected = base::luminance(at.material->diffuse);
@@ -397,13 +393,11 @@ class LightStrips {
     }
     if (light * reflected <= scene_.least) return 0.0;
     const Vec3 start = at.position + at.offset_m * at.normal;
-    const double in_view =
-        scene_.share(start, glm::normalize(camera_.position - start),
-                     glm::length(camera_.position - start));
+    const double in_view = scene_.share(start, glm::normalize(camera_.position - start),
+                                        glm::length(camera_.position - start));
     if (in_view <= 0.0) return 0.0;
-    const double reach = view.is_distant
-                             ? 1e9
-                             : glm::length(view.from - start) * (1.0 - 1e-6) - at.offset_m;
+    const double reach =
+        view.is_distant ? 1e9 : glm::length(view.from - start) * (1.0 - 1e-6) - at.offset_m;
     return light * reflected * in_view *
            scene_.share(start, view.toward(start), reach, view.number);
   }
@@ -444,15 +438,16 @@ class LightStrips {
     // The surface as a plane: where light that passes `target` falls on it.
     const auto on_plane = [&](const Vec3& target) {
       const Vec3 way = strip.view.toward(target);
-      return target + glm::dot(first->position - target, first->normal) /
-                          glm::dot(way, first->normal) * way;
+      return target +
+             glm::dot(first->position - target, first->normal) / glm::dot(way, first->normal) * way;
     };
     const auto film = [&](const Vec3& target) {
       return camera_.film_from(camera_.position, on_plane(target));
     };
     const Vec3 start = strip.at + beside_m * strip.across;
     const glm::dvec2 film_start = film(start);
-    const double px_per_m = glm::length(film(start + beside_m * strip.across) - film_start) / beside_m;
+    const double px_per_m =
+        glm::length(film(start + beside_m * strip.across) - film_start) / beside_m;
     if (!(px_per_m > 0.0)) return 0.0;
     const auto is_same = [&](double off) {
       const Vec3 target = strip.at + off * strip.across;
@@ -462,10 +457,11 @@ class LightStrips {
       return glm::length(there->position - expected) <=
              0.3 * glm::length(expected - first->position) + 8.0 * first->offset_m;
     };
+    if (is_same(-beside_m)) return 0.0;
     const double wide_m = wide_px / px_per_m;
     auto width = width_of(wide_m, beside_m, is_same);
     double off = width ? 0.5 * *width : 0.0;
-    if (!width && !is_same(-beside_m)) {  // the shadow of something thin
+    if (!width) {  // the shadow of something thin
       width = width_of(wide_m, beside_m, [&](double dark) { return !is_same(-dark); });
       off = width ? -0.5 * *width : 0.0;
     }

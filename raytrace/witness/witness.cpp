@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "raytrace/witness/images.h"
+#include "raytrace/witness/source_edges.h"
 #include "raytrace/witness/strips.h"
 
 namespace earthshine::raytrace {
@@ -14,11 +15,11 @@ namespace {
 
 // Samples that should meet a spot: between these, as the wanted error needs.
 constexpr double fewest_hits = 16.0, most_hits = 64.0;
-constexpr double noise_share = 0.25;    // of the wanted error, that spots may leave
-constexpr double few_samples = 4.0;     // that a pixel has without the witness
-constexpr double least_of_spot = 0.01;   // of the light that counts in a pixel
+constexpr double noise_share = 0.25;        // of the wanted error, that spots may leave
+constexpr double few_samples = 4.0;         // that a pixel has without the witness
+constexpr double least_of_spot = 0.01;      // of the light that counts in a pixel
 constexpr double source_share = 1.0 / 3.0;  // of the wanted error, at a source's rim
-constexpr double most_coverage = 0.999;  // fuller pixels are no spots
+constexpr double most_coverage = 0.999;     // fuller pixels are no spots
 constexpr double most_for_one = 65536.0, least_budget = 1048576.0, budget_per_pixel = 4.0;
 // Samples that find less than this share of the witness's light have not found it: the witness
 // knows a spot's light to a factor of two or so.
@@ -36,9 +37,11 @@ Witness::Witness(const ShadingScene& shared, const CameraModel& camera,
   WitnessScene scene(shared, camera, least_of_spot * options.error * options.luminance,
                      options.stop);
   add_images(scene, images_, lit_);
-  const std::vector<SceneEdge> edges = find_edges(shared.scene);
-  add_source_strips(scene, edges, slivers_);
-  add_light_strips(scene, edges, lit_);
+  if (!options.images_alone) {
+    const std::vector<SceneEdge> edges = find_edges(shared.scene);
+    add_source_strips(scene, edges, slivers_);
+    add_light_strips(scene, edges, lit_);
+  }
   rays_ = scene.rays();
   choose();
 }
@@ -78,7 +81,8 @@ double Witness::samples_of_source(const SpotMap::Pixel& pixel) const {
   const double error = source_share * options_.error;
   const double rim_px = std::min(1.0, 2.0 * std::sqrt(base::pi * coverage));
   const double for_rim =
-      error > 0.0 ? std::pow(error_of_edge * std::sqrt(rim_px) / (coverage * error), 4.0 / 3.0) : 0.0;
+      error > 0.0 ? std::pow(error_of_edge * std::sqrt(rim_px) / (coverage * error), 4.0 / 3.0)
+                  : 0.0;
   // Sobol points are most even in powers of two.
   const double samples = std::min(most_for_one, std::max(most_hits / coverage, for_rim));
   return std::bit_ceil(static_cast<std::uint32_t>(samples));
@@ -117,9 +121,14 @@ std::vector<std::uint32_t> Witness::wanted(const PixelSums& sums) const {
     for (int x = 0; x < camera_.columns; ++x) all += expected(x, y).samples;
   }
   const double pixels = double(camera_.columns) * double(camera_.rows);
-  const double share =
-      std::min(1.0, std::max(least_budget, budget_per_pixel * pixels) / std::max(all, 1.0));
+  const double bound =
+      options_.most_samples > 0.0 ? options_.most_samples : std::numeric_limits<double>::infinity();
+  const double most = std::min(bound, std::max(least_budget, budget_per_pixel * pixels));
+  const double share = std::min(1.0, most / std::max(all, 1.0));
   std::vector<std::uint32_t> wanted = sums.samples;
+  if (!options_.images_alone) {
+    wanted = wanted_for_source_edges(sums, samples_for_edges(options_.error), bound);
+  }
   const Window& window = sums.window;
   for (int y = window.y; y < window.y + window.rows; ++y) {
     for (int x = window.x; x < window.x + window.columns; ++x) {

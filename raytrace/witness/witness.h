@@ -13,8 +13,10 @@
 namespace earthshine::raytrace {
 
 struct WitnessOptions {
-  double error = 0.0;      // wanted of the picture, relative to `luminance`; 0: none is stated
-  double luminance = 0.0;  // mean of the picture, cd/m^2; spots far below it are left out
+  double error = 0.0;         // wanted of the picture, relative to `luminance`; 0: none is stated
+  double luminance = 0.0;     // mean of the picture, cd/m^2; spots far below it are left out
+  double most_samples = 0.0;  // that may be added; 0: no bound but that of spots
+  bool images_alone = false;  // of sources; no strips, no edges
   std::function<bool()> stop = {};
 };
 
@@ -24,7 +26,8 @@ class Witness {
   Witness(const ShadingScene& shared, const CameraModel& camera, const WitnessOptions& options);
 
   // Samples that each pixel of the sums should have to find the light that the witness expects
-  // there. At most 2^20 more in the whole picture, or four a pixel: of more all get less.
+  // there, at most 2^20 more in the whole picture, or four a pixel: of more all get less. And at
+  // edges of sources that the camera sees (source_edges.h).
   [[nodiscard]] std::vector<std::uint32_t> wanted(const PixelSums& sums) const;
   // Of the spots in each pixel of the sums; 0 where none count (PixelSums::spot_luminance).
   [[nodiscard]] std::vector<float> spot_luminance(const PixelSums& sums) const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Edges of sources that the camera sees itself: a pixel's mean is the mean of the source's radiance
 // over the pixel, by 64 x 64 rays.
+#include "raytrace/witness/source_edges.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -160,6 +162,41 @@ TEST(SourceEdges, EmittersAndLampsDo) {
     const scenes::Hit hit = query.closest(ray.origin, ray.direction);
     return !hit.missed() && emitters.scene.triangles[hit.triangle].material == bright;
   });
+}
+
+// 0.27 n^-3/4, in powers of two from 64 to 1024.
+TEST(SourceEdges, SamplesFollowTheWantedError) {
+  EXPECT_EQ(samples_for_edges(0.0), 64U);
+  EXPECT_EQ(samples_for_edges(0.5), 64U);
+  EXPECT_EQ(samples_for_edges(0.01), 128U);
+  EXPECT_EQ(samples_for_edges(0.005), 256U);
+  EXPECT_EQ(samples_for_edges(1e-6), 1024U);
+}
+
+// Even light of a source, and edges of surfaces far from any, take none.
+TEST(SourceEdges, OnlyEdgesOfSourcesTakeMore) {
+  PixelSums sums({0, 0, 12, 6}, 1, false);
+  std::fill(sums.samples.begin(), sums.samples.end(), 4U);
+  const auto set = [&](int x, int y, double source, double reflected) {
+    const std::size_t p = sums.window.index(x, y);
+    sums.source[p].luminance = 4.0 * source;
+    sums.source[p].luminance2 = 4.0 * source * source;
+    sums.luminance[p] = 4.0 * (source + reflected);
+    sums.luminance2[p] = 4.0 * (source * source + reflected * reflected);
+  };
+  for (int y = 0; y < 6; ++y) {
+    for (int x = 0; x < 12; ++x) {
+      if (x < 4) set(x, y, 10.0 + 0.5 * x, 0.0);      // a source, smooth
+      if (x >= 4) set(x, y, 0.0, x < 8 ? 1.0 : 5.0);  // beside it a surface with an edge
+    }
+  }
+  const auto wanted = wanted_for_source_edges(sums, 256, 1e9);
+  for (int x = 0; x < 12; ++x)
+    EXPECT_EQ(wanted[sums.window.index(x, 3)], x == 3 || x == 4 ? 256U : 4U) << x;
+  // 12 pixels: 12 * 124 is too much, 12 * 60 not.
+  const auto bound = wanted_for_source_edges(sums, 256, 1000.0);
+  EXPECT_EQ(bound[sums.window.index(4, 3)], 64U);
+  EXPECT_EQ(wanted_for_source_edges(sums, 256, 1.0)[sums.window.index(4, 3)], 64U);
 }
 
 }  // namespace

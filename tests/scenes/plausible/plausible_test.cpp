@@ -206,7 +206,8 @@ TEST(Plausible, ACameraInOrRightBehindASurfaceIsNamed) {
   };
   const std::string sheet = "material = \"sheet\"\n";
   for (const char* z : {"0", "0.04", "-0.06"}) {
-    expect_one(at(z, sheet), {"camera \"A\" is inside, right behind or right before the object \"wall\""});
+    expect_one(at(z, sheet),
+               {"camera \"A\" is inside, right behind or right before the object \"wall\""});
   }
   expect_none(at("0.06", sheet));
 }

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/witness/source_edges.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace earthshine::raytrace {
+namespace {
+
+constexpr std::uint32_t fewest = 64, most = 1024;
+constexpr double least_contrast = 1.0 / 3.0;
+
+// A pixel's mean and the standard deviation of its samples.
+struct Look {
+  double mean = 0.0, deviation = 0.0;
+};
+
+Look look_at(const PixelSums& sums, std::size_t pixel) {
+  const double n = sums.samples[pixel];
+  if (n == 0.0) return {};
+  const double mean = sums.luminance[pixel] / n, square = sums.luminance2[pixel] / n;
+  return {mean, std::sqrt(std::max(0.0, square - mean * mean))};
+}
+
+}  // namespace
+
+std::uint32_t samples_for_edges(double error) {
+  if (error <= 0.0) return fewest;
+  const double wanted = std::pow(error_of_edge / error, 4.0 / 3.0);
+  return std::bit_ceil(
+      static_cast<std::uint32_t>(std::clamp(wanted, double(fewest), double(most))));
+}
+
+std::vector<std::uint32_t> wanted_for_source_edges(const PixelSums& sums, std::uint32_t samples,
+                                                   double most_added) {
+  const Window& window = sums.window;
+  std::vector<std::size_t> edges;
+  const auto is_at_edge = [&](int x, int y) {
+    double low = std::numeric_limits<double>::infinity(), high = 0.0, scatter = 0.0;
+    bool source = false;
+    for (int qy = y - 1; qy <= y + 1; ++qy) {
+      for (int qx = x - 1; qx <= x + 1; ++qx) {
+        if (!window.contains(qx, qy)) continue;
+        const std::size_t q = window.index(qx, qy);
+        source = source || sums.source[q].luminance > 0.0;
+        // A pixel's own samples would stop where they happen to agree, and its mean be biased.
+        if (qx == x && qy == y) continue;
+        const Look look = look_at(sums, q);
+        low = std::min(low, look.mean);
+        high = std::max(high, look.mean);
+        scatter = std::max(scatter, look.deviation);
+      }
+    }
+    return source && std::max(high - low, scatter) > least_contrast * high;
+  };
+  for (int y = window.y; y < window.y + window.rows; ++y) {
+    for (int x = window.x; x < window.x + window.columns; ++x) {
+      if (is_at_edge(x, y)) edges.push_back(window.index(x, y));
+    }
+  }
+  const auto added = [&](std::uint32_t each) {
+    double sum = 0.0;
+    for (const std::size_t p : edges) sum += each > sums.samples[p] ? each - sums.samples[p] : 0U;
+    return sum;
+  };
+  while (samples > fewest && added(samples) > most_added) samples /= 2;
+  std::vector<std::uint32_t> wanted = sums.samples;
+  for (const std::size_t p : edges) wanted[p] = std::max(wanted[p], samples);
+  return wanted;
+}
+
+}  // namespace earthshine::raytrace
