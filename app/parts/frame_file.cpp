@@ -54,6 +54,7 @@ CachedResult kept_frame(const Frame& frame, const raytrace::Window& picture) {
                 {"gather_rays", report.gather_rays},
                 {"least_camera_samples", report.least_camera_samples},
                 {"finished_share", report.finished_share},
+                {"unexplained_pixels", report.unexplained_pixels},
                 {"gave_up", report.gave_up}};
   const raytrace::StatedError& stated = frame.error;
   kept.image.add(stated_luminance) = stated.luminance;
@@ -84,6 +85,7 @@ Frame frame_of(CachedResult kept) {
   facts.at("gather_rays").get_to(report.gather_rays);
   facts.at("least_camera_samples").get_to(report.least_camera_samples);
   facts.at("finished_share").get_to(report.finished_share);
+  report.unexplained_pixels = facts.value("unexplained_pixels", std::size_t{0});
   report.gave_up = facts.value("gave_up", false);
   raytrace::StatedError& stated = frame.error;
   stated.luminance = take(kept.image, stated_luminance);

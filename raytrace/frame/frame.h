@@ -64,6 +64,8 @@ struct RenderReport {
   // Samples in all that the wanted error is expected to take, over those that were cast; 0 where it
   // was surely reached (Rounds), or before there were some all over the picture.
   double growth = 0.0;
+  // Pixels where the witness expects light that the samples have not found; it is in the error.
+  std::size_t unexplained_pixels = 0;
   bool gave_up = false;  // far more samples than should do have not reached the wanted error
 };
 

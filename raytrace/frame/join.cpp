@@ -52,6 +52,7 @@ Frame join(const std::vector<Frame>& parts, const Window& window) {
         std::max(whole.report.most_camera_samples, part.report.most_camera_samples);
     whole.report.rays += part.report.rays;
     whole.report.seconds += part.report.seconds;
+    whole.report.unexplained_pixels += part.report.unexplained_pixels;
     whole.report.gather_seconds += part.report.gather_seconds;
     for (base::Channel& channel : whole.image.channels) {
       const base::Channel* const own = part.image.find(channel.name);

@@ -172,7 +172,11 @@ class Passes {
       reserve_s_ = sharing_s_;
     }
     report_.gave_up = rounds.gave_up();
-    if (witness_) sums_->unexplained = witness_->unexplained(*sums_);
+    if (witness_) {
+      sums_->unexplained = witness_->unexplained(*sums_);
+      report_.unexplained_pixels = static_cast<std::size_t>(
+          std::ranges::count_if(sums_->unexplained, [](float light) { return light > 0.0F; }));
+    }
     if (!covered || options_.error <= 0.0 || !(ends() || report_.gave_up)) return;
     const SampleCosts each = sample_costs(field());
     SamplePlanner planner(*sums_, field(), each);

@@ -56,7 +56,7 @@ class ImageFinder {
   [[nodiscard]] double px2_per_sr(const Vec3& direction) const {
     return camera_.film_per_m2(camera_.position, camera_.position + direction, -direction);
   }
-  [[nodiscard]] bool is_hidden(const Source& source);
+  [[nodiscard]] double visible_share(const Source& source);
 
   WitnessScene& scene_;
   const ShadingScene& shared_;
@@ -146,8 +146,10 @@ void ImageFinder::add_straight() {
   for (const Image& image : images) {
     if (++asked % stop_asked_after == 0 && scene_.stops()) return;
     // A fine mesh has millions that are small and together large.
-    if (sharp.most_around(image.spot.film) >= large_px2 || is_hidden(image.source)) continue;
-    images_.add(image.spot);
+    if (sharp.most_around(image.spot.film) >= large_px2) continue;
+    Spot spot = image.spot;
+    spot.area_px2 *= visible_share(image.source);
+    if (spot.area_px2 > 0.0) images_.add(spot);
   }
 }
 
@@ -304,22 +306,23 @@ void ImageFinder::add_visible(const Facet& facet, const Source& source, const Ve
 }
 
 // By five rays, to the middle and to what is about it.
-bool ImageFinder::is_hidden(const Source& source) {
+double ImageFinder::visible_share(const Source& source) {
   const base::Frame3 frame = base::frame_around(source.normal);
   constexpr double about = 0.7;
+  double visible = 0.0;
   for (const auto& [u, v] :
        {std::pair{0.0, 0.0}, {about, 0.0}, {-about, 0.0}, {0.0, about}, {0.0, -about}}) {
     const Vec3 to = source.middle + source.radius_m * (u * frame.tangent + v * frame.bitangent);
     const Vec3 way = to - camera_.position;
     const double distance = glm::length(way);
     const scenes::Hit hit = scene_.closest(camera_.position, way / distance);
-    if (hit.missed() || hit.t >= distance * (1.0 - 1e-6) - shared_.query.offset_m(hit.triangle)) {
-      return false;
-    }
     const scenes::Scene& scene = shared_.scene;
-    if (scene.materials[scene.triangles[hit.triangle].material].passes_light_on()) return false;
+    const bool is_open =
+        hit.missed() || hit.t >= distance * (1.0 - 1e-6) - shared_.query.offset_m(hit.triangle) ||
+        scene.materials[scene.triangles[hit.triangle].material].passes_light_on();
+    visible += is_open ? 0.2 : 0.0;
   }
-  return true;
+  return visible;
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ constexpr double source_share = 1.0 / 3.0;  // of the wanted error, at a source'
 constexpr double most_coverage = 0.999;     // fuller pixels are no spots
 constexpr double most_for_one = 65536.0, least_budget = 1048576.0, budget_per_pixel = 4.0;
 // Samples that find less than this share of the witness's light have not found it: the witness
-// knows a spot's light to a factor of two or so.
-constexpr double found_share = 0.25;
+// knows a spot's light to a factor of a few, where surfaces hide a part of it.
+constexpr double found_share = 0.125;
 
 }  // namespace
 
