@@ -317,9 +317,9 @@ double ImageFinder::visible_share(const Source& source) {
     const double distance = glm::length(way);
     const scenes::Hit hit = scene_.closest(camera_.position, way / distance);
     const scenes::Scene& scene = shared_.scene;
-    const bool is_open =
-        hit.missed() || hit.t >= distance * (1.0 - 1e-6) - shared_.query.offset_m(hit.triangle) ||
-        scene.materials[scene.triangles[hit.triangle].material].passes_light_on();
+    const bool is_open = hit.missed() ||
+                         hit.t >= distance * (1.0 - 1e-6) - shared_.query.offset_m(hit.triangle) ||
+                         scene.materials[scene.triangles[hit.triangle].material].passes_light_on();
     visible += is_open ? 0.2 : 0.0;
   }
   return visible;

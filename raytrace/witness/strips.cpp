@@ -265,8 +265,10 @@ class LightStrips {
  public:
   LightStrips(WitnessScene& scene, SpotMap& spots)
       : scene_(scene), shared_(scene.shared), camera_(scene.camera), spots_(spots) {
-    scenes::Box box = scenes::box_around(shared_.scene.vertices);
+    const scenes::Box box = scenes::box_around(shared_.scene.vertices);
     diagonal_m_ = box.diagonal();
+    beside_m_ =
+        4.0 * std::max(shared_.query.offset_at_m(box.low), shared_.query.offset_at_m(box.high));
   }
 
   void find(std::span<const SceneEdge> edges) {
@@ -427,7 +429,7 @@ class LightStrips {
   };
   // Adds a strip that is no longer than a pixel, or any if `adds`. Returns its length, px.
   double probe(const Strip& strip, bool adds = false) {
-    const double beside_m = 4.0 * shared_.query.offset_at_m(strip.at);
+    const double beside_m = beside_m_;
     const auto light_at = [&](double off) {
       return receive(strip.view, strip.at + off * strip.across);
     };
@@ -483,6 +485,7 @@ class LightStrips {
   const CameraModel& camera_;
   SpotMap& spots_;
   double diagonal_m_ = 0.0;
+  double beside_m_ = 0.0;  // off an edge: rays tell its sides apart, wherever its ends lie
   std::vector<LightView> views_;
 };
 

@@ -14,7 +14,7 @@
 namespace earthshine::raytrace {
 namespace {
 
-constexpr int across = 48;
+constexpr int slot_px = 48;  // width and height of the pictures
 
 // A floor of 4 m under a lid with a slot along y, in a Sun without extent.
 struct Slot {
@@ -42,8 +42,8 @@ struct Slot {
     const Vec3 at = ray.origin - ray.origin.z / ray.direction.z * ray.direction;
     const scenes::Sun& sun = *builder.scene.sun;
     const Vec3 in_slot = at + 0.5 / sun.direction.z * sun.direction;
-    const bool lit = at.x >= 0.0 && at.x <= 4.0 && at.y >= 0.0 && at.y <= 4.0 &&
-                     in_slot.x > low && in_slot.x < high && in_slot.y > 0.0 && in_slot.y < 4.0;
+    const bool lit = at.x >= 0.0 && at.x <= 4.0 && at.y >= 0.0 && at.y <= 4.0 && in_slot.x > low &&
+                     in_slot.x < high && in_slot.y > 0.0 && in_slot.y < 4.0;
     return lit ? 0.6 * sun.illuminance_lx.g * sun.direction.z / base::pi : 0.0;
   }
 };
@@ -59,24 +59,24 @@ TEST(LightStrips, ALineOfSunlightIsKnownToTheWantedError) {
     solve.patch_edge_m = 1.0;
     solve.form_factor_rays = 16;
     const radiosity::Solution solution = prepared.solve(solve);
-    const CameraModel model = make_camera_model(slot.camera, across, across);
+    const CameraModel model = make_camera_model(slot.camera, slot_px, slot_px);
     constexpr int fine = 128;
     std::vector<double> truth;
     double mean = 0.0;
-    for (int p = 0; p < across * across; ++p) {
+    for (int p = 0; p < slot_px * slot_px; ++p) {
       double sum = 0.0;
       for (int k = 0; k < fine * fine; ++k) {
-        sum += slot.light(model, p % across + (k % fine + 0.5) / fine,
-                          p / across + (k / fine + 0.5) / fine);
+        sum += slot.light(model, p % slot_px + (k % fine + 0.5) / fine,
+                          p / slot_px + (k / fine + 0.5) / fine);
       }
       truth.push_back(sum / (fine * fine));
-      mean += truth.back() / (across * across);
+      mean += truth.back() / (slot_px * slot_px);
     }
     constexpr int seeds = 8;
     double squares = 0.0;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
       RenderOptions options;
-      options.columns = options.rows = across;
+      options.columns = options.rows = slot_px;
       options.shared.on = true;
       options.indirect = Indirect::None;
       options.error = 0.05;
@@ -86,7 +86,7 @@ TEST(LightStrips, ALineOfSunlightIsKnownToTheWantedError) {
       const std::vector<float>& light = frame.image.find("G")->values;
       for (std::size_t p = 0; p < truth.size(); ++p) {
         const double off = error_weight(truth[p], mean) * (double(light[p]) - truth[p]) / mean;
-        squares += off * off / (seeds * across * across);
+        squares += off * off / (seeds * slot_px * slot_px);
       }
     }
     EXPECT_LT(std::sqrt(squares), 0.05 * std::sqrt(1.0 + 4.0 / 4.0)) << width;
@@ -149,19 +149,19 @@ TEST(Witness, LightThatNoSampleFindsIsStated) {
   camera.fov_deg = 60.0;
   const tests::Prepared prepared(builder.scene);
   RenderOptions options;
-  options.columns = options.rows = across;
+  options.columns = options.rows = slot_px;
   const radiosity::Solution solution = prepared.solve({});
   ShadingSetup setup(prepared, solution, camera, options);
   const Witness witness(setup.shared(), setup.camera(), {0.05, 0.0, 0.0, false, {}});
-  PixelSums sums(Window{0, 0, across, across}, 1, false);
+  PixelSums sums(Window{0, 0, slot_px, slot_px}, 1, false);
   sums.samples = witness.wanted(sums);
-  const auto pixel = static_cast<std::size_t>(std::ranges::max_element(sums.samples) -
-                                              sums.samples.begin());
+  const auto pixel =
+      static_cast<std::size_t>(std::ranges::max_element(sums.samples) - sums.samples.begin());
   ASSERT_GT(sums.samples[pixel], 64U);
   const std::vector<float> missing = witness.unexplained(sums);
   ASSERT_FALSE(missing.empty());
   // L = 1000 cd/m^2 times the image: pi (0.005 px / 0.7)^2, px pixels for a tangent of 1.
-  const double px = across / 2.0 / std::tan(base::radians(30.0));
+  const double px = slot_px / 2.0 / std::tan(base::radians(30.0));
   const double light = 1000.0 * base::pi * std::pow(0.005 * px / 0.7, 2);
   double sum = 0.0;
   for (const float one : missing) sum += double(one);
