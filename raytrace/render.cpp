@@ -102,8 +102,8 @@ std::vector<double> layer_luminance(const PixelSums& sums, const StatedError& er
                                     const Window& window) {
   std::vector<double> mean(sums.image_layers, 0.0);
   double pixels = 0.0;
-  for (std::size_t to = 0; to < error.counts.size(); ++to) {
-    if (error.counts[to] == 0) continue;
+  for (std::size_t to = 0; to < error.shows.size(); ++to) {
+    if (!error.counts(to)) continue;
     const auto columns = static_cast<std::size_t>(window.columns);
     const std::size_t from = sums.window.index(window.x + static_cast<int>(to % columns),
                                                window.y + static_cast<int>(to / columns));

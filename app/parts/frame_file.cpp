@@ -10,7 +10,8 @@ namespace {
 using raytrace::Frame;
 
 constexpr const char* stated_luminance = "stated.luminance";
-constexpr const char* stated_counts = "stated.counts";
+constexpr const char* stated_source = "stated.source";
+constexpr const char* stated_shows = "stated.shows";
 constexpr std::array<const char*, raytrace::error_parts> stated_squares = {
     "stated.gather", "stated.residual", "stated.lobe", "stated.camera"};
 
@@ -53,11 +54,14 @@ CachedResult kept_frame(const Frame& frame, const raytrace::Window& picture) {
                 {"gather_rays", report.gather_rays},
                 {"least_camera_samples", report.least_camera_samples},
                 {"finished_share", report.finished_share},
+                {"unexplained_pixels", report.unexplained_pixels},
                 {"gave_up", report.gave_up}};
   const raytrace::StatedError& stated = frame.error;
   kept.image.add(stated_luminance) = stated.luminance;
-  std::vector<float>& counts = kept.image.add(stated_counts);
-  std::copy(stated.counts.begin(), stated.counts.end(), counts.begin());
+  kept.image.add(stated_source) = stated.source;
+  std::vector<float>& shows = kept.image.add(stated_shows);
+  std::transform(stated.shows.begin(), stated.shows.end(), shows.begin(),
+                 [](raytrace::Shows what) { return static_cast<float>(what); });
   for (std::size_t part = 0; part < raytrace::error_parts; ++part) {
     std::vector<float>& squares = kept.image.add(stated_squares[part]);
     std::transform(stated.squared.begin(), stated.squared.end(), squares.begin(),
@@ -81,14 +85,16 @@ Frame frame_of(CachedResult kept) {
   facts.at("gather_rays").get_to(report.gather_rays);
   facts.at("least_camera_samples").get_to(report.least_camera_samples);
   facts.at("finished_share").get_to(report.finished_share);
+  report.unexplained_pixels = facts.value("unexplained_pixels", std::size_t{0});
   report.gave_up = facts.value("gave_up", false);
   raytrace::StatedError& stated = frame.error;
   stated.luminance = take(kept.image, stated_luminance);
-  const std::vector<float> counts = take(kept.image, stated_counts);
-  stated.counts.assign(counts.size(), 0);
-  std::transform(counts.begin(), counts.end(), stated.counts.begin(),
-                 [](float count) { return static_cast<std::uint8_t>(count); });
-  stated.squared.assign(counts.size(), {});
+  stated.source = take(kept.image, stated_source);
+  const std::vector<float> shows = take(kept.image, stated_shows);
+  stated.shows.resize(shows.size());
+  std::transform(shows.begin(), shows.end(), stated.shows.begin(),
+                 [](float what) { return static_cast<raytrace::Shows>(what); });
+  stated.squared.assign(shows.size(), {});
   for (std::size_t part = 0; part < raytrace::error_parts; ++part) {
     const std::vector<float> squares = take(kept.image, stated_squares[part]);
     for (std::size_t pixel = 0; pixel < squares.size(); ++pixel) {

@@ -31,7 +31,8 @@ bool as_set(const raytrace::RenderOptions& options) {
 }
 
 studies::Limit limit_of(const Drawn& drawn, double wanted) {
-  if (drawn.errors.pixels == 0 || drawn.errors.total.estimate <= wanted) {
+  const bool explained = drawn.frame.report.unexplained_pixels == 0;
+  if (explained && (drawn.errors.pixels == 0 || drawn.errors.total.estimate <= wanted)) {
     return studies::Limit::None;
   }
   if (drawn.frame.report.stopped) return studies::Limit::Stopped;
@@ -75,6 +76,12 @@ Drawn draw_picture(const Studio& studio, const scenes::Camera& camera, StageTime
     return drawn;
   }
   drawn.errors = studies::error_budget(studio.scene(), {&camera, options}, drawn.frame);
+  if (const std::size_t pixels = drawn.frame.report.unexplained_pixels; pixels > 0) {
+    drawn.errors.not_captured.push_back(
+        fmt::format("light in {} pixels that sources send there and no sample found; the error "
+                    "counts it as missing",
+                    pixels));
+  }
   if (!loaded.scene.quality.error) return drawn;
   const double wanted = *loaded.scene.quality.error;
   drawn.limit = limit_of(drawn, wanted);

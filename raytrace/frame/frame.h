@@ -64,6 +64,8 @@ struct RenderReport {
   // Samples in all that the wanted error is expected to take, over those that were cast; 0 where it
   // was surely reached (Rounds), or before there were some all over the picture.
   double growth = 0.0;
+  // Pixels where the witness expects light that the samples have not found; it is in the error.
+  std::size_t unexplained_pixels = 0;
   bool gave_up = false;  // far more samples than should do have not reached the wanted error
 };
 
@@ -84,6 +86,10 @@ enum class ErrorPart {
 };
 inline constexpr std::size_t error_parts = 4;
 
+// What the error of a pixel is stated of: nothing (the sky, the even light of a source), what a
+// surface reflects, or all light where the edge of a source lies in the pixel.
+enum class Shows : std::uint8_t { Nothing, Surface, SourceEdge };
+
 // Luminance of the sources that a pixel's samples saw themselves, and its square; how many samples
 // met a surface that reflects.
 struct SourceSeen {
@@ -91,21 +97,39 @@ struct SourceSeen {
   void add(double seen) { luminance += seen, luminance2 += seen * seen; }
   // Whether so many samples show a surface that reflects and no edge of a source itself.
   [[nodiscard]] bool counts(double samples) const {
-    if (reflecting == 0.0 || luminance == 0.0) return reflecting > 0.0;
-    const double spread = luminance2 - luminance * luminance / samples;
-    return reflecting == samples && spread <= 1e-6 * luminance2;
+    return reflecting > 0.0 && (luminance == 0.0 || (reflecting == samples && !varies(samples)));
+  }
+  [[nodiscard]] Shows shows(double samples) const {
+    if (counts(samples)) return Shows::Surface;
+    const bool is_edge = luminance > 0.0 && (reflecting > 0.0 || varies(samples));
+    return is_edge ? Shows::SourceEdge : Shows::Nothing;
+  }
+
+ private:
+  [[nodiscard]] bool varies(double samples) const {
+    return luminance2 - luminance * luminance / samples > 1e-6 * luminance2;
   }
 };
 
 // Per pixel of a window.
 struct StatedError {
   std::vector<float> luminance;  // without sources that the camera sees itself, cd/m^2
-  std::vector<std::array<float, error_parts>> squared;  // of it, by part, (cd/m^2)^2
-  // 1: shows a surface that reflects, and no edge of a source
-  std::vector<std::uint8_t> counts;
+  std::vector<float> source;     // of these sources, cd/m^2
+  // By part, (cd/m^2)^2: of the luminance; at the edge of a source of all light.
+  std::vector<std::array<float, error_parts>> squared;
+  std::vector<Shows> shows;
 
   explicit StatedError(std::size_t pixels = 0)
-      : luminance(pixels, 0.0F), squared(pixels), counts(pixels, 0) {}
+      : luminance(pixels, 0.0F), source(pixels, 0.0F), squared(pixels), shows(pixels) {}
+  // Mean luminances are those of such pixels.
+  [[nodiscard]] bool counts(std::size_t pixel) const { return shows[pixel] == Shows::Surface; }
+  [[nodiscard]] std::vector<bool> counted() const {  // all of these
+    std::vector<bool> all(shows.size());
+    for (std::size_t p = 0; p < all.size(); ++p) all[p] = counts(p);
+    return all;
+  }
+  // error_weight() of all light of the pixel.
+  [[nodiscard]] double weight(std::size_t pixel, double mean) const;
 };
 
 // What an error at a pixel counts, over a picture (or a target) of that mean luminance: pixels
@@ -115,11 +139,15 @@ inline constexpr double error_bright = 4.0;  // over the mean
 [[nodiscard]] inline double error_weight(double luminance, double mean) {
   return mean > 0.0 && luminance > error_bright * mean ? error_bright * mean / luminance : 1.0;
 }
+inline double StatedError::weight(std::size_t pixel, double mean) const {
+  return error_weight(double(luminance[pixel]) + double(source[pixel]), mean);
+}
 
-// Over some pixels that count.
+// Over some pixels. The squared errors at edges of sources are added to those of the surfaces that
+// count, and divided by the number of the latter, so that sources make no error look smaller.
 struct ErrorSums {
-  std::size_t pixels = 0;
-  double luminance = 0.0;  // their mean
+  std::size_t pixels = 0;  // that count; of a picture without reflected light, edges of sources too
+  double luminance = 0.0;  // their mean, of all light where there is no reflected light
   // What errors are relative to: that mean, or, where noise has made it negative, half of what
   // pixels are off by, so that no error that can be asked for, 1 at most, is reached there.
   double yardstick = 0.0;

@@ -52,6 +52,7 @@ Frame join(const std::vector<Frame>& parts, const Window& window) {
         std::max(whole.report.most_camera_samples, part.report.most_camera_samples);
     whole.report.rays += part.report.rays;
     whole.report.seconds += part.report.seconds;
+    whole.report.unexplained_pixels += part.report.unexplained_pixels;
     whole.report.gather_seconds += part.report.gather_seconds;
     for (base::Channel& channel : whole.image.channels) {
       const base::Channel* const own = part.image.find(channel.name);
@@ -60,7 +61,8 @@ Frame join(const std::vector<Frame>& parts, const Window& window) {
     }
     place(part.error.luminance, part.window, window, whole.error.luminance);
     place(part.error.squared, part.window, window, whole.error.squared);
-    place(part.error.counts, part.window, window, whole.error.counts);
+    place(part.error.source, part.window, window, whole.error.source);
+    place(part.error.shows, part.window, window, whole.error.shows);
   }
   whole.report.camera_samples = samples / static_cast<double>(pixels);
   whole.report.finished_share = finished / static_cast<double>(pixels);

@@ -8,8 +8,7 @@
 
 #include "raytrace/passes/pilot_pass.h"
 #include "raytrace/passes/rounds.h"
-#include "raytrace/passes/small_sources.h"
-#include "raytrace/passes/source_edges.h"
+#include "raytrace/witness/witness.h"
 
 namespace earthshine::raytrace {
 namespace {
@@ -25,8 +24,6 @@ constexpr std::array<Gathered, gathered_kinds> every_kind = {Gathered::Solution,
 constexpr double after_points = 9.0, after_sharing = 4.0;
 // Pictures of more layers are measured, not looked at: what the eye minds costs them most.
 constexpr std::size_t most_layers_looked_at = 8;
-// For the edges of sources, at the most: samples, and of the time that a limit leaves.
-constexpr double most_edge_samples = 1048576.0, edge_samples_per_pixel = 4.0, time_for_edges = 0.25;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -38,6 +35,9 @@ Window widened(const Window& window, int pixels, const CameraModel& camera) {
   const int y1 = std::min(camera.rows, window.y + window.rows + pixels);
   return {x0, y0, x1 - x0, y1 - y0};
 }
+
+// For the witness, at the most: samples, and of the time that a limit leaves.
+constexpr double witness_samples = 1048576.0, witness_per_pixel = 4.0, time_for_witness = 0.25;
 
 class Passes {
  public:
@@ -79,7 +79,7 @@ class Passes {
     expected_ =
         static_cast<double>(sampling.camera_samples) * static_cast<double>(window_.pixel_count());
     first_round(everywhere(sampling.camera_samples));
-    shade_small_sources();
+    shade_witnessed(0.0, 0.0);
     report_.gather_rays = sampling.camera_samples * sampling.gather_rays;
   }
 
@@ -116,7 +116,7 @@ class Passes {
     first_round(everywhere(how.least_samples));
     shared_.dimmest.clear();
     if (!ends()) shade(wanted_for_the_eye(*sums_, sums_->scatter, dimmest_share * pilot.luminance));
-    shade_sources();
+    shade_witnessed(how.noise, pilot.luminance);
     for (int round = 1; round < most_rounds && !ends() && per_deviation > 0.0; ++round) {
       shade(wanted_samples(*sums_, per_deviation, pilot.bright(), how.least_samples,
                            how.most_samples));
@@ -146,10 +146,10 @@ class Passes {
     first_round(by_edges(least, std::max(std::min(2, least), least / 2)));
     reserve_s_ = 0.0;
     if (!ends() && shared_.layers <= most_layers_looked_at) {
-      const double dimmest = dimmest_of(*sums_);
+      const double dimmest = dimmest_share * sums_->mean_luminance();
       shade(wanted_for_the_eye(*sums_, scatter_of_samples(*sums_, dimmest), dimmest));
     }
-    shade_sources();
+    shade_witnessed(options_.error, sums_->mean_luminance());
     covered = covered && !ends();
     Rounds rounds(options_.error);
     reserve_s_ = sharing_s_;
@@ -175,6 +175,11 @@ class Passes {
     }
     report_.gave_up = rounds.gave_up();
     finish_layers();
+    if (witness_) {
+      sums_->unexplained = witness_->unexplained(*sums_);
+      report_.unexplained_pixels = static_cast<std::size_t>(
+          std::ranges::count_if(sums_->unexplained, [](float light) { return light > 0.0F; }));
+    }
     if (!covered || options_.error <= 0.0 || !(ends() || report_.gave_up)) return;
     const SampleCosts each = sample_costs(field());
     SamplePlanner planner(*sums_, field(), each);
@@ -279,16 +284,11 @@ class Passes {
         [&](std::uint64_t samples) { tell(static_cast<double>(samples)); });
   }
 
-  void shade_small_sources() {
-    const auto stop = [this] { return ends(); };
-    if (!stop()) shade(wanted_for_small_sources(shared_, camera_, *sums_, stop));
-  }
-
   // Samples. A picture without a wanted error or a time limit has no bound, so that a crop has the
   // pixels of the whole.
-  [[nodiscard]] double most_for_edges() const {
-    double most = std::numeric_limits<double>::infinity();
-    if (options_.error > 0.0) most = std::max(most_edge_samples, edge_samples_per_pixel * pixels());
+  [[nodiscard]] double most_for_witness() const {
+    double most =
+        options_.error > 0.0 ? std::max(witness_samples, witness_per_pixel * pixels()) : 0.0;
     if (options_.time_limit_s <= 0.0) return most;
     const SampleCosts each = sample_costs(field());
     double samples = 0.0, cost = 0.0;
@@ -297,14 +297,19 @@ class Passes {
       cost += each.camera * sums_->samples[p] + each.camera_ray * double(sums_->rays[p]);
     }
     const double left = affordable(spent(*sums_, field(), each));
-    return std::min(most, time_for_edges * left * samples / std::max(cost, 1.0));
+    const double in_time = time_for_witness * left * samples / std::max(cost, 1.0);
+    return std::max(1.0, most > 0.0 ? std::min(most, in_time) : in_time);
   }
 
-  // What the camera sees of sources themselves.
-  void shade_sources() {
-    shade_small_sources();
+  // Light that few samples find. luminance: of the picture; error: wanted of it.
+  void shade_witnessed(double error, double luminance) {
     if (ends()) return;
-    shade(wanted_for_source_edges(*sums_, samples_for_edges(options_.error), most_for_edges()));
+    witness_.emplace(shared_, camera_,
+                     WitnessOptions{error, luminance, most_for_witness(), !options_.shared.on,
+                                    [this] { return ends(); }});
+    report_.rays.planning += witness_->rays();
+    sums_->spot_luminance = witness_->spot_luminance(*sums_);
+    shade(witness_->wanted(*sums_));
   }
 
   void tell(double more) {
@@ -323,6 +328,7 @@ class Passes {
   Window window_;
   std::optional<GatherField> field_;
   std::optional<PixelSums> sums_;
+  std::optional<Witness> witness_;
   Clock::time_point start_ = Clock::now();
   double reserve_s_ = 0.0;  // of the time limit, for what has to follow
   double sharing_s_ = 0.0;  // what it took the last time

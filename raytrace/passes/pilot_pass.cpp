@@ -39,7 +39,7 @@ PilotPass run_pilot_pass(ShadingScene shared, const CameraModel& camera, int sam
   pilot.dimmest.assign(shared.light_of_layer.back() + 1, 0.0);
   for (const PixelSums& look : looks) {
     if (!look.counts(0)) continue;
-    pilot.luminance += look.luminance[0] / samples;
+    pilot.luminance += look.reflected(0);
     for (std::size_t k = 0; k < shared.layers; ++k) {
       pilot.dimmest[shared.light_of_layer[k]] +=
           dimmest_share * base::luminance(Rgb(look.radiance[k])) / samples;

@@ -132,8 +132,7 @@ void SamplePlanner::look_at_field(double scale) {
       // Points that others served until now have the fewest to begin with.
       const float samples = std::max(field_->samples(kind, p), fewest);
       const double weight =
-          error_weight(double(stated_.luminance[window.index(x, y)]), whole_.luminance) *
-          reflected * field_->cover_of(p);
+          stated_.weight(window.index(x, y), whole_.luminance) * reflected * field_->cover_of(p);
       const double factor = weight * weight * scale * pixels;
       if (factor * (one - four) <= 0.0) return {};
       return {static_cast<std::uint32_t>(p),
@@ -170,7 +169,7 @@ void SamplePlanner::look_at_pixels(double scale) {
   std::array<Scatter, sample_classes> of_class{};
   Scatter all;
   for (std::size_t p = 0; p < variance.size(); ++p) {
-    const double weight = error_weight(double(stated_.luminance[p]), whole_.luminance);
+    const double weight = stated_.weight(p, whole_.luminance);
     const double of_mean = weight * weight * sums_.sample_variance(p);
     variance[p] = of_mean * sums_.samples[p];
     mean[p] = sums_.luminance[p] / std::max(1U, sums_.samples[p]);
@@ -193,7 +192,7 @@ void SamplePlanner::look_at_pixels(double scale) {
       }
     }
     const double samples = std::max(1U, sums_.samples[p]);
-    const double weight = error_weight(double(stated_.luminance[p]), whole_.luminance);
+    const double weight = stated_.weight(p, whole_.luminance);
     const double unseen = weight * weight * contrast * contrast * share_missed(samples);
     const double likely =
         std::max({variance[p], around * std::min(1.0, unsure_samples / samples), unseen * samples});

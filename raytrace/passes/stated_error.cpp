@@ -60,10 +60,12 @@ StatedError state_error(const PixelSums& sums, const GatherField* field, const W
           squared[kind] = read.squared(kind, n);
         }
       }
-      squared[static_cast<std::size_t>(ErrorPart::Camera)] =
-          static_cast<float>(sums.squared_error(from));
+      double camera = sums.squared_error(from);
+      if (!sums.unexplained.empty()) camera += std::pow(double(sums.unexplained[from]), 2.0);
+      squared[static_cast<std::size_t>(ErrorPart::Camera)] = static_cast<float>(camera);
       stated.luminance[to] = static_cast<float>(luminance / n);
-      stated.counts[to] = sums.counts(from) ? 1 : 0;
+      stated.source[to] = static_cast<float>(seen_source / n);
+      stated.shows[to] = sums.source[from].shows(n);
     }
   };
   base::parallel_chunks(static_cast<std::size_t>(window.rows), 4,
@@ -77,18 +79,24 @@ StatedError state_error(const PixelSums& sums, const GatherField* field, const W
 
 ErrorSums add_up(const StatedError& stated, std::span<const std::size_t> pixels) {
   ErrorSums sums;
+  double sources = 0.0;
+  std::size_t edges = 0;
   for (const std::size_t p : pixels) {
-    if (stated.counts[p] == 0) continue;
+    if (stated.shows[p] == Shows::Nothing) continue;
+    sources += double(stated.source[p]);
+    edges += stated.counts(p) ? 0 : 1;
+    if (!stated.counts(p)) continue;
     sums.luminance += double(stated.luminance[p]);
     ++sums.pixels;
   }
+  if (sums.luminance == 0.0) sums.luminance = sources, sums.pixels += edges;
   if (sums.pixels == 0) return sums;
   sums.luminance /= static_cast<double>(sums.pixels);
   sums.yardstick = sums.luminance;
   if (sums.luminance < 0.0) {
     double square = 0.0;
     for (const std::size_t p : pixels) {
-      if (stated.counts[p] == 0) continue;
+      if (stated.shows[p] == Shows::Nothing) continue;
       for (const float part : stated.squared[p]) square += double(part);
     }
     sums.yardstick = 0.5 * std::sqrt(square / static_cast<double>(sums.pixels));
@@ -97,8 +105,8 @@ ErrorSums add_up(const StatedError& stated, std::span<const std::size_t> pixels)
   const double scale = 1.0 / (static_cast<double>(sums.pixels) * sums.yardstick * sums.yardstick);
   double fourths = 0.0;
   for (const std::size_t p : pixels) {
-    if (stated.counts[p] == 0) continue;
-    const double weight = error_weight(double(stated.luminance[p]), sums.luminance);
+    if (stated.shows[p] == Shows::Nothing) continue;
+    const double weight = stated.weight(p, sums.luminance);
     double of_pixel = 0.0;
     for (std::size_t part = 0; part < error_parts; ++part) {
       const double square = weight * weight * scale * double(stated.squared[p][part]);
@@ -114,7 +122,7 @@ ErrorSums add_up(const StatedError& stated, std::span<const std::size_t> pixels)
 }
 
 ErrorSums add_up(const StatedError& stated) {
-  std::vector<std::size_t> all(stated.counts.size());
+  std::vector<std::size_t> all(stated.shows.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   return add_up(stated, all);
 }

@@ -96,9 +96,11 @@ void store(const PathSums& sums, std::size_t pixel, Frame& frame) {
   }
   image.channels[rgb].values[pixel] = static_cast<float>(sums.luminance.variance_of_mean());
   frame.error.luminance[pixel] = static_cast<float>(sums.reflected.mean);
+  frame.error.source[pixel] = static_cast<float>(sums.source.luminance / paths);
+  frame.error.shows[pixel] = sums.source.shows(paths);
+  const Spread& stated = frame.error.counts(pixel) ? sums.reflected : sums.luminance;
   frame.error.squared[pixel][static_cast<std::size_t>(ErrorPart::Camera)] =
-      static_cast<float>(sums.reflected.variance_of_mean());
-  frame.error.counts[pixel] = sums.source.counts(paths) ? 1 : 0;
+      static_cast<float>(stated.variance_of_mean());
 }
 
 }  // namespace
@@ -163,7 +165,8 @@ Frame trace_paths(const scenes::World& world, const scenes::Camera& camera,
     }
     parcel.pass_range(&frame.error.luminance[y * columns], columns);
     parcel.pass_range(&frame.error.squared[y * columns], columns);
-    parcel.pass_range(&frame.error.counts[y * columns], columns);
+    parcel.pass_range(&frame.error.source[y * columns], columns);
+    parcel.pass_range(&frame.error.shows[y * columns], columns);
   });
   for (const RayCounts& rays : row_rays) frame.report.rays += rays;
   const auto drawn = std::accumulate(finished.begin(), finished.end(), std::size_t{0});

@@ -171,8 +171,10 @@ double PixelSums::squared_error(std::size_t pixel) const {
   if (samples[pixel] == 0) return 0.0;
   // Of few pixels the halves tell little: there their samples' spread, which is an upper bound.
   if (window.pixel_count() < few_pixels) return sample_variance(pixel);
-  const double off = half_difference[pixel] / samples[pixel];
-  return off * off;
+  const double n = samples[pixel], off = half_difference[pixel] / n;
+  if (spot_luminance.empty() || spot_luminance[pixel] <= 0.0F) return off * off;
+  const double edge = error_of_edge * std::pow(n, -0.75) * double(spot_luminance[pixel]);
+  return std::max(off * off, std::min(edge * edge, sample_variance(pixel)));
 }
 
 void shade_samples(const ShadingScene& shared, const CameraModel& camera,
@@ -235,9 +237,10 @@ void PixelSums::pass(std::size_t pixel, base::Parcel& parcel) {
 namespace {
 
 // That leave an edge between that share of the brighter side and less an error of 2 % of it
-// (samples_for_edges in source_edges.h).
+// (error_of_edge).
 std::uint32_t samples_for_edge(double contrast) {
-  return std::bit_ceil(static_cast<std::uint32_t>(std::pow(0.27 / 0.02 * contrast, 4.0 / 3.0)));
+  return std::bit_ceil(
+      static_cast<std::uint32_t>(std::pow(error_of_edge / 0.02 * contrast, 4.0 / 3.0)));
 }
 
 // The greatest of a pixel's eight neighbours in the window.
@@ -278,14 +281,14 @@ std::vector<std::uint32_t> wanted_samples(const PixelSums& sums, double per_devi
   return wanted;
 }
 
-double dimmest_of(const PixelSums& sums) {
-  double mean = 0.0, counted = 0.0;
-  for (std::size_t p = 0; p < sums.samples.size(); ++p) {
-    if (!sums.counts(p)) continue;
-    mean += sums.luminance[p] / sums.samples[p];
+double PixelSums::mean_luminance() const {
+  double sum = 0.0, counted = 0.0;
+  for (std::size_t p = 0; p < samples.size(); ++p) {
+    if (!counts(p)) continue;
+    sum += reflected(p);
     counted += 1.0;
   }
-  return mean > 0.0 ? dimmest_share * mean / counted : 0.0;
+  return sum > 0.0 ? sum / counted : 0.0;
 }
 
 std::vector<float> scatter_of_samples(const PixelSums& sums, double dimmest) {

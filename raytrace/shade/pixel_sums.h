@@ -12,6 +12,10 @@
 
 namespace earthshine::raytrace {
 
+// RMS error of the share of a pixel that an edge covers, times n^(3/4), by n samples, spread evenly:
+// of edges in all directions and places (law SourceEdges).
+inline constexpr double error_of_edge = 0.27;
+
 struct PixelSums {
   Window window;
   std::size_t image_layers = 0, entries = 0;  // with parts behind the layers
@@ -19,8 +23,8 @@ struct PixelSums {
   std::vector<glm::vec3> radiance;
   std::vector<std::vector<FieldTerm>> terms;  // that
   std::vector<std::uint32_t> samples;
-  // Sums over samples, of the luminance and its square, gather points included and sources that the
-  // camera sees itself left out.
+  // Sums over samples, of the luminance and its square, gather points and sources that the camera
+  // sees itself included.
   std::vector<double> luminance, luminance2;
   std::vector<double> half_difference;  // of the sums of even and odd samples' luminance
   std::vector<SourceSeen> source;
@@ -32,6 +36,10 @@ struct PixelSums {
   // Of a pixel: 1 + its row in layers_differ, 0 where it is not noted; for how many pixels it stands.
   std::vector<std::uint32_t> noted_row;
   std::vector<float> stands_for;  // by row
+  // Of spots smaller than the pixel, which the witness expects there; empty: none.
+  std::vector<float> spot_luminance;
+  // Light that the witness expects and the samples have not found, cd/m^2; empty: none.
+  std::vector<float> unexplained;
 
   // noted: RenderOptions::noted of a picture with so many columns.
   PixelSums(const Window& of, std::size_t image_layers, bool splits_parts,
@@ -46,11 +54,19 @@ struct PixelSums {
   // take all samples.
   [[nodiscard]] double deviation(std::size_t pixel, double bright) const;
   // The squared error of the mean, from the pixel's two halves alone: right on average over pixels.
+  // Where the witness expects a spot, no less than its edge leaves on the average: a few pixels may
+  // hold most of a picture's error, and their halves agree by chance.
   // A single sample has no halves: it takes those of the pixel at the upper left of its square of
   // four (Passes::first_round), by as much as fewer samples are further off.
   [[nodiscard]] double squared_error(std::size_t pixel) const;
   // Whether the pixel shows a surface that reflects and no edge of a source itself.
   [[nodiscard]] bool counts(std::size_t pixel) const;
+  // Mean luminance, without sources that the camera sees itself.
+  [[nodiscard]] double reflected(std::size_t pixel) const {
+    return samples[pixel] > 0 ? (luminance[pixel] - source[pixel].luminance) / samples[pixel] : 0.0;
+  }
+  // That of the pixels that count.
+  [[nodiscard]] double mean_luminance() const;
   // All of a pixel.
   void pass(std::size_t pixel, base::Parcel& parcel);
   // Samples into the sums of a pixel.
@@ -84,8 +100,6 @@ void shade_samples(const ShadingScene& shared, const CameraModel& camera,
                                                             std::span<const float> scatter,
                                                             double dimmest);
 inline constexpr double dimmest_share = 0.05;  // of the picture's mean
-// That share of the mean of the pixels that count.
-[[nodiscard]] double dimmest_of(const PixelSums& sums);
 // Of all light together.
 [[nodiscard]] std::vector<float> scatter_of_samples(const PixelSums& sums, double dimmest);
 

@@ -103,13 +103,8 @@ void PixelShader::trace(const Ray& ray, const Rgb& weight, int depth, Seen seen,
 }
 
 void PixelShader::see_source(std::size_t group, const Rgb& radiance, int depth) {
-  const std::size_t layer = shared_.layer[group];
-  if (depth > 0) return add(layer, sample_, Part::Specular, radiance);
-  sums_[layer] += radiance;
-  if (shared_.splits_parts) {
-    sums_[shared_.layers + static_cast<std::size_t>(Part::Direct)] += radiance;
-  }
-  source_of_sample_ += base::luminance(radiance);
+  add(shared_.layer[group], sample_, depth > 0 ? Part::Specular : Part::Direct, radiance);
+  if (depth == 0) source_of_sample_ += base::luminance(radiance);
 }
 
 void PixelShader::see_sky(const Vec3& direction, const Rgb& weight, int depth, Seen seen) {

@@ -81,10 +81,9 @@ class PixelShader {
 
   // Sum over samples of radiance, per image layer; then, with splits_parts, per Part.
   [[nodiscard]] std::span<const Rgb> sums() const { return sums_; }
-  // Luminance of each sample, all layers together, but for sources that the camera sees itself.
+  // Luminance of each sample, all layers together.
   [[nodiscard]] std::span<const double> sample_luminance() const { return sample_luminance_; }
-  // Sums over samples of the light that comes straight from a source that the camera sees; their
-  // luminance is without it.
+  // Sums over samples of the light that comes straight from a source that the camera sees.
   [[nodiscard]] const SourceSeen& source() const { return source_; }
   // Of each layer, the luminance that samples of the first half brought less that of the second.
   [[nodiscard]] std::span<const double> halves_differ() const { return halves_differ_; }

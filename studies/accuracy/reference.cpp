@@ -34,7 +34,8 @@ std::optional<base::Image> trace_batch(const scenes::World& study, const Accurac
   for (const auto& parts : stated.squared) {
     variance.values.push_back(parts[static_cast<std::size_t>(raytrace::ErrorPart::Camera)]);
   }
-  kept.channels.push_back({"counts", {stated.counts.begin(), stated.counts.end()}});
+  const std::vector<bool> counted = stated.counted();
+  kept.channels.push_back({"counts", {counted.begin(), counted.end()}});
   return kept;
 }
 

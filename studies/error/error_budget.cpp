@@ -27,8 +27,8 @@ double bound_ratio(const StatedError& stated, const std::vector<std::size_t>& pi
   if (whole.squared_error() <= 0.0) return 1.0;
   std::map<std::size_t, double> tiles;
   for (const std::size_t p : pixels) {
-    if (stated.counts[p] == 0) continue;
-    const double weight = raytrace::error_weight(double(stated.luminance[p]), whole.luminance);
+    if (stated.shows[p] == raytrace::Shows::Nothing) continue;
+    const double weight = stated.weight(p, whole.luminance);
     double square = 0.0;
     for (const float part : stated.squared[p]) square += double(part);
     const std::size_t x = p % static_cast<std::size_t>(columns) / tile_px;

@@ -124,9 +124,7 @@ double resolution(const ReferencePair& truth, const std::vector<bool>& counted) 
 
 NoisyPicture reflected_light(const raytrace::Frame& frame) {
   const raytrace::StatedError& stated = frame.error;
-  return {{stated.luminance.begin(), stated.luminance.end()},
-          {},
-          {stated.counts.begin(), stated.counts.end()}};
+  return {{stated.luminance.begin(), stated.luminance.end()}, {}, stated.counted()};
 }
 
 std::vector<bool> counted_pixels(const ReferencePair& truth) {

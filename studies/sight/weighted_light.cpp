@@ -86,7 +86,7 @@ std::optional<BasisError> basis_error(const GroupWeights& weights,
   double sum = 0.0, bound = 0.0, squares = 0.0;
   for (std::size_t g = 0; g < by_group.size(); ++g) {
     sum += base::luminance(weights.weight[g] * by_group[g]);
-    const double unit = base::luminance(by_group[g]);
+    const double unit = std::abs(base::luminance(by_group[g]));  // noise may make it negative
     bound += weights.largest[g] * unit;
     squares += std::pow(weights.scatter[g] * unit, 2);
   }

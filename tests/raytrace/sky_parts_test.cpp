@@ -219,12 +219,12 @@ TEST(SkyParts, NoiseStatedOfASunThatTakesTurnsIsWhatOtherSeedsDifferBy) {
     const auto &a = one.image.find(channel)->values, &b = other.image.find(channel)->values;
     double mean = 0.0, squares = 0.0, counted = 0.0;
     for (std::size_t p = 0; p < a.size(); ++p) {
-      if (one.error.counts[p] == 0) continue;
+      if (!one.error.counts(p)) continue;
       mean += 0.5 * double(a[p] + b[p]), counted += 1.0;
     }
     mean /= counted;
     for (std::size_t p = 0; p < a.size(); ++p) {
-      if (one.error.counts[p] == 0) continue;
+      if (!one.error.counts(p)) continue;
       const double weight = error_weight(0.5 * double(a[p] + b[p]), mean);
       squares += 0.5 * std::pow(weight * double(a[p] - b[p]), 2);
     }

@@ -163,6 +163,7 @@ TEST(Rounds, RoundingOfASourceIsNoLightThatIsMissing) {
   PixelSums sums = surprised();
   for (std::size_t p = 0; p < sums.samples.size(); ++p) {
     sums.source[p].luminance = double(sums.radiance[p].x) * (1.0 + 1e-7);
+    sums.half_difference[p] = 0.0;
   }
   SamplePlanner planner(sums, nullptr, {});
   EXPECT_EQ(planner.squared_error(), 0.0);

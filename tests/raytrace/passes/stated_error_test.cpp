@@ -15,7 +15,7 @@ namespace {
 StatedError grey(std::size_t pixels) {
   StatedError stated(pixels);
   std::ranges::fill(stated.luminance, 1.0F);
-  std::ranges::fill(stated.counts, std::uint8_t{1});
+  std::ranges::fill(stated.shows, Shows::Surface);
   return stated;
 }
 

@@ -39,7 +39,8 @@ TEST(WantedError, RoundsThatChoseWhereToSampleStateLessThanIsWanted) {
     return sums.doubt * std::sqrt(sums.squared_error());
   };
   const double first_look = stated(1.0);
-  EXPECT_EQ(stated(1.01 * first_look), first_look);
+  // The witness may ask for a few samples more or less.
+  EXPECT_NEAR(stated(1.01 * first_look), first_look, 0.02 * first_look);
   for (const double wanted : {0.95, 0.85, 0.7, 0.5}) {
     const double error = wanted * first_look;
     EXPECT_LE(stated(error), sure_share(error) * error);

@@ -180,13 +180,13 @@ TEST(PathTracer, StatesTheErrorOfLightThatIsNotSeenStraightFromASource) {
   const std::vector<float>&a = one.error.luminance, &b = two.error.luminance;
   double mean = 0.0, counting = 0.0;
   for (std::size_t p = 0; p < a.size(); ++p) {
-    if (one.error.counts[p] == 0 || two.error.counts[p] == 0) continue;
+    if (!one.error.counts(p) || !two.error.counts(p)) continue;
     mean += 0.5 * (double(a[p]) + double(b[p])), counting += 1.0;
   }
   mean /= counting;
   double squares = 0.0, spread = 0.0;
   for (std::size_t p = 0; p < a.size(); ++p) {
-    if (one.error.counts[p] == 0 || two.error.counts[p] == 0) continue;
+    if (!one.error.counts(p) || !two.error.counts(p)) continue;
     const double weight = error_weight(0.5 * (double(a[p]) + double(b[p])), mean);
     const double square = std::pow(weight * (double(a[p]) - double(b[p])) / mean, 2) / 2.0;
     squares += square / counting, spread += square * square / counting;

@@ -45,7 +45,7 @@ PixelSums dim_and_bright(double dim) {
 }
 
 std::vector<std::uint32_t> wanted_by_eye(const PixelSums& sums) {
-  const double dimmest = dimmest_of(sums);
+  const double dimmest = dimmest_share * sums.mean_luminance();
   return wanted_for_the_eye(sums, scatter_of_samples(sums, dimmest), dimmest);
 }
 

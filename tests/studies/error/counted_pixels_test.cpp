@@ -82,7 +82,7 @@ TEST(CountedPixels, AWallThatGlowsCountsByWhatItReflects) {
       const double from_middle = std::hypot(x - 7.5, y - 7.5), rim = 0.3 * 8.0 * 10.0 / 9.9;
       if (std::fabs(from_middle - rim) < std::sqrt(0.5)) continue;
       const auto p = static_cast<std::size_t>(across * y + x);
-      EXPECT_EQ(frame.error.counts[p] != 0, around[p]) << x << ", " << y;
+      EXPECT_EQ(frame.error.counts(p), around[p]) << x << ", " << y;
       hidden += from_middle < rim ? 1 : 0;
     }
   }

@@ -53,7 +53,7 @@ TEST(ErrorBudget, WhatIsAskedForIsStatedAndTrue) {
       const raytrace::Frame frame = small_room().picture(options);
       const ErrorBudget budget = budget_of(options, frame);
       EXPECT_LE(budget.total.estimate, asked);
-      const std::vector<bool> counted(frame.error.counts.begin(), frame.error.counts.end());
+      const std::vector<bool> counted = frame.error.counted();
       const PictureError found = picture_error(base::luminance_of(frame.image), truth, counted);
       within += found.low <= budget.total.bound_95 ? 1 : 0;
       ++all;
@@ -88,15 +88,15 @@ TEST(ErrorBudget, ASurfaceThatEmitsAndReflectsCounts) {
   const raytrace::RenderOptions options = small_picture(0.1);
   const raytrace::Frame frame = small_room().picture(options);
   std::size_t counted = 0;
-  for (const std::uint8_t one : frame.error.counts) counted += one;
-  EXPECT_GT(counted, frame.error.counts.size() * 9 / 10);
+  for (const bool one : frame.error.counted()) counted += one ? 1 : 0;
+  EXPECT_GT(counted, frame.error.shows.size() * 9 / 10);
   scenes::Scene faint = small_room().scene;
   for (scenes::Material& material : faint.materials) material.emit = Rgb(0.001);
   const tests::Prepared prepared(faint);
   const raytrace::Frame all_emit =
       raytrace::render(prepared, prepared.solve(small_room().solver), small_room().camera, options);
   const ErrorBudget budget = error_budget(prepared, {&small_room().camera, options}, all_emit);
-  EXPECT_GT(budget.pixels, frame.error.counts.size() * 9 / 10);
+  EXPECT_GT(budget.pixels, frame.error.shows.size() * 9 / 10);
   EXPECT_GT(budget.total.estimate, 0.0);
 }
 

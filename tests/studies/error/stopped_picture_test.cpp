@@ -52,7 +52,7 @@ struct Found {
 Found draw(const radiosity::Solution& solution, const raytrace::RenderOptions& options) {
   const tests::SmallRoom& room = small_room();
   const raytrace::Frame frame = raytrace::render(room.prepared, solution, room.camera, options);
-  const std::vector<bool> counted(frame.error.counts.begin(), frame.error.counts.end());
+  const std::vector<bool> counted = frame.error.counted();
   const std::vector<float> luminance = base::luminance_of(frame.image);
   Found found{picture_error(luminance, truth(), counted),
               error_budget(room.study(), {&room.camera, options}, frame).total};

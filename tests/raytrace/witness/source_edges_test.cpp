@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Edges of sources that the camera sees itself: a pixel's mean is the mean of the source's radiance
 // over the pixel, by 64 x 64 rays.
-#include "raytrace/passes/source_edges.h"
+#include "raytrace/witness/source_edges.h"
 
 #include <gtest/gtest.h>
 
@@ -181,8 +181,8 @@ TEST(SourceEdges, OnlyEdgesOfSourcesTakeMore) {
     const std::size_t p = sums.window.index(x, y);
     sums.source[p].luminance = 4.0 * source;
     sums.source[p].luminance2 = 4.0 * source * source;
-    sums.luminance[p] = 4.0 * reflected;
-    sums.luminance2[p] = 4.0 * reflected * reflected;
+    sums.luminance[p] = 4.0 * (source + reflected);
+    sums.luminance2[p] = 4.0 * (source * source + reflected * reflected);
   };
   for (int y = 0; y < 6; ++y) {
     for (int x = 0; x < 12; ++x) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "raytrace/passes/source_edges.h"
+#include "raytrace/witness/source_edges.h"
 
 #include <algorithm>
 #include <bit>
@@ -10,11 +10,9 @@ namespace earthshine::raytrace {
 namespace {
 
 constexpr std::uint32_t fewest = 64, most = 1024;
-constexpr double error_of_one = 0.27;  // measured: source_edges_test.cpp
 constexpr double least_contrast = 1.0 / 3.0;
 
-// A pixel's mean and the standard deviation of its samples, sources included. Its samples show
-// either a source or a surface that reflects, so that the squares of the two add up.
+// A pixel's mean and the standard deviation of its samples.
 struct Look {
   double mean = 0.0, deviation = 0.0;
 };
@@ -22,9 +20,7 @@ struct Look {
 Look look_at(const PixelSums& sums, std::size_t pixel) {
   const double n = sums.samples[pixel];
   if (n == 0.0) return {};
-  const SourceSeen& source = sums.source[pixel];
-  const double mean = (sums.luminance[pixel] + source.luminance) / n;
-  const double square = (sums.luminance2[pixel] + source.luminance2) / n;
+  const double mean = sums.luminance[pixel] / n, square = sums.luminance2[pixel] / n;
   return {mean, std::sqrt(std::max(0.0, square - mean * mean))};
 }
 
@@ -32,7 +28,7 @@ Look look_at(const PixelSums& sums, std::size_t pixel) {
 
 std::uint32_t samples_for_edges(double error) {
   if (error <= 0.0) return fewest;
-  const double wanted = std::pow(error_of_one / error, 4.0 / 3.0);
+  const double wanted = std::pow(error_of_edge / error, 4.0 / 3.0);
   return std::bit_ceil(
       static_cast<std::uint32_t>(std::clamp(wanted, double(fewest), double(most))));
 }

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raytrace/witness/edges.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scenes/ray_query.h"
+
+namespace earthshine::raytrace {
+namespace {
+
+// Cosine of the angle between triangles that count as one plane.
+constexpr double same_plane = 1.0 - 1e-9;
+
+// Vertices at one place have one number.
+std::vector<std::uint32_t> welded(const scenes::Scene& scene) {
+  std::vector<std::uint32_t> order(scene.vertices.size()), number(order.size());
+  for (std::uint32_t k = 0; k < order.size(); ++k) order[k] = k;
+  const auto key = [&](std::uint32_t k) {
+    const Vec3& p = scene.vertices[k];
+    return std::array{p.x, p.y, p.z};
+  };
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t p, std::uint32_t q) { return key(p) < key(q); });
+  std::uint32_t last = 0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    if (k == 0 || key(order[k]) != key(order[k - 1])) last = order[k];
+    number[order[k]] = last;
+  }
+  return number;
+}
+
+}  // namespace
+
+std::vector<SceneEdge> find_edges(const scenes::Scene& scene) {
+  struct Side {
+    std::uint64_t key;
+    std::uint32_t triangle;
+  };
+  const std::vector<std::uint32_t> number = welded(scene);
+  std::vector<Side> sides;
+  sides.reserve(3 * scene.triangles.size());
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    const auto& v = scene.triangles[t].vertex;
+    for (int k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(number[v[k]], number[v[(k + 1) % 3]]);
+      if (low != high) sides.push_back({(std::uint64_t{low} << 32U) | high, t});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& one, const Side& other) {
+    return one.key != other.key ? one.key < other.key : one.triangle < other.triangle;
+  });
+  std::vector<SceneEdge> edges;
+  for (std::size_t k = 0; k < sides.size();) {
+    std::size_t end = k + 1;
+    while (end < sides.size() && sides[end].key == sides[k].key) ++end;
+    SceneEdge edge{scene.vertices[sides[k].key >> 32U], scene.vertices[sides[k].key & 0xFFFFFFFFU]};
+    const std::uint32_t first = sides[k].triangle, second = sides[end - 1].triangle;
+    edge.is_border =
+        end != k + 2 || scene.triangles[first].material != scene.triangles[second].material;
+    if (!edge.is_border) {
+      edge.normal_a = scenes::triangle_normal(scene, first);
+      edge.normal_b = scenes::triangle_normal(scene, second);
+    }
+    if (edge.is_border || glm::dot(edge.normal_a, edge.normal_b) < same_plane) {
+      edges.push_back(edge);
+    }
+    k = end;
+  }
+  return edges;
+}
+
+}  // namespace earthshine::raytrace
