@@ -237,7 +237,7 @@ SteeredSolution within(double limit_s, double pass_s) {
   const tests::Prepared prepared(tests::small_room().scene);
   double now = limit_s > 0.0 ? 0.0 : 1.0;
   Wanted wanted;
-  wanted.error = 0.01;
+  wanted.error = 0.001;
   wanted.seconds = std::max(limit_s, 1e-9);
   wanted.now = [&now] { return now; };
   const auto stage = [&](const std::string& name) -> raytrace::Progress {
@@ -258,7 +258,7 @@ TEST(ReachSolution, OfSurfacesPastTheTimeLimitIsTheFirstSolveWithItsError) {
   ASSERT_EQ(late.steps.size(), 1U);
   EXPECT_TRUE(late.surface.known);
   const scenes::Scene& scene = tests::small_room().scene;
-  const radiosity::SolveOptions first = first_surface_options(scene, 0.01, 1);
+  const radiosity::SolveOptions first = first_surface_options(scene, 0.001, 1);
   EXPECT_EQ(late.steps[0].patches,
             radiosity::subdivide_near_lamps(scene, first.patch_edge_m).count());
 }
