@@ -196,7 +196,7 @@ double peak_memory_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts KiB
 }
 
-std::vector<std::string> limits_of_balance(const radiosity::Solution& solution) {
+std::vector<std::string> limits_of_balance(const radiosity::Solution& solution, double enough) {
   const radiosity::BalanceReport& balance = solution.report.balance;
   std::vector<std::string> limits;
   std::string where;
@@ -214,7 +214,9 @@ std::vector<std::string> limits_of_balance(const radiosity::Solution& solution) 
   }
   // Less light than that no result shows, whatever else is exact.
   constexpr double tells = 1e-6;
-  if (balance.balanced || balance.sweeps == 0 || balance.after <= tells) return limits;
+  if (balance.balanced || balance.sweeps == 0 || balance.after <= std::max(tells, enough)) {
+    return limits;
+  }
   limits.push_back(
       fmt::format("the form factors conserve energy to {:.1e} of the surface only, after "
                   "{} sweeps{}; raise quality.form_factor_rays to come nearer",
@@ -222,8 +224,8 @@ std::vector<std::string> limits_of_balance(const radiosity::Solution& solution) 
   return limits;
 }
 
-void note_balance(const radiosity::Solution& solution) {
-  for (const std::string& limit : limits_of_balance(solution)) note("warning: " + limit);
+void note_balance(const radiosity::Solution& solution, double enough) {
+  for (const std::string& limit : limits_of_balance(solution, enough)) note("warning: " + limit);
 }
 
 void note_backs(const radiosity::SolveReport& report) {

@@ -129,8 +129,11 @@ using AskEffects = std::function<WantedEffects(const scenes::Scene&)>;
 // A line on stderr where the form factors could not be balanced, with how near they came and which
 // object is furthest off; and one where that took more than a thousandth of the light.
 // Where the solution fell short of its laws, and what would help; empty where it did not.
-[[nodiscard]] std::vector<std::string> limits_of_balance(const radiosity::Solution& solution);
-void note_balance(const radiosity::Solution& solution);
+[[nodiscard]] std::vector<std::string> limits_of_balance(
+    const radiosity::Solution& solution, double enough = radiosity::balance_to_rounding);
+// enough: the defect that was asked for.
+void note_balance(const radiosity::Solution& solution,
+                  double enough = radiosity::balance_to_rounding);
 
 // A line on stderr for each object that is seen from behind more than from the front.
 void note_backs(const radiosity::SolveReport& report);

@@ -229,7 +229,7 @@ Solution solve_keeping(const scenes::World& world, const SolveOptions& options, 
   const std::vector<double> object_backs = back_shares(world.scene, patches, factors);
   report.back_share = back_share(factors);
   watch.lap("form factors");
-  report.balance = balance(factors, open_m2, variant.balance);
+  report.balance = balance(factors, open_m2, options.balance);
   watch.lap("balance");
 
   DirectOptions direct_options = variant.direct;

@@ -37,6 +37,7 @@ struct SolveOptions {
   // Of direct light (DirectOptions), at most: shot from each lamp, and looked up on each patch.
   int flux_rays = 1 << 16;
   int direct_points = 16;
+  double balance = balance_to_rounding;  // column defect at which balancing the factors ends
 };
 
 // The solver's part of the accuracy knobs.
@@ -119,8 +120,7 @@ using PatchListener = std::function<void(const Patches& patches)>;
 struct SolveVariant {
   std::uint32_t replicate = 0;  // of the form factors: each number is an independent set of rays
   DirectOptions direct = {};    // its seed 0: that of the options
-  double balance = balance_to_rounding;
-  bool know_objects = true;  // FormFactorOptions::know_objects
+  bool know_objects = true;     // FormFactorOptions::know_objects
 };
 // On patches that are cut already; options.patch_edge_m and options.refine are not looked at.
 [[nodiscard]] Solution solve(const scenes::World& world, const SolveOptions& options,

@@ -140,6 +140,14 @@ std::string choice_text(studies::Limit limit, const std::vector<studies::Step>& 
   return text;
 }
 
+std::string weights_text(const studies::SurfaceError& error) {
+  return fmt::format(
+      "\n  weighted as in pictures: above four times the mean in proportion, over spots of 1/256 "
+      "of "
+      "the scene's diagonal; {} at points, unweighted",
+      scenes::percent(error.unweighted));
+}
+
 }  // namespace
 
 Json error_json(const Drawn& drawn, std::optional<double> wanted) {
@@ -157,6 +165,7 @@ Json error_json(const Solved& light, std::optional<double> wanted) {
   const studies::SurfaceError& error = light.surface;
   Json json =
       json_of(error.parts.total(), error.known, parts_of(error.parts), wanted, error.not_captured);
+  json["unweighted"] = error.known ? Json(error.unweighted) : Json();
   add_steps(json, light.limit, light.steps);
   return json;
 }
@@ -194,7 +203,8 @@ std::string error_text(const Solved& light, std::optional<double> wanted) {
   }
   return text_of(error.parts.total(), error.known, "no surface reflects light",
                  parts_of(error.parts), error.not_captured) +
-         (error.known ? choice_text(light.limit, light.steps, wanted, 0.0) : "");
+         (error.known ? weights_text(error) + choice_text(light.limit, light.steps, wanted, 0.0)
+                      : "");
 }
 
 double seconds_to_go(const Solved& light, std::optional<double> wanted, double seconds) {

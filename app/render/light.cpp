@@ -135,6 +135,16 @@ bool steers(const RenderCall& call, const scenes::Scene& scene) {
   return scene.quality.error && !call.no_error && call.indirect != raytrace::Indirect::Paths;
 }
 
+void want_usual_error(const RenderCall& call, scenes::Scene& scene) {
+  constexpr double usual_error = 0.05;
+  const scenes::Quality& given = scene.quality;
+  const bool is_said = given.error || given.gather_rays || given.share_gather ||
+                       given.smooth_share || given.picture_noise || call.no_error ||
+                       call.time_limit_s > 0.0 || !call.solution.empty() || call.part.in_parts() ||
+                       call.indirect == raytrace::Indirect::Paths;
+  if (!is_said) scene.quality.error = usual_error;
+}
+
 studies::Wanted wanted_error(const LoadedScene& loaded, const Common& common, double time_limit_s,
                              const StageTimes& times) {
   studies::Wanted wanted;
@@ -202,7 +212,7 @@ radiosity::Solution solve_or_read(const LoadedScene& loaded, const scenes::RayQu
       return radiosity::read_solution(path, origin_of(loaded, options));
     });
   }
-  note_balance(solution);
+  note_balance(solution, options.balance);
   return solution;
 }
 

@@ -39,6 +39,9 @@ struct ExactCall {
 
 // Whether pictures are drawn until their own estimate is within the scene's `quality.error`.
 [[nodiscard]] bool steers(const RenderCall& call, const scenes::Scene& scene);
+// A picture of which neither the call nor the scene says how exact it is to be, by an error, a time
+// or samples of pixels, is drawn to 5 %.
+void want_usual_error(const RenderCall& call, scenes::Scene& scene);
 
 // The wish of --error, with the limits of the call; what --max-memory or the machine has is asked
 // for each number of patches.

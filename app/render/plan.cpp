@@ -154,6 +154,7 @@ Json report_of(const RenderCall& call, const Common& common, int ranks) {
   LoadedScene loaded = load(call.scene, common.quiet, [&](const scenes::Scene& scene) {
     return wanted_effects(call, planned_cameras(call, scene));
   });
+  want_usual_error(call, loaded.scene);
   const scenes::QualityKnobs knobs = scenes::resolve_quality(loaded.scene);
   const radiosity::SolveOptions solver = solver_of(call, loaded.scene, common);
   const auto rays_per_patch = std::bit_ceil(static_cast<std::uint64_t>(solver.form_factor_rays));

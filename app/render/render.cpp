@@ -180,6 +180,7 @@ void run(RenderCall call, const Common& common) {
       return wanted_effects(call, cameras_of(pictures));
     });
   });
+  want_usual_error(call, loaded.scene);
   const scenes::RayQuery query = times.measure(
       "build", [&] { return ray_query(loaded, {cameras_of(pictures)}, common.quiet, true); });
   if (call.over.asked()) {

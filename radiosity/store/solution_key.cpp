@@ -161,8 +161,8 @@ std::vector<ScenePart> scene_parts(const Scene& scene, const scenes::LightGroups
 }
 
 std::vector<SolveKnob> solve_knobs(const SolveOptions& options) {
-  const auto& [patch_edge_m, form_factor_rays, tolerance, seed, refine, flux_rays, direct_points] =
-      options;
+  const auto& [patch_edge_m, form_factor_rays, tolerance, seed, refine, flux_rays, direct_points,
+               balance] = options;
   const auto& [on, start_edge_m, max_patches, error] = refine;
   std::vector<SolveKnob> knobs = {
       {"patch_edge_m", "quality.patch_edge in m", patch_edge_m},
@@ -183,6 +183,9 @@ std::vector<SolveKnob> solve_knobs(const SolveOptions& options) {
   if (direct_points != SolveOptions().direct_points) {
     knobs.push_back({"direct_points", "the points of a patch for direct light, by quality.error",
                      static_cast<std::uint64_t>(direct_points)});
+  }
+  if (balance != SolveOptions().balance) {
+    knobs.push_back({"balance", "the defect of the balance, by quality.error", balance});
   }
   return knobs;
 }

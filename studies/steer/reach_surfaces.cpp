@@ -18,10 +18,11 @@
 namespace earthshine::studies {
 namespace {
 
-constexpr double aim = 0.85;  // of the wanted error
+// Of the wanted error: what samples are to leave, and cuts, of which samples see a part.
+constexpr double aim = 0.85, cut_aim = 0.25;
 // The error supposed at first; the share of the stated one that a pass cuts for.
-constexpr double first_error = 0.3, next_error = 0.4;
-constexpr double noise_share = 0.25;  // of the wanted squared error, left to the rays
+constexpr double first_error = 0.15, next_error = 0.2;
+constexpr double noise_share = 0.4;  // of the wanted squared error, left to the rays
 constexpr std::uint64_t many_rays = std::uint64_t{1} << 28;
 constexpr double most_growth = 4.0;                        // of the rays of a pass
 constexpr double cut_share = 0.6;                          // to what is uneven within patches
@@ -129,8 +130,8 @@ class SurfaceSearch {
   void improve() {
     double before = 0.0;
     int idle = 0;  // passes in a row that cut nothing and brought nothing
-    CutChoice choice(light_->patches());
-    std::vector<Effort> effort = even_effort(light_->patches(), points_wanted_);
+    CutChoice choice(light_->patches(), light_->light().spot_m2);
+    std::vector<Effort> effort = even_effort(*light_, points_wanted_);
     double pass_begun = time_gone();
     for (int pass = 0;; ++pass) {
       std::vector<std::uint32_t> all(light_->patches().count());
@@ -181,15 +182,16 @@ class SurfaceSearch {
   // Few points may miss all of an error that is left in a few places: more are looked at, while
   // there is time and up to a million.
   [[nodiscard]] bool is_sure(const ResidualError& found) const {
-    return found.doubt <= most_doubt * squared(wanted_.error) || points_wanted_ >= most_points ||
-           time_gone() > more_points_share || !(may_cut() || may_cast());
+    return found.square + found.doubt <= (1.0 + most_doubt) * squared(wanted_.error) ||
+           points_wanted_ >= most_points || time_gone() > more_points_share ||
+           !(may_cut() || may_cast());
   }
 
   // What may be left of the mean square by the next pass: no more is cut at once than halves the
   // error, since what is cut for shadows alone costs rays of all other light.
   [[nodiscard]] double enough() const {
     const double now = result_.steps.empty() ? first_error : result_.steps.back().estimate;
-    return squared(std::max(aim * wanted_.error, next_error * now) * turns_->mean());
+    return squared(std::max(cut_aim * wanted_.error, next_error * now) * turns_->mean());
   }
 
   // At most four times as many rays as before, or as many as the time that is left pays for.
@@ -204,6 +206,7 @@ class SurfaceSearch {
   void state(const ResidualError& found, const SurfaceSamples& samples,
              const std::vector<Effort>& effort) {
     result_.surface.parts = found.parts;
+    result_.surface.unweighted = found.unweighted;
     result_.surface.known = found.mean > 0.0;
     result_.surface.rays += samples.rays;
     last_rays_ = 0.0;

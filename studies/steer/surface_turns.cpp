@@ -16,6 +16,7 @@ constexpr int most_turns = 24;
 // What is left must fall to this share within so many turns: else it is noise that is cut.
 constexpr double least_gain = 0.8;
 constexpr int gain_turns = 4;
+constexpr double fewest_fresh = 1e-3;  // pieces of a turn, of all patches, that are worth another
 // A turn cuts the patches that hold this share of what is uneven: where shadow rays tell it
 // exactly, and where rays do, by which the largest are the largest by chance too.
 constexpr double shadow_cuts = 0.5, gather_cuts = 0.8;
@@ -24,13 +25,9 @@ constexpr double shadow_share = 0.4, gather_share = 0.7;  // of a time limit
 constexpr double most_gather_growth = 1.5, most_shadow_growth = 2.0;
 // Few patches cost little to look at again.
 constexpr double few_patches = 1 << 16, few_growth = 8.0;
-// Second looks of a turn end where few of what is to be cut had none.
-constexpr Effort second_look{16, 16};
-constexpr double left_doubtful = 0.1;
-constexpr int most_second_looks = 8;
 constexpr std::size_t first_shadow_cut = 3 << 15;
 // Over all surfaces.
-constexpr double first_shadow_points = 1 << 17, most_shadow_points = 1 << 20;
+constexpr double first_shadow_points = 1 << 17, most_shadow_points = 1 << 18;
 
 }  // namespace
 
@@ -87,24 +84,6 @@ void SurfaceTurns::look(CutChoice& choice, std::span<const std::uint32_t> which,
   light_.correct(samples, which, effort);
 }
 
-std::vector<radiosity::Cut> SurfaceTurns::sure_cuts(CutChoice& choice, const How& how) {
-  std::vector<radiosity::Cut> cuts = worst(choice, how);
-  How again = how;
-  again.effort = [&how](std::span<const std::uint32_t> which) {
-    return std::vector<Effort>(which.size(), how.second);
-  };
-  for (int k = 0; how.second.points > 0 && k < most_second_looks && time_gone() <= how.until; ++k) {
-    std::vector<std::uint32_t> doubtful;
-    if (joins()) doubtful = choice.doubtful(cuts, left_doubtful);
-    light_.shares().tell_all([&](base::Parcel& parcel) { parcel.pass(doubtful); });
-    if (doubtful.empty()) break;
-    look(choice, doubtful, again);
-    choice.be_sure_of(doubtful);
-    cuts = worst(choice, how);
-  }
-  return cuts;
-}
-
 bool SurfaceTurns::cut(CutChoice& choice, const How& how, std::vector<std::uint32_t>& parent,
                        CutChoice* also) {
   const std::size_t before = light_.patches().count();
@@ -120,7 +99,7 @@ bool SurfaceTurns::cut(CutChoice& choice, const How& how, std::vector<std::uint3
       if (left > least_gain * last_left) break;
       last_left = left;
     }
-    const std::vector<radiosity::Cut> cuts = sure_cuts(choice, how);
+    const std::vector<radiosity::Cut> cuts = worst(choice, how);
     if (cuts.empty()) break;
     std::vector<std::uint32_t> of = light_.cut(cuts, choice.kept_rays());
     const std::vector<std::uint32_t> fresh = choice.follow(light_.patches(), of);
@@ -129,6 +108,7 @@ bool SurfaceTurns::cut(CutChoice& choice, const How& how, std::vector<std::uint3
     parent = std::move(of);
     if (fresh.empty()) break;
     look(choice, fresh, how);
+    if (static_cast<double>(fresh.size()) < fewest_fresh * double(light_.patches().count())) break;
   }
   return light_.patches().count() > before;
 }
@@ -145,8 +125,7 @@ bool SurfaceTurns::cut_gathered(CutChoice& choice, double enough, double points,
                 [&](std::span<const std::uint32_t> which) {
                   return effort_where_uneven(light_.patches(), which, choice, points);
                 },
-                "uneven light",
-                second_look};
+                "uneven light"};
   return cut(choice, how, parent, nullptr);
 }
 
@@ -166,18 +145,21 @@ SurfaceTurns::How SurfaceTurns::for_shadows(double enough) const {
 void SurfaceTurns::look_for_light() {
   std::vector<std::uint32_t> all(light_.patches().count());
   std::iota(all.begin(), all.end(), 0U);
-  CutChoice choice(light_.patches());
+  CutChoice choice(light_.patches(), light_.light().spot_m2);
   look(choice, all, for_shadows(0.0));
   mean_ = light_.told_mean();
 }
 
 bool SurfaceTurns::cut_shadows(double enough, std::vector<std::uint32_t>& parent, CutChoice* also) {
   if (shadow_points_ <= 0.0 || time_gone() > shadow_share) return false;
-  std::vector<std::uint32_t> all(light_.patches().count());
-  std::iota(all.begin(), all.end(), 0U);
-  CutChoice choice(light_.patches());
+  std::vector<std::uint32_t> large;  // spots are not cut
+  for (std::uint32_t i = 0; i < light_.patches().count(); ++i) {
+    if (!light_.is_spot(i)) large.push_back(i);
+  }
+  if (large.empty()) return false;
+  CutChoice choice(light_.patches(), light_.light().spot_m2);
   const How how = for_shadows(enough);
-  look(choice, all, how);
+  look(choice, large, how);
   const bool is_cut = cut(choice, how, parent, also);
   shadow_points_ = is_cut ? std::min(2.0 * shadow_points_, most_shadow_points) : 0.0;
   return is_cut;

@@ -49,7 +49,6 @@ class SurfaceTurns {
     double until;
     std::function<std::vector<Effort>(std::span<const std::uint32_t>)> effort;
     std::string name;
-    Effort second{0, 0};  // of what is to be cut; without points none is looked at twice
   };
 
   // Of ranks that divide the form factors the first decides, and the others sample with it.
@@ -57,8 +56,6 @@ class SurfaceTurns {
   // The share of the time limit; 0 without one.
   [[nodiscard]] double time_gone() const;
   [[nodiscard]] std::vector<radiosity::Cut> worst(const CutChoice& choice, const How& how);
-  // The same after second looks at what is to be cut.
-  [[nodiscard]] std::vector<radiosity::Cut> sure_cuts(CutChoice& choice, const How& how);
   // What is sampled on some patches, seen and put into the light.
   void look(CutChoice& choice, std::span<const std::uint32_t> which, const How& how);
   // By shadow rays alone, until `enough` is left.

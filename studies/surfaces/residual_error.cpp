@@ -25,6 +25,11 @@ ErrorEstimate doubt_of(double square, double more) {
   return {std::sqrt(std::max(0.0, square)), std::sqrt(std::max(0.0, square) + std::max(0.0, more))};
 }
 
+// Standard error of the product of two values of the same mean.
+double mean_doubt(double a, double b) {
+  return 0.5 * std::abs(a - b) * (std::abs(a - b) + std::abs(a + b));
+}
+
 ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& samples,
                            const LightNoise& noise, const radiosity::PatchAlbedos& reflectances,
                            double solver_error) {
@@ -40,7 +45,7 @@ ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& s
   }
   const std::vector<double> brought = light.brought(std::move(residual), residual_columns);
   double area = 0.0, square = 0.0, rays = 0.0, lamps = 0.0, variance = 0.0, excess = 0.0,
-         whole = 0.0;
+         whole = 0.0, unweighted = 0.0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const PatchResidual& r = samples.residual[i];
     if (r.taken == 0) continue;
@@ -53,11 +58,16 @@ ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& s
     const double ga = weight * base::luminance(rho * at(brought, j)),
                  gb = weight * base::luminance(rho * at(brought, j + 3));
     const double ra = weight * base::luminance(half[0]), rb = weight * base::luminance(half[1]);
-    square += part * (double(r.square) + ra * gb + rb * ga + ga * gb);
+    const double plain = 1.0 / std::max(1e-3, weight);
+    unweighted += part * (double(r.unweighted) + plain * plain * (ra * gb + rb * ga + ga * gb));
+    // Where the patch is a spot, the mean counts alone.
+    const bool is_spot = light.is_spot(i);
+    const double ma = double(r.mean[0]), mb = double(r.mean[1]);
+    square += part * ((is_spot ? ma * mb : double(r.square)) + ra * gb + rb * ga + ga * gb);
+    variance += squared(part * (is_spot ? mean_doubt(ma, mb) : double(r.square_error)));
     whole += part * double(r.mean_square);
     rays += part * noise.rays[i];
     lamps += part * noise.lamps[i];
-    variance += squared(part * double(r.square_error));
     excess += part * 0.5 * (ra + rb + ga + gb) / std::max(1e-3, weight);
   }
   const double seen = light.mean_radiosity();
@@ -66,6 +76,7 @@ ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& s
   const double unit = area * error.mean * error.mean;
   error.square = std::max(0.0, square / unit);
   error.doubt = std::sqrt(variance) / unit;
+  error.unweighted = std::sqrt(std::max(0.0, unweighted / unit));
   // Noise is no more than what patches are off by as a whole: points that lie in strata have less
   // of it than is expected of them.
   const double by_noise = std::clamp(whole / unit, 0.0, error.square);
@@ -83,16 +94,18 @@ ResidualError error_of_all(const LightOnSurfaces& light, const SurfaceSamples& s
 
 Effort effort_of(double rays) {
   constexpr double most = 1 << 16;
-  const auto all = std::bit_floor(static_cast<std::uint32_t>(std::clamp(rays, 32.0, most)));
-  const std::uint32_t each = std::clamp<std::uint32_t>(all / 4, 8, all < 512 ? 32 : 64);
+  const auto all = std::bit_floor(static_cast<std::uint32_t>(std::clamp(rays, 128.0, most)));
+  const std::uint32_t each = std::clamp<std::uint32_t>(all / 16, 8, 64);
   return {static_cast<std::uint16_t>(all / (2 * each)), static_cast<std::uint16_t>(each)};
 }
 
-std::vector<Effort> even_effort(const radiosity::Patches& patches, double points) {
+std::vector<Effort> even_effort(const LightOnSurfaces& light, double points) {
+  const radiosity::Patches& patches = light.patches();
   const double all = std::accumulate(patches.area_m2.begin(), patches.area_m2.end(), 0.0);
   std::vector<Effort> effort;
-  for (const double area : patches.area_m2) {
-    effort.push_back(effort_of(16.0 * (2.0 + points * area / all)));
+  for (std::uint32_t i = 0; i < patches.count(); ++i) {
+    const double rays = 16.0 * (2.0 + points * patches.area_m2[i] / all);
+    effort.push_back(effort_of(rays));
   }
   return effort;
 }

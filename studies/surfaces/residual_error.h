@@ -15,10 +15,11 @@ namespace earthshine::studies {
 
 struct ResidualError {
   SolutionError parts;
-  double mean = 0.0;     // of the radiosity as it should be, luminance, lm/m^2
-  double square = 0.0;   // all relative to the mean's square: of the error
-  double patches = 0.0;  // of it, what is no noise: patches too large
-  double doubt = 0.0;    // standard error of `square`
+  double mean = 0.0;        // of the radiosity as it should be, luminance, lm/m^2
+  double square = 0.0;      // all relative to the mean's square: of the error
+  double patches = 0.0;     // of it, what is no noise: patches too large
+  double doubt = 0.0;       // standard error of `square`
+  double unweighted = 0.0;  // root mean square at points, each counted in full
 };
 
 // Of the light itself, expected of the samples it was made from: mean squares over a patch, lm/m^2.
@@ -27,11 +28,11 @@ struct LightNoise {
   [[nodiscard]] std::vector<double> all() const;
 };
 
-// Points and rays of a patch for so many cosine rays, at least 32: two points with ever more rays
-// first, since what two halves agree on is told best by exact points.
+// Points and rays of a patch for so many cosine rays, at least 128: eight points with ever more rays
+// first. Of two points those of the largest product are the largest by chance.
 [[nodiscard]] Effort effort_of(double rays);
-// So many points over all patches by area, two on each at least.
-[[nodiscard]] std::vector<Effort> even_effort(const radiosity::Patches& patches, double points);
+// So many points over all patches by area, eight on each at least.
+[[nodiscard]] std::vector<Effort> even_effort(const LightOnSurfaces& light, double points);
 // The same of some patches, and `points` more by the share of all that is uneven.
 [[nodiscard]] std::vector<Effort> effort_where_uneven(const radiosity::Patches& patches,
                                                       std::span<const std::uint32_t> which,

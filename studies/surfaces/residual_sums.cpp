@@ -58,14 +58,15 @@ void ResidualSums::weigh_by(std::size_t point, const Rgb& lamps, const Rgb& gath
 
 void ResidualSums::finish(double mean, PatchResidual& residual) {
   MeanSquare all, lamps, products;
-  double weights = 0.0;
+  double weights = 0.0, unweighted = 0.0;
   double apart = 0.0, lamps_apart = 0.0;  // sums of the variance of the two halves' mean
-  std::array<double, 2> s_step{}, t_step{}, half_count{}, gathered{};
+  std::array<double, 2> s_step{}, t_step{}, half_count{}, gathered{}, mean_of{};
   for (Point& p : points_) {
     if (!p.placed) continue;
-    const double should_be = p.radiosity + p.weighed_by.value_or(0.5 * (p.all[0] + p.all[1]));
-    const double weight = raytrace::error_weight(should_be, mean);
+    const double off = p.weighed_by.value_or(0.5 * (p.all[0] + p.all[1]));
+    const double weight = raytrace::error_weight(p.radiosity + std::max(0.0, off), mean);
     weights += weight;
+    unweighted += p.all[0] * p.all[1];
     // What gather rays find is held to that: where it is true, it cannot be more; one chance hit
     // can.
     const double most = mean > 0.0
@@ -90,6 +91,7 @@ void ResidualSums::finish(double mean, PatchResidual& residual) {
   if (all.count == 0.0) return;
   const auto kept = [](double value) { return static_cast<float>(value); };
   residual.weight = kept(weights / all.count);
+  residual.unweighted = kept(unweighted / all.count);
   residual.square = kept(products.sum / all.count);
   residual.square_error = kept(std::sqrt(products.variance()));
   residual.mean_square = kept(all.unbiased());
@@ -107,11 +109,14 @@ void ResidualSums::finish(double mean, PatchResidual& residual) {
   for (const Point& p : points_) {
     if (!p.placed) continue;
     half[k % 2] += 0.5 * (p.rgb[0] + p.rgb[1]);
+    mean_of[k % 2] += 0.5 * (p.all[0] + p.all[1]);
     half_count[k % 2] += 1.0;
     ++k;
   }
   for (std::size_t h = 0; h < 2; ++h) {
-    if (half_count[h] > 0.0) residual.half[h] = glm::vec3(half[h] / half_count[h]);
+    if (half_count[h] <= 0.0) continue;
+    residual.half[h] = glm::vec3(half[h] / half_count[h]);
+    residual.mean[h] = kept(mean_of[h] / half_count[h]);
   }
 }
 

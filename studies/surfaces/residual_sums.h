@@ -29,7 +29,8 @@ class ResidualSums {
   // Weighs the point by what further rays find there, in place of the halves: weights that follow
   // their chance would count what both have missed as dark, what both have met as bright.
   void weigh_by(std::size_t point, const Rgb& lamps, const Rgb& gathered);
-  // Weighs each point by the radiosity that it should have over `mean`.
+  // Weighs each point by the larger of the radiosity that the solution has and that it should have,
+  // over `mean`.
   void finish(double mean, PatchResidual& residual);
 
  private:

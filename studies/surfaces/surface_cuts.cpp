@@ -13,17 +13,17 @@ using radiosity::Cut;
 constexpr double kept_by_halves = 0.5;  // of a patch's part: an edge of shadow crosses one of two
 // Standard errors, above which it is no noise. Where one of n points alone is lit, the mean is one.
 constexpr double clear = 0.9;
-// Two points miss much of what is uneven: what was expected counts as one more.
+// Few points miss much of what is uneven: what was expected counts as one more.
 constexpr double expected_points = 1.0;
 constexpr float most_kept_rays = 0.5F;
 
 }  // namespace
 
-CutChoice::CutChoice(const radiosity::Patches& patches)
-    : uneven_(patches.count()),
+CutChoice::CutChoice(const radiosity::Patches& patches, double spot_m2)
+    : spot_m2_(spot_m2),
+      uneven_(patches.count()),
       patch_m2_(patches.area_m2),
-      kept_rays_(patches.count(), most_kept_rays),
-      is_sure_(patches.count(), false) {
+      kept_rays_(patches.count(), most_kept_rays) {
   area_m2_ = std::accumulate(patches.area_m2.begin(), patches.area_m2.end(), 0.0);
 }
 
@@ -32,9 +32,8 @@ void CutChoice::see(const radiosity::Patches& patches, const SurfaceSamples& sam
   for (const std::uint32_t i : which) {
     const PatchResidual& r = samples.residual[i];
     radiosity::Unevenness& u = uneven_[i];
-    is_sure_[i] = false;
     if (!noise.empty()) kept_rays_[i] = most_kept_rays;
-    if (r.taken == 0) {
+    if (r.taken == 0 || patches.area_m2[i] <= spot_m2_) {
       u = {};
       continue;
     }
@@ -74,44 +73,24 @@ std::vector<Cut> CutChoice::worst(const radiosity::Patches& patches, double enou
   return any ? wanted : std::vector<Cut>();
 }
 
-std::vector<std::uint32_t> CutChoice::doubtful(const std::vector<Cut>& cuts, double left) const {
-  std::vector<std::uint32_t> found;
-  double all = 0.0;
-  for (std::uint32_t i = 0; i < cuts.size(); ++i) {
-    if (cuts[i] == Cut::None) continue;
-    all += 1.0;
-    if (!is_sure_[i]) found.push_back(i);
-  }
-  if (static_cast<double>(found.size()) <= left * all) found.clear();
-  return found;
-}
-
-void CutChoice::be_sure_of(std::span<const std::uint32_t> which) {
-  for (const std::uint32_t i : which) is_sure_[i] = true;
-}
-
 std::vector<std::uint32_t> CutChoice::follow(const radiosity::Patches& patches,
                                              const std::vector<std::uint32_t>& parent) {
   std::vector<radiosity::Unevenness> inherited(parent.size());
   std::vector<float> kept_rays(parent.size());
-  std::vector<bool> is_sure(parent.size());
   std::vector<std::uint32_t> fresh;
   for (std::uint32_t i = 0; i < parent.size(); ++i) {
     inherited[i] = uneven_[parent[i]];
     kept_rays[i] = kept_rays_[parent[i]];
-    is_sure[i] = is_sure_[parent[i]];
     if (patches.area_m2[i] < patch_m2_[parent[i]]) {
       fresh.push_back(i);
       inherited[i] = {
           kept_by_halves * uneven_[parent[i]].error * patches.area_m2[i] / patch_m2_[parent[i]],
           0.0, 0.0};
       kept_rays[i] = most_kept_rays;
-      is_sure[i] = false;
     }
   }
   uneven_ = std::move(inherited);
   kept_rays_ = std::move(kept_rays);
-  is_sure_ = std::move(is_sure);
   patch_m2_ = patches.area_m2;
   return fresh;
 }

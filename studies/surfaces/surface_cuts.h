@@ -9,7 +9,8 @@ namespace earthshine::studies {
 
 class CutChoice {
  public:
-  explicit CutChoice(const radiosity::Patches& patches);
+  // spot_m2: no patch as small is cut (SurfaceLight).
+  explicit CutChoice(const radiosity::Patches& patches, double spot_m2 = 0.0);
 
   // What samples of some patches showed, of all of them the first time. noise: of the mean square
   // of r, what is the light's own noise, per patch; empty: what patches are off by as a whole.
@@ -21,12 +22,6 @@ class CutChoice {
   // Empty: there is nothing left to cut that is not noise, or no need.
   [[nodiscard]] std::vector<radiosity::Cut> worst(const radiosity::Patches& patches, double enough,
                                                   double most_of, std::size_t most) const;
-  // Of the patches to be cut, those that were not looked at twice: the largest by what few points
-  // say are the largest by chance, too. None if they are no more than the share `left` of all.
-  [[nodiscard]] std::vector<std::uint32_t> doubtful(const std::vector<radiosity::Cut>& cuts,
-                                                    double left) const;
-  // What see() has of these comes from a second look.
-  void be_sure_of(std::span<const std::uint32_t> which);
   // After the cut: the patches that are new, which hold their part of what they were cut from.
   std::vector<std::uint32_t> follow(const radiosity::Patches& patches,
                                     const std::vector<std::uint32_t>& parent);
@@ -38,11 +33,11 @@ class CutChoice {
   [[nodiscard]] std::span<const float> kept_rays() const { return kept_rays_; }
 
  private:
+  double spot_m2_;
   std::vector<radiosity::Unevenness> uneven_;  // per patch, times area over all area
   std::vector<double> patch_m2_;               // area per patch
   std::vector<float> kept_rays_;
-  std::vector<bool> is_sure_;  // after a second look
-  bool is_expected_ = false;   // after the first look
+  bool is_expected_ = false;  // after the first look
   double area_m2_ = 0.0;
 };
 

@@ -53,7 +53,7 @@ SurfaceError surface_error(const scenes::World& scene, const radiosity::Solution
   if (!error.known) return error;
   std::vector<std::uint32_t> all(light.patches().count());
   std::iota(all.begin(), all.end(), 0U);
-  const std::vector<Effort> effort = even_effort(light.patches(), points);
+  const std::vector<Effort> effort = even_effort(light, points);
   const SurfaceSampler sampler(scene, solver.seed);
   const SurfaceSamples samples = sampler.sample(light.light(), all, effort, 1, mean, light.bodies(),
                                                 {}, SamplesOf::Residual, light.shares().hears());
@@ -61,9 +61,10 @@ SurfaceError surface_error(const scenes::World& scene, const radiosity::Solution
   if (light.shares().joins()) {
     noise = noise_of(light, ray_variance(light.patches(), samples, all, effort), samples);
   }
-  error.parts =
-      residual_error(light, samples, noise, sampler.reflectances(), solution.report.solver_error)
-          .parts;
+  const ResidualError found =
+      residual_error(light, samples, noise, sampler.reflectances(), solution.report.solver_error);
+  error.parts = found.parts;
+  error.unweighted = found.unweighted;
   error.rays += samples.rays;
   error.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return error;

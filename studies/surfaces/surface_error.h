@@ -25,10 +25,12 @@ struct SolutionError {
 
 struct SurfaceError {
   // Root mean square of the error of the radiosity (luminance, all light together), interpolated
-  // between patches as pictures read it, over all area and relative to its mean; what is more than
-  // four times as bright counts in proportion (error_weight).
+  // between patches as pictures read it, over all area and relative to its mean. What is or should
+  // be more than four times as bright counts in proportion (error_weight), and of a patch no larger
+  // than a spot (SurfaceLight) the mean counts, as a pixel shows no more of it.
   SolutionError parts;
-  bool known = false;  // false where nothing is lit
+  double unweighted = 0.0;  // at points, each counted in full
+  bool known = false;       // false where nothing is lit
   std::vector<std::string> not_captured;
   std::uint64_t rays = 0;
   double seconds = 0.0;

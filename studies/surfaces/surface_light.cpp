@@ -8,6 +8,7 @@
 #include "base/free_memory.h"
 #include "radiosity/linear_solve.h"
 #include "scenes/reflect/energy.h"
+#include "scenes/triangle_point.h"
 #include "studies/surfaces/shared_samples.h"
 
 namespace earthshine::studies {
@@ -15,6 +16,14 @@ namespace {
 
 constexpr std::uint8_t more_shadow_rays = 8;
 constexpr double of_the_error = 1e-3;  // to which the error's own equation is solved
+
+constexpr double spots = 256.0;  // along the scene's diagonal
+
+double spot_m2_of(const scenes::Scene& scene) {
+  if (scene.vertices.empty()) return 0.0;
+  const double edge_m = scenes::box_around(scene.vertices).diagonal() / spots;
+  return edge_m * edge_m;
+}
 
 float mixed(float old, double found, double share) {
   return static_cast<float>(double(old) + share * (found - double(old)));
@@ -42,6 +51,7 @@ LightOnSurfaces::LightOnSurfaces(const scenes::World& scene, radiosity::Solution
   lamp_rays_.assign(count, radiosity::DirectOptions{}.points_per_patch);
   gather_rays_.assign(count, 0.5 * rays);
   light_.shadow_rays.assign(count, 1);
+  light_.spot_m2 = spot_m2_of(scene.scene);
   light_.open_share = factors_.open.share;
   escape_ = factors_.escape;
   lost_ = factors_.lost;
@@ -249,6 +259,7 @@ std::vector<std::uint32_t> LightOnSurfaces::cut(const std::vector<radiosity::Cut
   const raytrace::RadianceTable table(light_.solution, light_.gathered, true, sight);
   const std::size_t count = made.patches.count();
   SurfaceLight finer;
+  finer.spot_m2 = light_.spot_m2;
   finer.lamps.resize(count * columns);
   finer.gathered.resize(count * columns);
   finer.sky.resize(count * parts);

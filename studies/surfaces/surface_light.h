@@ -30,6 +30,8 @@ class LightOnSurfaces {
   [[nodiscard]] const radiosity::ClosedBodies* bodies() const { return factors_.open.bodies.get(); }
   [[nodiscard]] const base::Shares& shares() const { return factors_.shares; }
 
+  [[nodiscard]] bool is_spot(std::uint32_t patch) const { return light_.is_spot(patch); }
+
   // The first rank's, as are the two below. Luminance, over what no body covers.
   [[nodiscard]] double mean_radiosity() const;
   [[nodiscard]] double told_mean() const;  // the same, by all ranks and to all

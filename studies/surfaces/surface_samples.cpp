@@ -24,7 +24,15 @@ constexpr std::size_t told_after = 1024;  // patches
 constexpr std::uint32_t tried_points = 16;
 // Further rays of a point, into its hemisphere and to each source, that say how bright it is where
 // its halves do not.
-constexpr std::uint32_t weighing_gather_rays = 16, weighing_shadow_rays = 64;
+constexpr std::uint32_t weighing_gather_rays = 16, weighing_shadow_rays = 16;
+
+Rgb sum_of_groups(const std::vector<float>& values, std::size_t patch, std::size_t columns) {
+  Rgb sum(0.0);
+  for (std::size_t k = 0; k < columns; ++k) {
+    sum[static_cast<int>(k % 3)] += double(values[patch * columns + k]);
+  }
+  return sum;
+}
 
 }  // namespace
 
@@ -160,7 +168,11 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
       const base::Key key =
           base::Key(seed_, base::Stream::ErrorBudget, radiosity::identity(patches, patch))
               .with(pass);
-      const base::SobolOwen4 where(key);
+      // The two halves of a spot's points have nothing in common, for the product of their means.
+      const std::array<base::SobolOwen4, 2> where = {base::SobolOwen4(key),
+                                                     base::SobolOwen4(key.with(1))};
+      const bool is_spot = light.is_spot(patch);
+      std::array<std::uint32_t, 2> next{};
       near.clear();
       if (bodies != nullptr) {
         near = bodies->near(patches, patch,
@@ -174,7 +186,8 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
       const std::uint32_t tries = (known > 0.0 && known < 1.0 ? tried_points : 1) * work.points;
       std::uint32_t open = 0;
       for (std::uint32_t n_try = 0; n_try < tries; ++n_try) {
-        const auto p = where.point2(n_try);
+        const std::size_t set = is_spot ? residual.taken % 2 : 0;
+        const auto p = where[set].point2(next[set]++);
         const auto [at, normal, triangle] = patches.at(patch, double(p[0]), double(p[1]));
         const Vec3 lift = scene_.query.offset_m(triangle) * normal;
         if (!near.empty() && bodies->cover(at + lift - bodies->centre(), near)) continue;
@@ -199,9 +212,14 @@ SurfaceSamples SurfaceSampler::sample(const SurfaceLight& light,
                        2 * point + half);
         }
         std::array<Rgb, 1> lamps{Rgb(0.0)}, gathered{Rgb(0.0)};
-        const scenes::Hit here = hit_at(patches, patch, double(p[0]), double(p[1]));
-        lamps_table.add(here, Rgb(base::pi), lamps);
-        gathered_table.add(here, Rgb(base::pi), gathered);
+        if (is_spot) {
+          lamps[0] = sum_of_groups(light.lamps, patch, columns);
+          gathered[0] = sum_of_groups(light.gathered, patch, columns);
+        } else {
+          const scenes::Hit here = hit_at(patches, patch, double(p[0]), double(p[1]));
+          lamps_table.add(here, Rgb(base::pi), lamps);
+          gathered_table.add(here, Rgb(base::pi), gathered);
+        }
         sums.place(point, double(p[0]), double(p[1]), rho, emitted + rho * (lamps[0] + gathered[0]),
                    lamps[0], work.rays > 0 ? gathered[0] : Rgb(0.0));
       }

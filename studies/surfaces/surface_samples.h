@@ -30,10 +30,16 @@ struct SurfaceLight {
   std::vector<float> lamps, gathered;  // lx: by shadow rays; by cosine rays, the sky with it
   std::vector<Rgb> sky;                // per patch and part of the sky, within `gathered`
   std::vector<double> open_share;      // per patch, what no body covers; empty: nothing is covered
+  // The area of a spot, over which the error counts means alone: the square of a 256th of the
+  // scene's diagonal, the pixel of a picture of 256 x 256 that shows all of it.
+  double spot_m2 = 0.0;
   // Per patch, of each half at a point, to each source that has a size; to wide ones four at least.
   std::vector<std::uint8_t> shadow_rays;
   [[nodiscard]] std::size_t columns() const { return solution.columns; }
   [[nodiscard]] std::size_t count() const { return solution.patches.count(); }
+  [[nodiscard]] bool is_spot(std::size_t patch) const {
+    return solution.patches.area_m2[patch] <= spot_m2;
+  }
   [[nodiscard]] double open_m2(std::size_t patch) const {
     return solution.patches.area_m2[patch] * (open_share.empty() ? 1.0 : open_share[patch]);
   }
@@ -46,19 +52,22 @@ struct Effort {
   [[nodiscard]] std::uint32_t all_rays() const { return 2U * points * rays; }
 };
 
-// Of one patch. r as luminance of the radiosity, lm/m^2, times error_weight() at the point; what
+// Of one patch. r as luminance of the radiosity, lm/m^2, times error_weight() of the larger of
+// what the solution says there and what it should say; what
 // gather rays find is held to 2 max(solution, 4 means), but for the means that are not weighted.
 struct PatchResidual {
   std::uint16_t taken = 0;                   // points that nothing covers
   float open = 1.0F;                         // share of the patch that nothing covers
   float square = 0.0F, square_error = 0.0F;  // mean of r^2 over the patch, and its standard error
   float weight = 1.0F;                       // mean error_weight()
+  float unweighted = 0.0F;                   // mean of r^2 where each point counts in full
   bool wants_shadow_rays = false;            // more of them at a point: its halves are far apart
   float mean_square = 0.0F;                  // of r's mean, without its noise
   float mean_variance = 0.0F;                // of the mean of the taken points, due to rays
   float lamps_mean_square = 0.0F, lamps_mean_variance = 0.0F;  // of S's part of r
   float along_s = 0.0F, along_t = 0.0F;  // of r^2, what halving the patch takes away
-  // Means of r, not weighted, of every other point.
+  std::array<float, 2> mean{};  // of r, of every other point; on spots independent of each other
+  // The same, not weighted.
   std::array<glm::vec3, 2> half{glm::vec3(0.0F), glm::vec3(0.0F)};
   std::array<float, 2> gathered{};  // luminance, lx: what either half of the rays brings
 };

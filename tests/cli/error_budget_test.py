@@ -91,8 +91,9 @@ class ErrorBudget(program.Case):
 
     def test_a_solve_states_its_error(self):
         error = self.check(self.json("solve", "ball.toml")["error"], SURFACE_PARTS)
-        self.assertEqual(sorted(error), ["bound_95", "estimate", "limit", "not_captured", "parts", "seconds_to_go", "steps", "wanted"])
-        self.says(self.done("solve", "ball.toml"), "error ", "95 % sure below", "patches")
+        self.assertEqual(sorted(error), ["bound_95", "estimate", "limit", "not_captured", "parts", "seconds_to_go", "steps",
+                                         "unweighted", "wanted"])
+        self.says(self.done("solve", "ball.toml"), "error ", "95 % sure below", "patches", "unweighted")
         self.done("solve", "ball.toml", "-o", "ball.h5")
         self.assertEqual(self.json("solve", "ball.toml", "--solution", "ball.h5")["error"], error)
 

@@ -237,7 +237,7 @@ SteeredSolution within(double limit_s, double pass_s) {
   const tests::Prepared prepared(tests::small_room().scene);
   double now = limit_s > 0.0 ? 0.0 : 1.0;
   Wanted wanted;
-  wanted.error = 0.01;
+  wanted.error = 0.001;
   wanted.seconds = std::max(limit_s, 1e-9);
   wanted.now = [&now] { return now; };
   const auto stage = [&](const std::string& name) -> raytrace::Progress {
@@ -258,13 +258,14 @@ TEST(ReachSolution, OfSurfacesPastTheTimeLimitIsTheFirstSolveWithItsError) {
   ASSERT_EQ(late.steps.size(), 1U);
   EXPECT_TRUE(late.surface.known);
   const scenes::Scene& scene = tests::small_room().scene;
-  const radiosity::SolveOptions first = first_surface_options(scene, 0.01, 1);
+  const radiosity::SolveOptions first = first_surface_options(scene, 0.001, 1);
   EXPECT_EQ(late.steps[0].patches,
             radiosity::subdivide_near_lamps(scene, first.patch_edge_m).count());
 }
 
 // A pass of 0.45 of the limit leaves 0.55: the next one may cast 0.55 / 0.45 = 1.2 times its rays,
-// twice with what numbers of rays are rounded up to, where without a limit it casts 2^20.
+// twice with what numbers of rays are rounded up to, and 128 more on each patch, the fewest there are,
+// where without a limit it casts 2^20.
 TEST(ReachSolution, OfSurfacesNoPassIsBegunThatTheTimeLeftDoesNotPayFor) {
   const SteeredSolution found = within(1.0, 0.45);
   EXPECT_EQ(found.limit, Limit::Time);
@@ -272,7 +273,7 @@ TEST(ReachSolution, OfSurfacesNoPassIsBegunThatTheTimeLeftDoesNotPayFor) {
   const auto rays = [&](std::size_t k) {
     return static_cast<double>(found.steps[k].patches) * found.steps[k].form_factor_rays;
   };
-  EXPECT_LE(rays(1), 2.0 * rays(0));
+  EXPECT_LE(rays(1), 2.0 * rays(0) + 128.0 * double(found.steps[1].patches));
 }
 
 // Passes of 0.3 of the limit: 0.6 is gone by the end of the second and leaves 0.4 for a third of

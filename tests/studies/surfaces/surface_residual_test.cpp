@@ -61,8 +61,8 @@ SurfaceSamples sampled(const Solved& solved, const LightOnSurfaces& light, doubl
   std::vector<std::uint32_t> all(light.patches().count());
   std::iota(all.begin(), all.end(), 0U);
   return SurfaceSampler(solved.study(), 1)
-      .sample(light.light(), all, even_effort(light.patches(), points), pass,
-              light.mean_radiosity(), light.bodies());
+      .sample(light.light(), all, even_effort(light, points), pass, light.mean_radiosity(),
+              light.bodies());
 }
 
 double luminous(const std::vector<double>& values, std::size_t patch, std::size_t columns) {
