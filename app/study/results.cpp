@@ -59,6 +59,8 @@ constexpr CsvColumn csv_columns[] = {
     {"eye_detect", cell_of<eye_chance_of<&Probability::detect>>},
     {"why", [](const TargetFindings& f) { return Json(f.why); }},
     {"picture_noise_cd_m2", cell_of<noise_of<&studies::ConditionNoise::cd_m2>>},
+    {"finished_by",
+     [](const TargetFindings& f) { return Json(studies::word_of(f.noise.finished_by)); }},
 };
 
 // A line of the text.

@@ -113,7 +113,7 @@ void describe(Fields& fields, Either<TargetFindings> auto& found) {
   fields("luminance_bound", found.luminance_bound);
   fields("picture_noise", found.noise.relative);
   fields("picture_noise_cd_m2", found.noise.cd_m2);
-  fields.word("picture_enough", found.noise.enough, studies::Enough::No);
+  fields.word("finished_by", found.noise.finished_by, studies::FinishedBy::Nothing);
   fields("why", found.why);
   fields("reasons", found.reasons);
   fields.or_null("why_of", found.why_of);

@@ -45,13 +45,13 @@ TargetFindings findings_of(const studies::Sight& sight, const studies::TargetOut
   return found;
 }
 
-studies::Enough enough_of(const studies::ConditionNoise& noise, const studies::CameraSight& sight,
+studies::FinishedBy finished_by(const studies::ConditionNoise& noise, const studies::CameraSight& sight,
                           double wanted) {
-  if (noise.relative && *noise.relative <= wanted) return studies::Enough::Error;
+  if (noise.relative && *noise.relative <= wanted) return studies::FinishedBy::Error;
   const bool sure = std::all_of(sight.targets.begin(), sight.targets.end(), [](const auto& target) {
     return target.verdict_low == target.verdict_high;
   });
-  return sure ? studies::Enough::Verdict : studies::Enough::No;
+  return sure ? studies::FinishedBy::Verdicts : studies::FinishedBy::Nothing;
 }
 
 using Batch = std::vector<std::vector<TargetFindings>>;
@@ -195,7 +195,7 @@ Judged StudyConditions::judge(const StudyCamera& camera, const studies::BasisVie
       const studies::Outcome& outcome = outcomes[k - first];
       const auto [place, setting] = condition_at(part_, k);
       studies::ConditionNoise noise = frame.noise_of(part_.basis->weights(place, setting));
-      noise.enough = enough_of(noise, outcome.sight, wanted);
+      noise.finished_by = finished_by(noise, outcome.sight, wanted);
       for (std::size_t t = 0; t < outcome.targets.size(); ++t) {
         TargetFindings target = findings_of(outcome.sight.targets[t], outcome.targets[t]);
         target.noise = noise;

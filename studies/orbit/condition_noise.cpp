@@ -29,10 +29,36 @@ std::vector<std::size_t> ranked(std::span<const ConditionNoise> noise, Value val
 
 }  // namespace
 
-std::string_view word_of(Enough enough) {
-  constexpr std::array<std::string_view, 3> words = {"error", "verdict", "no"};
-  return words[static_cast<std::size_t>(enough)];
+std::string_view word_of(FinishedBy finished) {
+  constexpr std::array<std::string_view, 3> words = {"error", "verdicts", "nothing"};
+  return words[static_cast<std::size_t>(finished)];
 }
+
+namespace {
+
+// "" where all conditions are as exact as asked.
+std::string text_of_finished(std::span<const ConditionNoise> noise,
+                             std::span<const std::string> names) {
+  std::size_t by_verdicts = 0, open = 0, first_open = 0;
+  for (std::size_t k = 0; k < noise.size(); ++k) {
+    if (noise[k].finished_by == FinishedBy::Verdicts) ++by_verdicts;
+    if (noise[k].finished_by == FinishedBy::Nothing && open++ == 0) first_open = k;
+  }
+  std::string text;
+  if (by_verdicts > 0) {
+    text = fmt::format("; {} of {} noisier than asked, but their verdicts cannot change",
+                       by_verdicts, noise.size());
+  }
+  if (open > 0) {
+    text += fmt::format(
+        "; {} of {} noisier than asked, where a verdict may change (the first is {}): ask for a "
+        "smaller --error",
+        open, noise.size(), names[first_open]);
+  }
+  return text;
+}
+
+}  // namespace
 
 ConditionNoise noise_of_condition(double rms, double mean) {
   ConditionNoise noise;
@@ -55,15 +81,18 @@ std::string noise_text(std::span<const ConditionNoise> noise, std::span<const st
     text = fmt::format("noise of {}{} of the mean in the conditions' pictures, most in {}",
                        least + " %" == most ? "" : least + " to ", most, names[lit.back()]);
   }
-  if (unlit.empty()) return text;
+  const std::string finished = text_of_finished(noise, names);
+  if (unlit.empty()) return text + finished;
   const std::string most = scenes::two_digits(*dark[unlit.back()].cd_m2) + " cd/m²";
   if (unlit.size() == 1) {
     return text + fmt::format("{}noise of {}, more than its light, in {}", text.empty() ? "" : "; ",
-                              most, names[unlit.back()]);
+                              most, names[unlit.back()]) +
+           finished;
   }
   return text +
          fmt::format("{}noise of up to {}, more than their light, in {} dark ones, most in {}",
-                     text.empty() ? "" : "; ", most, unlit.size(), names[unlit.back()]);
+                     text.empty() ? "" : "; ", most, unlit.size(), names[unlit.back()]) +
+         finished;
 }
 
 }  // namespace earthshine::studies
