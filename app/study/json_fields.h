@@ -70,7 +70,8 @@ class JsonWriter {
   template <class Struct>
   void part(const char* key, const std::optional<Struct>& value) {
     if (form_ == Form::Nested) return (*this)(key, value);
-    for (const auto& [name, cell] : json_of(value.value_or(Struct{})).items()) {
+    const Json members = json_of(value.value_or(Struct{}));
+    for (const auto& [name, cell] : members.items()) {
       json_[std::string(key) + "." + name] = value ? cell : Json();
     }
   }

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """study orbit, study run and study visibility: what they write."""
 import csv
+import json
 import unittest
 
 from tiny_bay import BAY, STUDY, VERDICTS, Case
@@ -63,6 +64,10 @@ class Orbit(Case):
             # Groups below a hundredth are left out, and each figure has four digits.
             self.assertAlmostEqual(sum(result["light_by"].values()) / result["luminance"], 1, delta=0.03)
             self.assertLessEqual(result["luminance_error"], result["luminance_bound"])
+        # Each part of a result has its columns, whether it exists or not.
+        columns = json.loads((self.folder / "o" / "study.json").read_text(encoding="utf-8"))["results"]["columns"]
+        for column in ("probability.identify", "signal.mean", "monitor.threshold", "eye.probability.detect"):
+            self.assertEqual(columns.count(column), 1, column)
         # Under the same lamps and the same sky on either side of noon there is the same light.
         detect = {(c, t): [r["probability"] and r["probability"]["detect"] for r in study["results"]
                            if (r["camera"], r["target"]) == (c, t)] for c in "AB" for t in ("box", "far")}
