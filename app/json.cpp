@@ -26,6 +26,27 @@ std::string dump(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+namespace {
+
+std::string lines_of(const Json& json, const std::string& indent) {
+  const bool has_lines =
+      json.is_object() || (json.is_array() && !json.empty() && json.front().is_structured());
+  if (!has_lines || json.empty()) return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string inner = indent + "  ";
+  std::string text;
+  for (const auto& [key, value] : json.items()) {
+    text += (text.empty() ? "\n" : ",\n") + inner;
+    text += json.is_object() ? Json(key).dump(-1, ' ', false, Json::error_handler_t::replace) +
+                                   ": " + lines_of(value, inner)
+                             : value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
+  return (json.is_object() ? "{" : "[") + text + "\n" + indent + (json.is_object() ? "}" : "]");
+}
+
+}  // namespace
+
+std::string dump_lines(const Json& json) { return lines_of(json, "") + "\n"; }
+
 std::string digest_of(const Json& json) {
   base::Digest digest;
   digest.add(std::string_view(dump(json)));

@@ -21,7 +21,10 @@ using Json = nlohmann::ordered_json;
 }
 // Indented text with a final newline. Numbers that are not finite become null.
 [[nodiscard]] std::string dump(const Json& json);
-// Of that text; of a file's bytes.
+// Text of fewer lines: one for each member of an object, of a list of lists or objects one for each
+// entry.
+[[nodiscard]] std::string dump_lines(const Json& json);
+// Of the text of dump(); of a file's bytes.
 [[nodiscard]] std::string digest_of(const Json& json);
 [[nodiscard]] std::string digest_of_file(const std::filesystem::path& path);
 // Lists and objects within one another in a file that is read: what the program writes has a

@@ -7,6 +7,7 @@
 
 #include "app/report/sections.h"
 #include "app/report/text.h"
+#include "app/study/json_fields.h"
 
 namespace earthshine::app {
 namespace {
@@ -80,31 +81,21 @@ std::string in_words(const Timeline& line) {
 // Rounded to what a plot shows, which keeps the page small.
 Json rounded(const std::vector<Number>& values) {
   Json list = Json::array();
-  for (const Number& value : values) {
-    if (!value) {
-      list.push_back(nullptr);
-      continue;
-    }
-    const double rounded = std::strtod(fmt::format("{:.4g}", *value).c_str(), nullptr);
-    if (rounded == std::floor(rounded) && std::fabs(rounded) < 1e9) {
-      list.push_back(static_cast<std::int64_t>(rounded));
-    } else {
-      list.push_back(rounded);
-    }
-  }
+  for (const Number& value : values) list.push_back(value ? with_four_digits(*value) : Json());
   return list;
 }
 
 }  // namespace
 
 std::string timelines_html(const StudyResults& study) {
-  if (study.timelines.empty()) return "";
+  const std::vector<Timeline> lines = timelines_of(study);
+  if (lines.empty()) return "";
   std::string html =
       "<p>Probabilities of detection, recognition and identification over the orbit, and the "
       "target’s luminance. The figures are in <a href=\"#figures\">All figures</a>.</p>\n"
       "<div class=\"timelines\">\n";
-  for (std::size_t k = 0; k < study.timelines.size(); ++k) {
-    const Timeline& line = study.timelines[k];
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const Timeline& line = lines[k];
     std::string title = fmt::format("Camera {}, {}", escaped(line.camera), escaped(line.target));
     if (!line.lamps.empty()) title += ", lamps: " + escaped(line.lamps);
     if (study.scenes.size() > 1) title += " (" + escaped(study.scenes[line.scene].name) + ")";
@@ -118,7 +109,7 @@ std::string timelines_html(const StudyResults& study) {
 
 Json timelines_json(const StudyResults& study) {
   Json lines = Json::array();
-  for (const Timeline& line : study.timelines) {
+  for (const Timeline& line : timelines_of(study)) {
     const bool positions = has_positions(line);
     lines.push_back({{"axis", positions ? "position" : "time"},
                      {"x", rounded(positions ? line.position_deg : line.time_s)},

@@ -10,6 +10,7 @@
 #include <string>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "app/study/json_part.h"
@@ -26,10 +27,17 @@ inline constexpr bool is_optional = false;
 template <class Value>
 inline constexpr bool is_optional<std::optional<Value>> = true;
 
+// A number with the digits that study.json has.
+[[nodiscard]] Json with_four_digits(double value);
+
 class JsonWriter {
  public:
+  // What members of structs become: objects within objects, or, in a row of a table, cells of one
+  // level ("signal.mean") that are there whatever exists, of numbers with four digits.
+  enum class Form { Nested, Row };
   // study: that entries are named by; must outlive this.
-  explicit JsonWriter(const StudyResults& study) : study_(study) {}
+  explicit JsonWriter(const StudyResults& study, Form form = Form::Nested)
+      : study_(study), form_(form) {}
 
   template <class Value>
   [[nodiscard]] Json json_of(const Value& value) const {
@@ -43,10 +51,12 @@ class JsonWriter {
       return value.r == value.g && value.g == value.b ? Json(value.r) : to_json(value);
     } else if constexpr (std::is_same_v<Value, studies::Arc>) {
       return Json::array({value.first, value.second});
+    } else if constexpr (std::is_floating_point_v<Value>) {
+      return form_ == Form::Row ? with_four_digits(value) : Json(value);
     } else if constexpr (std::is_constructible_v<Json, Value>) {
       return value;
     } else {
-      JsonWriter inner(study_);
+      JsonWriter inner(study_, form_);
       describe(inner, value);
       return inner.json_;
     }
@@ -55,6 +65,29 @@ class JsonWriter {
   template <class Value>
   void operator()(const char* key, const Value& value) {
     json_[key] = json_of(value);
+  }
+  // A part of a struct, which may not exist.
+  template <class Struct>
+  void part(const char* key, const std::optional<Struct>& value) {
+    if (form_ == Form::Nested) return (*this)(key, value);
+    const Json members = json_of(value.value_or(Struct{}));
+    for (const auto& [name, cell] : members.items()) {
+      json_[std::string(key) + "." + name] = value ? cell : Json();
+    }
+  }
+  // {"columns": [...], "rows": [[...], ...]}
+  template <class Value>
+  void table(const char* key, const std::vector<Value>& values) {
+    Json columns = Json::array(), rows = Json::array();
+    for (const Value& value : values) {
+      const Json row = JsonWriter(study_, Form::Row).json_of(value);
+      Json& cells = rows.emplace_back(Json::array());
+      for (const auto& [name, cell] : row.items()) {
+        if (rows.size() == 1) columns.push_back(name);
+        cells.push_back(cell);
+      }
+    }
+    json_[key] = {{"columns", std::move(columns)}, {"rows", std::move(rows)}};
   }
   void or_null(const char* key, const std::string& text) {
     json_[key] = text.empty() ? Json() : Json(text);
@@ -65,12 +98,6 @@ class JsonWriter {
   }
   void if_any(const char* key, const std::string& text) {
     if (!text.empty()) json_[key] = text;
-  }
-  template <class Struct>
-  void or_nulls(const char* key, const std::optional<Struct>& value) {
-    Json& json = json_[key] = json_of(value.value_or(Struct{}));
-    if (value) return;
-    for (Json& member : json) member = nullptr;
   }
   template <class Enum>
   void word(const char* key, Enum value, Enum) {
@@ -91,10 +118,15 @@ class JsonWriter {
     json_[key] = name_of(study_, what, number);
   }
   void camera(const char* key, std::size_t number, std::size_t) { at(Named::Camera, key, number); }
-  void shares(const char* key, const std::vector<GroupShare>& shares, const char* word) {
-    Json& list = json_[key] = Json::array();
-    for (const GroupShare& share : shares) {
-      list.push_back({{"group", share.group}, {word, json_of(share.value)}});
+  void shares(const char* key, const std::vector<GroupShare>& shares) {
+    Json& object = json_[key] = Json::object();
+    for (const GroupShare& share : shares) object[share.group] = json_of(share.value);
+  }
+  void light(const char* straight, const char* reflected,
+             const std::vector<studies::LightShare>& light) {
+    for (const char* key : {straight, reflected}) json_[key] = Json::object();
+    for (const studies::LightShare& one : light) {
+      json_[one.reflected ? reflected : straight][one.from] = json_of(one.share);
     }
   }
   void factors(const char* key, const std::vector<Factor>& factors) {
@@ -104,8 +136,13 @@ class JsonWriter {
 
  private:
   const StudyResults& study_;
+  Form form_;
   Json json_ = Json::object();
 };
+
+// The rows of {"columns": [...], "rows": [[...], ...]} as objects: "signal.mean" is a member of
+// "signal", which is null where all of its cells are.
+[[nodiscard]] std::vector<Json> objects_of_rows(const JsonPart& table);
 
 // The entries of a study that were read so far, by name; cameras by that of their scene too.
 class EntryNames {
@@ -173,12 +210,16 @@ class JsonReader {
     if (part_.json().contains(key)) (*this)(key, value.emplace());
   }
   template <class Struct>
-  void or_nulls(const char* key, std::optional<Struct>& value) {
-    const JsonPart object = part_.object(key);
-    const Json& json = object.json();
-    if (std::all_of(json.begin(), json.end(), [](const Json& one) { return one.is_null(); }))
-      return;
-    read(object, value.emplace());
+  void part(const char* key, std::optional<Struct>& value) {
+    (*this)(key, value);
+  }
+  template <class Value>
+  void table(const char* key, std::vector<Value>& values) {
+    const JsonPart table = part_.object(key);
+    const std::vector<Json> rows = objects_of_rows(table);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      read(table.stands_for(fmt::format("rows[{}]", k), rows[k]), values.emplace_back());
+    }
   }
   template <class Enum>
   void word(const char* key, Enum& value, Enum last) {
@@ -212,10 +253,21 @@ class JsonReader {
   void camera(const char* key, std::size_t& number, std::size_t condition) {
     at(Named::Camera, key, number, names_.scene_of(condition));
   }
-  void shares(const char* key, std::vector<GroupShare>& shares, const char* word) {
-    for (const JsonPart& one : part_.list(key)) {
-      shares.push_back({one.text("group"), one.number(word)});
+  void shares(const char* key, std::vector<GroupShare>& shares) {
+    const JsonPart object = part_.object(key);
+    for (const auto& [group, value] : object.json().items()) {
+      shares.push_back({group, object.number(group.c_str())});
     }
+  }
+  void light(const char* straight, const char* reflected, std::vector<studies::LightShare>& light) {
+    for (const char* key : {straight, reflected}) {
+      const JsonPart object = part_.object(key);
+      for (const auto& [from, value] : object.json().items()) {
+        light.push_back({from, key == reflected, object.number(from.c_str()).value_or(0.0)});
+      }
+    }
+    std::stable_sort(light.begin(), light.end(),
+                     [](const auto& a, const auto& b) { return a.share > b.share; });
   }
   void factors(const char* key, std::vector<Factor>& factors);
 

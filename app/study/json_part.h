@@ -50,6 +50,10 @@ class JsonPart {
   [[nodiscard]] std::pair<double, double> as_pair() const;
   [[nodiscard]] std::vector<JsonPart> entries() const;
   [[nodiscard]] const Json& json() const { return *json_; }
+  // `json` as if it stood at this step from here; it must outlive the part.
+  [[nodiscard]] JsonPart stands_for(const std::string& step, const Json& json) const {
+    return {*this, step, json};
+  }
 
   // Throws base::Error (Input) that names the member, or this part where `key` is "".
   [[noreturn]] void refuse(const std::string& key, const std::string& found,

@@ -4,7 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
 #include <set>
+#include <string_view>
 #include <tuple>
 
 #include "app/study/json_fields.h"
@@ -171,26 +175,72 @@ void check_together(const JsonPart& top, const StudyResults& study) {
   }
 }
 
-// What is not there is unknown everywhere.
-void even_out(const JsonPart& top, std::vector<Timeline>& timelines) {
-  for (std::size_t k = 0; k < timelines.size(); ++k) {
-    Timeline& line = timelines[k];
-    const std::size_t count = std::max(line.position_deg.size(), line.time_s.size());
-    for (std::vector<Number>* series :
-         {&line.position_deg, &line.time_s, &line.sun_share, &line.detect, &line.recognise,
-          &line.identify, &line.luminance, &line.weber}) {
-      if (series->empty()) series->resize(count);
-      if (series->size() == count) continue;
-      top.refuse(fmt::format("timelines[{}]", k), "uneven", "its lists have the same length");
-    }
+// Reasons that were found in another condition.
+void take_reasons_over(StudyResults& study) {
+  std::map<std::tuple<std::string, std::size_t, std::size_t>, std::size_t> own;
+  for (std::size_t k = 0; k < study.results.size(); ++k) {
+    const ResultEntry& result = study.results[k];
+    if (!result.why_of.empty()) continue;
+    own[{study.conditions[result.condition].id, result.camera, result.target}] = k;
+  }
+  for (ResultEntry& result : study.results) {
+    const auto found = own.find({result.why_of, result.camera, result.target});
+    if (result.why_of.empty() || found == own.end()) continue;
+    result.why = study.results[found->second].why;
+    result.reasons = study.results[found->second].reasons;
   }
 }
 
 }  // namespace
 
+Json with_four_digits(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  const double rounded = std::strtod(fmt::format("{:.4g}", value).c_str(), nullptr);
+  // Without the ".0" of a floating-point number.
+  if (rounded == std::floor(rounded) && std::abs(rounded) < 1e15) {
+    return static_cast<std::int64_t>(rounded);
+  }
+  return rounded;
+}
+
+std::vector<Json> objects_of_rows(const JsonPart& table) {
+  std::vector<std::string> columns;
+  for (const JsonPart& column : table.needed_list("columns")) columns.push_back(column.as_text());
+  std::vector<Json> objects;
+  for (const JsonPart& row : table.needed_list("rows")) {
+    const Json& cells = row.json();
+    if (!cells.is_array() || cells.size() != columns.size()) {
+      row.refuse("", "no row of the table", fmt::format("a list of {} cells", columns.size()));
+    }
+    Json& object = objects.emplace_back(Json::object());
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      if (cells[k].is_null()) continue;
+      Json* place = &object;
+      std::string_view path = columns[k];
+      for (std::size_t dot; (dot = path.find('.')) != std::string_view::npos;) {
+        place = &(*place)[std::string(path.substr(0, dot))];
+        path.remove_prefix(dot + 1);
+        if (!place->is_null() && !place->is_object()) break;
+      }
+      const std::string key(path);
+      if ((!place->is_null() && !place->is_object()) || place->contains(key)) {
+        table.refuse("columns", "of \"" + columns[k] + "\" twice", "each is there once");
+      }
+      (*place)[key] = cells[k];
+    }
+  }
+  return objects;
+}
+
 Json to_json(const StudyResults& results) {
-  Json json = {{"format", 1}, {"study", "visibility"}};
-  json.update(JsonWriter(results).json_of(results));
+  StudyResults shortened = results;
+  for (ResultEntry& result : shortened.results) {
+    if (result.why_of.empty()) continue;
+    result.why.clear();
+    result.reasons.clear();
+  }
+  Json json = {{"format", 2}, {"study", "visibility"}};
+  json.update(JsonWriter(shortened).json_of(shortened));
   return json;
 }
 
@@ -199,7 +249,7 @@ StudyResults read_results(const std::string& file, const Json& json) {
   if (!json.is_object() || !json.contains("format") || !json.contains("study")) {
     top.refuse("", "is not the result of a study: it lacks \"format\" and \"study\"");
   }
-  if (json["format"] != 1) top.refuse("format", json["format"].dump(), "this program reads 1");
+  if (json["format"] != 2) top.refuse("format", json["format"].dump(), "this program reads 2");
   if (top.needed_text("study") != "visibility") {
     top.refuse("study", "\"" + top.text("study") + "\"", "reports are of study visibility");
   }
@@ -207,8 +257,45 @@ StudyResults read_results(const std::string& file, const Json& json) {
   EntryNames names(study);
   JsonReader(top, names).read(top, study);
   check_together(top, study);
-  even_out(top, study.timelines);
+  take_reasons_over(study);
   return study;
+}
+
+std::vector<Timeline> timelines_of(const StudyResults& study) {
+  std::map<std::tuple<std::size_t, std::size_t, std::size_t>, const ResultEntry*> results;
+  std::set<std::pair<std::size_t, std::size_t>> judged;  // cameras and targets
+  for (const ResultEntry& result : study.results) {
+    results[{result.camera, result.target, result.condition}] = &result;
+    judged.insert({result.camera, result.target});
+  }
+  std::vector<Timeline> lines;
+  for (const auto& [camera, target] : judged) {
+    const std::size_t scene = study.cameras[camera].scene, first = lines.size();
+    for (std::size_t k = 0; k < study.conditions.size(); ++k) {
+      const ConditionEntry& condition = study.conditions[k];
+      if (condition.scene != scene || !(condition.position_deg || condition.time_s)) continue;
+      auto line = std::find_if(lines.begin() + static_cast<std::ptrdiff_t>(first), lines.end(),
+                               [&](const Timeline& l) { return l.lamps == condition.lamps; });
+      if (line == lines.end()) {
+        line = lines.insert(lines.end(), {scene, study.cameras[camera].name, study.targets[target],
+                                          condition.lamps});
+      }
+      const auto found = results.find({camera, target, k});
+      const auto value = [&](Figure of) {
+        return found == results.end() ? Number() : of(*found->second);
+      };
+      line->position_deg.push_back(condition.position_deg);
+      line->time_s.push_back(condition.time_s);
+      line->sun_share.push_back(condition.sun_share);
+      line->detect.push_back(value(chance_of<&Probability::detect>));
+      line->recognise.push_back(value(chance_of<&Probability::recognise>));
+      line->identify.push_back(value(chance_of<&Probability::identify>));
+      line->luminance.push_back(value(sight_of<&Sight::luminance>));
+      line->weber.push_back(value(sight_of<&Sight::weber>));
+    }
+  }
+  std::erase_if(lines, [](const Timeline& line) { return line.detect.size() < 2; });
+  return lines;
 }
 
 std::string results_csv(const StudyResults& study) {

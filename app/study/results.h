@@ -72,6 +72,7 @@ struct ResultEntry : TargetFindings {
   std::size_t condition = 0, camera = 0, target = 0;
 };
 
+// What one camera makes of one target along the orbit, by one lamp setting: lists of one length.
 struct Timeline {
   std::size_t scene = 0;
   std::string camera, target, lamps;
@@ -121,7 +122,6 @@ struct StudyResults {
   std::vector<std::string> targets;
   std::vector<ConditionEntry> conditions;
   std::vector<ResultEntry> results;
-  std::vector<Timeline> timelines;
   std::vector<AnswerEntry> answers;
   std::vector<PairEntry> pairs;
   std::vector<FigureEntry> figures;
@@ -130,6 +130,9 @@ struct StudyResults {
   std::vector<StudyCost> costs;
   std::vector<std::string> notes;
 };
+
+// Of the cameras and targets that have results at two places or more.
+[[nodiscard]] std::vector<Timeline> timelines_of(const StudyResults& study);
 
 // The name that others call an entry by.
 [[nodiscard]] const std::string& name_of(const StudyResults& study, Named what, std::size_t number);
@@ -169,7 +172,8 @@ Number eye_chance_of(const TargetFindings& found) {
   return eye && eye->probability ? Number((*eye->probability).*Member) : Number();
 }
 
-// study.json, written and read by the lists of fields in results_fields.h.
+// study.json, written and read by the lists of fields in results_fields.h. Results come with four
+// digits, and reasons only where they were found.
 
 [[nodiscard]] Json to_json(const StudyResults& results);
 // Throws base::Error (Input) with the place in `file` where something is not as it should be.

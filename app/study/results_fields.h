@@ -18,7 +18,8 @@ concept Either = std::same_as<std::remove_const_t<Value>, Struct>;
 //   fields(key, member)              what does not exist is null
 //   fields.or_null(key, text)        "" is null
 //   fields.if_any(key, member)       what does not exist has no key
-//   fields.or_nulls(key, struct)     what does not exist is an object of nulls
+//   fields.part(key, struct)         what does not exist is null; in a table columns "key.member"
+//   fields.table(key, members)       a list whose keys are written once
 //   fields.word(key, enum, last)     its word_of; `last` is the last enumerator
 //   fields.one_of(key, text, words)  "" is null
 //   fields.list(key, members)        a list that must be there
@@ -26,7 +27,8 @@ concept Either = std::same_as<std::remove_const_t<Value>, Struct>;
 //   fields.names(what, key, list)    ... or of all of them
 //   fields.at(what, key, number)     another entry's, by its name ...
 //   fields.camera(key, number, condition)  ... of the cameras of a condition's scene
-//   fields.shares(key, list, word)   group and, as `word`, value
+//   fields.shares(key, list)         an object: group to number
+//   fields.light(key, key, list)     two of these, by groups straight and by way of objects
 //   fields.factors(key, list)        an object: group to number or colour
 // Cameras of several scenes may have one name: theirs comes with the scene.
 template <class Fields>
@@ -64,22 +66,15 @@ void describe(Fields& fields, Either<studies::EyeSight> auto& eye) {
   fields("cycles", eye.cycles);
   fields("threshold", eye.threshold);
   fields("weber", eye.weber);
-  fields.or_nulls("probability", eye.probability);
-}
-
-template <class Fields>
-void describe(Fields& fields, Either<studies::LightShare> auto& light) {
-  fields("from", light.from);
-  fields("reflected", light.reflected);
-  fields("share", light.share);
+  fields.part("probability", eye.probability);
 }
 
 template <class Fields>
 void describe(Fields& fields, Either<studies::Reason> auto& reason) {
   fields.word("cause", reason.cause, studies::Cause::Small);
-  fields.or_null("by", reason.by);
-  fields("share", reason.share);
-  fields("probability_without", reason.probability_without);
+  fields.if_any("by", reason.by);
+  fields.if_any("share", reason.share);
+  fields.if_any("probability_without", reason.probability_without);
   fields("text", reason.text);
 }
 
@@ -87,23 +82,23 @@ template <class Fields>
 void describe(Fields& fields, Either<TargetFindings> auto& found) {
   auto& sight = found.sight;
   fields.word("verdict", sight.verdict, studies::Verdict::Hidden);
-  fields.or_nulls("probability", sight.probability);
+  fields.part("probability", sight.probability);
   fields("pixels", sight.pixels);
   fields("visible_fraction", sight.visible_fraction);
   fields("cut_by_frame", sight.cut_by_frame);
   fields("black_back", sight.black_back);
   fields("lit_fraction", found.lit_fraction);
-  fields.shares("lit_by", found.lit_by, "share");
-  fields.shares("light_by", found.light_by, "luminance");
-  fields("light_from", found.light_from);
+  fields.shares("lit_by", found.lit_by);
+  fields.shares("light_by", found.light_by);
+  fields.light("light_from", "light_by_way_of", found.light_from);
   fields("angle_deg", sight.angle_deg);
   fields("tv_lines", sight.tv_lines);
   fields("luminance", sight.luminance);
   fields("surround", sight.surround);
   fields("weber", sight.weber);
-  fields("signal", sight.signal);
-  fields("monitor", sight.monitor);
-  fields("eye", sight.eye);
+  fields.part("signal", sight.signal);
+  fields.part("monitor", sight.monitor);
+  fields.part("eye", sight.eye);
   fields("johnson_cycles", sight.johnson_cycles);
   fields("saturated", sight.saturated);
   fields("crushed", sight.crushed);
@@ -164,22 +159,6 @@ void describe(Fields& fields, Either<ConditionEntry> auto& condition) {
   fields.factors("factors", condition.factors);
   fields("others", condition.others);
   fields("earth_error", condition.earth_error);
-}
-
-template <class Fields>
-void describe(Fields& fields, Either<Timeline> auto& line) {
-  fields.at(Named::Scene, "scene", line.scene);
-  fields("camera", line.camera);
-  fields("target", line.target);
-  fields("lamps", line.lamps);
-  fields("position_deg", line.position_deg);
-  fields("time_s", line.time_s);
-  fields("sun_share", line.sun_share);
-  fields("detect", line.detect);
-  fields("recognise", line.recognise);
-  fields("identify", line.identify);
-  fields("weber", line.weber);
-  fields("luminance", line.luminance);
 }
 
 template <class Fields>
@@ -246,8 +225,7 @@ void describe(Fields& fields, Either<StudyResults> auto& study) {
   fields.list("cameras", study.cameras);
   fields.names(Named::Target, "targets", study.targets);
   fields.list("conditions", study.conditions);
-  fields.list("results", study.results);
-  fields("timelines", study.timelines);
+  fields.table("results", study.results);
   fields("answers", study.answers);
   fields("pairs", study.pairs);
   fields("figures", study.figures);

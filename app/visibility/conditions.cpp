@@ -31,9 +31,13 @@ TargetFindings findings_of(const studies::Sight& sight, const studies::TargetOut
   TargetFindings found;
   found.sight = sight;
   found.lit_fraction = outcome.lit_fraction;
+  const double least = studies::least_light_share * sight.luminance.value_or(0.0);
   for (const studies::SourceOnTarget& source : outcome.sources) {
-    found.lit_by.push_back({source.group, source.lit});
-    found.light_by.push_back({source.group, source.luminance});
+    if (source.lit >= studies::least_light_share)
+      found.lit_by.push_back({source.group, source.lit});
+    if (source.luminance > 0.0 && source.luminance >= least) {
+      found.light_by.push_back({source.group, source.luminance});
+    }
   }
   found.light_from = outcome.light_from;
   if (outcome.basis_error) {

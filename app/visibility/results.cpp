@@ -66,28 +66,6 @@ std::size_t target_number(const StudyResults& results, const std::string& name) 
   return static_cast<std::size_t>(found - results.targets.begin());
 }
 
-Timeline timeline_of(const StudyResults& results, const CameraFindings& found, std::size_t scene,
-                     std::size_t first, std::size_t target, std::size_t setting) {
-  const std::size_t places = found.part.basis->places().size();
-  Timeline line{scene, found.camera.camera->name, found.part.targets[target],
-                found.part.basis->settings()[setting].name};
-  for (std::size_t k = setting * places; k < (setting + 1) * places; ++k) {
-    const ConditionEntry& condition = results.conditions[first + k];
-    line.position_deg.push_back(condition.position_deg);
-    line.time_s.push_back(condition.time_s);
-    line.sun_share.push_back(condition.sun_share);
-    const auto& reached = found.conditions[k];
-    const studies::Sight sight = reached ? (*reached)[target].sight : studies::Sight();
-    const auto& chances = sight.probability;
-    line.detect.push_back(chances ? Number(chances->detect) : Number());
-    line.recognise.push_back(chances ? Number(chances->recognise) : Number());
-    line.identify.push_back(chances ? Number(chances->identify) : Number());
-    line.luminance.push_back(sight.luminance);
-    line.weber.push_back(sight.weber);
-  }
-  return line;
-}
-
 Json settings_of(const studies::StudyFile& study, const std::string& command, std::uint64_t seed) {
   Json set = Json::array();
   for (const std::string& override : study.overrides) set.push_back(override);
@@ -165,12 +143,6 @@ void add_camera(StudyResults& results, const CameraFindings& found) {
   }
   for (const ThumbnailEntry& small : found.thumbnails) {
     results.thumbnails.push_back({first + small.condition, camera, small.file, small.monitor});
-  }
-  if (found.part.positions_deg.size() < 2) return;
-  for (std::size_t t = 0; t < found.part.targets.size(); ++t) {
-    for (std::size_t s = 0; s < found.part.basis->settings().size(); ++s) {
-      results.timelines.push_back(timeline_of(results, found, scene, first, t, s));
-    }
   }
 }
 

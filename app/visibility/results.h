@@ -27,7 +27,7 @@ struct CameraFindings {
                                          const std::vector<const StudyPart*>& parts,
                                          const std::string& command, std::uint64_t seed);
 
-// The next camera with its results, timelines and thumbnails; conditions of its scene get their
+// The next camera with its results and thumbnails; conditions of its scene get their
 // earth_error.
 void add_camera(StudyResults& results, const CameraFindings& found);
 

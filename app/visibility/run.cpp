@@ -226,11 +226,13 @@ std::optional<StudyResults> run_study(StudyTask task, const Common& common) {
                       "The results of the run before stand in " + task.folder +
                           "; run the same command again to go on");
   }
-  base::write_text(fs::path(task.folder) / study_file, dump(to_json(study)));
+  const Json json = to_json(study);
+  base::write_text(fs::path(task.folder) / study_file, dump_lines(json));
   base::write_text(fs::path(task.folder) / results_table, results_csv(study));
   ReportOptions how;
   how.quiet = common.quiet;
-  write_report(task.folder, study, how);
+  // As `report` will draw it anew.
+  write_report(task.folder, read_results(study_file, json), how);
   if (!study.complete) {
     throw base::Error(
         base::Blame::Work, "study", "interrupted", {},
@@ -248,7 +250,7 @@ void run_and_print(StudyTask task, const Common& common, bool json, bool dry_run
   note_unused_json(task.part, json, common.quiet);
   const std::optional<StudyResults> found = run_study(std::move(task), common);
   if (!found) return;  // a part has nothing to tell
-  print(json ? dump(to_json(*found)) : text(*found));
+  print(json ? dump_lines(to_json(*found)) : text(*found));
 }
 
 }  // namespace earthshine::app

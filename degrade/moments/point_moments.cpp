@@ -127,18 +127,23 @@ class Table {
       use.high = std::max(use.high, static_cast<double>(mean[i]));
       ++use.count;
     }
+    if (uses.empty()) return;
+    lowest_ = uses.begin()->first;
+    const auto levels = static_cast<std::size_t>(uses.rbegin()->first - lowest_ + 1);
+    is_tabulated_.assign(levels, false);
+    rows_.resize(levels + before + after);
     for (const auto& [level, use] : uses) {
       const double nodes =
           6.0 * ((use.high - use.low) / (spacing * row_sigma(level - before)) + 6.0);
       if (!(2.0 * nodes < static_cast<double>(use.count))) continue;
       for (int k = level - before; k <= level + after; ++k) {
-        Row& row = rows_[k];
+        Row& row = rows_[static_cast<std::size_t>(k - lowest_ + before)];
         row.sigma = row_sigma(k);
         row.cover(use.low, use.high);
       }
-      tabulated_.push_back(level);
+      is_tabulated_[static_cast<std::size_t>(level - lowest_)] = true;
     }
-    for (auto& [level, row] : rows_) {
+    for (Row& row : rows_) {
       row.at.resize(static_cast<std::size_t>(row.last - row.first + 1));
       base::parallel_chunks(row.at.size(), 64, [&, r = &row](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -151,35 +156,49 @@ class Table {
   }
 
   [[nodiscard]] std::optional<PointMoments> operator()(double mean, double sigma) const {
-    const double log_sigma = std::log(sigma) / log_spacing, below = std::floor(log_sigma);
-    const int level = static_cast<int>(below);
-    if (!std::binary_search(tabulated_.begin(), tabulated_.end(), level)) return {};
-    const Weights across = lagrange(log_sigma - below);
-    Row::Node all{};
-    auto row = rows_.find(level - before);
-    for (std::size_t j = 0; j < across.size(); ++j, ++row) {
-      const Row& r = row->second;
-      const double place = mean / (spacing * r.sigma), node = std::floor(place);
-      const Weights along = lagrange(place - node);
-      const Row::Node* at =
-          &r.at[static_cast<std::size_t>(static_cast<std::int64_t>(node) - before - r.first)];
-      Row::Node of_row{};
-      for (std::size_t k = 0; k < along.size(); ++k) {
-        for (std::size_t m = 0; m < of_row.size(); ++m) of_row[m] += along[k] * at[k][m];
-      }
-      for (std::size_t m = 0; m < all.size(); ++m) all[m] += across[j] * of_row[m];
-    }
-    PointMoments sum{all[0], all[1], all[2], all[3]};
+    const auto all = interpolated<4>(mean, sigma);
+    if (!all) return {};
+    PointMoments sum{(*all)[0], (*all)[1], (*all)[2], (*all)[3]};
     // A polynomial may overshoot where the variance dies away.
     sum.slope = std::max(sum.slope, 0.0);
     const double first = sum.slope * sigma, second = sum.curvature * sigma * sigma;
     sum.variance = std::max(sum.variance, first * first + 0.5 * second * second);
     return sum;
   }
+  [[nodiscard]] std::optional<double> mean(double mean, double sigma) const {
+    const auto all = interpolated<1>(mean, sigma);
+    return all ? std::optional(all->front()) : std::nullopt;
+  }
 
  private:
-  std::map<int, Row> rows_;
-  std::vector<int> tabulated_;
+  // The first `count` moments of a node.
+  template <std::size_t count>
+  [[nodiscard]] std::optional<std::array<double, count>> interpolated(double mean,
+                                                                      double sigma) const {
+    const double log_sigma = std::log(sigma) / log_spacing, below = std::floor(log_sigma);
+    const int level = static_cast<int>(below) - lowest_;
+    if (level < 0 || level >= static_cast<int>(is_tabulated_.size())) return {};
+    if (!is_tabulated_[static_cast<std::size_t>(level)]) return {};
+    const Weights across = lagrange(log_sigma - below);
+    std::array<double, count> all{};
+    for (std::size_t j = 0; j < across.size(); ++j) {
+      const Row& r = rows_[static_cast<std::size_t>(level) + j];  // from level - before
+      const double place = mean / (spacing * r.sigma), node = std::floor(place);
+      const Weights along = lagrange(place - node);
+      const Row::Node* at =
+          &r.at[static_cast<std::size_t>(static_cast<std::int64_t>(node) - before - r.first)];
+      std::array<double, count> of_row{};
+      for (std::size_t k = 0; k < along.size(); ++k) {
+        for (std::size_t m = 0; m < count; ++m) of_row[m] += along[k] * at[k][m];
+      }
+      for (std::size_t m = 0; m < count; ++m) all[m] += across[j] * of_row[m];
+    }
+    return all;
+  }
+
+  int lowest_ = 0;
+  std::vector<Row> rows_;           // from lowest_ - before on
+  std::vector<bool> is_tabulated_;  // from lowest_ on
 };
 
 }  // namespace
@@ -252,22 +271,45 @@ PointMoments through(const PointMap& map, double mean, double sigma) {
   return sums.moments(reference, sigma);
 }
 
-MomentPlanes through(const PointMap& map, const Plane& mean, const Plane& variance) {
+namespace {
+
+// take(i, mean, sigma, table) for each pixel.
+template <class Take>
+void for_each_pixel(const PointMap& map, const Plane& mean, const Plane& variance, Take take) {
   const Table table(map, mean, variance);
-  MomentPlanes out{Plane(mean.size()), Plane(mean.size()), Plane(mean.size()), Plane(mean.size())};
   base::parallel_chunks(mean.size(), 2048, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const double mu = static_cast<double>(mean[i]);
-      const double sigma = std::sqrt(std::max(0.0, static_cast<double>(variance[i])));
-      std::optional<PointMoments> m;
-      if (sigma > 0.0) m = table(mu, sigma);
-      if (!m) m = through(map, mu, sigma);
-      out.mean[i] = static_cast<float>(m->mean);
-      out.variance[i] = static_cast<float>(m->variance);
-      out.slope[i] = static_cast<float>(m->slope);
-      out.curvature[i] = static_cast<float>(m->curvature);
+      take(i, static_cast<double>(mean[i]),
+           std::sqrt(std::max(0.0, static_cast<double>(variance[i]))), table);
     }
   });
+}
+
+}  // namespace
+
+MomentPlanes through(const PointMap& map, const Plane& mean, const Plane& variance) {
+  MomentPlanes out{Plane(mean.size()), Plane(mean.size()), Plane(mean.size()), Plane(mean.size())};
+  const auto take = [&](std::size_t i, double mu, double sigma, const Table& table) {
+    std::optional<PointMoments> m;
+    if (sigma > 0.0) m = table(mu, sigma);
+    if (!m) m = through(map, mu, sigma);
+    out.mean[i] = static_cast<float>(m->mean);
+    out.variance[i] = static_cast<float>(m->variance);
+    out.slope[i] = static_cast<float>(m->slope);
+    out.curvature[i] = static_cast<float>(m->curvature);
+  };
+  for_each_pixel(map, mean, variance, take);
+  return out;
+}
+
+Plane mean_through(const PointMap& map, const Plane& mean, const Plane& variance) {
+  Plane out(mean.size());
+  const auto take = [&](std::size_t i, double mu, double sigma, const Table& table) {
+    std::optional<double> m;
+    if (sigma > 0.0) m = table.mean(mu, sigma);
+    out[i] = static_cast<float>(m ? *m : through(map, mu, sigma).mean);
+  };
+  for_each_pixel(map, mean, variance, take);
   return out;
 }
 

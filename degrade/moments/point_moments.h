@@ -45,5 +45,7 @@ struct MomentPlanes {
   Plane mean, variance, slope, curvature;
 };
 [[nodiscard]] MomentPlanes through(const PointMap& map, const Plane& mean, const Plane& variance);
+// through(map, mean, variance).mean, for less.
+[[nodiscard]] Plane mean_through(const PointMap& map, const Plane& mean, const Plane& variance);
 
 }  // namespace earthshine::degrade

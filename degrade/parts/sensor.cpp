@@ -41,10 +41,15 @@ Picture smear_columns(Picture signal, double share) {
   const std::size_t width = static_cast<std::size_t>(signal.columns);
   for (Plane& plane : signal.planes) {
     std::vector<double> sum(width);
-    for (std::size_t i = 0; i < plane.size(); ++i) sum[i % width] += static_cast<double>(plane[i]);
+    for (std::size_t line = 0; line < plane.size(); line += width) {
+      for (std::size_t x = 0; x < width; ++x) sum[x] += static_cast<double>(plane[line + x]);
+    }
     const double factor = 10.0 * share / signal.rows;
-    for (std::size_t i = 0; i < plane.size(); ++i) {
-      plane[i] = static_cast<float>(static_cast<double>(plane[i]) + factor * sum[i % width]);
+    for (std::size_t line = 0; line < plane.size(); line += width) {
+      for (std::size_t x = 0; x < width; ++x) {
+        plane[line + x] =
+            static_cast<float>(static_cast<double>(plane[line + x]) + factor * sum[x]);
+      }
     }
   }
   return signal;

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <mutex>
 
 #include "base/parallel.h"
 #include "base/units.h"
@@ -18,6 +20,20 @@ std::size_t mirrored(int index, int size) {
   return static_cast<std::size_t>(m < size ? m : period - 1 - m);
 }
 
+// Where a line has values other than 0: what blooms and streaks is often a small part of a picture.
+struct Extent {
+  std::size_t first = std::numeric_limits<std::size_t>::max(), end = 0;
+
+  void cover(const float* line, std::size_t width) {
+    std::size_t x = 0;
+    while (x < width && line[x] == 0.0F) ++x;
+    if (x == width) return;
+    first = std::min(first, x);
+    for (x = width; line[x - 1] == 0.0F;) --x;
+    end = std::max(end, x);
+  }
+};
+
 // Rows are taken eight at a time, their values at one place side by side, so that a weight meets
 // eight neighbours in memory whatever the places it applies to.
 constexpr std::size_t side_by_side = 8;
@@ -29,13 +45,21 @@ Plane map_rows(const Plane& in, int columns, int rows, const AxisMap& map) {
   base::parallel_chunks(static_cast<std::size_t>(rows), side_by_side,
                         [&](std::size_t begin, std::size_t end) {
                           std::vector<std::array<float, side_by_side>> block(width);
+                          Extent lit;
                           for (std::size_t y = begin; y < end; ++y) {
                             const float* const line = in.data() + y * width;
+                            lit.cover(line, width);
                             for (std::size_t x = 0; x < width; ++x) block[x][y - begin] = line[x];
                           }
                           for (std::size_t x = 0; x < out_width; ++x) {
                             std::array<double, side_by_side> sum{};
-                            for (std::size_t k = map.start[x]; k < map.start[x + 1]; ++k) {
+                            const std::size_t stop = map.start[x + 1];
+                            // Sources ascend.
+                            if (map.start[x] == stop || map.source[map.start[x]] >= lit.end ||
+                                map.source[stop - 1] < lit.first) {
+                              continue;
+                            }
+                            for (std::size_t k = map.start[x]; k < stop; ++k) {
                               const std::array<float, side_by_side>& values = block[map.source[k]];
                               const double weight = map.weight[k];
                               for (std::size_t r = 0; r < side_by_side; ++r) {
@@ -54,6 +78,8 @@ Plane map_columns(const Plane& in, int columns, const AxisMap& map) {
   const std::size_t width = static_cast<std::size_t>(columns);
   const std::size_t out_rows = static_cast<std::size_t>(map.out());
   Plane out(width * out_rows);
+  std::vector<Extent> lit(static_cast<std::size_t>(map.in));
+  for (std::size_t y = 0; y < lit.size(); ++y) lit[y].cover(in.data() + y * width, width);
   base::parallel_chunks(out_rows, 8, [&](std::size_t begin, std::size_t end) {
     std::vector<double> sum(width);
     for (std::size_t y = begin; y < end; ++y) {
@@ -61,7 +87,10 @@ Plane map_columns(const Plane& in, int columns, const AxisMap& map) {
       for (std::size_t k = map.start[y]; k < map.start[y + 1]; ++k) {
         const float* const line = in.data() + map.source[k] * width;
         const double weight = map.weight[k];
-        for (std::size_t x = 0; x < width; ++x) sum[x] += weight * static_cast<double>(line[x]);
+        const Extent& part = lit[map.source[k]];
+        for (std::size_t x = part.first; x < part.end; ++x) {
+          sum[x] += weight * static_cast<double>(line[x]);
+        }
       }
       std::transform(sum.begin(), sum.end(), out.begin() + static_cast<std::ptrdiff_t>(y * width),
                      [](double value) { return static_cast<float>(value); });
@@ -73,16 +102,23 @@ Plane map_columns(const Plane& in, int columns, const AxisMap& map) {
 }  // namespace
 
 void add_output(AxisMap& map, int first, const std::vector<double>& weight) {
-  std::map<std::size_t, double> folded;
   double total = 0.0;
-  for (std::size_t k = 0; k < weight.size(); ++k) {
-    folded[mirrored(first + static_cast<int>(k), map.in)] += weight[k];
-    total += weight[k];
-  }
-  for (const auto& [source, value] : folded) {
-    if (value == 0.0) continue;
+  for (const double value : weight) total += value;
+  const auto add = [&](std::size_t source, double value) {
+    if (value == 0.0) return;
     map.source.push_back(source);
     map.weight.push_back(value / total);
+  };
+  if (first >= 0 && first + static_cast<int>(weight.size()) <= map.in) {
+    for (std::size_t k = 0; k < weight.size(); ++k) {
+      add(static_cast<std::size_t>(first) + k, weight[k]);
+    }
+  } else {
+    std::map<std::size_t, double> folded;
+    for (std::size_t k = 0; k < weight.size(); ++k) {
+      folded[mirrored(first + static_cast<int>(k), map.in)] += weight[k];
+    }
+    for (const auto& [source, value] : folded) add(source, value);
   }
   map.start.push_back(map.source.size());
 }
@@ -107,7 +143,9 @@ AxisMap area_average(int in, int out) {
   return map;
 }
 
-std::vector<double> discrete_gaussian(double sigma) {
+namespace {
+
+std::vector<double> find_discrete_gaussian(double sigma) {
   const double t = sigma * sigma;
   // e^-t I_n(t) = (1/pi) integral over [0, pi] of exp(-t (1 - cos u)) cos(n u) du. The trapezoid
   // rule on a periodic function is exact up to terms of order 2 * steps - n, far beyond any kernel
@@ -131,6 +169,20 @@ std::vector<double> discrete_gaussian(double sigma) {
   }
   std::vector<double> kernel(half.rbegin(), half.rend());
   kernel.insert(kernel.end(), half.begin() + 1, half.end());
+  return kernel;
+}
+
+}  // namespace
+
+// A study asks for the same few widths thousands of times.
+std::vector<double> discrete_gaussian(double sigma) {
+  constexpr std::size_t most_kept = 64;
+  static std::mutex guard;
+  static std::map<double, std::vector<double>> kept;
+  const std::lock_guard lock(guard);
+  if (kept.size() >= most_kept) kept.clear();
+  std::vector<double>& kernel = kept[sigma];
+  if (kernel.empty()) kernel = find_discrete_gaussian(sigma);
   return kernel;
 }
 

@@ -20,6 +20,7 @@ struct AxisMap {
   std::vector<double> weight;
 
   [[nodiscard]] int out() const { return static_cast<int>(start.size()) - 1; }
+  bool operator==(const AxisMap&) const = default;
 };
 
 // Adds an output: weight[k] applies to input first + k. Inputs beyond the border are mirrored at
@@ -42,6 +43,7 @@ void add_output(AxisMap& map, int first, const std::vector<double>& weight);
 
 struct PlaneMap {
   AxisMap along, across;
+  bool operator==(const PlaneMap&) const = default;
 };
 
 // Every row through `along`, then every column through `across`.

@@ -65,17 +65,9 @@ BasisView make_basis_view(const LightBasis& basis, const scenes::RayQuery& query
 
 namespace {
 
-// All but the reasons.
-Outcome look(const LightBasis& basis, const scenes::RayQuery& query, const BasisView& view,
-             const ConditionAt& at, const std::optional<degrade::Setup>& cctv,
-             const ConditionOptions& options) {
-  Outcome outcome;
-  const GroupWeights weights = basis.weights(at.place, at.setting, options.lamps);
-  outcome.radiance = weighted_sum(view.layers, basis.groups().names, weights);
-  const std::vector<double> deviation =
-      options.deviation ? options.deviation(at) : std::vector<double>();
-  outcome.sight = measure_sight(view.plan, outcome.radiance, cctv, options.why.sight, deviation);
-  const SkyPlace& sky = basis.places()[at.place];
+// Sources and their light; the outcome has the sights.
+void find_sources(const LightBasis& basis, const scenes::RayQuery& query, const BasisView& view,
+                  const SkyPlace& sky, const GroupWeights& weights, Outcome& outcome) {
   outcome.sun_share = sun_share_of(sky);
   for (std::size_t t = 0; t < view.targets.size(); ++t) {
     const BasisView::Target& target = view.targets[t];
@@ -89,11 +81,11 @@ Outcome look(const LightBasis& basis, const scenes::RayQuery& query, const Basis
                                  outcome.sight.targets[t].luminance.value_or(0.0));
     outcome.targets.push_back(std::move(found));
   }
-  return outcome;
 }
 
 // Fills in the reasons of those targets.
-void explain(const LightBasis& basis, const BasisView& view, const ConditionAt& at,
+void explain(const LightBasis& basis, const BasisView& view, const SightPlan& plan,
+             const base::Image& radiance, const ConditionAt& at,
              const std::optional<degrade::Setup>& cctv, const ConditionOptions& options,
              const std::vector<std::size_t>& targets, Outcome& outcome) {
   const SkyPlace& sky = basis.places()[at.place];
@@ -112,9 +104,9 @@ void explain(const LightBasis& basis, const BasisView& view, const ConditionAt& 
       }
       source.when_on = &picture->second;
     }
-    outcome.targets[t].why = why_not({basis.scene(), *view.camera, view.plan, outcome.radiance,
-                                      cctv, outcome.sight, sky.sun, sky.earth},
-                                     t, sources, options.why);
+    outcome.targets[t].why = why_not(
+        {basis.scene(), *view.camera, plan, radiance, cctv, outcome.sight, sky.sun, sky.earth}, t,
+        sources, options.why);
     for (SourceOnTarget& source : sources) source.when_on = nullptr;
   }
 }
@@ -162,6 +154,16 @@ std::vector<std::size_t> targets_to_explain(const Outcome& outcome,
   return targets;
 }
 
+// For each condition the first with the same weights, so with the same picture: in eclipse many are.
+std::vector<std::size_t> first_with_same(const std::vector<GroupWeights>& weights) {
+  std::vector<std::size_t> first(weights.size());
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    first[k] = 0;
+    while (weights[first[k]].weight != weights[k].weight) ++first[k];
+  }
+  return first;
+}
+
 }  // namespace
 
 std::vector<Outcome> judge_conditions(const LightBasis& basis, const scenes::RayQuery& query,
@@ -176,8 +178,25 @@ std::vector<Outcome> judge_conditions(const LightBasis& basis, const scenes::Ray
       visit(k);
     });
   };
-  for_each(
-      [&](std::size_t k) { outcomes[k] = look(basis, query, view, conditions[k], cctv, options); });
+  SightPlan plan = view.plan;
+  if (cctv) place_targets(plan, *cctv);
+  std::vector<GroupWeights> weights;
+  for (const ConditionAt& at : conditions) {
+    weights.push_back(basis.weights(at.place, at.setting, options.lamps));
+  }
+  const std::vector<std::size_t> same = first_with_same(weights);
+  std::vector<base::Image> pictures(conditions.size());  // of the first of the same
+  for_each([&](std::size_t k) {
+    if (same[k] != k) return;
+    pictures[k] = weighted_sum(view.layers, basis.groups().names, weights[k]);
+    const std::vector<double> deviation =
+        options.deviation ? options.deviation(conditions[k]) : std::vector<double>();
+    outcomes[k].sight = measure_sight(plan, pictures[k], cctv, options.why.sight, deviation);
+  });
+  for_each([&](std::size_t k) {
+    if (same[k] != k) outcomes[k].sight = outcomes[same[k]].sight;
+    find_sources(basis, query, view, basis.places()[conditions[k].place], weights[k], outcomes[k]);
+  });
   std::vector<std::vector<std::size_t>> to_explain(conditions.size());
   std::vector<std::optional<std::size_t>> run(view.targets.size());  // where it began
   for (std::size_t k = 0; k < conditions.size(); ++k) {
@@ -192,8 +211,8 @@ std::vector<Outcome> judge_conditions(const LightBasis& basis, const scenes::Ray
     }
   }
   for_each([&](std::size_t k) {
-    explain(basis, view, conditions[k], cctv, options, to_explain[k], outcomes[k]);
-    outcomes[k].radiance = {};
+    explain(basis, view, plan, pictures[same[k]], conditions[k], cctv, options, to_explain[k],
+            outcomes[k]);
   });
   for (Outcome& outcome : outcomes) {
     for (std::size_t t = 0; t < outcome.targets.size(); ++t) {

@@ -30,6 +30,7 @@ struct BasisView {
     std::vector<SeenPoint> points;
     std::vector<Rgb> by_group;
     std::vector<std::optional<Reach>> lamps, emitters;
+    std::optional<EarthBlockers> earth;     // where the Earth stands still over several places
     std::optional<LastBounce> last_bounce;  // of the points; none without a solution
   };
   std::vector<Target> targets;
@@ -52,7 +53,6 @@ struct TargetOutcome {
 };
 
 struct Outcome {
-  base::Image radiance;  // R, G, B; empty once it is judged
   CameraSight sight;
   std::vector<TargetOutcome> targets;  // as sight.targets
   double sun_share = 0.0;              // of the Sun's disc, that the Earth leaves free
@@ -75,8 +75,7 @@ struct ConditionOptions {
 // Of conditions in their order. Reasons, which cost most, are worked out once per run of like ones:
 // of one setting, verdict and iris (a quarter of a stop), the same sources off for the same causes,
 // probabilities within 0.05, luminance of target and surround within a tenth, share in direct light
-// within 0.05 of those at the run's beginning. Its other conditions say whose theirs are. Outcomes
-// come without `radiance`.
+// within 0.05 of those at the run's beginning. Its other conditions say whose theirs are.
 [[nodiscard]] std::vector<Outcome> judge_conditions(const LightBasis& basis,
                                                     const scenes::RayQuery& query,
                                                     const BasisView& view,

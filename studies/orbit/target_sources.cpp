@@ -106,6 +106,18 @@ double luminance_of_groups(const BasisView::Target& target, const GroupWeights& 
 
 double sun_share_of(const SkyPlace& sky) { return scenes::visible_sun_share(bare(sky)); }
 
+namespace {
+
+bool earth_stands_still(const std::vector<SkyPlace>& places) {
+  const std::optional<scenes::Earth>& first = places.front().earth;
+  return places.size() > 1 && first && std::ranges::all_of(places, [&](const SkyPlace& place) {
+           return place.earth && place.earth->direction == first->direction &&
+                  place.earth->half_angle_deg == first->half_angle_deg;
+         });
+}
+
+}  // namespace
+
 void reach_of_lamps(const LightBasis& basis, const scenes::RayQuery& query,
                     BasisView::Target& target) {
   const scenes::Scene& scene = basis.scene();
@@ -120,6 +132,9 @@ void reach_of_lamps(const LightBasis& basis, const scenes::RayQuery& query,
     const scenes::EmitterSet emitters(scene, m);
     target.emitters[m] = reach_of_emitters(scene, query, target.points, emitters);
   }
+  if (!earth_stands_still(basis.places())) return;
+  target.earth = blockers_of_earth(scene, query, target.points, *basis.places().front().earth,
+                                   earth_directions);
 }
 
 TargetSources sources_on(const LightBasis& basis, const scenes::RayQuery& query,
@@ -153,18 +168,17 @@ TargetSources sources_on(const LightBasis& basis, const scenes::RayQuery& query,
     const bool lit = scenes::earth_is_lit(bare(sky));
     const bool on = groups.earth != no_group && weighed(groups.earth, basis.earth_parts());
     (void)all.source("earth");
-    if (lit) {
-      all.add("earth",
-              reach_of_earth(scene, query, target.points, *sky.earth, sky.sun, earth_directions),
-              on ? 1.0 : 0.0);
-    }
+    const auto reach_by = [&](const std::optional<scenes::Sun>& sun) {
+      return reach_of_earth(scene, query, target.points, *sky.earth, sun, earth_directions,
+                            target.earth ? &*target.earth : nullptr);
+    };
+    if (lit) all.add("earth", reach_by(sky.sun), on ? 1.0 : 0.0);
     if (!on) all.source("earth").off = lit ? switched_off : "has its night side below";
     if (!lit && sky.sun) {
       // What it would give by day.
       scenes::Sun noon = *sky.sun;
       noon.direction = -sky.earth->direction;
-      all.add("earth",
-              reach_of_earth(scene, query, target.points, *sky.earth, noon, earth_directions), 0.0);
+      all.add("earth", reach_by(noon), 0.0);
     }
     if (groups.earth != no_group) {
       all.source("earth").luminance =

@@ -19,7 +19,7 @@ inline constexpr const char* switched_off = "switched off";
 inline constexpr double dimmed_share = 0.5;
 inline constexpr const char* dimmed_to = "dimmed to ";
 
-// Fills the target's `lamps` and `emitters`.
+// Fills the target's `lamps`, `emitters` and `earth`: all shadow rays that serve every condition.
 void reach_of_lamps(const LightBasis& basis, const scenes::RayQuery& query,
                     BasisView::Target& target);
 

@@ -143,6 +143,24 @@ ShownRange shown_range(const degrade::CctvCamera& camera, const degrade::Report&
   return {luminance_of_signal(std::sqrt(report.noise.at_black())), luminance_of_signal(white)};
 }
 
+namespace {
+
+// A stage is known by its law.
+bool is_on(decltype(degrade::Stage::carry) carry, const degrade::Setup& setup,
+           const degrade::Report* found) {
+  const auto stages = degrade::stages();
+  const auto stage = std::find_if(stages.begin(), stages.end(),
+                                  [&](const degrade::Stage& s) { return s.carry == carry; });
+  return degrade::runs(*stage, setup, found);
+}
+
+}  // namespace
+
+degrade::PlaneMap screen_spread(const degrade::Setup& setup, int columns, int rows) {
+  if (!is_on(degrade::carry_spread, setup, nullptr)) return {nothing(columns), nothing(rows)};
+  return {mean_spread(setup.monitor, columns), mean_spread(setup.monitor, rows)};
+}
+
 CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup) {
   const degrade::CctvCamera& camera = setup.camera;
   CctvSignal line;
@@ -155,13 +173,7 @@ CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup
   line.has_fields = degrade::has_fields(setup, report);
   const degrade::StageContext at{setup, report, memory, 0, line.has_fields ? 2U : 1U};
 
-  // A stage is known by its law.
-  const auto is_on = [&](auto* carry) {
-    const auto stages = degrade::stages();
-    const auto found = std::find_if(stages.begin(), stages.end(),
-                                    [&](const degrade::Stage& s) { return s.carry == carry; });
-    return degrade::runs(*found, setup, &report);
-  };
+  const auto is_on = [&](auto* carry) { return studies::is_on(carry, setup, &report); };
   // A picture of one resel, on which the maps point by point leave what they are.
   degrade::Moments maps = degrade::still({1, 1, {{0.0F}}});
   Picture exposed, full;
@@ -207,9 +219,9 @@ CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup
   line.screen = maps.pending;
   line.columns = picture.columns;
   line.rows = picture.rows;
-  const bool spreads = is_on(degrade::carry_spread);
-  line.spread_along = spreads ? mean_spread(setup.monitor, line.columns) : nothing(line.columns);
-  line.spread_across = spreads ? mean_spread(setup.monitor, line.rows) : nothing(line.rows);
+  degrade::PlaneMap spread = screen_spread(setup, line.columns, line.rows);
+  line.spread_along = std::move(spread.along);
+  line.spread_across = std::move(spread.across);
   if (is_on(degrade::carry_room_light))
     line.room_luminance = degrade::room_luminance(setup.monitor);
 

@@ -55,6 +55,9 @@ struct ShownRange {
 [[nodiscard]] ShownRange shown_range(const degrade::CctvCamera& camera,
                                      const degrade::Report& report, double mean_luminance);
 
+// CctvSignal::spread_along and spread_across.
+[[nodiscard]] degrade::PlaneMap screen_spread(const degrade::Setup& setup, int columns, int rows);
+
 // Throws as degrade::degrade does.
 [[nodiscard]] CctvSignal pass_through(const base::Image& radiance, const degrade::Setup& setup);
 

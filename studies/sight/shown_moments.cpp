@@ -52,7 +52,7 @@ ShownMoments moments_at(const CctvSignal& line, const std::vector<std::uint32_t>
   for (std::size_t p = 0; p < line.planes.size(); ++p) {
     const SignalPlane& plane = line.planes[p];
     const auto share = static_cast<float>(line.luminance_share[p]);
-    const auto gathered = [&](const std::vector<std::uint32_t>& at, const degrade::PointMap& map) {
+    const auto gathered = [&](const std::vector<std::uint32_t>& at, auto law) {
       Plane mean, variance;
       mean.reserve(at.size());
       variance.reserve(at.size());
@@ -60,9 +60,11 @@ ShownMoments moments_at(const CctvSignal& line, const std::vector<std::uint32_t>
         mean.push_back(plane.signal[resel]);
         variance.push_back(scatter(plane, resel).frame);
       }
-      return through(map, mean, variance);
+      return law(mean, variance);
     };
-    const degrade::MomentPlanes v = gathered(resels, line.line);
+    const degrade::MomentPlanes v = gathered(resels, [&](const Plane& mean, const Plane& variance) {
+      return degrade::through(line.line, mean, variance);
+    });
     std::vector<float>& slope = shown.slope.emplace_back(count, 0.0F);
     for (std::size_t i = 0; i < resels.size(); ++i) {
       const std::uint32_t resel = resels[i];
@@ -77,9 +79,11 @@ ShownMoments moments_at(const CctvSignal& line, const std::vector<std::uint32_t>
       shown.beyond[resel] += share * share * beyond;
       slope[resel] = v.slope[i];
     }
-    const degrade::MomentPlanes light = gathered(screen, line.screen);
+    const Plane light = gathered(screen, [&](const Plane& mean, const Plane& variance) {
+      return degrade::mean_through(line.screen, mean, variance);
+    });
     for (std::size_t i = 0; i < screen.size(); ++i) {
-      shown.luminance[screen[i]] += share * light.mean[i];
+      shown.luminance[screen[i]] += share * light[i];
     }
   }
   return shown;

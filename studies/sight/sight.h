@@ -6,6 +6,7 @@
 // degrade::most_snr.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -97,6 +98,8 @@ struct Sight {
   std::optional<EyeSight> eye;
 };
 
+struct TargetResels;  // studies/sight/target_signal.h
+
 // What stays while light, iris and lamps change.
 struct SightTarget {
   TargetView view;
@@ -111,6 +114,8 @@ struct SightTarget {
     double share = 0.0;  // of the pixels of all parts
   };
   std::vector<Part> parts;
+  // Of a placed plan (place_targets); what is null is found at each measure_sight.
+  std::shared_ptr<const TargetResels> resels;
 };
 struct SightPlan {
   ObjectMap map;
@@ -119,6 +124,10 @@ struct SightPlan {
 };
 [[nodiscard]] SightPlan plan_sight(const scenes::Camera& camera, ObjectMap map,
                                    std::vector<TargetView> views);
+
+// Finds once on which resels of that CCTV and its screen the targets stand. Worth it where
+// measure_sight is called often; it does so itself where monitor or stages are others.
+void place_targets(SightPlan& plan, const degrade::Setup& cctv);
 
 struct CameraSight {
   double mean_luminance = 0.0;                // of the whole view, cd/m^2

@@ -13,22 +13,42 @@
 namespace earthshine::studies {
 namespace {
 
-struct TargetResels {
-  WeightedResels measured, seen, surround;
-  struct Part {
-    WeightedResels target, surround;
-    double share = 0.0;
-  };
-  std::vector<Part> parts;
-  std::vector<std::uint32_t> screen;  // whose light reaches measured or surround
+// A union of sets of resels.
+class ReselUnion {
+ public:
+  explicit ReselUnion(std::size_t count) : has_(count, 0) {}
+  void add(const WeightedResels& set) {
+    for (const std::uint32_t resel : set.resel) has_[resel] = 1;
+  }
+  [[nodiscard]] std::vector<std::uint32_t> ascending() const {
+    std::vector<std::uint32_t> all;
+    for (std::size_t i = 0; i < has_.size(); ++i) {
+      if (has_[i] != 0) all.push_back(static_cast<std::uint32_t>(i));
+    }
+    return all;
+  }
+
+ private:
+  std::vector<std::uint8_t> has_;
 };
 
-std::vector<std::uint32_t> united(const std::vector<std::uint32_t>& a,
-                                  const std::vector<std::uint32_t>& b) {
-  std::vector<std::uint32_t> both;
-  both.reserve(a.size() + b.size());
-  std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
-  return both;
+std::shared_ptr<const TargetResels> resels_of(const SightPlan& plan, const SightTarget& target,
+                                              degrade::PlaneMap spread) {
+  const int columns = spread.along.out(), rows = spread.across.out();
+  const auto weigh_here = [&](const std::vector<std::uint32_t>& pixels) {
+    return weigh(pixels, plan.map.columns, plan.map.rows, columns, rows);
+  };
+  auto at = std::make_shared<TargetResels>();
+  at->measured = weigh_here(target.view.measured);
+  at->seen = weigh_here(target.seen);
+  at->surround = weigh_here(target.view.surround);
+  at->measured_screen = screen_sources(spread, at->measured);
+  at->surround_screen = screen_sources(spread, at->surround);
+  for (const SightTarget::Part& part : target.parts) {
+    at->parts.push_back({weigh_here(part.target), weigh_here(part.surround), part.share});
+  }
+  at->spread = std::move(spread);
+  return at;
 }
 
 double mean_of(const std::vector<float>& values, const WeightedResels& set) {
@@ -145,7 +165,7 @@ void compare(TargetSignal& out, const TargetResels& at, const ShownMoments& mome
   SignalSight& s = out.signal;
   MonitorSight& m = out.monitor;
   s.surround = mean_of(moments.mean, at.surround);
-  m.surround = screen_mean(line, moments, at.surround);
+  m.surround = screen_mean(line, moments, at.surround_screen);
   const double left = trail.share(out.lines);
   if (left < 1.0) {
     s.mean = *s.surround + left * (s.mean - *s.surround);
@@ -268,6 +288,14 @@ double chain_modulation(const degrade::Setup& setup, double direction_rad, doubl
          axis(degrade::Axis::Across, std::abs(frequency * std::sin(direction_rad)));
 }
 
+void place_targets(SightPlan& plan, const degrade::Setup& cctv) {
+  const degrade::Grid grid = degrade::picture_grid(plan.map.columns, plan.map.rows, cctv.monitor);
+  const degrade::PlaneMap spread = screen_spread(cctv, grid.columns, grid.rows);
+  for (SightTarget& target : plan.targets) {
+    if (!target.seen.empty()) target.resels = resels_of(plan, target, spread);
+  }
+}
+
 std::vector<std::optional<TargetSignal>> target_signals(const SightPlan& plan,
                                                         const CctvSignal& line,
                                                         const degrade::Setup& setup,
@@ -275,39 +303,32 @@ std::vector<std::optional<TargetSignal>> target_signals(const SightPlan& plan,
                                                         std::span<const ContrastBounds> bounds) {
   const int frames =
       std::max(1, static_cast<int>(std::lround(options.eye_integration_s / options.frame_s)));
-  const auto weigh_here = [&](const std::vector<std::uint32_t>& pixels) {
-    return weigh(pixels, plan.map.columns, plan.map.rows, line.columns, line.rows);
-  };
-  std::vector<TargetResels> at(plan.targets.size());
-  std::vector<std::uint32_t> resels, screen;
+  const degrade::PlaneMap spread{line.spread_along, line.spread_across};
+  std::vector<std::shared_ptr<const TargetResels>> at(plan.targets.size());
+  ReselUnion resels(line.resel_count()), screen(line.resel_count());
   for (std::size_t t = 0; t < at.size(); ++t) {
     const SightTarget& target = plan.targets[t];
     if (target.seen.empty()) continue;
-    at[t].measured = weigh_here(target.view.measured);
-    at[t].seen = weigh_here(target.seen);
-    at[t].surround = weigh_here(target.view.surround);
-    for (const SightTarget::Part& part : target.parts) {
-      at[t].parts.push_back({weigh_here(part.target), weigh_here(part.surround), part.share});
+    const bool placed = target.resels && target.resels->spread == spread;
+    at[t] = placed ? target.resels : resels_of(plan, target, spread);
+    for (const WeightedResels* set : {&at[t]->seen, &at[t]->surround}) resels.add(*set);
+    for (const WeightedResels* set : {&at[t]->measured_screen, &at[t]->surround_screen}) {
+      screen.add(*set);
     }
-    screen = united(screen, spread_sources(line, at[t].measured));
-    resels = united(resels, at[t].seen.resel);
-    if (at[t].surround.empty()) continue;
-    screen = united(screen, spread_sources(line, at[t].surround));
-    resels = united(resels, at[t].surround.resel);
   }
-  const ShownMoments moments = moments_at(line, resels, screen, frames);
+  const ShownMoments moments = moments_at(line, resels.ascending(), screen.ascending(), frames);
   std::vector<std::optional<TargetSignal>> signals(plan.targets.size());
   for (std::size_t t = 0; t < at.size(); ++t) {
     const SightTarget& target = plan.targets[t];
     if (target.seen.empty()) continue;
     TargetSignal& out = signals[t].emplace();
-    out.signal.mean = mean_of(moments.mean, at[t].measured);
-    out.signal.snr = over(out.signal.mean, mean_of(moments.variance, at[t].measured));
-    out.monitor.luminance = screen_mean(line, moments, at[t].measured);
+    out.signal.mean = mean_of(moments.mean, at[t]->measured);
+    out.signal.snr = over(out.signal.mean, mean_of(moments.variance, at[t]->measured));
+    out.monitor.luminance = screen_mean(line, moments, at[t]->measured_screen);
     out.lines = target.extent.pixels * line.rows / plan.map.rows;
     count_levels(plan, target, line, out);
-    if (at[t].surround.empty()) continue;
-    compare(out, at[t], moments, line, setup, options, frames, target.extent,
+    if (at[t]->surround.empty()) continue;
+    compare(out, *at[t], moments, line, setup, options, frames, target.extent,
             trail_of(plan, target.view, line, options), bounds[t]);
   }
   return signals;

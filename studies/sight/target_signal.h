@@ -19,6 +19,18 @@ struct TargetSignal {
   double lines = 0.0;  // TV lines across the least extent
 };
 
+// Where a target stands on a grid of resels.
+struct TargetResels {
+  degrade::PlaneMap spread;  // of the screen that its `..._screen` are of
+  WeightedResels measured, seen, surround;
+  WeightedResels measured_screen, surround_screen;  // screen_sources
+  struct Part {
+    WeightedResels target, surround;
+    double share = 0.0;
+  };
+  std::vector<Part> parts;
+};
+
 // Targets of which no pixel is seen get nothing.
 [[nodiscard]] std::vector<std::optional<TargetSignal>> target_signals(
     const SightPlan& plan, const CctvSignal& line, const degrade::Setup& setup,

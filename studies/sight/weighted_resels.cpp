@@ -116,21 +116,27 @@ void multiply(Box& box, const Plane& by, int columns) {
   }
 }
 
-// sum over z of v(z) p(z) q(z); boxes of the same place.
+// The two sets seen from where the noise enters, in each field.
+struct Seen {
+  std::vector<Box> a, b;  // one or two fields; all of the same place
+};
+
+// sum over z of v(z) p(z) q(z) for two boxes p of one field and two boxes q of another.
 template <class Variance>
-double sum_of(const Box& p, const Box& q, Variance v) {
-  double sum = 0.0;
-  for (int y = p.y0; y < p.y0 + p.rows; ++y) {
-    const double *a = p.row(y), *b = q.row(y);
-    for (int x = 0; x < p.columns; ++x) sum += v(p.x0 + x, y) * a[x] * b[x];
+MeanNoise sums_of(const Seen& g, std::size_t p, std::size_t q, Variance v) {
+  const Box& place = g.a[p];
+  MeanNoise sum;
+  for (int y = place.y0; y < place.y0 + place.rows; ++y) {
+    const double *a = g.a[p].row(y), *b = g.b[p].row(y), *a2 = g.a[q].row(y), *b2 = g.b[q].row(y);
+    for (int x = 0; x < place.columns; ++x) {
+      const double value = v(place.x0 + x, y), va = value * a[x];
+      sum.variance_a += va * a2[x];
+      sum.variance_b += value * b[x] * b2[x];
+      sum.covariance += va * b2[x];
+    }
   }
   return sum;
 }
-
-// The two sets seen from where the noise enters, in each field.
-struct Seen {
-  std::vector<Box> a, b;  // one or two fields
-};
 
 // Adds what noise of these variances does: within a field, and between the two.
 template <class Variance>
@@ -139,18 +145,12 @@ void add_noise(MeanNoise& noise, const Seen& g, Variance v, const TimeFactors& t
     for (std::size_t h = 0; h < g.a.size(); ++h) {
       const double factor = share * (f == h ? time.same : time.other);
       if (factor == 0.0) continue;
-      noise.variance_a += factor * sum_of(g.a[f], g.a[h], v);
-      noise.variance_b += factor * sum_of(g.b[f], g.b[h], v);
-      noise.covariance += factor * sum_of(g.a[f], g.b[h], v);
+      const MeanNoise sum = sums_of(g, f, h, v);
+      noise.variance_a += factor * sum.variance_a;
+      noise.variance_b += factor * sum.variance_b;
+      noise.covariance += factor * sum.covariance;
     }
   }
-}
-
-// What of the line reaches a spread target's resels, and how much of it.
-Box reach_of(const CctvSignal& line, const WeightedResels& of) {
-  const Box target = filled(box_around(of, of, line.columns), of, line.columns, -1,
-                            [](std::uint32_t) { return 1.0; });
-  return transposed_across(transposed_along(target, line.spread_along), line.spread_across);
 }
 
 }  // namespace
@@ -201,30 +201,28 @@ WeightedResels weigh(const std::vector<std::uint32_t>& pixels, int picture_colum
   return set;
 }
 
-std::vector<std::uint32_t> spread_sources(const CctvSignal& line, const WeightedResels& of) {
-  const Box reach = reach_of(line, of);
-  std::vector<std::uint32_t> resels;
+WeightedResels screen_sources(const degrade::PlaneMap& spread, const WeightedResels& of) {
+  WeightedResels sources;
+  if (of.empty()) return sources;
+  const int columns = spread.along.out();
+  const Box target =
+      filled(box_around(of, of, columns), of, columns, -1, [](std::uint32_t) { return 1.0; });
+  const Box reach = transposed_across(transposed_along(target, spread.along), spread.across);
   for (int y = reach.y0; y < reach.y0 + reach.rows; ++y) {
     for (int x = 0; x < reach.columns; ++x) {
-      if (reach.row(y)[x] != 0.0) {
-        resels.push_back(static_cast<std::uint32_t>(y * line.columns + reach.x0 + x));
-      }
+      if (reach.row(y)[x] == 0.0) continue;
+      sources.resel.push_back(static_cast<std::uint32_t>(y * columns + reach.x0 + x));
+      sources.weight.push_back(reach.row(y)[x]);
     }
   }
-  return resels;
+  return sources;
 }
 
-double screen_mean(const CctvSignal& line, const ShownMoments& moments, const WeightedResels& of) {
-  const Box reach = reach_of(line, of);
+double screen_mean(const CctvSignal& line, const ShownMoments& moments,
+                   const WeightedResels& screen) {
   double sum = 0.0;
-  for (int y = reach.y0; y < reach.y0 + reach.rows; ++y) {
-    for (int x = 0; x < reach.columns; ++x) {
-      const double share = reach.row(y)[x];
-      if (share == 0.0) continue;
-      sum +=
-          share * static_cast<double>(
-                      moments.luminance[static_cast<std::size_t>(y * line.columns + reach.x0 + x)]);
-    }
+  for (std::size_t i = 0; i < screen.resel.size(); ++i) {
+    sum += screen.weight[i] * static_cast<double>(moments.luminance[screen.resel[i]]);
   }
   return sum + line.room_luminance;
 }

@@ -17,7 +17,7 @@ namespace earthshine::studies {
 struct WeightedResels {
   std::vector<std::uint32_t> resel;  // ascending
   std::vector<double> weight;        // sum 1
-  double area = 0.0;                 // resels
+  double area = 0.0;                 // resels; of screen_sources 0
 
   [[nodiscard]] bool empty() const { return resel.empty(); }
 };
@@ -42,12 +42,13 @@ struct ShownMoments {
                                       const std::vector<std::uint32_t>& resels,
                                       const std::vector<std::uint32_t>& screen, int frames);
 
-// Resels whose light the phosphor spreads to these.
-[[nodiscard]] std::vector<std::uint32_t> spread_sources(const CctvSignal& line,
-                                                        const WeightedResels& of);
-// Mean luminance of the screen over these, with spread and room light.
+// Resels whose light the phosphor spreads to these, and how much of it: the luminance of the screen
+// over `of` is their weighted sum. spread: screen_spread of the grid.
+[[nodiscard]] WeightedResels screen_sources(const degrade::PlaneMap& spread,
+                                            const WeightedResels& of);
+// Mean luminance of the screen over a set, with spread and room light. screen: its screen_sources.
 [[nodiscard]] double screen_mean(const CctvSignal& line, const ShownMoments& moments,
-                                 const WeightedResels& of);
+                                 const WeightedResels& screen);
 
 // Variances of the means of the line signal over two sets, and their covariance, over frames.
 struct MeanNoise {

@@ -151,9 +151,8 @@ void take_away(std::vector<float>& values, const std::vector<std::uint32_t>& pix
 }
 
 // Where the iris stands without these pixels' light.
-degrade::Exposure exposure_without(const degrade::Setup& setup, const base::Image& radiance,
+degrade::Exposure exposure_without(const degrade::Setup& setup, std::vector<float> luminance,
                                    const std::vector<std::uint32_t>& pixels, const ObjectMap& map) {
-  std::vector<float> luminance = base::luminance_of(radiance);
   take_away(luminance, pixels);
   return exposure_for(setup, std::move(luminance), map);
 }
@@ -188,8 +187,9 @@ bool strays(const WhyNotInputs& in, const Gone& gone, double own) {
          (camera.saturation > 0.0 && camera.bloom > 0.0 && signal > camera.saturation);
 }
 
-BrightThings bright_changes(const WhyNotInputs& in, std::size_t index, const Gone& gone,
-                            double own) {
+// luminance: of the picture.
+BrightThings bright_changes(const WhyNotInputs& in, std::size_t index, const Gone& gone, double own,
+                            const std::vector<float>& luminance) {
   BrightThings found;
   found.names = names_of(gone);
   std::vector<std::uint32_t> pixels = pixels_of(gone);
@@ -197,7 +197,7 @@ BrightThings bright_changes(const WhyNotInputs& in, std::size_t index, const Gon
   const bool by_iris = in.cctv && in.cctv->camera.iris != degrade::IrisMode::Fixed;
   if (by_iris) {
     found.stops = stops_between(*in.sight.exposure,
-                                exposure_without(*in.cctv, in.radiance, pixels, in.plan.map));
+                                exposure_without(*in.cctv, luminance, pixels, in.plan.map));
   }
   const bool sun = gone.size() == 1 && gone.front()->is_sun;
   const std::string stands = sun ? "the Sun stands in the picture: " : "";
@@ -215,9 +215,10 @@ BrightThings bright_changes(const WhyNotInputs& in, std::size_t index, const Gon
     change.text = std::move(text);
     change.apply = [&in, pixels, keep, opens, clears](Scenario& s) {
       if (s.cctv) {
-        hold_exposure(s, opens
-                             ? exposure_without(*in.cctv, s.radiance, pixels, in.plan.map)
-                             : exposure_for(*in.cctv, base::luminance_of(s.radiance), in.plan.map));
+        hold_exposure(
+            s, opens
+                   ? exposure_without(*in.cctv, base::luminance_of(s.radiance), pixels, in.plan.map)
+                   : exposure_for(*in.cctv, base::luminance_of(s.radiance), in.plan.map));
       }
       if (!clears) return;
       for_light(s.radiance, [&](std::vector<float>& values) { take_away(values, pixels, keep); });
@@ -239,21 +240,22 @@ BrightThings bright_changes(const WhyNotInputs& in, std::size_t index, const Gon
 
 std::vector<BrightThings> without_bright_things(const WhyNotInputs& in, std::size_t index,
                                                 std::size_t most) {
+  const std::vector<float> luminance = base::luminance_of(in.radiance);
   const std::vector<BrightThing> things =
-      bright_things(in, in.plan.targets[index].view.object, base::luminance_of(in.radiance));
+      bright_things(in, in.plan.targets[index].view.object, luminance);
   const Sight& sight = in.sight.targets[index];
   const double own = std::max(sight.luminance.value_or(0.0), sight.surround.value_or(0.0));
   std::vector<BrightThings> found;
   Gone brighter;
   double most_stops = 0.0;
   for (std::size_t k = 0; k < std::min(most, things.size()); ++k) {
-    BrightThings one = bright_changes(in, index, {&things[k]}, own);
+    BrightThings one = bright_changes(in, index, {&things[k]}, own, luminance);
     most_stops = std::max(most_stops, one.stops);
     if (!one.changes.empty()) found.push_back(std::move(one));
     if (things[k].mean() > 2.0 * own) brighter.push_back(&things[k]);
   }
   if (brighter.size() < 2) return found;
-  BrightThings all = bright_changes(in, index, brighter, own);
+  BrightThings all = bright_changes(in, index, brighter, own, luminance);
   if (!all.changes.empty() && all.stops > most_stops + more_stops) found.push_back(std::move(all));
   return found;
 }

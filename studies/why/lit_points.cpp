@@ -23,17 +23,27 @@ struct Beam {
 
 Beam no_beam(const SeenPoint&, int) { return {}; }
 
-// beam(point, k) for k < count.
-template <class BeamOf>
-Reach reach_of(const scenes::Scene& scene, const scenes::RayQuery& query,
-               std::span<const SeenPoint> points, int count, BeamOf beam) {
+// The object that a shadow ray from the point to the light hits first; EarthBlockers::none: none.
+std::uint32_t blocker_of(const scenes::Scene& scene, const scenes::RayQuery& query,
+                         const SeenPoint& point, const Beam& light) {
+  const Vec3 origin = point.lifted();
+  const scenes::ShadowWay way =
+      scenes::shadow_way({light.direction, light.distance_m}, point.position, origin);
+  const scenes::Hit hit = query.closest(origin, way.direction);
+  // A lamp's own surface, at the end of the way, is not in it.
+  if (hit.missed() || !(hit.t < way.reach_m * (1.0 - 1e-4))) return EarthBlockers::none;
+  return scene.triangles[hit.triangle].object;
+}
+
+// beam(point, k) for k < count; blocker(i, k, light): between point i and that beam's light.
+template <class BeamOf, class BlockerOf>
+Reach reach_by(std::span<const SeenPoint> points, int count, BeamOf beam, BlockerOf blocker) {
   Reach reach;
   reach.lit.assign(points.size(), 0);
   reach.facing.assign(points.size(), 0);
   std::map<std::uint32_t, std::size_t> between;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const SeenPoint& point = points[i];
-    const Vec3 origin = point.lifted();
     for (int k = 0; k < count; ++k) {
       const Beam light = beam(point, k);
       const double cosine = glm::dot(light.direction, point.normal);
@@ -41,12 +51,9 @@ Reach reach_of(const scenes::Scene& scene, const scenes::RayQuery& query,
       const double luminance = point.reflectance * light.illuminance_lx * cosine / base::pi;
       reach.facing[i] = 1;
       reach.unshadowed += luminance;
-      const scenes::ShadowWay way =
-          scenes::shadow_way({light.direction, light.distance_m}, point.position, origin);
-      const scenes::Hit hit = query.closest(origin, way.direction);
-      // A lamp's own surface, at the end of the way, is not in it.
-      if (!hit.missed() && hit.t < way.reach_m * (1.0 - 1e-4)) {
-        ++between[scene.triangles[hit.triangle].object];
+      const std::uint32_t object = blocker(i, k, light);
+      if (object != EarthBlockers::none) {
+        ++between[object];
         continue;
       }
       reach.lit[i] = 1;
@@ -63,6 +70,25 @@ Reach reach_of(const scenes::Scene& scene, const scenes::RayQuery& query,
   std::stable_sort(reach.shadows.begin(), reach.shadows.end(),
                    [](const auto& a, const auto& b) { return a.rays > b.rays; });
   return reach;
+}
+
+template <class BeamOf>
+Reach reach_of(const scenes::Scene& scene, const scenes::RayQuery& query,
+               std::span<const SeenPoint> points, int count, BeamOf beam) {
+  return reach_by(points, count, beam, [&](std::size_t i, int, const Beam& light) {
+    return blocker_of(scene, query, points[i], light);
+  });
+}
+
+// Directions of equal solid angle over the Earth's disc.
+std::vector<Vec3> directions_over(const scenes::Earth& earth, int count) {
+  std::vector<Vec3> directions;
+  for (int k = 0; k < count; ++k) {
+    const glm::dvec2 place = base::even_point(static_cast<std::size_t>(k));
+    directions.push_back(scenes::sample_cone(earth.direction, base::radians(earth.half_angle_deg),
+                                             place.x, place.y));
+  }
+  return directions;
 }
 
 Beam beam_of(const scenes::LightSample& sample, int samples) {
@@ -126,23 +152,42 @@ Reach reach_of_emitters(const scenes::Scene& scene, const scenes::RayQuery& quer
 
 Reach reach_of_earth(const scenes::Scene& scene, const scenes::RayQuery& query,
                      std::span<const SeenPoint> points, const scenes::Earth& earth,
-                     const std::optional<scenes::Sun>& sun, int directions) {
+                     const std::optional<scenes::Sun>& sun, int directions,
+                     const EarthBlockers* known) {
   scenes::Scene sky;  // radiance of the Earth depends on nothing else
   sky.sun = sun;
   sky.earth = earth;
   if (!scenes::earth_is_lit(sky)) return reach_of(scene, query, points, 0, no_beam);
-  const double half_angle = base::radians(earth.half_angle_deg);
-  const double solid_angle = scenes::cone_solid_angle_sr(half_angle) / directions;
+  const double solid_angle =
+      scenes::cone_solid_angle_sr(base::radians(earth.half_angle_deg)) / directions;
   std::vector<Beam> beams;
-  for (int k = 0; k < directions; ++k) {
-    const glm::dvec2 place = base::even_point(static_cast<std::size_t>(k));
-    const Vec3 direction = scenes::sample_cone(earth.direction, half_angle, place.x, place.y);
+  for (const Vec3& direction : directions_over(earth, directions)) {
     const double radiance = base::luminance(scenes::earth_radiance(sky, direction));
-    if (!(radiance > 0.0)) continue;
     beams.push_back({direction, std::numeric_limits<double>::infinity(), radiance * solid_angle});
   }
-  return reach_of(scene, query, points, static_cast<int>(beams.size()),
-                  [&](const SeenPoint&, int k) { return beams[static_cast<std::size_t>(k)]; });
+  return reach_by(
+      points, directions,
+      [&](const SeenPoint&, int k) { return beams[static_cast<std::size_t>(k)]; },
+      [&](std::size_t i, int k, const Beam& light) {
+        if (known == nullptr) return blocker_of(scene, query, points[i], light);
+        return known->object[i * beams.size() + static_cast<std::size_t>(k)];
+      });
+}
+
+EarthBlockers blockers_of_earth(const scenes::Scene& scene, const scenes::RayQuery& query,
+                                std::span<const SeenPoint> points, const scenes::Earth& earth,
+                                int directions) {
+  EarthBlockers known;
+  known.object.reserve(points.size() * static_cast<std::size_t>(directions));
+  const std::vector<Vec3> over = directions_over(earth, directions);
+  for (const SeenPoint& point : points) {
+    for (const Vec3& direction : over) {
+      const bool faces = glm::dot(direction, point.normal) > 0.0;
+      known.object.push_back(faces ? blocker_of(scene, query, point, Beam{direction})
+                                   : EarthBlockers::none);
+    }
+  }
+  return known;
 }
 
 Reach reach_of_earth(const scenes::Scene& scene, const scenes::RayQuery& query,

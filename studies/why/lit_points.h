@@ -70,10 +70,22 @@ struct Reach {
 // night left out; lit: by any of them.
 [[nodiscard]] Reach reach_of_earth(const scenes::Scene& scene, const scenes::RayQuery& query,
                                    std::span<const SeenPoint> points, int directions = 64);
-// The same for an Earth and a Sun that are not the scene's.
+// Objects that shadow rays from points to all of the Earth's disc hit first, lit or not.
+struct EarthBlockers {
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+  std::vector<std::uint32_t> object;  // by point and direction
+};
+[[nodiscard]] EarthBlockers blockers_of_earth(const scenes::Scene& scene,
+                                              const scenes::RayQuery& query,
+                                              std::span<const SeenPoint> points,
+                                              const scenes::Earth& earth, int directions);
+
+// reach_of_earth for an Earth and a Sun that are not the scene's. known: blockers for these points,
+// directions and place of the Earth; null: rays are cast to the lit part of the disc.
 [[nodiscard]] Reach reach_of_earth(const scenes::Scene& scene, const scenes::RayQuery& query,
                                    std::span<const SeenPoint> points, const scenes::Earth& earth,
-                                   const std::optional<scenes::Sun>& sun, int directions = 64);
+                                   const std::optional<scenes::Sun>& sun, int directions = 64,
+                                   const EarthBlockers* known = nullptr);
 
 // Share of the points set in the mask; 0 for none.
 [[nodiscard]] double share_of(const std::vector<std::uint8_t>& mask);

@@ -40,7 +40,9 @@ bool is_dark(const WhyNotInputs& in, std::size_t index) {
 }  // namespace
 
 Scenario scenario_of(const WhyNotInputs& in, std::size_t index, const SightOptions& options) {
-  Scenario scenario{{in.plan.map, in.plan.fov_deg, {in.plan.targets[index]}}, {}, in.cctv, options};
+  // Sights ask the map for its size alone; a scenario is copied often.
+  const ObjectMap size{in.plan.map.columns, in.plan.map.rows, {}};
+  Scenario scenario{{size, in.plan.fov_deg, {in.plan.targets[index]}}, {}, in.cctv, options};
   scenario.radiance.width = in.radiance.width;
   scenario.radiance.height = in.radiance.height;
   for (const char* name : {"R", "G", "B", "Y"}) {

@@ -10,6 +10,8 @@ import json
 import math
 import sys
 
+import study_table
+
 LAMPS = {"off": 0.0, "bay lamps on": 1.0, "dimmed": 0.3}
 CAMERAS = ["B", "C", "A", "D"]
 WAYS = ["liner", "eureca-arrays", "forward-bulkhead", "aft-bulkhead", "eureca-deck", "tss-deployer", "sills", "arm"]
@@ -51,7 +53,7 @@ def verdict_of(probability):
 def out_of_view(condition, camera, target):
     return {"condition": condition, "camera": camera, "target": target, "verdict": "out-of-view",
             "probability": None, "pixels": 0, "visible_fraction": None, "cut_by_frame": False,
-            "lit_fraction": None, "lit_by": [], "light_by": [], "angle_deg": None, "tv_lines": None,
+            "lit_fraction": None, "lit_by": {}, "light_by": {}, "angle_deg": None, "tv_lines": None,
             "luminance": None, "surround": None, "weber": None, "signal": None, "monitor": None, "eye": None,
             "johnson_cycles": None, "saturated": None, "crushed": None, "luminance_error": None,
             "why": f"{target} is outside what camera {camera} sees",
@@ -100,10 +102,9 @@ def result(condition, position, lamps, camera, target):
     return {"condition": condition, "camera": camera, "target": target, "verdict": verdict,
             "probability": probability, "pixels": int(2400 * visible / (1 + t)), "visible_fraction": visible,
             "cut_by_frame": t == 1, "lit_fraction": rounded(0.7 if any(lit.values()) else 0.0),
-            "lit_by": [{"group": name, "share": 0.6 if name == "sun" else 0.5} for name, on in lit.items() if on],
-            "light_by": [{"group": name, "luminance": rounded(value)} for name, value in by.items() if value > 0],
-            "light_from": [{"from": "earth", "reflected": False, "share": 0.5}] + [
-                {"from": name, "reflected": True, "share": 0.04} for name in WAYS],
+            "lit_by": {name: 0.6 if name == "sun" else 0.5 for name, on in lit.items() if on},
+            "light_by": {name: rounded(value) for name, value in by.items() if value > 0},
+            "light_from": {"earth": 0.5}, "light_by_way_of": {name: 0.04 for name in WAYS},
             "angle_deg": rounded(cycles / 4), "tv_lines": rounded(2 * cycles), "luminance": rounded(luminance),
             "surround": rounded(luminance / (1 + weber)), "weber": rounded(weber),
             "signal": {"mean": rounded(min(1, luminance / 400)), "surround": rounded(min(1, luminance / 700)),
@@ -115,24 +116,6 @@ def result(condition, position, lamps, camera, target):
                     "cycles": rounded(3 * cycles)},
             "johnson_cycles": rounded(cycles), "saturated": rounded(saturated), "crushed": 0.0,
             "luminance_error": 0.02, "why": why, "reasons": reasons}
-
-
-def timelines(conditions, results):
-    lines = {}
-    for entry in results:
-        condition = conditions[entry["condition"]]
-        key = (entry["camera"], entry["target"], condition["lamps"])
-        line = lines.setdefault(key, {
-            "scene": "s0", "camera": key[0], "target": key[1], "lamps": key[2],
-            **{name: [] for name in ("position_deg", "time_s", "sun_share", "detect", "recognise", "identify",
-                                     "luminance", "weber")}})
-        for name in ("position_deg", "time_s", "sun_share"):
-            line[name].append(condition[name])
-        for name in ("detect", "recognise", "identify"):
-            line[name].append(entry["probability"][name] if entry["probability"] else None)
-        for name in ("luminance", "weber"):
-            line[name].append(entry[name])
-    return list(lines.values())
 
 
 def study(positions=24, cameras=2, targets=3, lamps=2):
@@ -151,14 +134,13 @@ def study(positions=24, cameras=2, targets=3, lamps=2):
     results = [result(name, condition["position_deg"], condition["lamps"], camera, target)
                for name, condition in conditions.items() for camera in cameras for target in targets]
     return {
-        "format": 1, "study": "visibility", "name": "STS-46, day and night", "version": "0.1.0", "complete": True,
+        "format": 2, "study": "visibility", "name": "STS-46, day and night", "version": "0.1.0", "complete": True,
         "scenes": [{"id": "s0", "name": "STS-46 payload bay", "path": "scenes/library/sts46/day-earthshine.toml"}],
         "cameras": [{"scene": "s0", "name": camera, "columns": 512, "rows": 512, "fov_deg": 40,
                      "cctv": "sit-monochrome" if k == 0 else None, "iris": "average" if k == 0 else None,
                      "relative_noise": 0.021, "error_text": "within 5 % of the exact light, as the picture states itself",
                      "render_seconds": 4.2} for k, camera in enumerate(cameras)],
         "targets": targets, "conditions": list(conditions.values()), "results": results,
-        "timelines": timelines(conditions, results),
         "answers": [
             {"wanted": "tss>=0.9", "target": "tss", "least": 0.9, "found": True, "camera": "B", "iris": "peak",
              "lamps": "bay lamps on", "least_factor": 0.12, "arcs_deg": [[0.0, 105.0], [255.0, 345.0]],
@@ -188,5 +170,5 @@ def study(positions=24, cameras=2, targets=3, lamps=2):
 
 if __name__ == "__main__":
     with open(sys.argv[1], "w", encoding="utf-8") as out:
-        json.dump(study(), out, ensure_ascii=False, separators=(",", ":"))
+        json.dump(study_table.closed(study()), out, ensure_ascii=False, separators=(",", ":"))
         out.write("\n")

@@ -9,6 +9,7 @@ import unittest
 
 import program
 import report_sample
+import study_table
 
 SAMPLE = program.TOP / "tests" / "data" / "report"
 HAS_SCRIPT = os.environ.get("EARTHSHINE_REPORT_SCRIPT") == "ON"
@@ -58,14 +59,14 @@ class Report(program.Case):
         folder = self.folder / "study"
         shutil.copytree(SAMPLE, folder, dirs_exist_ok=True)
         if results is not None:
-            (folder / "study.json").write_text(json.dumps(results), encoding="utf-8")
+            (folder / "study.json").write_text(json.dumps(study_table.closed(results)), encoding="utf-8")
         self.done("report", "study", *arguments)
         return (folder / "report.html").read_text(encoding="utf-8")
 
     def refused_study(self, results, *parts):
         folder = self.folder / "bad"
         folder.mkdir(exist_ok=True)
-        text = results if isinstance(results, str) else json.dumps(results)
+        text = results if isinstance(results, str) else json.dumps(study_table.closed(results))
         (folder / "study.json").write_text(text, encoding="utf-8")
         self.says(self.refused("report", "bad"), *parts)
         self.assertFalse((folder / "report.html").exists())
@@ -73,7 +74,7 @@ class Report(program.Case):
 
 class Content(Report):
     def test_the_sample_is_what_its_script_makes(self):
-        self.assertEqual(json.loads((SAMPLE / "study.json").read_text(encoding="utf-8")), report_sample.study())
+        self.assertEqual(json.loads((SAMPLE / "study.json").read_text(encoding="utf-8")), study_table.closed(report_sample.study()))
 
     def test_everything_is_there_without_a_script(self):
         page = Page(self.study(None, "--plain"))
@@ -131,7 +132,7 @@ class Content(Report):
         digest = base64.b64encode(hashlib.sha256(page.blocks["script"].encode()).digest()).decode()
         self.assertIn(f"script-src 'sha256-{digest}'", text)
         data = json.loads(page.blocks["script application/json"])
-        self.assertEqual(len(data["timelines"]), len(report_sample.study()["timelines"]))
+        self.assertEqual(len(data["timelines"]), 2 * 3 * 2)  # cameras, targets, lamp settings
         self.assertEqual(data["timelines"][0]["x"][:2], [0, 15])
         self.says(page.text, "@observablehq/plot", "img-comparison-slider", "(ISC)", "(MIT)")
 
@@ -187,7 +188,7 @@ class Safety(Report):
         study["name"] = "a\u0000b\u001bc\ud800"
         folder = self.folder / "study"
         shutil.copytree(SAMPLE, folder)
-        (folder / "study.json").write_bytes(json.dumps(study).replace("\\ud800", "x").encode().replace(b"STS-46 payload", b"\xff\xc0\xaf"))
+        (folder / "study.json").write_bytes(json.dumps(study_table.closed(study)).replace("\\ud800", "x").encode().replace(b"STS-46 payload", b"\xff\xc0\xaf"))
         run = self.run_program("report", "study")
         self.assertIn(run.returncode, (0, 2))  # a parser may refuse bytes that are no text
         if run.returncode == 0:
@@ -205,12 +206,12 @@ class Safety(Report):
 
 class Studies(Report):
     def test_nothing_to_see_is_said(self):
-        empty = {"format": 1, "study": "visibility", "name": "nothing", "version": "0", "scenes": [], "cameras": [],
+        empty = {"format": 2, "study": "visibility", "name": "nothing", "version": "0", "scenes": [], "cameras": [],
                  "targets": [], "conditions": [], "results": []}
         self.says(Page(self.study(empty)).text, "no camera", "0 results")
         full = report_sample.study(positions=4)
-        self.says(Page(self.study(full | {"targets": [], "results": [], "timelines": []})).text, "no object as a target")
-        self.says(Page(self.study(full | {"conditions": [], "results": [], "timelines": [], "thumbnails": []})).text, "no condition")
+        self.says(Page(self.study(full | {"targets": [], "results": []})).text, "no object as a target")
+        self.says(Page(self.study(full | {"conditions": [], "results": [], "thumbnails": []})).text, "no condition")
         self.says(Page(self.study(full | {"results": []})).text, "no result yet")
         blind = full | {"results": [report_sample.out_of_view(r["condition"], r["camera"], r["target"])
                                     for r in full["results"]]}
@@ -231,7 +232,6 @@ class Studies(Report):
         study = report_sample.study(positions=1)
         for condition in study["conditions"]:
             condition |= {"position_deg": None, "time_s": None, "phase": None, "sun_share": None}
-        study["timelines"] = []
         page = Page(self.study(study))
         self.assertEqual(len([t for t in page.all("table") if "matrix" in t.get("class", "")]), 1)
         self.assertNotIn({"href": "#timelines"}, page.all("a"))
@@ -263,23 +263,27 @@ class Refusals(Report):
         self.refused_study("", "not JSON")
         self.refused_study([1, 2], "not the result of a study")
         self.refused_study({"study": "compare"}, "not the result of a study")
-        self.refused_study({"format": 2, "study": "visibility"}, "format is 2", "reads 1")
-        self.refused_study({"format": 1, "study": "compare"}, "compare", "visibility")
-        self.refused_study({"format": 1, "study": "visibility"}, "scenes is missing")
+        self.refused_study({"format": 1, "study": "visibility"}, "format is 1", "reads 2", "Run the study again")
+        self.refused_study({"format": 2, "study": "compare"}, "compare", "visibility")
+        self.refused_study({"format": 2, "study": "visibility"}, "scenes is missing")
 
     def test_the_place_of_a_fault_is_named(self):
         def broken(part, key, value):
             study = report_sample.study(positions=4)
             study[part][3][key] = value
             return study
-        self.refused_study(broken("results", "verdict", "perhaps"), "results[3].verdict", "perhaps", "not-seen")
-        self.refused_study(broken("results", "camera", "Z"), "results[3].camera", "Z", "cameras")
-        self.refused_study(broken("results", "condition", "c99"), "results[3].condition", "c99")
-        self.refused_study(broken("results", "target", 7), "results[3].target is a number", "a text")
-        self.refused_study(broken("results", "pixels", "many"), "results[3].pixels is a text")
-        self.refused_study(broken("results", "signal", 1), "results[3].signal is a number")
+        self.refused_study(broken("results", "verdict", "perhaps"), "results.rows[3].verdict", "perhaps", "not-seen")
+        self.refused_study(broken("results", "camera", "Z"), "results.rows[3].camera", "Z", "cameras")
+        self.refused_study(broken("results", "condition", "c99"), "results.rows[3].condition", "c99")
+        self.refused_study(broken("results", "target", 7), "results.rows[3].target is a number", "a text")
+        self.refused_study(broken("results", "pixels", "many"), "results.rows[3].pixels is a text")
+        self.refused_study(broken("results", "signal", 1), "results.rows[3].signal is a number")
         self.refused_study(broken("conditions", "phase", "dusk"), "conditions[3].phase", "dusk")
-        self.refused_study(broken("timelines", "detect", [0.5]), "timelines[3]", "same length")
+        short = study_table.closed(report_sample.study(positions=4))
+        short["results"]["rows"][3] = short["results"]["rows"][3][:5]
+        self.refused_study(short, "results.rows[3]", "no row", "cells")
+        short["results"] = {"columns": ["signal", "signal.mean"], "rows": [[1, 2]]}
+        self.refused_study(short, "results.columns", "signal.mean", "twice")
         doubled = report_sample.study(positions=4)
         doubled["results"].append(doubled["results"][0])
         self.refused_study(doubled, "once more")

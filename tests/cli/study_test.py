@@ -9,6 +9,7 @@ import unittest
 
 import png
 import program
+import study_table
 
 
 class Study(program.Case):
@@ -242,7 +243,7 @@ class Visibility(Study):
                             "--camera", "A", "--camera", "above", "--size", "16x12")
         self.assertEqual(printed, self.result("v", "study.json"))
         self.assertEqual([camera["name"] for camera in printed["cameras"]], ["above", "A"])
-        self.assertIsNone(printed["results"][0]["shown_to"])
+        self.assertIsNone(study_table.opened(printed)["results"][0]["shown_to"])
         clean = [figure["file"] for figure in printed["figures"] if figure["clean"]]
         self.assertEqual([self.png_size("v", name) for name in clean], [(16, 12)] * 2)
 

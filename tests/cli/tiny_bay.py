@@ -5,6 +5,7 @@ import os
 import re
 
 import program
+import study_table
 
 # Most of what a study of small pictures takes is the monitor's: a ninth of the resels, each one pixel.
 SMALL_MONITOR = "[monitor]\nrows = 96\ncolumns = 128\npixels_per_resel = 1\n"
@@ -156,7 +157,10 @@ class Case(program.Case):
 
     def study(self, folder):
         text = (self.folder / folder / "study.json").read_text(encoding="utf-8")
-        return json.loads(text, parse_constant=lambda word: self.fail(f"{word} in the JSON"))
+        return study_table.opened(json.loads(text, parse_constant=lambda word: self.fail(f"{word} in the JSON")))
+
+    def printed(self, *call):
+        return study_table.opened(self.json(*call))
 
     def no_nonsense(self, folder):
         """No number that is none in anything a person reads."""

@@ -61,8 +61,9 @@ def verdicts(programs, out):
         found = []
         for program, folder in zip(programs, (out / "e", out / "f")):
             run(program, "study", study, bay, *SMALL, *more, "-o", folder / study)
-            results = json.loads((folder / study / "study.json").read_text(encoding="utf-8"))["results"]
-            found.append({(r["condition"], r["camera"], r["target"]): (r["verdict"], r["probability"]["detect"]) for r in results})
+            table = json.loads((folder / study / "study.json").read_text(encoding="utf-8"))["results"]
+            results = [dict(zip(table["columns"], row)) for row in table["rows"]]
+            found.append({(r["condition"], r["camera"], r["target"]): (r["verdict"], r["probability.detect"]) for r in results})
         mine, theirs = found
         others = sum(mine[key][0] != theirs[key][0] for key in mine)
         chance = max(abs((mine[key][1] or 0) - (theirs[key][1] or 0)) for key in mine)

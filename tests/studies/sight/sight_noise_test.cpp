@@ -89,8 +89,9 @@ TEST(SightNoise, EveryReselIsThatOfTheTwin) {
                    viewed[(y * step + j / step) * step * side_px + x * step + j % step]);
       }
     }
-    EXPECT_NEAR(screen_mean(line, moments, disc), sum / static_cast<double>(step * step),
-                1e-4 * sum)
+    EXPECT_NEAR(
+        screen_mean(line, moments, screen_sources({line.spread_along, line.spread_across}, disc)),
+        sum / static_cast<double>(step * step), 1e-4 * sum)
         << preset.name;
   }
 }
@@ -249,8 +250,10 @@ TEST(SightNoise, NoisyFramesScatterAsForetold) {
     EXPECT_NEAR(variance, foretold, 4.0 * std::sqrt(2.0 / (frames - 1)) * foretold);
     const double light = s.light / frames;
     const double light_variance = (s.light_squares - frames * light * light) / (frames - 1);
-    EXPECT_NEAR(light, screen_mean(line, moments, s.disc),
-                4.0 * std::sqrt(light_variance / frames) + 1e-4 * light);
+    EXPECT_NEAR(
+        light,
+        screen_mean(line, moments, screen_sources({line.spread_along, line.spread_across}, s.disc)),
+        4.0 * std::sqrt(light_variance / frames) + 1e-4 * light);
   }
 }
 
