@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/free_memory.h"
 #include "base/parallel.h"
 #include "raytrace/frame/cryptomatte.h"
 #include "raytrace/frame/first_hit.h"
@@ -69,6 +70,7 @@ void fold_field(Sampled& sampled, const Window& window) {
         }
       });
   sampled.field.reset();
+  base::give_back_freed_memory(sums.radiance.size() * sizeof(glm::vec3));
 }
 
 // Of the rows in the window, with places that are pixels of it.
@@ -188,6 +190,11 @@ Frame render(const scenes::World& world, const radiosity::Solution& solution,
   const PixelSums& sums = sampled.sums;
   frame.error = state_error(sums, sampled.field ? &*sampled.field : nullptr, window);
   if (options.per_light) frame.layers.noise = noise_by_part(sampled, window, options);
+  if (!options.regions.empty()) {
+    frame.regions =
+        RegionNoise(frame.layers, options.regions, static_cast<std::size_t>(options.columns));
+    frame.layers.thin(layer_noise_step(window.pixel_count()));
+  }
   fold_field(sampled, window);
   // Not before: with many layers it is as large as what is sampled.
   frame.image = base::make_rgb_image(window.columns, window.rows);

@@ -13,6 +13,7 @@
 #include "app/study/study.h"
 #include "app/views/kept_layers.h"
 #include "base/error.h"
+#include "base/free_memory.h"
 #include "radiosity/refine.h"
 #include "raytrace/frame/first_hit.h"
 #include "scenes/effects/quality.h"
@@ -25,6 +26,11 @@ namespace {
 
 Json noise_key(Json picture_key) {
   picture_key["what"] = "noise";
+  return picture_key;
+}
+
+Json regions_key(Json picture_key) {
+  picture_key["what"] = "regions";
   return picture_key;
 }
 
@@ -76,16 +82,15 @@ scenes::Scene scene_to_cut(const scenes::Scene& basis) {
 
 namespace {
 
-// Pixels that the verdicts of those targets follow from.
-std::vector<std::uint8_t> noted_pixels(const std::vector<studies::TargetView>& targets,
-                                       std::size_t count) {
-  std::vector<std::uint8_t> noted(count, 0U);
+// Target, surround, target, surround ...
+std::vector<std::vector<std::uint32_t>> regions_of(
+    const std::vector<studies::TargetView>& targets) {
+  std::vector<std::vector<std::uint32_t>> regions;
   for (const studies::TargetView& target : targets) {
-    for (const std::vector<std::uint32_t>* pixels : {&target.measured, &target.surround}) {
-      for (const std::uint32_t pixel : *pixels) noted[pixel] = 1U;
-    }
+    regions.push_back(target.measured);
+    regions.push_back(target.surround);
   }
-  return noted;
+  return regions;
 }
 
 }  // namespace
@@ -111,6 +116,10 @@ StudyFrames::StudyFrames(const StudyPart& part, const std::filesystem::path& fol
   scene_cache_key_["solver"] = solver_cache_key(solver_);
 }
 
+double StudyFrames::wanted_error(const scenes::Scene& scene) {
+  return scene.quality.error.value_or(scenes::default_error);
+}
+
 raytrace::RenderOptions StudyFrames::options(const StudyCamera& camera) const {
   raytrace::RenderOptions options =
       raytrace::render_options(scenes::resolve_quality(part_.basis_scene.scene));
@@ -119,17 +128,18 @@ raytrace::RenderOptions StudyFrames::options(const StudyCamera& camera) const {
   options.seed = common_.seed;
   options.per_light = true;
   options.aovs = {"object"};
-  const double wanted = part_.basis_scene.scene.quality.error.value_or(scenes::default_error);
-  options.error = share_of_the_sum * wanted;
-  const std::size_t values = part_.basis->groups().count() *
-                             static_cast<std::size_t>(camera.columns) *
-                             static_cast<std::size_t>(camera.rows);
-  options.gather_step = values > most_values ? 2 : 1;
+  options.error = share_of_the_sum * wanted_error(part_.basis_scene.scene);
+  options.gather_step = values_of(camera) > most_values ? 2 : 1;
   options.stop = Interrupt::leave_or_go_on;
   return options;
 }
 
-std::vector<std::uint8_t> StudyFrames::noted_at(const StudyCamera& camera) const {
+std::size_t StudyFrames::values_of(const StudyCamera& camera) const {
+  return part_.basis->groups().count() * static_cast<std::size_t>(camera.columns) *
+         static_cast<std::size_t>(camera.rows);
+}
+
+std::vector<std::vector<std::uint32_t>> StudyFrames::regions_at(const StudyCamera& camera) const {
   const scenes::Scene& scene = part_.basis_scene.scene;
   base::Image objects;
   objects.width = camera.columns;
@@ -139,8 +149,7 @@ std::vector<std::uint8_t> StudyFrames::noted_at(const StudyCamera& camera) const
   raytrace::fill_first_hit(scene, *part_.query,
                            raytrace::make_camera_model(*camera.camera, camera.columns, camera.rows),
                            all, objects);
-  return noted_pixels(studies::find_targets(scene, *camera.camera, studies::object_map(objects)),
-                      all.pixel_count());
+  return regions_of(studies::find_targets(scene, *camera.camera, studies::object_map(objects)));
 }
 
 Json StudyFrames::cache_key(const StudyCamera& camera) const {
@@ -252,7 +261,8 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
   raytrace::RenderOptions how = options(camera);
   check_memory(basis, *part_.query, solver_, &how, !solution_.has_value());
   const radiosity::Solution& light = solution(costs);
-  how.noted = noted_at(camera);
+  base::give_back_freed_memory(values_of(camera) * sizeof(glm::vec3));
+  how.regions = regions_at(camera);
   raytrace::Frame drawn;
   try {
     drawn = raytrace::render(basis.world(*part_.query), light, *camera.camera, how,
@@ -267,8 +277,11 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
               drawn.report.rays.total(),
               limits_of_balance(light),
               light.report.patches,
-              std::move(drawn.layers)};
+              std::move(drawn.layers),
+              std::move(drawn.regions)};
+  base::give_back_freed_memory(values_of(camera) * sizeof(glm::vec3));
   keep(key, std::move(drawn.image), frame);
+  base::give_back_freed_memory(values_of(camera) * sizeof(glm::vec3));
   costs.push_back(cost_of(camera, frame, false));
   return frame;
 }
@@ -281,7 +294,10 @@ std::optional<StudyFrames::Frame> StudyFrames::find(const Json& cache_key,
   if (!noise) return std::nullopt;
   Frame frame = read_kept<Frame>(picture->facts);
   frame.image = unpacked_layers(std::move(*picture));
+  std::optional<CachedResult> regions = store_.find(regions_key(cache_key), said);
+  if (!regions) return std::nullopt;
   take_noise(std::move(*noise), frame.errors);
+  frame.regions = unpacked_regions(std::move(*regions));
   frame.errors.see(frame.image, part_.basis->groups().names);
   return frame;
 }
@@ -292,6 +308,7 @@ void StudyFrames::keep(const Json& cache_key, base::Image image, Frame& frame) c
   CachedResult picture = packed_layers(std::move(image), digits, kept_json(frame));
   CachedResult noise = packed_noise(frame.errors);
   store_.keep(noise_key(cache_key), noise);
+  store_.keep(regions_key(cache_key), packed_regions(frame.regions));
   store_.keep(cache_key, picture);
   frame.image = unpacked_layers(std::move(picture));
   take_noise(std::move(noise), frame.errors);
@@ -309,27 +326,8 @@ studies::ConditionNoise StudyFrames::Frame::noise_of(const studies::GroupWeights
   return noise ? studies::noise_of_condition(noise->rms, noise->mean) : studies::ConditionNoise();
 }
 
-namespace {
-
-// Target, surround, target, surround ...
-raytrace::RegionNoise noise_of_regions(const raytrace::LayerErrors& errors,
-                                       const studies::SightPlan& plan) {
-  std::vector<std::vector<std::uint32_t>> regions;
-  for (const studies::SightTarget& target : plan.targets) {
-    regions.push_back(target.view.measured);
-    regions.push_back(target.view.surround);
-  }
-  return {errors, regions, static_cast<std::size_t>(plan.map.columns)};
-}
-
-}  // namespace
-
-DifferenceNoise::DifferenceNoise(const raytrace::LayerErrors& errors,
-                                 const studies::SightPlan& plan)
-    : regions_(noise_of_regions(errors, plan)) {}
-
-std::vector<double> DifferenceNoise::of(const studies::GroupWeights& weights) const {
-  const std::vector<double> variances = regions_.variances(luminances(weights));
+std::vector<double> StudyFrames::Frame::deviations(const studies::GroupWeights& weights) const {
+  const std::vector<double> variances = regions.variances(luminances(weights));
   std::vector<double> deviation;
   for (std::size_t k = 0; k + 1 < variances.size(); k += 2) {
     deviation.push_back(std::sqrt(variances[k] + variances[k + 1]));

@@ -23,22 +23,14 @@ namespace earthshine::app {
 
 [[nodiscard]] std::vector<double> luminances(const studies::GroupWeights& weights);
 
-// Noise of the difference between each target and its surround.
-class DifferenceNoise {
- public:
-  DifferenceNoise(const raytrace::LayerErrors& errors, const studies::SightPlan& plan);
-  // Standard errors in that sum, cd/m^2.
-  [[nodiscard]] std::vector<double> of(const studies::GroupWeights& weights) const;
-
- private:
-  raytrace::RegionNoise regions_;
-};
-
 class StudyFrames {
  public:
   // how: in parts, all of them read one solution.
   StudyFrames(const StudyPart& part, const std::filesystem::path& folder, const Common& common,
               const PartCall& how);
+
+  // That conditions' pictures are to have.
+  [[nodiscard]] static double wanted_error(const scenes::Scene& scene);
 
   // The picture of a camera, with the layer "object"; nothing if it was interrupted.
   struct Frame {
@@ -49,8 +41,11 @@ class StudyFrames {
     std::vector<std::string> limits = {};  // that the solution it was drawn from reached
     std::size_t patches = 0;               // of that solution
     raytrace::LayerErrors errors = {};     // complete where the image is
+    raytrace::RegionNoise regions = {};    // of each target and its surround
     // Of the weighted sum that a condition is.
     [[nodiscard]] studies::ConditionNoise noise_of(const studies::GroupWeights& weights) const;
+    // Standard error of each target's difference from its surround in that sum, cd/m^2.
+    [[nodiscard]] std::vector<double> deviations(const studies::GroupWeights& weights) const;
   };
   [[nodiscard]] std::optional<Frame> frame(const StudyCamera& camera,
                                            std::vector<StudyCost>& costs);
@@ -80,7 +75,9 @@ class StudyFrames {
   // Keeps it and takes it as it will be read.
   void keep(const Json& cache_key, base::Image image, Frame& frame) const;
   [[nodiscard]] raytrace::RenderOptions options(const StudyCamera& camera) const;
-  [[nodiscard]] std::vector<std::uint8_t> noted_at(const StudyCamera& camera) const;
+  // Layers times pixels of its picture.
+  [[nodiscard]] std::size_t values_of(const StudyCamera& camera) const;
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> regions_at(const StudyCamera& camera) const;
 
   [[nodiscard]] radiosity::Solution solve(StageTimes& times) const;
   // The file's, or a new one in place of one that cannot be read.

@@ -149,4 +149,21 @@ void take_noise(CachedResult kept, raytrace::LayerErrors& errors) {
   }
 }
 
+CachedResult packed_regions(const raytrace::RegionNoise& regions) {
+  const std::size_t pairs = std::max<std::size_t>(1, regions.layers * (regions.layers + 1) / 2);
+  const std::size_t count = std::max<std::size_t>(1, regions.covariance.size() / pairs);
+  base::Image picture{static_cast<int>(pairs), static_cast<int>(count), {}};
+  std::vector<float>& kept = picture.add(exact);
+  std::copy(regions.covariance.begin(), regions.covariance.end(), kept.begin());
+  return {{{"layers", regions.layers}, {"values", regions.covariance.size()}}, std::move(picture)};
+}
+
+raytrace::RegionNoise unpacked_regions(CachedResult kept) {
+  raytrace::RegionNoise regions;
+  regions.layers = kept.facts.at("layers").get<std::size_t>();
+  regions.covariance = std::move(kept.image.channels.front().values);
+  regions.covariance.resize(kept.facts.at("values").get<std::size_t>());
+  return regions;
+}
+
 }  // namespace earthshine::app

@@ -27,6 +27,9 @@ int round_layers(base::Image& image, double relative_noise);
 // What layers are off by at places of the picture, as a picture that is rounded for 16 bits: the
 // places' pixels and a channel for each layer, a row for each part of the error.
 [[nodiscard]] CachedResult packed_noise(const raytrace::LayerErrors& errors);
+// Exact.
+[[nodiscard]] CachedResult packed_regions(const raytrace::RegionNoise& regions);
+[[nodiscard]] raytrace::RegionNoise unpacked_regions(CachedResult kept);
 // Back.
 void take_noise(CachedResult kept, raytrace::LayerErrors& errors);
 

@@ -49,8 +49,8 @@ TargetFindings findings_of(const studies::Sight& sight, const studies::TargetOut
   return found;
 }
 
-studies::FinishedBy finished_by(const studies::ConditionNoise& noise, const studies::CameraSight& sight,
-                          double wanted) {
+studies::FinishedBy finished_by(const studies::ConditionNoise& noise,
+                                const studies::CameraSight& sight, double wanted) {
   if (noise.relative && *noise.relative <= wanted) return studies::FinishedBy::Error;
   const bool sure = std::all_of(sight.targets.begin(), sight.targets.end(), [](const auto& target) {
     return target.verdict_low == target.verdict_high;
@@ -166,8 +166,7 @@ Judged StudyConditions::judge(const StudyCamera& camera, const studies::BasisVie
   std::optional<degrade::Setup> cctv;
   if (camera.cctv) cctv = camera.cctv->chain;
   Judged all(part_.conditions());
-  const double wanted = part_.basis_scene.scene.quality.error.value_or(scenes::default_error);
-  const DifferenceNoise noise_of_differences(frame.errors, view.plan);
+  const double wanted = StudyFrames::wanted_error(part_.basis_scene.scene);
   bool found = true;
   for (std::size_t batch = batches.first; batch < batches.last; ++batch) {
     const std::size_t first = conditions_of(batch).first, last = conditions_of(batch).last;
@@ -187,7 +186,7 @@ Judged StudyConditions::judge(const StudyCamera& camera, const studies::BasisVie
     std::vector<studies::Outcome> outcomes;
     studies::ConditionOptions how = options();
     how.deviation = [&](const studies::ConditionAt& at) {
-      return noise_of_differences.of(part_.basis->weights(at.place, at.setting));
+      return frame.deviations(part_.basis->weights(at.place, at.setting));
     };
     try {
       outcomes = studies::judge_conditions(*part_.basis, *part_.query, view, conditions, cctv, how);

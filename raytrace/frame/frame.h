@@ -195,6 +195,14 @@ struct LayerErrors {
   std::vector<double> per_noise;  // by part: what is stated of the sum of all, over its noise
   std::vector<LayerNoise> noise;  // by part
 
+  [[nodiscard]] std::size_t layer_count() const {
+    for (const LayerNoise& part : noise) {
+      if (!part.place.empty()) return part.off.size() / part.place.size();
+    }
+    return luminance.size();
+  }
+  // Keeps of the places that stand for themselves alone one of `step`, which stands for as many.
+  void thin(std::size_t step);
   // Takes each place's light from the picture. groups: its layers'.
   void see(const base::Image& picture, std::span<const std::string> groups);
   // squared: by part, stated of the sum of all: mean, over yardstick^2 (ErrorSums).
@@ -208,26 +216,20 @@ struct LayerErrors {
   };
   [[nodiscard]] std::optional<OfSum> of(std::span<const double> weights) const;
 };
-// Variances of means over some pixels of weighted sums of layers. Rays of neighbouring points are
-// independent, and neighbours that share noise leave a mean over many pixels as it is.
-class RegionNoise {
- public:
-  // region: pixels, ascending, of a picture with so many columns, where all places are noted
-  // (RenderOptions::noted).
+// Noise of the layers' means over regions of a picture. Samples of different places are independent,
+// and neighbours that share noise leave a mean over many pixels as it is.
+struct RegionNoise {
+  std::size_t layers = 0;
+  // region * layers (layers + 1) / 2: covariance of layers j <= k at k (k + 1) / 2 + j, luminance,
+  // (cd/m^2)^2
+  std::vector<float> covariance;
+
+  RegionNoise() = default;
+  // regions: pixels, ascending, of a picture with so many columns, where all places have rows.
   RegionNoise(const LayerErrors& errors, std::span<const std::vector<std::uint32_t>> regions,
               std::size_t columns);
-  // Of each region, (cd/m^2)^2, with these weights of the layers.
+  // Of each region's mean in the sum with these weights, (cd/m^2)^2.
   [[nodiscard]] std::vector<double> variances(std::span<const double> weights) const;
-
- private:
-  struct Term {
-    std::size_t region;
-    double share;  // of the region's mean that the row's place gives
-  };
-  std::size_t layers_, regions_;
-  std::vector<std::size_t> first_term_;  // of each row, and behind the last
-  std::vector<Term> terms_;
-  std::vector<float> off_;  // row * layers
 };
 // Every so many pixels or gather points tell the noise of the layers.
 [[nodiscard]] inline std::size_t layer_noise_step(std::size_t count) {
@@ -246,7 +248,8 @@ struct Frame {
   base::Image image;
   Window window;  // which part of the picture the image is
   StatedError error;
-  LayerErrors layers;  // with per_light and layers for samples of all pixels alike; else empty
+  RegionNoise regions;  // with per_light, of RenderOptions::regions
+  LayerErrors layers;   // with per_light and layers for samples of all pixels alike; else empty
   RenderReport report;
 };
 }  // namespace earthshine::raytrace

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/numbers/random.h"
+#include "base/parallel.h"
 #include "raytrace/frame/frame.h"
 
 namespace earthshine::raytrace {
@@ -70,45 +72,70 @@ std::optional<LayerErrors::OfSum> LayerErrors::of(std::span<const double> weight
   return OfSum{std::sqrt(squares), mean};
 }
 
+void LayerErrors::thin(std::size_t step) {
+  for (LayerNoise& part : noise) {
+    LayerNoise kept;
+    kept.edge_px = part.edge_px;
+    for (std::size_t k = 0; k < part.place.size(); ++k) {
+      LayerNoise::Row row = part.row(k);
+      if (row.stands_for <= 1.0F && step > 1) {
+        if (base::mix64(row.place) % step != 0) continue;
+        row.stands_for = static_cast<float>(step);
+      }
+      kept.add(row, {&part.off[k * layer_count()], layer_count()});
+    }
+    part = std::move(kept);
+  }
+}
+
 RegionNoise::RegionNoise(const LayerErrors& errors,
                          std::span<const std::vector<std::uint32_t>> regions, std::size_t columns)
-    : layers_(errors.luminance.size()), regions_(regions.size()), first_term_(1, 0) {
-  for (const LayerNoise& part : errors.noise) {
-    const auto edge = static_cast<std::size_t>(part.edge_px);
-    for (std::size_t k = 0; k < part.place.size(); ++k) {
-      const std::size_t x = part.place[k] % columns - edge / 2;
-      const std::size_t y = part.place[k] / columns - edge / 2;
-      const std::size_t before = terms_.size();
-      for (std::size_t r = 0; r < regions.size(); ++r) {
-        const std::vector<std::uint32_t>& pixels = regions[r];
+    : layers(errors.layer_count()) {
+  const std::size_t pairs = layers * (layers + 1) / 2;
+  std::vector<std::vector<double>> sums(regions.size());
+  base::parallel_chunks(regions.size(), 1, [&](std::size_t r, std::size_t) {
+    const std::vector<std::uint32_t>& pixels = regions[r];
+    sums[r].assign(pairs, 0.0);
+    std::vector<double> off(layers);
+    for (const LayerNoise& part : errors.noise) {
+      const auto edge = static_cast<std::size_t>(part.edge_px);
+      for (std::size_t k = 0; k < part.place.size(); ++k) {
+        const std::size_t x = part.place[k] % columns - edge / 2;
+        const std::size_t y = part.place[k] / columns - edge / 2;
         double served = 0.0;
         for (std::size_t row = y; row < y + edge; ++row) {
           const auto first = std::lower_bound(pixels.begin(), pixels.end(), row * columns + x);
           served += double(std::lower_bound(first, pixels.end(), row * columns + x + edge) - first);
         }
         if (served <= 0.0) continue;
-        terms_.push_back({r, served * double(part.cover[k]) / double(pixels.size())});
+        const double share = served * double(part.cover[k]) / double(pixels.size());
+        for (std::size_t j = 0; j < layers; ++j) off[j] = share * double(part.off[k * layers + j]);
+        double* sum = sums[r].data();
+        for (std::size_t i = 0; i < layers; ++i) {
+          for (std::size_t j = 0; j <= i; ++j) *sum++ += off[i] * off[j];
+        }
       }
-      if (terms_.size() == before) continue;
-      first_term_.push_back(terms_.size());
-      const auto off = part.off.begin() + static_cast<std::ptrdiff_t>(k * layers_);
-      off_.insert(off_.end(), off, off + static_cast<std::ptrdiff_t>(layers_));
     }
+  });
+  for (const std::vector<double>& of_region : sums) {
+    for (const double value : of_region) covariance.push_back(static_cast<float>(value));
   }
 }
 
 std::vector<double> RegionNoise::variances(std::span<const double> weights) const {
-  std::vector<double> sums(regions_, 0.0);
-  for (std::size_t row = 0; row + 1 < first_term_.size(); ++row) {
-    double off = 0.0;
-    for (std::size_t layer = 0; layer < layers_; ++layer) {
-      off += weights[layer] * double(off_[row * layers_ + layer]);
+  std::vector<double> variances;
+  const std::size_t pairs = layers * (layers + 1) / 2;
+  for (std::size_t first = 0; first < covariance.size(); first += pairs) {
+    const float* value = &covariance[first];
+    double sum = 0.0;
+    for (std::size_t i = 0; i < layers; ++i) {
+      for (std::size_t j = 0; j <= i; ++j) {
+        sum += (i == j ? 1.0 : 2.0) * weights[i] * weights[j] * double(*value++);
+      }
     }
-    for (std::size_t k = first_term_[row]; k < first_term_[row + 1]; ++k) {
-      sums[terms_[k].region] += terms_[k].share * terms_[k].share * off * off;
-    }
+    variances.push_back(std::max(0.0, sum));
   }
-  return sums;
+  return variances;
 }
 
 }  // namespace earthshine::raytrace

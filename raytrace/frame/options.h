@@ -53,9 +53,8 @@ struct RenderOptions {
   int gather_step = 1;
   std::string distributed_over;  // the [[area]] that the Earth's N lights lie on; empty: its disc
   bool per_light = false;
-  // Per pixel of the picture, with per_light: 1 where the layers' noise is noted at every gather
-  // point (LayerErrors::variance_of_mean); empty: at some places all over the picture alone.
-  std::vector<std::uint8_t> noted;
+  // With per_light: pixels, ascending, over whose means Frame::regions knows the layers' noise.
+  std::vector<std::vector<std::uint32_t>> regions;
   std::vector<std::string> aovs;  // of aov_names()
   std::uint64_t seed = 1;
   // With SharedGather: samples of all kinds go where they help most until the picture's stated

@@ -76,7 +76,7 @@ class GatherField {
     bool gathers_residual = true;
     bool shares = true;         // between neighbours
     bool notes_layers = false;  // keeps how the layers' noise goes together, round by round
-    std::span<const std::uint8_t> noted = {};  // RenderOptions::noted
+    std::span<const std::uint8_t> noted = {};  // per pixel of the picture, 1: all of its points
     std::uint64_t seed = 1;
   };
   // Finds the points: one for each pixel of the field, row by row, then the strays. camera: of the

@@ -49,7 +49,14 @@ class Passes {
         options_(options),
         progress_(progress),
         report_(report),
-        window_(window_of(options)) {}
+        window_(window_of(options)) {
+    if (options.regions.empty()) return;
+    noted_.assign(static_cast<std::size_t>(camera.columns) * static_cast<std::size_t>(camera.rows),
+                  0U);
+    for (const std::vector<std::uint32_t>& region : options.regions) {
+      for (const std::uint32_t pixel : region) noted_[pixel] = 1U;
+    }
+  }
 
   Sampled run() {
     if (!options_.shared.on) {
@@ -75,7 +82,7 @@ class Passes {
     const PixelSamples sampling = share_out(options_.gather_rays, shared_.gathers);
     shared_.diffuse = DiffuseSource::Gather;
     shared_.gather_rays = sampling.gather_rays;
-    sums_.emplace(window_, shared_.layers, shared_.splits_parts, options_.noted, camera_.columns);
+    sums_.emplace(window_, shared_.layers, shared_.splits_parts, noted_, camera_.columns);
     expected_ =
         static_cast<double>(sampling.camera_samples) * static_cast<double>(window_.pixel_count());
     first_round(everywhere(sampling.camera_samples));
@@ -111,7 +118,7 @@ class Passes {
       count_gather_rays();
       report_.gather_seconds += seconds_since(start);
     }
-    sums_.emplace(around, shared_.layers, shared_.splits_parts, options_.noted, camera_.columns);
+    sums_.emplace(around, shared_.layers, shared_.splits_parts, noted_, camera_.columns);
     shared_.dimmest = pilot.dimmest;
     first_round(everywhere(how.least_samples));
     shared_.dimmest.clear();
@@ -125,7 +132,7 @@ class Passes {
 
   // As many of each as the wanted error takes, round by round, told by what is there.
   void run_to_error() {
-    sums_.emplace(window_, shared_.layers, shared_.splits_parts, options_.noted, camera_.columns);
+    sums_.emplace(window_, shared_.layers, shared_.splits_parts, noted_, camera_.columns);
     expected_ = 1.0;
     bool covered = true;  // all over the picture there are as many samples as a first look takes
     if (shared_.gathers) {
@@ -209,7 +216,7 @@ class Passes {
     field_.emplace(
         world_, shared_.incoming, surface, camera_,
         GatherField::Setting{shared_.layers, step, shared_.splits_parts, shared_.world != nullptr,
-                             options_.shared.smooth_share > 0.0, shared_.layers > 1, options_.noted,
+                             options_.shared.smooth_share > 0.0, shared_.layers > 1, noted_,
                              options_.seed});
     shared_.diffuse = DiffuseSource::Field;
     shared_.field = &*field_;
@@ -326,6 +333,7 @@ class Passes {
   const Progress& progress_;
   RenderReport& report_;
   Window window_;
+  std::vector<std::uint8_t> noted_;  // of the picture's pixels: 1 in the regions
   std::optional<GatherField> field_;
   std::optional<PixelSums> sums_;
   std::optional<Witness> witness_;

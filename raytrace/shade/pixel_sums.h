@@ -41,7 +41,7 @@ struct PixelSums {
   // Light that the witness expects and the samples have not found, cd/m^2; empty: none.
   std::vector<float> unexplained;
 
-  // noted: RenderOptions::noted of a picture with so many columns.
+  // noted: of a picture with so many columns, 1 where all pixels are noted.
   PixelSums(const Window& of, std::size_t image_layers, bool splits_parts,
             std::span<const std::uint8_t> noted = {}, int columns = 0);
   // Of a pixel that tells the noise of the layers (layer_noise_step).

@@ -85,8 +85,9 @@ std::string noise_text(std::span<const ConditionNoise> noise, std::span<const st
   if (unlit.empty()) return text + finished;
   const std::string most = scenes::two_digits(*dark[unlit.back()].cd_m2) + " cd/m²";
   if (unlit.size() == 1) {
-    return text + fmt::format("{}noise of {}, more than its light, in {}", text.empty() ? "" : "; ",
-                              most, names[unlit.back()]) +
+    return text +
+           fmt::format("{}noise of {}, more than its light, in {}", text.empty() ? "" : "; ", most,
+                       names[unlit.back()]) +
            finished;
   }
   return text +

@@ -6,7 +6,7 @@ import unittest
 import program
 
 FINE = "quality.error=0.002"
-LITTLE = 4.8  # MiB for the work: less than 0.2 % takes
+LITTLE = 1.0  # MiB for the work: 1.6 % is reached, eight times what is asked
 
 
 class StoppedShort(program.Case):
@@ -39,7 +39,7 @@ class StoppedShort(program.Case):
         self.assertGreater(error["seconds_to_go"], 0)
         self.assertTrue((self.folder / "a.h5").exists())
         # Read again it is as far off, and no time makes it better.
-        out, line = self.short("solve", "ball.toml", "--error", "0.0002", "--solution", "a.h5", "--json")
+        out, line = self.short("solve", "ball.toml", "--error", "0.002", "--solution", "a.h5", "--json")
         self.says(line, "taken as it is")
         error = json.loads(out)["error"]
         self.assertEqual((error["limit"], error["seconds_to_go"]), ("given", None))

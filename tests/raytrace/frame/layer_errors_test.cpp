@@ -230,6 +230,7 @@ TEST(RegionNoise, VarianceOfAMeanIsThatOfIndependentPlaces) {
   errors.noise[1].add({15}, std::array<float, 2>{2.0F, 0.0F});
   const std::array<std::vector<std::uint32_t>, 2> regions = {{{0, 1}, {9, 10, 11, 14}}};
   const RegionNoise noise(errors, regions, 4);
+  EXPECT_EQ(noise.covariance.size(), 2U * 3U);
   const std::vector<double> variances = noise.variances(std::array<double, 2>{1.0, 2.0});
   EXPECT_NEAR(variances[0], 0.25 * (1.0 + 4.0 + 1.0), 1e-9);
   EXPECT_NEAR(variances[1], std::pow(0.75 * 2.0, 2), 1e-9);
