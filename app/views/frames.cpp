@@ -181,7 +181,7 @@ radiosity::Solution StudyFrames::solve(StageTimes& times) const {
     radiosity::Refined refined = radiosity::refine({cut, groups, effects, *part_.query}, solver_);
     return radiosity::solve(basis.world(*part_.query), solver_, std::move(refined.patches));
   });
-  note_balance(found);
+  note_balance(found, solver_.balance);
   return found;
 }
 
@@ -275,7 +275,7 @@ std::optional<StudyFrames::Frame> StudyFrames::frame(const StudyCamera& camera,
               drawn.report.seconds,
               drawn.report.relative_noise,
               drawn.report.rays.total(),
-              limits_of_balance(light),
+              limits_of_balance(light, solver_.balance),
               light.report.patches,
               std::move(drawn.layers),
               std::move(drawn.regions)};

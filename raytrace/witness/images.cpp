@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/numbers/sobol_set.h"
 #include "scenes/effects/shining.h"
 #include "scenes/light/narrow_beams.h"
 #include "scenes/reflect/specular.h"
@@ -23,6 +24,8 @@ constexpr double least_shininess = 50.0;
 constexpr double most_deviations2 = 16.0;  // of a lobe, beyond which it is dark
 constexpr double most_pairs = 4e6;         // of facets and emitting triangles
 constexpr std::size_t stop_asked_after = 1024;
+constexpr int facet_points = 64;                     // that tell how much of it shows a source
+constexpr double least_share = 0.25 / facet_points;  // of a facet whose nearest point alone does
 
 using Source = WitnessSource;
 
@@ -34,6 +37,32 @@ struct Facet {
   const scenes::Material* material = nullptr;
   bool is_mirror = false, is_glossy = false;
 };
+
+// Of a facet, as much as shows a disc of that angular radius about a direction of view, and its
+// middle.
+struct ShownPart {
+  double share = 0.0;
+  Vec3 middle{0.0};
+};
+
+ShownPart shown_part(const scenes::Corners& corners, const Vec3& eye, const Vec3& view,
+                     double angle) {
+  const double least = std::cos(angle);
+  ShownPart shown;
+  double met = 0.0;
+  for (int k = 0; k < facet_points; ++k) {
+    // An additive sequence folded onto the triangle.
+    double u = std::fmod(0.5 + k * base::r2_u, 1.0), v = std::fmod(0.5 + k * base::r2_v, 1.0);
+    if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+    const Vec3 point = corners.a + u * (corners.b - corners.a) + v * (corners.c - corners.a);
+    if (glm::dot(glm::normalize(point - eye), view) < least) continue;
+    shown.middle += point;
+    met += 1.0;
+  }
+  if (met > 0.0) shown.middle /= met;
+  shown.share = met / facet_points;
+  return shown;
+}
 
 class ImageFinder {
  public:
@@ -252,11 +281,15 @@ void ImageFinder::reflect(const Facet& facet, const Source& source) {
     image_px2 = source.area_m2 *
                 camera_.film_per_m2(camera_.position, camera_.position + image_m * view, turned);
   }
-  Spot spot = scene_.spot_at(at, 0.0);
-  spot.area_px2 = std::min(image_px2, facet.area_m2 * camera_.film_per_m2(camera_.position, at, n));
+  const ShownPart shown = shown_part(facet.corners, camera_.position, view, angle);
+  const Vec3 on_facet = shown.share > 0.0 ? shown.middle : at;
+  Spot spot = scene_.spot_at(on_facet, 0.0);
+  const double facet_px2 =
+      facet.area_m2 * camera_.film_per_m2(camera_.position, on_facet, facet.normal);
+  spot.area_px2 = std::min(image_px2, std::max(shown.share, least_share) * facet_px2);
   spot.radius_px = std::sqrt(spot.area_px2 / pi);
   spot.luminance = source.luminance * base::luminance(facet.material->mirror);
-  add_visible(facet, source, at, spot, images_);
+  add_visible(facet, source, on_facet, spot, images_);
 }
 
 // Of the lobe cos^n, a Gaussian of variance 1 / n, widened by the source's disc of angular radius

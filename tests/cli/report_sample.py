@@ -55,6 +55,7 @@ def out_of_view(condition, camera, target):
             "probability": None, "pixels": 0, "visible_fraction": None, "cut_by_frame": False,
             "lit_fraction": None, "lit_by": {}, "light_by": {}, "angle_deg": None, "tv_lines": None,
             "luminance": None, "surround": None, "weber": None, "signal": None, "monitor": None, "eye": None,
+            "finished_by": "error",
             "johnson_cycles": None, "saturated": None, "crushed": None, "luminance_error": None,
             "why": f"{target} is outside what camera {camera} sees",
             "reasons": [{"cause": "out-of-view", "by": None, "share": None, "probability_without": None,
@@ -115,7 +116,7 @@ def result(condition, position, lamps, camera, target):
             "eye": {"threshold": 0.012, "weber": rounded(weber), "probability": chances(3 * cycles, 3 * cnr),
                     "cycles": rounded(3 * cycles)},
             "johnson_cycles": rounded(cycles), "saturated": rounded(saturated), "crushed": 0.0,
-            "luminance_error": 0.02, "why": why, "reasons": reasons}
+            "luminance_error": 0.02, "finished_by": "error", "why": why, "reasons": reasons}
 
 
 def study(positions=24, cameras=2, targets=3, lamps=2):

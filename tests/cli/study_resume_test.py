@@ -53,7 +53,7 @@ class Resume(Case):
         self.assertGreater(ended, 0)
         facts = [json.loads(path.with_suffix(".json").read_text())["facts"]
                  for path in (self.folder / "o" / "points").glob("*.exr") if path.with_suffix(".json").exists()]
-        whole_pictures = [of_one for of_one in facts if "places" not in of_one]  # what has places is a picture's noise
+        whole_pictures = [of_one for of_one in facts if "relative_noise" in of_one]  # not its noise
         last = self.run_program(*self.CALL, "-o", "o")
         self.assertEqual(last.returncode, 0, last.stderr)
         self.assertNotIn("recomputed", last.stderr)
