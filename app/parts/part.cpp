@@ -117,7 +117,7 @@ std::optional<PartsRecord> record_in(const fs::path& folder) {
     record.folder = json.at("folder").get<std::string>();
     json.at("arguments").get_to(record.arguments);
     record.digests = json.at("digests");
-    if (record.digests.is_object()) return record;
+    if (record.parts <= most_parts && record.digests.is_object()) return record;
   } catch (const Json::exception&) {  // told below
   }
   throw Error(Blame::Input, path.string(), "is not the record of a call in parts", {},
