@@ -60,8 +60,9 @@ inline constexpr int planning_grid = 48;
 inline constexpr int most_rounds = 6;
 
 // --- Time limits and stops (passes/passes.cpp, gather/quick_look.cpp) ---
-// Time to reserve, over that of finding the gather points (measured: 6 by day, 9 by night) and of
-// denoising: less overruns limits, more wastes them.
+// Time to reserve for the rest of a picture, over the time that finding the gather points took
+// (measured: 6 by day, 9 by night), and over that of denoising: less overruns a limit, more wastes
+// it.
 inline constexpr double after_points = 9.0, after_sharing = 4.0;
 // Gather rays of a camera sample over those once time is up: more ends sooner, with more noise.
 inline constexpr int hasty_share = 4;
@@ -95,7 +96,7 @@ inline constexpr int mirror_reach_px = 3;
 inline constexpr double sharp_lobe = 100.0;
 // Cover of a pixel that makes an off-grid point: less adds points, more leaves slivers to others.
 inline constexpr float least_cover = 0.2F;
-// Reflectance of a mirror that makes a point for what it shows.
+// Least reflectance of a mirror whose reflected surface gets a gather point.
 inline constexpr double least_mirror = 0.01;
 // Cosine between normals within which a lobe may be read (10 degrees): wider blurs highlights.
 inline constexpr float lobe_cosine = 0.985F;

@@ -234,7 +234,7 @@ void PixelSums::pass(std::size_t pixel, base::Parcel& parcel) {
 
 namespace {
 
-// That leave an edge between that share of the brighter side and less an error of edge_for_eye of it
+// Samples that leave an edge of that contrast, over its brighter side, an error of edge_for_eye
 // (error_of_edge).
 std::uint32_t samples_for_edge(double contrast) {
   return std::bit_ceil(static_cast<std::uint32_t>(
